@@ -1,0 +1,148 @@
+"""The end stress over time: its value, its time integral, and where it is not smooth.
+
+All three are exact, so an engine can apply the mean of the load over each of its steps and a
+reference can integrate between breakpoints.
+"""
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from cases.scene import Scene
+
+
+@dataclass(frozen=True)
+class Sine:
+    """Whole cycles of p0 sin(2 pi t / T), zero before and after (Guo & Li 2002, fig. 2)."""
+
+    amplitude: float
+    period: float
+    cycles: int = 1
+
+    def value(self, t: np.ndarray) -> np.ndarray:
+        """Return the stress (Pa) at times t (s)."""
+        inside = (t > 0) & (t < self.end)
+        return np.where(inside, self.amplitude * np.sin(2 * pi * t / self.period), 0.0)
+
+    def impulse(self, t: np.ndarray) -> np.ndarray:
+        """Return the integral of the stress from minus infinity to t (Pa s)."""
+        w = 2 * pi / self.period
+        return self.amplitude * (1 - np.cos(w * np.clip(t, 0, self.end))) / w
+
+    @property
+    def end(self) -> float:
+        """Time at which the last cycle ends, s."""
+        return self.cycles * self.period
+
+    @property
+    def breaks(self) -> list[float]:
+        """Times at which the load is not smooth, s."""
+        return [0.0, self.end]
+
+
+@dataclass(frozen=True)
+class Ricker:
+    """p0 (1 - 2 a) exp(-a), a = (pi (t - 1.5 T) / T)^2: a Ricker wavelet of peak frequency 1 / T.
+
+    Centred at 1.5 T, where the part before t = 0 is below 1e-8 of the peak.
+    """
+
+    amplitude: float
+    period: float
+
+    def value(self, t: np.ndarray) -> np.ndarray:
+        """Return the stress (Pa) at times t (s)."""
+        a = (pi * (t - 1.5 * self.period) / self.period) ** 2
+        return np.where(t > 0, self.amplitude * (1 - 2 * a) * np.exp(-a), 0.0)
+
+    def impulse(self, t: np.ndarray) -> np.ndarray:
+        """Return the integral of the stress from minus infinity to t (Pa s)."""
+        return self._integral(np.maximum(t, 0.0)) - self._integral(0.0)
+
+    def _integral(self, t):
+        s = t - 1.5 * self.period
+        return self.amplitude * s * np.exp(-((pi * s / self.period) ** 2))
+
+    @property
+    def breaks(self) -> list[float]:
+        """Times at which the load is not smooth, s."""
+        return [0.0]
+
+
+@dataclass(frozen=True)
+class Step:
+    """A stress p0 that is applied at t = 0 and stays."""
+
+    amplitude: float
+
+    def value(self, t: np.ndarray) -> np.ndarray:
+        """Return the stress (Pa) at times t (s); half the step at t = 0."""
+        return self.amplitude * np.heaviside(t, 0.5)
+
+    def impulse(self, t: np.ndarray) -> np.ndarray:
+        """Return the integral of the stress from minus infinity to t (Pa s)."""
+        return self.amplitude * np.maximum(t, 0.0)
+
+    @property
+    def breaks(self) -> list[float]:
+        """Times at which the load is not smooth, s."""
+        return [0.0]
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """A piecewise linear history, zero outside its samples.
+
+    `stress` is [n] Pa at `time` [n] s. Its running integral is exact, so a step of any length
+    takes the true mean of the history and nothing is lost to undersampling.
+    """
+
+    time: np.ndarray
+    stress: np.ndarray
+
+    def value(self, t: np.ndarray) -> np.ndarray:
+        """Return the stress (Pa) at times t (s)."""
+        return np.interp(t, self.time, self.stress, left=0.0, right=0.0)
+
+    def impulse(self, t: np.ndarray) -> np.ndarray:
+        """Return the integral of the stress from minus infinity to t (Pa s)."""
+        areas = np.diff(self.time) * (self.stress[1:] + self.stress[:-1]) / 2
+        running = np.concatenate([[0.0], np.cumsum(areas)])
+        t = np.clip(t, self.time[0], self.time[-1])
+        i = np.clip(np.searchsorted(self.time, t, side="right") - 1, 0, len(self.time) - 2)
+        s = t - self.time[i]
+        slope = (self.stress[i + 1] - self.stress[i]) / (self.time[i + 1] - self.time[i])
+        return running[i] + s * (self.stress[i] + slope * s / 2)
+
+    @property
+    def breaks(self) -> list[float]:
+        """Times at which the load is not smooth, s."""
+        return self.time.tolist()
+
+
+LoadHistory = Sine | Ricker | Step | Recorded
+
+
+def load_history(scene: Scene) -> LoadHistory:
+    """Return the scene's end stress as a function of time, compression positive."""
+    load = scene.load
+    if load.shape == "step":
+        return Step(load.amplitude)
+    if load.shape == "table":
+        assert load.history is not None
+        return Recorded(load.history.time, load.amplitude * load.history.stress)
+    assert load.period is not None
+    if load.shape == "ricker":
+        return Ricker(load.amplitude, load.period)
+    return Sine(load.amplitude, load.period, load.cycles or 1)
+
+
+def step_means(load: LoadHistory, dt: float, count: int) -> np.ndarray:
+    """Return the mean stress over [(n - 1/2) dt, (n + 1/2) dt] for n = 0 .. count - 1, Pa.
+
+    This is the load that makes leapfrog exact for the bar at c dt = d: the momentum that enters
+    between two half steps is the true one.
+    """
+    edges = dt * (np.arange(count + 1) - 0.5)
+    return np.diff(load.impulse(edges)) / dt

@@ -1,0 +1,153 @@
+"""From a TOML file to validated scenes: overrides, variants, and errors in one line."""
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from cases.availability import refuse_unavailable
+from cases.errors import SceneError
+from cases.scene import Scene
+
+LARGEST_FILE = 10_000_000  # bytes; a scene is a page of text
+
+
+def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[Scene]:
+    """Read a scene file: the scene itself, then its variants, each validated on its own.
+
+    `overrides` maps dotted keys to values (`--set`) and holds for every variant.
+    Raises SceneError, in one line, for anything that cannot be simulated.
+    """
+    path = Path(path)
+    table = _read_toml(path)
+    for key, value in (overrides or {}).items():
+        _assign(table, key, value, str(path))
+    variants = table.pop("variants", [])
+    if not isinstance(variants, list) or not all(isinstance(v, dict) for v in variants):
+        raise SceneError(str(path), "variants", variants, "must be [[variants]] tables")
+    scenes = [_validate(table, path)]
+    for i, variant in enumerate(variants):
+        scenes.append(_variant(table, variant, path, i, overrides or {}))
+    names = [scene.name for scene in scenes]
+    for i, name in enumerate(names[1:]):
+        if name in names[: i + 1]:
+            raise SceneError(str(path), f"variants[{i}].name", name, "must be unique")
+    return scenes
+
+
+def load_variant(
+    path: str | Path, name: str = "", overrides: dict[str, Any] | None = None
+) -> Scene:
+    """Read one variant of a scene file; the empty name is the scene as it stands."""
+    scenes = {scene.name: scene for scene in load(path, overrides)}
+    if name not in scenes:
+        raise SceneError(str(path), "variants.name", name, f"must be one of {sorted(scenes)}")
+    return scenes[name]
+
+
+def parse_override(text: str) -> tuple[str, Any]:
+    """Parse `key=value`; the value is read as TOML and, failing that, as a plain string."""
+    key, equals, value = text.partition("=")
+    if not equals or not key.strip():
+        raise SceneError("--set", text, None, "must be key=value, e.g. joints.damping_ratio=0.05")
+    try:
+        return key.strip(), tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        return key.strip(), value
+
+
+def _read_toml(path: Path) -> dict[str, Any]:
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise SceneError(str(path), "", None, "is too large to be a scene file")
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise SceneError(str(path), "", None, f"cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise SceneError(str(path), "", None, "is not UTF-8 text") from None
+    except tomllib.TOMLDecodeError as error:
+        raise SceneError(str(path), "", None, f"is not valid TOML: {error}") from None
+
+
+def _variant(
+    base: dict[str, Any], changes: dict[str, Any], path: Path, index: int, overrides: dict[str, Any]
+) -> Scene:
+    name = changes.get("name")
+    if not isinstance(name, str) or not name or "/" in name or name.startswith("."):
+        allowed = "must be a non-empty text without '/' and not starting with '.'"
+        raise SceneError(str(path), f"variants[{index}].name", name, allowed)
+    table = _merge(base, changes)
+    for key, value in overrides.items():
+        _assign(table, key, value, str(path))
+    return _validate(table, path)
+
+
+def _validate(table: dict[str, Any], path: Path) -> Scene:
+    where = f"{path} [{table['name']}]" if table.get("name") else str(path)
+    try:
+        scene = Scene.model_validate(table, context={"folder": path.parent})
+    except ValidationError as error:
+        raise _scene_error(where, error) from None
+    refuse_unavailable(scene, where)
+    return scene
+
+
+def _scene_error(where: str, error: ValidationError) -> SceneError:
+    first, more = error.errors()[0], error.error_count() - 1
+    context = first.get("ctx", {})
+    kind, value = first["type"], first["input"]
+    key, allowed = _dotted(first["loc"]), first["msg"]
+    if kind == "contradiction":
+        key, value, allowed = context["key"], context["found"], context["allowed"]
+    elif kind == "missing":
+        value, allowed = None, "is required"
+    elif kind == "extra_forbidden":
+        allowed = "unknown key" + _known_keys(first["loc"])
+    if isinstance(value, dict):
+        value = None
+    more_text = f" (and {more} more)" if more else ""
+    return SceneError(where, key, value, _lower(allowed) + more_text)
+
+
+def _known_keys(location: tuple[int | str, ...]) -> str:
+    model: Any = Scene
+    for part in location[:-1]:
+        if isinstance(part, str):
+            model = _table_of(model.model_fields[part].annotation)
+    return "; allowed: " + ", ".join(k for k in model.model_fields if k != "name")
+
+
+def _table_of(annotation: Any) -> Any:
+    options = getattr(annotation, "__args__", (annotation,))
+    return next(t for t in options if hasattr(t, "model_fields"))
+
+
+def _dotted(location: tuple[int | str, ...]) -> str:
+    text = ""
+    for part in location:
+        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
+    return text
+
+
+def _lower(text: str) -> str:
+    return text[:1].lower() + text[1:].replace("Input should", "should")
+
+
+def _merge(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
+    merged = dict(base)
+    for key, value in changes.items():
+        old = merged.get(key)
+        merged[key] = (
+            _merge(old, value) if isinstance(old, dict) and isinstance(value, dict) else value
+        )
+    return merged
+
+
+def _assign(table: dict[str, Any], key: str, value: Any, where: str) -> None:
+    *parents, last = key.split(".")
+    for parent in parents:
+        table = table.setdefault(parent, {})
+        if not isinstance(table, dict):
+            raise SceneError(where, key, value, "is not a key of a table")
+    table[last] = value

@@ -1,0 +1,79 @@
+"""When and where a run is recorded: sample times, the step that fits them, and interpolation."""
+
+from math import ceil
+from typing import NamedTuple
+
+import numpy as np
+
+from cases.errors import SceneError
+from cases.scene import Scene
+
+
+class Clock(NamedTuple):
+    """A step that divides the sampling interval.
+
+    dt : s; stride : steps per sample; samples : number of samples, the first at t = 0.
+    """
+
+    dt: float
+    stride: int
+    samples: int
+
+    @property
+    def steps(self) -> int:
+        """Steps from the first to the last sample."""
+        return self.stride * (self.samples - 1)
+
+    @property
+    def times(self) -> np.ndarray:
+        """Sample times [samples], s."""
+        return self.dt * self.stride * np.arange(self.samples)
+
+
+def sample_times(scene: Scene) -> np.ndarray:
+    """Return the times at which a scene is sampled [n], s."""
+    count = int(scene.time.duration / scene.interval + 1e-9) + 1
+    return scene.interval * np.arange(count)
+
+
+def clock(scene: Scene, critical: float, fraction: float, allow_unstable: bool, key: str) -> Clock:
+    """Return the largest step at most `fraction * critical` (s) that divides the interval.
+
+    Above the critical step the step is taken as asked for, to the nearest divisor of the interval,
+    and refused with both numbers unless it is allowed.
+    """
+    wanted = fraction * critical
+    if fraction > 1 and not allow_unstable:
+        raise SceneError(
+            "numerics",
+            f"{key}.step_fraction",
+            fraction,
+            f"gives a step of {wanted:.4g} s above the critical step {critical:.4g} s; "
+            f"at most 1, unless {key}.allow_unstable = true",
+        )
+    ratio = scene.interval / wanted
+    stride = max(1, ceil(ratio * (1 - 1e-12)) if fraction <= 1 else round(ratio))
+    return Clock(scene.interval / stride, stride, len(sample_times(scene)))
+
+
+class Interpolation(NamedTuple):
+    """Linear interpolation from nodes to places: value = (1 - weight) x[left] + weight x[right]."""
+
+    left: np.ndarray
+    right: np.ndarray
+    weight: np.ndarray
+
+
+def interpolation(nodes: np.ndarray, places: list[float]) -> Interpolation:
+    """Return how values at sorted `nodes` [n] (m) are read at `places` (m).
+
+    Beyond the outermost nodes the outermost value holds.
+    """
+    at = np.asarray(places, dtype=float)
+    right = np.clip(np.searchsorted(nodes, at - 1e-9 * nodes[-1]), 1, max(1, len(nodes) - 1))
+    left = right - 1
+    right = np.minimum(right, len(nodes) - 1)
+    span = np.where(right > left, nodes[right] - nodes[left], 1.0)
+    weight = np.clip((at - nodes[left]) / span, 0.0, 1.0)
+    snapped = np.where(np.abs(weight - np.round(weight)) < 1e-9, np.round(weight), weight)
+    return Interpolation(left, right, snapped)

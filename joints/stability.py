@@ -1,0 +1,36 @@
+"""The critical step of leapfrog whose dashpots see the rate extrapolated to the centre of the step.
+
+The rate at step n is (3 r[n-1/2] - r[n-3/2]) / 2: second order, explicit, no equation to solve.
+The mode that first grows alternates its sign at each step, where that rate is 4 u[n] / dt, so the
+step is critical when the largest eigenvalue of M^-1 (dt^2 K + 4 dt C) is 4. For one mode this
+reads dt = sqrt(4 eta^2 + 4 / omega^2) - 2 eta; the Jury conditions of the cubic characteristic
+polynomial show that no other root leaves the unit circle before.
+"""
+
+from collections.abc import Callable
+from math import sqrt
+
+from scipy.optimize import brentq
+
+
+def critical_step(largest: Callable[[float, float], float], damped: bool) -> float:
+    """Return the critical step, s.
+
+    Parameters
+    ----------
+    largest : function of (a, b) that returns the largest eigenvalue of M^-1 (a K + b C).
+    damped : whether there is any C; without it one eigenvalue is enough.
+    """
+    undamped = 2 / sqrt(largest(1.0, 0.0))
+    if not damped:
+        return undamped
+
+    def excess(dt: float) -> float:
+        return largest(dt * dt, 4 * dt) - 4
+
+    if excess(undamped) == 0:  # dashpots of ratio zero
+        return undamped
+    lower = undamped
+    while excess(lower) > 0:
+        lower /= 4
+    return brentq(excess, lower, undamped, xtol=1e-14 * undamped, rtol=1e-12)
