@@ -52,6 +52,13 @@ def clock(scene: Scene, critical: float, fraction: float, allow_unstable: bool, 
             f"at most 1, unless {key}.allow_unstable = true",
         )
     ratio = scene.interval / wanted
+    if fraction > 1 and ratio < 1:
+        raise SceneError(
+            "numerics",
+            "record.interval",
+            scene.interval,
+            f"must be at least the step of {wanted:.4g} s that {key}.step_fraction asks for",
+        )
     stride = max(1, ceil(ratio * (1 - 1e-12)) if fraction <= 1 else round(ratio))
     return Clock(scene.interval / stride, stride, len(sample_times(scene)))
 

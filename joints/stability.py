@@ -10,8 +10,6 @@ polynomial show that no other root leaves the unit circle before.
 from collections.abc import Callable
 from math import sqrt
 
-from scipy.optimize import brentq
-
 
 def critical_step(largest: Callable[[float, float], float], damped: bool) -> float:
     """Return the critical step, s.
@@ -25,10 +23,12 @@ def critical_step(largest: Callable[[float, float], float], damped: bool) -> flo
     if not damped:
         return undamped
 
+    from scipy.optimize import brentq  # 60 ms that an undamped scene does not pay
+
     def excess(dt: float) -> float:
         return largest(dt * dt, 4 * dt) - 4
 
-    if excess(undamped) == 0:  # dashpots of ratio zero
+    if excess(undamped) <= 1e-12:  # dashpots of ratio zero, but for round-off
         return undamped
     lower = undamped
     while excess(lower) > 0:

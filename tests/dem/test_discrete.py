@@ -1,0 +1,69 @@
+"""Round-off against what leapfrog itself is: its closed form, and d'Alembert at c dt = d."""
+
+import numpy as np
+import pytest
+
+import dem
+from cases.calibrate import calibrate
+from cases.loads import load_history
+from cases.sampling import Clock
+from compare.exact import images, leapfrog
+from dem.model import build_model, state_at_rest
+from dem.step import march
+
+
+def blocks_after(scene, clock, load=None):
+    """Return the displacement of every block after the clock's steps, and the load's forces."""
+    p = calibrate(scene)
+    model = build_model(scene, p, clock)
+    if load is not None:
+        model = model._replace(load=load)
+    state = state_at_rest(model, p.block_count, keep_ledger=False)
+    march(model, state, 0, clock.steps)
+    return state.u, model.load
+
+
+@pytest.mark.parametrize("fraction", [0.05, 0.5, 0.99])
+def test_closed_form_of_leapfrog_after_ten_thousand_steps(pillar, fraction):
+    """sin(Omega dt / 2) = omega_n dt / 2: round-off grows with the steps, not with the error."""
+    scene = pillar()
+    p = calibrate(scene)
+    dt = fraction * p.spacing / p.bar_speed
+    u, load = blocks_after(scene, Clock(dt, 1, 10_001))
+    k = p.regular_stiffness * p.area
+    force = np.zeros(10_000)
+    force[: len(load)] = load[:10_000]
+    steps = np.array([10_000])
+    expected = leapfrog.displacements(force, steps, dt, k, p.block_mass, p.block_count)[:, 0]
+    assert np.abs(u - expected).max() < 1e-10 * np.abs(expected).max()
+
+
+def test_bar_is_exact_where_a_wave_crosses_one_block_a_step(pillar):
+    """At c dt = d leapfrog is d'Alembert's solution at the block centres, with the mean load."""
+    probe = pillar()
+    p = calibrate(probe)
+    centres = p.spacing * (np.arange(p.block_count) + 0.5)
+    changes = {
+        "record__velocity": centres.tolist(),
+        "record__interval": p.spacing / p.bar_speed,
+        "numerics__dem__step_fraction": 1.0,
+    }
+    scene = pillar(**changes)
+    result = dem.simulate(scene)
+    exact = images.solve(scene)
+    assert result.attrs["dt"] == pytest.approx(p.spacing / p.bar_speed, rel=1e-14)
+    u, expected = result.displacement.values, exact.displacement.values
+    assert np.abs(u - expected).max() < 1e-12 * np.abs(expected).max()
+
+
+def test_sampled_load_would_not_be_exact_there(pillar):
+    """The load's value at the step instead of its mean over it costs 3e-3: the mean matters."""
+    scene = pillar()
+    p = calibrate(scene)
+    dt = p.spacing / p.bar_speed
+    clock = Clock(dt, 1, 51)
+    u, _ = blocks_after(scene, clock)
+    sampled = p.area * load_history(scene).value(dt * np.arange(clock.steps))
+    other, _ = blocks_after(scene, clock, sampled)
+    error = np.abs(other - u).max() / np.abs(u).max()
+    assert 1e-3 < error < 1e-2
