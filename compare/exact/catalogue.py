@@ -1,0 +1,30 @@
+"""All exact solutions by name, from the one that a model discretises to the coarser ones."""
+
+from types import ModuleType
+
+from compare.exact import (
+    equivalent_bar,
+    images,
+    jointed_bar,
+    kelvin_voigt,
+    lattice,
+    no_tension,
+    one_joint,
+    series,
+)
+
+#: Each module has NAME, applies(scene) -> Answer and solve(scene) -> xarray.Dataset; what they
+#: need of scipy is imported only when they solve.
+CATALOGUE: dict[str, ModuleType] = {
+    module.NAME: module
+    for module in (
+        lattice,
+        no_tension,
+        jointed_bar,
+        equivalent_bar,
+        images,
+        series,
+        kelvin_voigt,
+        one_joint,
+    )
+}

@@ -1,0 +1,60 @@
+"""The homogenised bar with dashpots, soft layers and any ends, in the Laplace variable (`laplace`).
+
+A bar of the rock mass's modulus E_eq (1 + s eta); a soft layer is an interface of the compliance
+that it adds, 1/K = 1/K'_n(soft) - 1/K'_n(regular), with its own time constant, because the bar
+already holds one ordinary joint there. A layer as stiff as the ordinary joints adds none.
+
+Holds for any load; every joint carries tension and no layer is stiffer than the ordinary joints.
+"""
+
+import numpy as np
+import xarray as xr
+
+from cases.calibrate import calibrate
+from cases.loads import load_history
+from cases.result import dataset
+from cases.sampling import sample_times
+from cases.scene import Scene
+from compare.exact.answer import YES, Answer, no
+from compare.exact.conditions import bars_tension, excess_compliance
+from compare.exact.laplace import Bar, end_dashpot, response
+
+NAME = "equivalent-bar"
+
+
+def applies(scene: Scene) -> Answer:
+    """Return whether the scene's homogenised bar is linear and its layers add compliance."""
+    p = calibrate(scene)
+    if bars_tension(p):
+        return no("a joint bars tension")
+    if (excess_compliance(p) < 0).any():
+        return no("a soft layer is stiffer than the ordinary joints")
+    if scene.ends.start == "fixed":
+        return no("the loaded end is fixed")
+    return YES
+
+
+def solve(scene: Scene) -> xr.Dataset:
+    """Return stress, velocity and displacement of the scene's homogenised bar."""
+    times, record = sample_times(scene), scene.record
+    fields = response(
+        bar(scene), load_history(scene), times, record.stress, record.velocity, scene.load.period
+    )
+    return dataset(scene, NAME, times, *fields)
+
+
+def bar(scene: Scene) -> Bar:
+    """Return the scene's homogenised bar with its soft layers as interfaces."""
+    p = calibrate(scene)
+    etas = p.joint_time_constant
+    return Bar(
+        length=scene.pillar.length,
+        density=p.density,
+        modulus=p.modulus,
+        time_constant=p.time_constant or 0.0,
+        joint_y=p.joint_y,
+        joint_compliance=excess_compliance(p),
+        joint_time_constant=np.zeros_like(p.joint_y) if etas is None else etas,
+        start=end_dashpot(scene.ends.start, p.impedance),
+        end=end_dashpot(scene.ends.end, p.impedance),
+    )

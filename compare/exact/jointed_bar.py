@@ -1,0 +1,62 @@
+"""Intact rock with every joint resolved, by marching in the Laplace variable (`laplace`).
+
+Segments of intact rock (E, Kelvin-Voigt eta of the rock) between joints of their own stiffness
+K_n (Guo & Li 2002, equation 4) and time constants; quiet, matched, free or fixed ends, the
+dashpots with the rock mass's impedance. This is the physics that both the rigid blocks and the
+homogenised bar approximate (Schoenberg, JASA 68, 1980; Pyrak-Nolte et al., JGR 95, 1990).
+
+Holds for any load; every joint carries tension and the scene gives intact_modulus.
+"""
+
+import numpy as np
+import xarray as xr
+
+from cases.calibrate import calibrate
+from cases.loads import load_history
+from cases.result import dataset
+from cases.sampling import sample_times
+from cases.scene import Scene
+from compare.exact.answer import YES, Answer, no
+from compare.exact.conditions import bars_tension
+from compare.exact.laplace import Bar, end_dashpot, response
+
+NAME = "jointed-bar"
+
+
+def applies(scene: Scene) -> Answer:
+    """Return whether the scene is a linear bar of known intact rock."""
+    p = calibrate(scene)
+    if p.own_stiffness is None:
+        return no("rock.intact_modulus is not given")
+    if bars_tension(p):
+        return no("a joint bars tension")
+    if scene.ends.start == "fixed":
+        return no("the loaded end is fixed")
+    return YES
+
+
+def solve(scene: Scene) -> xr.Dataset:
+    """Return stress, velocity and displacement of the scene's jointed bar."""
+    times, record = sample_times(scene), scene.record
+    fields = response(
+        bar(scene), load_history(scene), times, record.stress, record.velocity, scene.load.period
+    )
+    return dataset(scene, NAME, times, *fields)
+
+
+def bar(scene: Scene) -> Bar:
+    """Return the scene's intact rock with its N - 1 joints."""
+    p = calibrate(scene)
+    assert p.own_stiffness is not None and p.intact_modulus is not None
+    etas = p.joint_time_constant
+    return Bar(
+        length=scene.pillar.length,
+        density=p.density,
+        modulus=p.intact_modulus,
+        time_constant=p.time_constant or 0.0,
+        joint_y=p.joint_y,
+        joint_compliance=1 / p.own_stiffness,
+        joint_time_constant=np.zeros_like(p.joint_y) if etas is None else etas,
+        start=end_dashpot(scene.ends.start, p.impedance),
+        end=end_dashpot(scene.ends.end, p.impedance),
+    )
