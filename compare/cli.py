@@ -1,0 +1,173 @@
+"""The command `jointwave`: reads scenes, runs what is asked, prints tables and writes files.
+
+Heavy packages are imported by the command that needs them, so a run of the rigid blocks starts
+without dolfinx and matplotlib.
+"""
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import cases
+from cases.errors import SceneError, UnstableError
+from compare.scenes import find, shipped
+
+# Older typer raises click's own errors and newer typer its copy of them: ask the class itself.
+UsageError = next(c for c in typer.BadParameter.__mro__ if c.__name__ == "ClickException")
+
+app = typer.Typer(
+    help="Stress waves in jointed rock: rigid blocks against a continuum, refereed by exact "
+    "solutions.",
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+SceneArgument = Annotated[
+    str, typer.Argument(help="A scene file, or a shipped scene such as guo-li-2002/fig-03.")
+]
+SetOption = Annotated[
+    list[str],
+    typer.Option("--set", metavar="KEY=VALUE", help="Change one key, for every variant."),
+]
+VariantOption = Annotated[
+    str | None, typer.Option(help="Only this variant; '' is the scene as it stands.")
+]
+OutOption = Annotated[Path, typer.Option(help="Folder for the results.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON for a machine to read.")]
+
+
+class Engine(StrEnum):
+    """What can simulate or solve a scene."""
+
+    dem = "dem"
+    continuum = "continuum"
+    exact = "exact"
+
+
+@app.command("list")
+def list_scenes(as_json: JsonOption = False) -> None:
+    """List the shipped scenes and their variants."""
+    from compare import terminal
+
+    rows = [(path, cases.load(path)) for path in shipped()]
+    terminal.show_scenes(rows, as_json)
+
+
+@app.command()
+def run(
+    scene: SceneArgument,
+    engine: Annotated[list[Engine], typer.Option(help="May be given more than once.")] = [  # noqa: B006
+        Engine.dem
+    ],
+    model: Annotated[
+        list[str] | None,
+        typer.Option(help="Of the continuum (jointed, equivalent) or an exact solution's name."),
+    ] = None,
+    changes: SetOption = [],  # noqa: B006
+    variant: VariantOption = None,
+    out: OutOption = Path("results"),
+    as_json: JsonOption = False,
+) -> None:
+    """Simulate a scene and write each result as DIR/[variant/]ENGINE[-MODEL].nc."""
+    from compare import runs, terminal
+
+    scenes = _load(scene, changes, variant)
+    wanted = runs.wanted([e.value for e in engine], model or [])
+    jobs = runs.plan(scenes, wanted, out)
+    with terminal.progress(f"{len(jobs)} runs") as advance:
+        done = runs.execute(jobs, advance)
+    terminal.show_runs(done, as_json)
+
+
+@app.command()
+def explain(
+    scene: SceneArgument,
+    changes: SetOption = [],  # noqa: B006
+    variant: VariantOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Say what a scene calls for, its critical steps, and which exact solutions hold."""
+    from compare import terminal
+    from compare.explain import explanation
+
+    for one in _load(scene, changes, variant if variant is not None else ""):
+        terminal.show_explanation(explanation(one), as_json)
+
+
+@app.command()
+def compare(
+    scene: SceneArgument,
+    changes: SetOption = [],  # noqa: B006
+    variant: VariantOption = None,
+    out: Annotated[Path | None, typer.Option(help="Also write tables, curves and figure.")] = None,
+    spectral: Annotated[
+        bool, typer.Option(help="Add envelope and phase misfit (Kristekova et al. 2006).")
+    ] = True,
+    as_json: JsonOption = False,
+) -> None:
+    """Solve a scene by all that applies, and print how far apart the solutions are."""
+    from compare import pairs, terminal
+
+    found = []
+    for one in _load(scene, changes, variant):
+        with terminal.progress(one.name or one.title) as advance:
+            found.append(pairs.compare(one, advance, spectral))
+    if out is not None:
+        from compare.report import write_comparisons
+
+        write_comparisons(found, out)
+    terminal.show_comparisons(found, as_json)
+
+
+@app.command()
+def report(out: OutOption = Path("report"), as_json: JsonOption = False) -> None:
+    """Write the figures of Guo & Li (2002) with every misfit and finding, as one HTML page."""
+    from compare import terminal
+    from compare.report import build
+
+    with terminal.progress("scenes") as advance:
+        summary = build(out, advance)
+    terminal.show_report(summary, out / "index.html", as_json)
+
+
+def _load(scene: str, changes: list[str], variant: str | None) -> list[cases.Scene]:
+    from cases.read import parse_override
+
+    overrides = dict(parse_override(text) for text in changes)
+    path = find(scene)
+    if variant is None:
+        return cases.load(path, overrides)
+    return [cases.load_variant(path, variant, overrides)]
+
+
+def main() -> None:
+    """Run the command line; every mistake is one line on standard error and a non-zero exit."""
+    if len(sys.argv) == 1:
+        sys.argv.append("--help")
+    try:
+        code = app(standalone_mode=False)
+    except SceneError as error:
+        _fail(str(error), 2)
+    except UnstableError as error:
+        _fail(str(error), 3)
+    except UsageError as error:
+        _fail(error.format_message().replace("Value error, ", ""), 2)
+    except (typer.Abort, KeyboardInterrupt):
+        _fail("interrupted", 130)
+    except BrokenPipeError:
+        sys.exit(1)
+    except OSError as error:
+        _fail(f"{error.filename or 'output'}: {error.strerror or error}", 2)
+    except MemoryError as error:
+        _fail(f"not enough memory: {error}", 2)
+    else:
+        sys.exit(code if isinstance(code, int) else 0)
+
+
+def _fail(message: str, code: int) -> None:
+    print(f"jointwave: {' '.join(message.split())}", file=sys.stderr)
+    sys.exit(code)
+

@@ -1,0 +1,49 @@
+"""What a scene is, before any run: its effects, its critical steps, its exact solutions."""
+
+from dataclasses import dataclass
+
+from cases.calibrate import Properties, calibrate
+from cases.effects import Effect, effects
+from cases.scene import Scene
+from compare.engines import ENGINES, applies, exact_names
+from compare.exact.answer import Answer
+
+
+@dataclass(frozen=True)
+class StepChoice:
+    """The step of one engine: critical and chosen, s, and how many of them."""
+
+    engine: str
+    critical: float
+    dt: float
+    steps: int
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """Everything that can be said of a scene without running it."""
+
+    scene: Scene
+    properties: Properties
+    effects: list[Effect]
+    steps: list[StepChoice]
+    answers: dict[str, Answer]
+
+
+def explanation(scene: Scene) -> Explanation:
+    """Return what a scene calls for, what is left out, and what can solve it."""
+    answers = {name: applies(name, scene) for name in (*ENGINES, *exact_names())}
+    steps = [_step(name, scene) for name in ENGINES if answers[name]]
+    return Explanation(scene, calibrate(scene), effects(scene), steps, answers)
+
+
+def _step(name: str, scene: Scene) -> StepChoice:
+    if name == "dem":
+        from dem.model import build as build_chain
+
+        _, _, time, critical = build_chain(scene)
+    else:
+        from continuum.model import build as build_continuum
+
+        _, _, time, critical = build_continuum(scene, name.removeprefix("continuum-"))
+    return StepChoice(name, critical, time.dt, time.steps)

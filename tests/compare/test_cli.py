@@ -1,0 +1,131 @@
+"""The command as a user meets it: a real process, its files, its messages, its exit status."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+import xarray as xr
+
+SCENE = "guo-li-2002/fig-03"
+SHORT = ("--set", "time.duration=0.02")
+
+
+def jointwave(*arguments, code=0, cwd=None):
+    """Run the command and return its process, having checked the exit status."""
+    command = [sys.executable, "-m", "compare", *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=cwd)
+    assert done.returncode == code, done.stderr
+    assert "Traceback" not in done.stderr
+    return done
+
+
+def test_list_names_every_scene_with_its_variants():
+    """Shipped scenes can be used by the name that the list shows."""
+    facts = {f["scene"]: f for f in json.loads(jointwave("list", "--json").stdout)}
+    assert facts[SCENE]["variants"] and len(facts) >= 9
+
+
+def test_run_writes_one_file_for_each_variant_and_model(tmp_path):
+    """DIR/[variant/]ENGINE[-MODEL].nc, each readable and labelled."""
+    engines = ("--engine", "dem", "--engine", "continuum", "--engine", "exact", "--model", "lattice")
+    jointwave("run", SCENE, *engines, *SHORT, "--out", tmp_path)
+    names = {"dem.nc", "continuum-jointed.nc", "continuum-equivalent.nc", "exact-lattice.nc"}
+    assert {p.name for p in tmp_path.iterdir() if p.is_file()} == names
+    assert {p.name for p in (tmp_path / "zeta 0.02").iterdir()} == names
+    result = xr.load_dataset(tmp_path / "zeta 0.02" / "dem.nc")
+    assert result.attrs["variant"] == "zeta 0.02" and result.sizes["time"] == 401
+
+
+def test_run_reports_the_same_as_json(tmp_path):
+    """--json gives a machine the table, and nothing else on standard output."""
+    done = jointwave("run", SCENE, "--variant", "", *SHORT, "--out", tmp_path, "--json")
+    (fact,) = json.loads(done.stdout)
+    assert fact["engine"] == "dem" and fact["steps"] == 1200 and fact["energy_residual"] < 1e-10
+
+
+def test_explain_says_what_is_left_out_and_why():
+    """Effects, critical steps and exact solutions, with the reason of each no."""
+    facts = json.loads(jointwave("explain", SCENE, "--json").stdout)
+    assert not facts["effects"]["dashpots"]["active"]
+    assert facts["solutions"]["lattice"]["applies"]
+    assert "tension" in facts["solutions"]["no-tension-chain"]["why_not"]
+    assert {s["engine"] for s in facts["steps"]} == {
+        "dem",
+        "continuum-jointed",
+        "continuum-equivalent",
+    }
+
+
+def test_compare_tells_numerical_from_modelling_error():
+    """The chain is right as a chain, 4 % off the jointed bar and 18 % off the homogenised one."""
+    done = jointwave("compare", SCENE, "--variant", "", "--json", "--no-spectral")
+    rows = json.loads(done.stdout)[0]["rows"]
+    found = {(r["one"], r["other"]): r for r in rows}
+    assert found["dem", "lattice"]["misfit"] < 2e-3
+    assert found["dem", "lattice"]["kind"] == "numerical error"
+    assert found["dem", "jointed-bar"]["misfit"] == pytest.approx(0.040, abs=0.002)
+    assert found["dem", "equivalent-bar"]["misfit"] == pytest.approx(0.179, abs=0.002)
+    assert found["dem", "equivalent-bar"]["kind"] == "modelling error"
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (("run",), "scene"),
+        (("run", "nothing.toml"), "nothing.toml"),
+        (("run", SCENE, "--set", "pillar.length"), "key=value"),
+        (("run", SCENE, "--set", "pillar.length=-1"), "pillar.length = -1"),
+        (("run", SCENE, "--variant", "none"), "variants.name"),
+        (("run", SCENE, "--engine", "fem"), "fem"),
+        (("run", SCENE, "--model", "jointed"), "--model"),
+        (("run", SCENE, "--engine", "exact", "--model", "no-tension-chain"), "tension"),
+        (("run", SCENE, "--set", "numerics.dem.step_fraction=1.2"), "critical"),
+        (("draw", SCENE), "draw"),
+        (("explain", SCENE, "--bogus"), "--bogus"),
+    ],
+)
+def test_mistake_is_one_line_and_exit_2(arguments, words, tmp_path):
+    """Nothing is written, nothing is traced back."""
+    done = jointwave(*arguments, code=2, cwd=tmp_path)
+    assert done.stderr.count("\n") == 1 and words in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_instability_is_caught_with_exit_3_and_old_results_stay(tmp_path):
+    """A forced step that blows up leaves the earlier file as it was."""
+    old = tmp_path / "dem.nc"
+    jointwave("run", SCENE, "--variant", "", *SHORT, "--out", tmp_path)
+    before = old.read_bytes()
+    forced = [
+        "numerics.dem.step_fraction=1.5",
+        "numerics.dem.allow_unstable=true",
+        "record.interval=1e-3",
+        "time.duration=3.0",
+    ]
+    changes = [part for change in forced for part in ("--set", change)]
+    done = jointwave("run", SCENE, "--variant", "", *changes, "--out", tmp_path, code=3)
+    assert done.stderr.count("\n") == 1 and "critical" in done.stderr
+    assert old.read_bytes() == before and list(tmp_path.iterdir()) == [old]
+
+
+def test_output_that_cannot_be_written_is_one_line(tmp_path):
+    """A file where the folder should be."""
+    (tmp_path / "taken").write_text("x")
+    done = jointwave("run", SCENE, *SHORT, "--out", tmp_path / "taken", code=2)
+    assert done.stderr.count("\n") == 1 and "taken" in done.stderr
+
+
+def test_rigid_block_run_imports_neither_dolfinx_nor_matplotlib(tmp_path):
+    """A run of the rigid blocks pays for nothing that it does not use."""
+    code = (
+        "import sys; sys.argv = ['jointwave', 'run', %r, '--out', %r]\n"
+        "from compare.cli import main\n"
+        "try: main()\n"
+        "except SystemExit as end: assert end.code == 0, end.code\n"
+        "heavy = {'dolfinx', 'matplotlib', 'petsc4py', 'gmsh', 'obspy', 'continuum', 'jinja2'}\n"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    command = [sys.executable, "-c", code % (SCENE, str(tmp_path))]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"

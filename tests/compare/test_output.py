@@ -1,0 +1,29 @@
+"""Files are whole or not there, and what stood there before survives a failure."""
+
+import pytest
+import xarray as xr
+
+import dem
+from compare.output import write, write_dataset, write_text
+
+
+def test_failed_write_leaves_the_old_file_and_no_other(tmp_path):
+    """The old content stays, and no temporary file is left behind."""
+    path = write_text(tmp_path / "table.csv", "old")
+
+    def half(temporary):
+        temporary.write_text("ne")
+        raise OSError(28, "No space left on device")
+
+    with pytest.raises(OSError):
+        write(path, half)
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_dataset_comes_back_as_it_was(pillar, tmp_path):
+    """Values, units, coordinates and attributes survive NetCDF."""
+    result = dem.simulate(pillar(record__velocity=[19.75], time__duration=0.01))
+    back = xr.load_dataset(write_dataset(tmp_path / "deep" / "dem.nc", result))
+    xr.testing.assert_identical(back, result)
+    assert back.stress.attrs["units"] == "Pa" and back.attrs["critical_dt"] > back.attrs["dt"]
