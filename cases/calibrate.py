@@ -1,4 +1,4 @@
-"""Stiffness from wave speeds and back: Guo & Li (2002), equations (4) to (7), and a scene's numbers.
+"""Stiffness from wave speeds and back: Guo & Li (2002), (4) to (7), and a scene's numbers.
 
 The rock mass is intact rock in series with its joints. Rigid blocks have no compliance of their
 own, so their joints carry all of it: K'_n = E_eq / S.

@@ -1,8 +1,10 @@
 """The two errors that a user meets: a scene that cannot be run, and a run that went unstable."""
 
+import reprlib
+
 
 class SceneError(ValueError):
-    """A scene that cannot be simulated, in one line: where, which key, which value, what is allowed.
+    """A scene that cannot be simulated, in one line: where, which key and value, what is allowed.
 
     Parameters
     ----------
@@ -20,12 +22,30 @@ class SceneError(ValueError):
 
 
 class UnstableError(RuntimeError):
-    """A run that left its stability bound and was stopped; the message says what, where and when."""
+    """A run that left its stability bound and was stopped; its message says what and when."""
 
 
-def _short(value: object, width: int = 60) -> str:
-    text = repr(value)
-    return text if len(text) <= width else text[: width - 3] + "..."
+class _Found(reprlib.Repr):
+    """Values as a scene file spells them, shortened."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.maxstring = self.maxother = 60
+        self.maxdict = self.maxlist = 4
+
+    def repr_bool(self, x: bool, level: int) -> str:
+        return str(x).lower()
+
+    def repr_int(self, x: int, level: int) -> str:
+        return str(x) if x.bit_length() <= 64 else f"an integer of {x.bit_length()} bits"
+
+    def repr_datetime(self, x: object, level: int) -> str:
+        return str(x)
+
+    repr_date = repr_time = repr_datetime
+
+
+_short = _Found().repr
 
 
 def _one_line(text: str) -> str:

@@ -1,10 +1,16 @@
 """A recorded load history: a two-column CSV of time (s) and stress (Pa)."""
 
 import csv
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+
+from cases.files import read_text
+
+LARGEST_FILE = 200_000_000  # bytes; some ten million samples
+LARGEST = 1e30  # s, Pa; what lies beyond is a mistake, and its squares overflow
 
 
 @dataclass(frozen=True)
@@ -22,36 +28,53 @@ class History:
 
     @classmethod
     def from_csv(cls, folder: str | Path, file: str) -> "History":
-        """Read `file`, relative to `folder`; one header line is allowed, as are # comments.
+        """Read `file`, relative to `folder`; text before the numbers is a header, # a comment.
 
         Raises ValueError, in one line, when there is nothing to read or it is not a history.
         """
-        rows = list(_rows(Path(folder) / file))
+        lines = read_text(Path(folder) / file, LARGEST_FILE).splitlines()
+        numbers, rows = _rows(lines)
         if len(rows) < 2:
             raise ValueError("must hold at least two rows of time (s), stress (Pa)")
-        time, stress = np.array(rows, dtype=float).T
-        if not np.isfinite([time, stress]).all():
-            raise ValueError("must hold finite numbers only")
+        wrong = ~(np.abs(rows) <= LARGEST).all(axis=1)
+        if wrong.any():
+            line = numbers[int(np.argmax(wrong))]
+            raise ValueError(f"must hold finite numbers up to 1e30 (line {line} does not)")
+        time, stress = rows.T
+        if time[0] < 0:
+            raise ValueError("must not start before t = 0, where every scene is at rest")
         if (np.diff(time) <= 0).any():
-            row = int(np.argmax(np.diff(time) <= 0)) + 2
-            raise ValueError(f"must have strictly increasing times (row {row} does not)")
+            line = numbers[int(np.argmax(np.diff(time) <= 0)) + 1]
+            raise ValueError(f"must have strictly increasing times (line {line} does not)")
         return cls(time, stress)
 
 
-def _rows(path: Path):
+def _rows(lines: list[str]) -> tuple[list[int], np.ndarray]:
+    """Return the line numbers and the rows [n, 2] that hold data."""
+    numbers: list[int] = []
+    rows: list[list[float]] = []
+    for number, cells in _cells(lines):
+        if not rows and not any(map(_is_number, cells)):
+            continue  # a header
+        if len(cells) != 2 or not all(map(_is_number, cells)):
+            raise ValueError(f"must hold two numbers a line, s and Pa (line {number} does not)")
+        numbers.append(number)
+        rows.append([float(cell) for cell in cells])
+    return numbers, np.array(rows, dtype=float).reshape(-1, 2)
+
+
+def _cells(lines: list[str]) -> Iterator[tuple[int, list[str]]]:
+    for number, line in enumerate(lines, 1):
+        if line.strip() and not line.lstrip().startswith("#"):
+            try:
+                yield number, next(csv.reader([line]))
+            except csv.Error:
+                raise ValueError(f"is not a CSV file (line {number})") from None
+
+
+def _is_number(cell: str) -> bool:
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise ValueError(f"cannot be read ({_reason(error)})") from None
-    body = [line for line in lines if line.strip() and not line.lstrip().startswith("#")]
-    for number, row in enumerate(csv.reader(body), 1):
-        try:
-            time, stress = row
-            yield float(time), float(stress)
-        except ValueError:
-            if number > 1:
-                raise ValueError(f"must hold two numbers a row (row {number} does not)") from None
-
-
-def _reason(error: Exception) -> str:
-    return getattr(error, "strerror", None) or "not UTF-8 text"
+        float(cell)
+    except ValueError:
+        return False
+    return True

@@ -1,5 +1,6 @@
 """From a TOML file to validated scenes: overrides, variants, and errors in one line."""
 
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -8,9 +9,35 @@ from pydantic import ValidationError
 
 from cases.availability import refuse_unavailable
 from cases.errors import SceneError
+from cases.files import read_text
 from cases.scene import Scene
 
 LARGEST_FILE = 10_000_000  # bytes; a scene is a page of text
+VARIANT_NAME = re.compile(r"[^/\\.\s\x00-\x1f][^/\\\x00-\x1f]{0,79}")  # it names a folder
+
+#: What is allowed, by pydantic's type of error.
+ALLOWED = {
+    "contradiction": "{allowed}",
+    "extra_forbidden": "unknown key; allowed: ",
+    "missing": "is required",
+    "model_type": "must be a table",
+    "dict_type": "must be a table",
+    "list_type": "must be a list",
+    "float_type": "must be a number",
+    "int_type": "must be a whole number",
+    "string_type": "must be a text",
+    "bool_type": "must be true or false",
+    "finite_number": "must be a finite number",
+    "literal_error": "must be {expected}",
+    "greater_than": "must be greater than {gt:g}",
+    "greater_than_equal": "must be at least {ge:g}",
+    "less_than": "must be less than {lt:g}",
+    "less_than_equal": "must be at most {le:g}",
+    "too_short": "must hold {min_length} numbers",
+    "too_long": "must hold {max_length} numbers",
+    "magnitude": "must lie between 1e-30 and 1e30 in size",
+    "pair": "{allowed}",
+}
 
 
 def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[Scene]:
@@ -23,6 +50,8 @@ def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[Scen
     table = _read_toml(path)
     for key, value in (overrides or {}).items():
         _assign(table, key, value, str(path))
+    if "name" in table:
+        raise SceneError(str(path), "name", table["name"], "only [[variants]] have a name")
     variants = table.pop("variants", [])
     if not isinstance(variants, list) or not all(isinstance(v, dict) for v in variants):
         raise SceneError(str(path), "variants", variants, "must be [[variants]] tables")
@@ -59,14 +88,12 @@ def parse_override(text: str) -> tuple[str, Any]:
 
 def _read_toml(path: Path) -> dict[str, Any]:
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise SceneError(str(path), "", None, "is too large to be a scene file")
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise SceneError(str(path), "", None, f"cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise SceneError(str(path), "", None, "is not UTF-8 text") from None
-    except tomllib.TOMLDecodeError as error:
+        text = read_text(path, LARGEST_FILE)
+    except ValueError as error:
+        raise SceneError(str(path), "", None, str(error)) from None
+    try:
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
         raise SceneError(str(path), "", None, f"is not valid TOML: {error}") from None
 
 
@@ -74,8 +101,8 @@ def _variant(
     base: dict[str, Any], changes: dict[str, Any], path: Path, index: int, overrides: dict[str, Any]
 ) -> Scene:
     name = changes.get("name")
-    if not isinstance(name, str) or not name or "/" in name or name.startswith("."):
-        allowed = "must be a non-empty text without '/' and not starting with '.'"
+    if not isinstance(name, str) or not VARIANT_NAME.fullmatch(name):
+        allowed = "must be a text of up to 80 characters without '/', not starting with '.' or ' '"
         raise SceneError(str(path), f"variants[{index}].name", name, allowed)
     table = _merge(base, changes)
     for key, value in overrides.items():
@@ -89,6 +116,7 @@ def _validate(table: dict[str, Any], path: Path) -> Scene:
         scene = Scene.model_validate(table, context={"folder": path.parent})
     except ValidationError as error:
         raise _scene_error(where, error) from None
+    scene._where = where
     refuse_unavailable(scene, where)
     return scene
 
@@ -97,17 +125,17 @@ def _scene_error(where: str, error: ValidationError) -> SceneError:
     first, more = error.errors()[0], error.error_count() - 1
     context = first.get("ctx", {})
     kind, value = first["type"], first["input"]
-    key, allowed = _dotted(first["loc"]), first["msg"]
+    key, allowed = _dotted(first["loc"]), ALLOWED.get(kind, first["msg"]).format(**context)
     if kind == "contradiction":
-        key, value, allowed = context["key"], context["found"], context["allowed"]
-    elif kind == "missing":
-        value, allowed = None, "is required"
+        key, value = context["key"], context["found"]
     elif kind == "extra_forbidden":
-        allowed = "unknown key" + _known_keys(first["loc"])
-    if isinstance(value, dict):
+        allowed += _known_keys(first["loc"])
+    elif kind == "list_type" and isinstance(value, dict):
+        allowed = f"must be written [[{key}]]"
+    if isinstance(value, dict) or kind == "missing":
         value = None
     more_text = f" (and {more} more)" if more else ""
-    return SceneError(where, key, value, _lower(allowed) + more_text)
+    return SceneError(where, key, value, allowed + more_text)
 
 
 def _known_keys(location: tuple[int | str, ...]) -> str:
@@ -115,7 +143,7 @@ def _known_keys(location: tuple[int | str, ...]) -> str:
     for part in location[:-1]:
         if isinstance(part, str):
             model = _table_of(model.model_fields[part].annotation)
-    return "; allowed: " + ", ".join(k for k in model.model_fields if k != "name")
+    return ", ".join(k for k in model.model_fields if k != "name")
 
 
 def _table_of(annotation: Any) -> Any:
@@ -128,10 +156,6 @@ def _dotted(location: tuple[int | str, ...]) -> str:
     for part in location:
         text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
     return text
-
-
-def _lower(text: str) -> str:
-    return text[:1].lower() + text[1:].replace("Input should", "should")
 
 
 def _merge(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
@@ -149,5 +173,5 @@ def _assign(table: dict[str, Any], key: str, value: Any, where: str) -> None:
     for parent in parents:
         table = table.setdefault(parent, {})
         if not isinstance(table, dict):
-            raise SceneError(where, key, value, "is not a key of a table")
+            raise SceneError(where, key, value, f"is no key: {parent} is not a table")
     table[last] = value

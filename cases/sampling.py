@@ -8,6 +8,8 @@ import numpy as np
 from cases.errors import SceneError
 from cases.scene import Scene
 
+MOST_STEPS = 1e12  # some five hours for a hundred rigid blocks; beyond it a mistake
+
 
 class Clock(NamedTuple):
     """A step that divides the sampling interval.
@@ -45,22 +47,30 @@ def clock(scene: Scene, critical: float, fraction: float, allow_unstable: bool, 
     wanted = fraction * critical
     if fraction > 1 and not allow_unstable:
         raise SceneError(
-            "numerics",
-            f"{key}.step_fraction",
+            scene.where,
+            f"numerics.{key}.step_fraction",
             fraction,
             f"gives a step of {wanted:.4g} s above the critical step {critical:.4g} s; "
-            f"at most 1, unless {key}.allow_unstable = true",
+            f"at most 1, unless numerics.{key}.allow_unstable = true",
         )
     ratio = scene.interval / wanted
     if fraction > 1 and ratio < 1:
         raise SceneError(
-            "numerics",
+            scene.where,
             "record.interval",
             scene.interval,
-            f"must be at least the step of {wanted:.4g} s that {key}.step_fraction asks for",
+            f"must be at least the step {wanted:.4g} s of numerics.{key}.step_fraction",
         )
     stride = max(1, ceil(ratio * (1 - 1e-12)) if fraction <= 1 else round(ratio))
-    return Clock(scene.interval / stride, stride, len(sample_times(scene)))
+    found = Clock(scene.interval / stride, stride, len(sample_times(scene)))
+    if found.steps > MOST_STEPS:
+        raise SceneError(
+            scene.where,
+            f"numerics.{key}.step_fraction",
+            fraction,
+            f"gives {found.steps:.3g} steps of {found.dt:.4g} s; at most {MOST_STEPS:.0e}",
+        )
+    return found
 
 
 class Interpolation(NamedTuple):

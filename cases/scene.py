@@ -6,35 +6,13 @@ end. The reference scene is that of Guo & Li (2002), Chin. J. Rock Mech. Eng. 21
 
 from typing import Annotated, Literal
 
-from pydantic import (
-    BaseModel,
-    ConfigDict,
-    Field,
-    PrivateAttr,
-    ValidationInfo,
-    model_validator,
-)
-from pydantic_core import PydanticCustomError
+from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from cases.history import History
+from cases.values import NonNegative, Number, Pair, Positive, Table, contradiction
 
 MOST_BLOCKS = 10_000_000  # about 0.4 kB a block: what one machine holds
-
-Positive = Annotated[float, Field(gt=0)]
-NonNegative = Annotated[float, Field(ge=0)]
-
-
-class Table(BaseModel):
-    """A table of the scene file: immutable, no unknown keys, no silent conversions, no NaN."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
-
-
-def contradiction(key: str, value: object, allowed: str) -> PydanticCustomError:
-    """Return the error for a value that does not fit the rest of the scene, under its full key."""
-    return PydanticCustomError(
-        "contradiction", "{allowed}", {"allowed": allowed, "key": key, "found": value}
-    )
+MOST_SAMPLES = 10_000_000  # 80 MB for each section, point and energy term
 
 
 class Pillar(Table):
@@ -83,15 +61,12 @@ class Rock(Table):
 
     @model_validator(mode="after")
     def _one_pair(self) -> "Rock":
-        speeds = (self.p_speed, self.s_speed)
-        constants = (self.equivalent_modulus, self.equivalent_poisson)
-        complete = [None not in pair for pair in (speeds, constants)]
-        started = [any(x is not None for x in pair) for pair in (speeds, constants)]
-        if sum(complete) != 1 or sum(started) != 1:
-            given = [k for k in self.model_fields_set if k.endswith(("_speed", "t_modulus"))]
+        pairs = ("p_speed", "s_speed"), ("equivalent_modulus", "equivalent_poisson")
+        given = [[key for key in pair if getattr(self, key) is not None] for pair in pairs]
+        if sorted(map(len, given)) != [0, 2]:
             raise contradiction(
                 "rock",
-                sorted(given),
+                given[0] + given[1],
                 "give exactly one pair: p_speed and s_speed, "
                 "or equivalent_modulus and equivalent_poisson",
             )
@@ -140,12 +115,12 @@ class Load(Table):
     """The end stress F/A on the loaded end, compression positive."""
 
     shape: Literal["sine", "ricker", "step", "table"]
-    amplitude: float  #: Pa; a factor on the history's stresses for "table"
+    amplitude: Number  #: Pa; a factor on the history's stresses for "table"
     period: Positive | None = None  #: s; for sine and ricker
-    cycles: Annotated[int, Field(ge=1)] | None = None  #: whole cycles of the sine, default 1
+    cycles: Annotated[int, Field(ge=1, le=1_000_000)] | None = None  #: of the sine, default 1
     file: str | None = None  #: two-column CSV, s and Pa; for "table"
-    direction: Annotated[list[float], Field(min_length=3, max_length=3)] = [0, 1, 0]
-    at: Annotated[list[float], Field(min_length=2, max_length=2)] = [0.0, 0.0]  #: m
+    direction: Annotated[list[Number], Field(min_length=3, max_length=3)] = [0, 1, 0]
+    at: Annotated[list[Number], Field(min_length=2, max_length=2)] = [0.0, 0.0]  #: m
 
     _history: History | None = PrivateAttr(default=None)
 
@@ -195,14 +170,14 @@ class Ends(Table):
 class Gravity(Table):
     """Body force, applied before the load."""
 
-    direction: Annotated[list[float], Field(min_length=3, max_length=3)]
+    direction: Annotated[list[Number], Field(min_length=3, max_length=3)]
     acceleration: NonNegative = 9.81  #: m/s2
 
 
 class Prestress(Table):
     """Normal stress that the joints carry before the load."""
 
-    normal: float  #: Pa, compression positive
+    normal: Number  #: Pa, compression positive
 
 
 class Time(Table):
@@ -261,14 +236,23 @@ class Scene(Table):
     time: Time
     numerics: Numerics = Numerics()
     record: Record
-    expect: dict[str, Positive] = {}
+    expect: dict[Pair, Positive] = {}  #: bounds on the relative L2 misfit of pairs
     name: str = ""  #: of the variant; empty for the scene as it stands
+
+    _where: str = PrivateAttr(default="")
 
     @model_validator(mode="after")
     def _fits_together(self) -> "Scene":
-        for check in (self._check_layers, self._check_receivers, self._check_rock, self._check_time):
-            check()
+        self._check_layers()
+        self._check_receivers()
+        self._check_rock()
+        self._check_time()
         return self
+
+    @property
+    def where(self) -> str:
+        """The file and variant that the scene was read from, else its title: for messages."""
+        return self._where or self.title
 
     @property
     def interval(self) -> float:
@@ -313,6 +297,7 @@ class Scene(Table):
         elif rock.intact_modulus:
             from cases.calibrate import modulus_from_speeds
 
+            assert rock.p_speed and rock.s_speed
             modulus, _ = modulus_from_speeds(rock.p_speed, rock.s_speed, rock.density)
         else:
             return
@@ -330,7 +315,7 @@ class Scene(Table):
                 self.interval,
                 f"must not exceed time.duration = {self.time.duration:g}",
             )
-        if self.time.duration / self.interval > 1e8:
+        if self.time.duration / self.interval > MOST_SAMPLES:
             raise contradiction(
-                "record.interval", self.interval, "must leave at most 1e8 samples of the duration"
+                "record.interval", self.interval, f"must give at most {MOST_SAMPLES:,} samples"
             )

@@ -7,7 +7,7 @@ without dolfinx and matplotlib.
 import sys
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -16,7 +16,9 @@ from cases.errors import SceneError, UnstableError
 from compare.scenes import find, shipped
 
 # Older typer raises click's own errors and newer typer its copy of them: ask the class itself.
-UsageError = next(c for c in typer.BadParameter.__mro__ if c.__name__ == "ClickException")
+UsageError: type[Exception] = next(
+    c for c in typer.BadParameter.__mro__ if c.__name__ == "ClickException"
+)
 
 app = typer.Typer(
     help="Stress waves in jointed rock: rigid blocks against a continuum, refereed by exact "
@@ -154,7 +156,7 @@ def main() -> None:
     except UnstableError as error:
         _fail(str(error), 3)
     except UsageError as error:
-        _fail(error.format_message().replace("Value error, ", ""), 2)
+        _fail(_usage(error), 2)
     except (typer.Abort, KeyboardInterrupt):
         _fail("interrupted", 130)
     except BrokenPipeError:
@@ -167,7 +169,10 @@ def main() -> None:
         sys.exit(code if isinstance(code, int) else 0)
 
 
+def _usage(error: Any) -> str:
+    return error.format_message().replace("Value error, ", "")
+
+
 def _fail(message: str, code: int) -> None:
     print(f"jointwave: {' '.join(message.split())}", file=sys.stderr)
     sys.exit(code)
-

@@ -46,9 +46,7 @@ def build_end(kind: str, p: Properties, dt: float) -> End | None:
     c = k * (p.time_constant or 0.0)
     share = face_share(kind, p)
     lag = 0.0 if kind == "fixed" else dt * k * share / (2 * z)
-    return End(
-        k * share, c * share, half_step, (1 - lag) / (1 + lag), dt * share / (1 + lag)
-    )
+    return End(k * share, c * share, half_step, (1 - lag) / (1 + lag), dt * share / (1 + lag))
 
 
 def face_share(kind: str, p: Properties) -> float:

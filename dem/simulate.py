@@ -66,7 +66,8 @@ def _run(
         run(model, state, samples, time.stride, first, last)
         if not np.isfinite(state.u).all():
             raise UnstableError(
-                f"the rigid blocks are no longer finite at t = {last * time.stride * time.dt:.4g} s "
+                "the rigid blocks are no longer finite at "
+                f"t = {last * time.stride * time.dt:.4g} s "
                 f"(step {time.dt:.4g} s, critical {critical:.4g} s)"
             )
         if progress:

@@ -1,4 +1,4 @@
-"""One number where all joints are alike, an array where they differ, None where nothing is there."""
+"""One number where all joints are alike, an array where they differ, None for what is absent."""
 
 import numpy as np
 

@@ -3,8 +3,13 @@
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 import cases
+
+# The first example compiles a kernel, which no deadline foresees.
+settings.register_profile("jointwave", deadline=None)
+settings.load_profile("jointwave")
 
 PILLAR = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
 

@@ -28,7 +28,16 @@ def test_list_names_every_scene_with_its_variants():
 
 def test_run_writes_one_file_for_each_variant_and_model(tmp_path):
     """DIR/[variant/]ENGINE[-MODEL].nc, each readable and labelled."""
-    engines = ("--engine", "dem", "--engine", "continuum", "--engine", "exact", "--model", "lattice")
+    engines = (
+        "--engine",
+        "dem",
+        "--engine",
+        "continuum",
+        "--engine",
+        "exact",
+        "--model",
+        "lattice",
+    )
     jointwave("run", SCENE, *engines, *SHORT, "--out", tmp_path)
     names = {"dem.nc", "continuum-jointed.nc", "continuum-equivalent.nc", "exact-lattice.nc"}
     assert {p.name for p in tmp_path.iterdir() if p.is_file()} == names

@@ -27,7 +27,7 @@ CHAINS = {
 
 
 def spectral_radius(scene, dt):
-    """Return the largest growth a step: the eigenvalues of the engine's own step, column by column."""
+    """Return the largest growth in a step, by the eigenvalues of the engine's own step."""
     p = calibrate(scene)
     model = build_model(scene, p, Clock(dt, 1, 1))._replace(load=np.zeros(0))
 
@@ -41,7 +41,6 @@ def spectral_radius(scene, dt):
     for i in range(size):
         state = state_at_rest(model, p.block_count, False)
         unit = np.zeros(size)
-        # Unit displacement would dwarf unit velocity: scale it to a step's travel.
         unit[i] = 1.0
         at = 0
         for x in parts(state):

@@ -30,12 +30,20 @@ def waveforms(result):
         {"soft_layers": [{"y": 20.0, "tension": False}]},
         {"record__energy": False},
     ],
-    ids=["dashpots of zero", "tension never asked", "both", "one idle dashpot", "one cut", "ledger"],
+    ids=[
+        "dashpots of zero",
+        "tension never asked",
+        "both",
+        "one idle dashpot",
+        "one cut",
+        "ledger",
+    ],
 )
 def test_idle_effect_changes_no_bit(pillar, idle):
     """The kernel with an effect on but idle gives the very numbers of the kernel without it."""
-    without, with_idle = dem.simulate(pillar(**COMPRESSION)), dem.simulate(
-        pillar(**COMPRESSION, **idle)
+    without, with_idle = (
+        dem.simulate(pillar(**COMPRESSION)),
+        dem.simulate(pillar(**COMPRESSION, **idle)),
     )
     assert without.attrs["dt"] == with_idle.attrs["dt"]
     assert (waveforms(without) == waveforms(with_idle)).all()
@@ -67,7 +75,7 @@ def test_absent_effects_leave_no_array(pillar):
 
 def floating_point(scene, kind):
     """Return how many instructions of a kind the compiled step loop of a scene holds."""
-    model, state, clock, _ = build(scene)
+    model, state, _, _ = build(scene)
     # The cache hands back machine code without its text: compile this one afresh.
     kernel = march.__class__(march.py_func, targetoptions=dict(march.targetoptions))
     kernel.enable_caching = lambda: None

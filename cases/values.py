@@ -1,0 +1,57 @@
+"""What a value in a scene file may be, and how a value that does not fit is reported."""
+
+from typing import Annotated
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic_core import PydanticCustomError
+
+#: The names of all engines, models and exact solutions, as [expect] pairs them.
+SOLUTIONS = (
+    "dem",
+    "continuum-jointed",
+    "continuum-equivalent",
+    "images",
+    "series",
+    "lattice",
+    "kelvin-voigt",
+    "one-joint",
+    "jointed-bar",
+    "equivalent-bar",
+    "no-tension-chain",
+)
+
+
+def _magnitude(value: float) -> float:
+    """Refuse what no unit system explains; the squares of such numbers overflow or vanish."""
+    if value and not 1e-30 <= abs(value) <= 1e30:
+        raise PydanticCustomError("magnitude", "must lie between 1e-30 and 1e30 in size")
+    return value
+
+
+def _pair(text: str) -> str:
+    """Check one key of [expect]."""
+    one, _, other = text.partition(" ~ ")
+    if one not in SOLUTIONS or other not in SOLUTIONS or one == other:
+        raise PydanticCustomError(
+            "pair", "{allowed}", {"allowed": f"must be 'a ~ b', two of {', '.join(SOLUTIONS)}"}
+        )
+    return text
+
+
+Number = Annotated[float, AfterValidator(_magnitude)]
+Positive = Annotated[float, Field(gt=0), AfterValidator(_magnitude)]
+NonNegative = Annotated[float, Field(ge=0), AfterValidator(_magnitude)]
+Pair = Annotated[str, AfterValidator(_pair)]
+
+
+class Table(BaseModel):
+    """A table of the scene file: immutable, no unknown keys, no silent conversions, no NaN."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+def contradiction(key: str, value: object, allowed: str) -> PydanticCustomError:
+    """Return the error for a value that does not fit the rest of the scene, under its full key."""
+    return PydanticCustomError(
+        "contradiction", "{allowed}", {"allowed": allowed, "key": key, "found": value}
+    )

@@ -1,0 +1,131 @@
+"""The end stress: its impulse is the integral of its value, and no momentum is lost on the way."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+import cases
+from cases.history import History
+from cases.loads import Recorded, Ricker, Sine, Step, load_history, step_means
+
+amplitudes = st.floats(-1e7, 1e7).filter(lambda a: abs(a) > 1.0)
+periods = st.floats(1e-4, 1.0)
+
+
+@st.composite
+def histories(draw):
+    """A recorded history of 2 to 8 samples at uneven times."""
+    gaps = draw(st.lists(st.floats(1e-3, 1.0), min_size=1, max_size=7))
+    time = draw(st.floats(-1.0, 1.0)) + np.concatenate([[0.0], np.cumsum(gaps)])
+    stress = draw(st.lists(amplitudes, min_size=len(time), max_size=len(time)))
+    return Recorded(time, np.array(stress))
+
+
+loads = st.one_of(
+    st.builds(Sine, amplitudes, periods, st.integers(1, 5)),
+    st.builds(Ricker, amplitudes, periods),
+    st.builds(Step, amplitudes),
+    histories(),
+)
+
+
+def span(load) -> tuple[float, float]:
+    """Return an interval that holds all that happens in a load."""
+    long = {"Sine": lambda: load.end, "Ricker": lambda: 4 * load.period, "Step": lambda: 1.0}
+    end = long.get(type(load).__name__, lambda: load.breaks[-1])()
+    return load.breaks[0] - 0.1 * end, end + 0.1 * abs(end)
+
+
+@given(load=loads, a=st.floats(0, 1), b=st.floats(0, 1))
+def test_impulse_is_the_integral_of_value(load, a, b):
+    first, last = span(load)
+    a, b = sorted(first + (last - first) * np.array([a, b]))
+    kinks = [a, *(t for t in load.breaks if a < t < b), b]
+    scale = np.abs(load.value(np.linspace(first, last, 400))).max() * (last - first)
+    accuracy = {"epsabs": 1e-9 * scale, "epsrel": 1e-9, "limit": 200}
+    pieces = [quad(load.value, *ends, **accuracy)[0] for ends in pairwise(kinks)]
+    assert load.impulse(b) - load.impulse(a) == pytest.approx(sum(pieces), abs=1e-7 * scale)
+
+
+@given(load=loads)
+def test_nothing_before_the_first_break(load):
+    before = load.breaks[0] - np.array([1e-9, 0.1, 10.0])
+    assert not load.value(before).any()
+    assert not load.impulse(before).any()
+
+
+@given(load=loads, dt=st.floats(1e-4, 0.3), count=st.integers(1, 200))
+def test_step_means_telescope_to_the_momentum(load, dt, count):
+    """Also for a history whose samples are far closer together than the steps."""
+    means = step_means(load, dt, count)
+    momentum = load.impulse((count - 0.5) * dt) - load.impulse(-0.5 * dt)
+    assert dt * means.sum() == pytest.approx(momentum, abs=1e-9 * dt * np.abs(means).sum() + 1e-9)
+
+
+@given(amplitude=amplitudes, period=periods, cycles=st.integers(1, 5))
+def test_whole_cycles_leave_no_momentum(amplitude, period, cycles):
+    load = Sine(amplitude, period, cycles)
+    assert load.impulse(load.end) == pytest.approx(0, abs=1e-12 * abs(amplitude) * period)
+
+
+def test_sine_begins_in_compression():
+    load = Sine(1e6, 0.01)
+    assert load.value(np.array([0.0025, 0.0075])) == pytest.approx([1e6, -1e6])
+
+
+@pytest.mark.parametrize("period", [0.01, 3.0])
+def test_ricker_peaks_at_one_and_a_half_periods(period):
+    load = Ricker(2.0, period)
+    assert load.value(np.array(1.5 * period)) == pytest.approx(2.0)
+    spectrum = np.abs(np.fft.rfft(load.value(period * np.arange(0, 300, 0.1))))
+    peak = np.argmax(spectrum) / 300
+    assert peak == pytest.approx(1.0, abs=0.01)  # times 1 / period
+
+
+def test_step_stays():
+    assert Step(3.0).value(np.array([-1.0, 0.0, 1e9])).tolist() == [0.0, 1.5, 3.0]
+
+
+def test_recorded_history_scaled_by_amplitude(tmp_path, paper_folder):
+    (tmp_path / "blast.csv").write_text("time (s),stress (Pa)\n0,0\n0.001,2e6\n0.004,0\n")
+    text = (paper_folder / "fig-03.toml").read_text()
+    old = 'shape = "sine"\namplitude = 1.0e6  # Pa, ours: the paper\'s fig. 2 is lost\n'
+    old += "period = 0.01      # s, ours\ncycles = 1\n"
+    assert old in text
+    new = 'shape = "table"\namplitude = 0.5\nfile = "blast.csv"\n'
+    (tmp_path / "scene.toml").write_text(text.replace(old, new))
+    load = load_history(cases.load(tmp_path / "scene.toml")[0])
+    assert load.value(np.array([0.0005, 0.001, 0.0025])) == pytest.approx([5e5, 1e6, 5e5])
+    assert load.impulse(1.0) == pytest.approx(0.5 * 2e6 * 0.004 / 2)
+    coarse = step_means(load, 0.003, 100)  # nothing is lost although the rise lies in one step
+    assert 0.003 * coarse.sum() == pytest.approx(2000.0)
+
+
+@pytest.mark.parametrize("mark", ["", "\ufeff"], ids=["plain", "byte order mark"])
+def test_first_row_of_a_history_is_not_taken_for_a_header(tmp_path, mark):
+    path = tmp_path / "blast.csv"
+    path.write_text(f"{mark}0,7\n1,8\n", encoding="utf-8")
+    history = History.from_csv(tmp_path, "blast.csv")
+    assert history.stress.tolist() == [7, 8]
+
+
+def test_load_of_a_scene(scene_with, paper_folder):
+    assert load_history(scene_with(**{"load.cycles": 2})) == Sine(1e6, 0.01, 2)
+    ricker = cases.load(paper_folder.parent / "beyond" / "ricker-one-layer.toml")[0]
+    assert load_history(ricker) == Ricker(2e6, 0.02)
+    step = cases.load(paper_folder.parent / "hard" / "step-weak-layer.toml")[0]
+    assert load_history(step) == Step(1e6)
+
+
+def test_synthetic_blast_is_what_its_file_says(paper_folder):
+    load = load_history(cases.load(paper_folder.parent / "beyond" / "blast-history.toml")[0])
+
+    def hole(s):
+        return np.where(s > 0, np.exp(-s / 6e-3) - np.exp(-s / 2e-3), 0.0)
+
+    t = load.time[load.time < 0.04]
+    assert load.value(t) == pytest.approx(2e6 * hole(t) + 1.2e6 * hole(t - 0.017), abs=50.1)

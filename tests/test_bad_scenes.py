@@ -1,0 +1,379 @@
+"""Every mistake in a scene is one line that names file, key, value and what is allowed.
+
+A mistake is a change to a good scene: (what is replaced, by what, words that the line must hold).
+"""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cases import SceneError, load
+
+GOOD = """\
+title = "good"
+
+[pillar]
+length = 50.0
+side = 0.5
+block = 0.5
+
+[rock]
+density = 2400.0
+p_speed = 2200.0
+s_speed = 800.0
+intact_modulus = 8.64e10
+
+[joints]
+damping_ratio = 0.02
+
+[[soft_layers]]
+y = 20.0
+spacing_stiffness = 4.375e8
+
+[load]
+shape = "sine"
+amplitude = 1.0e6
+period = 0.01
+
+[ends]
+end = "quiet"
+
+[time]
+duration = 0.002
+
+[record]
+stress = [20.0]
+velocity = [19.75, 20.25]
+
+[expect]
+"dem ~ lattice" = 2e-3
+
+[[variants]]
+name = "undamped"
+"""
+
+SPEEDS = "p_speed = 2200.0\ns_speed = 800.0"
+SINE = 'shape = "sine"\namplitude = 1.0e6\nperiod = 0.01'
+LAYER = "[[soft_layers]]\ny = 20.0\nspacing_stiffness = 4.375e8\n"
+
+MISTAKES = {
+    # wrong types
+    "text for a number": ("length = 50.0", 'length = "50"', ["pillar.length = '50'", "a number"]),
+    "bool for a number": ("length = 50.0", "length = true", ["pillar.length = true", "a number"]),
+    "date for a number": (
+        "density = 2400.0",
+        "density = 2400-01-01",
+        ["rock.density = 2400-01-01", "a number"],
+    ),
+    "list for a number": ("side = 0.5", "side = [0.5, 0.5]", ["pillar.side = [0.5, 0.5]"]),
+    "number for a text": ('title = "good"', "title = 3", ["title = 3", "must be a text"]),
+    "number for a table": ("[time]\nduration = 0.002\n", "", ["time", "is required"]),
+    "text for a table": (
+        'title = "good"',
+        'title = "good"\ngravity = "down"',
+        ["gravity = 'down'", "must be a table"],
+    ),
+    "number for a list": ("stress = [20.0]", "stress = 20.0", ["record.stress = 20.0", "a list"]),
+    "text in a list": ("[20.0]", '["20"]', ["record.stress[0] = '20'", "a number"]),
+    "number for a bool": (
+        "damping_ratio = 0.02",
+        "tension = 0",
+        ["joints.tension = 0", "or false"],
+    ),
+    "fraction for a whole number": (
+        "period = 0.01",
+        "period = 0.01\ncycles = 1.5",
+        ["load.cycles = 1.5", "a whole number"],
+    ),
+    "one table for many": ("[[soft_layers]]", "[soft_layers]", ["soft_layers", "[[soft_layers]]"]),
+    # unknown keys
+    "unknown table": ("[time]", "[loads]\n[time]", ["loads: unknown key", "load, ends"]),
+    "unknown key of pillar": ("side = 0.5", "width = 0.5", ["pillar.", "side"]),
+    "unknown key of rock": ("[rock]", "[rock]\nspeed = 1", ["rock.speed = 1", "p_speed, s_speed"]),
+    "unknown key of joints": ("[joints]", "[joints]\nzeta = 1", ["joints.zeta", "damping_ratio"]),
+    "unknown key of a layer": (LAYER, LAYER + "K = 1\n", ["soft_layers[0].K = 1", "thickness"]),
+    "unknown key of load": ("[load]", "[load]\nforce = 1", ["load.force = 1", "amplitude"]),
+    "unknown key of ends": ("[ends]", "[ends]\ntop = 1", ["ends.top = 1", "start, end"]),
+    "unknown key of time": ("[time]", "[time]\nstep = 1", ["time.step = 1", "duration"]),
+    "unknown key of record": ("[record]", "[record]\nstrain = [1]", ["record.strain", "velocity"]),
+    "unknown key of numerics": (
+        "[time]",
+        "[numerics]\ndem.dt = 1\n[time]",
+        ["numerics.dem.dt = 1", "step_fraction"],
+    ),
+    "a name outside a variant": ('"good"', '"good"\nname = "x"', ["name = 'x'", "[[variants]]"]),
+    # missing
+    "no pillar": ("[pillar]\nlength = 50.0\nside = 0.5\nblock = 0.5\n", "", ["pillar", "required"]),
+    "no length": ("length = 50.0\n", "", ["pillar.length", "is required"]),
+    "no title": ('title = "good"\n', "", ["title", "is required"]),
+    "no amplitude": ("amplitude = 1.0e6\n", "", ["load.amplitude", "is required"]),
+    "no receivers": (
+        "stress = [20.0]\nvelocity = [19.75, 20.25]",
+        "",
+        ["record", "at least one of record.stress and velocity"],
+    ),
+    # numbers
+    "NaN": ("side = 0.5", "side = nan", ["pillar.side = nan", "finite"]),
+    "NaN amplitude": ("amplitude = 1.0e6", "amplitude = nan", ["load.amplitude = nan", "finite"]),
+    "infinite": ("duration = 0.002", "duration = inf", ["time.duration = inf", "finite"]),
+    "zero": ("density = 2400.0", "density = 0.0", ["rock.density = 0.0", "greater than 0"]),
+    "negative": ("length = 50.0", "length = -50.0", ["pillar.length = -50.0", "greater than 0"]),
+    "negative ratio": ("= 0.02", "= -0.02", ["joints.damping_ratio = -0.02", "at least 0"]),
+    "no unit explains it": ("side = 0.5", "side = 1e200", ["pillar.side = 1e+200", "1e30"]),
+    "an integer of 400 digits": ("side = 0.5", "side = 1" + "0" * 400, ["pillar.side", "bits"]),
+    "order 9": (
+        "[time]",
+        "[numerics]\ncontinuum.order = 9\n[time]",
+        ["numerics.continuum.order = 9", "at most 4"],
+    ),
+    "Poisson's ratio": (
+        SPEEDS,
+        "equivalent_modulus = 4.4e9\nequivalent_poisson = 0.5",
+        ["rock.equivalent_poisson = 0.5", "less than 0.5"],
+    ),
+    # the pillar and what lies on it
+    "block does not divide": ("block = 0.5", "block = 0.3", ["pillar.block = 0.3", "whole number"]),
+    "block longer than pillar": ("block = 0.5", "block = 60.0", ["pillar.block = 60.0", "2 to"]),
+    "1e12 blocks": ("block = 0.5", "block = 5e-11", ["pillar.block = 5e-11", "10,000,000 blocks"]),
+    "layer off a joint": ("y = 20.0", "y = 20.1", ["soft_layers[0].y = 20.1", "multiple of 0.5"]),
+    "layer at the end": ("y = 20.0", "y = 50.0", ["soft_layers[0].y = 50.0", "from 0.5 to 49.5"]),
+    "two layers on one joint": (LAYER, LAYER * 2, ["soft_layers[1].y = 20.0", "already"]),
+    "two stiffnesses": (
+        "spacing_stiffness = 4.375e8",
+        "spacing_stiffness = 4.375e8\nnormal_stiffness = 1e9",
+        ["soft_layers.spacing_stiffness = 437500000.0", "not both"],
+    ),
+    "receiver outside": ("[20.0]", "[20.0, 50.1]", ["record.stress = 50.1", "0 and 50 m"]),
+    "receiver before the start": ("[20.0]", "[-1.0]", ["record.stress[0] = -1.0", "at least 0"]),
+    "receiver twice": ("[20.0]", "[20.0, 20.0]", ["record.stress = [20.0, 20.0]", "twice"]),
+    "interval above duration": (
+        "[record]",
+        "[record]\ninterval = 1.0",
+        ["record.interval = 1.0", "time.duration = 0.002"],
+    ),
+    "too many samples": (
+        "[record]",
+        "[record]\ninterval = 1e-12",
+        ["record.interval = 1e-12", "10,000,000 samples"],
+    ),
+    # the rock
+    "both pairs": (
+        SPEEDS,
+        SPEEDS + "\nequivalent_modulus = 4e9\nequivalent_poisson = 0.4",
+        ["rock = [", "exactly one pair"],
+    ),
+    "half a pair": ("s_speed = 800.0\n", "", ["rock = ['p_speed']", "exactly one pair"]),
+    "half of each pair": (
+        "s_speed = 800.0",
+        "equivalent_modulus = 4e9",
+        ["rock = ['p_speed', 'equivalent_modulus']", "exactly one pair"],
+    ),
+    "neither pair": (SPEEDS, "", ["rock", "exactly one pair"]),
+    "p_speed too low": (
+        "p_speed = 2200.0",
+        "p_speed = 900.0",
+        ["rock.p_speed = 900.0", "sqrt(4/3)"],
+    ),
+    "intact rock too soft": (
+        "intact_modulus = 8.64e10",
+        "intact_modulus = 4e9",
+        ["rock.intact_modulus = 4000000000.0", "4.374e+09"],
+    ),
+    # the load
+    "unknown shape": ('"sine"', '"square"', ["load.shape = 'square'", "'sine', 'ricker'"]),
+    "unknown end": ('"quiet"', '"open"', ["ends.end = 'open'", "'matched'"]),
+    "sine without period": ("period = 0.01\n", "", ["load.period", "load.shape = 'sine'"]),
+    "ricker without period": (
+        SINE,
+        'shape = "ricker"\namplitude = 1.0',
+        ["load.period", "is needed for load.shape = 'ricker'"],
+    ),
+    "step with a period": ('"sine"', '"step"', ["load.period = 0.01", "no meaning"]),
+    "table without file": (SINE, 'shape = "table"\namplitude = 1.0', ["load.file", "is needed"]),
+    "zero direction": (
+        "period = 0.01",
+        "period = 0.01\ndirection = [0, 0, 0]",
+        ["load.direction = [0.0, 0.0, 0.0]", "unit vector"],
+    ),
+    "direction in a plane": (
+        "period = 0.01",
+        "period = 0.01\ndirection = [0, 1]",
+        ["load.direction = [0, 1]", "3 numbers"],
+    ),
+    # variants and expectations
+    "variants not tables": (
+        '[[variants]]\nname = "undamped"',
+        "[variants]\nzeta = 1",
+        ["variants", "[[variants]]"],
+    ),
+    "variant without a name": ('name = "undamped"', "", ["variants[0].name", "must be a text"]),
+    "variant that leaves its folder": ('"undamped"', '"../x"', ["variants[0].name = '../x'", "/"]),
+    "two variants of one name": (
+        'name = "undamped"',
+        'name = "a"\n[[variants]]\nname = "a"',
+        ["variants[1].name = 'a'", "unique"],
+    ),
+    "bad key in a variant": (
+        'name = "undamped"',
+        'name = "undamped"\njoints.zeta = 1',
+        ["[undamped]", "joints.zeta = 1", "damping_ratio"],
+    ),
+    "bad value in a variant": (
+        'name = "undamped"',
+        'name = "undamped"\njoints.damping_ratio = "none"',
+        ["[undamped]", "joints.damping_ratio = 'none'", "a number"],
+    ),
+    "expect of an unknown pair": (
+        '"dem ~ lattice"',
+        '"dem ~ truth"',
+        ["expect.dem ~ truth", "'a ~ b'", "jointed-bar"],
+    ),
+    "expect of one alone": ('"dem ~ lattice"', '"dem"', ["expect.dem", "'a ~ b'"]),
+    "expect of itself": ('"dem ~ lattice"', '"dem ~ dem"', ["expect.dem ~ dem", "'a ~ b'"]),
+    "negative bound": ("= 2e-3", "= -2e-3", ["expect.dem ~ lattice = -0.002", "greater than 0"]),
+    # the file itself
+    "not TOML": ("[pillar]", "[pillar", ["not valid TOML", "line 3"]),
+    "the same key twice": ("side = 0.5", "side = 0.5\nside = 0.5", ["not valid TOML", "line 6"]),
+    "an integer of 5000 digits": ("side = 0.5", "side = 1" + "0" * 5000, ["not valid TOML"]),
+    "nested too deep": ("side = 0.5", "side = " + "[" * 5000 + "]" * 5000, ["not valid TOML"]),
+}
+
+HISTORIES = {
+    "empty history": ("", ["at least two rows"]),
+    "header only": ("time,stress\n", ["at least two rows"]),
+    "history of one row": ("0,0\n", ["at least two rows"]),
+    "unsorted history": ("0,0\n2,1\n1,0\n", ["increasing times", "line 3"]),
+    "a time twice": ("s,Pa\n0,0\n0,1\n", ["increasing times", "line 3"]),
+    "three columns": ("0,0,0\n1,1,1\n", ["two numbers a line", "line 1"]),
+    "semicolons": ("0;0\n1;1\n", ["at least two rows"]),
+    "text in a history": ("0,0\n1,high\n", ["two numbers a line", "line 2"]),
+    "NaN in a history": ("# blast\n0,0\n1,nan\n", ["finite numbers", "line 3"]),
+    "binary history": (b"\x93NUMPY\xff\x00", ["not UTF-8"]),
+}
+
+OVERRIDES = {
+    "unknown --set key": ("pillar.width=1", ["pillar.width = 1", "length, side, block"]),
+    "--set of a wrong type": ("pillar.side=wide", ["pillar.side = 'wide'", "a number"]),
+    "--set below a number": ("pillar.side.half=1", ["pillar.side.half = 1", "not a table"]),
+    "--set without a value": ("pillar.side", ["pillar.side", "must be key=value"]),
+    "--set without a key": ("=1", ["=1", "must be key=value"]),
+    "a step above the critical one": (
+        "numerics.dem.step_fraction=1.5",
+        ["numerics.dem.step_fraction = 1.5", "critical step", "allow_unstable"],
+    ),
+    "a step too short to ever end": (
+        "numerics.dem.step_fraction=1e-15",
+        ["numerics.dem.step_fraction = 1e-15", "steps of", "at most 1e+12"],
+    ),
+}
+
+
+def mistaken(name: str) -> str:
+    """Return the good scene with one mistake in it."""
+    old, new, _ = MISTAKES[name]
+    assert GOOD.count(old), f"{old!r} is not in the good scene"
+    return GOOD.replace(old, new, 1)
+
+
+def write(path: Path, content: str | bytes) -> Path:
+    """Write a text or bytes and return the path."""
+    path.write_bytes(content.encode() if isinstance(content, str) else content)
+    return path
+
+
+def line_of(path: Path, **options) -> str:
+    """Return the message that loading ends with, which must be one line that names the file."""
+    with pytest.raises(SceneError) as error:
+        load(path, **options)
+    message = str(error.value)
+    assert len(message.splitlines()) == 1
+    assert message.startswith(str(path))
+    assert len(message) < len(str(path)) + 400
+    return message
+
+
+def test_the_good_scene_is_good(tmp_path):
+    assert [s.name for s in load(write(tmp_path / "good.toml", GOOD))] == ["", "undamped"]
+
+
+def test_there_are_at_least_forty_distinct_mistakes():
+    assert len({mistaken(name) for name in MISTAKES}) >= 40
+
+
+@pytest.mark.parametrize("name", MISTAKES)
+def test_mistake_is_one_line(name, tmp_path):
+    message = line_of(write(tmp_path / "scene.toml", mistaken(name)))
+    for word in MISTAKES[name][2]:
+        assert word in message
+
+
+@pytest.mark.parametrize("name", HISTORIES)
+def test_bad_history_is_one_line(name, tmp_path):
+    content, words = HISTORIES[name]
+    write(tmp_path / "blast.csv", content)
+    message = line_of(table_scene(tmp_path, "blast.csv"))
+    for word in ["load.file = 'blast.csv'", *words]:
+        assert word in message
+
+
+def table_scene(folder: Path, file: str) -> Path:
+    """Write the good scene with its load from a file."""
+    table = f'shape = "table"\namplitude = 1.0\nfile = "{file}"'
+    return write(folder / "scene.toml", GOOD.replace(SINE, table))
+
+
+@pytest.mark.parametrize(
+    ("file", "word"),
+    [("gone.csv", "No such file"), ("", "directory"), ("pipe", "regular file")],
+)
+def test_history_that_cannot_be_read(file, word, tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    assert word in line_of(table_scene(tmp_path, file))
+
+
+def test_scene_that_cannot_be_read(tmp_path):
+    os.mkfifo(tmp_path / "pipe.toml")
+    (tmp_path / "dangling.toml").symlink_to("gone.toml")
+    assert "No such file" in line_of(tmp_path / "gone.toml")
+    assert "No such file" in line_of(tmp_path / "dangling.toml")
+    assert "directory" in line_of(tmp_path)
+    assert "regular file" in line_of(tmp_path / "pipe.toml")
+    assert "UTF-8" in line_of(write(tmp_path / "latin.toml", 'title = "Säule"'.encode("latin-1")))
+    assert "10 MB" in line_of(write(tmp_path / "huge.toml", "#" * 10_000_001))
+    assert "title: is required" in line_of(write(tmp_path / "empty.toml", ""))
+
+
+def run(scene: Path, out: Path, *options: str) -> subprocess.CompletedProcess:
+    """Run the command on a scene as a user does."""
+    command = [sys.executable, "-m", "compare", "run", str(scene), "--engine", "dem"]
+    return subprocess.run(
+        [*command, "--out", str(out), *options], capture_output=True, text=True, timeout=120
+    )
+
+
+def assert_refused(done: subprocess.CompletedProcess, words: list[str], out: Path) -> None:
+    """Assert exit status 2, one line on standard error that holds the words, nothing written."""
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1
+    for word in words:
+        assert word in done.stderr
+    assert not out.exists()
+
+
+@pytest.mark.parametrize("name", OVERRIDES)
+def test_bad_override_on_the_command_line(name, tmp_path):
+    override, words = OVERRIDES[name]
+    scene = write(tmp_path / "scene.toml", GOOD)
+    if "must be key=value" not in words:  # there the mistake is not in the file
+        words = [str(scene), *words]
+    assert_refused(run(scene, tmp_path / "out", "--set", override), words, tmp_path / "out")
+
+
+@pytest.mark.parametrize("name", ["text for a number", "not TOML", "bad value in a variant"])
+def test_mistake_on_the_command_line(name, tmp_path):
+    scene = write(tmp_path / "scene.toml", mistaken(name))
+    words = [str(scene), *MISTAKES[name][2]]
+    assert_refused(run(scene, tmp_path / "out"), words, tmp_path / "out")
