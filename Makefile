@@ -1,0 +1,35 @@
+# `make help` lists the targets. Everything runs in .venv, which `make setup` makes and every target asks for.
+MAKEFLAGS += --no-print-directory
+RUN := tools/run.sh
+
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test check test-debian13 clean distclean
+
+help:  ## this list
+	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
+
+setup:  ## .venv with dolfinx and this project: from the active environment, apt or conda
+	@tools/setup.sh
+
+demo: setup  ## the paper's figures and all studies as one page, report/index.html
+	@$(RUN) jointwave report --out report
+
+test:  ## all tests, and every shipped scene held to its own bounds
+	@tools/setup.sh browser
+	@$(RUN) python -m pytest tests cases
+
+check: setup  ## lint, formatting, types, and the direction of imports
+	@$(RUN) ruff check
+	@$(RUN) ruff format --check
+	@$(RUN) mypy
+	@$(RUN) lint-imports
+
+test-debian13:  ## make test in a fresh Debian 13, with newer dolfinx, numpy and Python (needs root or sudo)
+	@tools/debian13.sh
+
+clean:  ## remove reports and caches
+	rm -rf report build *.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache
+	find cases joints dem continuum compare tests -name __pycache__ -prune -exec rm -rf {} +
+
+distclean: clean  ## remove .venv too
+	rm -rf .venv

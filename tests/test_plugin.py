@@ -1,0 +1,174 @@
+"""The pytest plugin, run on scene files as a user's own tests would be."""
+
+import subprocess
+import sys
+
+import pytest
+
+pytest_plugins = ["pytester"]
+
+SCENE = """\
+title = "ten blocks"
+
+[pillar]
+length = 5.0
+side = 0.5
+block = 0.5
+
+[rock]
+density = 2400.0
+p_speed = 2200.0
+s_speed = 800.0
+
+[load]
+shape = "sine"
+amplitude = 1.0e6
+period = 0.01
+
+[time]
+duration = 0.01
+
+[record]
+stress = [2.0]
+
+[expect]
+"{pair}" = {bound}
+"""
+
+VARIANT = """
+[[variants]]
+name = "no tension"
+joints.tension = false
+"""
+
+
+@pytest.fixture(scope="module")
+def warm(tmp_path_factory):
+    """Import what the engines need: pytester forgets after each run what was imported in it."""
+    from cases import load
+    from compare.engines import solve
+    from compare.metrics import misfit
+
+    path = tmp_path_factory.mktemp("warm") / "scene.toml"
+    path.write_text(scene() + VARIANT)
+    bonded, barred = load(path)
+    assert misfit(solve("dem", bonded), solve("lattice", bonded)) < 0.01
+    assert misfit(solve("dem", barred), solve("no-tension-chain", barred)) < 0.01
+
+
+@pytest.fixture
+def run(warm, pytester):
+    """A function that writes TOML files and runs pytest on their folder."""
+
+    def run(*options, **files):
+        for name, text in files.items():
+            (pytester.path / f"{name}.toml").write_text(text, encoding="utf-8")
+        return pytester.runpytest_inprocess("-p", "no:cacheprovider", *options)
+
+    return run
+
+
+def scene(pair="dem ~ lattice", bound=1.0):
+    """Return a scene file that expects one bound."""
+    return SCENE.format(pair=pair, bound=bound)
+
+
+def test_bound_that_is_met(run):
+    result = run("-v", scene=scene(bound=0.01))
+    result.assert_outcomes(passed=1)
+    result.stdout.fnmatch_lines(["scene.toml::dem ~ lattice PASSED*"])
+
+
+def test_bound_that_is_not_met_prints_pair_misfit_bound_and_command_alone(run, pytester):
+    result = run(scene=scene(bound=1e-9))
+    result.assert_outcomes(failed=1)
+    command = f"jointwave compare {pytester.path / 'scene.toml'} --variant '' --out misfit"
+    result.stdout.re_match_lines([r"dem ~ lattice: misfit \S+ exceeds the bound 1e-09"])
+    assert command in result.outlines
+    first = next(i for i, line in enumerate(result.outlines) if line.startswith("dem ~ lattice"))
+    assert result.outlines[first - 1].strip("_ ") == "dem ~ lattice"
+    assert result.outlines[first + 1] == command
+    assert result.outlines[first + 2].startswith("===")
+
+
+def test_each_variant_is_held_to_the_pairs_that_apply_to_it(run):
+    result = run("-v", scene=scene() + '"dem ~ no-tension-chain" = 1.0\n' + VARIANT)
+    result.assert_outcomes(passed=2)
+    result.stdout.fnmatch_lines_random(
+        ["*::dem ~ lattice PASSED*", "*::no tension: dem ~ no-tension-chain PASSED*"]
+    )
+
+
+def test_pair_that_applies_to_no_variant_fails_with_the_reason(run):
+    result = run(scene=scene("dem ~ no-tension-chain"))
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["dem ~ no-tension-chain applies to no variant: *tension*"])
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("block = 0.5", "block = 0.3", "*scene.toml: pillar.block = 0.3: must divide*"),
+        ("block = 0.5", "block = ", "*scene.toml: is not valid TOML*"),
+        ("dem ~ lattice", "dem ~ truth", "*scene.toml: expect.dem ~ truth*must be 'a ~ b'*"),
+        ("[time]", "[times]", "*scene.toml: time: is required*"),
+    ],
+)
+def test_broken_scene_fails_in_one_line(run, old, new, message):
+    result = run(scene=scene().replace(old, new))
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines([message])
+    result.stdout.no_fnmatch_line("*Error*")
+    result.stdout.no_fnmatch_line("*Traceback*")
+
+
+def test_step_that_is_refused_fails_in_one_line(run):
+    result = run(scene=scene() + "[numerics]\ndem.step_fraction = 2.0\n")
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["dem ~ lattice: *step_fraction = 2.0*critical step*"])
+    result.stdout.no_fnmatch_line("*Traceback*")
+
+
+def test_other_toml_files_are_left_alone(run):
+    result = run(
+        pyproject='[project]\nname = "someone-elses"\n',
+        broken="[pillar\n",
+        unexpecting=scene().split("[expect]")[0],
+        expecting="[expect]\nanswer = 42\n",
+        listed="pillar = [1, 2]\nvariants = [1]\n",
+    )
+    result.assert_outcomes()
+
+
+def test_every_engine_runs_once_for_each_variant(run, monkeypatch):
+    import compare.engines
+
+    solved = []
+    solve = compare.engines.solve
+    monkeypatch.setattr(
+        compare.engines, "solve", lambda name, scene: solved.append(name) or solve(name, scene)
+    )
+    run(scene=scene() + '"dem ~ equivalent-bar" = 1.0\n').assert_outcomes(passed=2)
+    assert sorted(solved) == ["dem", "equivalent-bar", "lattice"]
+
+
+def test_a_run_without_scenes_imports_nothing_heavy(pytester):
+    pytester.makepyfile(
+        """
+        import sys
+
+        def test_nothing_heavy_is_there():
+            assert "compare.pytest_plugin" in sys.modules
+            heavy = {"numpy", "numba", "xarray", "pydantic", "dolfinx", "matplotlib", "cases"}
+            assert not heavy & set(sys.modules)
+        """
+    )
+    (pytester.path / "pyproject.toml").write_text("[project]\nname = 'x'\n")
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-p", "no:hypothesispytest", "-q", str(pytester.path)],
+        cwd=pytester.path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert done.returncode == 0, done.stdout

@@ -1,0 +1,119 @@
+#!/usr/bin/env bash
+# Makes .venv, a Python that imports dolfinx and this project; does nothing when that is done already.
+#   usage: tools/setup.sh [browser]    ("browser": also the headless Chromium that the report's page test drives)
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+say() { printf 'setup: %s\n' "$*"; }
+fail() { printf 'setup: %s\n' "$*" >&2; exit 1; }
+
+# Judge the user's own Python, not a .venv made here before that happens to be active.
+PATH=$(printf %s "$PATH" | tr : '\n' | grep -vFx -e "$PWD/.venv/bin" | paste -sd: -)
+unset PYTHONHOME
+
+imports_dolfinx() { "$1" -c 'import dolfinx, ensurepip, sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1; }
+
+# apt-get, as root or through sudo; fails where there is neither.
+apt_install() {
+    local admin=() missing=() package
+    for package in "$@"; do
+        dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
+    done
+    [ ${#missing[@]} -gt 0 ] || return 0
+    if [ "$(id -u)" != 0 ]; then
+        command -v sudo >/dev/null || return 1
+        admin=(sudo)
+    fi
+    say "${admin[*]:+sudo }apt-get install ${missing[*]}"
+    local get=("${admin[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=600)
+    # A bare image has no package lists.
+    apt-cache show "${missing[@]}" >/dev/null 2>&1 || "${get[@]}" update >&2 || return 1
+    local log
+    log=$(mktemp)
+    # Packages chat on standard error too: show its end only if it matters.
+    if "${get[@]}" install -y --no-install-recommends "${missing[@]}" >"$log" 2>&1; then rm "$log"; return 0; fi
+    tail -n 5 "$log" >&2
+    say "apt-get failed, see $log"
+    return 1
+}
+
+# Prints the Python below .venv: the active one if it has dolfinx, else Debian's own. Fails where there is neither.
+base_python() {
+    local active
+    active=$(command -v python3 || true)
+    if [ -n "$active" ] && imports_dolfinx "$active"; then
+        "$active" -c 'import sys; print(sys.executable)'
+        return
+    fi
+    command -v apt-get >/dev/null || return 1
+    # Messages go to standard error here: standard output is the answer.
+    apt_install python3-dolfinx python3-gmsh python3-venv >&2 || return 1
+    imports_dolfinx /usr/bin/python3 || return 1
+    echo /usr/bin/python3
+}
+
+make_venv() {
+    "$1" -m venv --system-site-packages .venv
+    # A venv made from another venv sees neither that one's packages nor its dolfinx: name them.
+    "$1" -c 'import site, sys; print(*(site.getsitepackages() if sys.prefix != sys.base_prefix else []), sep="\n")' \
+        >"$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/active-environment.pth"
+}
+
+make_conda() {
+    local conda
+    conda=$(command -v micromamba || command -v mamba || command -v conda) || return 1
+    say "$(basename "$conda") creates .venv from environment.yml (some minutes)"
+    case $(basename "$conda") in
+        micromamba) micromamba create -y -q -p ./.venv -f environment.yml ;;
+        *) "$conda" env create -q -p ./.venv -f environment.yml ;;
+    esac
+}
+
+install_project() {
+    # A string, not an array: macOS's bash 3.2 takes an empty array for an unset variable.
+    local constraints=
+    # dolfinx and petsc4py are compiled against one numpy major version, and must keep it.
+    if .venv/bin/python -c 'import numpy, sys; sys.exit(numpy.__version__.split(".")[0] != "1")'; then
+        constraints='-c constraints-numpy1.txt'
+    fi
+    say "pip install -e .[test,check] $constraints (about a minute)"
+    # shellcheck disable=SC2086
+    .venv/bin/python -m pip --disable-pip-version-check install -q $constraints -e '.[test,check]'
+}
+
+install_browser() {
+    command -v chromium >/dev/null && command -v chromedriver >/dev/null && return
+    if grep -qs '^ID=debian' /etc/os-release && apt_install chromium chromium-driver; then return; fi
+    say "no chromium with chromedriver here: the page test will not run"
+}
+
+# The folder is part of both keys because a venv does not survive being moved or copied.
+interpreter=$(python3 -c 'import sys; print(sys.executable, sys.version)' 2>/dev/null || echo none)
+base_key="$PWD $interpreter"
+key="$base_key $(cat pyproject.toml constraints-numpy1.txt environment.yml tools/setup.sh | cksum)"
+
+ready() {
+    [ "$(cat .venv/.setup-done 2>/dev/null)" = "$key" ] &&
+        .venv/bin/python -c 'from importlib.util import find_spec as f; assert f("dolfinx") and f("compare")' 2>/dev/null
+}
+
+if ready; then
+    say ".venv is up to date"
+else
+    rm -f .venv/.setup-done
+    if [ "$(cat .venv/.setup-base 2>/dev/null)" != "$base_key" ] || ! imports_dolfinx .venv/bin/python; then
+        rm -rf .venv
+        if base=$(base_python); then
+            say ".venv over $base, which has dolfinx $("$base" -c 'import dolfinx; print(dolfinx.__version__)')"
+            make_venv "$base"
+        else
+            make_conda || fail "no dolfinx: activate an environment that has it, or install conda (or Debian/Ubuntu's python3-dolfinx python3-gmsh python3-venv), then run make again"
+        fi
+        echo "$base_key" >.venv/.setup-base
+    fi
+    install_project
+    .venv/bin/python -c 'import dolfinx, numba, compare' || fail ".venv does not import dolfinx, numba and compare"
+    echo "$key" >.venv/.setup-done
+    say "done: .venv/bin/jointwave, or activate it by: . .venv/bin/activate"
+fi
+if [ "${1:-}" = browser ]; then install_browser; fi
