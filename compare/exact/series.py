@@ -39,7 +39,7 @@ def applies(scene: Scene) -> Answer:
     if (scene.ends.start, scene.ends.end) != ("free", "free"):
         return no("an end is not free")
     if 0.0 in scene.record.stress:
-        return no("every term is zero at the loaded end, whatever the load there")
+        return no("every term is zero at the loaded end")
     return YES if scene.load.shape == "sine" else no("the load is not a sine")
 
 

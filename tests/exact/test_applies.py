@@ -51,7 +51,7 @@ NO = [
     ("series", DAMPED, "the joints are damped"),
     ("series", QUIET, "an end is not free"),
     ("series", STEP, "the load is not a sine"),
-    ("series", {"record.stress": [0.0, 20.0]}, "every term is zero at the loaded end"),
+    ("series", {"record": {"stress": [0.0, 20.0]}}, "every term is zero at the loaded end"),
     ("kelvin-voigt", BARRED, "a joint bars tension"),
     ("kelvin-voigt", {}, "the rock is not damped"),
     ("kelvin-voigt", DAMPED | {"soft_layers": LAYER}, "a soft layer reflects within the bar"),
