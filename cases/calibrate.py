@@ -91,6 +91,26 @@ class Properties:
         """K'_n of an ordinary joint, Pa/m."""
         return self.modulus / self.spacing
 
+    @property
+    def excess_compliance(self) -> np.ndarray:
+        """What each joint adds to the homogenised bar, which holds an ordinary one there, m/Pa.
+
+        1/K = 1/K'_n - 1/K'_n(regular) [N - 1]; exactly zero for a joint as stiff as the others.
+        """
+        same = np.isclose(self.stiffness, self.regular_stiffness, rtol=1e-9, atol=0)
+        return np.where(same, 0.0, 1 / self.stiffness - 1 / self.regular_stiffness)
+
+    @property
+    def damps_alone(self) -> np.ndarray:
+        """Whether a joint as stiff as the others has a dashpot of its own, bool array [N - 1].
+
+        The homogenised bar has no place for such a dashpot.
+        """
+        if self.joint_time_constant is None:
+            return np.zeros_like(self.tension)
+        differs = self.joint_time_constant != (self.time_constant or 0.0)
+        return differs & (self.excess_compliance == 0)
+
 
 def calibrate(scene: Scene) -> Properties:
     """Return the properties of a scene: every joint's stiffness, damping and tension."""

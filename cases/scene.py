@@ -198,7 +198,8 @@ class ContinuumNumerics(Table):
     """How the deformable rock is discretised and stepped."""
 
     order: Annotated[int, Field(ge=1, le=4)] = 2  #: of the Gauss-Lobatto-Legendre elements
-    elements_per_block: Annotated[int, Field(ge=1, le=1000)] = 1
+    #: absent: as many as the load needs, see continuum.mesh.elements_in_block
+    elements_per_block: Annotated[int, Field(ge=1, le=1000)] | None = None
     scheme: Literal["auto", "explicit", "implicit"] = "auto"
     step_fraction: Positive = 0.2  #: of the critical step
     allow_unstable: bool = False

@@ -1,1 +1,1 @@
-"""How far apart the engines are, why, and what it costs: exact solutions, metrics, figures, report."""
+"""How far apart the engines are, why, and what it costs: exact solutions, metrics, report."""

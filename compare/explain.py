@@ -43,7 +43,7 @@ def _step(name: str, scene: Scene) -> StepChoice:
 
         _, _, time, critical = build_chain(scene)
     else:
-        from continuum.model import build as build_continuum
+        from continuum.build import build as build_continuum
 
         _, _, time, critical = build_continuum(scene, name.removeprefix("continuum-"))
     return StepChoice(name, critical, time.dt, time.steps)

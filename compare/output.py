@@ -8,7 +8,7 @@ from pathlib import Path
 import xarray as xr
 
 
-def write(path: Path, save: Callable[[Path], None]) -> Path:
+def write(path: Path, save: Callable[[Path], object]) -> Path:
     """Let `save` write a file and put it at `path` only when it is whole.
 
     What stood at `path` before stays untouched until then, and for good when `save` fails.

@@ -1,13 +1,12 @@
 """The runs that `jointwave run` was asked for: checked first, then executed, each file whole."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
 from cases.errors import SceneError
 from cases.result import energy_residual
 from cases.scene import Scene
-from compare.engines import applies, exact_names, solve
+from compare.engines import Progress, applies, exact_names, solve
 from compare.output import write_dataset
 
 CONTINUUM_MODELS = ("jointed", "equivalent")
@@ -59,11 +58,15 @@ def plan(scenes: list[Scene], runs: list[tuple[str, str | None]], out: Path) -> 
     return jobs
 
 
-def execute(jobs: list[Job], progress: Callable[[float], None]) -> list[Done]:
+def execute(jobs: list[Job], progress: Progress) -> list[Done]:
     """Run the jobs one after the other and write each result."""
     done = []
+
+    def part_of(i: int) -> Progress:
+        return lambda fraction: progress((i + fraction) / len(jobs))
+
     for i, job in enumerate(jobs):
-        result = solve(job.name, job.scene, lambda f, i=i: progress((i + f) / len(jobs)))
+        result = solve(job.name, job.scene, part_of(i))
         write_dataset(job.path, result)
         done.append(
             Done(

@@ -27,7 +27,7 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
 
 def show_scenes(rows: list[tuple[Path, list[Scene]]], as_json: bool) -> None:
     """Print the shipped scenes."""
-    facts = [
+    facts: list[dict[str, Any]] = [
         {
             "scene": f"{path.parent.name}/{path.stem}",
             "title": scenes[0].title,

@@ -25,7 +25,7 @@ ENERGY_BOUND = 1e-3  # of the work put in
 LINEAR_ENERGY_BOUND = 1e-10  # in the form that leapfrog conserves
 
 
-def _every_run():
+def every_run():
     for path in shipped():
         for scene in cases.load(path):
             for engine in ENGINES:
@@ -59,7 +59,7 @@ def result_of(name, scene):
     return _solve_by_hash(key.digest, name, key)
 
 
-@pytest.mark.parametrize("scene, engine", _every_run())
+@pytest.mark.parametrize("scene, engine", list(every_run()))
 def test_shipped_scene(scene, engine):
     """Finite, right to the promised misfit in stress and velocity, and the ledger closes."""
     result = result_of(engine, scene)

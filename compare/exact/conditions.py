@@ -1,7 +1,5 @@
 """What the solutions ask of a scene before they hold."""
 
-import numpy as np
-
 from cases.calibrate import Properties
 
 
@@ -20,14 +18,6 @@ def bars_tension(p: Properties) -> bool:
     return not bool(p.tension.all())
 
 
-def excess_compliance(p: Properties) -> np.ndarray:
-    """Return 1/K (m/Pa) that each joint [N - 1] adds to the homogenised bar, which holds one
-    ordinary joint there already: 1/K'_n - 1/K'_n(regular), zero for a joint as stiff as the others.
-    """
-    same = np.isclose(p.stiffness, p.regular_stiffness, rtol=1e-9, atol=0)
-    return np.where(same, 0.0, 1 / p.stiffness - 1 / p.regular_stiffness)
-
-
 def has_interfaces(p: Properties) -> bool:
     """Return whether a soft layer differs in stiffness from the ordinary joints."""
-    return bool(excess_compliance(p).any())
+    return bool(p.excess_compliance.any())

@@ -24,7 +24,7 @@ from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
 from compare.exact.answer import YES, Answer, no
-from compare.exact.conditions import bars_tension, excess_compliance, rock_is_damped
+from compare.exact.conditions import bars_tension, rock_is_damped
 from compare.exact.images import ENTERS
 from compare.exact.linear import response
 
@@ -42,7 +42,7 @@ class Joint(NamedTuple):
 def applies(scene: Scene) -> Answer:
     """Return whether one joint is all that the waves meet within the scene's duration."""
     p = calibrate(scene)
-    compliance = excess_compliance(p)
+    compliance = p.excess_compliance
     if bars_tension(p):
         return no("a joint bars tension")
     if rock_is_damped(p):
@@ -101,7 +101,7 @@ def _waves_at(
 
 def the_joint(p: Properties) -> Joint:
     """Return the only joint whose stiffness differs from the ordinary ones."""
-    compliance = excess_compliance(p)
+    compliance = p.excess_compliance
     j = int(np.flatnonzero(compliance)[0])
     eta = 0.0 if p.joint_time_constant is None else float(p.joint_time_constant[j])
     return Joint(float(p.joint_y[j]), 1 / compliance[j], eta)

@@ -1,0 +1,5 @@
+"""Deformable rock in dolfinx, with the joints as cohesive interfaces."""
+
+from continuum.simulate import applies, simulate
+
+__all__ = ["applies", "simulate"]

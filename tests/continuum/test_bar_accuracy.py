@@ -1,0 +1,103 @@
+"""The continuum against the exact bars: misfits at the default numerics, and how they fall."""
+
+import numpy as np
+import pytest
+
+from compare.exact import equivalent_bar, images, jointed_bar
+from continuum import simulate
+
+LAYER = {"soft_layers": [{"y": 20.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.02}]}
+DAMPED = {"joints__damping_ratio": 0.02}
+PLACES = {"record__stress": [10.0, 20.0, 20.2], "record__velocity": [19.75, 20.25]}
+RICKER = {"load": {"shape": "ricker", "amplitude": 1e6, "period": 0.01}, "time__duration": 0.06}
+
+
+def misfit(result, exact, variable="stress"):
+    """Return the relative L2 distance of two results."""
+    difference = result[variable].values - exact[variable].values
+    return float(np.linalg.norm(difference) / np.linalg.norm(exact[variable].values))
+
+
+def rates(errors, ratio=2.0):
+    """Return the observed orders between successive errors."""
+    return np.diff(-np.log(errors)) / np.log(ratio)
+
+
+@pytest.mark.parametrize("ends", ["free", "quiet", "fixed"])
+def test_equivalent_bar_meets_images(pillar, ends):
+    """Four elements a block: a wave crosses each in a hundredth of the period."""
+    scene = pillar(**PLACES, ends__end=ends)
+    result, exact = simulate(scene, "equivalent"), images.solve(scene)
+    assert misfit(result, exact) < 5e-3
+    assert misfit(result, exact, "velocity") < 5e-3
+    assert misfit(result, exact, "displacement") < 5e-3
+
+
+@pytest.mark.parametrize("changes", [DAMPED, {**DAMPED, **LAYER}, {**DAMPED, "ends__end": "quiet"}])
+def test_equivalent_bar_with_dashpots_and_layer_meets_the_laplace_bar(pillar, changes):
+    scene = pillar(**PLACES, **changes)
+    assert misfit(simulate(scene, "equivalent"), equivalent_bar.solve(scene)) < 5e-3
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{}, LAYER, DAMPED, {**DAMPED, **LAYER}, {"ends__end": "quiet"}, {"ends__end": "fixed"}],
+)
+def test_jointed_bar_meets_the_laplace_bar(pillar, changes):
+    scene = pillar(**PLACES, **changes)
+    result, exact = simulate(scene, "jointed"), jointed_bar.solve(scene)
+    assert misfit(result, exact) < 5e-3
+    assert misfit(result, exact, "velocity") < 5e-3
+
+
+def test_error_falls_with_the_square_of_the_step(pillar):
+    """Smooth pulse, fourth-order elements: only the step is left to err."""
+    errors = []
+    for interval in (4e-5, 2e-5, 1e-5):
+        scene = pillar(
+            **RICKER,
+            record__interval=interval,
+            numerics__continuum__order=4,
+            numerics__continuum__elements_per_block=1,
+            numerics__continuum__step_fraction=1.0,
+        )
+        result = simulate(scene, "equivalent")
+        assert result.dt == pytest.approx(interval)
+        errors.append(misfit(result, images.solve(scene)))
+    assert rates(errors) == pytest.approx([2, 2], abs=0.1)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_error_falls_at_twice_the_order_for_a_smooth_pulse(pillar, order):
+    """The phase error of GLL elements is (k h)^(2p); stress by momentum balance and velocity at
+    element ends lose nothing of it. All at one step, so that its error cancels."""
+
+    def stress(order, elements):
+        scene = pillar(
+            **RICKER,
+            record__interval=1e-5,
+            numerics__continuum__order=order,
+            numerics__continuum__elements_per_block=elements,
+            numerics__continuum__step_fraction=0.9,
+        )
+        result = simulate(scene, "equivalent")
+        assert result.dt == pytest.approx(1e-5)
+        return result
+
+    reference = stress(4, 2)
+    errors = [misfit(stress(order, elements), reference) for elements in (2, 4, 8)]
+    assert rates(errors)[-1] == pytest.approx(2 * order, abs=0.2)
+
+
+def test_error_of_one_cycle_of_a_sine_falls_as_its_kinks_allow(pillar):
+    """A jump in slope has a spectrum of omega^-2. Waves above k_c, where the phase error over the
+    path is one radian, k_c (k_c h)^(2p) ~ const, are misplaced: an L2 error of k_c^(-3/2), or
+    h^(3p / (2p + 1)): 1.2 at order 2."""
+    errors = []
+    for elements in (1, 2, 4):
+        scene = pillar(
+            numerics__continuum__elements_per_block=elements,
+            numerics__continuum__step_fraction=0.05,
+        )
+        errors.append(misfit(simulate(scene, "equivalent"), images.solve(scene)))
+    assert rates(errors) == pytest.approx([1.2, 1.2], abs=0.1)
