@@ -16,9 +16,14 @@ class SceneError(ValueError):
 
     def __init__(self, where: str, key: str, value: object, allowed: str) -> None:
         self.where, self.key, self.value, self.allowed = str(where), key, value, allowed
+        self._arguments = (where, key, value, allowed)
         found = "" if value is None else f" = {_short(value)}"
         subject = f"{key}{found}: " if key else ""
         super().__init__(_one_line(f"{where}: {subject}{allowed}"))
+
+    def __reduce__(self) -> tuple:
+        """Return how to make it again: it crosses from worker processes."""
+        return type(self), self._arguments
 
 
 class UnstableError(RuntimeError):

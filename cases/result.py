@@ -1,16 +1,35 @@
 """The one form of every result, whichever engine or formula it comes from."""
 
+from __future__ import annotations
+
 import hashlib
 import json
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from cases.effects import active_effects
 from cases.scene import Scene
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 TERMS = ("kinetic", "elastic", "viscous", "boundary", "work")
+
+
+Variable = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
+
+
+class Fields(NamedTuple):
+    """A result as plain arrays, in the order that xarray.Dataset takes them.
+
+    variables, coords : name to (dimensions, values, attributes). attributes : of the whole.
+    xarray takes longer to import than most scenes to run; what needs no Dataset uses this.
+    """
+
+    variables: dict[str, Variable]
+    coords: dict[str, Variable]
+    attributes: dict[str, Any]
 
 
 def scene_hash(scene: Scene) -> str:
@@ -22,7 +41,14 @@ def scene_hash(scene: Scene) -> str:
     return digest.hexdigest()[:16]
 
 
-def dataset(
+def dataset(*arguments: Any, **attributes: Any) -> xr.Dataset:
+    """Return a result as xarray.Dataset; takes what `fields` takes."""
+    import xarray as xr
+
+    return xr.Dataset(*fields(*arguments, **attributes))
+
+
+def fields(
     scene: Scene,
     engine: str,
     time: np.ndarray,
@@ -31,7 +57,7 @@ def dataset(
     displacement: np.ndarray | None = None,
     energy: np.ndarray | None = None,
     **attributes: Any,
-) -> xr.Dataset:
+) -> Fields:
     """Return a result with the schema that all engines and exact solutions share.
 
     Parameters
@@ -45,21 +71,22 @@ def dataset(
     attributes : numbers and texts about the run (dt, steps, seconds, ...).
     """
     points = ("velocity_y", "time", "axis")
-    variables: dict[str, Any] = {
+    variables: dict[str, Variable] = {
         "stress": (("stress_y", "time"), stress, {"units": "Pa"}),
         "velocity": (points, velocity[..., None], {"units": "m/s"}),
     }
-    coords: dict[str, Any] = {
-        "time": ("time", time, {"units": "s"}),
-        "stress_y": ("stress_y", np.array(scene.record.stress, dtype=float), {"units": "m"}),
-        "velocity_y": ("velocity_y", np.array(scene.record.velocity, dtype=float), {"units": "m"}),
-        "axis": ("axis", ["y"]),
+    record = scene.record
+    coords: dict[str, Variable] = {
+        "time": (("time",), time, {"units": "s"}),
+        "stress_y": (("stress_y",), np.array(record.stress, dtype=float), {"units": "m"}),
+        "velocity_y": (("velocity_y",), np.array(record.velocity, dtype=float), {"units": "m"}),
+        "axis": (("axis",), np.array(["y"]), {}),
     }
     if displacement is not None:
         variables["displacement"] = (points, displacement[..., None], {"units": "m"})
     if energy is not None:
         variables["energy"] = (("term", "time"), energy, {"units": "J"})
-        coords["term"] = ("term", list(TERMS))
+        coords["term"] = (("term",), np.array(TERMS), {})
     common = {
         "engine": engine,
         "title": scene.title,
@@ -68,13 +95,17 @@ def dataset(
         "scene_hash": scene_hash(scene),
         "effects": json.dumps(active_effects(scene)),
     }
-    return xr.Dataset(variables, coords, {**common, **attributes})
+    return Fields(variables, coords, {**common, **attributes})
 
 
 def energy_residual(result: xr.Dataset) -> float:
-    """Return the largest imbalance of the energy ledger over the largest work put in."""
-    energy = result["energy"]
-    work = energy.sel(term="work")
-    balance = energy.drop_sel(term="work").sum("term") - work
+    """Return the largest imbalance of a result's energy ledger over the largest work put in."""
+    return imbalance(result["energy"].values)
+
+
+def imbalance(energy: np.ndarray) -> float:
+    """Return the largest imbalance of an energy ledger [len(TERMS), n] over the largest work."""
+    work = energy[TERMS.index("work")]
+    balance = energy.sum(axis=0) - 2 * work
     scale = float(np.abs(work).max())
     return float(np.abs(balance).max()) / scale if scale > 0 else 0.0

@@ -1,12 +1,16 @@
 """Everything that can solve a scene, by name: the two engines and the exact solutions."""
 
-from collections.abc import Callable
+from __future__ import annotations
 
-import xarray as xr
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from cases.errors import SceneError
 from cases.scene import Scene
 from compare.exact.answer import YES, Answer, no
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 ENGINES = ("dem", "continuum-jointed", "continuum-equivalent")
 

@@ -1,11 +1,19 @@
 """The only place that writes files: each under a temporary name first, then renamed."""
 
+from __future__ import annotations
+
 import os
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import xarray as xr
+import numpy as np
+
+from cases.result import Fields
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def write(path: Path, save: Callable[[Path], object]) -> Path:
@@ -33,4 +41,52 @@ def write_text(path: Path, text: str) -> Path:
 
 def write_dataset(path: Path, result: xr.Dataset) -> Path:
     """Write a result as NetCDF."""
-    return write(path, lambda temporary: result.to_netcdf(temporary, engine="scipy"))
+    return write_fields(path, fields_of(result))
+
+
+def fields_of(result: xr.Dataset) -> Fields:
+    """Return a result as plain arrays."""
+    variables = {
+        str(name): (tuple(map(str, v.dims)), v.values, dict(v.attrs))
+        for name, v in result.variables.items()
+    }
+    return Fields(variables, {}, dict(result.attrs))
+
+
+def write_fields(path: Path, fields: Fields) -> Path:
+    """Write a result as NetCDF 3 by scipy, just as xarray would but without importing it."""
+    from scipy.io import netcdf_file
+
+    def save(temporary: Path) -> None:
+        with netcdf_file(str(temporary), "w", version=2) as file:
+            _write_attributes(file, fields.attributes)
+            for name, (dimensions, values, attributes) in {
+                **fields.coords,
+                **fields.variables,
+            }.items():
+                _write_variable(file, name, dimensions, values, attributes)
+
+    return write(path, save)
+
+
+def _write_variable(file, name: str, dimensions: tuple, values: np.ndarray, attributes: dict):
+    if values.dtype.kind == "U":  # the format holds characters only, in a dimension of their own
+        encoded = np.char.encode(values, "utf-8")
+        values = encoded.view("S1").reshape(*values.shape, encoded.dtype.itemsize)
+        dimensions = (*dimensions, f"string{encoded.dtype.itemsize}")
+        attributes = {**attributes, "_Encoding": "utf-8"}
+    for dimension, length in zip(dimensions, values.shape, strict=True):
+        if dimension not in file.dimensions:
+            file.createDimension(dimension, length)
+    variable = file.createVariable(name, values.dtype, dimensions)
+    variable[:] = values
+    _write_attributes(variable, attributes)
+
+
+def _write_attributes(target, attributes: dict) -> None:
+    for key, value in attributes.items():
+        # A bare Python number would be stored in single precision; the format knows no int64.
+        number = isinstance(value, int | float | np.number)
+        whole = number and isinstance(value, int | np.integer) and abs(value) < 2**31
+        kind = np.int32 if whole else np.float64
+        setattr(target, key, np.array(value, dtype=kind) if number else value.encode())

@@ -4,10 +4,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cases.errors import SceneError
-from cases.result import energy_residual
+from cases.result import Fields, imbalance
 from cases.scene import Scene
 from compare.engines import Progress, applies, exact_names, solve
-from compare.output import write_dataset
+from compare.output import fields_of, write_fields
 
 CONTINUUM_MODELS = ("jointed", "equivalent")
 
@@ -66,18 +66,27 @@ def execute(jobs: list[Job], progress: Progress) -> list[Done]:
         return lambda fraction: progress((i + fraction) / len(jobs))
 
     for i, job in enumerate(jobs):
-        result = solve(job.name, job.scene, part_of(i))
-        write_dataset(job.path, result)
+        result = _solve(job, part_of(i))
+        write_fields(job.path, result)
+        energy = result.variables.get("energy")
         done.append(
             Done(
                 job,
-                int(result.attrs.get("steps", 0)),
-                float(result.attrs.get("seconds_stepping", 0.0)),
-                energy_residual(result) if "energy" in result else None,
+                int(result.attributes.get("steps", 0)),
+                float(result.attributes.get("seconds_stepping", 0.0)),
+                imbalance(energy[1]) if energy else None,
             )
         )
         progress((i + 1) / len(jobs))
     return done
+
+
+def _solve(job: Job, progress: Progress) -> Fields:
+    if job.name == "dem":
+        from dem import simulate_fields
+
+        return simulate_fields(job.scene, progress)
+    return fields_of(solve(job.name, job.scene, progress))
 
 
 def _names(engine: str, model: str | None, scene: Scene) -> list[str]:

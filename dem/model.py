@@ -1,9 +1,9 @@
 """The constants of a run, and what changes in it, as two objects; absent parts are None."""
 
+from math import cos, pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.linalg import eigh_tridiagonal
 
 from cases.calibrate import Properties, calibrate
 from cases.loads import load_history, step_means
@@ -11,7 +11,7 @@ from cases.sampling import Clock, Interpolation, clock, interpolation
 from cases.scene import Scene
 from dem.ends import build_end, end_state, end_stiffness
 from joints.laws import Law
-from joints.stability import critical_step
+from joints.stability import critical_step, critical_step_of_modes
 from joints.uniform import law
 
 
@@ -125,6 +125,14 @@ def state_at_rest(model: Model, block_count: int, keep_ledger: bool) -> State:
 
 def critical_chain_step(p: Properties, start: str, end: str) -> float:
     """Return the critical step (s) of a chain: exact, from its largest eigenvalue with dashpots."""
+    alike = (p.stiffness == p.stiffness[0]).all() and not p.damps_alone.any()
+    if alike and {start, end} <= {"free", "quiet"}:
+        rigid = 2 * sqrt(p.stiffness[0] * p.area / p.block_mass)
+        omega = rigid * cos(pi / (2 * p.block_count))
+        return critical_step_of_modes(omega, p.time_constant or 0.0)
+
+    from scipy.linalg import eigh_tridiagonal  # slow to import: only for chains that need it
+
     k = p.stiffness * p.area
     c = k * (0.0 if p.joint_time_constant is None else p.joint_time_constant)
     ends = np.zeros(p.block_count)

@@ -1,19 +1,24 @@
 """From a scene to its result by the rigid-block engine."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Callable
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 import numba
 import numpy as np
-import xarray as xr
 
 from cases.errors import UnstableError
-from cases.result import dataset
+from cases.result import Fields, fields
 from cases.sampling import Clock
 from cases.scene import Scene
 from dem.model import Model, State, build
 from dem.record import Samples, room, run
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 BLOCK_STEPS_BETWEEN_LOOKS = 20_000_000  # some 10 ms: often enough for a progress bar
 
@@ -24,6 +29,13 @@ def simulate(scene: Scene, progress: Callable[[float], None] | None = None) -> x
     `progress` is called with the finished fraction. Raises SceneError for a step that cannot be
     taken and UnstableError when the motion is no longer finite.
     """
+    import xarray as xr
+
+    return xr.Dataset(*simulate_fields(scene, progress))
+
+
+def simulate_fields(scene: Scene, progress: Callable[[float], None] | None = None) -> Fields:
+    """Simulate a scene as `simulate` does, and return the result as plain arrays."""
     began = perf_counter()
     model, state, time, critical = build(scene)
     samples = room(model, state, time.samples)
@@ -31,7 +43,7 @@ def simulate(scene: Scene, progress: Callable[[float], None] | None = None) -> x
     run(model, state, samples, time.stride, 0, 0)
     compiled = perf_counter()
     _run(model, state, samples, time, critical, progress)
-    return dataset(
+    return fields(
         scene,
         "dem",
         time.times,

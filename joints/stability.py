@@ -11,6 +11,15 @@ from collections.abc import Callable
 from math import sqrt
 
 
+def critical_step_of_modes(omega: float, eta: float) -> float:
+    """Return the critical step (s) where all dashpots are eta (s) times their springs.
+
+    omega : the largest natural frequency, rad/s. This is sqrt(4 eta^2 + 4 / omega^2) - 2 eta in
+    a form that loses no digits for strong dashpots.
+    """
+    return 4 / omega**2 / (sqrt(4 * eta**2 + 4 / omega**2) + 2 * eta)
+
+
 def critical_step(largest: Callable[[float, float], float], damped: bool) -> float:
     """Return the critical step, s.
 
@@ -23,7 +32,7 @@ def critical_step(largest: Callable[[float, float], float], damped: bool) -> flo
     if not damped:
         return undamped
 
-    from scipy.optimize import brentq  # 60 ms that an undamped scene does not pay
+    from scipy.optimize import brentq  # slow to import: only for chains that need it
 
     def excess(dt: float) -> float:
         return largest(dt * dt, 4 * dt) - 4

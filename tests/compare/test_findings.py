@@ -7,7 +7,7 @@ import pytest
 
 import cases
 from compare.exact import lattice, no_tension
-from compare.findings import FINDINGS, ends, joints, pillar
+from compare.findings import FINDINGS, ends, joints, pillar, travel
 from compare.findings.overview import mostly_dispersion
 from compare.pairs import Comparison
 from compare.report import SCENES
@@ -54,9 +54,7 @@ def every(quantity, change):
 def swapped(comparisons):
     """Return the variants with their results the other way round."""
     results = [c.results for c in comparisons][::-1]
-    return [
-        dataclasses.replace(c, results=r) for c, r in zip(comparisons, results, strict=True)
-    ]
+    return [dataclasses.replace(c, results=r) for c, r in zip(comparisons, results, strict=True)]
 
 
 def alike(index):
@@ -104,9 +102,9 @@ FALSE = {
     pillar.three_pulses: every("stress", after(0.045, -1)),
     pillar.falls_with_distance: every("stress", after(0.045, 3)),
     pillar.falls_with_damping: swapped,
-    pillar.travel: every("stress", late_at_the_last),
-    pillar.reflection: every("stress", after(0.045, -1)),
-    pillar.superposition: every("stress", first_only),
+    travel.travels: every("stress", late_at_the_last),
+    travel.reflection: every("stress", after(0.045, -1)),
+    travel.superposition: every("stress", first_only),
     ends.quiet_end: end_as("quiet", "free"),
     ends.what_the_quiet_end_leaves: end_as("quiet", "matched"),
     ends.matched_end: end_as("matched", "quiet"),
@@ -135,7 +133,7 @@ def test_finding_sees_a_false_claim(chains, figure, find):
 
 def test_superposition_needs_a_section_where_pulses_meet():
     scene = cases.load_variant(SCENES / "fig-04.toml", "", {"record.stress": [10.0, 40.0]})
-    finding = pillar.superposition([exact_chain(scene)])
+    finding = travel.superposition([exact_chain(scene)])
     assert not finding.holds
     assert "6.75 m" in finding.sentence  # c T / 2 = 1350 m/s * 10 ms / 2
 

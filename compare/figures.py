@@ -1,0 +1,119 @@
+"""The paper's figures, drawn from comparisons: one panel a variant and receiver, every curve in it.
+
+Stress in MPa, compression positive, over time in ms, as in Guo & Li (2002).
+"""
+
+import io
+import re
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from compare.output import write, write_text
+from compare.pairs import Comparison
+from compare.panels import Panel, panels
+from compare.style import FAMILIES, RC, WIDTH, in_order, is_engine, style
+
+#: Factor from SI to the unit that is drawn, and that unit.
+UNITS = {"stress": (1e-6, "MPa"), "velocity": (1.0, "m/s")}
+
+DOTS = 160  # of the PNG, per inch
+
+
+def draw(name: str, comparisons: list[Comparison]) -> Figure:
+    """Return a figure of all variants; `name` scopes the ids of its parts ("fig-03").
+
+    The curve of solution S in row i, column j is the SVG group NAME-i-j-S.
+    """
+    grid = panels(comparisons)
+    rows, columns = len(grid), max(map(len, grid))
+    with matplotlib.rc_context(RC):
+        figure = Figure(figsize=(WIDTH, 1.0 + rows * (1.75 if rows > 2 else 2.3)))
+        FigureCanvasAgg(figure)
+        axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
+        for i, row in enumerate(grid):
+            for j, panel in enumerate(row):
+                _draw_panel(axes[i, j], panel, f"{name}-{i}-{j}")
+                axes[i, j].set_title(
+                    f"({chr(97 + i * columns + j)})  {panel.place}, {panel.variant}", pad=4
+                )
+        _label_axes(axes, grid[0][0].quantity)
+        _add_legend(figure, {n for row in grid for panel in row for n in panel.curves})
+    return figure
+
+
+def _draw_panel(ax: Axes, panel: Panel, gid: str) -> None:
+    ax.axhline(0, color="#bbbbbb", linewidth=0.6, zorder=1)
+    factor = UNITS[panel.quantity][0]
+    for name, curve in panel.curves.items():
+        (line,) = ax.plot(1e3 * curve.index, factor * curve.values, **style(name).of_line())
+        line.set_gid(f"{gid}-{name}")
+    ax.margins(x=0)
+
+
+def _label_axes(axes: np.ndarray, quantity: str) -> None:
+    for ax in axes[:, 0]:
+        ax.set_ylabel(f"{quantity} ({UNITS[quantity][1]})")
+    for ax in axes[-1]:
+        ax.set_xlabel("time (ms)")
+
+
+def _add_legend(figure: Figure, names: set[str]) -> None:
+    """Put one column of entries per model above the panels, where it hides no curve."""
+    columns = [
+        [_heading(family), *(_entry(name) for name in styles if name in names)]
+        for family, styles in FAMILIES.items()
+        if names & set(styles)
+    ]
+    known = {name for styles in FAMILIES.values() for name in styles}
+    if names - known:
+        columns.append([_heading("Other"), *(_entry(name) for name in in_order(names - known))])
+    depth = max(map(len, columns))
+    handles = [h for column in columns for h in column + [_heading("")] * (depth - len(column))]
+    legend = figure.legend(
+        handles=handles,
+        ncols=len(columns),
+        loc="upper center",
+        bbox_to_anchor=(0.5, 1.0),
+        frameon=False,
+        handlelength=4.5,
+        columnspacing=4.0,
+        labelspacing=0.25,
+    )
+    for text in legend.get_texts():
+        if text.get_text() in FAMILIES:
+            text.set_fontweight("bold")
+    top = 1 - (0.16 + 0.165 * depth) / figure.get_figheight()
+    figure.tight_layout(rect=(0, 0, 1, top), h_pad=0.8, w_pad=1.5)
+
+
+def _heading(text: str) -> Line2D:
+    return Line2D([], [], linestyle="none", label=text)
+
+
+def _entry(name: str) -> Line2D:
+    kind = "engine" if is_engine(name) else "exact"
+    return Line2D([], [], label=f"{name} ({kind})", **style(name).of_line())
+
+
+def save(figure: Figure, folder: Path, name: str, title: str) -> str:
+    """Write NAME.svg and NAME.png and return the SVG element's text, ready to stand in a page."""
+    buffer = io.StringIO()
+    with matplotlib.rc_context(RC | {"svg.hashsalt": name}):
+        figure.savefig(buffer, format="svg", metadata={"Title": title, "Date": None})
+        write(folder / f"{name}.png", lambda path: figure.savefig(path, dpi=DOTS))
+    svg = tidy(buffer.getvalue(), name)
+    write_text(folder / f"{name}.svg", svg)
+    return svg[svg.index("<svg") :]
+
+
+def tidy(svg: str, name: str) -> str:
+    """Return an SVG with coordinates to a hundredth of a point, and ids that no other one has."""
+    svg = re.sub(r"(\d\.\d\d)\d+", r"\1", svg)
+    svg = re.sub(rf'\bid="(?!{name})', f'id="{name}-', svg)
+    return re.sub(rf'(url\(#|href="#)(?!{name})', rf"\g<1>{name}-", svg)

@@ -1,0 +1,96 @@
+"""How each engine and exact solution is drawn: one hue a model, one look a kind of solution.
+
+Engines are wide, light and solid, nested by width so that none hides another where they coincide;
+exact solutions are thin, dark and dashed over them. Hues are those of Okabe & Ito (2008), which
+stay apart under every colour blindness.
+"""
+
+from typing import Any, NamedTuple
+
+WIDTH = 11.0  # inches of every figure; the page shows it at the width of its column
+
+
+class Style(NamedTuple):
+    """A curve: colour, width in points, dash pattern, and its order, the last drawn on top."""
+
+    colour: str
+    width: float
+    dashes: Any
+    order: int
+
+    def of_line(self) -> dict[str, Any]:
+        """Return the arguments of matplotlib's plot."""
+        return {
+            "color": self.colour,
+            "linewidth": self.width,
+            "linestyle": self.dashes,
+            "zorder": 2 + self.order,
+            "dash_capstyle": "butt",
+        }
+
+
+PERIOD = 18.0  # of the dash patterns, in line widths
+
+
+def _slot(first: float, last: float) -> tuple[float, tuple[float, float]]:
+    """Return a dash that fills only this part of each period.
+
+    Every solution has a part of its own: where all of them coincide, their dashes alternate.
+    """
+    return (PERIOD - first, (last - first, PERIOD - (last - first)))
+
+
+#: By model, as the legend groups them: heading, then the engine, then exact solutions.
+FAMILIES: dict[str, dict[str, Style]] = {
+    "Rigid blocks": {
+        "dem": Style("#56b4e9", 2.2, "-", 2),
+        "lattice": Style("#00349a", 1.1, _slot(0, 4), 9),
+        "no-tension-chain": Style("#00349a", 1.1, _slot(0, 9), 9),
+    },
+    "Intact rock and joints": {
+        "continuum-jointed": Style("#f0a030", 3.4, "-", 1),
+        "jointed-bar": Style("#a83200", 1.1, _slot(4.5, 8.5), 8),
+        "one-joint": Style("#d55e00", 1.1, _slot(6, 8.5), 7),
+    },
+    "Homogenised bar": {
+        "continuum-equivalent": Style("#8fd4bd", 4.8, "-", 0),
+        "equivalent-bar": Style("#005a3c", 1.1, _slot(9, 13), 6),
+        "images": Style("#00a26d", 1.1, _slot(13.5, 15.5), 5),
+        "kelvin-voigt": Style("#00a26d", 1.1, _slot(13.5, 15.5), 5),
+        "series": Style("#b0307e", 1.1, _slot(16, 18), 4),
+    },
+}
+
+STYLES = {name: style for family in FAMILIES.values() for name, style in family.items()}
+
+RC: dict[Any, Any] = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans", "Helvetica", "Arial"],
+    "font.size": 9.0,
+    "axes.titlesize": 9.0,
+    "axes.titlelocation": "left",
+    "axes.linewidth": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "xtick.major.width": 0.7,
+    "ytick.major.width": 0.7,
+    "svg.fonttype": "none",
+    "path.simplify": True,
+    "path.simplify_threshold": 0.1,
+}
+
+
+def style(name: str) -> Style:
+    """Return how an engine or exact solution is drawn; grey for one that has no style yet."""
+    return STYLES.get(name, Style("#777777", 1.1, _slot(0, 9), 3))
+
+
+def in_order(names: set[str]) -> list[str]:
+    """Return names as the legend has them, those without a style last."""
+    known = [name for name in STYLES if name in names]
+    return known + sorted(names - set(known))
+
+
+def is_engine(name: str) -> bool:
+    """Return whether a curve is an engine's, not an exact solution's."""
+    return name == "dem" or name.startswith("continuum-")
