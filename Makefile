@@ -16,7 +16,7 @@ demo: setup  ## the paper's figures and all studies as one page, report/index.ht
 
 test:  ## all tests, and every shipped scene held to its own bounds
 	@tools/setup.sh browser
-	@$(RUN) python -m pytest tests cases
+	@$(RUN) python -m pytest -n auto --maxprocesses 8 tests cases
 
 check: setup  ## lint, formatting, types, and the direction of imports
 	@$(RUN) ruff check

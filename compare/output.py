@@ -87,6 +87,6 @@ def _write_attributes(target, attributes: dict) -> None:
     for key, value in attributes.items():
         # A bare Python number would be stored in single precision; the format knows no int64.
         number = isinstance(value, int | float | np.number)
-        whole = number and isinstance(value, int | np.integer) and abs(value) < 2**31
+        whole = isinstance(value, int | np.integer) and abs(int(value)) < 2**31
         kind = np.int32 if whole else np.float64
         setattr(target, key, np.array(value, dtype=kind) if number else value.encode())
