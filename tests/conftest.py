@@ -1,7 +1,9 @@
-"""Scenes for tests: the paper's pillar with any key changed."""
+"""What the tests share: the paper's pillar with any key changed, and a look at compiled code."""
 
+import re
 from pathlib import Path
 
+import numba
 import pytest
 from hypothesis import settings
 
@@ -23,3 +25,18 @@ def pillar():
         return cases.load_variant(PILLAR, "", overrides)
 
     return scene
+
+
+@pytest.fixture
+def instructions():
+    """Return a function that counts one kind of instruction in a kernel for given arguments.
+
+    The kernel is compiled afresh, because the cache hands back machine code without its text.
+    """
+
+    def count(kernel, arguments, kind):
+        fresh = numba.njit(error_model="numpy")(kernel.py_func)
+        fresh(*arguments)
+        return len(re.findall(rf"= {kind} ", "\n".join(fresh.inspect_llvm().values())))
+
+    return count

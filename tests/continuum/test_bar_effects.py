@@ -78,6 +78,19 @@ def test_absent_effects_leave_no_array(pillar):
     assert rest == (None,) * 5
 
 
+def test_absent_effects_leave_no_instruction(pillar, instructions):
+    """Without no-tension nothing is compared, without a quiet end nothing is divided."""
+
+    def count(kind, model="jointed", **changes):
+        built, state, _, _ = build(pillar(record__energy=False, **changes), model)
+        samples = room(built, state, 1)
+        return instructions(run, (built, state, samples, 1, 0, 0), kind)
+
+    assert count("fcmp") == 0 < count("fcmp", joints__tension=False)
+    assert count("fdiv") < count("fdiv", ends__end="quiet")
+    assert count("fmul", "equivalent") < count("fmul") < count("fmul", joints__damping_ratio=0.02)
+
+
 def test_alike_undamped_joints_are_one_number(pillar):
     built, state, _, _ = build(pillar(), "jointed")
     law = built.interfaces.law
