@@ -3,7 +3,7 @@ MAKEFLAGS += --no-print-directory
 RUN := tools/run.sh
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test check test-debian13 clean distclean
+.PHONY: help setup demo test check bench test-debian13 clean distclean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -23,6 +23,9 @@ check: setup  ## lint, formatting, types, and the direction of imports
 	@$(RUN) ruff format --check
 	@$(RUN) mypy
 	@$(RUN) lint-imports
+
+bench: setup  ## what a warm run of the rigid blocks costs to start, as a ratio
+	@$(RUN) python tools/bench.py
 
 test-debian13:  ## make test in a fresh Debian 13, with newer dolfinx, numpy and Python (needs root or sudo)
 	@tools/debian13.sh
