@@ -9,13 +9,12 @@ import numba
 PACKAGES = ("joints", "dem", "continuum")
 
 
-def _cache_directory() -> Path:
-    """Return a cache directory keyed by the kernels' sources.
+def cache_directory(root: Path) -> Path:
+    """Return a cache directory keyed by the sources of the kernels' packages below `root`.
 
     A compiled caller does not notice that a function in another file has changed; a new
     directory for each state of the sources does.
     """
-    root = Path(__file__).resolve().parent.parent
     digest = hashlib.sha256(numba.__version__.encode())
     for package in PACKAGES:
         for source in sorted((root / package).glob("*.py")):
@@ -26,7 +25,7 @@ def _cache_directory() -> Path:
     return Path(base, digest.hexdigest()[:16])
 
 
-numba.config.CACHE_DIR = str(_cache_directory())
+numba.config.CACHE_DIR = str(cache_directory(Path(__file__).resolve().parent.parent))
 
 #: Compiles a kernel: cached on disk, IEEE arithmetic (fastmath would break bit-identity).
 jitted = numba.njit(cache=True, fastmath=False, error_model="numpy")

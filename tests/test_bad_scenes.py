@@ -3,14 +3,18 @@
 A mistake is a change to a good scene: (what is replaced, by what, words that the line must hold).
 """
 
+import io
 import os
 import subprocess
 import sys
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 
-from cases import SceneError, load
+from cases import load
+from compare.cli import main
 
 GOOD = """\
 title = "good"
@@ -284,11 +288,22 @@ def write(path: Path, content: str | bytes) -> Path:
     return path
 
 
-def line_of(path: Path, **options) -> str:
-    """Return the message that loading ends with, which must be one line that names the file."""
-    with pytest.raises(SceneError) as error:
-        load(path, **options)
-    message = str(error.value)
+def line_of(path: Path) -> str:
+    """Return what `jointwave run` says of a scene: exit 2, one line that names the file, no output.
+
+    The command runs in this process, for speed; a few mistakes below go through a process.
+    """
+    out, said, silent = path.parent / "out", io.StringIO(), io.StringIO()
+    arguments = ["jointwave", "run", str(path), "--out", str(out)]
+    with (
+        patch.object(sys, "argv", arguments),
+        redirect_stderr(said),
+        redirect_stdout(silent),
+        pytest.raises(SystemExit) as end,
+    ):
+        main()
+    message = said.getvalue().removeprefix("jointwave: ").removesuffix("\n")
+    assert end.value.code == 2 and silent.getvalue() == "" and not out.exists()
     assert len(message.splitlines()) == 1
     assert message.startswith(str(path))
     assert len(message) < len(str(path)) + 400

@@ -138,3 +138,11 @@ def test_rigid_block_run_imports_neither_dolfinx_nor_matplotlib(tmp_path):
     command = [sys.executable, "-c", code % (SCENE, str(tmp_path))]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_compare_writes_figure_curves_and_distances(tmp_path):
+    """What the plugin's failure message sends a user to: every curve, drawn and as numbers."""
+    out = tmp_path / "out"
+    jointwave("compare", SCENE, "--variant", "", *SHORT, "--no-spectral", "--out", out)
+    assert {path.suffix for path in out.iterdir()} == {".svg", ".png", ".csv"}
+    assert all(path.stat().st_size > 1000 for path in out.iterdir())
