@@ -92,6 +92,12 @@ class Properties:
         return self.modulus / self.spacing
 
     @property
+    def regular_own_stiffness(self) -> float:
+        """K_n of an ordinary joint itself, Pa/m, by (4); needs intact_modulus."""
+        assert self.intact_modulus is not None
+        return joint_stiffness(self.modulus, self.intact_modulus, self.spacing)
+
+    @property
     def excess_compliance(self) -> np.ndarray:
         """What each joint adds to the homogenised bar, which holds an ordinary one there, m/Pa.
 

@@ -5,6 +5,7 @@ without dolfinx and matplotlib.
 """
 
 import gc
+import os
 import sys
 from enum import StrEnum
 from pathlib import Path
@@ -162,7 +163,8 @@ def main() -> None:
         _fail(_usage(error), 2)
     except (typer.Abort, KeyboardInterrupt):
         _fail("interrupted", 130)
-    except BrokenPipeError:
+    except BrokenPipeError:  # the reader has seen enough; flushing at exit must not complain
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)
     except OSError as error:
         _fail(f"{error.filename or 'output'}: {error.strerror or error}", 2)

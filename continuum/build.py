@@ -15,6 +15,7 @@ from continuum.interface import Joints, jump_operator, resolved_joints
 from continuum.mesh import elements_in_block, pillar_grid
 from continuum.model import (
     Ends,
+    HalfJoints,
     Interfaces,
     Model,
     Quiet,
@@ -25,6 +26,7 @@ from continuum.model import (
 )
 from continuum.receivers import points, sections
 from continuum.sparse import rows
+from joints.ends import HalfSpring, half_spring
 
 
 def build(scene: Scene, model: str) -> tuple[Model, State, Clock, float]:
@@ -39,7 +41,7 @@ def build(scene: Scene, model: str) -> tuple[Model, State, Clock, float]:
         p.spacing, speed, resolved_period(scene), damped=bool(p.time_constant)
     )
     bar = discretise(pillar_grid(p, elements, joints.number), numerics.order)
-    critical = critical_step_of(bar, joints, p, model, fixed_nodes(scene, bar))
+    critical = critical_step_of(bar, joints, scene, p, model)
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "continuum")
     built = build_model(scene, p, bar, joints, time, model)
     return built, state_at_rest(built, scene.record.energy), time, critical
@@ -65,7 +67,7 @@ def build_model(
             step_over_mass=time.dt / mass,
         ),
         interfaces=build_interfaces(bar, joints, p.area),
-        ends=Ends(0, quiet_ends(scene, p, mass, time.dt), fixed_nodes(scene, bar)),
+        ends=Ends(0, quiet_ends(scene, p, mass, time.dt, model), fixed_nodes(scene, bar)),
         receivers=Receivers(
             rows(points(bar, scene.record.velocity)),
             rows(modulus * read.elastic),
@@ -86,14 +88,40 @@ def build_interfaces(bar: Bar, joints: Joints, area: float) -> Interfaces | None
     return Interfaces(rows(jump), rows(jump.T @ diags(weight)), weight, joints.law())
 
 
-def quiet_ends(scene: Scene, p: Properties, mass: np.ndarray, dt: float) -> Quiet | None:
-    """Return the dashpots of quiet and matched ends, which are one in a continuum, or None."""
-    kinds = (scene.ends.start, scene.ends.end)
-    node = np.array([0, mass.size - 1])[[kind in ("quiet", "matched") for kind in kinds]]
-    if not node.size:
+def quiet_ends(
+    scene: Scene, p: Properties, mass: np.ndarray, dt: float, model: str
+) -> Quiet | None:
+    """Return what absorbs at the ends, or None: the dashpot rho c A on the end face.
+
+    In jointed rock a matched end has half a joint in front of it, as the rock beyond would have.
+    """
+    absorbing = absorbing_ends(scene, p, model, dt)
+    if not absorbing:
         return None
-    impedance = np.full(node.size, p.impedance * p.area)
-    return Quiet(node, impedance, impedance * dt / (2 * mass[node]))
+    node = np.array([0 if place == "start" else mass.size - 1 for place in absorbing])
+    z = p.impedance * p.area
+    viscosity = np.array([z if end is None else end.viscosity for end in absorbing.values()])
+    springs = None
+    if any(absorbing.values()):
+        none = (0.0, 0.0, 0.0)
+        parts = [(e.stiffness, e.decay, e.gain) if e else none for e in absorbing.values()]
+        springs = HalfJoints(*np.array(parts).T.copy())
+    return Quiet(node, viscosity, viscosity * dt / (2 * mass[node]), springs)
+
+
+def absorbing_ends(
+    scene: Scene, p: Properties, model: str, dt: float = 0.0
+) -> dict[str, HalfSpring | None]:
+    """Return for each absorbing end, by "start" and "end", the half joint there or None."""
+    found: dict[str, HalfSpring | None] = {}
+    for place in ("start", "end"):
+        kind = getattr(scene.ends, place)
+        if kind == "matched" and model == "jointed":
+            k = 2 * p.regular_own_stiffness * p.area
+            found[place] = half_spring(k, p.time_constant or 0.0, p.impedance * p.area, dt)
+        elif kind in ("quiet", "matched"):
+            found[place] = None
+    return found
 
 
 def fixed_nodes(scene: Scene, bar: Bar) -> np.ndarray | None:
@@ -109,9 +137,7 @@ def rock_modulus(p: Properties, model: str) -> float:
     return p.intact_modulus
 
 
-def critical_step_of(
-    bar: Bar, joints: Joints, p: Properties, model: str, fixed: np.ndarray | None
-) -> float:
+def critical_step_of(bar: Bar, joints: Joints, scene: Scene, p: Properties, model: str) -> float:
     """Return the critical step (s) of a bar with its joints all closed, the stiffest state."""
     jump = jump_operator(bar)
     rock = rock_modulus(p, model) * p.area * bar.stiffness
@@ -121,4 +147,9 @@ def critical_step_of(
         eta = np.zeros(joints.number.size) if joints.time_constant is None else joints.time_constant
         dashpots = p.area * jump.T @ diags(joints.stiffness * eta) @ jump
         viscosity = (p.time_constant or 0.0) * rock + dashpots
-    return critical_bar_step(p.density * p.area * bar.mass, rock + springs, viscosity, fixed)
+    ends = np.zeros(bar.y.size)
+    for place, end in absorbing_ends(scene, p, model).items():
+        ends[0 if place == "start" else -1] = 0.0 if end is None else end.critical_stiffness
+    stiffness = rock + springs + diags(ends)
+    mass = p.density * p.area * bar.mass
+    return critical_bar_step(mass, stiffness, viscosity, fixed_nodes(scene, bar))

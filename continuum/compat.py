@@ -26,6 +26,16 @@ def quiet_logging() -> Iterator[None]:
         logging.disable(disabled)
 
 
+def _start_petsc() -> None:
+    """Keep PETSc from turning a closed pipe or an interrupt into a crash report of its own."""
+    try:
+        import petsc4py
+    except ImportError:
+        return
+    petsc4py.init(["jointwave", "-no_signal_handler"])
+
+
+_start_petsc()
 with quiet_logging():
     import basix
     import dolfinx

@@ -19,7 +19,7 @@ def run(model, state, samples, stride, first, last):
     """Take steps first .. last - 1 and a sample at every step that `stride` divides."""
     # Unpacked once: a tuple of arrays read in every step would count its references in every step.
     rock, interfaces, ends, receivers, load, dt = model
-    u, v, v_before, force, rate, traction, dashpot, drag, ledger = state
+    u, v, v_before, force, rate, traction, dashpot, drag, closure, ledger = state
     for n in range(first, last):
         deform(force, rock.stiffness, u)
         extrapolate(rate, v, v_before)
@@ -28,18 +28,22 @@ def run(model, state, samples, stride, first, last):
         damp(drag, rock, interfaces, rate, dashpot)
         resist(force, drag)
         force[ends.loaded] += load[n]
+        lean(force, ends.quiet, closure)
         accelerate(v, v_before, rock.step_over_mass, force)
         absorb(ends.quiet, v, v_before)
         hold(ends.fixed, v)
 
-        book(ledger, 0.5 * dt, load[n], ends.loaded, ends.quiet, drag, v_before, v, v_before)
+        book(
+            ledger, 0.5 * dt, load[n], ends.loaded, ends.quiet, closure, drag, v_before, v, v_before
+        )
         if n % stride == 0:
             sample(rock, receivers, samples, n // stride, u, v, v_before, rate, dt)
             sample_joints(samples.stress, n // stride, receivers.contact, traction, dashpot)
             sample_energy(samples.energy, rock, interfaces, n // stride, u, v, v_before, ledger)
-        book(ledger, 0.5 * dt, load[n], ends.loaded, ends.quiet, drag, v_before, v, v)
+        book(ledger, 0.5 * dt, load[n], ends.loaded, ends.quiet, closure, drag, v_before, v, v)
         for i in range(u.size):
             u[i] += dt * v[i]
+        close(ends.quiet, closure, v)
 
 
 @jitted
@@ -129,6 +133,23 @@ def accelerate(v, v_before, step_over_mass, force):
     for i in range(v.size):
         v_before[i] = v[i]
         v[i] += step_over_mass[i] * force[i]
+
+
+@jitted
+def lean(force, quiet, closure):
+    """Add the force (N) of the springs in front of dashpots."""
+    if closure is not None:
+        for k in range(closure.size):
+            force[quiet.node[k]] -= quiet.springs.stiffness[k] * closure[k]
+
+
+@jitted
+def close(quiet, closure, v):
+    """Advance the closure of the springs in front of dashpots."""
+    if closure is not None:
+        springs = quiet.springs
+        for k in range(closure.size):
+            closure[k] = springs.decay[k] * closure[k] + springs.gain[k] * v[quiet.node[k]]
 
 
 @jitted

@@ -33,12 +33,25 @@ class Interfaces(NamedTuple):
     law: Law
 
 
+class HalfJoints(NamedTuple):
+    """The springs in front of dashpots [k] (`joints.ends`): N/m in the reaction, and how their
+    closure advances; all zero where an end has none."""
+
+    stiffness: np.ndarray
+    decay: np.ndarray
+    gain: np.ndarray
+
+
 class Quiet(NamedTuple):
-    """Nodes on dashpots: node [k]; impedance rho c A [k], N s/m; beta = impedance dt / 2 mass."""
+    """Nodes on dashpots: node [k]; viscosity [k], N s/m; beta = viscosity dt / 2 mass.
+
+    springs : `HalfJoints`, None where every dashpot is on its node itself.
+    """
 
     node: np.ndarray
-    impedance: np.ndarray
+    viscosity: np.ndarray
     beta: np.ndarray
+    springs: Any = None
 
 
 class Ends(NamedTuple):
@@ -80,6 +93,7 @@ class State(NamedTuple):
     rate : velocity extrapolated to the step, m/s; drag : viscous force on each node, N; both None
         without dashpots.
     traction, dashpot : of the joints' springs and dashpots, Pa; None without them.
+    closure : of the springs in front of dashpots [k], m; None without them.
     ledger : viscous, boundary and load work so far, J; None when not kept.
     """
 
@@ -91,6 +105,7 @@ class State(NamedTuple):
     traction: Any
     dashpot: Any
     drag: Any
+    closure: Any
     ledger: Any
 
 
@@ -108,6 +123,8 @@ def state_at_rest(model: Model, keep_ledger: bool) -> State:
     n, joints = model.rock.mass.size, model.interfaces
     q = 0 if joints is None else joints.area.size
     viscous_joints = joints is not None and joints.law.normal_viscosity is not None
+    quiet = model.ends.quiet
+    sprung = quiet is not None and quiet.springs is not None
     viscous = viscous_joints or model.rock.time_constant is not None
     return State(
         u=np.zeros(n),
@@ -118,6 +135,7 @@ def state_at_rest(model: Model, keep_ledger: bool) -> State:
         traction=np.zeros(q) if q else None,
         dashpot=np.zeros(q) if viscous_joints else None,
         drag=np.zeros(n) if viscous else None,
+        closure=np.zeros(quiet.node.size) if sprung else None,
         ledger=np.zeros(3) if keep_ledger else None,
     )
 

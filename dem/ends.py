@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cases.calibrate import Properties
+from joints.ends import HalfSpring, half_spring
 from joints.jit import jitted
 
 
@@ -33,36 +34,26 @@ class End(NamedTuple):
 def build_end(kind: str, p: Properties, dt: float) -> End | None:
     """Return the end of this kind for a step dt (s).
 
-    free: None. quiet: -rho c v A on the end block (9). fixed: the half-block spring 2k to a wall.
-    matched: the half-block spring to a massless face that the dashpot rho c A carries; its
-    closure obeys dw/dt = v - f / Z and f (1 + 2 k eta / Z) = 2 k (w + eta v).
+    free: None. quiet: -rho c v A on the end block (9). matched: the same dashpot behind the
+    half-block spring 2 k; fixed: that spring to a wall (`joints.ends`).
     """
     if kind == "free":
         return None
-    z, half_step = p.impedance * p.area, dt / (2 * p.block_mass)
+    half_step = dt / (2 * p.block_mass)
     if kind == "quiet":
-        return End(None, z, half_step, 0.0, 0.0)
-    k = 2 * p.regular_stiffness * p.area
-    c = k * (p.time_constant or 0.0)
-    share = face_share(kind, p)
-    lag = 0.0 if kind == "fixed" else dt * k * share / (2 * z)
-    return End(k * share, c * share, half_step, (1 - lag) / (1 + lag), dt * share / (1 + lag))
-
-
-def face_share(kind: str, p: Properties) -> float:
-    """Return 1 / (1 + 2 k eta / Z): how much of the motion the half-block spring itself takes."""
-    z = inf if kind == "fixed" else p.impedance
-    return 1 / (1 + 2 * p.regular_stiffness * (p.time_constant or 0.0) / z)
+        return End(None, p.impedance * p.area, half_step, 0.0, 0.0)
+    spring = _half_block(kind, p, dt)
+    return End(spring.stiffness, spring.viscosity, half_step, spring.decay, spring.gain)
 
 
 def end_stiffness(kind: str, p: Properties) -> float:
-    """Return what the end adds to the end block's stiffness at the critical step, N/m.
+    """Return what the end adds to the end block's stiffness at the critical step, N/m."""
+    return 0.0 if kind in ("free", "quiet") else _half_block(kind, p).critical_stiffness
 
-    In the mode that alternates at every step a matched face stands still, but for its share.
-    """
-    if kind in ("free", "quiet"):
-        return 0.0
-    return 2 * p.regular_stiffness * p.area * face_share(kind, p) ** 2
+
+def _half_block(kind: str, p: Properties, dt: float = 0.0) -> HalfSpring:
+    z = inf if kind == "fixed" else p.impedance * p.area
+    return half_spring(2 * p.regular_stiffness * p.area, p.time_constant or 0.0, z, dt)
 
 
 def end_state(end: End | None) -> np.ndarray | None:

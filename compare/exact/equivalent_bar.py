@@ -17,7 +17,7 @@ from cases.sampling import sample_times
 from cases.scene import Scene
 from compare.exact.answer import YES, Answer, no
 from compare.exact.conditions import bars_tension
-from compare.exact.laplace import Bar, end_dashpot, response
+from compare.exact.laplace import Bar, end_of, response
 
 NAME = "equivalent-bar"
 
@@ -57,6 +57,6 @@ def bar(scene: Scene) -> Bar:
         joint_y=p.joint_y,
         joint_compliance=p.excess_compliance,
         joint_time_constant=np.zeros_like(p.joint_y) if etas is None else etas,
-        start=end_dashpot(scene.ends.start, p.impedance),
-        end=end_dashpot(scene.ends.end, p.impedance),
+        start=end_of(scene.ends.start, p.impedance),
+        end=end_of(scene.ends.end, p.impedance),
     )

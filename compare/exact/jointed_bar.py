@@ -18,7 +18,7 @@ from cases.sampling import sample_times
 from cases.scene import Scene
 from compare.exact.answer import YES, Answer, no
 from compare.exact.conditions import bars_tension
-from compare.exact.laplace import Bar, end_dashpot, response
+from compare.exact.laplace import Bar, end_of, response
 
 NAME = "jointed-bar"
 
@@ -48,15 +48,16 @@ def bar(scene: Scene) -> Bar:
     """Return the scene's intact rock with its N - 1 joints."""
     p = calibrate(scene)
     assert p.own_stiffness is not None and p.intact_modulus is not None
-    etas = p.joint_time_constant
+    etas, eta = p.joint_time_constant, p.time_constant or 0.0
+    half_joint = 1 / (2 * p.regular_own_stiffness)
     return Bar(
         length=scene.pillar.length,
         density=p.density,
         modulus=p.intact_modulus,
-        time_constant=p.time_constant or 0.0,
+        time_constant=eta,
         joint_y=p.joint_y,
         joint_compliance=1 / p.own_stiffness,
         joint_time_constant=np.zeros_like(p.joint_y) if etas is None else etas,
-        start=end_dashpot(scene.ends.start, p.impedance),
-        end=end_dashpot(scene.ends.end, p.impedance),
+        start=end_of(scene.ends.start, p.impedance, half_joint, eta),
+        end=end_of(scene.ends.end, p.impedance, half_joint, eta),
     )

@@ -40,6 +40,29 @@ STEPS_PER_DURATION = 20_000  # where the load has no period
 
 
 @dataclass(frozen=True)
+class End:
+    """A dashpot (Pa s/m; 0 free, inf fixed) behind a spring of compliance C (m/Pa) and eta (s)."""
+
+    dashpot: float
+    compliance: float = 0.0
+    time_constant: float = 0.0
+
+    def impedance(self, s: np.ndarray) -> np.ndarray:
+        """Return Z / (1 + s Z C / (1 + s eta)) at the Laplace variables s, Pa s/m."""
+        if self.compliance == 0:
+            return np.full_like(s, self.dashpot)
+        compliance = self.compliance / (1 + s * self.time_constant)
+        return self.dashpot / (1 + s * self.dashpot * compliance)
+
+
+def end_of(kind: str, impedance: float, compliance: float = 0.0, time_constant: float = 0.0) -> End:
+    """Return the end of this kind; only a matched one has a spring in front of its dashpot."""
+    if kind == "matched":
+        return End(impedance, compliance, time_constant)
+    return End({"free": 0.0, "fixed": np.inf, "quiet": impedance}[kind])
+
+
+@dataclass(frozen=True)
 class Bar:
     """A bar of one rock with interfaces.
 
@@ -48,7 +71,7 @@ class Bar:
     length, density, modulus : m, kg/m3, Pa.
     time_constant : Kelvin-Voigt eta of the rock, s.
     joint_y, joint_compliance, joint_time_constant : float arrays [joints], sorted; m, m/Pa, s.
-    start, end : dashpot Z (Pa s/m) at each end: 0 free, inf fixed (the far end only).
+    start, end : what holds each end; the start cannot be fixed.
     """
 
     length: float
@@ -58,8 +81,8 @@ class Bar:
     joint_y: np.ndarray
     joint_compliance: np.ndarray
     joint_time_constant: np.ndarray
-    start: float
-    end: float
+    start: End
+    end: End
 
 
 def response(
@@ -117,7 +140,7 @@ def transfer(bar: Bar, s: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, n
     """
     z = np.sqrt(bar.density * bar.modulus * (1 + s * bar.time_constant))
     slowness = s * bar.density / z
-    R = _end_reflection(bar.end, z)
+    R = _end_reflection(bar.end, s, z)
     stress, velocity = np.zeros((2, len(places), len(s)), dtype=complex)
     passed, decays = np.zeros(len(places), dtype=bool), {}
     nodes, joint_of = _nodes(bar, places)
@@ -140,12 +163,15 @@ def transfer(bar: Bar, s: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, n
         stress[passed] *= decays[h]
         velocity[passed] *= decays[h]
         R = R * decays[h] ** 2
-    entering = 1 / (z * (1 + R) + bar.start * (1 - R))
+    entering = 1 / (z * (1 + R) + bar.start.impedance(s) * (1 - R))
     return stress * entering, velocity * entering
 
 
-def _end_reflection(dashpot: float, z: np.ndarray) -> np.ndarray:
-    return np.ones_like(z) if np.isinf(dashpot) else (dashpot - z) / (dashpot + z)
+def _end_reflection(end: End, s: np.ndarray, z: np.ndarray) -> np.ndarray:
+    if np.isinf(end.dashpot):
+        return np.ones_like(z)
+    Z = end.impedance(s)
+    return (Z - z) / (Z + z)
 
 
 def _nodes(bar: Bar, places: np.ndarray) -> tuple[np.ndarray, dict[int, int]]:
@@ -156,8 +182,3 @@ def _nodes(bar: Bar, places: np.ndarray) -> tuple[np.ndarray, dict[int, int]]:
     apart = np.unique(places[near > 1e-9 * bar.length])
     nodes = np.sort(np.concatenate([[0.0, bar.length], own, apart]))
     return nodes, dict(zip(np.searchsorted(nodes, own).tolist(), joints.tolist(), strict=True))
-
-
-def end_dashpot(kind: str, impedance: float) -> float:
-    """Return the dashpot (Pa s/m) of an end: 0 free, inf fixed, else the impedance."""
-    return {"free": 0.0, "fixed": np.inf}.get(kind, impedance)

@@ -146,3 +146,13 @@ def test_compare_writes_figure_curves_and_distances(tmp_path):
     jointwave("compare", SCENE, "--variant", "", *SHORT, "--no-spectral", "--out", out)
     assert {path.suffix for path in out.iterdir()} == {".svg", ".png", ".csv"}
     assert all(path.stat().st_size > 1000 for path in out.iterdir())
+
+
+@pytest.mark.parametrize("arguments", [("list",), ("compare", SCENE, *SHORT, "--no-spectral")])
+def test_reader_that_leaves_early_is_no_error(arguments):
+    """As `jointwave compare ... | head -1`: whatever is loaded, nothing is said about the pipe."""
+    command = [sys.executable, "-m", "compare", *arguments]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        process.stdout.close()
+        said = process.stderr.read().decode()
+    assert said == ""

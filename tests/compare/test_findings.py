@@ -139,7 +139,7 @@ def test_superposition_needs_a_section_where_pulses_meet():
 
 
 def test_theory_gives_what_the_quiet_end_leaves(chains):
-    """tan(kh/4) of a harmonic is 5.8 % at the default period (exact-solutions, item 12)."""
+    """tan(kh/4) of a harmonic is 5.8 % at the default period."""
     finding = ends.what_the_quiet_end_leaves(chains(5))
     assert "5.8 % at the load's period" in finding.sentence
 
@@ -160,7 +160,7 @@ def overview(replaced=None):
 
 
 def test_overview_gives_the_known_distances():
-    """17.9 % from the homogenised bar, 4.0 % from the bar with 99 joints (item 17)."""
+    """17.9 % from the homogenised bar, 4.0 % from the bar with 99 joints."""
     finding = overview()
     assert finding.holds
     for number in ("lie 17.9 % from", "cost 4.0 %", "99 joints"):

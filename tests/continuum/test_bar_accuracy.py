@@ -41,7 +41,16 @@ def test_equivalent_bar_with_dashpots_and_layer_meets_the_laplace_bar(pillar, ch
 
 @pytest.mark.parametrize(
     "changes",
-    [{}, LAYER, DAMPED, {**DAMPED, **LAYER}, {"ends__end": "quiet"}, {"ends__end": "fixed"}],
+    [
+        {},
+        LAYER,
+        DAMPED,
+        {**DAMPED, **LAYER},
+        {"ends__end": "quiet"},
+        {"ends__end": "fixed"},
+        {"ends__end": "matched"},
+        {**DAMPED, "ends__start": "matched", "ends__end": "matched"},
+    ],
 )
 def test_jointed_bar_meets_the_laplace_bar(pillar, changes):
     scene = pillar(**PLACES, **changes)

@@ -7,7 +7,7 @@ from cases.calibrate import calibrate
 from cases.errors import SceneError, UnstableError
 from cases.sampling import Clock
 from continuum import simulate
-from continuum.build import build, build_model, critical_step_of, fixed_nodes
+from continuum.build import build, build_model, critical_step_of
 from continuum.elasticity import discretise
 from continuum.explicit import run
 from continuum.interface import resolved_joints
@@ -24,6 +24,8 @@ KINDS = {
     "damped soft layer": {**DAMPED, **LAYER},
     "quiet": {"ends__start": "quiet", "ends__end": "quiet"},
     "damped quiet": {**DAMPED, "ends__end": "quiet"},
+    "matched": {"ends__start": "matched", "ends__end": "matched"},
+    "damped matched": {**DAMPED, "ends__start": "quiet", "ends__end": "matched"},
     "fixed": {"ends__end": "fixed"},
 }
 
@@ -33,7 +35,7 @@ def growth(scene, model: str, order: int, fraction: float) -> float:
     p = calibrate(scene)
     joints = resolved_joints(p, model)
     bar = discretise(pillar_grid(p, 1, joints.number), order)
-    critical = critical_step_of(bar, joints, p, model, fixed_nodes(scene, bar))
+    critical = critical_step_of(bar, joints, scene, p, model)
     steps = 40_000
     time = Clock(fraction * critical, steps, 2)
     built = build_model(scene, p, bar, joints, time, model)

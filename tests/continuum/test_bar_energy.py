@@ -12,6 +12,7 @@ LINEAR = {
     "undamped": {},
     "soft layer": LAYER,
     "quiet": {"ends__start": "quiet", "ends__end": "matched"},
+    "matched, damped": {**DAMPED, "ends__start": "matched", "ends__end": "quiet"},
     "fixed": {"ends__end": "fixed"},
     "damped": DAMPED,
     "damped soft layer, quiet": {**DAMPED, **LAYER, "ends__end": "quiet"},

@@ -46,7 +46,7 @@ def test_a_dashpot_at_the_start_takes_half_and_returns_nothing(scene, kind):
 
 
 def test_the_series_is_as_far_off_as_its_truncation(scene, misfit):
-    """Item 2: 100 terms 0.585 %, 2000 terms 0.014 %, at y = 20 m, 0-0.12 s, T = 10 ms. Half a unit
+    """100 terms 0.585 %, 2000 terms 0.014 %, at y = 20 m, 0-0.12 s, T = 10 ms. Half a unit
     of the last digit but one: the misfit gathers at the kinks, so sampling moves it by 0.4 %."""
     at = scene(record={"velocity": []})
     exact = images.solve(at)
@@ -72,7 +72,7 @@ ENDS = [("free", "free"), ("free", "fixed"), ("free", "quiet"), ("quiet", "free"
 
 @pytest.mark.parametrize("start, end", [*ENDS, ("matched", "fixed")])
 def test_the_laplace_bar_agrees_at_every_end(scene, misfit, start, end):
-    """Item 8 asks for 0.2 %; the rules of `laplace` promise 0.009 % (seen: stress 0.001 %,
+    """Well below 0.2 %: the rules of `laplace` promise 0.009 % (seen: stress 0.001 %,
     velocity, whose kinks at y = 0 fall on samples, up to 0.006 %)."""
     at = scene(ends={"start": start, "end": end})
     a, b = equivalent_bar.solve(at), images.solve(at)

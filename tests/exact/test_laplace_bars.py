@@ -11,14 +11,14 @@ from cases.loads import Recorded, Sine, Step
 from compare.exact import equivalent_bar, images, jointed_bar, kelvin_voigt, laplace
 
 NONE = np.zeros(0)
-ROCK = laplace.Bar(1000.0, 2400.0, 4e9, 0.0, NONE, NONE, NONE, 0.0, 0.0)
+ROCK = laplace.Bar(1000.0, 2400.0, 4e9, 0.0, NONE, NONE, NONE, laplace.End(0.0), laplace.End(0.0))
 Z = np.sqrt(2400.0 * 4e9)
 
 
 @pytest.mark.parametrize("count", [2, 3, 5])
 @pytest.mark.parametrize("column, ratio", list(enumerate([0.05, 0.1, 0.2])))
 def test_parallel_joints_transmit_as_tabulated(count, column, ratio):
-    """Item 9 (Cai & Zhao, 2000): |T| of N joints at kappa = K/(Z omega) = 1, by spacing over
+    """Cai & Zhao (2000): |T| of N joints at kappa = K/(Z omega) = 1, by spacing over
     wavelength; a wave of 1 enters the bar behind a dashpot for an end stress of 2."""
     table = {
         2: [0.7822, 0.8890, 0.9864],
@@ -33,8 +33,8 @@ def test_parallel_joints_transmit_as_tabulated(count, column, ratio):
         joint_y=y,
         joint_compliance=ones / (Z * omega),
         joint_time_constant=0 * ones,
-        start=Z,
-        end=Z,
+        start=laplace.End(Z),
+        end=laplace.End(Z),
     )
     stress, _ = laplace.transfer(bar, np.array([1e-9 + 1j * omega]), np.array([900.0]))
     assert abs(2 * stress[0, 0]) == pytest.approx(table[count][column], abs=5.1e-5)
@@ -50,7 +50,7 @@ def test_a_damped_wave_decays_and_disperses_as_its_wavenumber():
 
 
 def test_attenuation_is_quadratic_in_frequency_while_it_is_small():
-    """Item 5: about omega^2 eta / 2c, to a relative error of about (5/8)(omega eta)^2."""
+    """About omega^2 eta / 2c, to a relative error of about (5/8)(omega eta)^2."""
     omega, c, eta = 10.0, 1350.0, 1e-4
     k = kelvin_voigt.wavenumber(omega, c, eta)
     assert -k.imag == pytest.approx(omega**2 * eta / (2 * c), rel=1e-6)

@@ -141,13 +141,13 @@ def test_the_modes_under_a_sine_agree(scene, misfit, zeta):
 def test_the_chain_is_as_far_off_the_homogenised_bar_as_its_dispersion(
     scene, misfit, period, percent, digit
 ):
-    """Item 17: 78 % (5 ms), 17.9 % (10 ms), 5.0 % (20 ms), to half a unit of the last digit."""
+    """78 % at T = 5 ms, 17.9 % at 10 ms, 5.0 % at 20 ms, to half a unit of the last digit."""
     at = scene(load={"period": period})
     off = 100 * misfit(lattice.solve(at), images.solve(at))
     assert off == pytest.approx(percent, abs=digit / 2)
 
 
 def test_the_chain_is_nearer_the_bar_with_its_joints_resolved(scene, misfit):
-    """Item 17: 4.0 % at T = 10 ms."""
+    """With the joints resolved 4.0 % are left at T = 10 ms."""
     at = scene()
     assert 100 * misfit(lattice.solve(at), jointed_bar.solve(at)) == pytest.approx(4.0, abs=0.05)

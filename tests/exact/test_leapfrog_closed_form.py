@@ -54,7 +54,7 @@ def test_it_converges_to_the_lattice_at_order_two(scene):
 
 
 def test_at_c_dt_equal_d_it_is_the_bar_at_the_block_centres(scene):
-    """Item 3: exact to round-off if the load enters as its mean over the step, 3e-3 if sampled."""
+    """Exact to round-off if the load enters as its mean over the step, 3e-3 if sampled."""
     at = scene()
     p, load = calibrate(at), load_history(at)
     dt, steps = p.spacing / p.bar_speed, np.arange(324)

@@ -13,7 +13,7 @@ RECORD = {"stress": [5.0, 20.0, 41.3], "velocity": [0.0, 19.75, 20.0, 33.3]}
     "kappa, expected", [(0.25, 0.4472), (0.5, 0.7071), (1, 0.8944), (2, 0.9701), (5, 0.9950)]
 )
 def test_transmission_by_kappa(kappa, expected):
-    """Item 7, to the digits given; |T|^2 + |R|^2 = 1 without a dashpot."""
+    """Schoenberg (1980) at five kappa, to the digits given; |T|^2 + |R|^2 = 1 without a dashpot."""
     transmitted, reflected = one_joint.coefficients(100.0, kappa * 3e6 * 100.0, 3e6)
     assert abs(transmitted) == pytest.approx(expected, abs=5e-5)
     assert abs(transmitted) == pytest.approx(2 * kappa / np.sqrt(4 * kappa**2 + 1), rel=1e-12)

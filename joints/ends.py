@@ -1,0 +1,46 @@
+"""A dashpot behind a spring: what absorbs a wave at the end of a row of joints.
+
+The spring is the half of a joint, or of a block and its joint, that reaches from the last mass to
+the end face; the massless face is carried by the dashpot Z of the rock beyond, or by a rigid wall.
+With the spring's closure w, the velocity v of the mass and the reaction f (compression positive)
+
+    f = k (w + eta dw/dt),   dw/dt = v - f / Z,   so   f = share k (w + eta v),
+    share = 1 / (1 + k eta / Z).
+
+w is advanced with the mean of f over the step, which keeps second order and adds no bound on it.
+"""
+
+from math import inf
+from typing import NamedTuple
+
+
+class HalfSpring(NamedTuple):
+    """One such end, for a given step.
+
+    stiffness, viscosity : of f = stiffness w + viscosity v, N/m and N s/m.
+    decay, gain : of w <- decay w + gain v, with v half a step later; gain in s.
+    critical_stiffness : what the end adds to the mass's stiffness at the critical step, N/m. In
+        the mode that alternates at every step the face stands still, but for its share.
+    """
+
+    stiffness: float
+    viscosity: float
+    decay: float
+    gain: float
+    critical_stiffness: float
+
+
+def half_spring(k: float, eta: float, z: float = inf, dt: float = 0.0) -> HalfSpring:
+    """Return the end of spring k (N/m), time constant eta (s), dashpot z (N s/m) at step dt (s).
+
+    An infinite z is a rigid wall.
+    """
+    share = 1 / (1 + k * eta / z)
+    lag = dt * k * share / (2 * z)
+    return HalfSpring(
+        stiffness=share * k,
+        viscosity=share * k * eta,
+        decay=(1 - lag) / (1 + lag),
+        gain=dt * share / (1 + lag),
+        critical_stiffness=share**2 * k,
+    )
