@@ -19,7 +19,7 @@ def run(model, state, samples, stride, first, last):
     """Take steps first .. last - 1 and a sample at every step that `stride` divides."""
     # Unpacked once: a tuple of arrays read in every step would count its references in every step.
     rock, interfaces, ends, receivers, load, dt = model
-    u, v, v_before, force, rate, traction, dashpot, drag, closure, ledger = state
+    u, v, v_before, force, rate, traction, dashpot, drag, closure, reaction, ledger = state
     for n in range(first, last):
         deform(force, rock.stiffness, u)
         extrapolate(rate, v, v_before)
@@ -30,17 +30,15 @@ def run(model, state, samples, stride, first, last):
         force[ends.loaded] += load[n]
         lean(force, ends.quiet, closure)
         accelerate(v, v_before, rock.step_over_mass, force)
-        absorb(ends.quiet, v, v_before)
+        absorb(ends.quiet, reaction, closure, v, v_before)
         hold(ends.fixed, v)
 
-        book(
-            ledger, 0.5 * dt, load[n], ends.loaded, ends.quiet, closure, drag, v_before, v, v_before
-        )
+        book(ledger, 0.5 * dt, load[n], ends.loaded, ends.quiet, reaction, drag, v_before)
         if n % stride == 0:
             sample(rock, receivers, samples, n // stride, u, v, v_before, rate, dt)
             sample_joints(samples.stress, n // stride, receivers.contact, traction, dashpot)
             sample_energy(samples.energy, rock, interfaces, n // stride, u, v, v_before, ledger)
-        book(ledger, 0.5 * dt, load[n], ends.loaded, ends.quiet, closure, drag, v_before, v, v)
+        book(ledger, 0.5 * dt, load[n], ends.loaded, ends.quiet, reaction, drag, v)
         for i in range(u.size):
             u[i] += dt * v[i]
         close(ends.quiet, closure, v)
@@ -153,12 +151,25 @@ def close(quiet, closure, v):
 
 
 @jitted
-def absorb(quiet, v, v_before):
-    """Slow quiet nodes by their dashpots, centred: exactly the free motion where beta = 0."""
+def absorb(quiet, reaction, closure, v, v_before):
+    """Slow quiet nodes by their dashpots, centred: exactly the free motion where beta = 0.
+
+    What holds each of them back, spring and dashpot (N), is left in `reaction`.
+    """
     if quiet is not None:
         for k in range(quiet.node.size):
             i, beta = quiet.node[k], quiet.beta[k]
             v[i] = (v[i] - beta * v_before[i]) / (1.0 + beta)
+            reaction[k] = 0.5 * quiet.viscosity[k] * (v_before[i] + v[i])
+        add_springs(reaction, quiet.springs, closure)
+
+
+@jitted
+def add_springs(reaction, springs, closure):
+    """Add the springs' part of the reactions."""
+    if closure is not None:
+        for k in range(closure.size):
+            reaction[k] += springs.stiffness[k] * closure[k]
 
 
 @jitted

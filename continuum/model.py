@@ -94,6 +94,7 @@ class State(NamedTuple):
         without dashpots.
     traction, dashpot : of the joints' springs and dashpots, Pa; None without them.
     closure : of the springs in front of dashpots [k], m; None without them.
+    reaction : of the absorbing ends at the last step [k], N; None without them.
     ledger : viscous, boundary and load work so far, J; None when not kept.
     """
 
@@ -106,6 +107,7 @@ class State(NamedTuple):
     dashpot: Any
     drag: Any
     closure: Any
+    reaction: Any
     ledger: Any
 
 
@@ -136,6 +138,7 @@ def state_at_rest(model: Model, keep_ledger: bool) -> State:
         dashpot=np.zeros(q) if viscous_joints else None,
         drag=np.zeros(n) if viscous else None,
         closure=np.zeros(quiet.node.size) if sprung else None,
+        reaction=np.zeros(quiet.node.size) if quiet is not None else None,
         ledger=np.zeros(3) if keep_ledger else None,
     )
 

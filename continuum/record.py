@@ -6,14 +6,14 @@ from joints.laws import law_of, spring_traction
 
 
 @jitted
-def book(ledger, half_step, load, loaded, quiet, closure, drag, v_before, v, way):
+def book(ledger, half_step, load, loaded, quiet, reaction, drag, way):
     """Add the work of every force of this step over one half of it, moving at velocity `way`.
 
     The two halves of all steps make the trapezoid rule that leapfrog conserves exactly.
     """
     if ledger is not None:
         ledger[0] += half_step * viscous_power(drag, way)
-        ledger[1] += half_step * quiet_power(quiet, closure, v_before, v, way)
+        ledger[1] += half_step * boundary_power(quiet, reaction, way)
         ledger[2] += half_step * load * way[loaded]
 
 
@@ -28,24 +28,12 @@ def viscous_power(drag, way):
 
 
 @jitted
-def quiet_power(quiet, closure, v_before, v, way):
+def boundary_power(quiet, reaction, way):
     """Return the power (W) that goes into what absorbs at the ends."""
     total = 0.0
-    if quiet is not None:
-        for k in range(quiet.node.size):
-            i = quiet.node[k]
-            total += quiet.viscosity[k] * 0.5 * (v_before[i] + v[i]) * way[i]
-        total += spring_power(quiet.node, quiet.springs, closure, way)
-    return total
-
-
-@jitted
-def spring_power(node, springs, closure, way):
-    """Return the power (W) that goes into the springs in front of dashpots."""
-    total = 0.0
-    if springs is not None:
-        for k in range(node.size):
-            total += springs.stiffness[k] * closure[k] * way[node[k]]
+    if reaction is not None:
+        for k in range(reaction.size):
+            total += reaction[k] * way[quiet.node[k]]
     return total
 
 
