@@ -1,0 +1,60 @@
+"""What the README shows is true: its scene runs, meets its own bounds, and its Python works."""
+
+import os
+import re
+from pathlib import Path
+
+import pytest
+
+import cases
+from compare.engines import solve
+from compare.metrics import misfit
+
+README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
+
+
+def block(language):
+    """Return the one code block of this language."""
+    (found,) = re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
+    return found
+
+
+@pytest.fixture
+def scene_file(tmp_path):
+    """Return the README's scene as a file."""
+    path = tmp_path / "my-scene.toml"
+    path.write_text(block("toml"), encoding="utf-8")
+    return path
+
+
+def test_scene_meets_its_own_expectations(scene_file):
+    """Every variant and pair of the README's scene."""
+    scenes = cases.load(scene_file)
+    assert [scene.name for scene in scenes] == ["", "no layer"]
+    for scene in scenes:
+        for pair, bound in scene.expect.items():
+            one, other = (solve(name, scene) for name in pair.split(" ~ "))
+            assert misfit(one, other) <= bound
+
+
+def test_python_prints_what_it_says(scene_file, capsys, monkeypatch):
+    """The snippet, run where the scene is."""
+    monkeypatch.chdir(scene_file.parent)
+    exec(compile(block("python"), "README.md", "exec"), {})
+    said = capsys.readouterr().out
+    assert 0 < float(said.split()[0]) < 0.02
+
+
+def test_numbers_of_the_free_pillar(pillar):
+    """The table: 0.1, 4.0 and 17.9 %, to the digits given."""
+    scene = pillar()
+    dem = solve("dem", scene)
+    for name, percent in (("lattice", 0.1), ("jointed-bar", 4.0), ("equivalent-bar", 17.9)):
+        assert f"`{name}`" in README and f"{percent} %" in README
+        assert 100 * misfit(dem, solve(name, scene)) == pytest.approx(percent, abs=0.05)
+
+
+def test_pictures_and_pages_that_it_links_are_there():
+    """No dead link into the project."""
+    for link in re.findall(r"\]\(([^)h][^)]*)\)", README):
+        assert os.path.exists(Path(__file__).parent.parent / link), link
