@@ -23,8 +23,7 @@ UsageError: type[Exception] = next(
 )
 
 app = typer.Typer(
-    help="Stress waves in jointed rock: rigid blocks against a continuum, refereed by exact "
-    "solutions.",
+    epilog="Start with: jointwave list, jointwave compare guo-li-2002/fig-03, jointwave report",
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
@@ -49,6 +48,24 @@ class Engine(StrEnum):
     dem = "dem"
     continuum = "continuum"
     exact = "exact"
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        print(f"jointwave {version('jointwave')}")
+        raise typer.Exit
+
+
+@app.callback()
+def root(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version."),
+    ] = False,
+) -> None:
+    """Stress waves in jointed rock: rigid blocks and continuum, refereed by exact solutions."""
 
 
 @app.command("list")

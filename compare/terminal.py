@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from cases.result import energy_residual
 from cases.scene import Scene
 
 
@@ -115,6 +116,8 @@ def show_comparisons(found: list[Any], as_json: bool) -> None:
         scene = comparison.scene
         console.print(f"\n{scene.title} {scene.name}", style="bold")
         console.print(_table(DISTANCE_COLUMNS, [_distance_cells(r) for r in comparison.rows]))
+        for name, residual in _residuals(comparison).items():
+            console.print(f"  {name}: energy balance open by {residual:.1e} of the work put in")
         for name, reason in comparison.reasons.items():
             console.print(f"  {name} does not apply: {reason}", style="dim")
 
@@ -157,8 +160,14 @@ def _comparison_facts(comparison: Any) -> dict[str, Any]:
             {**r.pair._asdict(), "quantity": r.quantity, "y": r.y, **r.distance._asdict()}
             for r in comparison.rows
         ],
+        "energy_residual": _residuals(comparison),
         "does_not_apply": comparison.reasons,
     }
+
+
+def _residuals(comparison: Any) -> dict[str, float]:
+    results = comparison.results.items()
+    return {name: energy_residual(r) for name, r in results if "energy" in r}
 
 
 def show_report(summary: Any, page: Path, as_json: bool) -> None:
