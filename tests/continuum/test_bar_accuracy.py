@@ -110,3 +110,39 @@ def test_error_of_one_cycle_of_a_sine_falls_as_its_kinks_allow(pillar):
         )
         errors.append(misfit(simulate(scene, "equivalent"), images.solve(scene)))
     assert rates(errors) == pytest.approx([1.2, 1.2], abs=0.1)
+
+
+@pytest.mark.parametrize("layer", [{}, LAYER], ids=["uniform", "soft layer"])
+def test_jointed_error_falls_with_the_square_of_the_elements(pillar, layer):
+    """Linear elements, 2p = 2, against the exact bar with all its joints; the step is small."""
+    errors = []
+    for elements in (1, 2, 4):
+        scene = pillar(
+            **RICKER,
+            **layer,
+            numerics__continuum__order=1,
+            numerics__continuum__elements_per_block=elements,
+            numerics__continuum__step_fraction=0.1,
+        )
+        errors.append(misfit(simulate(scene, "jointed"), jointed_bar.solve(scene)))
+    assert rates(errors) == pytest.approx([2, 2], abs=0.05)
+
+
+@pytest.mark.parametrize("layer", [{}, LAYER], ids=["uniform", "soft layer"])
+def test_jointed_error_falls_with_the_square_of_the_step(pillar, layer):
+    """Quadratic elements resolve a block so well that only the step is left to err.
+
+    The last rate is seen through what the elements leave, 2e-6, a twentieth of the last error.
+    """
+    errors = []
+    for interval in (2e-5, 1e-5, 5e-6):
+        scene = pillar(
+            **RICKER,
+            **layer,
+            record__interval=interval,
+            numerics__continuum__step_fraction=1.0,
+        )
+        result = simulate(scene, "jointed")
+        assert result.dt == pytest.approx(interval)
+        errors.append(misfit(result, jointed_bar.solve(scene)))
+    assert rates(errors) == pytest.approx([2, 2], abs=0.1)
