@@ -1,8 +1,12 @@
 """How every kernel is compiled: one set of options, one cache that follows the sources."""
 
+import fcntl
 import hashlib
 import os
+from collections.abc import Callable
+from functools import wraps
 from pathlib import Path
+from typing import Any
 
 import numba
 
@@ -27,5 +31,27 @@ def cache_directory(root: Path) -> Path:
 
 numba.config.CACHE_DIR = str(cache_directory(Path(__file__).resolve().parent.parent))
 
-#: Compiles a kernel: cached on disk, IEEE arithmetic (fastmath would break bit-identity).
-jitted = numba.njit(cache=True, fastmath=False, error_model="numpy")
+
+def jitted(function: Callable) -> Callable:
+    """Compile a kernel: cached on disk, IEEE arithmetic (fastmath would break bit-identity)."""
+    kernel = numba.njit(cache=True, fastmath=False, error_model="numpy")(function)
+    kernel._cache.save_overload = _one_at_a_time(kernel._cache.save_overload)
+    return kernel
+
+
+def _one_at_a_time(save: Callable) -> Callable:
+    """Let one process at a time enter what it has compiled into the cache.
+
+    numba reads a kernel's index, adds to it and writes it back. Two processes at once would give
+    two specialisations the same file, and one of them would run the other's code.
+    """
+
+    @wraps(save)
+    def alone(*arguments: Any) -> None:
+        directory = Path(numba.config.CACHE_DIR)
+        directory.mkdir(parents=True, exist_ok=True)
+        with (directory / "lock").open("w") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            save(*arguments)
+
+    return alone

@@ -1,6 +1,8 @@
 """The compiled kernels are kept on disk, and never outlive the sources they came from."""
 
+import fcntl
 import shutil
+import threading
 from pathlib import Path
 
 import numba
@@ -26,5 +28,19 @@ def test_cache_follows_every_source(edited, tmp_path):
 def test_kernels_are_cached_there_with_ieee_arithmetic():
     """Every kernel is made by one decorator: cached, and bit-identical however it is called."""
     assert str(cache_directory(ROOT)) == numba.config.CACHE_DIR
+    assert not jitted(lambda x: x + 1.0).targetoptions.get("fastmath")
+
+
+def test_one_process_at_a_time_enters_the_cache(tmp_path, monkeypatch):
+    """While another holds the cache a kernel compiles but does not save; then it does."""
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
     kernel = jitted(lambda x: x + 1.0)
-    assert not kernel.targetoptions.get("fastmath")
+    worker = threading.Thread(target=kernel, args=(1.0,))
+    with (tmp_path / "lock").open("w") as other:
+        fcntl.flock(other, fcntl.LOCK_EX)
+        worker.start()
+        worker.join(timeout=2)
+        assert worker.is_alive()
+        assert not list(tmp_path.rglob("*.nb?"))
+    worker.join()
+    assert {path.suffix for path in tmp_path.rglob("*.nb?")} == {".nbi", ".nbc"}
