@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from math import isnan
 from pathlib import Path
 from typing import Any
 
@@ -138,18 +139,22 @@ DISTANCE_COLUMNS = [
 
 def _distance_cells(row: Any) -> list[str]:
     d = row.distance
-    spectral = ["-" if x is None else f"{x:.2%}" for x in (d.envelope, d.phase)]
     return [
         row.pair.kind,
         row.pair.one,
         row.pair.other,
         f"{row.quantity} {row.y:g} m",
         f"{d.misfit:.3%}",
-        f"{d.peak_ratio:.4f}",
-        f"{1e3 * d.delay:+.3f}",
-        f"{d.period_ratio:.4f}",
-        *spectral,
+        _number(d.peak_ratio, ".4f"),
+        _number(1e3 * d.delay, "+.3f"),
+        _number(d.period_ratio, ".4f"),
+        _number(d.envelope, ".2%"),
+        _number(d.phase, ".2%"),
     ]
+
+
+def _number(x: float | None, form: str) -> str:
+    return "-" if x is None or isnan(x) else format(x, form)
 
 
 def _comparison_facts(comparison: Any) -> dict[str, Any]:
