@@ -205,7 +205,7 @@ def test_summary_has_a_column_a_figure_and_a_row_a_pair(report):
     assert report.columns[:2] == ["what", "pair"]
     assert len(report.columns) == 2 + len(FIGURES)
     pairs = {row[1]: row for row in report.rows}
-    assert float(pairs["dem ~ lattice"][3]) < 0.2  # in %, issue's bound at the default step
+    assert float(pairs["dem ~ lattice"][3]) < 0.2  # in %, what the default step promises
     assert all(len(row) == len(report.columns) for row in report.rows)
 
 
