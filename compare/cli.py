@@ -71,10 +71,10 @@ def root(
 @app.command("list")
 def list_scenes(as_json: JsonOption = False) -> None:
     """List the shipped scenes and their variants."""
-    from compare import terminal
+    from compare import views
 
     rows = [(path, cases.load(path)) for path in shipped()]
-    terminal.show_scenes(rows, as_json)
+    views.show_scenes(rows, as_json)
 
 
 @app.command()
@@ -93,14 +93,14 @@ def run(
     as_json: JsonOption = False,
 ) -> None:
     """Simulate a scene and write each result as DIR/[variant/]ENGINE[-MODEL].nc."""
-    from compare import runs, terminal
+    from compare import runs, terminal, views
 
     scenes = _load(scene, changes, variant)
     wanted = runs.wanted([e.value for e in engine], model or [])
     jobs = runs.plan(scenes, wanted, out)
     with terminal.progress(f"{len(jobs)} runs") as advance:
         done = runs.execute(jobs, advance)
-    terminal.show_runs(done, as_json)
+    views.show_runs(done, as_json)
 
 
 @app.command()
@@ -111,11 +111,11 @@ def explain(
     as_json: JsonOption = False,
 ) -> None:
     """Say what a scene calls for, its critical steps, and which exact solutions hold."""
-    from compare import terminal
+    from compare import views
     from compare.explain import explanation
 
     for one in _load(scene, changes, variant if variant is not None else ""):
-        terminal.show_explanation(explanation(one), as_json)
+        views.show_explanation(explanation(one), as_json)
 
 
 @app.command()
@@ -130,7 +130,7 @@ def compare(
     as_json: JsonOption = False,
 ) -> None:
     """Solve a scene by all that applies, and print how far apart the solutions are."""
-    from compare import pairs, terminal
+    from compare import pairs, terminal, views
 
     found = []
     for one in _load(scene, changes, variant):
@@ -140,18 +140,18 @@ def compare(
         from compare.report import write_comparisons
 
         write_comparisons(found, out)
-    terminal.show_comparisons(found, as_json)
+    views.show_comparisons(found, as_json)
 
 
 @app.command()
 def report(out: OutOption = Path("report"), as_json: JsonOption = False) -> None:
     """Write the figures of Guo & Li (2002) with every misfit and finding, as one HTML page."""
-    from compare import terminal
+    from compare import terminal, views
     from compare.report import build
 
     with terminal.progress("scenes") as advance:
-        summary = build(out, advance)
-    terminal.show_report(summary, out / "index.html", as_json)
+        found = build(out, advance)
+    views.show_report(found, as_json)
 
 
 def _load(scene: str, changes: list[str], variant: str | None) -> list[cases.Scene]:
