@@ -12,13 +12,10 @@ import numpy as np
 import xarray as xr
 
 from cases.calibrate import calibrate
-from cases.loads import load_history
-from cases.result import dataset
-from cases.sampling import sample_times
 from cases.scene import Scene
 from compare.exact.answer import YES, Answer, no
 from compare.exact.conditions import bars_tension
-from compare.exact.laplace import Bar, end_of, response
+from compare.exact.laplace import Bar, end_of, solved
 
 NAME = "jointed-bar"
 
@@ -37,11 +34,7 @@ def applies(scene: Scene) -> Answer:
 
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, velocity and displacement of the scene's jointed bar."""
-    times, record = sample_times(scene), scene.record
-    fields = response(
-        bar(scene), load_history(scene), times, record.stress, record.velocity, scene.load.period
-    )
-    return dataset(scene, NAME, times, *fields)
+    return solved(scene, NAME, bar(scene))
 
 
 def bar(scene: Scene) -> Bar:

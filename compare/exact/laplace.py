@@ -30,8 +30,12 @@ from dataclasses import dataclass
 from math import ceil, log
 
 import numpy as np
+import xarray as xr
 
-from cases.loads import LoadHistory
+from cases.loads import LoadHistory, load_history
+from cases.result import dataset
+from cases.sampling import sample_times
+from cases.scene import Scene
 
 TAIL = 1.5
 WRAPPED = 1e-10
@@ -83,6 +87,14 @@ class Bar:
     joint_time_constant: np.ndarray
     start: End
     end: End
+
+
+def solved(scene: Scene, name: str, bar: Bar) -> xr.Dataset:
+    """Return stress, velocity and displacement of a bar under the scene's load, as result `name`."""
+    times, record = sample_times(scene), scene.record
+    load = load_history(scene)
+    fields = response(bar, load, times, record.stress, record.velocity, scene.load.period)
+    return dataset(scene, name, times, *fields)
 
 
 def response(
