@@ -90,7 +90,7 @@ class Bar:
 
 
 def solved(scene: Scene, name: str, bar: Bar) -> xr.Dataset:
-    """Return stress, velocity and displacement of a bar under the scene's load, as result `name`."""
+    """Return stress, velocity and displacement of a bar under the scene's load."""
     times, record = sample_times(scene), scene.record
     load = load_history(scene)
     fields = response(bar, load, times, record.stress, record.velocity, scene.load.period)
