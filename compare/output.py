@@ -39,11 +39,6 @@ def write_text(path: Path, text: str) -> Path:
     return write(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
 
 
-def write_dataset(path: Path, result: xr.Dataset) -> Path:
-    """Write a result as NetCDF."""
-    return write_fields(path, fields_of(result))
-
-
 def fields_of(result: xr.Dataset) -> Fields:
     """Return a result as plain arrays."""
     variables = {

@@ -81,9 +81,3 @@ def normal_traction(law, gap, gap_rate):
 def spring_traction(law, gap):
     """Return the elastic part of t_n (Pa): what is stored, not dissipated."""
     return _without_tension(-law.normal_stiffness * gap, law.carries_tension, gap)
-
-
-@jitted
-def traction(law, gap, gap_rate, slip, slip_rate, history):
-    """Return (t_n, t_s, history) of one joint point; in axial motion slip and history are None."""
-    return normal_traction(law, gap, gap_rate), slip, history

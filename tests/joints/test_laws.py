@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from joints import reference
-from joints.laws import Law, law_of, normal_traction, spring_traction, traction
+from joints.laws import Law, law_of, normal_traction, spring_traction
 from joints.uniform import law, uniform
 
 gaps = st.floats(-1e-3, 1e-3)
@@ -74,8 +74,3 @@ def test_alike_joints_become_one_number_and_absent_parts_none():
     assert mixed.normal_viscosity.tolist() == [0.5, 1]
     assert law_of(mixed, 1) == (2.0, 1.0, False)
     assert uniform(np.array([3.0, 3.0])) == 3.0
-
-
-def test_axial_motion_has_neither_shear_nor_history():
-    """The full signature hands slip and history through as None."""
-    assert traction(Law(2.0), -3.0, 0.0, None, None, None) == (6.0, None, None)
