@@ -63,7 +63,7 @@ def matched_end(comparisons: list[Comparison]) -> Finding:
     return Finding(
         "the matched end reflects least",
         f"With the dashpot behind the half-block spring (in jointed rock behind half a joint) the "
-        f"reflected is left with this share of the incident peak: {percent(matched, 2)}; for the "
+        f"reflected pulse has this share of the incident peak: {percent(matched, 2)}; for the "
         f"rigid blocks {quiet['dem'] / max(matched['dem'], 1e-12):.0f} times less than with the "
         f"quiet end.",
         all(x < 0.01 for x in matched.values()) and matched["dem"] < quiet["dem"],
