@@ -1,49 +1,20 @@
-"""Stiffness from wave speeds and back: Guo & Li (2002), (4) to (7), and a scene's numbers.
+"""The numbers of a scene: every joint's stiffness, damping and strength, the blocks' inertia."""
 
-The rock mass is intact rock in series with its joints. Rigid blocks have no compliance of their
-own, so their joints carry all of it: K'_n = E_eq / S.
-"""
+from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, sqrt
+from math import sqrt
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cases.scene import Rock, Scene
+from cases.dashpots import dashpots
+from cases.elastic import joint_stiffness
+from cases.stiffness import rock_mass, stiffness
+from cases.strength import strength
 
-
-def modulus_from_speeds(p_speed: float, s_speed: float, density: float) -> tuple[float, float]:
-    """Return Young's modulus (Pa) and Poisson's ratio of a medium of these speeds (m/s)."""
-    p2, s2 = p_speed**2, s_speed**2
-    poisson = (p2 - 2 * s2) / (2 * (p2 - s2))
-    return 2 * density * s2 * (1 + poisson), poisson
-
-
-def speeds_from_modulus(modulus: float, poisson: float, density: float) -> tuple[float, float]:
-    """Return the P and S speeds (m/s) of an unbounded medium; inverse of modulus_from_speeds."""
-    shear = modulus / (2 * (1 + poisson))
-    s2 = shear / density
-    return sqrt(s2 * 2 * (1 - poisson) / (1 - 2 * poisson)), sqrt(s2)
-
-
-def joint_stiffness(equivalent: float, intact: float, spacing: float) -> float:
-    """Return the joint's own K_n (Pa/m) that gives the rock mass its modulus, equation (4)."""
-    return 1 / (spacing * (1 / equivalent - 1 / intact))
-
-
-def equivalent_modulus(stiffness: float, intact: float, spacing: float) -> float:
-    """Return E_eq (Pa) of intact rock with joints K_n at this spacing; inverse of (4)."""
-    return 1 / (1 / intact + 1 / (spacing * stiffness))
-
-
-def rigid_block_stiffness(stiffness: float, intact: float, spacing: float) -> float:
-    """Return K'_n (Pa/m) between rigid blocks for the joint's own K_n, equation (6)."""
-    return stiffness / (1 + spacing * stiffness / intact)
-
-
-def rigid_block_shear_stiffness(normal: float, poisson: float) -> float:
-    """Return K'_s (Pa/m) from K'_n, equation (7)."""
-    return normal / (2 * (1 + poisson))
+if TYPE_CHECKING:
+    from cases.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -53,43 +24,68 @@ class Properties:
     Attributes
     ----------
     block_count : number of blocks N.
-    spacing, area : block thickness (m), section (m2).
+    spacing, side, area : block thickness (m), side (m) and area (m2) of the section.
     density, block_mass : kg/m3, kg.
+    inertia_across, inertia_along : of a block about x or z, and about y, kg m2.
     modulus, poisson : Young's modulus (Pa) and Poisson's ratio of the homogenised rock mass.
+    shear_modulus : G of the homogenised rock mass, Pa.
     intact_modulus : Pa, or None where the scene does not give it.
-    bar_speed : sqrt(modulus / density), m/s.
-    impedance : density * bar_speed, Pa s/m, of the homogenised bar and of the quiet ends.
+    bar_speed, shear_speed : sqrt(modulus / density), sqrt(shear_modulus / density), m/s.
+    impedance, shear_impedance : density times these speeds, Pa s/m, also of the quiet ends.
     time_constant : Kelvin-Voigt eta of rock and ordinary joints, s; None without dashpots.
+    mass_damping : alpha of a force -alpha m v on every block, 1/s; None without.
+    local_damping : Cundall's factor, 0 to 1; None without.
     joint_y : float array [N - 1], m.
-    stiffness : float array [N - 1], K'_n between rigid blocks, Pa/m.
+    stiffness, shear_stiffness : float arrays [N - 1], K'_n, K'_s between rigid blocks, Pa/m.
     own_stiffness : float array [N - 1], the joints' own K_n, Pa/m; None without intact_modulus.
     joint_time_constant : float array [N - 1], eta of each joint, s; None without any dashpot.
     tension : bool array [N - 1], whether a joint carries tension.
+    friction, cohesion, residual_cohesion, tensile_strength, critical_opening : float arrays
+        [N - 1], each None where no joint has it; see `cases.strength.Strength`.
     soft : int array, indices of the joints that [[soft_layers]] changes.
     """
 
     block_count: int
     spacing: float
+    side: float
     area: float
     density: float
     block_mass: float
+    inertia_across: float
+    inertia_along: float
     modulus: float
     poisson: float
+    shear_modulus: float
     intact_modulus: float | None
     bar_speed: float
+    shear_speed: float
     impedance: float
+    shear_impedance: float
     time_constant: float | None
+    mass_damping: float | None
+    local_damping: float | None
     joint_y: np.ndarray
     stiffness: np.ndarray
+    shear_stiffness: np.ndarray
     own_stiffness: np.ndarray | None
     joint_time_constant: np.ndarray | None
     tension: np.ndarray
+    friction: np.ndarray | None
+    cohesion: np.ndarray | None
+    residual_cohesion: np.ndarray | None
+    tensile_strength: np.ndarray | None
+    critical_opening: np.ndarray | None
     soft: np.ndarray
 
     @property
     def regular_stiffness(self) -> float:
         """K'_n of an ordinary joint, Pa/m."""
         return self.modulus / self.spacing
+
+    @property
+    def regular_shear_stiffness(self) -> float:
+        """K'_s of an ordinary joint, Pa/m."""
+        return self.shear_modulus / self.spacing
 
     @property
     def regular_own_stiffness(self) -> float:
@@ -119,61 +115,36 @@ class Properties:
 
 
 def calibrate(scene: Scene) -> Properties:
-    """Return the properties of a scene: every joint's stiffness, damping and tension."""
-    pillar, rock, joints = scene.pillar, scene.rock, scene.joints
-    spacing, area, count = pillar.length / pillar.block_count, pillar.area, pillar.block_count
-    intact = rock.intact_modulus or inf
-    modulus, poisson = _rock_mass(rock)
-    if joints.normal_stiffness:
-        modulus = equivalent_modulus(joints.normal_stiffness, intact, spacing)
-    mass = rock.density * area * spacing
-
-    def eta(ratio: float | None, stiffness: float) -> float:
-        return 0.0 if ratio is None else 2 * ratio * sqrt(mass / (stiffness * area))
-
-    stiffness = np.full(count - 1, modulus / spacing)
-    own = np.full(count - 1, joint_stiffness(modulus, intact, spacing))
-    etas = np.full(count - 1, eta(joints.damping_ratio, modulus / spacing))
-    tension = np.full(count - 1, joints.tension is not False)
+    """Return the properties of a scene: every joint's stiffness, damping, tension and strength."""
+    pillar, density = scene.pillar, scene.rock.density
+    count, spacing = pillar.block_count, pillar.length / pillar.block_count
+    block_mass, mass = density * pillar.area * spacing, rock_mass(scene, spacing)
     soft = np.array([round(layer.y / spacing) - 1 for layer in scene.soft_layers], dtype=np.int64)
-    damped = joints.damping_ratio is not None
-    for j, layer in zip(soft, scene.soft_layers, strict=True):
-        given = layer.normal_stiffness or (layer.spacing_stiffness or 0) / spacing
-        if given:
-            own[j] = given
-            stiffness[j] = rigid_block_stiffness(given, intact, spacing)
-        ratio = joints.damping_ratio if layer.damping_ratio is None else layer.damping_ratio
-        damped = damped or ratio is not None
-        etas[j] = eta(ratio, stiffness[j])
-        tension[j] = tension[j] if layer.tension is None else layer.tension
-    speed = sqrt(modulus / rock.density)
+    springs = stiffness(scene, soft, spacing, mass)
+    tension = np.full(count - 1, scene.joints.tension is not False)
+    tension[soft] = [layer.tension is not False for layer in scene.layers]
+    speed, shear_speed = sqrt(mass.modulus / density), sqrt(mass.shear_modulus / density)
     return Properties(
         block_count=count,
         spacing=spacing,
-        area=area,
-        density=rock.density,
-        block_mass=mass,
-        modulus=modulus,
-        poisson=poisson,
-        intact_modulus=rock.intact_modulus,
+        side=pillar.side,
+        area=pillar.area,
+        density=density,
+        block_mass=block_mass,
+        inertia_across=block_mass * (pillar.side**2 + spacing**2) / 12,
+        inertia_along=block_mass * pillar.side**2 / 6,
+        intact_modulus=scene.rock.intact_modulus,
         bar_speed=speed,
-        impedance=rock.density * speed,
-        time_constant=(
-            eta(joints.damping_ratio, modulus / spacing)
-            if joints.damping_ratio is not None
-            else None
-        ),
+        shear_speed=shear_speed,
+        impedance=density * speed,
+        shear_impedance=density * shear_speed,
+        mass_damping=scene.damping.alpha,
+        local_damping=scene.damping.local or None,
         joint_y=spacing * np.arange(1, count),
-        stiffness=stiffness,
-        own_stiffness=own if rock.intact_modulus else None,
-        joint_time_constant=etas if damped else None,
         tension=tension,
         soft=soft,
+        **mass._asdict(),
+        **springs._asdict(),
+        **dashpots(scene, soft, mass.modulus / spacing, springs.stiffness)._asdict(),
+        **strength(scene, soft)._asdict(),
     )
-
-
-def _rock_mass(rock: Rock) -> tuple[float, float]:
-    if rock.p_speed and rock.s_speed:
-        return modulus_from_speeds(rock.p_speed, rock.s_speed, rock.density)
-    assert rock.equivalent_modulus and rock.equivalent_poisson is not None
-    return rock.equivalent_modulus, rock.equivalent_poisson

@@ -1,8 +1,9 @@
 """What a scene calls for, and what is left out of the computation because it does not."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
-from cases.calibrate import calibrate
+from cases.calibrate import Properties, calibrate
 from cases.scene import Scene
 
 
@@ -15,40 +16,24 @@ class Effect:
     reason: str
 
 
+def is_spatial(scene: Scene) -> bool:
+    """Return whether a scene moves across its axis or turns its blocks; else it is axial."""
+    return _off_axis(scene) is not None
+
+
 def effects(scene: Scene) -> list[Effect]:
     """Return every effect that this version knows, in the order of their cost."""
     p = calibrate(scene)
-    ends = {scene.ends.start, scene.ends.end}
-    barred = int((~p.tension).sum())
-    differ = len(p.soft)
     return [
-        Effect(
-            "dashpots",
-            p.joint_time_constant is not None,
-            "damping_ratio is given" if p.joint_time_constant is not None else "no damping_ratio",
-        ),
-        Effect(
-            "no tension",
-            barred > 0,
-            f"{barred} of {len(p.tension)} joints" if barred else "every joint carries tension",
-        ),
-        Effect(
-            "joints that differ",
-            differ > 0,
-            f"{differ} soft layers" if differ else "all joints are alike: one number, no array",
-        ),
-        Effect("quiet ends", "quiet" in ends, _where(scene, "quiet")),
-        Effect("matched ends", "matched" in ends, _where(scene, "matched")),
-        Effect("fixed ends", "fixed" in ends, _where(scene, "fixed")),
+        *_of_joints(scene, p),
+        *(_of_ends(scene, kind) for kind in ("quiet", "matched", "fixed")),
         Effect(
             "energy ledger",
             scene.record.energy,
             "record.energy is on" if scene.record.energy else "record.energy = false",
         ),
-        Effect("spatial motion", False, "the load is axial and central: one freedom per block"),
-        Effect("slip", False, "no friction_angle, and nothing shears the joints"),
-        Effect("softening", False, "no tensile_strength"),
-        Effect("gravity and prestress", False, "neither table is given"),
+        *_of_motion(scene, p),
+        *_of_forces(scene, p),
     ]
 
 
@@ -57,6 +42,106 @@ def active_effects(scene: Scene) -> list[str]:
     return [effect.name for effect in effects(scene) if effect.active]
 
 
-def _where(scene: Scene, kind: str) -> str:
+def warnings(scene: Scene) -> list[str]:
+    """Return what a scene may say but should not, a line each."""
+    if scene.damping.local and scene.load.amplitude:
+        return [
+            "damping.local distorts waves: it is meant for static states, not for a scene whose "
+            "load acts"
+        ]
+    return []
+
+
+def _off_axis(scene: Scene) -> str | None:
+    """Return what takes the scene off its axis, None where nothing does."""
+    if scene.load.arm is not None:
+        return "the load is a couple"
+    if scene.load.is_across:
+        return "the load has a component across the axis"
+    if scene.load.is_eccentric:
+        return "the load is eccentric"
+    gravity = scene.gravity
+    if gravity is not None and (gravity.direction[0] or gravity.direction[2]):
+        return "gravity has a component across the axis"
+    return None
+
+
+def _of_joints(scene: Scene, p: Properties) -> Iterator[Effect]:
+    damped, rayleigh = p.joint_time_constant is not None, scene.damping.rayleigh
+    source = "damping.rayleigh" if rayleigh else "damping_ratio"
+    yield Effect("dashpots", damped, f"{source} is given" if damped else "no damping_ratio")
+    joints, barred, differ = len(p.tension), int((~p.tension).sum()), len(p.soft)
+    yield Effect(
+        "no tension",
+        barred > 0,
+        f"{barred} of {joints} joints" if barred else "every joint carries tension",
+    )
+    yield Effect(
+        "joints that differ",
+        differ > 0,
+        f"{differ} soft layers" if differ else "all joints are alike: one number, no array",
+    )
+
+
+def _of_ends(scene: Scene, kind: str) -> Effect:
     places = [k for k in ("start", "end") if getattr(scene.ends, k) == kind]
-    return f"ends.{' and ends.'.join(places)}" if places else f"no end is {kind}"
+    reason = f"ends.{' and ends.'.join(places)}" if places else f"no end is {kind}"
+    return Effect(f"{kind} ends", bool(places), reason)
+
+
+def _of_motion(scene: Scene, p: Properties) -> Iterator[Effect]:
+    cause, rotation = _off_axis(scene), scene.motion.rotation
+    freedoms = 3 if rotation == "none" else 6
+    yield Effect(
+        "spatial motion",
+        cause is not None,
+        f"{cause}: {freedoms} freedoms per block"
+        if cause
+        else "the load is axial and central: one freedom per block",
+    )
+    yield Effect(
+        "finite rotation",
+        cause is not None and rotation == "finite",
+        f"motion.rotation = '{rotation}'" if cause else "nothing turns the blocks",
+    )
+    slips = p.friction is not None or p.cohesion is not None
+    yield Effect("slip", slips and cause is not None, _why_slip(slips, cause))
+    softens = p.tensile_strength is not None
+    yield Effect(
+        "softening", softens, "tensile_strength is given" if softens else "no tensile_strength"
+    )
+
+
+def _why_slip(slips: bool, cause: str | None) -> str:
+    if cause is None:
+        return "nothing shears the joints"
+    return "friction_angle or cohesion is given" if slips else "neither friction_angle nor cohesion"
+
+
+def _of_forces(scene: Scene, p: Properties) -> Iterator[Effect]:
+    alpha, local, gravity = p.mass_damping, p.local_damping, scene.gravity
+    yield Effect(
+        "mass damping",
+        alpha is not None,
+        "no mass_proportional, no rayleigh" if alpha is None else f"alpha = {alpha:.4g} 1/s",
+    )
+    yield Effect(
+        "local damping",
+        local is not None,
+        "no damping.local" if local is None else f"damping.local = {local:g}",
+    )
+    yield Effect("gravity", gravity is not None, _why_gravity(scene))
+    prestress = scene.prestress
+    yield Effect(
+        "prestress",
+        prestress is not None,
+        "no [prestress]" if prestress is None else f"{prestress.normal:.4g} Pa",
+    )
+    quantity = f"load.quantity = '{scene.load.quantity}'"
+    yield Effect("shaken base", scene.load.shakes_base, quantity)
+
+
+def _why_gravity(scene: Scene) -> str:
+    if scene.gravity is None:
+        return "no [gravity]"
+    return "static at the start" if scene.gravity.static else "sudden at t = 0"

@@ -1,4 +1,4 @@
-"""A recorded load history: a two-column CSV of time (s) and stress (Pa)."""
+"""A recorded load history: a two-column CSV of time (s) and end stress (Pa), or base motion."""
 
 import csv
 from collections.abc import Iterator
@@ -20,7 +20,7 @@ class History:
     Attributes
     ----------
     time : float array [n], s, strictly increasing.
-    stress : float array [n], Pa.
+    stress : float array [n], Pa; m/s or m/s2 for the motion of a base.
     """
 
     time: np.ndarray
@@ -35,7 +35,7 @@ class History:
         lines = read_text(Path(folder) / file, LARGEST_FILE).splitlines()
         numbers, rows = _rows(lines)
         if len(rows) < 2:
-            raise ValueError("must hold at least two rows of time (s), stress (Pa)")
+            raise ValueError("must hold at least two rows of time and load")
         wrong = ~(np.abs(rows) <= LARGEST).all(axis=1)
         if wrong.any():
             line = numbers[int(np.argmax(wrong))]
@@ -57,7 +57,9 @@ def _rows(lines: list[str]) -> tuple[list[int], np.ndarray]:
         if not rows and not any(map(_is_number, cells)):
             continue  # a header
         if len(cells) != 2 or not all(map(_is_number, cells)):
-            raise ValueError(f"must hold two numbers a line, s and Pa (line {number} does not)")
+            raise ValueError(
+                f"must hold two numbers a line, time and load (line {number} does not)"
+            )
         numbers.append(number)
         rows.append([float(cell) for cell in cells])
     return numbers, np.array(rows, dtype=float).reshape(-1, 2)

@@ -1,7 +1,8 @@
-"""The end stress over time: its value, its time integral, and where it is not smooth.
+"""The load over time: its value, its time integral, and where it is not smooth.
 
 All three are exact, so an engine can apply the mean of the load over each of its steps and a
-reference can integrate between breakpoints.
+reference can integrate between breakpoints. Units are those of an end stress, Pa and Pa s; the
+motion of a shaken base has m/s and m, or m/s2 and m/s, in their place.
 """
 
 from dataclasses import dataclass
@@ -125,7 +126,10 @@ LoadHistory = Sine | Ricker | Step | Recorded
 
 
 def load_history(scene: Scene) -> LoadHistory:
-    """Return the scene's end stress as a function of time, compression positive."""
+    """Return the scene's load as a function of time: its end stress or the motion of its base.
+
+    Stress is positive in compression. Without a load the stress is zero.
+    """
     load = scene.load
     if load.shape == "step":
         return Step(load.amplitude)
@@ -146,3 +150,17 @@ def step_means(load: LoadHistory, dt: float, count: int) -> np.ndarray:
     """
     edges = dt * (np.arange(count + 1) - 0.5)
     return np.diff(load.impulse(edges)) / dt
+
+
+def base_steps(scene: Scene, dt: float, count: int) -> np.ndarray:
+    """Return how far a shaken base moves in each step [n dt, (n + 1) dt], n = 0 .. count - 1, m.
+
+    A velocity history is integrated exactly over the step. An acceleration history gives, as
+    leapfrog does, dt times the velocity at the half step. Zero for a base that is not shaken.
+    """
+    load = load_history(scene)
+    if scene.load.quantity == "velocity":
+        return np.diff(load.impulse(dt * np.arange(count + 1)))
+    if scene.load.quantity == "acceleration":
+        return dt * load.impulse(dt * (np.arange(count) + 0.5))
+    return np.zeros(count)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -14,8 +15,19 @@ from cases.scene import Scene
 if TYPE_CHECKING:
     import xarray as xr
 
+#: Every term of an energy ledger, and those of the axial motion of joints that hold.
+ALL_TERMS = (
+    "kinetic",
+    "rotation",
+    "elastic",
+    "viscous",
+    "friction",
+    "fracture",
+    "boundary",
+    "gravity",
+    "work",
+)
 TERMS = ("kinetic", "elastic", "viscous", "boundary", "work")
-
 
 Variable = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
 
@@ -56,6 +68,9 @@ def fields(
     velocity: np.ndarray,
     displacement: np.ndarray | None = None,
     energy: np.ndarray | None = None,
+    shear: np.ndarray | None = None,
+    rotation: np.ndarray | None = None,
+    terms: Sequence[str] = TERMS,
     **attributes: Any,
 ) -> Fields:
     """Return a result with the schema that all engines and exact solutions share.
@@ -65,28 +80,38 @@ def fields(
     engine : "dem", "continuum-jointed", ..., or the name of an exact solution.
     time : float array [n], s.
     stress : float array [len(record.stress), n], Pa, compression positive.
-    velocity, displacement : float array [len(record.velocity), n], m/s and m, along y.
-    energy : float array [len(TERMS), n], J; work is what the load has put in, the others
+    velocity, displacement : float array [len(record.velocity), n], m/s and m, along y; of spatial
+        motion [len(record.velocity), n, 3], along x, y, z.
+    energy : float array [len(terms), n], J; work is what the load has put in, the others
         what became of it.
+    shear : float array [len(record.stress), n, 2], along x, z, the force on the far side over the
+        area, Pa; of spatial motion alone.
+    rotation : float array [len(record.velocity), n, 3], about x, y, z, rad; likewise.
+    terms : what the rows of `energy` are, from ALL_TERMS.
     attributes : numbers and texts about the run (dt, steps, seconds, ...).
     """
     points = ("velocity_y", "time", "axis")
-    variables: dict[str, Variable] = {
-        "stress": (("stress_y", "time"), stress, {"units": "Pa"}),
-        "velocity": (points, velocity[..., None], {"units": "m/s"}),
-    }
-    record = scene.record
+    record, spatial = scene.record, velocity.ndim == 3
     coords: dict[str, Variable] = {
         "time": (("time",), time, {"units": "s"}),
         "stress_y": (("stress_y",), np.array(record.stress, dtype=float), {"units": "m"}),
         "velocity_y": (("velocity_y",), np.array(record.velocity, dtype=float), {"units": "m"}),
-        "axis": (("axis",), np.array(["y"]), {}),
+        "axis": (("axis",), np.array(list("xyz") if spatial else ["y"]), {}),
+    }
+    variables: dict[str, Variable] = {
+        "stress": (("stress_y", "time"), stress, {"units": "Pa"}),
+        "velocity": (points, _with_axis(velocity), {"units": "m/s"}),
     }
     if displacement is not None:
-        variables["displacement"] = (points, displacement[..., None], {"units": "m"})
+        variables["displacement"] = (points, _with_axis(displacement), {"units": "m"})
+    if shear is not None:
+        variables["shear"] = (("stress_y", "time", "across"), shear, {"units": "Pa"})
+        coords["across"] = (("across",), np.array(["x", "z"]), {})
+    if rotation is not None:
+        variables["rotation"] = (points, rotation, {"units": "rad"})
     if energy is not None:
         variables["energy"] = (("term", "time"), energy, {"units": "J"})
-        coords["term"] = (("term",), np.array(TERMS), {})
+        coords["term"] = (("term",), np.array(list(terms)), {})
     common = {
         "engine": engine,
         "title": scene.title,
@@ -100,12 +125,22 @@ def fields(
 
 def energy_residual(result: xr.Dataset) -> float:
     """Return the largest imbalance of a result's energy ledger over the largest work put in."""
-    return imbalance(result["energy"].values)
+    return imbalance(result["energy"].values, [str(term) for term in result["term"].values])
 
 
-def imbalance(energy: np.ndarray) -> float:
-    """Return the largest imbalance of an energy ledger [len(TERMS), n] over the largest work."""
-    work = energy[TERMS.index("work")]
-    balance = energy.sum(axis=0) - 2 * work
-    scale = float(np.abs(work).max())
+def imbalance(energy: np.ndarray, terms: Sequence[str] = TERMS) -> float:
+    """Return the largest imbalance of an energy ledger [len(terms), n] over the largest work.
+
+    Both count from the first sample, where the energy of a static state is there already. Where
+    no work is done, as under gravity alone, the largest term takes its place.
+    """
+    since = energy - energy[:, :1]
+    work = since[list(terms).index("work")]
+    balance = since.sum(axis=0) - 2 * work
+    scale = float(np.abs(work if work.any() else since).max())
     return float(np.abs(balance).max()) / scale if scale > 0 else 0.0
+
+
+def _with_axis(values: np.ndarray) -> np.ndarray:
+    """Return values [point, time, axis] of axial [point, time] or spatial motion."""
+    return values if values.ndim == 3 else values[..., None]

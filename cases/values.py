@@ -18,6 +18,9 @@ SOLUTIONS = (
     "jointed-bar",
     "equivalent-bar",
     "no-tension-chain",
+    "spatial-lattice",
+    "slip-joint",
+    "sliding-block",
 )
 
 
@@ -38,9 +41,19 @@ def _pair(text: str) -> str:
     return text
 
 
+def _unit(vector: list[float]) -> list[float]:
+    """Refuse what is not a direction."""
+    if abs(sum(x * x for x in vector) - 1) > 1e-9:
+        raise PydanticCustomError("unit", "must be a unit vector")
+    return vector
+
+
 Number = Annotated[float, AfterValidator(_magnitude)]
 Positive = Annotated[float, Field(gt=0), AfterValidator(_magnitude)]
 NonNegative = Annotated[float, Field(ge=0), AfterValidator(_magnitude)]
+Poisson = Annotated[float, Field(gt=-1, lt=0.5)]
+Offset = Annotated[list[Number], Field(min_length=2, max_length=2)]
+Direction = Annotated[list[Number], Field(min_length=3, max_length=3), AfterValidator(_unit)]
 Pair = Annotated[str, AfterValidator(_pair)]
 
 

@@ -98,6 +98,7 @@ def run(
     scenes = _load(scene, changes, variant)
     wanted = runs.wanted([e.value for e in engine], model or [])
     jobs = runs.plan(scenes, wanted, out)
+    _warn(scenes)
     with terminal.progress(f"{len(jobs)} runs") as advance:
         done = runs.execute(jobs, advance)
     views.show_runs(done, as_json)
@@ -114,7 +115,9 @@ def explain(
     from compare import views
     from compare.explain import explanation
 
-    for one in _load(scene, changes, variant if variant is not None else ""):
+    scenes = _load(scene, changes, variant if variant is not None else "")
+    _warn(scenes)
+    for one in scenes:
         views.show_explanation(explanation(one), as_json)
 
 
@@ -162,6 +165,13 @@ def _load(scene: str, changes: list[str], variant: str | None) -> list[cases.Sce
     if variant is None:
         return cases.load(path, overrides)
     return [cases.load_variant(path, variant, overrides)]
+
+
+def _warn(scenes: list[cases.Scene]) -> None:
+    from cases.effects import warnings
+
+    for warning in dict.fromkeys(w for scene in scenes for w in warnings(scene)):
+        print(f"jointwave: {warning}", file=sys.stderr)
 
 
 def main() -> None:

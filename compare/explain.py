@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from cases.calibrate import Properties, calibrate
-from cases.effects import Effect, effects
+from cases.effects import Effect, effects, is_spatial
 from cases.scene import Scene
 from compare.engines import ENGINES, applies, exact_names
 from compare.exact.answer import Answer
@@ -38,8 +38,12 @@ def explanation(scene: Scene) -> Explanation:
 
 
 def _step(name: str, scene: Scene) -> StepChoice:
-    if name == "dem":
-        from dem.model import build as build_chain
+    if name == "dem" and is_spatial(scene):
+        from dem.spatial.simulate import prepare
+
+        _, _, time, critical = prepare(scene)
+    elif name == "dem":
+        from dem.axial.model import build as build_chain
 
         _, _, time, critical = build_chain(scene)
     else:

@@ -20,7 +20,12 @@ from compare.panels import Panel, panels
 from compare.style import FAMILIES, RC, WIDTH, in_order, is_engine, style
 
 #: Factor from SI to the unit that is drawn, and that unit.
-UNITS = {"stress": (1e-6, "MPa"), "velocity": (1.0, "m/s")}
+UNITS = {
+    "stress": (1e-6, "MPa"),
+    "shear": (1e-6, "MPa"),
+    "velocity": (1.0, "m/s"),
+    "rotation": (1e3, "mrad"),
+}
 
 DOTS = 160  # of the PNG, per inch
 
@@ -35,14 +40,15 @@ def draw(name: str, comparisons: list[Comparison]) -> Figure:
     with matplotlib.rc_context(RC):
         figure = Figure(figsize=(WIDTH, 1.0 + rows * (1.75 if rows > 2 else 2.3)))
         FigureCanvasAgg(figure)
-        axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
+        alike = len({UNITS[panel.quantity] for row in grid for panel in row}) == 1
+        axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=alike)
         for i, row in enumerate(grid):
             for j, panel in enumerate(row):
                 _draw_panel(axes[i, j], panel, f"{name}-{i}-{j}")
                 axes[i, j].set_title(
                     f"({chr(97 + i * columns + j)})  {panel.place}, {panel.variant}", pad=4
                 )
-        _label_axes(axes, grid[0][0].quantity)
+        _label_axes(axes, grid, alike)
         _add_legend(figure, {n for row in grid for panel in row for n in panel.curves})
     return figure
 
@@ -56,9 +62,10 @@ def _draw_panel(ax: Axes, panel: Panel, gid: str) -> None:
     ax.margins(x=0)
 
 
-def _label_axes(axes: np.ndarray, quantity: str) -> None:
-    for ax in axes[:, 0]:
-        ax.set_ylabel(f"{quantity} ({UNITS[quantity][1]})")
+def _label_axes(axes: np.ndarray, grid: list[list[Panel]], alike: bool) -> None:
+    for row, panels_of_row in zip(axes, grid, strict=True):
+        for ax, panel in zip(row[: 1 if alike else None], panels_of_row, strict=False):
+            ax.set_ylabel(f"{panel.quantity} ({UNITS[panel.quantity][1]})")
     for ax in axes[-1]:
         ax.set_xlabel("time (ms)")
 

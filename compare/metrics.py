@@ -10,6 +10,10 @@ import xarray as xr
 from scipy.signal import correlate, correlation_lags
 
 
+#: What a misfit is taken over: the first group that is not zero throughout.
+MEASURED = (("stress", "shear"), ("velocity",), ("rotation",))
+
+
 class Distance(NamedTuple):
     """All distances of one waveform from its reference; nan where one has no meaning.
 
@@ -45,12 +49,17 @@ def relative_l2(one: np.ndarray, other: np.ndarray) -> float:
 
 
 def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
-    """Return the relative L2 misfit of two results over all recorded stresses.
+    """Return the relative L2 misfit of two results over all recorded stresses, shears included.
 
-    Where no stress is recorded, over all velocities.
+    Where both results have none or only zeros of these, over all velocities, then all rotations. A
+    quantity that only one of them has is left out.
     """
-    quantity = "stress" if other.sizes["stress_y"] else "velocity"
-    return relative_l2(one[quantity].values, other[quantity].values)
+    for quantities in MEASURED:
+        shared = [q for q in quantities if q in one and q in other]
+        a, b = (np.concatenate([np.zeros(0), *(r[q].values.ravel() for q in shared)]) for r in (one, other))
+        if a.any() or b.any():
+            return relative_l2(a, b)
+    return 0.0
 
 
 def delay(one: np.ndarray, other: np.ndarray, dt: float) -> float:

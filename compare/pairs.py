@@ -1,8 +1,10 @@
 """A scene solved by all that applies to it, and how far apart the solutions are, pair by pair."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+import numpy as np
 import xarray as xr
 
 from cases.scene import Scene
@@ -21,11 +23,14 @@ class Pair(NamedTuple):
 NUMERICAL = "numerical error"
 MODELLING = "modelling error"
 ENGINES = "between engines"
+ROUND_OFF = 1e-9  # of the largest stress
+QUANTITIES = ("stress", "shear", "velocity", "rotation")
 
 PAIRS = (
     # Against the exact solution of the very model that the engine discretises.
     Pair("dem", "lattice", NUMERICAL),
     Pair("dem", "no-tension-chain", NUMERICAL),
+    Pair("dem", "spatial-lattice", NUMERICAL),
     Pair("continuum-jointed", "jointed-bar", NUMERICAL),
     Pair("continuum-equivalent", "equivalent-bar", NUMERICAL),
     Pair("continuum-equivalent", "images", NUMERICAL),
@@ -35,6 +40,9 @@ PAIRS = (
     Pair("dem", "jointed-bar", MODELLING),
     Pair("dem", "equivalent-bar", MODELLING),
     Pair("continuum-equivalent", "jointed-bar", MODELLING),
+    # Against one mechanism alone.
+    Pair("dem", "slip-joint", MODELLING),
+    Pair("dem", "sliding-block", MODELLING),
     Pair("dem", "continuum-jointed", ENGINES),
     Pair("dem", "continuum-equivalent", ENGINES),
     Pair("continuum-equivalent", "continuum-jointed", ENGINES),
@@ -77,21 +85,44 @@ def compare(scene: Scene, progress: Progress | None = None, spectral: bool = Fal
             comparison.reasons[name] = answer.reason
         if progress:
             progress((i + 1) / len(everything))
-    comparison.rows = measure(comparison.results, spectral)
+    displaced = scene.gravity is not None or scene.prestress is not None
+    comparison.rows = measure(comparison.results, spectral, displaced)
     return comparison
 
 
-def measure(results: dict[str, xr.Dataset], spectral: bool = False) -> list[Row]:
-    """Return the distances of every pair that is there, at every receiver."""
+def measure(
+    results: dict[str, xr.Dataset], spectral: bool = False, displacement: bool = False
+) -> list[Row]:
+    """Return the distances of every pair that is there, at every receiver.
+
+    Shear and rotation are measured where both results have them, displacement on request. A stress
+    or shear that is round-off beside the other is left out, as is what nothing moves in space.
+    """
     rows = []
     for pair in PAIRS:
         if pair.one not in results or pair.other not in results:
             continue
         one, other = results[pair.one], results[pair.other]
-        for quantity in ("stress", "velocity"):
-            for i, y in enumerate(other[f"{quantity}_y"].values):
-                a, b = one[quantity].values[i], other[quantity].values[i]
-                dt = float(other.time[1] - other.time[0])
-                found = distance(a.ravel(), b.ravel(), dt, spectral)
-                rows.append(Row(pair, quantity, float(y), found))
+        dt = float(other.time[1] - other.time[0])
+        for quantity in (*QUANTITIES, *(["displacement"] * displacement)):
+            if quantity in one and quantity in other:
+                rows += [
+                    Row(pair, quantity, y, distance(a, b, dt, spectral))
+                    for y, a, b in _waveforms(one, other, quantity)
+                ]
     return rows
+
+
+def _waveforms(
+    one: xr.Dataset, other: xr.Dataset, quantity: str
+) -> Iterator[tuple[float, np.ndarray, np.ndarray]]:
+    """Yield each receiver's y and both waveforms [n]; of vectors, one component after the other."""
+    silent = 0.0
+    if quantity in ("stress", "shear"):
+        forces = [x[k].values for x in (one, other) for k in ("stress", "shear") if k in x]
+        silent = ROUND_OFF * max((np.abs(x).max() for x in forces if x.size), default=0.0)
+    places = other["stress_y" if quantity in ("stress", "shear") else "velocity_y"].values
+    for i, y in enumerate(places):
+        a, b = (x[quantity].values[i].T.ravel() for x in (one, other))
+        if "shear" not in other or max(np.abs(a).max(), np.abs(b).max()) > silent:
+            yield float(y), a, b

@@ -4,25 +4,40 @@ from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from cases.scene import Scene
 from compare.pairs import Comparison
 from compare.style import in_order
 
 
+#: SI units of what panels show.
+UNITS = {"stress": "Pa", "shear": "Pa", "velocity": "m/s", "rotation": "rad"}
+
+
 class Panel(NamedTuple):
-    """One panel: the receiver-th place (at y, m) of a quantity in one variant."""
+    """One panel: the receiver-th place (at y, m) of a quantity in one variant.
+
+    component : the index of the one that is shown, None where the quantity has only one.
+    """
 
     comparison: Comparison
     variant: str
     quantity: str
     receiver: int
     y: float
+    component: int | None = None
 
     @property
     def place(self) -> str:
-        """Quantity and receiver, in words."""
-        return f"{self.quantity} at y = {self.y:g} m"
+        """Quantity, component and receiver, in words."""
+        return f"{self.quantity}{self._axis} at y = {self.y:g} m"
+
+    @property
+    def _axis(self) -> str:
+        if self.component is None:
+            return ""
+        return f" {'xz'[self.component] if self.quantity == 'shear' else 'xyz'[self.component]}"
 
     @property
     def curves(self) -> dict[str, pd.Series]:
@@ -30,22 +45,47 @@ class Panel(NamedTuple):
         curves = {}
         for name in in_order(set(self.comparison.results)):
             result = self.comparison.results[name]
-            values = result[self.quantity].values[self.receiver].ravel()
-            curves[name] = pd.Series(values, np.round(result.time.values, 12))
+            if self.quantity in result:
+                values = result[self.quantity].values[self.receiver]
+                values = values.ravel() if self.component is None else values[:, self.component]
+                curves[name] = pd.Series(values, np.round(result.time.values, 12))
         return curves
 
 
 def panels(comparisons: list[Comparison]) -> list[list[Panel]]:
-    """Return the grid of panels: variants down and receivers across, or receivers down."""
+    """Return the grid of panels: variants down and receivers across, or receivers down.
+
+    Of a spatial scene each shows the largest component: of stress and shear, of velocity, and of
+    rotation where nothing is displaced.
+    """
     rows = []
     for comparison, name in zip(comparisons, variant_names(comparisons), strict=True):
         record = comparison.scene.record
-        stress = [Panel(comparison, name, "stress", i, y) for i, y in enumerate(record.stress)]
-        speed = [Panel(comparison, name, "velocity", i, y) for i, y in enumerate(record.velocity)]
-        rows.append(stress + speed)
+        places = [(("stress", "shear"), i, y) for i, y in enumerate(record.stress)]
+        places += [(("velocity",), i, y) for i, y in enumerate(record.velocity)]
+        rows.append([_panel(comparison, name, *place) for place in places])
     if len(rows) == 1 and len(rows[0]) > 2:
         return [[panel] for panel in rows[0]]
     return rows
+
+
+def _panel(
+    comparison: Comparison, name: str, quantities: tuple[str, ...], receiver: int, y: float
+) -> Panel:
+    """Return the panel of the quantity and component with the largest peak at a receiver."""
+    first = comparison.results[in_order(set(comparison.results))[0]]
+    found = {q: _peaks(first, q, receiver) for q in quantities if q in first}
+    if not any(peaks.any() for peaks in found.values()) and "rotation" in first:
+        found = {"rotation": _peaks(first, "rotation", receiver)}
+    quantity = max(found, key=lambda q: found[q].max())
+    component = int(found[quantity].argmax()) if len(found[quantity]) > 1 else None
+    return Panel(comparison, name, quantity, receiver, y, component)
+
+
+def _peaks(result: xr.Dataset, quantity: str, receiver: int) -> np.ndarray:
+    """Return the largest magnitude of every component."""
+    values = np.abs(result[quantity].values[receiver])
+    return values.reshape(len(values), -1).max(axis=0)
 
 
 def variant_names(comparisons: list[Comparison]) -> list[str]:
@@ -65,7 +105,8 @@ def _base_name(base: Scene, variants: list[Scene]) -> str:
         "tension": "no tension" if base.joints.tension is False else "tension",
     }
     changed = {key for v in variants for key in words if _part(v, key) != _part(base, key)}
-    return ", ".join(words[key] for key in words if key in changed) or words["damping"]
+    unknown = "as it stands" if variants else words["damping"]
+    return ", ".join(words[key] for key in words if key in changed) or unknown
 
 
 def _part(scene: Scene, key: str) -> object:
@@ -86,7 +127,7 @@ def curve_table(comparisons: list[Comparison]) -> pd.DataFrame:
     columns = {}
     for row in panels(comparisons):
         for panel in row:
-            unit = "Pa" if panel.quantity == "stress" else "m/s"
+            unit = UNITS[panel.quantity]
             for name, curve in panel.curves.items():
                 columns[f"{name} | {panel.place} | {panel.variant} ({unit})"] = curve
     return pd.DataFrame(columns).rename_axis("time (s)")

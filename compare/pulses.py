@@ -7,6 +7,7 @@ c and back from the other end.
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from cases.calibrate import calibrate
 from cases.loads import load_history
@@ -17,15 +18,19 @@ from compare.style import in_order, is_engine
 
 
 def waveforms(comparison: Comparison, quantity: str, index: int) -> dict[str, pd.Series]:
-    """Return each engine's waveform at the index-th receiver of a quantity."""
+    """Return each engine's waveform at the index-th receiver of a quantity, along y."""
     return {
-        name: pd.Series(
-            comparison.results[name][quantity].values[index].ravel(),
-            comparison.results[name].time.values,
-        )
+        name: _along_axis(comparison.results[name], quantity, index)
         for name in in_order(set(comparison.results))
         if is_engine(name)
     }
+
+
+def _along_axis(result: xr.Dataset, quantity: str, index: int) -> pd.Series:
+    waveform = result[quantity][index]
+    if "axis" in waveform.dims:
+        waveform = waveform.sel(axis="y")
+    return pd.Series(waveform.values, result.time.values)
 
 
 def arrivals(scene: Scene, y: float) -> list[float]:

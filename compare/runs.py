@@ -1,5 +1,6 @@
 """The runs that `jointwave run` was asked for: checked first, then executed, each file whole."""
 
+import json
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,12 +22,16 @@ class Job(NamedTuple):
 
 
 class Done(NamedTuple):
-    """One result that was made, with what it cost."""
+    """One result that was made, with what it cost.
+
+    fragments : the pieces between broken joints, see `dem.fragments`; None where none can break.
+    """
 
     job: Job
     steps: int
     seconds: float
     residual: float | None
+    fragments: list[dict] | None
 
 
 def wanted(engines: list[str], models: list[str]) -> list[tuple[str, str | None]]:
@@ -68,17 +73,29 @@ def execute(jobs: list[Job], progress: Progress) -> list[Done]:
     for i, job in enumerate(jobs):
         result = _solve(job, part_of(i))
         write_fields(job.path, result)
-        energy = result.variables.get("energy")
         done.append(
             Done(
                 job,
                 int(result.attributes.get("steps", 0)),
                 float(result.attributes.get("seconds_stepping", 0.0)),
-                imbalance(energy[1]) if energy else None,
+                _residual(result),
+                _fragments(result),
             )
         )
         progress((i + 1) / len(jobs))
     return done
+
+
+def _fragments(result: Fields) -> list[dict] | None:
+    text = result.attributes.get("fragments")
+    return None if text is None else json.loads(text)
+
+
+def _residual(result: Fields) -> float | None:
+    if "energy" not in result.variables:
+        return None
+    terms = {**result.variables, **result.coords}["term"][1]
+    return imbalance(result.variables["energy"][1], terms.tolist())
 
 
 def _solve(job: Job, progress: Progress) -> Fields:

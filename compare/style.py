@@ -46,6 +46,9 @@ FAMILIES: dict[str, dict[str, Style]] = {
         "dem": Style("#56b4e9", 2.2, "-", 2),
         "lattice": Style("#00349a", 1.1, _slot(0, 4), 9),
         "no-tension-chain": Style("#00349a", 1.1, _slot(0, 9), 9),
+        "spatial-lattice": Style("#00349a", 1.1, _slot(0, 9), 9),
+        "slip-joint": Style("#a83200", 1.1, _slot(9, 18), 8),
+        "sliding-block": Style("#a83200", 1.1, _slot(9, 18), 8),
     },
     "Intact rock and joints": {
         "continuum-jointed": Style("#f0a030", 3.4, "-", 1),

@@ -15,6 +15,7 @@ from compare.panels import variant_names
 MEANING = {
     "dem ~ lattice": "time stepping of the rigid blocks",
     "dem ~ no-tension-chain": "time stepping of the rigid blocks that open and close",
+    "dem ~ spatial-lattice": "time stepping of the rigid blocks in space",
     "continuum-jointed ~ jointed-bar": "elements and time stepping of the jointed rock",
     "continuum-equivalent ~ equivalent-bar": "elements and time stepping of the homogenised bar",
     "continuum-equivalent ~ images": "the same, against d'Alembert's images",
@@ -23,6 +24,8 @@ MEANING = {
     "dem ~ jointed-bar": "rigid instead of deformable blocks",
     "dem ~ equivalent-bar": "the paper's own comparison: discrete blocks against a smooth bar",
     "continuum-equivalent ~ jointed-bar": "joints smeared out over the bar",
+    "dem ~ slip-joint": "discrete blocks around the joint that slips",
+    "dem ~ sliding-block": "blocks on springs, which settle first",
     "dem ~ continuum-jointed": "engine against engine, same joints",
     "dem ~ continuum-equivalent": "engine against engine, joints against none",
     "continuum-equivalent ~ continuum-jointed": "one engine, with and without joints",

@@ -1,12 +1,14 @@
 """What each command shows: its findings as tables, or the same facts as JSON."""
 
-from math import isnan
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from cases.result import energy_residual
 from cases.scene import Scene
 from compare.terminal import print_json, say, show_numbers, show_table
+
+MOST_PIECES = 8  # in a line
 
 
 def show_scenes(rows: list[tuple[Path, list[Scene]]], as_json: bool) -> None:
@@ -36,6 +38,7 @@ def show_runs(done: list[Any], as_json: bool) -> None:
             "seconds_stepping": d.seconds,
             "energy_residual": d.residual,
             "file": str(d.job.path),
+            "fragments": d.fragments,
         }
         for d in done
     ]
@@ -44,6 +47,26 @@ def show_runs(done: list[Any], as_json: bool) -> None:
         return
     columns = ["variant", "engine", "steps", "stepping, s", "energy residual", "file"]
     show_table(columns, [_run_cells(d) for d in done])
+    for d in done:
+        if d.fragments is not None:
+            say(f"{d.job.scene.name or d.job.name}: {_what_broke(d.fragments)}")
+
+
+def _what_broke(fragments: list[dict[str, Any]]) -> str:
+    """Return in one line how many joints broke, and the pieces between them."""
+    count = len(fragments) - 1
+    if not count:
+        return "no joint broke"
+    broke = f"{count} joint{'s' * (count > 1)} broke; fragments: "
+    pieces = [_piece(f) for f in fragments[:MOST_PIECES]]
+    left_out = [f"{len(fragments) - MOST_PIECES} more"] if len(fragments) > MOST_PIECES else []
+    return broke + ", ".join(pieces + left_out)
+
+
+def _piece(fragment: dict[str, Any]) -> str:
+    v = fragment["velocity"]
+    speed = f"{v:.3g}" if isinstance(v, float) else f"({', '.join(f'{x:.3g}' for x in v)})"
+    return f"{fragment['from_y']:g} to {fragment['to_y']:g} m at {speed} m/s"
 
 
 def _run_cells(done: Any) -> list[str]:
@@ -121,7 +144,7 @@ def _distance_cells(row: Any) -> list[str]:
     return [
         f"{row.pair.one} ~ {row.pair.other}",
         f"{row.quantity} {row.y:g} m",
-        f"{d.misfit:.3%}",
+        _number(d.misfit, ".3%"),
         _number(d.peak_ratio, ".4f"),
         _number(1e3 * d.delay, "+.3f"),
         _number(d.period_ratio, ".4f"),
@@ -131,7 +154,7 @@ def _distance_cells(row: Any) -> list[str]:
 
 
 def _number(x: float | None, form: str) -> str:
-    return "-" if x is None or isnan(x) else format(x, form)
+    return format(x, form) if x is not None and isfinite(x) else "-"
 
 
 def _comparison_facts(comparison: Any) -> dict[str, Any]:

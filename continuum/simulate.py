@@ -8,7 +8,8 @@ import numba
 import numpy as np
 import xarray as xr
 
-from cases.calibrate import calibrate
+from cases.calibrate import Properties, calibrate
+from cases.effects import is_spatial
 from cases.errors import SceneError, UnstableError
 from cases.result import dataset
 from cases.sampling import Clock
@@ -27,6 +28,9 @@ RUNAWAY = 100  # times the highest speed that the load can cause
 def applies(scene: Scene, model: str = "jointed") -> str:
     """Return "" where this model can simulate the scene, else the reason why not."""
     p = calibrate(scene)
+    reason = _beyond_the_bar(scene, p)
+    if reason:
+        return reason
     if model == "jointed":
         return "" if p.intact_modulus else "the jointed rock needs rock.intact_modulus"
     excess = p.excess_compliance
@@ -36,6 +40,22 @@ def applies(scene: Scene, model: str = "jointed") -> str:
         return "a joint stiffer than the others cannot be added to the homogenised bar"
     if p.damps_alone.any():
         return "a homogenised bar cannot damp one ordinary joint by itself"
+    return ""
+
+
+def _beyond_the_bar(scene: Scene, p: Properties) -> str:
+    if is_spatial(scene):
+        return "the bar has no motion across its axis"
+    if p.tensile_strength is not None:
+        return "its joints have no tensile strength that softens"
+    if scene.gravity is not None:
+        return "the bar has no weight"
+    if scene.prestress is not None:
+        return "the bar has no stress before the load"
+    if p.mass_damping is not None or p.local_damping is not None:
+        return "the bar is damped by its strain rate alone"
+    if scene.ends.start == "fixed":
+        return "the loaded end of the bar can be neither fixed nor shaken"
     return ""
 
 

@@ -21,7 +21,7 @@ def cache_directory(root: Path) -> Path:
     """
     digest = hashlib.sha256(numba.__version__.encode())
     for package in PACKAGES:
-        for source in sorted((root / package).glob("*.py")):
+        for source in sorted((root / package).rglob("*.py")):
             digest.update(source.read_bytes())
     base = os.environ.get("NUMBA_CACHE_DIR") or Path(
         os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache", "jointwave", "numba"
@@ -33,8 +33,14 @@ numba.config.CACHE_DIR = str(cache_directory(Path(__file__).resolve().parent.par
 
 
 def jitted(function: Callable) -> Callable:
-    """Compile a kernel: cached on disk, IEEE arithmetic (fastmath would break bit-identity)."""
-    kernel = numba.njit(cache=True, fastmath=False, error_model="numpy")(function)
+    """Compile a kernel: cached on disk, IEEE arithmetic (fastmath would break bit-identity).
+
+    Kernels become part of their callers, so that absent parts fall away and loops over many
+    blocks are vectorised; they hold no lock of Python's, so that threads run side by side.
+    """
+    kernel = numba.njit(
+        cache=True, fastmath=False, error_model="numpy", forceinline=True, nogil=True
+    )(function)
     kernel._cache.save_overload = _one_at_a_time(kernel._cache.save_overload)
     return kernel
 

@@ -22,7 +22,7 @@ def pillar():
 
     def scene(**changes):
         overrides = {key.replace("__", "."): value for key, value in changes.items()}
-        return cases.load_variant(PILLAR, "", overrides)
+        return cases.load_variant(PILLAR, "", {"variants": []} | overrides)
 
     return scene
 

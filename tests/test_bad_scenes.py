@@ -61,6 +61,8 @@ name = "undamped"
 
 SPEEDS = "p_speed = 2200.0\ns_speed = 800.0"
 SINE = 'shape = "sine"\namplitude = 1.0e6\nperiod = 0.01'
+TENSILE = "tensile_strength = 1e5\nfracture_energy = 1.0"
+RAYLEIGH = "rayleigh = { frequencies = [10.0, 20.0], ratios = [0.02, 0.02] }"
 LAYER = "[[soft_layers]]\ny = 20.0\nspacing_stiffness = 4.375e8\n"
 
 MISTAKES = {
@@ -200,12 +202,164 @@ MISTAKES = {
     "zero direction": (
         "period = 0.01",
         "period = 0.01\ndirection = [0, 0, 0]",
-        ["load.direction = [0.0, 0.0, 0.0]", "unit vector"],
+        ["load.direction = [0, 0, 0]", "unit vector"],
     ),
     "direction in a plane": (
         "period = 0.01",
         "period = 0.01\ndirection = [0, 1]",
         ["load.direction = [0, 1]", "3 numbers"],
+    ),
+    "unknown quantity": (
+        "[load]",
+        '[load]\nquantity = "force"',
+        ["load.quantity = 'force'", "'stress', 'velocity'"],
+    ),
+    "a load beside the face": (
+        "[load]",
+        "[load]\nat = [0.0, 0.3]",
+        ["load.at = [0.0, 0.3]", "on the face, within 0.25 m"],
+    ),
+    "an eccentric couple": (
+        "[load]",
+        "[load]\nat = [0.1, 0.0]\narm = 0.2",
+        ["load.arm = 0.2", "has no load.at"],
+    ),
+    "an eccentric load on blocks that do not turn": (
+        "[load]",
+        '[motion]\nrotation = "none"\n[load]\nat = [0.1, 0.0]',
+        ["load.at = [0.1, 0.0]", "motion.rotation = 'none'"],
+    ),
+    "a couple on blocks that do not turn": (
+        "[load]",
+        '[motion]\nrotation = "none"\n[load]\narm = 0.1',
+        ["load.arm = 0.1", "motion.rotation = 'none'"],
+    ),
+    "a stress on a fixed start": (
+        "[ends]",
+        '[ends]\nstart = "fixed"',
+        ["ends.start = 'fixed'", "'velocity' or 'acceleration'"],
+    ),
+    "a shaken start that is free": (
+        "[load]",
+        '[load]\nquantity = "velocity"',
+        ["load.quantity = 'velocity'", "ends.start = 'fixed'"],
+    ),
+    "an eccentric motion": (
+        "[load]",
+        '[load]\nquantity = "velocity"\nat = [0.1, 0.0]',
+        ["load.at = [0.1, 0.0]", "no meaning for load.quantity 'velocity'"],
+    ),
+    "an acceleration with an arm": (
+        "[load]",
+        '[load]\nquantity = "acceleration"\narm = 0.1',
+        ["load.arm = 0.1", "no meaning for load.quantity 'acceleration'"],
+    ),
+    # the strength of joints
+    "strength without fracture energy": (
+        "[joints]",
+        "[joints]\ntensile_strength = 1e5",
+        ["joints.fracture_energy", "is needed with joints.tensile_strength"],
+    ),
+    "a layer's fracture energy without strength": (
+        LAYER,
+        LAYER + "fracture_energy = 10.0\n",
+        ["soft_layers[0].tensile_strength", "is needed with soft_layers[0].fracture_energy"],
+    ),
+    "strength where tension is barred": (
+        "[joints]",
+        f"[joints]\ntension = false\n{TENSILE}",
+        ["joints.tension = false", "tensile_strength says otherwise"],
+    ),
+    "strength where tension is carried": (
+        "[joints]",
+        f"[joints]\ntension = true\n{TENSILE}",
+        ["joints.tension = true", "tensile_strength says otherwise"],
+    ),
+    "a layer that inherits its strength": (
+        f"damping_ratio = 0.02\n\n{LAYER}",
+        f"{TENSILE}\n{LAYER}tension = false\n",
+        ["soft_layers[0].tension = false", "tensile_strength says otherwise"],
+    ),
+    "a fracture energy that snaps back": (
+        "[joints]",
+        "[joints]\ntensile_strength = 1e5\nfracture_energy = 0.5",
+        ["joints.fracture_energy = 0.5", "snaps back", "at least 0.5716 J/m2"],
+    ),
+    "a soft layer that snaps back": (
+        "[joints]",
+        f"[joints]\n{TENSILE}",
+        ["soft_layers[0].fracture_energy = 1.0", "snaps back", "at least 5.744 J/m2"],
+    ),
+    "residual cohesion alone": (
+        "[joints]",
+        "[joints]\nresidual_cohesion = 1e4",
+        ["joints.residual_cohesion = 10000.0", "needs a cohesion"],
+    ),
+    "residual cohesion above cohesion": (
+        "[joints]",
+        "[joints]\ncohesion = 1e4\nresidual_cohesion = 2e4",
+        ["joints.residual_cohesion = 20000.0", "at most the cohesion 10000 Pa"],
+    ),
+    "a layer's residual above the joints' cohesion": (
+        f"damping_ratio = 0.02\n\n{LAYER}",
+        f"cohesion = 1e4\n\n{LAYER}residual_cohesion = 2e4\n",
+        ["soft_layers[0].residual_cohesion = 20000.0", "at most the cohesion 10000 Pa"],
+    ),
+    "a vertical friction angle": (
+        "[joints]",
+        "[joints]\nfriction_angle = 90.0",
+        ["joints.friction_angle = 90.0", "less than 90"],
+    ),
+    "contact points of one layer": (
+        LAYER,
+        LAYER + "contact_points = 3\n",
+        ["soft_layers.contact_points = 3", "is for all joints"],
+    ),
+    "point rule of one layer": (
+        LAYER,
+        LAYER + 'point_rule = "gauss"\n',
+        ["soft_layers.point_rule = 'gauss'", "is for all joints"],
+    ),
+    # damping and gravity
+    "Rayleigh's damping and a damping ratio": (
+        "[ends]",
+        f"[damping]\n{RAYLEIGH}\n[ends]",
+        ["joints.damping_ratio = 0.02", "damping.rayleigh defines", "give one"],
+    ),
+    "Rayleigh's damping and a layer's ratio": (
+        f"damping_ratio = 0.02\n\n{LAYER}",
+        f"\n{LAYER}damping_ratio = 0.1\n[damping]\n{RAYLEIGH}\n",
+        ["soft_layers[0].damping_ratio = 0.1", "damping.rayleigh defines", "give one"],
+    ),
+    "two mass-proportional dampings": (
+        "[ends]",
+        f"[damping]\nmass_proportional = 3.0\n{RAYLEIGH}\n[ends]",
+        ["damping.mass_proportional = 3.0", "damping.rayleigh defines", "give one"],
+    ),
+    "Rayleigh's ratios too far apart": (
+        "[ends]",
+        "[damping]\nrayleigh = { frequencies = [10.0, 20.0], ratios = [0.01, 0.1] }\n[ends]",
+        ["damping.rayleigh.ratios = [0.01, 0.1]", "alpha = -6.702 1/s", "beta = 0.002016 s"],
+    ),
+    "Rayleigh's frequencies not in order": (
+        "[ends]",
+        "[damping]\nrayleigh = { frequencies = [20.0, 20.0], ratios = [0.1, 0.1] }\n[ends]",
+        ["damping.rayleigh.frequencies = [20.0, 20.0]", "increasing"],
+    ),
+    "local damping of one": (
+        "[ends]",
+        "[damping]\nlocal = 1.0\n[ends]",
+        ["damping.local = 1.0", "less than 1"],
+    ),
+    "gravity along no unit vector": (
+        "[ends]",
+        "[gravity]\ndirection = [0, 2, 0]\n[ends]",
+        ["gravity.direction = [0, 2, 0]", "unit vector"],
+    ),
+    "static gravity on a pillar that nothing holds": (
+        "[ends]",
+        "[gravity]\ndirection = [0, 1, 0]\n[ends]",
+        ["gravity.static = true", "a fixed end, or gravity.static = false"],
     ),
     # variants and expectations
     "variants not tables": (

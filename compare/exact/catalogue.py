@@ -11,6 +11,9 @@ from compare.exact import (
     no_tension,
     one_joint,
     series,
+    sliding_block,
+    sliding_joint,
+    spatial_lattice,
 )
 
 #: Each module has NAME, applies(scene) -> Answer and solve(scene) -> xarray.Dataset; what they
@@ -26,5 +29,8 @@ CATALOGUE: dict[str, ModuleType] = {
         series,
         kelvin_voigt,
         one_joint,
+        spatial_lattice,
+        sliding_joint,
+        sliding_block,
     )
 }

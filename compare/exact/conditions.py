@@ -1,6 +1,28 @@
 """What the solutions ask of a scene before they hold."""
 
-from cases.calibrate import Properties
+from cases.calibrate import Properties, calibrate
+from cases.effects import is_spatial
+from cases.scene import Scene
+
+
+def beyond(scene: Scene, *held: str) -> str | None:
+    """Return why a solution does not hold for a scene, None where it does.
+
+    held : what the solution holds for, of "spatial motion", "reversed load", "gravity",
+        "prestress" and "mass damping".
+    """
+    p = calibrate(scene)
+    physics = {
+        "spatial motion": (is_spatial(scene), "the motion is spatial"),
+        "reversed load": (scene.load.direction[1] < 0, "the load acts against the axis"),
+        "softening": (p.tensile_strength is not None, "a joint has a tensile strength"),
+        "gravity": (scene.gravity is not None, "gravity acts"),
+        "prestress": (scene.prestress is not None, "the joints are prestressed"),
+        "mass damping": (bool(p.mass_damping), "the damping is proportional to mass"),
+        "local damping": (bool(p.local_damping), "the damping is local, which is not linear"),
+    }
+    reasons = (why for name, (there, why) in physics.items() if there and name not in held)
+    return next(reasons, None)
 
 
 def rock_is_damped(p: Properties) -> bool:

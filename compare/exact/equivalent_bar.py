@@ -13,7 +13,7 @@ import xarray as xr
 from cases.calibrate import calibrate
 from cases.scene import Scene
 from compare.exact.answer import YES, Answer, no
-from compare.exact.conditions import bars_tension
+from compare.exact.conditions import bars_tension, beyond
 from compare.exact.laplace import Bar, end_of, solved
 
 NAME = "equivalent-bar"
@@ -22,6 +22,8 @@ NAME = "equivalent-bar"
 def applies(scene: Scene) -> Answer:
     """Return whether the scene's homogenised bar is linear and its layers add compliance."""
     p = calibrate(scene)
+    if reason := beyond(scene):
+        return no(reason)
     if bars_tension(p):
         return no("a joint bars tension")
     if (p.excess_compliance < 0).any():

@@ -24,7 +24,7 @@ from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
 from compare.exact.answer import YES, Answer, no
-from compare.exact.conditions import bars_tension, has_interfaces, joints_are_damped
+from compare.exact.conditions import bars_tension, beyond, has_interfaces, joints_are_damped
 
 NAME = "images"
 
@@ -37,6 +37,8 @@ ENTERS = {"free": 1.0, "quiet": 0.5, "matched": 0.5}
 def applies(scene: Scene) -> Answer:
     """Return whether images are the exact solution of the scene's homogenised bar."""
     p = calibrate(scene)
+    if reason := beyond(scene):
+        return no(reason)
     if bars_tension(p):
         return no("a joint bars tension")
     if joints_are_damped(p):

@@ -14,7 +14,7 @@ import xarray as xr
 from cases.calibrate import calibrate
 from cases.scene import Scene
 from compare.exact.answer import YES, Answer, no
-from compare.exact.conditions import bars_tension
+from compare.exact.conditions import bars_tension, beyond
 from compare.exact.laplace import Bar, end_of, solved
 
 NAME = "jointed-bar"
@@ -23,6 +23,8 @@ NAME = "jointed-bar"
 def applies(scene: Scene) -> Answer:
     """Return whether the scene is a linear bar of known intact rock."""
     p = calibrate(scene)
+    if reason := beyond(scene):
+        return no(reason)
     if p.own_stiffness is None:
         return no("rock.intact_modulus is not given")
     if bars_tension(p):

@@ -26,7 +26,7 @@ from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
 from compare.exact.answer import YES, Answer, no
-from compare.exact.conditions import bars_tension, has_interfaces, rock_is_damped
+from compare.exact.conditions import bars_tension, beyond, has_interfaces, rock_is_damped
 from compare.exact.series import rigid
 
 NAME = "kelvin-voigt"
@@ -36,6 +36,8 @@ SPLIT = 1e-5  # least distance of a mode's roots: q_n is even in it, so it costs
 def applies(scene: Scene) -> Answer:
     """Return whether the scene's homogenised bar is damped, free, uniform, and under a sine."""
     p = calibrate(scene)
+    if reason := beyond(scene):
+        return no(reason)
     if bars_tension(p):
         return no("a joint bars tension")
     if not rock_is_damped(p):

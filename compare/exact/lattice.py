@@ -5,28 +5,38 @@ dashpots and with free ends its modes are omega_n = 2 sqrt(k/m) sin(n pi / 2N) o
 cos(n pi (j - 1/2) / N), j = 1..N; Kelvin-Voigt dashpots are proportional and damp each mode at the
 rate eta omega_n^2 / 2 (Brillouin, Wave Propagation in Periodic Structures, 1946).
 
-Holds for any load, soft layers, dashpots and ends; every joint carries tension.
+The solution is a sum: what the drive does from rest, the static state under gravity (or what
+gravity does that acts suddenly), and the prestress.
+
+Holds for any load or shaken base, soft layers, dashpots, mass-proportional damping, ends, gravity
+along the axis and prestress; every joint carries tension.
 """
+
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 
 from cases.calibrate import calibrate
-from cases.loads import load_history
+from cases.loads import Step
 from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
 from compare.exact.answer import YES, Answer, no
 from compare.exact.chain import Chain, chain, rates, receivers
-from compare.exact.conditions import bars_tension
+from compare.exact.conditions import bars_tension, beyond
+from compare.exact.drive import drive
 from compare.exact.linear import response
 
 NAME = "lattice"
 MOST_BLOCKS = 2000
+HELD = ("reversed load", "gravity", "prestress", "mass damping")
 
 
 def applies(scene: Scene) -> Answer:
     """Return whether the scene's chain of rigid blocks is linear and not too long."""
+    if reason := beyond(scene, *HELD):
+        return no(reason)
     if bars_tension(calibrate(scene)):
         return no("a joint bars tension")
     if scene.pillar.block_count > MOST_BLOCKS:
@@ -36,28 +46,56 @@ def applies(scene: Scene) -> Answer:
 
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, velocity and displacement of the scene's rigid-block chain."""
-    model, load, times = chain(scene), load_history(scene), sample_times(scene)
+    model, signal, times = chain(scene), drive(scene), sample_times(scene)
     matrix, vector = state_space(model)
-    output = np.concatenate(receivers(scene, model, np.eye(model.size)), axis=1).T
-    out = response(matrix, vector, output, load, times).T
+    standing, rest = np.zeros(model.size), at_rest(scene, model)
+    alone = np.concatenate(receivers(scene, model, standing))
+    output = np.concatenate(receivers(scene, model, np.eye(model.size)), axis=1).T - alone[:, None]
+    out = response(matrix, vector, output, signal, times) + output @ rest + alone
+    if model.gravity and not rest.any():
+        out += response(matrix, rates(model, standing), output, Step(1.0), times)
     stress, velocity, displacement = np.split(
-        out, np.cumsum([len(scene.record.stress), len(scene.record.velocity)])
+        out.T, np.cumsum([len(scene.record.stress), len(scene.record.velocity)])
     )
-    direct, _, _ = receivers(scene, model, np.zeros(model.size), load=model.area)
-    stress = stress + np.outer(direct, load.value(times))
-    return dataset(scene, NAME, times, stress, velocity, displacement)
+    direct = receivers(scene, model, standing, model.gain)[0] - alone[: len(scene.record.stress)]
+    return dataset(
+        scene,
+        NAME,
+        times,
+        stress + np.outer(direct, signal.value(times)),
+        velocity,
+        displacement,
+    )
 
 
 def state_space(model: Chain) -> tuple[np.ndarray, np.ndarray]:
-    """Return A [size, size] (1/s) and b [size] of x' = A x + b f, f the end stress in Pa."""
-    matrix = rates(model, np.eye(model.size)).T
-    return matrix, rates(model, np.zeros(model.size), load=model.area)
+    """Return A [size, size] (1/s) and b [size] of x' = A x + b f, f the scene's `drive` signal."""
+    standing = np.zeros(model.size)
+    still = rates(model, standing)
+    matrix = (rates(model, np.eye(model.size)) - still).T
+    return matrix, rates(model, standing, model.gain) - still
+
+
+def at_rest(scene: Scene, model: Chain) -> np.ndarray:
+    """Return the state [size] that the chain starts from: at rest, under static gravity if any.
+
+    Every joint is taken to carry tension; faces that no equation moves stay at zero.
+    """
+    state = np.zeros(model.size)
+    if scene.gravity is None or not scene.gravity.static:
+        return state
+    linear = replace(model, tension=np.ones_like(model.tension))
+    matrix, _ = state_space(linear)
+    moves = matrix.any(axis=1)
+    weight = rates(linear, state)[moves]
+    state[moves] = np.linalg.solve(matrix[np.ix_(moves, moves)], -weight)
+    return state
 
 
 def frequencies(stiffness: float, mass: float, block_count: int) -> np.ndarray:
     """Return the chain's N natural frequencies (rad/s), undamped, free ends; the first is rigid.
 
-    stiffness in N/m, mass in kg.
+    stiffness in N/m, mass in kg; or of torsion in N m and kg m2.
     """
     n = np.arange(block_count)
     return 2 * np.sqrt(stiffness / mass) * np.sin(n * np.pi / (2 * block_count))

@@ -1,25 +1,37 @@
-"""Leapfrog on the uniform undamped free-free chain, in closed form: the rigid-block engine itself.
+"""Leapfrog on a linear undamped system, in closed form: the rigid-block engine itself.
 
-    m (v^{n+1/2} - v^{n-1/2}) = dt (F^n - K u^n),   u^{n+1} = u^n + dt v^{n+1/2},   at rest at n = 0
+    M (v^{n+1/2} - v^{n-1/2}) = dt (F^n - K u^n),   u^{n+1} = u^n + dt v^{n+1/2},   at rest at n = 0
 
-decouples in the chain's modes. With sin(Omega dt / 2) = omega_n dt / 2, the discrete Green's
+decouples in the modes of (M, K). With sin(Omega dt / 2) = omega_n dt / 2, the discrete Green's
 function of each mode gives
 
     q^j = (dt^2 / m_n) sum_{k < j} F^k sin((j - k) Omega dt) / sin(Omega dt)
 
-and (j - k) in place of the quotient for the rigid mode. It follows from the recursion
+and (j - k) in place of the quotient for a rigid mode. It follows from the recursion
 q^{j+1} - 2 cos(Omega dt) q^j + q^{j-1} = dt^2 F^j / m_n; derived for this project.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
 from compare.exact.lattice import frequencies
+from compare.exact.spatial import Plane
+
+RIGID = 1e-12  # of the highest frequency; singular values are known to some 1e-15 of it
+
+
+class Modes(NamedTuple):
+    """Natural frequencies omega [n] (rad/s) and shapes [freedoms, n] of unit modal mass."""
+
+    omega: np.ndarray
+    shapes: np.ndarray
 
 
 def displacements(
     force: np.ndarray, steps: np.ndarray, dt: float, stiffness: float, mass: float, block_count: int
 ) -> np.ndarray:
-    """Return the displacement (m) of all blocks [block_count, len(steps)] after these steps.
+    """Return the displacement (m) of a uniform free-free chain [block_count, len(steps)].
 
     Parameters
     ----------
@@ -28,15 +40,46 @@ def displacements(
     dt : step, s, below the critical one, 2 / omega_max, where the highest mode would be double.
     stiffness, mass : of every joint (N/m) and block (kg).
     """
-    half = frequencies(stiffness, mass, block_count) * dt / 2
-    if half.max() >= 1:
-        raise ValueError(f"the step must be below the critical {dt / half.max():.6g} s")
     centres = np.arange(block_count) + 0.5
     shapes = np.cos(np.outer(centres, np.arange(block_count)) * np.pi / block_count)
-    modal_mass = mass * (shapes**2).sum(axis=0)
-    forcing = shapes[0] * dt**2 / modal_mass
-    modes = [_rigid(force, steps), *(_mode(force, steps, 2 * np.arcsin(x)) for x in half[1:])]
-    return shapes @ (forcing[:, None] * np.array(modes))
+    shapes /= np.sqrt(mass * (shapes**2).sum(axis=0))
+    chain = Modes(frequencies(stiffness, mass, block_count), shapes)
+    return of_modes(chain, np.eye(block_count)[0], force, steps, dt)
+
+
+def of_modes(
+    modes: Modes, place: np.ndarray, force: np.ndarray, steps: np.ndarray, dt: float
+) -> np.ndarray:
+    """Return the motion of every freedom [freedoms, len(steps)] after these steps.
+
+    place : float array [freedoms], what a unit force pushes each freedom by; the rest as in
+        `displacements`.
+    """
+    half = modes.omega * dt / 2
+    if half.max() >= 1:
+        raise ValueError(f"the step must be below the critical {dt / half.max():.6g} s")
+    sums = [_mode(force, steps, 2 * np.arcsin(x)) if x > 0 else _rigid(force, steps) for x in half]
+    return modes.shapes @ ((modes.shapes.T @ place * dt**2)[:, None] * np.array(sums))
+
+
+def modes(mass: np.ndarray, root: np.ndarray) -> Modes:
+    """Return the modes of the masses [n] and the stiffness K = root^T root, root [m, n].
+
+    The singular values of root M^{-1/2} give omega itself, so that low modes keep their digits.
+    """
+    _, omega, shapes = np.linalg.svd(root / np.sqrt(mass))
+    omega = np.pad(omega, (0, max(0, len(mass) - len(omega))))
+    omega[omega < RIGID * omega.max()] = 0
+    return Modes(omega, shapes.T / np.sqrt(mass)[:, None])
+
+
+def plane_modes(plane: Plane) -> Modes:
+    """Return the modes of a plane of the spatial row, whose ends are free or fixed."""
+    stiffness = plane.stiffness.diagonal()
+    if plane.viscosity.any() or plane.mass_damping:
+        raise ValueError("the plane is damped")
+    relative = plane.relative[:, plane.blocks]
+    return modes(plane.mass, np.sqrt(stiffness)[:, None] * relative)
 
 
 def _rigid(force: np.ndarray, steps: np.ndarray) -> np.ndarray:

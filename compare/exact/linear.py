@@ -12,7 +12,7 @@ from math import ceil
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 
-from cases.loads import LoadHistory
+from compare.exact.drive import Signal
 
 NEGLIGIBLE = 1e-18  # of a propagator whose largest entries are about 1: below round-off
 
@@ -21,7 +21,7 @@ def response(
     matrix: np.ndarray,
     vector: np.ndarray,
     output: np.ndarray,
-    load: LoadHistory,
+    load: Signal,
     times: np.ndarray,
 ) -> np.ndarray:
     """Return output @ x at `times` [n, outputs], exact to round-off.
@@ -46,6 +46,20 @@ def response(
         x = P @ x + G @ share
         out[n] = output @ x
     return out
+
+
+def advance(
+    matrix: np.ndarray, vector: np.ndarray, state: np.ndarray, load: Signal, start: float, h: float
+) -> np.ndarray:
+    """Return the state [m] that `state` at `start` (s) becomes a time h (s) later."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.linalg import expm_multiply
+
+    A = csr_array(matrix)
+    nodes, weights = _gauss(h, 12 + ceil(h * np.abs(matrix).sum(axis=0).max()))
+    share = _load_on_nodes(load, np.array([start]), h, nodes, weights)[0]
+    G = np.stack([expm_multiply(A * (h - s), vector) for s in nodes], axis=1)
+    return expm_multiply(A * h, state) + G @ share
 
 
 def _gauss(h: float, count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -13,6 +13,7 @@ layer has been back to the start and reached a receiver again. On the layer itse
 mean of both sides.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -24,7 +25,7 @@ from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
 from compare.exact.answer import YES, Answer, no
-from compare.exact.conditions import bars_tension, rock_is_damped
+from compare.exact.conditions import bars_tension, beyond, rock_is_damped
 from compare.exact.images import ENTERS
 from compare.exact.linear import response
 
@@ -43,6 +44,8 @@ def applies(scene: Scene) -> Answer:
     """Return whether one joint is all that the waves meet within the scene's duration."""
     p = calibrate(scene)
     compliance = p.excess_compliance
+    if reason := beyond(scene):
+        return no(reason)
     if bars_tension(p):
         return no("a joint bars tension")
     if rock_is_damped(p):
@@ -71,10 +74,11 @@ def solve(scene: Scene) -> xr.Dataset:
     p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
     joint, enters = the_joint(p), ENTERS[scene.ends.start]
 
+    def passed(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return transmitted(joint, p.impedance, load, at)
+
     def waves(places: list[float]) -> np.ndarray:
-        """Return [there and back, stress and impulse, place, time]."""
-        found = [_waves_at(y, joint, p, load, times) for y in places]
-        return enters * np.array(found).reshape(-1, 2, 2, len(times)).transpose(1, 2, 0, 3)
+        return enters * around(joint.y, p.bar_speed, passed, load, times, places)
 
     there, back = waves(scene.record.stress)
     stress = there[0] + back[0]
@@ -83,20 +87,34 @@ def solve(scene: Scene) -> xr.Dataset:
     return dataset(scene, NAME, times, stress, velocity, displacement)
 
 
-def _waves_at(
-    y: float, joint: Joint, p: Properties, load: LoadHistory, times: np.ndarray
+def around(
+    joint_y: float,
+    speed: float,
+    passed: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]],
+    load: LoadHistory,
+    times: np.ndarray,
+    places: list[float],
 ) -> np.ndarray:
-    """Return [there and back, stress (Pa) and impulse (Pa s), time] at y (m)."""
-    after = np.array(transmitted(joint, p.impedance, load, times - max(y, joint.y) / p.bar_speed))
-    beyond = np.array([after, np.zeros_like(after)])
-    if y > joint.y + 1e-9:
-        return beyond
-    at, later = times - y / p.bar_speed, times - (2 * joint.y - y) / p.bar_speed
+    """Return the waves around a joint between half-spaces, in front of it, on it and behind it.
+
+    passed : sigma_T (Pa) and its impulse (Pa s) at equally spaced times at the joint (s), by the
+        incident stress `load`; joint_y, places in m, speed in m/s.
+    The result is [there and back, stress and impulse, place, time].
+    """
+    found = [_at(y, joint_y, speed, passed, load, times) for y in places]
+    return np.array(found).reshape(-1, 2, 2, len(times)).transpose(1, 2, 0, 3)
+
+
+def _at(y, joint_y, speed, passed, load, times) -> np.ndarray:
+    """Return [there and back, stress and impulse, time] at y (m)."""
+    after = np.array(passed(times - max(y, joint_y) / speed))
+    behind = np.array([after, np.zeros_like(after)])
+    if y > joint_y + 1e-9:
+        return behind
+    at, later = times - y / speed, times - (2 * joint_y - y) / speed
     there = load.value(at), load.impulse(at)
-    echo = np.array(transmitted(joint, p.impedance, load, later))
-    before = np.array([there, echo - [load.value(later), load.impulse(later)]])
-    on_joint = abs(y - joint.y) <= 1e-9
-    return (before + beyond) / 2 if on_joint else before
+    before = np.array([there, passed(later) - np.array([load.value(later), load.impulse(later)])])
+    return (before + behind) / 2 if abs(y - joint_y) <= 1e-9 else before
 
 
 def the_joint(p: Properties) -> Joint:

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cases import load
-from cases.calibrate import (
-    calibrate,
+from cases.calibrate import calibrate
+from cases.elastic import (
     equivalent_modulus,
     joint_stiffness,
     modulus_from_speeds,
@@ -31,6 +31,24 @@ def paper(scene_with):
 def test_elastic_constants_of_the_rock_mass(paper):
     assert paper.poisson == pytest.approx(0.4238, abs=5e-5)
     assert paper.modulus == pytest.approx(4.375e9, rel=1e-3)
+
+
+def test_shear_constants_of_the_paper(paper):
+    """G = rho c_s^2 and c_s come back to the last bit; K'_s is equation (7)."""
+    assert paper.shear_modulus == DENSITY * 800.0**2 == 1.536e9
+    assert paper.shear_speed == 800.0
+    assert paper.shear_impedance == DENSITY * 800.0
+    assert paper.regular_shear_stiffness == paper.shear_modulus / SPACING
+    assert paper.shear_stiffness == pytest.approx(
+        rigid_block_shear_stiffness(paper.regular_stiffness, paper.poisson), rel=1e-15
+    )
+
+
+def test_inertia_of_a_block(scene_with):
+    """Of the cuboid a x d x a, by the integral of its squared distances from an axis."""
+    p = calibrate(scene_with(**{"pillar.block": 1.25}))
+    assert p.inertia_across == pytest.approx(p.block_mass * (0.5**2 + 1.25**2) / 12)
+    assert p.inertia_along == pytest.approx(p.block_mass * 2 * 0.5**2 / 12)
 
 
 def test_joint_stiffness_of_the_paper(paper):
@@ -92,6 +110,39 @@ def test_soft_layer_changes_its_own_joint_alone(paper_folder):
     assert SPACING * p.own_stiffness[39] == pytest.approx(4.375e8)
     assert p.stiffness[39] == pytest.approx(1 / (1 / p.own_stiffness[39] + SPACING / INTACT))
     assert np.delete(p.stiffness, 39) == pytest.approx(p.regular_stiffness)
+
+
+def test_soft_layer_is_soft_in_shear_too(paper_folder):
+    p = calibrate(load(paper_folder / "fig-07.toml")[1])
+    assert p.shear_stiffness[39] == rigid_block_shear_stiffness(p.stiffness[39], p.poisson)
+    assert np.delete(p.shear_stiffness, 39) == pytest.approx(p.regular_shear_stiffness)
+
+
+def test_shear_stiffness_of_one_joint_is_in_series_with_its_rock(scene_with):
+    p = calibrate(scene_with(soft_layers=[{"y": 20.0, "shear_stiffness": 2e9}]))
+    rock = INTACT / (2 * (1 + 0.25)) / SPACING  # intact_poisson is 0.25
+    assert p.shear_stiffness[39] == pytest.approx(1 / (1 / 2e9 + 1 / rock), rel=1e-15)
+    assert p.stiffness[39] == p.regular_stiffness
+
+
+def test_shear_stiffness_of_rock_that_is_not_given_is_the_joint_alone(scene_with):
+    rock = {"density": DENSITY, "equivalent_modulus": 4.375e9, "equivalent_poisson": 0.42}
+    p = calibrate(scene_with(rock=rock, **{"joints.shear_stiffness": 2e9}))
+    assert p.shear_stiffness == pytest.approx(2e9, rel=1e-15)
+
+
+def test_shear_stiffness_of_all_joints_decides_the_shear_modulus(scene_with):
+    """As the normal stiffness does the modulus, so that quiet ends fit the chain."""
+    p = calibrate(scene_with(**{"joints.shear_stiffness": 2e9}))
+    assert p.shear_stiffness == pytest.approx(p.shear_modulus / SPACING, rel=1e-15)
+    assert p.shear_speed == np.sqrt(p.shear_modulus / DENSITY)
+    assert p.modulus == calibrate(scene_with()).modulus
+
+
+def test_a_soft_layer_inherits_the_shear_stiffness_of_the_joints(scene_with):
+    layer = {"y": 20.0, "spacing_stiffness": 4e8}
+    p = calibrate(scene_with(soft_layers=[layer], **{"joints.shear_stiffness": 2e9}))
+    assert p.shear_stiffness[39] == p.shear_stiffness[0]
 
 
 def test_layer_without_keys_is_an_ordinary_joint(scene_with):

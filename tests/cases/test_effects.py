@@ -2,7 +2,12 @@
 
 import pytest
 
-from cases.effects import active_effects, effects
+from cases.effects import active_effects, effects, is_spatial, warnings
+
+ACROSS = {"load.direction": [1.0, 0.0, 0.0]}
+DOWN = {"direction": [0, -1, 0], "static": False}
+TENSILE = {"joints.tensile_strength": 1e5, "joints.fracture_energy": 10.0}
+RAYLEIGH = {"frequencies": [10.0, 20.0], "ratios": [0.02, 0.02]}
 
 CALLS = {
     "dashpots": {"joints.damping_ratio": 0.02},
@@ -12,6 +17,28 @@ CALLS = {
     "matched ends": {"ends.start": "matched"},
     "fixed ends": {"ends.end": "fixed"},
     "energy ledger": {"record.energy": True},
+    "spatial motion": ACROSS,
+    "softening": TENSILE,
+    "mass damping": {"damping": {"mass_proportional": 5.0}},
+    "local damping": {"damping": {"local": 0.8}},
+    "gravity": {"gravity": DOWN},
+    "prestress": {"prestress": {"normal": 1e6}},
+}
+
+MORE_CALLS = {
+    ("spatial motion", "finite rotation"): ACROSS | {"motion.rotation": "finite"},
+    ("spatial motion", "slip"): ACROSS | {"joints.friction_angle": 30.0},
+    ("fixed ends", "shaken base"): {"ends.start": "fixed", "load.quantity": "velocity"},
+    ("dashpots", "mass damping"): {"damping": {"rayleigh": RAYLEIGH}},
+}
+
+SPATIAL = {
+    "the load has a component across the axis": ACROSS,
+    "the load is eccentric": {"load.at": [0.0, 0.1]},
+    "the load is a couple": {"load.arm": 0.1},
+    "gravity has a component across the axis": {
+        "gravity": {"direction": [0.6, -0.8, 0.0], "static": False}
+    },
 }
 
 
@@ -20,6 +47,41 @@ def test_one_key_calls_for_one_effect(scene_with, name):
     nothing = {"record.energy": False}
     assert active_effects(scene_with(**nothing)) == []
     assert active_effects(scene_with(**nothing | CALLS[name])) == [name]
+
+
+@pytest.mark.parametrize("names", MORE_CALLS)
+def test_effects_that_come_with_others(scene_with, names):
+    assert active_effects(scene_with(**{"record.energy": False} | MORE_CALLS[names])) == [*names]
+
+
+def test_every_effect_is_called_for_above(scene_with):
+    called = {*CALLS, *(name for names in MORE_CALLS for name in names)}
+    assert {effect.name for effect in effects(scene_with())} == called
+
+
+@pytest.mark.parametrize("reason", SPATIAL)
+def test_what_takes_a_scene_off_its_axis(scene_with, reason):
+    scene = scene_with(**SPATIAL[reason])
+    assert is_spatial(scene)
+    reasons = {effect.name: effect.reason for effect in effects(scene)}
+    assert reasons["spatial motion"] == f"{reason}: 6 freedoms per block"
+
+
+def test_axial_gravity_and_a_load_against_the_axis_stay_axial(scene_with):
+    assert not is_spatial(scene_with(gravity=DOWN, **{"load.direction": [0, -1, 0]}))
+
+
+def test_blocks_that_do_not_turn_have_three_freedoms(scene_with):
+    scene = scene_with(**ACROSS, **{"motion.rotation": "none"})
+    reasons = {effect.name: effect.reason for effect in effects(scene)}
+    assert reasons["spatial motion"].endswith("3 freedoms per block")
+
+
+def test_nothing_shears_the_joints_of_an_axial_scene(scene_with):
+    scene = scene_with(**{"joints.friction_angle": 30.0, "motion.rotation": "finite"})
+    reasons = {effect.name: effect.reason for effect in effects(scene) if not effect.active}
+    assert reasons["slip"] == "nothing shears the joints"
+    assert reasons["finite rotation"] == "nothing turns the blocks"
 
 
 def test_a_layer_may_be_the_only_joint_with_a_dashpot(scene_with):
@@ -35,3 +97,11 @@ def test_a_layer_may_be_the_only_joint_without_tension(scene_with):
 
 def test_every_effect_says_why(scene_with):
     assert all(effect.reason for effect in effects(scene_with()))
+
+
+def test_local_damping_under_a_load_is_warned_of(scene_with):
+    damped = {"damping": {"local": 0.8}}
+    (warning,) = warnings(scene_with(**damped))
+    assert warning.startswith("damping.local distorts waves")
+    assert warnings(scene_with(**damped, **{"load.amplitude": 0.0})) == []
+    assert warnings(scene_with()) == []

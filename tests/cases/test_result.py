@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from cases import Scene, load
-from cases.result import TERMS, dataset, energy_residual, scene_hash
+from cases.result import ALL_TERMS, TERMS, dataset, energy_residual, imbalance, scene_hash
 from cases.sampling import sample_times
 
 POINTS = {"record.velocity": [19.75, 20.25]}
@@ -73,6 +73,45 @@ def test_hash_follows_the_samples_of_a_history(tmp_path, paper_folder):
     assert len(hashes) == 2
 
 
+@pytest.fixture
+def spatial(scene_with):
+    """A result of random numbers of a scene that moves across its axis."""
+    scene = scene_with(**POINTS, **{"load.direction": [1.0, 0.0, 0.0]})
+    draw, times = np.random.default_rng(2).normal, sample_times(scene)
+    n = len(times)
+    return dataset(
+        scene,
+        "dem",
+        times,
+        draw(size=(1, n)),
+        draw(size=(2, n, 3)),
+        draw(size=(2, n, 3)),
+        draw(size=(len(ALL_TERMS), n)),
+        shear=draw(size=(1, n, 2)),
+        rotation=draw(size=(2, n, 3)),
+        terms=ALL_TERMS,
+    )
+
+
+def test_a_spatial_result_has_three_axes(spatial):
+    assert spatial.axis.values.tolist() == ["x", "y", "z"]
+    assert spatial.velocity.dims == spatial.rotation.dims == ("velocity_y", "time", "axis")
+    assert spatial["shear"].dims == ("stress_y", "time", "across")
+    assert spatial.across.values.tolist() == ["x", "z"]
+    assert spatial["shear"].attrs["units"] == "Pa" and spatial.rotation.attrs["units"] == "rad"
+    assert spatial.term.values.tolist() == list(ALL_TERMS)
+
+
+def test_a_spatial_result_is_written_and_read(spatial, tmp_path):
+    spatial.to_netcdf(tmp_path / "dem.nc", engine="scipy")
+    with xr.open_dataset(tmp_path / "dem.nc", engine="scipy") as back:
+        xr.testing.assert_identical(back.load(), spatial)
+
+
+def test_axial_terms_are_among_all_terms_in_their_order():
+    assert [term for term in ALL_TERMS if term in TERMS] == list(TERMS)
+
+
 def test_energy_residual_is_the_largest_imbalance_over_the_largest_work(result):
     energy = np.zeros(result.energy.shape)
     energy[TERMS.index("work")] = np.linspace(0, 4, energy.shape[1])
@@ -83,3 +122,24 @@ def test_energy_residual_is_the_largest_imbalance_over_the_largest_work(result):
     energy[TERMS.index("viscous")] = np.linspace(0, 1, energy.shape[1])
     balanced = result.assign(energy=(result.energy.dims, energy))
     assert energy_residual(balanced) == pytest.approx(0, abs=1e-15)
+
+
+def test_the_ledger_counts_from_the_first_sample():
+    """The energy of a static state was there before any work, whichever terms hold it."""
+    terms = ("kinetic", "elastic", "gravity", "work")
+    rise = np.linspace(0, 1, 5)
+    energy = np.stack([2 * rise, 7 + rise, -3 * np.ones(5), 3 * rise])
+    assert imbalance(energy, terms) == pytest.approx(0, abs=1e-15)
+    energy[0] -= 0.3 * rise
+    assert imbalance(energy, terms) == pytest.approx(0.1)
+
+
+def test_where_no_work_is_done_the_largest_term_is_the_scale():
+    """A block that slides down: its weight pays for motion and friction."""
+    terms = ("kinetic", "friction", "gravity", "work")
+    fall = np.linspace(0, 1, 5)
+    energy = np.stack([fall, 3 * fall, 5.0 - 4 * fall, 0 * fall])
+    assert imbalance(energy, terms) == pytest.approx(0, abs=1e-15)
+    energy[1] -= fall
+    assert imbalance(energy, terms) == pytest.approx(0.25)
+    assert imbalance(0 * energy, terms) == 0.0

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cases.calibrate import Properties
+from dem.axial.motion import advanced, kept
 from joints.ends import HalfSpring, half_spring
 from joints.jit import jitted
 
@@ -19,14 +20,12 @@ class End(NamedTuple):
     """One end; a free end is None instead.
 
     stiffness : N/m, of the spring's closure w in the reaction; None for a bare dashpot.
-    viscosity : N s/m, of the block's own velocity in the reaction.
-    half_step : dt / 2 m, s/kg.
+    viscosity : N s/m, of the block's own velocity in the reaction, less that of a shaken wall.
     decay, gain : w <- decay w + gain v; gain is dt for a rigid wall, s.
     """
 
     stiffness: Any
     viscosity: float
-    half_step: float
     decay: float
     gain: float
 
@@ -39,11 +38,10 @@ def build_end(kind: str, p: Properties, dt: float) -> End | None:
     """
     if kind == "free":
         return None
-    half_step = dt / (2 * p.block_mass)
     if kind == "quiet":
-        return End(None, p.impedance * p.area, half_step, 0.0, 0.0)
+        return End(None, p.impedance * p.area, 0.0, 0.0)
     spring = _half_block(kind, p, dt)
-    return End(spring.stiffness, spring.viscosity, half_step, spring.decay, spring.gain)
+    return End(spring.stiffness, spring.viscosity, spring.decay, spring.gain)
 
 
 def end_stiffness(kind: str, p: Properties) -> float:
@@ -62,27 +60,44 @@ def end_state(end: End | None) -> np.ndarray | None:
 
 
 @jitted
-def _spring(stiffness, w):
-    if stiffness is None:
-        return 0.0
-    return stiffness * w
+def advance_end(chain, ledger, end, state, v, push, before, after):
+    """Return the outward velocity of the end block after the step.
+
+    v : before it. push : the outward force of everything but the end, N. before, after : the
+    outward way of a shaken wall in the step before and in this one, m; None where it stands.
+    The reaction and the closure are left in `state`. Without the end the velocity would be v*; the
+    dashpot c answers the mean (v + v* - (dt / m) r) / 2, which is solved for the reaction r.
+    """
+    if end is None:
+        return advanced(chain, ledger, v, push)
+    x, c = chain.impulse_to_speed, end.viscosity
+    pace = v + (kept(chain.keep, v) + x * push)
+    drag = 0.5 * c * _less_wall(pace, before, after, chain.dt)
+    state[1] = (_spring(end.stiffness, state[0]) + drag) / (1.0 + 0.5 * x * c)
+    v_new = advanced(chain, ledger, v, push - state[1])
+    state[0] = _less(end.decay * state[0] + end.gain * v_new, after)
+    return v_new
 
 
 @jitted
-def advance_end(end, state, x, v, push):
-    """Return the outward velocity of the end block after the step.
+def _spring(stiffness, closure):
+    if stiffness is None:
+        return 0.0
+    return stiffness * closure
 
-    v is that before it and push the outward force of everything but the end, times dt / m in x.
-    The reaction and the closure are left in `state`.
-    """
-    if end is None:
-        return v + x * push
-    spring = _spring(end.stiffness, state[0])
-    beta = end.half_step * end.viscosity
-    v_new = ((1.0 - beta) * v + x * (push - spring)) / (1.0 + beta)
-    state[1] = spring + 0.5 * end.viscosity * (v + v_new)
-    state[0] = end.decay * state[0] + end.gain * v_new
-    return v_new
+
+@jitted
+def _less_wall(pace, before, after, dt):
+    if before is None:
+        return pace
+    return pace - (before + after) / dt
+
+
+@jitted
+def _less(closure, after):
+    if after is None:
+        return closure
+    return closure - after
 
 
 @jitted

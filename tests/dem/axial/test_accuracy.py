@@ -8,6 +8,8 @@ from compare.exact import lattice, no_tension
 from compare.metrics import misfit
 
 SOFT = [{"y": 20.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.02}]
+DOWN = {"direction": [0, 1, 0]}
+SHAKEN = {"shape": "sine", "amplitude": 1.0, "period": 0.02, "quantity": "velocity"}
 CHAINS = {
     "undamped": {},
     "damped": {"joints__damping_ratio": 0.02},
@@ -19,6 +21,36 @@ CHAINS = {
     "fixed end": {"ends__end": "fixed", "joints__damping_ratio": 0.02},
     "quiet start": {"ends__start": "quiet"},
     "matched start": {"ends__start": "matched", "ends__end": "matched"},
+    "mass damping": {"damping__mass_proportional": 50.0, "ends__end": "quiet"},
+    "Rayleigh damping": {
+        "damping__rayleigh": {"frequencies": [50.0, 400.0], "ratios": [0.02, 0.03]}
+    },
+    "gravity": {"gravity": DOWN, "ends__end": "fixed"},
+    "gravity between two fixed ends": {
+        "gravity": DOWN,
+        "ends": {"start": "fixed", "end": "fixed"},
+        "load": SHAKEN,
+    },
+    "sudden gravity": {
+        "gravity": {**DOWN, "acceleration": 1000.0, "static": False},
+        "ends__end": "fixed",
+        "joints__damping_ratio": 0.02,
+    },
+    "prestress": {"prestress": {"normal": 2e6}, "ends": {"start": "quiet", "end": "matched"}},
+    "base of given velocity": {"ends__start": "fixed", "load": SHAKEN},
+    "base of given acceleration, dashpots": {
+        "ends": {"start": "fixed", "end": "quiet"},
+        "load": {**SHAKEN, "amplitude": 100.0, "quantity": "acceleration"},
+        "joints__damping_ratio": 0.1,
+    },
+    "base moved against the axis, with all linear effects": {
+        "ends": {"start": "fixed", "end": "fixed"},
+        "load": {**SHAKEN, "direction": [0, -1, 0]},
+        "joints__damping_ratio": 0.05,
+        "damping__mass_proportional": 20.0,
+        "prestress": {"normal": 2e6},
+        "gravity": DOWN,
+    },
 }
 ORDER = 2.0  # leapfrog, and dashpots that see the rate extrapolated to the centre of the step
 

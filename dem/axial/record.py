@@ -4,17 +4,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dem.ends import reaction
-from dem.model import Model, State
-from dem.step import joint_stress, load_at, march
+from dem.axial.ends import reaction
+from dem.axial.model import Model
+from dem.axial.motion import steady_at
+from dem.axial.state import State
+from dem.axial.step import joint_stress, load_at, march, opened
+from joints.energy import elastic_energy, fracture_energy_spent
 from joints.jit import jitted
-from joints.laws import law_of, spring_traction
+from joints.laws import law_of
 
 
 class Samples(NamedTuple):
     """Room for what is recorded, [receiver, sample].
 
-    energy : [kinetic, elastic, viscous, boundary, work], J; None when the ledger is not kept.
+    energy : [term, sample], J, the terms those of `terms`; None when the ledger is not kept.
     v_before : each block's velocity before the sampled step; None likewise.
     """
 
@@ -25,6 +28,13 @@ class Samples(NamedTuple):
     v_before: Any
 
 
+def terms(model: Model) -> tuple[str, ...]:
+    """Return the terms of the energy ledger, the rows of its samples."""
+    fracture = () if model.chain.law.tensile_strength is None else ("fracture",)
+    gravity = () if model.chain.weight is None else ("gravity",)
+    return ("kinetic", "elastic", "viscous", *fracture, "boundary", *gravity, "work")
+
+
 def room(model: Model, state: State, samples: int) -> Samples:
     """Return empty samples."""
     sections, points = len(model.receivers.sections.left), len(model.receivers.points.left)
@@ -33,7 +43,7 @@ def room(model: Model, state: State, samples: int) -> Samples:
         stress=np.zeros((sections, samples)),
         velocity=np.zeros((points, samples)),
         displacement=np.zeros((points, samples)),
-        energy=np.zeros((5, samples)) if keep else None,
+        energy=np.zeros((len(terms(model)), samples)) if keep else None,
         v_before=np.zeros_like(state.v) if keep else None,
     )
 
@@ -52,27 +62,28 @@ def run(model, state, samples, stride, first, last):
 @jitted
 def sample_before(model, state, samples, s):
     """Read what the step is about to change: joint stresses, displacement, half the velocity."""
-    u, v, gap_rate = state.u, state.v, state.gap_rate
+    u, v, gap_rate, opening = state.u, state.v, state.gap_rate, state.opening
     at = model.receivers.sections
     for i in range(at.left.size):
         left, right, w = at.left[i], at.right[i], at.weight[i]
         for contact, share in ((left, 1.0 - w), (right, w)):
             if 0 < contact < u.size:
-                t = joint_stress(model.chain, u, v, gap_rate, contact - 1)
+                t = joint_stress(model.chain, u, v, gap_rate, opening, contact - 1)
                 samples.stress[i, s] += share * t
     at = model.receivers.points
     for i in range(at.left.size):
         samples.displacement[i, s] = between(u, at, i)
         samples.velocity[i, s] = 0.5 * between(v, at, i)
-    energy_before(samples.energy, model.chain, u, v, samples.v_before, s)
+    energy_before(samples.energy, model.chain, u, v, opening, samples.v_before, s)
 
 
 @jitted
 def sample_after(model, state, samples, s, n):
     """Add what only the step itself decides: end reactions, the other half of the velocity."""
-    at, contacts, area = model.receivers.sections, state.u.size, model.chain.area
-    start = (load_at(model.load, n) + reaction(state.start)) / area
-    end = reaction(state.end) / area
+    at, contacts, chain = model.receivers.sections, state.u.size, model.chain
+    pushed = load_at(model.load, n) + steady_at(chain.steady, 0)
+    start = (pushed + reaction(state.start)) / chain.area
+    end = (reaction(state.end) + steady_at(chain.steady, 1)) / chain.area
     for i in range(at.left.size):
         if at.left[i] == 0:
             samples.stress[i, s] += (1.0 - at.weight[i]) * start
@@ -81,7 +92,7 @@ def sample_after(model, state, samples, s, n):
     at = model.receivers.points
     for i in range(at.left.size):
         samples.velocity[i, s] += 0.5 * between(state.v, at, i)
-    energy_after(samples.energy, model.chain, state, samples.v_before, s)
+    energy_after(samples.energy, chain, state, samples.v_before, s)
 
 
 @jitted
@@ -91,24 +102,53 @@ def between(values, at, i):
 
 
 @jitted
-def energy_before(energy, chain, u, v, v_before, s):
-    """Sample the elastic energy, and keep the velocities before the step."""
+def energy_before(energy, chain, u, v, opening, v_before, s):
+    """Sample what depends on where the blocks are, and keep the velocities before the step."""
     if energy is not None:
         elastic = 0.0
         for j in range(u.size - 1):
             gap = u[j + 1] - u[j]
-            elastic -= 0.5 * chain.area * spring_traction(law_of(chain.law, j), gap) * gap
+            k = opened(opening, j, gap)
+            elastic += chain.area * elastic_energy(law_of(chain.law, j), gap, k)
         energy[1, s] = elastic
+        sample_fracture(energy, chain, u, opening, s)
+        sample_weight(energy, chain.weight, u, s)
         v_before[:] = v
+
+
+@jitted
+def sample_fracture(energy, chain, u, opening, s):
+    """Sample what opening has spent of the joints' fracture energy."""
+    if opening is not None:
+        spent = 0.0
+        for j in range(u.size - 1):
+            k = opened(opening, j, u[j + 1] - u[j])
+            spent += chain.area * fracture_energy_spent(law_of(chain.law, j), k)
+        energy[3, s] = spent
+
+
+@jitted
+def sample_weight(energy, weight, u, s):
+    """Sample the potential energy in gravity, zero in the unloaded pillar."""
+    if weight is not None:
+        energy[-2, s] = -weight * u.sum()
 
 
 @jitted
 def energy_after(energy, chain, state, v_before, s):
     """Sample the kinetic energy, in the form that leapfrog conserves, and the running sums."""
     if energy is not None:
-        half_mass = 0.5 * chain.dt / chain.impulse_to_speed
         kinetic = 0.0
         for j in range(state.v.size):
-            kinetic += half_mass * v_before[j] * state.v[j]
-        energy[0, s] = kinetic
-        energy[2:, s] = state.ledger.sums
+            kinetic += 0.5 * chain.mass * v_before[j] * state.v[j]
+        sums = state.ledger.sums
+        energy[0, s], energy[2, s], energy[-1, s] = kinetic, sums[0], sums[2]
+        energy[boundary_row(state.opening), s] = sums[1]
+
+
+@jitted
+def boundary_row(opening):
+    """Return the row of the boundary's work: behind that of fracture, where there is one."""
+    if opening is None:
+        return 3
+    return 4

@@ -1,0 +1,169 @@
+"""What the tables of a scene must not contradict in each other."""
+
+from __future__ import annotations
+
+from math import ceil, floor, log10
+from typing import TYPE_CHECKING
+
+from cases.calibrate import calibrate
+from cases.joint import JointLaw
+from cases.stiffness import equivalent_constants
+from cases.values import contradiction
+
+if TYPE_CHECKING:
+    from cases.scene import Scene
+
+MOST_SAMPLES = 10_000_000  # 80 MB for each section, point and energy term
+SNAP = 1 + 1e-6  # how far the fracture energy must stay from a vertical softening line
+
+
+def check(scene: Scene) -> None:
+    """Raise the first contradiction of a scene whose tables are each right."""
+    _check_layers(scene)
+    _check_receivers(scene)
+    _check_rock(scene)
+    _check_time(scene)
+    _check_lever(scene)
+    _check_ends(scene)
+    _check_damping(scene)
+    _check_strength("joints", scene.joints)
+    for i, layer in enumerate(scene.layers):
+        _check_strength(f"soft_layers[{i}]", layer)
+    _check_fracture(scene)
+
+
+def _check_layers(scene: Scene) -> None:
+    pillar, seen = scene.pillar, set()
+    for i, layer in enumerate(scene.soft_layers):
+        joint = layer.y / pillar.block
+        if abs(joint - round(joint)) > 1e-6 or not 1 <= round(joint) < pillar.block_count:
+            last = pillar.length - pillar.block
+            raise contradiction(
+                f"soft_layers[{i}].y",
+                layer.y,
+                f"must be on a joint: a multiple of {pillar.block:g} "
+                f"from {pillar.block:g} to {last:g}",
+            )
+        if round(joint) in seen:
+            raise contradiction(f"soft_layers[{i}].y", layer.y, "has a soft layer already")
+        seen.add(round(joint))
+
+
+def _check_receivers(scene: Scene) -> None:
+    if not scene.record.stress and not scene.record.velocity:
+        raise contradiction("record", None, "give at least one of record.stress and velocity")
+    for key in ("stress", "velocity"):
+        places = getattr(scene.record, key)
+        for y in places:
+            if y > scene.pillar.length:
+                raise contradiction(
+                    f"record.{key}", y, f"must lie between 0 and {scene.pillar.length:g} m"
+                )
+        if len(set(places)) < len(places):
+            raise contradiction(f"record.{key}", places, "must not name a place twice")
+
+
+def _check_rock(scene: Scene) -> None:
+    intact, (modulus, _) = scene.rock.intact_modulus, equivalent_constants(scene.rock)
+    if intact is not None and intact <= modulus:
+        raise contradiction(
+            "rock.intact_modulus",
+            intact,
+            f"must exceed the rock mass's equivalent modulus {modulus:.4g}",
+        )
+
+
+def _check_time(scene: Scene) -> None:
+    interval, duration = scene.interval, scene.time.duration
+    if interval > duration:
+        raise contradiction(
+            "record.interval", interval, f"must not exceed time.duration = {duration:g}"
+        )
+    if duration / interval > MOST_SAMPLES:
+        raise contradiction(
+            "record.interval", interval, f"must give at most {MOST_SAMPLES:,} samples"
+        )
+
+
+def _check_lever(scene: Scene) -> None:
+    load, half = scene.load, scene.pillar.side / 2
+    if max(map(abs, load.at)) > half:
+        raise contradiction("load.at", load.at, f"must lie on the face, within {half:g} m")
+    if scene.motion.rotation == "none" and (load.is_eccentric or load.arm is not None):
+        key, value = ("at", load.at) if load.arm is None else ("arm", load.arm)
+        raise contradiction(
+            f"load.{key}", value, "turns the blocks, which motion.rotation = 'none' forbids"
+        )
+
+
+def _check_ends(scene: Scene) -> None:
+    load, ends, gravity = scene.load, scene.ends, scene.gravity
+    if load.shakes_base and ends.start != "fixed":
+        raise contradiction(
+            "load.quantity", load.quantity, "moves the wall of ends.start = 'fixed'"
+        )
+    if ends.start == "fixed" and not load.shakes_base and load.amplitude:
+        raise contradiction(
+            "ends.start", ends.start, "needs load.quantity 'velocity' or 'acceleration', or no load"
+        )
+    if gravity is not None and gravity.static and "fixed" not in (ends.start, ends.end):
+        raise contradiction("gravity.static", True, "needs a fixed end, or gravity.static = false")
+
+
+def _check_damping(scene: Scene) -> None:
+    if scene.damping.rayleigh is None:
+        return
+    named = {"joints": scene.joints} | {
+        f"soft_layers[{i}]": layer for i, layer in enumerate(scene.soft_layers)
+    }
+    for table, law in named.items():
+        if law.damping_ratio is not None:
+            raise contradiction(
+                f"{table}.damping_ratio",
+                law.damping_ratio,
+                "damping.rayleigh defines the dashpots already: give one of them",
+            )
+
+
+def _check_strength(table: str, law: JointLaw) -> None:
+    pair = ("tensile_strength", "fracture_energy")
+    for key, other in (pair, pair[::-1]):
+        if getattr(law, key) is None and getattr(law, other) is not None:
+            raise contradiction(f"{table}.{key}", None, f"is needed with {table}.{other}")
+    if law.tension is not None and law.tensile_strength is not None:
+        raise contradiction(
+            f"{table}.tension", law.tension, "tensile_strength says otherwise: give one of them"
+        )
+    residual, cohesion = law.residual_cohesion, law.cohesion
+    if residual is not None and (cohesion is None or residual > cohesion):
+        allowed = (
+            "needs a cohesion" if cohesion is None else f"at most the cohesion {cohesion:g} Pa"
+        )
+        raise contradiction(f"{table}.residual_cohesion", residual, allowed)
+
+
+def _check_fracture(scene: Scene) -> None:
+    """A joint whose stress falls faster than it can unload would snap back."""
+    laws = [scene.joints, *scene.layers]
+    if all(law.tensile_strength is None for law in laws):
+        return
+    p = calibrate(scene)
+    for i, (law, stiffness) in enumerate(
+        zip(laws, [p.regular_stiffness, *p.stiffness[p.soft]], strict=True)
+    ):
+        if law.tensile_strength is None or law.fracture_energy is None:
+            continue
+        least = SNAP * law.tensile_strength**2 / (2 * stiffness)
+        if law.fracture_energy < least:
+            raise contradiction(
+                f"soft_layers[{i - 1}].fracture_energy" if i else "joints.fracture_energy",
+                law.fracture_energy,
+                "must exceed tensile_strength^2 / (2 K'_n), or the joint snaps back: "
+                f"at least {_rounded_up(least):.4g} J/m2",
+            )
+
+
+def _rounded_up(x: float) -> float:
+    """Return the next number of four digits."""
+    digit = 10.0 ** (floor(log10(x)) - 3)
+    return ceil(x / digit) * digit

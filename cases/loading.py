@@ -1,0 +1,91 @@
+"""The load of a scene: an end stress, or the motion of its base."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
+
+from cases.history import History
+from cases.values import Direction, Number, Offset, Positive, Table, contradiction
+
+
+class Load(Table):
+    """What acts on the loaded end: the end stress F/A, or the prescribed motion of a fixed start.
+
+    The force acts along `direction` on the start face, `at` (x, z) from its centre; with `arm` it
+    is a pure couple A p arm about `direction` instead.
+    """
+
+    shape: Literal["sine", "ricker", "step", "table"]
+    amplitude: Number  #: Pa, m/s or m/s2 by `quantity`; a factor on the history for "table"
+    quantity: Literal["stress", "velocity", "acceleration"] = "stress"
+    period: Positive | None = None  #: s; for sine and ricker
+    cycles: Annotated[int, Field(ge=1, le=1_000_000)] | None = None  #: of the sine, default 1
+    file: str | None = None  #: two-column CSV, s and Pa (or m/s, m/s2); for "table"
+    direction: Direction = Field(default=[0, 1, 0])
+    at: Offset = Field(default=[0.0, 0.0])  #: m
+    arm: Positive | None = None  #: m
+
+    _history: History | None = PrivateAttr(default=None)
+
+    @model_validator(mode="after")
+    def _keys_of_shape(self) -> "Load":
+        needs = {"sine": {"period"}, "ricker": {"period"}, "step": set(), "table": {"file"}}
+        takes = {"sine": {"cycles"}}
+        needed = needs[self.shape]
+        for key in ("period", "cycles", "file"):
+            given = getattr(self, key) is not None
+            if key in needed and not given:
+                raise contradiction(
+                    f"load.{key}", None, f"is needed for load.shape = '{self.shape}'"
+                )
+            if given and key not in needed | takes.get(self.shape, set()):
+                raise contradiction(
+                    f"load.{key}", getattr(self, key), f"has no meaning for shape '{self.shape}'"
+                )
+        return self
+
+    @model_validator(mode="after")
+    def _one_lever(self) -> "Load":
+        if self.arm is not None and self.is_eccentric:
+            raise contradiction("load.arm", self.arm, "makes a couple, which has no load.at")
+        if self.shakes_base:
+            for key, value in (("at", self.at if self.is_eccentric else None), ("arm", self.arm)):
+                if value is not None:
+                    raise contradiction(
+                        f"load.{key}", value, f"has no meaning for load.quantity '{self.quantity}'"
+                    )
+        return self
+
+    @model_validator(mode="after")
+    def _read_history(self, info: ValidationInfo) -> "Load":
+        if self.file is not None:
+            folder = (info.context or {}).get("folder", ".")
+            try:
+                self._history = History.from_csv(folder, self.file)
+            except ValueError as error:
+                raise contradiction("load.file", self.file, str(error)) from None
+        return self
+
+    @property
+    def history(self) -> History | None:
+        """The recorded load history of shape "table", else None."""
+        return self._history
+
+    @property
+    def shakes_base(self) -> bool:
+        """Whether the load is the motion of the start rather than a stress on it."""
+        return self.quantity != "stress"
+
+    @property
+    def is_eccentric(self) -> bool:
+        """Whether the force acts off the centre of the face."""
+        return any(self.at)
+
+    @property
+    def is_across(self) -> bool:
+        """Whether the load has a component across the axis."""
+        return bool(self.direction[0] or self.direction[2])
+
+
+#: What acts where a scene has no [load].
+NO_LOAD = Load(shape="step", amplitude=0.0)

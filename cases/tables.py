@@ -1,0 +1,154 @@
+"""The small tables of a scene: the pillar, its rock, what holds and fills it, what is recorded."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from cases.values import (
+    Direction,
+    NonNegative,
+    Number,
+    Poisson,
+    Positive,
+    Table,
+    contradiction,
+)
+
+MOST_BLOCKS = 10_000_000  # about 0.4 kB a block: what one machine holds
+
+
+class Pillar(Table):
+    """A square rock pillar cut by joints into one row of equal blocks (section 3.1)."""
+
+    length: Positive  #: m
+    side: Positive  #: m, side of the square section
+    block: Positive  #: m, block thickness d = joint spacing S
+
+    @model_validator(mode="after")
+    def _whole_blocks(self) -> "Pillar":
+        count = self.length / self.block
+        if not 1.5 < count <= MOST_BLOCKS:
+            raise contradiction(
+                "pillar.block", self.block, f"must give 2 to {MOST_BLOCKS:,} blocks, not {count:g}"
+            )
+        if abs(count - round(count)) > 1e-9 * count:
+            raise contradiction(
+                "pillar.block",
+                self.block,
+                f"must divide pillar.length = {self.length:g} into a whole number of blocks",
+            )
+        return self
+
+    @property
+    def block_count(self) -> int:
+        """Number of blocks N = length / block."""
+        return round(self.length / self.block)
+
+    @property
+    def area(self) -> float:
+        """Section area A, m2."""
+        return self.side**2
+
+
+class Rock(Table):
+    """The rock mass by its two wave speeds or by its two elastic constants, and the intact rock."""
+
+    density: Positive  #: kg/m3
+    p_speed: Positive | None = None  #: m/s, unbounded rock mass
+    s_speed: Positive | None = None  #: m/s
+    equivalent_modulus: Positive | None = None  #: Pa, E_eq of the rock mass
+    equivalent_poisson: Poisson | None = None
+    intact_modulus: Positive | None = None  #: Pa, E of the blocks; needed for the jointed continuum
+    intact_poisson: Poisson = 0.25
+
+    @model_validator(mode="after")
+    def _one_pair(self) -> "Rock":
+        pairs = ("p_speed", "s_speed"), ("equivalent_modulus", "equivalent_poisson")
+        given = [[key for key in pair if getattr(self, key) is not None] for pair in pairs]
+        if sorted(map(len, given)) != [0, 2]:
+            raise contradiction(
+                "rock",
+                given[0] + given[1],
+                "give exactly one pair: p_speed and s_speed, "
+                "or equivalent_modulus and equivalent_poisson",
+            )
+        if self.p_speed and self.s_speed and self.p_speed**2 <= 4 / 3 * self.s_speed**2:
+            raise contradiction(
+                "rock.p_speed",
+                self.p_speed,
+                f"must exceed sqrt(4/3) times s_speed = {self.s_speed:g} (positive bulk modulus)",
+            )
+        return self
+
+
+class Motion(Table):
+    """How blocks may move where the scene calls for motion across the axis."""
+
+    #: none: they translate only, as in a plane wave through rock of large extent; small: rotation
+    #: vectors; finite: quaternions
+    rotation: Literal["none", "small", "finite"] = "small"
+
+
+class Ends(Table):
+    """What holds the two ends: quiet is (9) on the end block, matched the same dashpot behind the
+    end block's half-block spring, fixed that spring to a wall."""
+
+    start: Literal["free", "quiet", "matched", "fixed"] = "free"
+    end: Literal["free", "quiet", "matched", "fixed"] = "free"
+
+
+class Gravity(Table):
+    """A body force."""
+
+    direction: Direction
+    acceleration: NonNegative = 9.81  #: m/s2
+    static: bool = True  #: the scene starts in equilibrium; False: gravity acts suddenly at t = 0
+
+
+class Prestress(Table):
+    """Normal stress that the joints carry before the load; ends that give way carry it on."""
+
+    normal: Number  #: Pa, compression positive
+
+
+class Time(Table):
+    """How long the scene lasts."""
+
+    duration: Positive  #: s
+
+
+class Record(Table):
+    """What is kept of a run."""
+
+    stress: list[NonNegative] = Field(default_factory=list)  #: m, sections
+    velocity: list[NonNegative] = Field(default_factory=list)  #: m, points
+    interval: Positive | None = None  #: s; default a 200th of the period, or duration / 2000
+    energy: bool = True  #: keep the energy ledger
+
+
+class DemNumerics(Table):
+    """How the rigid blocks are stepped; the default step is for accuracy, not only stability."""
+
+    step_fraction: Positive = 0.05  #: of the critical step
+    scheme: Literal["leapfrog"] = "leapfrog"
+    allow_unstable: bool = False  #: go on with a step above the critical one
+    static_tolerance: Positive = 1e-8  #: out-of-balance force ratio that ends the static state
+    threads: Annotated[int, Field(ge=1, le=1024)] | None = None  #: absent: by the number of blocks
+
+
+class ContinuumNumerics(Table):
+    """How the deformable rock is discretised and stepped."""
+
+    order: Annotated[int, Field(ge=1, le=4)] = 2  #: of the Gauss-Lobatto-Legendre elements
+    #: absent: as many as the load needs, see continuum.mesh.elements_in_block
+    elements_per_block: Annotated[int, Field(ge=1, le=1000)] | None = None
+    scheme: Literal["auto", "explicit", "implicit"] = "auto"
+    step_fraction: Positive = 0.2  #: of the critical step
+    allow_unstable: bool = False
+
+
+class Numerics(Table):
+    """How, not what: every key has a default that is chosen for accuracy."""
+
+    dem: DemNumerics = DemNumerics()
+    continuum: ContinuumNumerics = ContinuumNumerics()

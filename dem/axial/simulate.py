@@ -1,0 +1,60 @@
+"""From an axial scene to its result."""
+
+from collections.abc import Callable
+from time import perf_counter
+
+import numpy as np
+
+from cases.calibrate import calibrate
+from cases.result import Fields, fields
+from cases.scene import Scene
+from dem.axial.model import build
+from dem.axial.record import room, run, terms
+from dem.axial.start import start
+from dem.fragments import break_times, with_fragments
+from dem.looks import Stretch, march_with_looks, versions
+
+
+def simulate_fields(scene: Scene, progress: Callable[[float], None] | None = None) -> Fields:
+    """Simulate a scene of axial motion, one freedom a block."""
+    began = perf_counter()
+    model, state, time, critical = build(scene)
+    rest = start(scene, model, state)
+    samples = room(model, state, time.samples)
+    built = perf_counter()
+    run(model, state, samples, time.stride, 0, 0)
+    compiled = perf_counter()
+
+    def march(first: int, last: int) -> None:
+        run(model, state, samples, time.stride, first, last)
+
+    def check(stretch: Stretch) -> None:
+        stretch.refuse_unless(bool(np.isfinite(state.u).all()))
+
+    march_with_looks(time, critical, state.u.size, march, check, progress)
+    result = fields(
+        scene,
+        "dem",
+        time.times,
+        samples.stress,
+        samples.velocity,
+        samples.displacement,
+        samples.energy,
+        terms=terms(model),
+        model="rigid blocks",
+        scheme=scene.numerics.dem.scheme,
+        dt=time.dt,
+        critical_dt=critical,
+        steps=time.steps,
+        degrees_of_freedom=state.u.size,
+        threads=1,
+        **({} if rest is None else rest.attributes),
+        seconds_setup=built - began,
+        seconds_compile=compiled - built,
+        seconds_stepping=perf_counter() - compiled,
+        versions=versions(),
+    )
+    if state.broke is None:
+        return result
+    times = break_times(state.broke, time.dt, time.steps)
+    return with_fragments(result, calibrate(scene), ~np.isnan(times), state.v, times)

@@ -1,0 +1,41 @@
+"""The critical step of the chain: exact, from its largest eigenvalue with all dashpots.
+
+Mass-proportional damping takes the mean velocity of the step and leaves the bound as it is: in the
+mode that alternates at every step that mean is zero. Softening, like slip, only takes stiffness
+away.
+"""
+
+from math import cos, pi, sqrt
+
+import numpy as np
+
+from cases.calibrate import Properties
+from dem.axial.ends import end_stiffness
+from joints.stability import critical_step, critical_step_of_modes
+
+
+def critical_chain_step(p: Properties, start: str, end: str) -> float:
+    """Return the critical step (s) of a chain whose ends are held as `start` and `end` say."""
+    alike = (p.stiffness == p.stiffness[0]).all() and not p.damps_alone.any()
+    if alike and {start, end} <= {"free", "quiet"}:
+        rigid = 2 * sqrt(p.stiffness[0] * p.area / p.block_mass)
+        omega = rigid * cos(pi / (2 * p.block_count))
+        return critical_step_of_modes(omega, p.time_constant or 0.0)
+
+    from scipy.linalg import eigh_tridiagonal  # slow to import: only for chains that need it
+
+    k = p.stiffness * p.area
+    c = k * (0.0 if p.joint_time_constant is None else p.joint_time_constant)
+    ends = np.zeros(p.block_count)
+    ends[0], ends[-1] = end_stiffness(start, p), end_stiffness(end, p)
+
+    def largest(a: float, b: float) -> float:
+        joints = a * k + b * c
+        diagonal = a * ends
+        diagonal[:-1] += joints
+        diagonal[1:] += joints
+        last = (p.block_count - 1,) * 2
+        top = eigh_tridiagonal(diagonal, -joints, True, select="i", select_range=last)
+        return top[0] / p.block_mass
+
+    return critical_step(largest, p.joint_time_constant is not None)

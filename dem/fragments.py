@@ -1,0 +1,61 @@
+"""What breaking joints leave of a row of blocks: when they broke, and the pieces between them."""
+
+import json
+from typing import Any
+
+import numpy as np
+
+from cases.calibrate import Properties
+from cases.result import Fields
+
+
+def fragments(p: Properties, broken: np.ndarray, velocity: np.ndarray) -> list[dict[str, Any]]:
+    """Return the pieces of a row between its broken joints, from the start on.
+
+    Parameters
+    ----------
+    broken : bool array [N - 1], the joints that have no tensile strength left.
+    velocity : float array [N] along y, or [N, 3] along x, y, z, of every block, m/s.
+
+    Each piece has `from_y` and `to_y` (m, in the unloaded pillar), `mass` (kg) and `velocity`
+    (m/s), the mean of its blocks: a number along y or three components.
+    """
+    edges = np.concatenate([[0], np.flatnonzero(broken) + 1, [p.block_count]])
+    counts = np.diff(edges)
+    sums = np.add.reduceat(velocity, edges[:-1], axis=0)
+    means = (sums.T / counts).T
+    return [
+        {
+            "from_y": p.spacing * first,
+            "to_y": p.spacing * last,
+            "mass": p.block_mass * (last - first),
+            "velocity": mean,
+        }
+        for first, last, mean in zip(
+            edges[:-1].tolist(), edges[1:].tolist(), means.tolist(), strict=True
+        )
+    ]
+
+
+def with_fragments(
+    result: Fields,
+    p: Properties,
+    broken: np.ndarray,
+    velocity: np.ndarray,
+    break_time: np.ndarray | None = None,
+) -> Fields:
+    """Return a result with its `fragments`, as JSON in an attribute, and `break_time`.
+
+    break_time : float array [N - 1], s, nan where a joint holds; None where it is not known.
+    """
+    found = json.dumps(fragments(p, broken, velocity))
+    variables, coords = dict(result.variables), dict(result.coords)
+    if break_time is not None:
+        coords["joint_y"] = (("joint_y",), p.joint_y, {"units": "m"})
+        variables["break_time"] = (("joint_y",), break_time, {"units": "s"})
+    return Fields(variables, coords, {**result.attributes, "fragments": found})
+
+
+def break_times(broke: np.ndarray, dt: float, steps: int) -> np.ndarray:
+    """Return when each joint broke (s) from its step; nan where it is negative or after `steps`."""
+    return np.where((broke >= 0) & (broke <= steps), dt * broke, np.nan)

@@ -1,0 +1,1 @@
+"""Blocks that translate and turn in space, stepped 64 at a time."""

@@ -1,0 +1,333 @@
+"""Forces of the joints of one tile: the law at every contact point, summed over the face.
+
+Each joint leaves in the scratch the force on its right block and the moment about the centre of
+the contact, N and N m, with r = (x, 0, z) over the face:
+
+    F = sum A t,   M = sum A r x t = sum A (-z t_y, z t_x - x t_z, x t_y).
+
+The lane of a joint's force is one beyond that of its left block: a block finds the force of its
+left joint in its own lane, that of its right joint in the next.
+"""
+
+from typing import Any, NamedTuple
+
+from numba.extending import overload
+
+from dem.spatial import finite
+from dem.spatial.book import FRICTION
+from dem.spatial.kinematics import gap_at, relative, remember_rates, slip_at
+from dem.spatial.layout import LANES as L
+from dem.spatial.layout import STRIDE as R
+from dem.spatial.layout import first_cohesion, first_opening, first_slide
+from joints.energy import friction_work
+from joints.jit import jitted
+from joints.laws import Law, normal_traction, spring_traction
+from joints.optional import either, given
+from joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
+
+NO_FORCE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+class Points(NamedTuple):
+    """The contact points of a face: place, m, and area, m2, as tuples of one number each."""
+
+    x: tuple
+    z: tuple
+    area: tuple
+
+
+class Section(NamedTuple):
+    """The face of a joint that always holds, where only sums over its points count.
+
+    area, m2; across : sum A x^2 = sum A z^2, m4; along : sum A (x^2 + z^2), m4.
+    """
+
+    area: float
+    across: float
+    along: float
+
+
+class Contact(NamedTuple):
+    """The constants of all joints.
+
+    law : per unit area; its parts are numbers where all joints are alike. table : float array
+    [tiles, parts * LANES], the parts in the order of `Law` where they differ, else None.
+    points : the contact points, None where the joints are linear. section : None where not.
+    rows : of a tile. arm : half the block thickness, m; None where blocks do not turn.
+    dt : s. damped : whether there are dashpots, None where not.
+    finite : (1 / I_t, 1 / I_a - 1 / I_t) of a block that turns by any angle, 1/(kg m2); else None.
+    half_side : of the section, m.
+    """
+
+    law: Law
+    table: Any
+    points: Any
+    section: Any
+    rows: Any
+    arm: Any
+    dt: float
+    damped: Any
+    finite: Any
+    half_side: float
+
+
+@jitted
+def law_at(law, table, i):
+    """Return the law of the joint in lane i of a tile's table."""
+    if table is None:
+        return law
+    return Law(
+        table[i],
+        given(law.normal_viscosity, table[L + i]),
+        given(law.carries_tension, table[2 * L + i] != 0.0),
+        given(law.shear_stiffness, table[3 * L + i]),
+        given(law.shear_viscosity, table[4 * L + i]),
+        given(law.cohesion, table[5 * L + i]),
+        given(law.friction, table[6 * L + i]),
+        given(law.residual_cohesion, table[7 * L + i]),
+        given(law.tensile_strength, table[8 * L + i]),
+        given(law.critical_opening, table[9 * L + i]),
+    )
+
+
+@jitted
+def forces(contact, table, m, h, q, drag, n, book):
+    """Compute the forces of the first n joints of a tile into the scratch q.
+
+    drag : where the dashpots' share goes, None where no ledger asks for it. book : the lanes of
+    the work done by sliding, None likewise.
+    """
+    of_section(contact, contact.section, table, m, h, q, drag, n)
+    of_points(contact, contact.points, table, m, h, q, drag, n, book)
+    remember = either(contact.finite, remember_rates, finite.finite_remember_rates)
+    remember(contact.damped, contact, m, h, n)
+
+
+@jitted
+def of_section(contact, section, table, m, h, q, drag, n):
+    """Compute the forces of joints that always hold."""
+    if section is not None:
+        linear_forces(contact, section, table, m, h, q, drag, n)
+
+
+@jitted
+def of_points(contact, points, table, m, h, q, drag, n, book):
+    """Compute the forces of joints that may open, slide or break, again where any slides."""
+    if points is not None:
+        if point_forces(contact, points, table, m, h, q, drag, n, None, None) > 0:
+            point_forces(contact, points, table, m, h, q, drag, n, book, True)
+
+
+@jitted
+def point_forces(contact, points, table, m, h, q, drag, n, book, returns):
+    """Sum the tractions over the contact points; return how many are beyond their shear strength.
+
+    returns : None to leave those as they are, which needs no root; true to bring them back to
+    the strength and to remember what has slid.
+    """
+    beyond = 0
+    for i in range(min(n, L)):
+        law = law_at(contact.law, table, i)
+        motion = either(contact.finite, relative, finite.finite_relative)(contact, m, h, i)
+        f, d, over = every_point(
+            points.x, points.z, points.area, 0, contact, law, motion, h, drag, i, book, returns
+        )
+        beyond += over
+        either(contact.finite, leave, finite.finite_leave)(q, i, contact, motion, f)
+        leave_drag(drag, i, contact, motion, d)
+    return beyond
+
+
+def every_point(xs, zs, areas, p, contact, law, motion, h, drag, i, book, returns):
+    """Return force, dashpots' share and points beyond their strength, summed over points p, ...
+
+    Compiled only: written out point by point, since a loop inside that over the blocks would keep
+    several blocks from being worked on at once.
+    """
+
+
+@overload(every_point)
+def _every_point(xs, zs, areas, p, contact, law, motion, h, drag, i, book, returns):
+    if len(areas) == 1:
+        return last_point
+    return next_point
+
+
+def last_point(xs, zs, areas, p, contact, law, motion, h, drag, i, book, returns):
+    """Compute the last point."""
+    x, z, area = xs[0], zs[0], areas[0]
+    return at_point(x, z, area, p, contact, law, motion, h, drag, i, book, returns)
+
+
+def next_point(xs, zs, areas, p, contact, law, motion, h, drag, i, book, returns):
+    """Compute one point and add the others."""
+    x, z, area = xs[0], zs[0], areas[0]
+    f, d, over = at_point(x, z, area, p, contact, law, motion, h, drag, i, book, returns)
+    rest, drags, more = every_point(
+        xs[1:], zs[1:], areas[1:], p + 1, contact, law, motion, h, drag, i, book, returns
+    )
+    return plus(f, rest), plus(d, drags), over + more
+
+
+@jitted
+def at_point(x, z, area, p, contact, law, motion, h, drag, i, book, returns):
+    """Return the force of point p with its moment, the dashpots' share, and 1 where beyond."""
+    arm, rows = contact.arm, contact.rows
+    gap_of = either(contact.finite, gap_at, finite.finite_gap_at)
+    slip_of = either(contact.finite, slip_at, finite.finite_slip_at)
+    gap, rate = (
+        gap_of(arm, motion.g, motion.phi, x, z),
+        gap_of(arm, motion.g_mid, motion.phi_mid, x, z),
+    )
+    slip = slip_of(arm, motion.g, motion.phi, x, z)
+    area = either(contact.finite, whole_area, finite.area_in_contact)(
+        contact, area, x, z, gap, slip
+    )
+    at = first_opening(rows) + p * L + i
+    opening = given(rows.openings, max(h[at], gap))
+    keep_opening(rows.openings, h, at, opening)
+    at = first_cohesion(rows) + p * L + i
+    cohesion = given(rows.cohesions, h[at])
+    t_n = normal_traction(law, gap, rate, opening)
+    tau = shear_strength(law, t_n, gap, opening, cohesion)
+    t_x, t_z, ex, ez, over = shear_at_point(
+        x, z, area, p, contact, slip_of, slip, law, motion, h, i, tau, cohesion, book, returns
+    )
+    force = either(contact.finite, force_at, finite.finite_force_at)
+    f = force(x, z, gap, slip, area * t_x, area * t_n, area * t_z)
+    t_n, t_x, t_z = dragged(drag, law, gap, opening, t_n, t_x, t_z, ex, ez)
+    d = force(x, z, gap, slip, area * t_x, area * t_n, area * t_z)
+    return f, d, over
+
+
+@jitted
+def whole_area(contact, area, x, z, gap, slip):
+    """Return a point's area: where rotations are small the faces stay in front of each other."""
+    return area
+
+
+@jitted
+def shear_at_point(
+    x, z, area, p, contact, slip_of, slip, law, motion, h, i, tau, cohesion, book, returns
+):
+    """Return the shear traction of a point, its elastic slip, and 1 where it is beyond tau."""
+    arm, dt, rows = contact.arm, contact.dt, contact.rows
+    at = first_slide(rows) + 2 * p * L + i
+    ex, ez = slip[0] - h[at], slip[1] - h[at + L]
+    rate_x, rate_z = slip_of(arm, motion.g_mid, motion.phi_mid, x, z)
+    if returns is None:
+        t_x, t_z = shear_traction(law, ex, ez, rate_x, rate_z)
+        return t_x, t_z, ex, ez, exceeds(tau, t_x, t_z)
+    dx, dz = slip_of(arm, motion.g_rate, motion.phi_rate, x, z)
+    dx, dz = dt * dx, dt * dz
+    old_x, old_z = ex - dx, ez - dz
+    t_x, t_z, ex, ez, slipped = shear_return(law, ex, ez, old_x, old_z, rate_x, rate_z, tau, dt)
+    h[at], h[at + L] = slip[0] - ex, slip[1] - ez
+    keep(rows.cohesions, h, first_cohesion(rows) + p * L + i, law, cohesion, slipped)
+    book_slide(book, i, area * friction_work(law, old_x, old_z, ex, ez, dx, dz))
+    return t_x, t_z, ex, ez, 1 if slipped else 0
+
+
+@jitted
+def linear_forces(contact, section, table, m, h, q, drag, n):
+    """Compute the forces of joints that always hold, from their stiffness as a whole."""
+    for i in range(min(n, L)):
+        law, motion = law_at(contact.law, table, i), relative(contact, m, h, i)
+        f = resist(section, law.normal_stiffness, law.shear_stiffness, motion.g, motion.phi)
+        d = resist_rates(contact.damped, section, law, motion)
+        leave(q, i, contact, motion, plus(f, d))
+        leave_drag(drag, i, contact, motion, d)
+
+
+@jitted
+def resist(section, k_n, k_s, g, phi):
+    """Return the force and moment of springs k_n and k_s, Pa/m, over a face."""
+    area, across = section.area, section.across
+    return (
+        -k_s * area * g[0],
+        -k_n * area * g[1],
+        -k_s * area * g[2],
+        -k_n * across * phi[0],
+        -k_s * section.along * phi[1],
+        -k_n * across * phi[2],
+    )
+
+
+@jitted
+def resist_rates(damped, section, law, motion):
+    """Return the force and moment of the dashpots over a face."""
+    if damped is None:
+        return NO_FORCE
+    k_n, k_s = law.normal_viscosity, law.shear_viscosity
+    return resist(section, k_n, k_s, motion.g_mid, motion.phi_mid)
+
+
+@jitted
+def keep_opening(rows, h, at, opening):
+    """Keep the largest opening of a point, with softening."""
+    if rows is not None:
+        h[at] = opening
+
+
+@jitted
+def keep(rows, h, at, law, cohesion, slipped):
+    """Keep the cohesion that slip leaves to a point."""
+    if rows is not None:
+        h[at] = cohesion_left(law, cohesion, slipped)
+
+
+@jitted
+def exceeds(tau, t_x, t_z):
+    """Return 1 where the shear traction is beyond its strength."""
+    if tau is None:
+        return 0
+    return 1 if t_x * t_x + t_z * t_z > tau * tau else 0
+
+
+@jitted
+def plus(f, d):
+    """Return the sum of two forces with their moments."""
+    return f[0] + d[0], f[1] + d[1], f[2] + d[2], f[3] + d[3], f[4] + d[4], f[5] + d[5]
+
+
+@jitted
+def force_at(x, z, gap, slip, t_x, t_y, t_z):
+    """Return a force (N) on the point (x, z) with its moment about the centre."""
+    return t_x, t_y, t_z, -z * t_y, z * t_x - x * t_z, x * t_y
+
+
+@jitted
+def dragged(drag, law, gap, opening, t_n, t_x, t_z, ex, ez):
+    """Return the dashpots' share of a traction: what is not its springs'."""
+    if drag is None:
+        return 0.0, 0.0, 0.0
+    t_n -= spring_traction(law, gap, opening)
+    return t_n, t_x + law.shear_stiffness * ex, t_z + law.shear_stiffness * ez
+
+
+@jitted
+def leave(q, i, contact, motion, f):
+    """Leave the force and moment of joint i in the scratch, one lane beyond its left block."""
+    q[i + 1], q[R + i + 1], q[2 * R + i + 1] = f[0], f[1], f[2]
+    leave_moment(contact.arm, q, i, f)
+
+
+@jitted
+def leave_moment(arm, q, i, f):
+    """Leave the moment, where blocks turn."""
+    if arm is not None:
+        q[3 * R + i + 1], q[4 * R + i + 1], q[5 * R + i + 1] = f[3], f[4], f[5]
+
+
+@jitted
+def leave_drag(drag, i, contact, motion, d):
+    """Leave the dashpots' share, where a ledger asks for it."""
+    if drag is not None:
+        either(contact.finite, leave, finite.finite_leave)(drag, i, contact, motion, d)
+
+
+@jitted
+def book_slide(book, i, work):
+    """Add the work done by sliding to the lane's account."""
+    if book is not None:
+        book[FRICTION * R + i] += work

@@ -1,0 +1,150 @@
+"""From a spatial scene to its result."""
+
+from collections.abc import Callable
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+
+from cases.calibrate import Properties, calibrate
+from cases.errors import SceneError
+from cases.result import Fields, fields
+from cases.sampling import Clock, Interpolation, clock
+from cases.scene import Scene
+from dem.looks import Stretch, march_with_looks, versions
+from dem.spatial.breaks import with_breaks
+from dem.spatial.build import (
+    build_model,
+    energy_terms,
+    receivers,
+    room_for,
+    samples_for,
+    state_at_rest,
+)
+from dem.spatial.layout import LANES, STRIDE
+from dem.spatial.model import Model, Samples, State
+from dem.spatial.section import contact_points, face_of, section
+from dem.spatial.stability import critical_spatial_step
+from dem.spatial.start import start
+from dem.spatial.threads import marcher, thread_count
+
+MOST_TURN = 0.045  # rad: the part of a lever that small rotations neglect, 1 - cos, is then 1e-3
+
+
+class Prepared(NamedTuple):
+    """A scene ready to run: its numbers, model, clock and critical step (s)."""
+
+    properties: Properties
+    model: Model
+    time: Clock
+    critical: float
+
+
+def prepare(scene: Scene) -> Prepared:
+    """Return the model and the clock of a scene; raises SceneError for a step it cannot take."""
+    p, numerics = calibrate(scene), scene.numerics.dem
+    critical = critical_step_of(scene, p)
+    time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
+    return Prepared(p, build_model(scene, p, time), time, critical)
+
+
+def critical_step_of(scene: Scene, p: Properties) -> float:
+    """Return the critical step of a scene, s."""
+    face, ends = face_of(section(contact_points(scene))), scene.ends
+    return critical_spatial_step(p, face, (ends.start, ends.end), scene.motion.rotation != "none")
+
+
+def simulate_fields(scene: Scene, progress: Callable[[float], None] | None = None) -> Fields:
+    """Simulate a scene of motion in space, three or six freedoms a block."""
+    began = perf_counter()
+    p, model, time, critical = prepare(scene)
+    state, samples = state_at_rest(model, p.block_count), samples_for(model, time.samples)
+    rest = start(scene, p, model, state)
+    threads = thread_count(scene.numerics.dem.threads, p.block_count)
+    march = marcher(model, state, room_for(model, threads), samples)
+    built = perf_counter()
+    march(0, 0)
+    compiled = perf_counter()
+    march_with_looks(
+        time,
+        critical,
+        p.block_count,
+        lambda first, last: march(first * time.stride, last * time.stride),
+        lambda stretch: check(scene, model, state, stretch),
+        progress,
+    )
+    stepped = perf_counter()
+    result = fields(
+        scene,
+        "dem",
+        time.times,
+        **waveforms(samples, *receivers(scene, p), p.area),
+        energy=samples.energy,
+        terms=energy_terms(scene, p),
+        model="rigid blocks in space",
+        scheme=scene.numerics.dem.scheme,
+        dt=time.dt,
+        critical_dt=critical,
+        steps=time.steps,
+        degrees_of_freedom=len(model.contact.rows.motion) // 2 * p.block_count,
+        threads=threads,
+        **({} if rest is None else rest.attributes),
+        seconds_setup=built - began,
+        seconds_compile=compiled - built,
+        seconds_stepping=stepped - compiled,
+        versions=versions(),
+    )
+    return with_breaks(result, p, model, state)
+
+
+def waveforms(
+    samples: Samples, sections: Interpolation, points: Interpolation, area: float
+) -> dict[str, np.ndarray]:
+    """Return the recorded fields at the scene's receivers, as `cases.result.fields` takes them."""
+    force, velocity = between(samples.force, sections), between(samples.velocity, points)
+    moved = between(samples.displacement, points)
+    found = {
+        "stress": force[:, 1] / area,
+        "shear": np.moveaxis(force[:, [0, 2]], 1, 2) / area,
+        "velocity": np.moveaxis(velocity[:, :3], 1, 2),
+        "displacement": np.moveaxis(moved[:, :3], 1, 2),
+    }
+    if moved.shape[1] == 6:
+        found["rotation"] = np.moveaxis(moved[:, 3:], 1, 2)
+    elif moved.shape[1] == 7:
+        found["rotation"] = rotation_vectors(np.moveaxis(moved[:, 3:], 1, 2))
+    return found
+
+
+def rotation_vectors(quaternions: np.ndarray) -> np.ndarray:
+    """Return the rotation vectors [..., 3] (rad, up to pi) of quaternions [..., 4], scalar last."""
+    from scipy.spatial.transform import Rotation
+
+    lengths = np.linalg.norm(quaternions, axis=-1, keepdims=True)
+    turns = Rotation.from_quat((quaternions / lengths).reshape(-1, 4))
+    return turns.as_rotvec().reshape(*quaternions.shape[:-1], 3)
+
+
+def between(values: np.ndarray, at: Interpolation) -> np.ndarray:
+    """Return values [left and right of each place, freedom, sample] interpolated to the places."""
+    left, right = np.split(values, 2)
+    weight = at.weight[:, None, None]
+    return (1 - weight) * left + weight * right
+
+
+def check(scene: Scene, model: Model, state: State, stretch: Stretch) -> None:
+    """Raise UnstableError where the motion is lost, SceneError where blocks turn too far."""
+    stretch.refuse_unless(bool(np.isfinite(state.motion).all()))
+    if model.motion.arm is None or model.motion.finite is not None:
+        return
+    turn = np.abs(state.motion[:, 3 * STRIDE : 6 * STRIDE].reshape(-1, 3, STRIDE)[:, :, :LANES])
+    if turn.max() > MOST_TURN:
+        tile, _, lane = np.unravel_index(turn.argmax(), turn.shape)
+        raise SceneError(
+            scene.where,
+            "motion.rotation",
+            scene.motion.rotation,
+            f"block {tile * LANES + lane + 1} has turned by {turn.max():.3g} rad at "
+            f"t = {stretch.until:.4g} s, beyond the {MOST_TURN:g} rad of small rotations: "
+            "set motion.rotation = 'finite'",
+        )

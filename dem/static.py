@@ -1,0 +1,115 @@
+"""Static states by dynamic relaxation, for any engine: motion under damping until nothing moves.
+
+Mass-proportional damping alpha is critical for a mode omega at alpha = 2 omega. The mode that still
+moves shows itself in the change of displacement du and of unbalanced force dF over a few steps,
+
+    omega^2 = -du . dF / (du . M du),
+
+Rayleigh's quotient, so the damping follows from fast modes to the slowest, which takes
+some ln(1 / tolerance) / (omega dt) steps. Underwood, Dynamic relaxation, in: Computational Methods
+for Transient Analysis (1983).
+"""
+
+from math import sqrt
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from cases.errors import SceneError
+from cases.scene import Scene
+
+STEPS_BETWEEN_LOOKS = 10
+PATIENCE = 20  # a stall is a twentieth of the most steps without progress
+
+
+class System(Protocol):
+    """What is brought to rest. Vectors hold every freedom, displacements and rotations."""
+
+    @property
+    def mass(self) -> np.ndarray:
+        """Masses and moments of inertia, kg and kg m2."""
+
+    @property
+    def scale(self) -> float:
+        """The largest force at work, N: the weight of the pillar or what its prestress carries."""
+
+    @property
+    def most_steps(self) -> int:
+        """Steps after which there is no hope."""
+
+    def advance(self, steps: int, alpha: float) -> None:
+        """Take steps under mass-proportional damping alpha (1/s), a stable step long."""
+
+    def unbalanced(self) -> np.ndarray:
+        """Return the net force (N) and moment (N m) on every freedom."""
+
+    def displacement(self) -> np.ndarray:
+        """Return displacements (m) and rotations (rad)."""
+
+    def stop(self) -> None:
+        """Set all velocities to zero."""
+
+
+class Rest(NamedTuple):
+    """How a static state was reached: steps taken, largest unbalanced force over the scale."""
+
+    steps: int
+    ratio: float
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """What a result says of it."""
+        return {"static_steps": self.steps, "static_out_of_balance": self.ratio}
+
+
+def settle(scene: Scene, system: System) -> Rest:
+    """Bring a scene's blocks to rest under gravity and prestress.
+
+    Raises SceneError where there is no static state within numerics.dem.static_tolerance.
+    """
+    tolerance = scene.numerics.dem.static_tolerance
+    rest = relax(system, tolerance, system.most_steps)
+    if not rest.ratio <= tolerance:
+        key, remedy = ("prestress", "the joints cannot carry it")
+        if scene.gravity is not None and scene.gravity.static:
+            key = "gravity"
+            remedy = "a joint slides or a block is unsupported: static = false starts without it"
+        raise SceneError(
+            scene.where,
+            key,
+            None,
+            f"no static state within {rest.steps} steps: the out-of-balance ratio stays at "
+            f"{rest.ratio:.1e}, above {tolerance:.1e}; {remedy}",
+        )
+    return rest
+
+
+def relax(system: System, tolerance: float, most_steps: int) -> Rest:
+    """Move a system towards rest until its out-of-balance ratio is within the tolerance.
+
+    It ends earlier after `most_steps`, or when the ratio has long not fallen.
+    """
+    steps, alpha, u, force = 0, 0.0, system.displacement().copy(), system.unbalanced().copy()
+    ratio = _ratio(force, system.scale)
+    best, best_at = ratio, 0
+    while tolerance < ratio and steps - best_at <= most_steps / PATIENCE and steps < most_steps:
+        system.advance(STEPS_BETWEEN_LOOKS, alpha)
+        steps += STEPS_BETWEEN_LOOKS
+        u_new, force_new = system.displacement().copy(), system.unbalanced().copy()
+        alpha = 2 * _frequency(u_new - u, force - force_new, system.mass)
+        u, force, ratio = u_new, force_new, _ratio(force_new, system.scale)
+        if ratio < 0.9 * best:
+            best, best_at = ratio, steps
+    system.stop()
+    return Rest(steps, ratio)
+
+
+def _frequency(change: np.ndarray, resistance: np.ndarray, mass: np.ndarray) -> float:
+    """Return the frequency (rad/s) of what still moves; zero where nothing resists it."""
+    inertia = float(change @ (mass * change))
+    return sqrt(max(float(change @ resistance), 0.0) / inertia) if inertia > 0 else 0.0
+
+
+def _ratio(force: np.ndarray, scale: float) -> float:
+    largest = float(np.abs(force).max())
+    return largest / scale if largest else 0.0

@@ -1,0 +1,45 @@
+"""What a joint stores and what it spends, per unit area (J/m2)."""
+
+from joints.jit import jitted
+from joints.normal import spring_traction
+
+
+@jitted
+def elastic_energy(law, gap, opening=None, ex=None, ez=None):
+    """Return the energy in the springs, half of traction times elastic displacement.
+
+    gap, opening : m, opening None without softening; ex, ez : elastic slip, m, None without shear.
+    """
+    normal = -0.5 * spring_traction(law, gap, opening) * gap
+    return normal + _shear_energy(law, ex, ez)
+
+
+@jitted
+def _shear_energy(law, ex, ez):
+    if ex is None:
+        return 0.0
+    return 0.5 * law.shear_stiffness * (ex * ex + ez * ez)
+
+
+@jitted
+def friction_work(law, ex_old, ez_old, ex, ez, dx, dz):
+    """Return what sliding takes in a step of slip dx, dz: the mean spring force times the slide.
+
+    The slide is the slip less the change of elastic slip. Together with the change of
+    `elastic_energy` this is the trapezoid rule of leapfrog's ledger, exactly.
+    """
+    along_x = (ex_old + ex) * (dx - (ex - ex_old))
+    along_z = (ez_old + ez) * (dz - (ez - ez_old))
+    return 0.5 * law.shear_stiffness * (along_x + along_z)
+
+
+@jitted
+def fracture_energy_spent(law, opening):
+    """Return what opening has spent: the area under the softening curve less what unloads.
+
+    With the linear curve this is G_c (k - w_0) / (w_c - w_0), between zero and G_c = s_t w_c / 2.
+    """
+    first = law.tensile_strength / law.normal_stiffness
+    whole = 0.5 * law.tensile_strength * law.critical_opening
+    share = min((opening - first) / (law.critical_opening - first), 1.0)
+    return 0.0 if opening <= first else whole * share

@@ -1,0 +1,38 @@
+"""Which rows a pair of results gives: every quantity that both have and that is not round-off."""
+
+import numpy as np
+import pytest
+
+from compare.exact import lattice, spatial_lattice
+from compare.pairs import measure
+
+RECORD = {"record__stress": [5.0], "record__velocity": [5.25], "time__duration": 0.01}
+
+
+def rows(result, name, **options):
+    off = result.copy(deep=True) * 1.01
+    return measure({"dem": off, name: result}, **options)
+
+
+def test_shear_is_measured_and_a_silent_stress_is_not(pillar):
+    result = spatial_lattice.solve(pillar(load__direction=[1.0, 0.0, 0.0], **RECORD))
+    result["stress"] = result.stress + 1e-12
+    found = rows(result, "spatial-lattice")
+    assert [(row.quantity, row.y) for row in found] == [("shear", 5.0), ("velocity", 5.25)]
+    assert [row.distance.misfit for row in found] == pytest.approx([0.01, 0.01])
+
+
+def test_components_follow_each_other_so_that_a_delay_is_a_delay(pillar):
+    ends = {"ends__start": "matched", "ends__end": "matched"}
+    load = {"load__direction": [0.6, 0.8, 0.0], "motion__rotation": "none"}
+    result = spatial_lattice.solve(pillar(**load, **ends, **RECORD | {"time__duration": 0.03}))
+    late = result.shift(time=3, fill_value=0.0)
+    interval = float(result.time[1])
+    for row in measure({"dem": late, "spatial-lattice": result}):
+        assert row.distance.delay == pytest.approx(3 * interval, abs=0.2 * interval)
+
+
+def test_displacement_is_measured_on_request(pillar):
+    found = rows(lattice.solve(pillar(**RECORD)), "lattice", displacement=True)
+    assert [row.quantity for row in found] == ["stress", "velocity", "displacement"]
+    assert np.isfinite([row.distance.misfit for row in found]).all()

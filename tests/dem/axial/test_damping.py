@@ -1,0 +1,68 @@
+"""Damping of the blocks themselves: Rayleigh's modal rates, Cundall's brake on a gain."""
+
+import numpy as np
+import pytest
+
+import dem
+from cases.calibrate import calibrate
+from compare.exact.lattice import frequencies
+
+
+def decay_rates(matrix, dt, omega):
+    """Return the decay rates (1/s) of the modes of these frequencies (rad/s) in a step's matrix."""
+    z = np.linalg.eigvals(matrix)
+    turning = z[z.imag > 1e-9]
+    angle = np.angle(turning) / dt
+    nearest = [np.argmin(np.abs(angle - w)) for w in omega]
+    return -np.log(np.abs(turning[nearest])) / dt
+
+
+@pytest.mark.parametrize("alpha, ratio", [(40.0, None), (None, 0.05), (40.0, 0.05)])
+def test_modes_decay_at_the_rayleigh_rate(pillar, step_matrix, alpha, ratio):
+    """alpha / 2 + eta omega^2 / 2 for every mode of the free chain, to second order in the step.
+
+    The error is a fraction of (omega dt)^2, as the frequency's own (omega dt)^2 / 24 is.
+    """
+    rayleigh = {"damping__mass_proportional": alpha, "joints__damping_ratio": ratio}
+    scene = pillar(
+        pillar__length=6.0,
+        record={"stress": [3.0]},
+        **{key: value for key, value in rayleigh.items() if value is not None},
+    )
+    p = calibrate(scene)
+    natural = frequencies(p.stiffness[0] * p.area, p.block_mass, p.block_count)[1:7]
+    rate = (alpha or 0.0) / 2 + (p.time_constant or 0.0) * natural**2 / 2
+    omega = np.sqrt(natural**2 - rate**2)
+    errors = [
+        np.abs(decay_rates(step_matrix(scene, dt), dt, omega) / rate - 1) for dt in (2e-5, 1e-5)
+    ]
+    assert (errors[0] < (natural * 2e-5) ** 2).all()
+    assert errors[0] == pytest.approx(4 * errors[1], rel=0.02)
+
+
+def test_two_frequencies_and_ratios_are_met(pillar):
+    """Alpha and beta of damping.rayleigh give zeta = alpha / 2 omega + beta omega / 2 at both."""
+    frequencies, ratios = [50.0, 400.0], [0.02, 0.03]
+    p = calibrate(pillar(damping__rayleigh={"frequencies": frequencies, "ratios": ratios}))
+    omega = 2 * np.pi * np.array(frequencies)
+    zeta = p.mass_damping / (2 * omega) + p.time_constant * omega / 2
+    assert zeta == pytest.approx(ratios, rel=1e-12)
+
+
+def test_local_damping_brakes_a_fall(pillar):
+    """Free blocks under sudden gravity gain (1 - local) g t, to round-off.
+
+    The brake takes its part of the work; only the step around t = 0 knows no direction yet.
+    """
+    scene = pillar(
+        load={"shape": "step", "amplitude": 0.0},
+        gravity={"direction": [0, 1, 0], "acceleration": 10.0, "static": False},
+        damping__local=0.25,
+        record={"velocity": [0.25, 20.0], "interval": 1e-3},
+    )
+    result = dem.simulate(scene)
+    v, t = result.velocity.values[..., 0], result.time.values
+    gained = 7.5 * (t - t[1])
+    assert np.abs(v - v[:, 1:2] - gained)[:, 1:].max() < 1e-12 * gained[-1]
+    taken, fallen = (float(result.energy.sel(term=k)[-1]) for k in ("viscous", "gravity"))
+    assert taken == pytest.approx(-0.25 * fallen, rel=1e-2)

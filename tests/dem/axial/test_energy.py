@@ -1,0 +1,96 @@
+"""The energy ledger closes: nothing appears, nothing is lost."""
+
+import pytest
+
+import dem
+from cases.result import energy_residual
+
+DOWN = {"direction": [0, 1, 0]}
+SHAKEN = {"shape": "sine", "amplitude": 1.0, "period": 0.01, "quantity": "velocity"}
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"ends__end": "quiet"},
+        {"ends__end": "matched", "ends__start": "matched"},
+        {"ends__end": "fixed"},
+        {"soft_layers": [{"y": 20.0, "spacing_stiffness": 4e8}]},
+        {"joints__damping_ratio": 0.3},
+        {"numerics__dem__step_fraction": 0.9},
+        {"damping__mass_proportional": 100.0},
+        {"damping__local": 0.3, "ends__end": "quiet"},
+        {"gravity": DOWN, "ends__end": "fixed"},
+        {"gravity": {**DOWN, "static": False}, "ends__end": "fixed"},
+        {"prestress": {"normal": 2e6}, "ends": {"start": "quiet", "end": "matched"}},
+        {"load": SHAKEN, "ends__start": "fixed", "joints__damping_ratio": 0.1},
+        {
+            "load": SHAKEN,
+            "ends": {"start": "fixed", "end": "matched"},
+            "joints__damping_ratio": 0.1,
+            "soft_layers": [{"y": 20.0, "spacing_stiffness": 4e8}],
+            "damping__mass_proportional": 30.0,
+            "gravity": DOWN,
+            "prestress": {"normal": 2e6},
+        },
+    ],
+    ids=[
+        "free",
+        "quiet",
+        "matched",
+        "fixed",
+        "soft layer",
+        "dashpots",
+        "large step",
+        "mass damping",
+        "local damping",
+        "gravity",
+        "sudden gravity",
+        "prestress",
+        "shaken base",
+        "all",
+    ],
+)
+def test_linear_scenes_close_to_round_off(pillar, changes):
+    """Below 1e-10 of the work, in the form of the energy that leapfrog conserves at any step.
+
+    Local damping is not linear in the motion, but books what it takes all the same.
+    """
+    assert energy_residual(dem.simulate(pillar(**changes))) < 1e-10
+
+
+@pytest.mark.parametrize("ratio", [None, 0.02])
+def test_no_tension_closes_to_second_order(pillar, ratio):
+    """A joint opens between two steps, which costs (k / 2) gap^2 of at most one step's gap."""
+    changes = {} if ratio is None else {"joints__damping_ratio": ratio}
+    residual = [
+        energy_residual(
+            dem.simulate(
+                pillar(joints__tension=False, numerics__dem__step_fraction=fraction, **changes)
+            )
+        )
+        for fraction in (0.1, 0.05)
+    ]
+    assert residual[1] < 1e-3
+    assert residual[1] < residual[0]
+
+
+def test_dashpots_take_what_the_wave_loses(pillar):
+    """The viscous term grows to what kinetic and elastic energy have lost of the work."""
+    energy = dem.simulate(pillar(joints__damping_ratio=0.1)).energy
+    last = energy.isel(time=-1)
+    lost = last.sel(term="work") - last.sel(term="kinetic") - last.sel(term="elastic")
+    assert float(last.sel(term="viscous")) == pytest.approx(float(lost), rel=1e-9)
+    assert float(last.sel(term="viscous")) > 0.5 * float(last.sel(term="work"))
+
+
+def test_ledger_has_a_term_for_each_effect_and_no_other(pillar):
+    """The basic five, and fracture and gravity where the scene has them."""
+    basic = ["kinetic", "elastic", "viscous", "boundary", "work"]
+    assert dem.simulate(pillar()).term.values.tolist() == basic
+    softens = {"joints__tensile_strength": 2e6, "joints__fracture_energy": 500.0}
+    result = dem.simulate(pillar(gravity=DOWN, ends__end="fixed", **softens))
+    assert result.term.values.tolist() == [
+        *("kinetic", "elastic", "viscous", "fracture", "boundary", "gravity", "work")
+    ]
