@@ -24,8 +24,8 @@ check: setup  ## lint, formatting, types, and the direction of imports
 	@$(RUN) mypy
 	@$(RUN) lint-imports
 
-bench: setup  ## what a warm run of the rigid blocks costs to start, as a ratio
-	@$(RUN) python tools/bench.py
+bench: setup  ## the rigid blocks: start-up, kernels against bare loops, threads, memory, cost of each effect
+	@$(RUN) python tools/bench
 
 test-debian13:  ## make test in a fresh Debian 13, with newer dolfinx, numpy and Python (needs root or sudo)
 	@tools/debian13.sh

@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 from scipy.signal import correlate, correlation_lags
 
-
 #: What a misfit is taken over: the first group that is not zero throughout.
 MEASURED = (("stress", "shear"), ("velocity",), ("rotation",))
 
@@ -56,7 +55,10 @@ def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
     """
     for quantities in MEASURED:
         shared = [q for q in quantities if q in one and q in other]
-        a, b = (np.concatenate([np.zeros(0), *(r[q].values.ravel() for q in shared)]) for r in (one, other))
+        a, b = (
+            np.concatenate([np.zeros(0), *(r[q].values.ravel() for q in shared)])
+            for r in (one, other)
+        )
         if a.any() or b.any():
             return relative_l2(a, b)
     return 0.0
@@ -90,13 +92,14 @@ def mean_period(waveform: np.ndarray, dt: float) -> float:
 def envelope_phase_misfit(one: np.ndarray, other: np.ndarray, dt: float) -> tuple[float, float]:
     """Return the single-valued envelope and phase misfits of Kristekova et al. (2006), by ObsPy.
 
-    Bull. Seism. Soc. Am. 96, 1836-1850; over the band that holds the reference's energy.
+    Bull. Seism. Soc. Am. 96, 1836-1850; over the band that holds the reference's energy. A
+    reference that stands still, or swings more slowly than the record lasts, has no such band.
     """
     from obspy.signal.tf_misfit import em, pm
 
-    if not one.any() or not other.any():
-        return np.nan, np.nan
     period = mean_period(other, dt)
+    if not one.any() or not period < dt * len(other):
+        return np.nan, np.nan
     coarse = max(1, int(period / (40 * dt)))  # 40 samples a period: far above the band's end
     band = {"dt": dt * coarse, "fmin": 0.25 / period, "fmax": 4 / period, "nf": 24}
     pair = one[::coarse], other[::coarse]

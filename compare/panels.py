@@ -10,9 +10,10 @@ from cases.scene import Scene
 from compare.pairs import Comparison
 from compare.style import in_order
 
-
 #: SI units of what panels show.
 UNITS = {"stress": "Pa", "shear": "Pa", "velocity": "m/s", "rotation": "rad"}
+
+FORCES, MOTION = ("stress", "shear"), ("velocity",)
 
 
 class Panel(NamedTuple):
@@ -61,9 +62,10 @@ def panels(comparisons: list[Comparison]) -> list[list[Panel]]:
     rows = []
     for comparison, name in zip(comparisons, variant_names(comparisons), strict=True):
         record = comparison.scene.record
-        places = [(("stress", "shear"), i, y) for i, y in enumerate(record.stress)]
-        places += [(("velocity",), i, y) for i, y in enumerate(record.velocity)]
-        rows.append([_panel(comparison, name, *place) for place in places])
+        rows.append(
+            [_panel(comparison, name, FORCES, i, y) for i, y in enumerate(record.stress)]
+            + [_panel(comparison, name, MOTION, i, y) for i, y in enumerate(record.velocity)]
+        )
     if len(rows) == 1 and len(rows[0]) > 2:
         return [[panel] for panel in rows[0]]
     return rows

@@ -47,8 +47,6 @@ FAMILIES: dict[str, dict[str, Style]] = {
         "lattice": Style("#00349a", 1.1, _slot(0, 4), 9),
         "no-tension-chain": Style("#00349a", 1.1, _slot(0, 9), 9),
         "spatial-lattice": Style("#00349a", 1.1, _slot(0, 9), 9),
-        "slip-joint": Style("#a83200", 1.1, _slot(9, 18), 8),
-        "sliding-block": Style("#a83200", 1.1, _slot(9, 18), 8),
     },
     "Intact rock and joints": {
         "continuum-jointed": Style("#f0a030", 3.4, "-", 1),
@@ -61,6 +59,10 @@ FAMILIES: dict[str, dict[str, Style]] = {
         "images": Style("#00a26d", 1.1, _slot(13.5, 15.5), 5),
         "kelvin-voigt": Style("#00a26d", 1.1, _slot(13.5, 15.5), 5),
         "series": Style("#b0307e", 1.1, _slot(16, 18), 4),
+    },
+    "One mechanism alone": {
+        "slip-joint": Style("#a83200", 1.1, _slot(9, 18), 8),
+        "sliding-block": Style("#a83200", 1.1, _slot(9, 18), 8),
     },
 }
 

@@ -1,6 +1,6 @@
 """What each command shows: its findings as tables, or the same facts as JSON."""
 
-from math import isfinite
+from math import isnan
 from pathlib import Path
 from typing import Any
 
@@ -129,7 +129,10 @@ def show_comparisons(found: list[Any], as_json: bool) -> None:
         groups: dict[str, list[list[str]]] = {}
         for row in comparison.rows:
             groups.setdefault(row.pair.kind, []).append(_distance_cells(row))
-        show_numbers(DISTANCE_COLUMNS, groups)
+        if groups:
+            show_numbers(DISTANCE_COLUMNS, groups)
+        else:
+            say("  nothing to compare: no two solutions of a pair apply")
         for name, residual in _residuals(comparison).items():
             say(f"  {name}: energy balance open by {residual:.1e} of the work put in")
         for name, reason in comparison.reasons.items():
@@ -154,7 +157,7 @@ def _distance_cells(row: Any) -> list[str]:
 
 
 def _number(x: float | None, form: str) -> str:
-    return format(x, form) if x is not None and isfinite(x) else "-"
+    return "-" if x is None or isnan(x) else format(x, form)
 
 
 def _comparison_facts(comparison: Any) -> dict[str, Any]:

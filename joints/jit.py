@@ -8,6 +8,7 @@ from functools import wraps
 from pathlib import Path
 from typing import Any
 
+import llvmlite.binding
 import numba
 
 PACKAGES = ("joints", "dem", "continuum")
@@ -29,6 +30,18 @@ def cache_directory(root: Path) -> Path:
     return Path(base, digest.hexdigest()[:16])
 
 
+def widest_vectors() -> None:
+    """Let kernels use all of a wide vector unit, where compilers by default keep to half of it.
+
+    Rows of 64 blocks fill whole registers, so there is no short loop that this would slow down.
+    """
+    features = llvmlite.binding.get_host_cpu_features()
+    if features.get("avx512f") and not numba.config.CPU_NAME:
+        numba.config.CPU_NAME = llvmlite.binding.get_host_cpu_name()
+        numba.config.CPU_FEATURES = f"{features.flatten()},-prefer-256-bit"
+
+
+widest_vectors()
 numba.config.CACHE_DIR = str(cache_directory(Path(__file__).resolve().parent.parent))
 
 

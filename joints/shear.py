@@ -117,15 +117,15 @@ def _radial_return(law, t_x, t_z, ex, ez, ex_old, ez_old, tau, dt):
     slipped = square > tau * tau
     scale = tau / sqrt(square) if slipped else 1.0
     t_x, t_z = scale * t_x, scale * t_z
-    x = _elastic_slip(t_x, ex_old, law.shear_viscosity, law.shear_stiffness, dt)
-    z = _elastic_slip(t_z, ez_old, law.shear_viscosity, law.shear_stiffness, dt)
+    x = _elastic_slip(scale * ex, t_x, ex_old, law.shear_viscosity, law.shear_stiffness, dt)
+    z = _elastic_slip(scale * ez, t_z, ez_old, law.shear_viscosity, law.shear_stiffness, dt)
     return t_x, t_z, x if slipped else ex, z if slipped else ez, slipped
 
 
 @jitted
-def _elastic_slip(t, old, viscosity, stiffness, dt):
+def _elastic_slip(scaled, t, old, viscosity, stiffness, dt):
     if viscosity is None:
-        return -t / stiffness
+        return scaled
     # t = -K_s e - C_s (e - old) / dt, solved for e.
     drag = viscosity / dt
     return (drag * old - t) / (stiffness + drag)

@@ -99,6 +99,22 @@ def test_each_variant_is_held_to_the_pairs_that_apply_to_it(run):
     )
 
 
+def test_scene_that_leaves_its_axis_is_held_by_its_shear(run, monkeypatch):
+    """Without any normal stress, a shear that is 1 % off is 1 % of misfit."""
+    import compare.engines
+
+    off = {"dem": 1.01, "spatial-lattice": 1.0}
+    solve = compare.engines.solve
+    monkeypatch.setattr(
+        compare.engines, "solve", lambda name, s: solve("spatial-lattice", s) * off[name]
+    )
+    sheared = scene("dem ~ spatial-lattice", 0.02).replace(
+        "period = 0.01", "period = 0.01\ndirection = [1.0, 0.0, 0.0]"
+    )
+    run(scene=sheared).assert_outcomes(passed=1)
+    run(scene=sheared.replace("0.02", "0.005")).assert_outcomes(failed=1)
+
+
 def test_pair_that_applies_to_no_variant_fails_with_the_reason(run):
     result = run(scene=scene("dem ~ no-tension-chain"))
     result.assert_outcomes(failed=1)

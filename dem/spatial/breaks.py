@@ -12,13 +12,10 @@ def with_breaks(result: Fields, p: Properties, model: Model, state: State) -> Fi
 
     A joint is broken when all its contact points are. When it broke is not kept.
     """
-    openings = model.contact.rows.openings
-    if openings is None:
+    rows = model.contact.rows
+    if rows.openings is None:
         return result
-    opened = unpacked(state.history, LANES, p.block_count)[list(openings), :-1]
-    motion, first = (
-        unpacked(state.motion, STRIDE, p.block_count),
-        len(model.contact.rows.motion) // 2,
-    )
+    opened = unpacked(state.history, LANES, p.block_count)[list(rows.openings), :-1]
     broken = (opened >= p.critical_opening).all(axis=0)
+    motion, first = unpacked(state.motion, STRIDE, p.block_count), len(rows.motion) // 2
     return with_fragments(result, p, broken, motion[first : first + 3].T)

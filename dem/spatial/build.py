@@ -226,13 +226,14 @@ def state_at_rest(model: Model, block_count: int) -> State:
     rows, tiles = model.contact.rows, tile_count(block_count)
     kept = sum(len(kind) for kind in rows[1:] if kind is not None)
     history = np.zeros((tiles, kept * LANES)) if kept else None
-    if rows.cohesions is not None:
+    if history is not None and rows.cohesions is not None:
         fill_cohesion(model.contact, history)
     sums = None if model.accounts is None else np.zeros(AFTER * STRIDE)
     motion = np.zeros((tiles, len(rows.motion) * STRIDE))
     if model.motion.finite is not None:
         motion[:, SCALAR:] = 1.0  # no rotation
-    return State(motion, history, end_state(model.start), end_state(model.end), sums)
+    slides = None if model.contact.points is None else np.zeros((tiles, 1), dtype=np.int64)
+    return State(motion, history, slides, end_state(model.start), end_state(model.end), sums)
 
 
 def fill_cohesion(contact: Contact, history: np.ndarray) -> None:

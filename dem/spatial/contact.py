@@ -91,14 +91,14 @@ def law_at(law, table, i):
 
 
 @jitted
-def forces(contact, table, m, h, q, drag, n, book):
+def forces(contact, table, m, h, q, drag, n, book, slides):
     """Compute the forces of the first n joints of a tile into the scratch q.
 
     drag : where the dashpots' share goes, None where no ledger asks for it. book : the lanes of
-    the work done by sliding, None likewise.
+    the work done by sliding, None likewise. slides : see `of_points`; None where none can.
     """
     of_section(contact, contact.section, table, m, h, q, drag, n)
-    of_points(contact, contact.points, table, m, h, q, drag, n, book)
+    of_points(contact, contact.points, table, m, h, q, drag, n, book, slides)
     remember = either(contact.finite, remember_rates, finite.finite_remember_rates)
     remember(contact.damped, contact, m, h, n)
 
@@ -111,11 +111,18 @@ def of_section(contact, section, table, m, h, q, drag, n):
 
 
 @jitted
-def of_points(contact, points, table, m, h, q, drag, n, book):
-    """Compute the forces of joints that may open, slide or break, again where any slides."""
+def of_points(contact, points, table, m, h, q, drag, n, book, slides):
+    """Compute the forces of joints that may open, slide or break.
+
+    Where none slid in the step before, none is taken to slide until one does: that needs no root.
+    slides : int64 [1], how many points of the tile slid in its last step.
+    """
     if points is not None:
-        if point_forces(contact, points, table, m, h, q, drag, n, None, None) > 0:
-            point_forces(contact, points, table, m, h, q, drag, n, book, True)
+        beyond = slides[0]
+        if beyond == 0:
+            beyond = point_forces(contact, points, table, m, h, q, drag, n, None, None)
+        if beyond > 0:
+            slides[0] = point_forces(contact, points, table, m, h, q, drag, n, book, True)
 
 
 @jitted
@@ -222,7 +229,8 @@ def shear_at_point(
     dx, dz = dt * dx, dt * dz
     old_x, old_z = ex - dx, ez - dz
     t_x, t_z, ex, ez, slipped = shear_return(law, ex, ez, old_x, old_z, rate_x, rate_z, tau, dt)
-    h[at], h[at + L] = slip[0] - ex, slip[1] - ez
+    h[at] = slip[0] - ex if slipped else h[at]
+    h[at + L] = slip[1] - ez if slipped else h[at + L]
     keep(rows.cohesions, h, first_cohesion(rows) + p * L + i, law, cohesion, slipped)
     book_slide(book, i, area * friction_work(law, old_x, old_z, ex, ez, dx, dz))
     return t_x, t_z, ex, ez, 1 if slipped else 0

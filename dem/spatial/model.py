@@ -60,11 +60,13 @@ class State(NamedTuple):
     """What changes, in tiles as `layout` says, and at both ends.
 
     motion : float array [tiles, rows * STRIDE]. history : [tiles, rows * LANES], None where no
-    joint remembers anything. sums : running accounts [4 * STRIDE], J; None without a ledger.
+    joint remembers anything. slides : int64 [tiles, 1], points that slid in the last step, None
+    where none can. sums : running accounts [4 * STRIDE], J; None without a ledger.
     """
 
     motion: np.ndarray
     history: Any
+    slides: Any
     start: Any
     end: Any
     sums: Any

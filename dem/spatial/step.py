@@ -105,7 +105,7 @@ def step(model, state, room, samples, t, n, thread, slot):
     if not final:
         show_next(s, state.motion[t + 1], rows)
     joints = blocks - 1 if final else blocks
-    forces(contact, pick(contact.table, t), s, h, q, drag, joints, book)
+    forces(contact, pick(contact.table, t), s, h, q, drag, joints, book, pick(state.slides, t))
     if t == 0:
         clear(q, drag, half, 0)
         put_load(model.load, motion, q, n)

@@ -66,6 +66,34 @@ def test_explain_says_what_is_left_out_and_why():
     }
 
 
+def test_explain_gives_the_critical_step_of_the_spatial_blocks():
+    """Shear and rotation have their own; no continuum step is given where there is none."""
+    facts = json.loads(jointwave("explain", "beyond/eccentric-blow", "--json").stdout)
+    (step,) = facts["steps"]
+    assert step["engine"] == "dem" and 0 < step["dt"] < step["critical"]
+    assert facts["effects"]["spatial motion"]["active"]
+    assert "across its axis" in facts["solutions"]["continuum-jointed"]["why_not"]
+    assert facts["solutions"]["spatial-lattice"]["applies"]
+
+
+def test_warning_is_a_line_on_standard_error():
+    """What should not be said is said to be so, and the answer is given all the same."""
+    done = jointwave("explain", SCENE, "--set", "damping.local=0.3", "--json")
+    assert done.stderr.count("\n") == 1 and "damping.local" in done.stderr
+    assert json.loads(done.stdout)["effects"]["local damping"]["active"]
+
+
+def test_run_tells_what_broke(tmp_path):
+    """How many joints broke and where the pieces fly, in words and as JSON."""
+    options = ("beyond/spall", "--variant", "", "--out", tmp_path)
+    (fact,) = json.loads(jointwave("run", *options, "--json").stdout)
+    count = len(fact["fragments"]) - 1
+    lines = jointwave("run", *options).stdout
+    assert count > 2 and f"{count} joints broke; fragments: 0 to " in lines
+    strong = ("--variant", "strong joints", "--out", tmp_path)
+    assert "no joint broke" in jointwave("run", "beyond/spall", *strong).stdout
+
+
 def test_compare_tells_numerical_from_modelling_error():
     """The chain is right as a chain, 4 % off the jointed bar and 18 % off the homogenised one."""
     done = jointwave("compare", SCENE, "--variant", "", "--json", "--no-spectral")

@@ -2,8 +2,16 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
-from compare.metrics import delay, distance, envelope_phase_misfit, mean_period, relative_l2
+from compare.metrics import (
+    delay,
+    distance,
+    envelope_phase_misfit,
+    mean_period,
+    misfit,
+    relative_l2,
+)
 
 DT = 1e-4
 T = np.arange(0, 0.12, DT)
@@ -55,3 +63,42 @@ def test_distance_of_silence_is_not_a_number_but_no_warning(recwarn):
     found = distance(0 * T, 0 * T, DT, spectral=True)
     assert found.misfit == 0 and np.isnan(found.delay) and np.isnan(found.peak_ratio)
     assert not recwarn.list
+
+
+def test_constant_reference_has_neither_envelope_nor_phase(recwarn):
+    """A static stress holds no wave."""
+    found = distance(1 + pulse(), 1 + 0 * T, DT, spectral=True)
+    assert found.misfit > 0 and np.isnan(found.envelope) and np.isnan(found.phase)
+    assert not recwarn.list
+
+
+def result(**fields):
+    """Return a result with these recorded fields: [place, time] or [place, time, component]."""
+    dims = ("place", "time", "component")
+    own = {k: [f"{k} {dim}" for dim in dims[: v.ndim]] for k, v in fields.items()}
+    return xr.Dataset({k: (own[k], v) for k, v in fields.items()})
+
+
+def test_misfit_takes_normal_and_shear_stress_together():
+    """Both 1 % off: 1 %; only the shear, which is 3/5 of the whole: 0.6 %."""
+    stress, shear = 4 * np.ones((1, 9)), 3 * np.ones((1, 9, 1))
+    other = result(stress=stress, shear=shear, velocity=0 * shear)
+    assert misfit(result(stress=1.01 * stress, shear=1.01 * shear), other) == pytest.approx(0.01)
+    assert misfit(result(stress=stress, shear=1.01 * shear), other) == pytest.approx(0.006)
+    assert misfit(result(stress=1.01 * stress), other) == pytest.approx(0.01)
+
+
+def test_misfit_goes_on_to_what_moves():
+    """Velocity without stress, rotation without either; nothing at all is no misfit."""
+    still, moved = np.zeros((1, 9, 3)), np.ones((1, 9, 3))
+    other = result(stress=still[:0, :, 0], velocity=moved, rotation=moved)
+    assert misfit(other * 1.02, other) == pytest.approx(0.02)
+    other = result(stress=still[..., 0], velocity=still, rotation=moved)
+    assert misfit(other * 1.03, other) == pytest.approx(0.03)
+    assert misfit(0 * other, 0 * other) == 0
+
+
+def test_misfit_from_a_reference_that_stands_still_is_infinite():
+    """Motion where there should be none is not passed over."""
+    other = result(stress=np.zeros((1, 9)), velocity=np.ones((1, 9, 1)))
+    assert misfit(other + 1e-6, other) == np.inf

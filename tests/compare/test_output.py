@@ -4,6 +4,7 @@ import pytest
 import xarray as xr
 
 import dem
+from compare.exact import spatial_lattice
 from compare.output import fields_of, write, write_fields, write_text
 
 
@@ -27,3 +28,12 @@ def test_dataset_comes_back_as_it_was(pillar, tmp_path):
     back = xr.load_dataset(write_fields(tmp_path / "deep" / "dem.nc", fields_of(result)))
     xr.testing.assert_identical(back, result)
     assert back.stress.attrs["units"] == "Pa" and back.attrs["critical_dt"] > back.attrs["dt"]
+
+
+def test_spatial_dataset_comes_back_as_it_was(pillar, tmp_path):
+    """Shear, rotation and their axes survive, with places where nothing is recorded."""
+    across = {"load__direction": [1.0, 0.0, 0.0], "time__duration": 0.01}
+    result = spatial_lattice.solve(pillar(record__stress=[], record__velocity=[19.75], **across))
+    back = xr.load_dataset(write_fields(tmp_path / "exact.nc", fields_of(result)))
+    xr.testing.assert_identical(back, result)
+    assert list(back.across.values) == ["x", "z"] and back.rotation.attrs["units"] == "rad"

@@ -18,8 +18,9 @@ def test_shear_is_measured_and_a_silent_stress_is_not(pillar):
     result = spatial_lattice.solve(pillar(load__direction=[1.0, 0.0, 0.0], **RECORD))
     result["stress"] = result.stress + 1e-12
     found = rows(result, "spatial-lattice")
-    assert [(row.quantity, row.y) for row in found] == [("shear", 5.0), ("velocity", 5.25)]
-    assert [row.distance.misfit for row in found] == pytest.approx([0.01, 0.01])
+    places = [("shear", 5.0), ("velocity", 5.25), ("rotation", 5.25)]
+    assert [(row.quantity, row.y) for row in found] == places
+    assert [row.distance.misfit for row in found] == pytest.approx([0.01, 0.01, 0.01])
 
 
 def test_components_follow_each_other_so_that_a_delay_is_a_delay(pillar):

@@ -1,6 +1,6 @@
 """What a run of the rigid blocks costs beyond starting Python with numba, as a ratio.
 
-usage: python tools/bench.py [PAIRS]
+
 
 The two commands are run in turn, so that a machine whose speed drifts slows both; the median of
 the pairs' ratios is the figure to quote.
@@ -22,7 +22,7 @@ def seconds(*command: str) -> float:
     return perf_counter() - began
 
 
-def main(pairs: int) -> None:
+def main(pairs: int = 11) -> None:
     """Print the ratio of a warm `jointwave run` to importing numpy and numba."""
     with tempfile.TemporaryDirectory() as out:
         run = (sys.executable, "-m", "compare", "run", SCENE, "--out", out)
@@ -36,4 +36,4 @@ def main(pairs: int) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 11)
+    main()

@@ -1,0 +1,110 @@
+"""What a block-step of the rigid blocks costs, measured here, with the effects a scene calls for."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from time import perf_counter
+
+import numba
+
+import cases
+from cases.effects import is_spatial
+from cases.sampling import Clock
+from cases.scene import Scene
+from compare.output import write_text
+
+PILLAR = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
+REPEATS = 5
+SHORTEST = 0.02  # s, of what a clock is read for
+BLOCK_STEPS = 5_000_000  # of one call, at most, but for one sample
+BLOCKS = 1000  # of the pillar that effects are compared on
+
+#: A blow that moves blocks in all their freedoms.
+ACROSS = {"load.direction": [0.6, 0.8, 0.0], "load.at": [0.1, 0.05]}
+
+#: Every effect at once: the line against which a scene's own cost is held.
+EVERYTHING = {
+    **ACROSS,
+    "motion.rotation": "finite",
+    "joints.damping_ratio": 0.02,
+    "joints.friction_angle": 30.0,
+    "joints.cohesion": 1e5,
+    "joints.residual_cohesion": 0.0,
+    "joints.tensile_strength": 1e5,
+    "joints.fracture_energy": 100.0,
+    "soft_layers": [{"y": 20.0, "spacing_stiffness": 4.375e8}],
+    "damping.mass_proportional": 1.0,
+    "gravity": {"direction": [1, 0, 0], "static": False},
+    "ends.start": "matched",
+    "ends.end": "quiet",
+}
+
+
+def changed(changes: dict, blocks: int = BLOCKS) -> Scene:
+    """Return the paper's pillar with so many blocks and some dotted keys changed."""
+    return cases.load_variant(PILLAR, "", {"pillar.length": 0.5 * blocks, **changes})
+
+
+def nanoseconds(scene: Scene, threads: int = 1) -> float:
+    """Return what one step of one block of a scene costs, ns: the least of some stretches."""
+    march, block_steps = stretch(scene, threads)
+    march()  # compiles, and sets the blocks in motion
+    return 1e9 * min(_seconds(march) for _ in range(REPEATS)) / block_steps
+
+
+def _seconds(march: Callable[[], None]) -> float:
+    """Return the seconds of one call, from as many as a clock can tell."""
+    calls, spent = 0, 0.0
+    began = perf_counter()
+    while spent < SHORTEST:
+        march()
+        calls, spent = calls + 1, perf_counter() - began
+    return spent / calls
+
+
+def stretch(scene: Scene, threads: int = 1) -> tuple[Callable[[], None], int]:
+    """Return a function that takes some samples of a scene, and its number of block-steps."""
+    return _in_space(scene, threads) if is_spatial(scene) else _along_axis(scene)
+
+
+def _along_axis(scene: Scene) -> tuple[Callable[[], None], int]:
+    from dem.axial.model import build
+    from dem.axial.record import room, run
+
+    model, state, time, _ = build(scene)
+    count = _samples(time, state.u.size)
+    samples = room(model, state, count)
+    return (
+        lambda: run(model, state, samples, time.stride, 0, count),
+        count * time.stride * state.u.size,
+    )
+
+
+def _in_space(scene: Scene, threads: int) -> tuple[Callable[[], None], int]:
+    from dem.spatial.build import room_for, samples_for, state_at_rest
+    from dem.spatial.simulate import prepare
+    from dem.spatial.threads import marcher
+
+    p, model, time, _ = prepare(scene)
+    count = _samples(time, p.block_count)
+    state, samples = state_at_rest(model, p.block_count), samples_for(model, count)
+    march = marcher(model, state, room_for(model, threads), samples)
+    march(0, 0)
+    return lambda: march(0, count * time.stride), count * time.stride * p.block_count
+
+
+def _samples(time: Clock, blocks: int) -> int:
+    return min(time.samples, max(1, BLOCK_STEPS // (blocks * time.stride)))
+
+
+def whole() -> float:
+    """Return what a block-step with every effect costs, ns; measured once for each version."""
+    file = Path(numba.config.CACHE_DIR) / "effort.json"
+    try:
+        return float(json.loads(file.read_text())["everything"])
+    except (OSError, ValueError, KeyError):
+        found = nanoseconds(changed(EVERYTHING))
+        write_text(file, json.dumps({"everything": found}))
+        return found

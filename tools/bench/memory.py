@@ -1,0 +1,56 @@
+"""What a block takes in memory, and what a block-step costs from a thousand blocks to a million."""
+
+import resource
+import subprocess
+import sys
+
+from compare.effort import changed, nanoseconds
+
+MOST = 1_000_000
+
+#: A row in space whose joints slide, with dashpots and ledger.
+SLIDES = {
+    "load.direction": [0.6, 0.8, 0.0],
+    "load.at": [0.1, 0.05],
+    "joints.friction_angle": 30.0,
+    "joints.cohesion": 1e12,
+    "joints.damping_ratio": 0.02,
+    "time.duration": 5e-5,
+}
+
+
+def peak() -> float:
+    """Return the largest memory this process has had, bytes."""
+    return 1024.0 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+
+def one_run(blocks: int) -> None:
+    """Run a row of so many blocks and print this process's peak."""
+    from dem import simulate_fields
+
+    simulate_fields(changed(SLIDES, blocks))
+    print(peak())
+
+
+def main() -> None:
+    """Print bytes per block of whole runs, and the cost of a block-step over the row's length."""
+    few, many = (float(_apart(blocks)) for blocks in (1000, MOST))
+    print(
+        f"memory: {(many - few) / MOST:.0f} bytes a block, peak of a whole run of {MOST:,} blocks"
+    )
+    scene = {**SLIDES, "record.energy": False, "time.duration": 1e-3}
+    costs = {n: nanoseconds(changed(scene, n)) for n in (1000, 10_000, 100_000, MOST)}
+    print("cost of a block-step in space with slip and dashpots, one thread, over the row's length")
+    for blocks, cost in costs.items():
+        print(
+            f"  {blocks:9,} blocks {cost:7.2f} ns ({cost / min(costs.values()):.2f} times the least)"
+        )
+
+
+def _apart(blocks: int) -> str:
+    command = (sys.executable, __file__, str(blocks))
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+if __name__ == "__main__":
+    one_run(int(sys.argv[1])) if len(sys.argv) > 1 else main()
