@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from cases.calibrate import Properties, calibrate
 from cases.effects import Effect, effects, is_spatial
 from cases.scene import Scene
+from compare.effort import nanoseconds, whole
 from compare.engines import ENGINES, applies, exact_names
 from compare.exact.answer import Answer
 
@@ -20,21 +21,36 @@ class StepChoice:
 
 
 @dataclass(frozen=True)
+class Cost:
+    """What a step of one rigid block costs here: of this scene, and with every effect, ns."""
+
+    own: float
+    everything: float
+
+    @property
+    def share(self) -> float:
+        """The scene's own part of the cost of everything."""
+        return self.own / self.everything
+
+
+@dataclass(frozen=True)
 class Explanation:
-    """Everything that can be said of a scene without running it."""
+    """Everything that can be said of a scene but what comes out of it."""
 
     scene: Scene
     properties: Properties
     effects: list[Effect]
     steps: list[StepChoice]
     answers: dict[str, Answer]
+    cost: Cost
 
 
 def explanation(scene: Scene) -> Explanation:
     """Return what a scene calls for, what is left out, and what can solve it."""
     answers = {name: applies(name, scene) for name in (*ENGINES, *exact_names())}
     steps = [_step(name, scene) for name in ENGINES if answers[name]]
-    return Explanation(scene, calibrate(scene), effects(scene), steps, answers)
+    cost = Cost(nanoseconds(scene), whole())
+    return Explanation(scene, calibrate(scene), effects(scene), steps, answers, cost)
 
 
 def _step(name: str, scene: Scene) -> StepChoice:

@@ -99,6 +99,10 @@ def show_explanation(found: Any, as_json: bool) -> None:
         for s in found.steps
     ]
     show_table(["engine", "critical step, s", "step, s", "fraction", "steps"], steps)
+    say(
+        f"a step of a rigid block takes {found.cost.own:.2g} ns here, {100 * found.cost.share:.2g} % "
+        f"of the {found.cost.everything:.2g} ns that every effect at once would"
+    )
     answers = [[k, "yes" if a else "no", a.reason] for k, a in found.answers.items()]
     show_table(["solution", "applies", "why not"], answers)
 
@@ -114,6 +118,8 @@ def _explanation_facts(found: Any) -> dict[str, Any]:
         "poisson": p.poisson,
         "effects": {e.name: {"active": e.active, "why": e.reason} for e in found.effects},
         "steps": [s.__dict__ for s in found.steps],
+        "nanoseconds_per_block_step": found.cost.own,
+        "nanoseconds_with_everything": found.cost.everything,
         "solutions": {k: {"applies": a.yes, "why_not": a.reason} for k, a in found.answers.items()},
     }
 

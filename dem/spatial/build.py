@@ -9,6 +9,7 @@ from cases.loads import base_steps, load_history, step_means
 from cases.result import ALL_TERMS
 from cases.sampling import Clock, Interpolation, interpolation
 from cases.scene import Scene
+from dem.spatial import scratch
 from dem.spatial.book import ACCOUNT_OF, ACCOUNTS, AFTER
 from dem.spatial.contact import Contact
 from dem.spatial.ends import End, Springs, build_end, end_springs, end_state
@@ -16,7 +17,6 @@ from dem.spatial.finite import SCALAR
 from dem.spatial.layout import LANES, STRIDE, Layout, layout, packed, tile_count
 from dem.spatial.model import Load, Model, Receivers, Room, Samples, State
 from dem.spatial.motion import Motion
-from dem.spatial.record import SCRATCH
 from dem.spatial.section import contact_points, face_of, section
 from joints.laws import Law
 from joints.uniform import law
@@ -249,7 +249,7 @@ def room_for(model: Model, threads: int) -> Room:
     """Return the room that so many threads work in."""
     slots = threads * DEPTH
     books = None if model.accounts is None else np.zeros((slots, ACCOUNTS * STRIDE))
-    return Room(np.zeros((threads, SCRATCH * STRIDE)), np.zeros((slots, 12)), books, DEPTH)
+    return Room(np.zeros((threads, scratch.ROWS * STRIDE)), np.zeros((slots, 12)), books, DEPTH)
 
 
 def samples_for(model: Model, samples: int) -> Samples:

@@ -19,6 +19,7 @@ from dem.spatial.kinematics import gap_at, relative, remember_rates, slip_at
 from dem.spatial.layout import LANES as L
 from dem.spatial.layout import STRIDE as R
 from dem.spatial.layout import first_cohesion, first_opening, first_slide
+from dem.spatial.scratch import DRAG, SLID
 from joints.energy import friction_work
 from joints.jit import jitted
 from joints.laws import Law, normal_traction, spring_traction
@@ -94,8 +95,8 @@ def law_at(law, table, i):
 def forces(contact, table, m, h, q, drag, n, book, slides):
     """Compute the forces of the first n joints of a tile into the scratch q.
 
-    drag : where the dashpots' share goes, None where no ledger asks for it. book : the lanes of
-    the work done by sliding, None likewise. slides : see `of_points`; None where none can.
+    drag, book : whether the dashpots' share and the work done by sliding are left there too, None
+    where no ledger asks for them. slides : see `of_points`; None where none can.
     """
     of_section(contact, contact.section, table, m, h, q, drag, n)
     of_points(contact, contact.points, table, m, h, q, drag, n, book, slides)
@@ -122,7 +123,18 @@ def of_points(contact, points, table, m, h, q, drag, n, book, slides):
         if beyond == 0:
             beyond = point_forces(contact, points, table, m, h, q, drag, n, None, None)
         if beyond > 0:
-            slides[0] = point_forces(contact, points, table, m, h, q, drag, n, book, True)
+            slides[0] = point_forces(
+                contact, points, table, m, h, q, drag, n, given(book, True), True
+            )
+            book_slides(book, q, n)
+
+
+@jitted
+def book_slides(book, q, n):
+    """Book the work done by sliding, where there is a ledger."""
+    if book is not None:
+        for i in range(min(n, L)):
+            book[FRICTION * R + i] += q[SLID + i]
 
 
 @jitted
@@ -136,17 +148,19 @@ def point_forces(contact, points, table, m, h, q, drag, n, book, returns):
     for i in range(min(n, L)):
         law = law_at(contact.law, table, i)
         motion = either(contact.finite, relative, finite.finite_relative)(contact, m, h, i)
-        f, d, over = every_point(
+        f, d, over, work = every_point(
             points.x, points.z, points.area, 0, contact, law, motion, h, drag, i, book, returns
         )
         beyond += over
         either(contact.finite, leave, finite.finite_leave)(q, i, contact, motion, f)
-        leave_drag(drag, i, contact, motion, d)
+        leave_drag(drag, q, i, contact, motion, d)
+        leave_work(book, q, i, work)
     return beyond
 
 
 def every_point(xs, zs, areas, p, contact, law, motion, h, drag, i, book, returns):
-    """Return force, dashpots' share and points beyond their strength, summed over points p, ...
+    """Return force, dashpots' share, points beyond their strength and work done by sliding, summed
+    over points p, ...
 
     Compiled only: written out point by point, since a loop inside that over the blocks would keep
     several blocks from being worked on at once.
@@ -169,11 +183,11 @@ def last_point(xs, zs, areas, p, contact, law, motion, h, drag, i, book, returns
 def next_point(xs, zs, areas, p, contact, law, motion, h, drag, i, book, returns):
     """Compute one point and add the others."""
     x, z, area = xs[0], zs[0], areas[0]
-    f, d, over = at_point(x, z, area, p, contact, law, motion, h, drag, i, book, returns)
-    rest, drags, more = every_point(
+    f, d, over, work = at_point(x, z, area, p, contact, law, motion, h, drag, i, book, returns)
+    rest, drags, more, works = every_point(
         xs[1:], zs[1:], areas[1:], p + 1, contact, law, motion, h, drag, i, book, returns
     )
-    return plus(f, rest), plus(d, drags), over + more
+    return plus(f, rest), plus(d, drags), over + more, work + works
 
 
 @jitted
@@ -197,14 +211,14 @@ def at_point(x, z, area, p, contact, law, motion, h, drag, i, book, returns):
     cohesion = given(rows.cohesions, h[at])
     t_n = normal_traction(law, gap, rate, opening)
     tau = shear_strength(law, t_n, gap, opening, cohesion)
-    t_x, t_z, ex, ez, over = shear_at_point(
+    t_x, t_z, ex, ez, over, work = shear_at_point(
         x, z, area, p, contact, slip_of, slip, law, motion, h, i, tau, cohesion, book, returns
     )
     force = either(contact.finite, force_at, finite.finite_force_at)
     f = force(x, z, gap, slip, area * t_x, area * t_n, area * t_z)
     t_n, t_x, t_z = dragged(drag, law, gap, opening, t_n, t_x, t_z, ex, ez)
     d = force(x, z, gap, slip, area * t_x, area * t_n, area * t_z)
-    return f, d, over
+    return f, d, over, area * work
 
 
 @jitted
@@ -224,7 +238,7 @@ def shear_at_point(
     rate_x, rate_z = slip_of(arm, motion.g_mid, motion.phi_mid, x, z)
     if returns is None:
         t_x, t_z = shear_traction(law, ex, ez, rate_x, rate_z)
-        return t_x, t_z, ex, ez, exceeds(tau, t_x, t_z)
+        return t_x, t_z, ex, ez, exceeds(tau, t_x, t_z), 0.0
     dx, dz = slip_of(arm, motion.g_rate, motion.phi_rate, x, z)
     dx, dz = dt * dx, dt * dz
     old_x, old_z = ex - dx, ez - dz
@@ -232,8 +246,8 @@ def shear_at_point(
     h[at] = slip[0] - ex if slipped else h[at]
     h[at + L] = slip[1] - ez if slipped else h[at + L]
     keep(rows.cohesions, h, first_cohesion(rows) + p * L + i, law, cohesion, slipped)
-    book_slide(book, i, area * friction_work(law, old_x, old_z, ex, ez, dx, dz))
-    return t_x, t_z, ex, ez, 1 if slipped else 0
+    work = friction_work(law, old_x, old_z, ex, ez, dx, dz)
+    return t_x, t_z, ex, ez, 1 if slipped else 0, work
 
 
 @jitted
@@ -244,7 +258,7 @@ def linear_forces(contact, section, table, m, h, q, drag, n):
         f = resist(section, law.normal_stiffness, law.shear_stiffness, motion.g, motion.phi)
         d = resist_rates(contact.damped, section, law, motion)
         leave(q, i, contact, motion, plus(f, d))
-        leave_drag(drag, i, contact, motion, d)
+        leave_drag(drag, q, i, contact, motion, d)
 
 
 @jitted
@@ -328,14 +342,14 @@ def leave_moment(arm, q, i, f):
 
 
 @jitted
-def leave_drag(drag, i, contact, motion, d):
+def leave_drag(drag, q, i, contact, motion, d):
     """Leave the dashpots' share, where a ledger asks for it."""
     if drag is not None:
-        either(contact.finite, leave, finite.finite_leave)(drag, i, contact, motion, d)
+        either(contact.finite, leave, finite.finite_leave)(q, DRAG + i, contact, motion, d)
 
 
 @jitted
-def book_slide(book, i, work):
-    """Add the work done by sliding to the lane's account."""
+def leave_work(book, q, i, work):
+    """Leave the work done by sliding, where a ledger asks for it."""
     if book is not None:
-        book[FRICTION * R + i] += work
+        q[SLID + i] = work

@@ -16,7 +16,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cases.calibrate import Properties
-from dem.spatial.finite import LEFT
 from dem.spatial.layout import STRIDE as R
 from dem.spatial.motion import (
     Motion,
@@ -29,6 +28,7 @@ from dem.spatial.motion import (
     spin_of,
     turns,
 )
+from dem.spatial.scratch import LEFT
 from dem.spatial.section import Face
 from joints.ends import half_spring
 from joints.jit import jitted

@@ -17,6 +17,7 @@ vector part of its quaternion, 9 to 11 its angular momentum L and 12 the scalar 
 from dem.spatial.kinematics import Relative, centred
 from dem.spatial.layout import LANES as L
 from dem.spatial.layout import STRIDE as R
+from dem.spatial.scratch import LEFT
 from dem.spatial.vectors import (
     back,
     columns_less_one,
@@ -32,7 +33,6 @@ from dem.spatial.vectors import (
 from joints.jit import jitted
 
 SCALAR = 12 * R  # place of the quaternions' scalar part in the motion
-LEFT = 18 * R  # place of the moment on the left block in the scratch
 
 
 @jitted
@@ -127,8 +127,9 @@ def finite_slip_at(arm, g, c, x, z):
 def area_in_contact(contact, area, x, z, gap, slip):
     """Return a point's area, none where it is off the other block's face or behind the block."""
     half = contact.half_side
-    on = abs(x - slip[0]) <= half and abs(z - slip[1]) <= half and gap > -2.0 * contact.arm
-    return area if on else 0.0
+    # One condition, not three in a row: a branch would keep blocks from being worked on together.
+    off = max(abs(x - slip[0]) - half, abs(z - slip[1]) - half, -2.0 * contact.arm - gap)
+    return area if off <= 0.0 else 0.0
 
 
 @jitted

@@ -88,7 +88,7 @@ class Samples(NamedTuple):
 class Room(NamedTuple):
     """What the steps of a pass need besides the state, a slot for each step under way.
 
-    scratch : float array [slots, SCRATCH * STRIDE]. carry : [slots, 12], the force of a tile's
+    scratch : float array [slots, scratch rows * STRIDE]. carry : [slots, 12], the force of a tile's
     last joint on its way to the next tile. books : [slots, ACCOUNTS * STRIDE], None without ledger.
     depth : steps taken in one pass over the tiles by one thread.
     """

@@ -8,9 +8,11 @@ with y x F = (F_z, 0, -F_x): the shear forces of both joints turn a block the sa
 from math import copysign
 from typing import Any, NamedTuple
 
-from dem.spatial.finite import LEFT, SCALAR, orientation, spin
+from dem.spatial.finite import SCALAR, orientation, spin
+from dem.spatial.layout import LANES as L
 from dem.spatial.layout import STRIDE as R
 from dem.spatial.layout import velocities
+from dem.spatial.scratch import LEFT
 from dem.spatial.vectors import columns_less_one, dot, normalised, product, times, turn_by
 from joints.jit import jitted
 from joints.optional import either
@@ -116,7 +118,7 @@ def translate(motion, fall, rows, s, q, n):
     """Advance velocities and displacements."""
     dt, push, keep, local = motion.dt, motion.push, motion.keep, motion.local
     v = velocities(rows)
-    for i in range(n):
+    for i in range(min(n, L)):
         gain = gains(push, fall, net_force(q, i))
         x = advanced(keep, local, s[v + i], gain[0])
         y = advanced(keep, local, s[v + R + i], gain[1])
@@ -132,7 +134,7 @@ def rotate(motion, arm, s, q, n):
     """Advance angular velocities and rotations, where blocks turn."""
     if arm is not None:
         dt, twist, keep, local = motion.dt, motion.twist, motion.keep, motion.local
-        for i in range(n):
+        for i in range(min(n, L)):
             gain = turns(twist, net_moment(q, i, arm))
             x = advanced(keep, local, s[9 * R + i], gain[0])
             y = advanced(keep, local, s[10 * R + i], gain[1])
@@ -157,7 +159,7 @@ def finite_moment(q, i, arm):
 def rotate_by_momentum(motion, arm, s, q, n):
     """Advance angular momenta by the moments of a step, and turn the blocks by them."""
     dt, finite, keep, local = motion.dt, motion.finite, motion.keep, motion.local
-    for i in range(n):
+    for i in range(min(n, L)):
         gain = times(motion.push * motion.mass, finite_moment(q, i, arm))
         momentum = (
             advanced(keep, local, s[9 * R + i], gain[0]),

@@ -20,21 +20,20 @@ from dem.spatial.finite import (
     finite_gap_at,
     finite_relative,
     finite_slip_at,
+    three,
 )
 from dem.spatial.kinematics import gap_at, relative, shift, slip_at, turn
 from dem.spatial.layout import LANES as L
 from dem.spatial.layout import STRIDE as R
 from dem.spatial.layout import first_opening, first_slide, velocities
 from dem.spatial.motion import angular_velocity, finite_moment, net_force, net_moment, spin_of
-from dem.spatial.vectors import dot
+from dem.spatial.scratch import BEFORE, DRAG, MOMENTA
+from dem.spatial.vectors import dot, less, sum_of, times
 from joints.energy import elastic_energy, fracture_energy_spent
 from joints.jit import jitted
 from joints.optional import either, given
 
 NO_SPIN = (0.0, 0.0, 0.0)
-
-FORCES, DRAG, BEFORE, MOMENTA = 0, 6 * R, 12 * R, 27 * R  # places in the scratch, and LEFT
-SCRATCH = 30
 
 
 @jitted
@@ -42,7 +41,7 @@ def keep_velocities(book, motion, half, s, q, n):
     """Keep the velocities before the step in the scratch, for the ledger."""
     if book is not None:
         for k in range(half):
-            for i in range(n):
+            for i in range(min(n, L)):
                 q[BEFORE + k * R + i] = s[(half + k) * R + i]
         keep_momenta(motion.finite, motion, s, q, n)
 
@@ -51,7 +50,7 @@ def keep_velocities(book, motion, half, s, q, n):
 def keep_momenta(finite, motion, s, q, n):
     """Tell angular velocity and angular momentum apart, where blocks turn by any angle."""
     if finite is not None:
-        for i in range(n):
+        for i in range(min(n, L)):
             for k in range(3):
                 q[MOMENTA + k * R + i] = s[(9 + k) * R + i]
             at = BEFORE + 3 * R + i
@@ -115,7 +114,7 @@ def sample_after(receivers, samples, half, s, t, c):
 def book_kinetic(motion, arm, rows, book, s, q, n):
     """Book the kinetic energy in the form that leapfrog conserves: m v[n-1/2] v[n+1/2] / 2."""
     m, v = 0.5 * motion.mass, velocities(rows)
-    for i in range(n):
+    for i in range(min(n, L)):
         book[KINETIC * R + i] += m * (
             q[BEFORE + i] * s[v + i]
             + q[BEFORE + R + i] * s[v + R + i]
@@ -129,7 +128,7 @@ def book_rotation(motion, arm, book, s, q, n):
     """Book the energy of rotation, where blocks turn."""
     if arm is not None:
         inertia = motion.inertia
-        for i in range(n):
+        for i in range(min(n, L)):
             book[ROTATION * R + i] += 0.5 * (
                 inertia[0] * q[BEFORE + 3 * R + i] * s[9 * R + i]
                 + inertia[1] * q[BEFORE + 4 * R + i] * s[10 * R + i]
@@ -140,17 +139,15 @@ def book_rotation(motion, arm, book, s, q, n):
 @jitted
 def book_spin(motion, arm, book, s, q, n):
     """Book the energy of rotation from angular velocity before and angular momentum after."""
-    for i in range(n):
-        for k in range(3):
-            turned = q[BEFORE + (3 + k) * R + i] * s[(9 + k) * R + i]
-            book[ROTATION * R + i] += 0.5 * turned
+    for i in range(min(n, L)):
+        book[ROTATION * R + i] += 0.5 * dot(three(q, BEFORE // R + 3, i), three(s, 9, i))
 
 
 @jitted
 def book_weight(weight, book, s, n):
     """Book the potential energy in gravity, from the unloaded pillar on."""
     if weight is not None:
-        for i in range(n):
+        for i in range(min(n, L)):
             book[GRAVITY * R + i] -= (
                 weight[0] * s[i] + weight[1] * s[R + i] + weight[2] * s[2 * R + i]
             )
@@ -161,7 +158,7 @@ def book_section(contact, section, table, book, s, n):
     """Book the energy of the first n joints, where they always hold."""
     if section is not None:
         arm = contact.arm
-        for i in range(n):
+        for i in range(min(n, L)):
             law = law_at(contact.law, table, i)
             g, phi = shift(s, 0, i, arm), turn(s, 0, i, arm)
             k_n, k_s = 0.5 * law.normal_stiffness, 0.5 * law.shear_stiffness
@@ -182,7 +179,7 @@ def book_points(contact, points, table, book, s, h, n):
         gap_of = either(contact.finite, gap_at, finite_gap_at)
         slip_of = either(contact.finite, slip_at, finite_slip_at)
         area_of = either(contact.finite, whole_area, area_in_contact)
-        for i in range(n):
+        for i in range(min(n, L)):
             law = law_at(contact.law, table, i)
             motion = either(contact.finite, relative, finite_relative)(contact, s, h, i)
             for p in range(len(points.area)):
@@ -208,15 +205,12 @@ def book_fracture(opening, book, i, area, law):
 def book_viscous(viscous, motion, rows, weight, drag, book, s, q, n):
     """Book the work of dashpots, mass-proportional and local damping over both half steps."""
     if viscous is not None:
-        dt, v = motion.dt, velocities(rows)
-        for i in range(n):
-            d, f = dragged(drag, i), net_force(q, i)
-            for k in range(3):
-                old, new = q[BEFORE + k * R + i], s[v + k * R + i]
-                pull = f[k] + weighed(weight, k)
-                impulse = dt * d[k] + damped(motion, motion.mass, new - old, dt * pull)
-                book[VISCOUS * R + i] -= 0.5 * impulse * old
-                book[VISCOUS_AFTER * R + i] -= 0.5 * impulse * new
+        v = len(rows.motion) // 2
+        for i in range(min(n, L)):
+            old, new = three(q, BEFORE // R, i), three(s, v, i)
+            pull = sum_of(net_force(q, i), weighed(weight))
+            gain = times(motion.mass, less(new, old))
+            book_impulse(book, i, impulse(motion, dragged(drag, q, i), pull, gain), old, new)
         book_turn = either(motion.finite, book_viscous_turn, book_viscous_spin)
         book_turn(motion, motion.arm, drag, book, s, q, n)
 
@@ -225,72 +219,78 @@ def book_viscous(viscous, motion, rows, weight, drag, book, s, q, n):
 def book_viscous_turn(motion, arm, drag, book, s, q, n):
     """Book the work of the same moments, where blocks turn."""
     if arm is not None:
-        dt = motion.dt
-        for i in range(n):
-            d, m = dragged_round(drag, i, arm), net_moment(q, i, arm)
-            for k in range(3):
-                old, new = q[BEFORE + (3 + k) * R + i], s[(9 + k) * R + i]
-                impulse = dt * d[k] + damped(motion, motion.inertia[k], new - old, dt * m[k])
-                book[VISCOUS * R + i] -= 0.5 * impulse * old
-                book[VISCOUS_AFTER * R + i] -= 0.5 * impulse * new
+        about_x, about_y, about_z = motion.inertia
+        for i in range(min(n, L)):
+            old, new = three(q, BEFORE // R + 3, i), three(s, 9, i)
+            more = less(new, old)
+            gain = about_x * more[0], about_y * more[1], about_z * more[2]
+            drags = dragged_round(drag, q, i, arm)
+            book_impulse(book, i, impulse(motion, drags, net_moment(q, i, arm), gain), old, new)
 
 
 @jitted
 def book_viscous_spin(motion, arm, drag, book, s, q, n):
     """Book the work of the same moments, where blocks turn by any angle."""
-    dt = motion.dt
-    for i in range(n):
-        d, m, new = spin_drag(drag, i, arm), finite_moment(q, i, arm), spin_of(motion, s, i)
-        for k in range(3):
-            gain = s[(9 + k) * R + i] - q[MOMENTA + k * R + i]
-            impulse = dt * d[k] + damped(motion, 1.0, gain, dt * m[k])
-            book[VISCOUS * R + i] -= 0.5 * impulse * q[BEFORE + (3 + k) * R + i]
-            book[VISCOUS_AFTER * R + i] -= 0.5 * impulse * new[k]
+    for i in range(min(n, L)):
+        old, new = three(q, BEFORE // R + 3, i), spin_of(motion, s, i)
+        gain = less(three(s, 9, i), three(q, MOMENTA // R, i))
+        drags = spin_drag(drag, q, i, arm)
+        book_impulse(book, i, impulse(motion, drags, finite_moment(q, i, arm), gain), old, new)
 
 
 @jitted
-def spin_drag(drag, i, arm):
-    """Return the moment of the dashpots on a block that turns by any angle."""
-    if drag is None:
-        return 0.0, 0.0, 0.0
-    return finite_moment(drag, i, arm)
+def book_impulse(book, i, given_off, old, new):
+    """Book the work of an impulse (N s) against the velocities before and after the step."""
+    book[VISCOUS * R + i] -= 0.5 * dot(given_off, old)
+    book[VISCOUS_AFTER * R + i] -= 0.5 * dot(given_off, new)
 
 
 @jitted
-def damped(motion, inertia, gain, impulse):
-    """Return the impulse of what damps a block itself: what is missing in its momentum."""
-    return _damped(motion.keep, motion.local, inertia * gain - impulse)
+def impulse(motion, drags, pull, gain):
+    """Return the impulse of the dashpots, and of what damps a block itself: what its momentum's
+    gain has less than the pull of everything else."""
+    missing = less(gain, times(motion.dt, pull))
+    return sum_of(times(motion.dt, drags), damped(motion.keep, motion.local, missing))
 
 
 @jitted
-def _damped(keep, local, missing):
+def damped(keep, local, missing):
+    """Return what is missing where a block is damped itself, else nothing: it is round-off."""
     if keep is None and local is None:
-        return 0.0
+        return 0.0, 0.0, 0.0
     return missing
 
 
 @jitted
-def dragged(drag, i):
+def spin_drag(drag, q, i, arm):
+    """Return the moment of the dashpots on a block that turns by any angle."""
+    if drag is None:
+        return 0.0, 0.0, 0.0
+    return finite_moment(q, DRAG + i, arm)
+
+
+@jitted
+def dragged(drag, q, i):
     """Return the force of the dashpots on a block."""
     if drag is None:
         return 0.0, 0.0, 0.0
-    return net_force(drag, i)
+    return net_force(q, DRAG + i)
 
 
 @jitted
-def dragged_round(drag, i, arm):
+def dragged_round(drag, q, i, arm):
     """Return the moment of the dashpots on a block."""
     if drag is None:
         return 0.0, 0.0, 0.0
-    return net_moment(drag, i, arm)
+    return net_moment(q, DRAG + i, arm)
 
 
 @jitted
-def weighed(weight, k):
-    """Return a component of a block's weight, N."""
+def weighed(weight):
+    """Return a block's weight, N."""
     if weight is None:
-        return 0.0
-    return weight[k]
+        return 0.0, 0.0, 0.0
+    return weight[0], weight[1], weight[2]
 
 
 @jitted

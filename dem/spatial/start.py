@@ -42,12 +42,13 @@ def start(scene: Scene, p: Properties, model: Model, state: State) -> Rest | Non
 class Relaxation:
     """The blocks under their static forces alone: `dem.static.System`.
 
-    Dashpots decide no static state and are left out, with those behind quiet and matched ends.
-    Local damping, where the scene asks for it, takes the place of the adaptive one.
+    Damping decides no static state and is left out, with what is behind quiet and matched ends.
     """
 
     def __init__(self, scene: Scene, p: Properties, weighed: bool) -> None:
-        p = replace(p, time_constant=None, joint_time_constant=None, mass_damping=None)
+        p = replace(
+            p, time_constant=None, joint_time_constant=None, mass_damping=None, local_damping=None
+        )
         scene = _at_rest(scene, weighed)
         turns, face = scene.motion.rotation != "none", face_of(section(contact_points(scene)))
         self.ends = (scene.ends.start, scene.ends.end)
@@ -75,9 +76,7 @@ class Relaxation:
         kept = [array.copy() for array in (s.motion, *_closures(s))]
         self.stop()
         self.advance(1, 0.0)
-        gain = self._rows()[len(self._rows()) // 2 :].ravel() / (
-            1 - (self.model.motion.local or 0.0)
-        )
+        gain = self._rows()[len(self._rows()) // 2 :].ravel()
         for array, old in zip((s.motion, *_closures(s)), kept, strict=True):
             array[:] = old
         return self.mass * gain / self.model.motion.dt
@@ -100,8 +99,6 @@ class Relaxation:
                 theirs.closure[:] = mine.closure
 
     def _damped(self, alpha: float) -> Model:
-        if self.model.motion.local is not None:
-            return self.model
         m = self.model.motion
         drag = 0.5 * m.dt * alpha
         return self.model._replace(

@@ -10,19 +10,17 @@ later. Every block does the same arithmetic in whatever order, so results are bi
 from dem.spatial.book import close
 from dem.spatial.contact import forces
 from dem.spatial.ends import hold, put, settle
-from dem.spatial.finite import LEFT
 from dem.spatial.layout import LANES, freedoms
 from dem.spatial.layout import STRIDE as R
 from dem.spatial.motion import advance
 from dem.spatial.record import (
-    DRAG,
-    SCRATCH,
     book_motion,
     book_states,
     keep_velocities,
     sample_after,
     sample_before,
 )
+from dem.spatial.scratch import DRAG, LEFT
 from joints.atomic import give_way, peek, post
 from joints.jit import jitted
 from joints.laws import pick
@@ -97,7 +95,7 @@ def step(model, state, room, samples, t, n, thread, slot):
     contact, motion = model.contact, model.motion
     half, rows = freedoms(contact.rows), len(contact.rows.motion)
     book = pick(room.books, slot)
-    drag = given(book, given(contact.damped, q[DRAG : SCRATCH * R]))
+    drag = given(book, contact.damped)
     final = t == len(state.motion) - 1
     blocks = model.last if final else LANES
     sampled = n % model.stride == 0
@@ -169,7 +167,7 @@ def receive(carry, q, drag, half):
     for k in range(half):
         q[k * R] = carry[k]
         if drag is not None:
-            drag[k * R] = carry[6 + k]
+            q[DRAG + k * R] = carry[6 + k]
 
 
 @jitted
@@ -178,7 +176,7 @@ def pass_on(carry, q, drag, half):
     for k in range(half):
         carry[k] = q[k * R + LANES]
         if drag is not None:
-            carry[6 + k] = drag[k * R + LANES]
+            carry[6 + k] = q[DRAG + k * R + LANES]
 
 
 @jitted
@@ -187,7 +185,7 @@ def clear(q, drag, half, lane):
     for k in range(half):
         q[k * R + lane] = 0.0
         if drag is not None:
-            drag[k * R + lane] = 0.0
+            q[DRAG + k * R + lane] = 0.0
 
 
 @jitted
@@ -201,4 +199,4 @@ def clear_left(q, drag, lane):
     for k in range(3):
         q[LEFT + k * R + lane] = 0.0
         if drag is not None:
-            drag[LEFT + k * R + lane] = 0.0
+            q[DRAG + LEFT + k * R + lane] = 0.0

@@ -1,0 +1,108 @@
+"""Paying only for what a scene calls for, proved without a clock."""
+
+import numpy as np
+import pytest
+
+import dem
+from dem.spatial.build import room_for
+from dem.spatial.step import march
+
+FIELDS = ("stress", "shear", "velocity", "displacement", "rotation")
+SQRT = r"(?:tail )?call \S+ @llvm\.sqrt\S*"
+
+
+def waveforms(result):
+    """Return the samples of every field."""
+    return {name: result[name].values for name in FIELDS if name in result}
+
+
+@pytest.mark.parametrize(
+    "idle",
+    [
+        {"joints__damping_ratio": 0.0},
+        {"record__energy": False},
+        {"soft_layers": [{"y": 2.0}]},
+        {"joints__contact_points": 2, "joints__point_rule": "midpoint"},
+    ],
+    ids=["dashpots of zero", "ledger", "layer like the rock", "points by default"],
+)
+def test_idle_effect_changes_no_bit(row, idle):
+    """The kernel with an effect on but idle gives the very numbers of the kernel without it."""
+    without, with_idle = waveforms(dem.simulate(row())), waveforms(dem.simulate(row(**idle)))
+    assert all((values == with_idle[name]).all() for name, values in without.items())
+
+
+@pytest.mark.parametrize(
+    "idle, prestress",
+    [
+        ({"friction_angle": 20.0, "cohesion": 1e9}, None),
+        ({"tension": False}, 5e6),
+    ],
+    ids=["friction never reached", "tension never asked"],
+)
+def test_idle_joint_law_changes_round_off_alone(row, idle, prestress):
+    """A joint that may slip or open is summed over its points, one that holds over its section.
+
+    Both sums differ in the last digits, which some thousand steps make 1e-12 of the largest; of
+    the prestress where there is one.
+    """
+    changes = {} if prestress is None else {"prestress": {"normal": prestress}}
+    without = waveforms(dem.simulate(row(**changes)))
+    with_idle = waveforms(dem.simulate(row(**changes, joints=idle)))
+    for name, values in without.items():
+        assert np.abs(values - with_idle[name]).max() < 1e-12 * np.abs(values).max()
+
+
+def test_absent_effects_leave_no_array(row, at_rest):
+    """An elastic row of free ends holds its motion and the load, nothing else."""
+    blocks = at_rest(row(record__energy=False))
+    model, state = blocks.model, blocks.state
+    assert (state.history, state.start, state.end, state.sums) == (None,) * 4
+    assert (model.contact.table, model.contact.points, model.contact.damped) == (None,) * 3
+    assert (model.start, model.end, model.accounts, model.weight, model.viscous) == (None,) * 5
+    assert (model.load.base, model.motion.keep, model.motion.fall, model.motion.local) == (
+        None,
+    ) * 4
+    assert room_for(model, 1).books is None and blocks.samples.energy is None
+    assert len(model.contact.rows.motion) == 12
+
+
+def test_blocks_that_do_not_turn_have_three_freedoms(row, at_rest):
+    """No rotation, no lever, one contact point, six rows of motion."""
+    still = at_rest(row(motion__rotation="none", load__at=[0.0, 0.0], record__energy=False))
+    assert len(still.model.contact.rows.motion) == 6
+    assert (still.model.motion.arm, still.model.motion.twist, still.model.motion.inertia) == (
+        None,
+    ) * 3
+
+
+def test_only_what_slides_or_softens_is_remembered(row, at_rest):
+    """A point has two slides, an opening with softening, a cohesion that slip may weaken."""
+    slip = {"friction_angle": 20.0, "cohesion": 1e4}
+    soft = {"tensile_strength": 1e5, "fracture_energy": 50.0}
+
+    def kept(**joints):
+        rows = at_rest(row(joints=joints)).model.contact.rows
+        return [0 if kind is None else len(kind) for kind in rows]
+
+    assert kept() == [12, 0, 0, 0, 0]
+    assert kept(damping_ratio=0.1) == [12, 6, 0, 0, 0]
+    assert kept(**slip) == [12, 0, 8, 0, 0]
+    assert kept(**slip, **soft) == [12, 0, 8, 4, 0]
+    assert kept(**slip, residual_cohesion=1e3, damping_ratio=0.1) == [12, 6, 8, 0, 4]
+    assert kept(**slip, contact_points=3) == [12, 0, 18, 0, 0]
+
+
+def test_absent_effects_leave_no_instruction(row, at_rest, instructions):
+    """No comparison, division or root in an elastic row; friction brings all three."""
+
+    def count(**changes):
+        blocks = at_rest(row(record__energy=False, **changes))
+        room = room_for(blocks.model, 1)
+        arguments = (blocks.model, blocks.state, room, blocks.samples, 0, 1)
+        return [instructions(march, arguments, kind) for kind in ("fcmp", "fdiv", SQRT, "fmul")]
+
+    elastic, slip = count(), count(joints={"friction_angle": 20.0})
+    assert elastic[:3] == [0, 0, 0]
+    assert min(slip[:3]) > 0 and slip[3] > elastic[3]
+    assert count(motion__rotation="none", load__at=[0.0, 0.0])[3] < elastic[3]

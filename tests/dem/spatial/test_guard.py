@@ -1,0 +1,23 @@
+"""Small rotations are checked, not trusted."""
+
+import pytest
+
+import dem
+from cases.errors import SceneError
+
+TWIST = {"shape": "step", "direction": [0, 1, 0], "arm": 0.1}
+
+
+def test_row_that_turns_too_far_is_refused(row):
+    """The line names the key, the block, its angle and the remedy."""
+    load = {**TWIST, "amplitude": 1e6}
+    with pytest.raises(
+        SceneError, match=r"motion\.rotation .* turned .* motion.rotation = 'finite'"
+    ):
+        dem.simulate(row(load=load))
+
+
+def test_row_that_turns_little_is_not(row):
+    """A hundredth of the couple turns it by a hundredth."""
+    result = dem.simulate(row(load={**TWIST, "amplitude": 1e4}))
+    assert 1e-4 < float(abs(result.rotation).max()) < 0.045
