@@ -171,7 +171,8 @@ def _merge(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
 def _assign(table: dict[str, Any], key: str, value: Any, where: str) -> None:
     *parents, last = key.split(".")
     for parent in parents:
-        table = table.setdefault(parent, {})
-        if not isinstance(table, dict):
+        inner = table.setdefault(parent, {})
+        if not isinstance(inner, dict):
             raise SceneError(where, key, value, f"is no key: {parent} is not a table")
+        table[parent] = table = dict(inner)  # a caller's own table stays as it is
     table[last] = value

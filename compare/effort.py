@@ -1,4 +1,4 @@
-"""What a block-step of the rigid blocks costs, measured here, with the effects a scene calls for."""
+"""What a block-step of the rigid blocks costs here, with the effects that a scene calls for."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def _in_space(scene: Scene, threads: int) -> tuple[Callable[[], None], int]:
 
 
 def _samples(time: Clock, blocks: int) -> int:
-    return min(time.samples, max(1, BLOCK_STEPS // (blocks * time.stride)))
+    return min(time.samples, max(64, BLOCK_STEPS // blocks) // time.stride + 1)
 
 
 def whole() -> float:

@@ -100,8 +100,8 @@ def show_explanation(found: Any, as_json: bool) -> None:
     ]
     show_table(["engine", "critical step, s", "step, s", "fraction", "steps"], steps)
     say(
-        f"a step of a rigid block takes {found.cost.own:.2g} ns here, {100 * found.cost.share:.2g} % "
-        f"of the {found.cost.everything:.2g} ns that every effect at once would"
+        f"a step of a rigid block takes {found.cost.own:.2g} ns here, "
+        f"{100 * found.cost.share:.2g} % of the {found.cost.everything:.2g} ns with every effect"
     )
     answers = [[k, "yes" if a else "no", a.reason] for k, a in found.answers.items()]
     show_table(["solution", "applies", "why not"], answers)

@@ -11,6 +11,7 @@ from cases.errors import UnstableError
 from cases.sampling import Clock
 
 BLOCK_STEPS_BETWEEN_LOOKS = 20_000_000  # some 10 ms to 1 s: often enough for a progress bar
+STEPS_BETWEEN_LOOKS = 64  # at least: threads that follow one another need some to share
 
 
 class Stretch(NamedTuple):
@@ -38,7 +39,8 @@ def march_with_looks(
     progress: Callable[[float], None] | None,
 ) -> None:
     """Run all samples: `march(first, last)` takes samples first .. last - 1, then `check` looks."""
-    chunk = max(1, BLOCK_STEPS_BETWEEN_LOOKS // (blocks * time.stride))
+    steps = max(STEPS_BETWEEN_LOOKS, BLOCK_STEPS_BETWEEN_LOOKS // blocks)
+    chunk = max(1, steps // time.stride)
     for first in range(0, time.samples, chunk):
         last = min(first + chunk, time.samples)
         march(first, last)

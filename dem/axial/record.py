@@ -9,9 +9,11 @@ from dem.axial.model import Model
 from dem.axial.motion import steady_at
 from dem.axial.state import State
 from dem.axial.step import joint_stress, load_at, march, opened
+from joints.borrowed import borrowed
 from joints.energy import elastic_energy, fracture_energy_spent
 from joints.jit import jitted
 from joints.laws import law_of
+from joints.tiny import flush_tiny, restore_tiny
 
 
 class Samples(NamedTuple):
@@ -51,12 +53,15 @@ def room(model: Model, state: State, samples: int) -> Samples:
 @jitted
 def run(model, state, samples, stride, first, last):
     """Take samples first .. last - 1, `stride` steps apart, the steps after each included."""
+    tiny = flush_tiny()
+    model, state, samples = borrowed((model, state, samples))
     for s in range(first, last):
         n = s * stride
         sample_before(model, state, samples, s)
         march(model, state, n, n + 1)
         sample_after(model, state, samples, s, n)
         march(model, state, n + 1, n + stride)
+    restore_tiny(tiny)
 
 
 @jitted

@@ -2,7 +2,8 @@
 
 Mass-proportional damping takes the mean velocity of the step and leaves the bound as it is: in the
 mode that alternates at every step that mean is zero. Softening, like slip, only takes stiffness
-away.
+away. Local damping can add a share of every unbalanced force to it, as if the stiffness were
+1 + local times itself.
 """
 
 from math import cos, pi, sqrt
@@ -17,10 +18,11 @@ from joints.stability import critical_step, critical_step_of_modes
 def critical_chain_step(p: Properties, start: str, end: str) -> float:
     """Return the critical step (s) of a chain whose ends are held as `start` and `end` say."""
     alike = (p.stiffness == p.stiffness[0]).all() and not p.damps_alone.any()
+    pushed = 1 + (p.local_damping or 0.0)
     if alike and {start, end} <= {"free", "quiet"}:
         rigid = 2 * sqrt(p.stiffness[0] * p.area / p.block_mass)
         omega = rigid * cos(pi / (2 * p.block_count))
-        return critical_step_of_modes(omega, p.time_constant or 0.0)
+        return critical_step_of_modes(omega * sqrt(pushed), p.time_constant or 0.0)
 
     from scipy.linalg import eigh_tridiagonal  # slow to import: only for chains that need it
 
@@ -36,6 +38,6 @@ def critical_chain_step(p: Properties, start: str, end: str) -> float:
         diagonal[1:] += joints
         last = (p.block_count - 1,) * 2
         top = eigh_tridiagonal(diagonal, -joints, True, select="i", select_range=last)
-        return top[0] / p.block_mass
+        return pushed * top[0] / p.block_mass
 
     return critical_step(largest, p.joint_time_constant is not None)

@@ -97,7 +97,7 @@ def top(p: Properties) -> tuple[float, float]:
 
 
 def build_contact(scene: Scene, p: Properties, motion: Motion) -> Contact:
-    """Return the constants of all joints: by points where they can open or slide, else as a whole."""
+    """Return the constants of all joints: by points where they can open or slide, or turn far."""
     joints = law(
         p.stiffness,
         p.joint_time_constant,
@@ -195,7 +195,7 @@ def build_load(scene: Scene, p: Properties, time: Clock, size: int) -> Load:
 
 
 def load_components(scene: Scene) -> np.ndarray:
-    """Return force over area and moment over area (m) on the start's centre for a unit stress [6]."""
+    """Return force and moment over area (1, m) at the start's centre for a unit stress, [6]."""
     load = scene.load
     x, y, z = load.direction
     if load.arm is not None:

@@ -24,7 +24,7 @@ class Motion(NamedTuple):
     dt : s. arm : half the thickness, m; None where blocks do not turn.
     mass : m, kg; inertia : about the axes x, y, z, kg m2; None where blocks do not turn.
     push, twist : what a force and a moment add in a step to velocity and angular velocity:
-        dt / m and dt / I, less by the mass-proportional damping; twist None where blocks do not turn.
+        dt / m and dt / I, less by mass-proportional damping; twist None where blocks do not turn.
     fall : what gravity adds to the velocity in a step, m/s; None without.
     keep : what mass-proportional damping leaves of a velocity in a step; None without.
     local : Cundall's damping, None without.

@@ -22,9 +22,11 @@ from dem.spatial.record import (
 )
 from dem.spatial.scratch import DRAG, LEFT
 from joints.atomic import give_way, peek, post
+from joints.borrowed import borrowed
 from joints.jit import jitted
 from joints.laws import pick
 from joints.optional import either, given
+from joints.tiny import flush_tiny, restore_tiny
 
 RUN = 16  # tiles between two looks at the others' progress; more than the steps of a pass
 
@@ -32,10 +34,13 @@ RUN = 16  # tiles between two looks at the others' progress; more than the steps
 @jitted
 def march(model, state, room, samples, first, last):
     """Take the steps first .. last - 1 on one thread."""
+    tiny = flush_tiny()
+    model, state, room, samples = borrowed((model, state, room, samples))
     for n in range(first, last, room.depth):
         depth = min(room.depth, last - n)
         run_diagonals(model, state, room, samples, n, depth, 0, 0, len(state.motion) + depth - 1)
         close_books(model, state, room.books, samples, n, depth, 0)
+    restore_tiny(tiny)
 
 
 @jitted
@@ -56,6 +61,8 @@ def march_in_turn(model, state, room, samples, first, last, thread, progress):
     reads any more. progress : int64 [threads + 1], zero at first: B runs + r when r runs of band
     B are left behind, for each thread, and how many bands have closed their accounts.
     """
+    tiny = flush_tiny()
+    model, state, room, samples = borrowed((model, state, room, samples))
     depth, threads = room.depth, progress.size - 1
     runs = (len(state.motion) + depth - 1 + RUN - 1) // RUN
     for band in range(thread, (last - first + depth - 1) // depth, threads):
@@ -70,6 +77,7 @@ def march_in_turn(model, state, room, samples, first, last, thread, progress):
         await_count(progress, threads, band)
         close_books(model, state, room.books, samples, n, steps, thread * depth)
         post(progress, threads, band + 1)
+    restore_tiny(tiny)
 
 
 @jitted

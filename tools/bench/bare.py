@@ -68,9 +68,7 @@ def point(e, p, i, gap, dx, dz, k_n, k_s, mu, c):
 def contacts(m, e, q, dt, k_n, k_s, b, mu, c, h):
     """Compute the forces of a tile's joints."""
     for i in range(LANES):
-        gx = m[i + 1] - m[i] + h * (m[5 * ROW + i + 1] + m[5 * ROW + i])
         gy = m[ROW + i + 1] - m[ROW + i]
-        gz = m[2 * ROW + i + 1] - m[2 * ROW + i] - h * (m[3 * ROW + i + 1] + m[3 * ROW + i])
         px = m[3 * ROW + i + 1] - m[3 * ROW + i]
         pz = m[5 * ROW + i + 1] - m[5 * ROW + i]
         sx = m[6 * ROW + i + 1] - m[6 * ROW + i] + h * (m[11 * ROW + i + 1] + m[11 * ROW + i])

@@ -1,4 +1,4 @@
-"""What each effect costs: nanoseconds per block-step, alone on top of the plain kernel, then all."""
+"""What each effect costs: ns per block-step, alone on top of the plain kernel, then all."""
 
 from compare.effort import ACROSS, EVERYTHING, changed, nanoseconds
 

@@ -31,11 +31,9 @@ def side_by_side(
     other[0]()
     pairs = [(rate(*one), rate(*other)) for _ in range(ROUNDS)]
     ratios = sorted(a / b for a, b in pairs)
-    print(
-        f"  {label:42s} {median(a for a, _ in pairs):8.2e} over {median(b for _, b in pairs):8.2e}: "
-        f"{median(ratios):.2f} ({ratios[0]:.2f} to {ratios[-1]:.2f})",
-        flush=True,
-    )
+    rates = (median(column) for column in zip(*pairs, strict=True))
+    spread = f"{median(ratios):.2f} ({ratios[0]:.2f} to {ratios[-1]:.2f})"
+    print(f"  {label:42s} {next(rates):8.2e} over {next(rates):8.2e}: {spread}", flush=True)
     return median(ratios)
 
 

@@ -42,9 +42,8 @@ def main() -> None:
     costs = {n: nanoseconds(changed(scene, n)) for n in (1000, 10_000, 100_000, MOST)}
     print("cost of a block-step in space with slip and dashpots, one thread, over the row's length")
     for blocks, cost in costs.items():
-        print(
-            f"  {blocks:9,} blocks {cost:7.2f} ns ({cost / min(costs.values()):.2f} times the least)"
-        )
+        over = cost / min(costs.values())
+        print(f"  {blocks:9,} blocks {cost:7.2f} ns ({over:.2f} times the least)")
 
 
 def _apart(blocks: int) -> str:

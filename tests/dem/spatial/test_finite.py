@@ -39,7 +39,7 @@ class Row:
         self.y = self.p.spacing * (np.arange(self.p.block_count) + 0.5)
 
     def part(self, first, count=3):
-        """Return rows first .. of every block, [blocks, count], as a view where there is one tile."""
+        """Return rows first .. of every block, [blocks, count], as a view of the one tile."""
         return self.rows[0, first : first + count, : self.p.block_count].T
 
     def places(self):

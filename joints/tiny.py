@@ -1,0 +1,73 @@
+"""Numbers too small for full precision, below 2e-308, taken as zero while kernels run.
+
+Ahead of every wave the motion of discrete blocks falls off faster than exponentially, and so do its
+squares in a ledger or a yield condition. Processors handle what lies between 2e-308 and zero by
+slow exceptions, for numbers that mean nothing.
+"""
+
+import platform
+
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+MACHINE = platform.machine().lower()
+X86 = MACHINE in ("x86_64", "amd64")
+ARM = MACHINE in ("aarch64", "arm64")
+FLUSH_X86 = 0x8040  # flush to zero, denormals are zero
+FLUSH_ARM = 1 << 24  # flush to zero
+CONTROL = ir.IntType(32) if X86 else ir.IntType(64)
+
+
+def _call(builder, name, result, arguments):
+    kind = ir.FunctionType(result, [a.type for a in arguments])
+    return builder.call(cgutils.get_or_insert_function(builder.module, kind, name), arguments)
+
+
+def _read(builder):
+    if ARM:
+        return _call(builder, "llvm.aarch64.get.fpcr", CONTROL, [])
+    place = cgutils.alloca_once(builder, CONTROL)
+    _call(
+        builder, "llvm.x86.sse.stmxcsr", ir.VoidType(), [builder.bitcast(place, cgutils.voidptr_t)]
+    )
+    return builder.load(place)
+
+
+def _write(builder, value):
+    if ARM:
+        _call(builder, "llvm.aarch64.set.fpcr", ir.VoidType(), [value])
+        return
+    place = cgutils.alloca_once_value(builder, value)
+    _call(
+        builder, "llvm.x86.sse.ldmxcsr", ir.VoidType(), [builder.bitcast(place, cgutils.voidptr_t)]
+    )
+
+
+@intrinsic
+def flush_tiny(typing):
+    """Take tiny numbers as zero in this thread from now on; return what `restore_tiny` needs."""
+
+    def generate(context, builder, signature, arguments):
+        if not X86 and not ARM:
+            return ir.Constant(ir.IntType(64), 0)
+        old = _read(builder)
+        _write(builder, builder.or_(old, ir.Constant(CONTROL, FLUSH_X86 if X86 else FLUSH_ARM)))
+        return builder.zext(old, ir.IntType(64)) if X86 else old
+
+    return types.int64(), generate
+
+
+@intrinsic
+def restore_tiny(typing, old):
+    """Treat tiny numbers in this thread as before `flush_tiny`."""
+
+    def generate(context, builder, signature, arguments):
+        if X86:
+            _write(builder, builder.trunc(arguments[0], CONTROL))
+        elif ARM:
+            _write(builder, arguments[0])
+        return context.get_dummy_value()
+
+    return types.none(types.int64), generate
