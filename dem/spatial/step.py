@@ -9,18 +9,14 @@ later. Every block does the same arithmetic in whatever order, so results are bi
 
 from dem.spatial.book import close
 from dem.spatial.contact import forces
-from dem.spatial.ends import hold, put, settle
+from dem.spatial.hold import hold, put, settle
 from dem.spatial.layout import LANES, freedoms
 from dem.spatial.layout import STRIDE as R
+from dem.spatial.ledger import book_motion, keep_velocities
 from dem.spatial.motion import advance
-from dem.spatial.record import (
-    book_motion,
-    book_states,
-    keep_velocities,
-    sample_after,
-    sample_before,
-)
+from dem.spatial.record import sample_after, sample_before
 from dem.spatial.scratch import DRAG, LEFT
+from dem.spatial.stored import book_states
 from joints.atomic import give_way, peek, post
 from joints.borrowed import borrowed
 from joints.jit import jitted

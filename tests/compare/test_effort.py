@@ -1,0 +1,44 @@
+"""What a block-step costs is measured, and the cost of everything only once."""
+
+import json
+
+import pytest
+
+from compare import effort
+from compare.effort import changed, nanoseconds, stretch, whole
+
+
+def test_stretch_counts_its_block_steps():
+    """Blocks times steps of the samples taken, along the axis and in space alike."""
+    for changes in ({}, effort.ACROSS):
+        scene = changed({**changes, "time.duration": 5e-4, "record.energy": False}, 100)
+        march, block_steps = stretch(scene)
+        march()
+        assert block_steps % 100 == 0 and block_steps > 0
+
+
+def test_a_plain_scene_costs_less_than_one_in_space():
+    """One freedom and a spring against six and a face: a factor far beyond any noise."""
+    plain = {"record.energy": False}
+    assert nanoseconds(changed(plain)) < nanoseconds(changed({**plain, **effort.ACROSS}))
+
+
+def test_everything_is_measured_once(tmp_path, monkeypatch):
+    """The first call measures and keeps; later ones read; a broken file is measured again."""
+    monkeypatch.setattr(effort.numba.config, "CACHE_DIR", str(tmp_path))
+    measured = []
+    monkeypatch.setattr(effort, "nanoseconds", lambda scene: measured.append(scene) or 42.0)
+    assert whole() == whole() == 42.0
+    assert len(measured) == 1
+    file = tmp_path / "effort.json"
+    assert json.loads(file.read_text()) == {"everything": 42.0}
+    file.write_text("broken")
+    assert whole() == 42.0 and len(measured) == 2
+
+
+@pytest.mark.parametrize("name", ["finite rotation", "slip", "softening", "dashpots", "gravity"])
+def test_everything_calls_for_everything(name):
+    """The line of 100 % has every effect on that joints and motion have."""
+    from cases.effects import active_effects
+
+    assert name in active_effects(changed(effort.EVERYTHING))
