@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cases.calibrate import Properties
-from dem.axial.motion import advanced, kept
+from dem.axial.motion import advanced
+from dem.damping import kept
 from joints.ends import HalfSpring, half_spring
 from joints.jit import jitted
 

@@ -1,11 +1,11 @@
 """How the ends hold the end blocks in each step: see `ends` for the formulas."""
 
+from dem.damping import kept
 from dem.spatial.layout import STRIDE as R
 from dem.spatial.motion import (
     angular_velocity,
     finite_moment,
     gains,
-    kept,
     net_force,
     net_moment,
     spin_of,

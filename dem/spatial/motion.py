@@ -5,9 +5,9 @@ m v' = F_left - F_right + m g,   I omega' = M_left - M_right + h y x (-(F_left +
 with y x F = (F_z, 0, -F_x): the shear forces of both joints turn a block the same way.
 """
 
-from math import copysign
 from typing import Any, NamedTuple
 
+from dem.damping import advanced
 from dem.spatial.finite import SCALAR, orientation, spin
 from dem.spatial.layout import LANES as L
 from dem.spatial.layout import STRIDE as R
@@ -84,26 +84,6 @@ def gains(push, fall, f):
 def turns(twist, m):
     """Return what moment m adds to an angular velocity in a step."""
     return twist[0] * m[0], twist[1] * m[1], twist[2] * m[2]
-
-
-@jitted
-def advanced(keep, local, v, gain):
-    """Return a velocity after the step: damped by mass, or as Cundall damps unbalanced forces."""
-    return kept(keep, v) + braked(local, v, gain)
-
-
-@jitted
-def kept(keep, v):
-    if keep is None:
-        return v
-    return keep * v
-
-
-@jitted
-def braked(local, v, gain):
-    if local is None:
-        return gain
-    return gain - local * copysign(abs(gain), v) if v != 0.0 else gain
 
 
 @jitted

@@ -162,7 +162,8 @@ def test_rigid_block_run_imports_neither_dolfinx_nor_matplotlib(tmp_path):
         "from compare.cli import main\n"
         "try: main()\n"
         "except SystemExit as end: assert end.code == 0, end.code\n"
-        "heavy = {'dolfinx', 'matplotlib', 'petsc4py', 'gmsh', 'obspy', 'continuum', 'jinja2'}\n"
+        "heavy = {'dolfinx', 'matplotlib', 'petsc4py', 'gmsh', 'obspy', 'continuum', 'jinja2',\n"
+        "         'dem.spatial'}\n"
         "print(sorted(heavy & set(sys.modules)))"
     )
     command = [sys.executable, "-c", code % (SCENE, str(tmp_path))]
