@@ -16,7 +16,13 @@ def thread_count(asked: int | None, blocks: int) -> int:
     """Return the threads to use: as asked, or one for a short row and all cores for a long one."""
     if asked is not None:
         return asked
-    return len(os.sched_getaffinity(0)) if blocks >= WORTH_IT else 1
+    return _cores() if blocks >= WORTH_IT else 1
+
+
+def _cores() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def marcher(model: Model, state: State, room: Room, samples: Samples) -> Callable[[int, int], None]:

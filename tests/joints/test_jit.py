@@ -14,7 +14,9 @@ from joints.jit import PACKAGES, cache_directory, jitted
 ROOT = Path(joints.__file__).resolve().parent.parent
 
 
-@pytest.mark.parametrize("edited", ["joints/laws.py", "dem/spatial/step.py", "continuum/explicit.py"])
+@pytest.mark.parametrize(
+    "edited", ["joints/laws.py", "dem/spatial/step.py", "continuum/explicit.py"]
+)
 def test_cache_follows_every_source(edited, tmp_path):
     """One character in any kernel's file, a callee's included, is another cache."""
     for package in PACKAGES:
