@@ -113,10 +113,13 @@ def explain(
 ) -> None:
     """Say what a scene calls for, its critical steps, and which exact solutions hold."""
     from compare import views
+    from compare.effort import is_measured
     from compare.explain import explanation
 
     scenes = _load(scene, changes, variant if variant is not None else "")
     _warn(scenes)
+    if sys.stderr.isatty() and not is_measured():
+        print("jointwave: measuring once what every effect costs, about a minute", file=sys.stderr)
     for one in scenes:
         views.show_explanation(explanation(one), as_json)
 

@@ -99,12 +99,20 @@ def _samples(time: Clock, blocks: int) -> int:
     return min(time.samples, max(64, BLOCK_STEPS // blocks) // time.stride + 1)
 
 
+def is_measured() -> bool:
+    """Return whether `whole` is known already."""
+    return _file().exists()
+
+
 def whole() -> float:
     """Return what a block-step with every effect costs, ns; measured once for each version."""
-    file = Path(numba.config.CACHE_DIR) / "effort.json"
     try:
-        return float(json.loads(file.read_text())["everything"])
+        return float(json.loads(_file().read_text())["everything"])
     except (OSError, ValueError, KeyError):
         found = nanoseconds(changed(EVERYTHING))
-        write_text(file, json.dumps({"everything": found}))
+        write_text(_file(), json.dumps({"everything": found}))
         return found
+
+
+def _file() -> Path:
+    return Path(numba.config.CACHE_DIR) / "effort.json"
