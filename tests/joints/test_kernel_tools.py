@@ -38,22 +38,28 @@ def test_borrowed_arrays_are_the_callers_own():
 
 
 @jitted
-def halve(x, flush):
-    if flush:
-        old = flush_tiny()
-        half = x[0] * 0.5
-        restore_tiny(old)
-        return half
-    return x[0] * 0.5
+def halve(x, out):
+    for i in range(x.size):
+        out[i] = x[i] * 0.5
+
+
+@jitted
+def halve_flushed(x, out):
+    old = flush_tiny()
+    halve(x, out)
+    restore_tiny(old)
 
 
 @pytest.mark.skipif(not (X86 or ARM), reason="tiny numbers stay on this kind of processor")
 def test_tiny_numbers_are_zero_only_while_asked():
     """2.2e-308 halved is below full precision: zero under the flag, itself before and after."""
-    smallest = np.array([np.finfo(float).tiny])
-    assert halve(smallest, False) == smallest[0] / 2 > 0
-    assert halve(smallest, True) == 0.0
-    assert halve(smallest, False) == smallest[0] / 2 == float(smallest[0]) / 2
+    smallest, half = np.full(3, np.finfo(float).tiny), np.zeros(3)
+    halve(smallest, half)
+    assert (half == smallest / 2).all() and half.all()
+    halve_flushed(smallest, half)
+    assert not half.any()
+    halve(smallest, half)
+    assert (half == np.ldexp(smallest, -1)).all() and half.all()
 
 
 @jitted
