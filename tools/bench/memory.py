@@ -3,6 +3,7 @@
 import resource
 import subprocess
 import sys
+from pathlib import Path
 
 from compare.effort import changed, nanoseconds
 
@@ -21,6 +22,10 @@ SLIDES = {
 
 def peak() -> float:
     """Return the largest memory this process has had, bytes."""
+    status = Path("/proc/self/status")
+    if status.exists():  # the other figure begins with that of the process it was started from
+        line = next(x for x in status.read_text().splitlines() if x.startswith("VmHWM"))
+        return 1024.0 * float(line.split()[1])
     return 1024.0 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
