@@ -25,6 +25,7 @@ class Done(NamedTuple):
     """One result that was made, with what it cost.
 
     fragments : the pieces between broken joints, see `dem.fragments`; None where none can break.
+    out_of_balance : force ratio of the static state that it started from; None where from none.
     """
 
     job: Job
@@ -32,6 +33,7 @@ class Done(NamedTuple):
     seconds: float
     residual: float | None
     fragments: list[dict] | None
+    out_of_balance: float | None
 
 
 def wanted(engines: list[str], models: list[str]) -> list[tuple[str, str | None]]:
@@ -80,6 +82,7 @@ def execute(jobs: list[Job], progress: Progress) -> list[Done]:
                 float(result.attributes.get("seconds_stepping", 0.0)),
                 _residual(result),
                 _fragments(result),
+                result.attributes.get("static_out_of_balance"),
             )
         )
         progress((i + 1) / len(jobs))

@@ -39,6 +39,7 @@ def show_runs(done: list[Any], as_json: bool) -> None:
             "energy_residual": d.residual,
             "file": str(d.job.path),
             "fragments": d.fragments,
+            "static_out_of_balance": d.out_of_balance,
         }
         for d in done
     ]
@@ -48,8 +49,11 @@ def show_runs(done: list[Any], as_json: bool) -> None:
     columns = ["variant", "engine", "steps", "stepping, s", "energy residual", "file"]
     show_table(columns, [_run_cells(d) for d in done])
     for d in done:
+        name = d.job.scene.name or d.job.name
+        if d.out_of_balance is not None:
+            say(f"{name}: starts at rest, out-of-balance force ratio {d.out_of_balance:.1e}")
         if d.fragments is not None:
-            say(f"{d.job.scene.name or d.job.name}: {_what_broke(d.fragments)}")
+            say(f"{name}: {_what_broke(d.fragments)}")
 
 
 def _what_broke(fragments: list[dict[str, Any]]) -> str:

@@ -155,6 +155,14 @@ def test_output_that_cannot_be_written_is_one_line(tmp_path):
     assert done.stderr.count("\n") == 1 and "taken" in done.stderr
 
 
+def test_run_reports_how_still_a_static_state_is(tmp_path):
+    """The cantilever hangs within its tolerance; let go suddenly there is nothing to report."""
+    done = jointwave("run", "beyond/cantilever-gravity", "--out", tmp_path, "--json")
+    hung, let_go = json.loads(done.stdout)
+    assert 0 <= hung["static_out_of_balance"] <= 1e-8
+    assert let_go["static_out_of_balance"] is None
+
+
 def test_rigid_block_run_imports_neither_dolfinx_nor_matplotlib(tmp_path):
     """A run of the rigid blocks pays for nothing that it does not use."""
     code = (
