@@ -154,8 +154,11 @@ def _table(joints: Law, blocks: int) -> np.ndarray | None:
     """Return every part of every joint in tiles, where joints differ."""
     if not _differ(joints):
         return None
-    parts = [np.zeros(blocks - 1) if part is None else part for part in joints]
-    rows = np.array([np.broadcast_to(part, blocks - 1) for part in parts], dtype=float)
+    rows = np.zeros(
+        (len(joints), blocks)
+    )  # for as many tiles as the blocks have
+    for row, part in zip(rows, joints, strict=True):
+        row[:-1] = 0.0 if part is None else part
     return packed(rows, LANES)
 
 

@@ -106,3 +106,18 @@ def test_absent_effects_leave_no_instruction(row, at_rest, instructions):
     assert elastic[:3] == [0, 0, 0]
     assert min(slip[:3]) > 0 and slip[3] > elastic[3]
     assert count(motion__rotation="none", load__at=[0.0, 0.0])[3] < elastic[3]
+
+
+@pytest.mark.parametrize("blocks", [64, 65, 129])
+def test_a_tile_without_a_joint_has_a_law_all_the_same(row, at_rest, blocks):
+    """The last block of 64 n + 1 has a tile to itself: tables and cohesions cover it too."""
+    layer = {"y": 2.0, "cohesion": 2e5}
+    joints = {"friction_angle": 20.0, "cohesion": 1e5, "residual_cohesion": 0.0}
+    scene = row(pillar__length=0.5 * blocks, joints=joints, soft_layers=[layer])
+    built = at_rest(scene)
+    assert len(built.model.contact.table) == len(built.state.motion) == -(-blocks // 64)
+    first, points = built.model.contact.rows.cohesions[0], 4
+    kept = built.state.history.reshape(len(built.state.history), -1, 64)[:, first : first + points]
+    of_joints = kept.transpose(1, 0, 2).reshape(points, -1)[:, : blocks - 1]
+    expected = np.where(np.arange(blocks - 1) == 3, 2e5, 1e5)
+    assert (of_joints == expected).all()
