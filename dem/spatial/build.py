@@ -154,9 +154,7 @@ def _table(joints: Law, blocks: int) -> np.ndarray | None:
     """Return every part of every joint in tiles, where joints differ."""
     if not _differ(joints):
         return None
-    rows = np.zeros(
-        (len(joints), blocks)
-    )  # for as many tiles as the blocks have
+    rows = np.zeros((len(joints), blocks))  # for as many tiles as the blocks have
     for row, part in zip(rows, joints, strict=True):
         row[:-1] = 0.0 if part is None else part
     return packed(rows, LANES)

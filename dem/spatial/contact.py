@@ -16,13 +16,11 @@ from dem.spatial.book import FRICTION
 from dem.spatial.kinematics import relative, remember_rates
 from dem.spatial.layout import LANES as L
 from dem.spatial.layout import STRIDE as R
-from dem.spatial.points import every_point, plus
+from dem.spatial.points import NO_FORCE, every_point, plus
 from dem.spatial.scratch import DRAG, SLID
 from joints.jit import jitted
 from joints.laws import Law
 from joints.optional import either, given
-
-NO_FORCE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 class Points(NamedTuple):

@@ -12,21 +12,35 @@ from joints.laws import normal_traction, spring_traction
 from joints.optional import either, given
 from joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
 
+WRITTEN_OUT = 9  # points at most: 3 x 3
+NO_FORCE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
 
 def every_point(xs, zs, areas, p, contact, law, motion, h, drag, i, book, returns):
     """Return force, dashpots' share, points beyond their strength and work done by sliding, summed
     over points p, ...
 
-    Compiled only: written out point by point, since a loop inside that over the blocks would keep
-    several blocks from being worked on at once.
+    Compiled only: a few points are written out one by one, since a loop inside that over the
+    blocks would keep several blocks from being worked on at once. Many would compile for minutes.
     """
 
 
 @overload(every_point)
 def _every_point(xs, zs, areas, p, contact, law, motion, h, drag, i, book, returns):
-    if len(areas) == 1:
-        return last_point
-    return next_point
+    if len(areas) > WRITTEN_OUT:
+        return looped_points
+    return last_point if len(areas) == 1 else next_point
+
+
+def looped_points(xs, zs, areas, p, contact, law, motion, h, drag, i, book, returns):
+    """Compute all points in a loop."""
+    f, d, over, work = NO_FORCE, NO_FORCE, 0, 0.0
+    for k in range(len(areas)):
+        one, drags, more, done = at_point(
+            xs[k], zs[k], areas[k], k, contact, law, motion, h, drag, i, book, returns
+        )
+        f, d, over, work = plus(f, one), plus(d, drags), over + more, work + done
+    return f, d, over, work
 
 
 def last_point(xs, zs, areas, p, contact, law, motion, h, drag, i, book, returns):
