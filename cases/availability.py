@@ -13,8 +13,5 @@ def refuse_unavailable(scene: Scene, where: str) -> None:
 
 
 def _unavailable(scene: Scene) -> Iterator[tuple[str, object]]:
-    for i, layer in enumerate(scene.soft_layers):
-        if layer.thickness is not None:
-            yield f"soft_layers[{i}].thickness", layer.thickness
     if scene.numerics.continuum.scheme == "implicit":
         yield "numerics.continuum.scheme", "implicit"

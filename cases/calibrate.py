@@ -37,7 +37,8 @@ class Properties:
     local_damping : Cundall's factor, 0 to 1; None without.
     joint_y : float array [N - 1], m.
     stiffness, shear_stiffness : float arrays [N - 1], K'_n, K'_s between rigid blocks, Pa/m.
-    own_stiffness : float array [N - 1], the joints' own K_n, Pa/m; None without intact_modulus.
+    own_stiffness, own_shear_stiffness : float arrays [N - 1], the joints' own K_n and K_s, Pa/m;
+        None without intact_modulus; K_s infinite where intact rock alone is too soft in shear.
     joint_time_constant : float array [N - 1], eta of each joint, s; None without any dashpot.
     tension : bool array [N - 1], whether a joint carries tension.
     friction, cohesion, residual_cohesion, tensile_strength, critical_opening : float arrays
@@ -68,6 +69,7 @@ class Properties:
     stiffness: np.ndarray
     shear_stiffness: np.ndarray
     own_stiffness: np.ndarray | None
+    own_shear_stiffness: np.ndarray | None
     joint_time_constant: np.ndarray | None
     tension: np.ndarray
     friction: np.ndarray | None
@@ -92,6 +94,13 @@ class Properties:
         """K_n of an ordinary joint itself, Pa/m, by (4); needs intact_modulus."""
         assert self.intact_modulus is not None
         return joint_stiffness(self.modulus, self.intact_modulus, self.spacing)
+
+    @property
+    def regular_own_shear_stiffness(self) -> float:
+        """K_s of an ordinary joint itself, Pa/m; needs intact_modulus."""
+        assert self.own_shear_stiffness is not None
+        ordinary = np.setdiff1d(np.arange(self.block_count - 1), self.soft)
+        return float(self.own_shear_stiffness[ordinary[0] if ordinary.size else 0])
 
     @property
     def excess_compliance(self) -> np.ndarray:

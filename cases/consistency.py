@@ -6,6 +6,7 @@ from math import ceil, floor, log10
 from typing import TYPE_CHECKING
 
 from cases.calibrate import calibrate
+from cases.discretisation import check_discretisation
 from cases.joint import JointLaw
 from cases.stiffness import equivalent_constants
 from cases.values import contradiction
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from cases.scene import Scene
 
 MOST_SAMPLES = 10_000_000  # 80 MB for each section, point and energy term
+MOST_SNAPSHOTS = 10_000
 SNAP = 1 + 1e-6  # how far the fracture energy must stay from a vertical softening line
 
 
@@ -23,6 +25,7 @@ def check(scene: Scene) -> None:
     _check_receivers(scene)
     _check_rock(scene)
     _check_time(scene)
+    _check_fields(scene)
     _check_lever(scene)
     _check_ends(scene)
     _check_damping(scene)
@@ -30,6 +33,7 @@ def check(scene: Scene) -> None:
     for i, layer in enumerate(scene.layers):
         _check_strength(f"soft_layers[{i}]", layer)
     _check_fracture(scene)
+    check_discretisation(scene)
 
 
 def _check_layers(scene: Scene) -> None:
@@ -82,6 +86,23 @@ def _check_time(scene: Scene) -> None:
     if duration / interval > MOST_SAMPLES:
         raise contradiction(
             "record.interval", interval, f"must give at most {MOST_SAMPLES:,} samples"
+        )
+
+
+def _check_fields(scene: Scene) -> None:
+    fields, interval, duration = scene.record.fields, scene.interval, scene.time.duration
+    if fields is None:
+        return
+    if not interval * (1 - 1e-9) <= fields <= duration:
+        raise contradiction(
+            "record.fields",
+            fields,
+            f"must lie between the sampling interval {interval:g} s and time.duration = "
+            f"{duration:g}",
+        )
+    if duration / fields > MOST_SNAPSHOTS:
+        raise contradiction(
+            "record.fields", fields, f"must give at most {MOST_SNAPSHOTS:,} snapshots"
         )
 
 

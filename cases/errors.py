@@ -1,6 +1,7 @@
-"""The two errors that a user meets: a scene that cannot be run, and a run that went unstable."""
+"""The errors that a user meets: a scene that cannot be run, a run that went wrong."""
 
 import reprlib
+from typing import Any
 
 
 class SceneError(ValueError):
@@ -28,6 +29,16 @@ class SceneError(ValueError):
 
 class UnstableError(RuntimeError):
     """A run that left its stability bound and was stopped; its message says what and when."""
+
+
+class StoppedError(UnstableError):
+    """A run that could not go on; its message says why and when.
+
+    result : what was computed until then, an xarray.Dataset like that of a whole run; None where
+        nothing was.
+    """
+
+    result: Any = None
 
 
 class _Found(reprlib.Repr):

@@ -33,12 +33,14 @@ class Stiffness(NamedTuple):
     """Float arrays [N - 1], Pa/m.
 
     stiffness, shear_stiffness : K'_n, K'_s between rigid blocks.
-    own_stiffness : the joints' own K_n; None without intact_modulus.
+    own_stiffness, own_shear_stiffness : the joints' own K_n and K_s, (6) inverted; None without
+        intact_modulus; infinite where the rock alone is as soft as rock and joint should be.
     """
 
     stiffness: np.ndarray
     shear_stiffness: np.ndarray
     own_stiffness: np.ndarray | None
+    own_shear_stiffness: np.ndarray | None
 
 
 def equivalent_constants(rock: Rock) -> tuple[float, float]:
@@ -79,7 +81,11 @@ def stiffness(scene: Scene, soft: np.ndarray, spacing: float, mass: RockMass) ->
             shear[j] = rigid_block_stiffness(layer.shear_stiffness, intact_shear, spacing)
         elif given and not scene.joints.shear_stiffness:
             shear[j] = rigid_block_shear_stiffness(normal[j], mass.poisson)
-    return Stiffness(normal, shear, own if scene.rock.intact_modulus else None)
+    if not scene.rock.intact_modulus:
+        return Stiffness(normal, shear, None, None)
+    with np.errstate(divide="ignore"):
+        own_shear = 1 / np.maximum(1 / shear - spacing / intact_shear, 0.0)
+    return Stiffness(normal, shear, own, own_shear)
 
 
 def _intact(rock: Rock) -> tuple[float, float]:

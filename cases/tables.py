@@ -1,8 +1,9 @@
 """The small tables of a scene: the pillar, its rock, what holds and fills it, what is recorded."""
 
+from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from cases.values import (
     Direction,
@@ -123,6 +124,7 @@ class Record(Table):
     stress: list[NonNegative] = Field(default_factory=list)  #: m, sections
     velocity: list[NonNegative] = Field(default_factory=list)  #: m, points
     interval: Positive | None = None  #: s; default a 200th of the period, or duration / 2000
+    fields: Positive | None = None  #: s between snapshots of the whole pillar; absent: none
     energy: bool = True  #: keep the energy ledger
 
 
@@ -139,12 +141,37 @@ class DemNumerics(Table):
 class ContinuumNumerics(Table):
     """How the deformable rock is discretised and stepped."""
 
-    order: Annotated[int, Field(ge=1, le=4)] = 2  #: of the Gauss-Lobatto-Legendre elements
-    #: absent: as many as the load needs, see continuum.mesh.elements_in_block
+    #: 1: the bar; 2: plane stress; 3: the square column; absent: the least that the scene needs
+    dim: Annotated[int, Field(ge=1, le=3)] | None = None
+    order: Annotated[int, Field(ge=1, le=4)] = 2  #: of the elements; at most 2 for simplices
+    cell: Literal["hexahedron", "simplex"] = "hexahedron"  #: quadrilateral and triangle in dim 2
+    mass: Literal["lumped", "consistent"] = "lumped"  #: consistent: simplices, implicit steps
+    #: absent: as many as the load needs, see continuum.meshing.pillar.elements_in_block
     elements_per_block: Annotated[int, Field(ge=1, le=1000)] | None = None
+    elements_across: Annotated[int, Field(ge=1, le=100)] = 1  #: in each direction of the section
+    mesh: str | None = None  #: a gmsh file (.msh) of the pillar, with its rock and joints tagged
     scheme: Literal["auto", "explicit", "implicit"] = "auto"
-    step_fraction: Positive = 0.2  #: of the critical step
+    step_fraction: Positive = 0.2  #: of the critical step, explicit
+    steps_per_period: Positive = 200  #: implicit; of the load, or of a tenth of the duration
+    spectral_radius: Annotated[float, Field(ge=0, le=1)] = 0.9  #: implicit, of infinite frequency
     allow_unstable: bool = False
+
+    _mesh_path: Path | None = PrivateAttr(default=None)
+
+    @model_validator(mode="after")
+    def _find_mesh(self, info: ValidationInfo) -> "ContinuumNumerics":
+        if self.mesh is not None:
+            path = Path((info.context or {}).get("folder", "."), self.mesh).absolute()
+            if not path.is_file():
+                fault = "must be a gmsh file" if path.exists() else "cannot be read: no such file"
+                raise contradiction("numerics.continuum.mesh", self.mesh, fault)
+            self._mesh_path = path
+        return self
+
+    @property
+    def mesh_path(self) -> Path | None:
+        """The file `mesh`, found relative to the scene's; None where the mesh is built."""
+        return self._mesh_path
 
 
 class Numerics(Table):

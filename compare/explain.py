@@ -63,7 +63,7 @@ def _step(name: str, scene: Scene) -> StepChoice:
 
         _, _, time, critical = build_chain(scene)
     else:
-        from continuum.build import build as build_continuum
+        from continuum.simulate import steps_of
 
-        _, _, time, critical = build_continuum(scene, name.removeprefix("continuum-"))
+        time, critical = steps_of(scene, name.removeprefix("continuum-"))
     return StepChoice(name, critical, time.dt, time.steps)

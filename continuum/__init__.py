@@ -1,5 +1,6 @@
 """Deformable rock in dolfinx, with the joints as cohesive interfaces."""
 
-from continuum.simulate import applies, simulate
+from continuum.reach import applies
+from continuum.simulate import simulate
 
 __all__ = ["applies", "simulate"]

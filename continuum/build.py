@@ -1,50 +1,93 @@
 """From a scene to the constants of its run."""
 
 from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import diags
+from scipy.sparse import csr_matrix, diags
 
 from cases.calibrate import Properties, calibrate
-from cases.loads import load_history, step_means
-from cases.sampling import Clock, clock
+from cases.sampling import Clock
 from cases.scene import Scene
-from continuum.critical import critical_bar_step
-from continuum.elasticity import Bar, discretise
-from continuum.interface import Joints, jump_operator, resolved_joints
-from continuum.mesh import elements_in_block, pillar_grid
-from continuum.model import (
-    Ends,
-    HalfJoints,
-    Interfaces,
-    Model,
-    Quiet,
-    Receivers,
-    Rock,
-    State,
-    state_at_rest,
-)
+from continuum.body import Body, build_body, whole
+from continuum.critical import critical_time_step
+from continuum.elasticity import Material
+from continuum.ends import build_ends, end_stiffness, held_ends
+from continuum.interface import Jumps, jumps
+from continuum.kinematics import Kinematics, kinematics, layer_thickness, materials
+from continuum.laws import interfaces, joint_law, memory, resolved_joints, tractions
+from continuum.meshing.description import Mesh
+from continuum.meshing.pillar import elements_in_block, pillar_mesh
+from continuum.model import Interfaces, Model, Receivers, Rock, Samples, State
+from continuum.operator import zeros
 from continuum.receivers import points, sections
-from continuum.sparse import rows
-from joints.ends import HalfSpring, half_spring
+from continuum.record import TERMS
+from continuum.sparse import Rows, rows, sparse
 
 
-def build(scene: Scene, model: str) -> tuple[Model, State, Clock, float]:
-    """Return the model, the state at rest, the clock and the critical step (s) of a scene.
+class Discrete(NamedTuple):
+    """A scene in space: its numbers, how it moves, its rock and its joints (None without)."""
 
-    `model` is "jointed" or "equivalent"; raises SceneError for a step above the critical one.
-    """
-    p, numerics = calibrate(scene), scene.numerics.continuum
-    joints = resolved_joints(p, model)
-    speed = sqrt(rock_modulus(p, model) / p.density)
-    elements = numerics.elements_per_block or elements_in_block(
-        p.spacing, speed, resolved_period(scene), damped=bool(p.time_constant)
+    properties: Properties
+    kinematics: Kinematics
+    materials: list[Material]
+    body: Body
+    jumps: Jumps | None
+    joints: Interfaces | None
+
+
+def discretise(scene: Scene, model: str, dim: int | None = None) -> Discrete:
+    """Return a scene in space; `model` is "jointed" or "equivalent"."""
+    p, motion, numerics = calibrate(scene), kinematics(scene, dim), scene.numerics.continuum
+    mesh = mesh_of(scene, p, model, motion)
+    rock = materials(scene, p, model, mesh.layers)
+    body = build_body(
+        mesh,
+        numerics.order,
+        rock,
+        motion.section,
+        motion.plane_wave,
+        numerics.mass == "consistent",
     )
-    bar = discretise(pillar_grid(p, elements, joints.number), numerics.order)
-    critical = critical_step_of(bar, joints, scene, p, model)
-    time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "continuum")
-    built = build_model(scene, p, bar, joints, time, model)
-    return built, state_at_rest(built, scene.record.energy), time, critical
+    if not mesh.joints.joint.size:
+        return Discrete(p, motion, rock, body, None, None)
+    across = jumps(body)
+    law = joint_law(
+        p,
+        resolved_joints(p, model, mesh.layers),
+        across.joint,
+        shears=motion.section.components > 1,
+    )
+    prestress = scene.prestress.normal if scene.prestress else None
+    return Discrete(p, motion, rock, body, across, interfaces(across, law, prestress or None))
+
+
+def mesh_of(scene: Scene, p: Properties, model: str, motion: Kinematics) -> Mesh:
+    """Return the mesh of a scene's pillar: its own file, or blocks by gmsh."""
+    numerics = scene.numerics.continuum
+    if numerics.mesh is not None:
+        from continuum.meshing.given import given_mesh
+
+        return given_mesh(numerics.mesh, scene, p, motion.dim)
+    layers = layer_thickness(scene, p)
+    cut = resolved_joints(p, model, tuple(layers)).number
+    return pillar_mesh(
+        p,
+        motion.dim,
+        numerics.cell,
+        numerics.elements_per_block or elements_for(scene, p, model),
+        numerics.elements_across,
+        cut,
+        layers,
+    )
+
+
+def elements_for(scene: Scene, p: Properties, model: str) -> int:
+    """Return how many elements a block needs along the pillar to resolve the scene's waves."""
+    modulus = p.modulus if model == "equivalent" else p.intact_modulus
+    assert modulus is not None
+    speed = sqrt(modulus / p.density)
+    return elements_in_block(p.spacing, speed, resolved_period(scene), damped=bool(p.time_constant))
 
 
 def resolved_period(scene: Scene) -> float:
@@ -52,104 +95,130 @@ def resolved_period(scene: Scene) -> float:
     return scene.load.period or scene.time.duration / 10
 
 
-def build_model(
-    scene: Scene, p: Properties, bar: Bar, joints: Joints, time: Clock, model: str
-) -> Model:
-    """Return the constants of a scene on a discretised bar, for a given clock."""
-    modulus = rock_modulus(p, model)
-    mass = p.density * p.area * bar.mass
-    read = sections(bar, scene.record.stress)
+def critical_step_of(scene: Scene, discrete: Discrete, model: str) -> float:
+    """Return the critical step (s) with all joints closed, the stiffest state."""
+    p, body = discrete.properties, discrete.body
+    stiffness, viscosity = operators(discrete)
+    stiffness = stiffness + diags(end_stiffness(scene, p, body, model))
+    held = held_ends(scene, body)
+    return critical_time_step(
+        body.mass, stiffness, viscosity, None if held is None else held.freedom
+    )
+
+
+def operators(discrete: Discrete) -> tuple[csr_matrix, csr_matrix | None]:
+    """Return the stiffness (N/m) and viscosity (N s/m) of rock and closed joints, None without
+    dashpots."""
+    body, joints = discrete.body, discrete.joints
+    stiffness = whole(body.layout, body.mesh, body.blocks)
+    viscosity = None
+    if body.viscous_blocks:
+        viscosity = whole(body.layout, body.mesh, body.viscous_blocks)
+    if joints is None:
+        return stiffness, viscosity
+    size, law = body.mass.size, joints.law
+    stiffness = stiffness + _of_joints(joints, size, law.normal_stiffness, law.shear_stiffness)
+    if law.normal_viscosity is not None:
+        dashpots = _of_joints(joints, size, law.normal_viscosity, law.shear_viscosity)
+        viscosity = dashpots if viscosity is None else viscosity + dashpots
+    return stiffness, viscosity
+
+
+def _of_joints(joints: Interfaces, size: int, normal, shear) -> csr_matrix:
+    """Return B^T W k B of all joints: k along the normal, and another along the joint."""
+    found = csr_matrix((size, size))
+    for matrix, k in ((joints.opening, normal), (joints.slip_x, shear), (joints.slip_z, shear)):
+        if matrix is not None and k is not None:
+            jump = sparse(matrix, size)
+            found = found + jump.T @ diags(joints.area * k) @ jump
+    return csr_matrix(found)
+
+
+def build_model(scene: Scene, discrete: Discrete, model: str, time: Clock) -> Model:
+    """Return the constants of a scene in space, for a given clock."""
+    p, body = discrete.properties, discrete.body
+    alpha = (p.mass_damping or 0.0) * time.dt / 2
+    mass = body.mass
     return Model(
         rock=Rock(
-            stiffness=rows(modulus * p.area * bar.stiffness),
-            time_constant=p.time_constant,
+            stiffness=body.stiffness,
+            viscosity=body.viscosity,
             mass=mass,
-            step_over_mass=time.dt / mass,
+            step_over_mass=time.dt / mass / (1 + alpha),
+            keep=None if p.mass_damping is None else (1 - alpha) / (1 + alpha),
         ),
-        interfaces=build_interfaces(bar, joints, p.area),
-        ends=Ends(0, quiet_ends(scene, p, mass, time.dt, model), fixed_nodes(scene, bar)),
-        receivers=Receivers(
-            rows(points(bar, scene.record.velocity)),
-            rows(modulus * read.elastic),
-            rows(p.density * read.inertia),
-            rows(read.contact) if read.contact.nnz else None,
-        ),
-        load=p.area * step_means(load_history(scene), time.dt, time.steps + 1),
+        interfaces=discrete.joints,
+        ends=build_ends(scene, p, body, model, time, mass),
+        weight=weight_of(scene, body),
+        receivers=receivers(scene, discrete),
         dt=time.dt,
     )
 
 
-def build_interfaces(bar: Bar, joints: Joints, area: float) -> Interfaces | None:
-    """Return the interfaces with their law, or None where the bar is whole."""
-    if not joints.number.size:
+def weight_of(scene: Scene, body: Body) -> np.ndarray | None:
+    """Return the weight on every freedom, N; None without gravity."""
+    if scene.gravity is None:
         return None
-    jump = jump_operator(bar)
-    weight = np.full(jump.shape[0], area)
-    return Interfaces(rows(jump), rows(jump.T @ diags(weight)), weight, joints.law())
-
-
-def quiet_ends(
-    scene: Scene, p: Properties, mass: np.ndarray, dt: float, model: str
-) -> Quiet | None:
-    """Return what absorbs at the ends, or None: the dashpot rho c A on the end face.
-
-    In jointed rock a matched end has half a joint in front of it, as the rock beyond would have.
-    """
-    absorbing = absorbing_ends(scene, p, model, dt)
-    if not absorbing:
-        return None
-    node = np.array([0 if place == "start" else mass.size - 1 for place in absorbing])
-    z = p.impedance * p.area
-    viscosity = np.array([z if end is None else end.viscosity for end in absorbing.values()])
-    springs = None
-    if any(absorbing.values()):
-        none = (0.0, 0.0, 0.0)
-        parts = [(e.stiffness, e.decay, e.gain) if e else none for e in absorbing.values()]
-        springs = HalfJoints(*np.array(parts).T.copy())
-    return Quiet(node, viscosity, viscosity * dt / (2 * mass[node]), springs)
-
-
-def absorbing_ends(
-    scene: Scene, p: Properties, model: str, dt: float = 0.0
-) -> dict[str, HalfSpring | None]:
-    """Return for each absorbing end, by "start" and "end", the half joint there or None."""
-    found: dict[str, HalfSpring | None] = {}
-    for place in ("start", "end"):
-        kind = getattr(scene.ends, place)
-        if kind == "matched" and model == "jointed":
-            k = 2 * p.regular_own_stiffness * p.area
-            found[place] = half_spring(k, p.time_constant or 0.0, p.impedance * p.area, dt)
-        elif kind in ("quiet", "matched"):
-            found[place] = None
+    components = body.section.components
+    pull = np.array(scene.gravity.direction, dtype=float) * scene.gravity.acceleration
+    found = np.zeros(body.mass.size)
+    nodes = np.arange(len(body.x))
+    for c in range(components):
+        freedom = np.unique(body.freedom(nodes, c))
+        found[freedom] = body.mass[freedom] * pull[1 if components == 1 else c]
     return found
 
 
-def fixed_nodes(scene: Scene, bar: Bar) -> np.ndarray | None:
-    """Return the nodes that do not move, or None."""
-    return np.array([bar.y.size - 1]) if scene.ends.end == "fixed" else None
+def receivers(scene: Scene, discrete: Discrete) -> Receivers:
+    """Return how a scene's places are read, stresses over the pillar's section."""
+    body, area = discrete.body, discrete.properties.area
+    motion = points(body, scene.record.velocity)
+    force = sections(body, discrete.jumps, discrete.materials, scene.record.stress)
+    return Receivers(
+        point=rows(motion.motion),
+        turn=None if motion.turn is None else rows(motion.turn),
+        elastic=rows(force.elastic / area),
+        viscous=None if force.viscous is None else rows(force.viscous / area),
+        inertia=rows(force.inertia / area),
+        contact=rows(force.contact / area) if force.contact.nnz else None,
+    )
 
 
-def rock_modulus(p: Properties, model: str) -> float:
-    """Return the modulus between the interfaces, Pa: of intact rock or of the rock mass."""
-    if model == "equivalent":
-        return p.modulus
-    assert p.intact_modulus is not None
-    return p.intact_modulus
+def state_at_rest(model: Model, keep_ledger: bool) -> State:
+    """Return the state at rest, with no array for anything that the model does not have."""
+    n, joints, ends = model.rock.mass.size, model.interfaces, model.ends
+    quiet, held = ends.quiet, ends.held
+    sprung = quiet is not None and quiet.springs is not None
+    viscous = model.rock.viscosity is not None or (
+        joints is not None and joints.law.normal_viscosity is not None
+    )
+    return State(
+        u=zeros(n),
+        v=zeros(n),
+        v_before=zeros(n),
+        force=zeros(n),
+        rate=zeros(n) if viscous else None,
+        drag=zeros(n) if viscous else None,
+        memory=None if joints is None else memory(joints),
+        tractions=None if joints is None else tractions(joints),
+        closure=np.zeros(quiet.freedom.size) if sprung else None,
+        reaction=np.zeros(quiet.freedom.size) if quiet is not None else None,
+        wall=np.zeros(held.freedom.size) if held is not None and held.step is not None else None,
+        ledger=np.zeros(4) if keep_ledger else None,
+    )
 
 
-def critical_step_of(bar: Bar, joints: Joints, scene: Scene, p: Properties, model: str) -> float:
-    """Return the critical step (s) of a bar with its joints all closed, the stiffest state."""
-    jump = jump_operator(bar)
-    rock = rock_modulus(p, model) * p.area * bar.stiffness
-    springs = p.area * jump.T @ diags(joints.stiffness) @ jump
-    viscosity = None
-    if p.time_constant is not None or joints.time_constant is not None:
-        eta = np.zeros(joints.number.size) if joints.time_constant is None else joints.time_constant
-        dashpots = p.area * jump.T @ diags(joints.stiffness * eta) @ jump
-        viscosity = (p.time_constant or 0.0) * rock + dashpots
-    ends = np.zeros(bar.y.size)
-    for place, end in absorbing_ends(scene, p, model).items():
-        ends[0 if place == "start" else -1] = 0.0 if end is None else end.critical_stiffness
-    stiffness = rock + springs + diags(ends)
-    mass = p.density * p.area * bar.mass
-    return critical_bar_step(mass, stiffness, viscosity, fixed_nodes(scene, bar))
+def room(model: Model, state: State, samples: int) -> Samples:
+    """Return empty samples."""
+    receivers = model.receivers
+
+    def waves(matrix: Rows) -> np.ndarray:
+        return np.zeros((matrix.start.size - 1, samples))
+
+    return Samples(
+        stress=waves(receivers.elastic),
+        velocity=waves(receivers.point),
+        displacement=waves(receivers.point),
+        turn=None if receivers.turn is None else waves(receivers.turn),
+        energy=None if state.ledger is None else np.zeros((len(TERMS), samples)),
+    )

@@ -1,6 +1,6 @@
 """The only file that knows dolfinx versions: 0.5 to 0.11, told apart by what they offer.
 
-Everything is serial and real; matrices leave as scipy CSR, so that no PETSc build matters.
+Meshes and forms live on one process each; matrices leave as real scipy CSR.
 """
 
 import inspect
@@ -46,24 +46,18 @@ with quiet_logging():
 VERSION: str = dolfinx.__version__
 
 
-def process_count() -> int:
-    """Return the number of MPI processes."""
-    return MPI.COMM_WORLD.size
-
-
-def interval_mesh(cells: np.ndarray, x: np.ndarray):
-    """Return the mesh of intervals between vertices `cells` [n, 2] at coordinates `x` [m], m.
+def cell_mesh(cell: str, cells: np.ndarray, x: np.ndarray):
+    """Return the mesh of `cells` [n, corners] of this kind between vertices `x` [m, dim], m.
 
     Cells that share no vertex are topologically disconnected, wherever the vertices lie.
     """
+    dim = x.shape[1]
     if hasattr(basix, "ufl"):
-        element = basix.ufl.element("Lagrange", "interval", 1, shape=(1,))
+        element = basix.ufl.element("Lagrange", cell, 1, shape=(dim,))
     else:
-        element = ufl.VectorElement("Lagrange", "interval", 1)
+        element = ufl.VectorElement("Lagrange", ufl.Cell(cell, geometric_dimension=dim), 1)
     name = "e" if "e" in inspect.signature(mesh.create_mesh).parameters else "domain"
-    return mesh.create_mesh(
-        MPI.COMM_WORLD, cells=cells, x=x.reshape(-1, 1), **{name: ufl.Mesh(element)}
-    )
+    return mesh.create_mesh(MPI.COMM_SELF, cells=cells, x=x, **{name: ufl.Mesh(element)})
 
 
 def input_cells(domain) -> np.ndarray:
@@ -71,27 +65,45 @@ def input_cells(domain) -> np.ndarray:
     return np.asarray(domain.topology.original_cell_index)
 
 
-def lagrange_space(domain, order: int):
-    """Return the Lagrange space of this order; its nodes are Gauss-Lobatto-Legendre points."""
+def lagrange_space(domain, order: int, components: int | None = None):
+    """Return the Lagrange space of this order, of vectors where `components` is given.
+
+    On intervals, quadrilaterals and hexahedra its nodes are Gauss-Lobatto-Legendre points.
+    """
+    if hasattr(fem, "functionspace"):
+        shape = () if components is None else ((components,),)
+        return fem.functionspace(domain, ("Lagrange", order, *shape))
+    if components is None:
+        return fem.FunctionSpace(domain, ("Lagrange", order))
+    return fem.VectorFunctionSpace(domain, ("Lagrange", order), dim=components)
+
+
+def cell_values(domain, values: np.ndarray) -> fem.Function:
+    """Return the function that is constant in each cell, from values in the order of input."""
     make = getattr(fem, "functionspace", None) or fem.FunctionSpace
-    return make(domain, ("Lagrange", order))
+    function = fem.Function(make(domain, ("DG", 0)), dtype=np.float64)
+    function.x.array[cell_nodes(function.function_space)[:, 0]] = values[input_cells(domain)]
+    return function
 
 
 def cell_nodes(space) -> np.ndarray:
-    """Return the node numbers of each cell, int array [cells, nodes per cell]."""
+    """Return the node numbers of each cell of the mesh, int array [cells, nodes per cell]."""
     nodes = space.dofmap.list
     table = np.asarray(getattr(nodes, "array", nodes))
     return table.reshape(len(input_cells(space.mesh)), -1)
 
 
 def matrix(form: ufl.Form) -> csr_matrix:
-    """Assemble a bilinear form."""
-    assembled = fem.assemble_matrix(_compiled(form))
-    finish = getattr(assembled, "scatter_reverse", None) or assembled.finalize
-    finish()
-    parts = (np.array(getattr(assembled, part)) for part in ("data", "indices", "indptr"))
-    size = len(assembled.indptr) - 1
-    return csr_matrix(tuple(parts), shape=(size, size))
+    """Assemble a bilinear form; of vectors with all components of a node side by side."""
+    import dolfinx.fem.petsc
+
+    assembled = dolfinx.fem.petsc.assemble_matrix(_compiled(form))
+    assembled.assemble()
+    start, column, value = assembled.getValuesCSR()
+    size = len(start) - 1
+    found = csr_matrix((np.real(value).copy(), column.copy(), start.copy()), shape=(size, size))
+    assembled.destroy()
+    return found
 
 
 def vector(form: ufl.Form) -> np.ndarray:
@@ -102,3 +114,40 @@ def vector(form: ufl.Form) -> np.ndarray:
 def _compiled(form: ufl.Form):
     with quiet_logging():
         return fem.form(form, dtype=np.float64)
+
+
+def reference_element(cell: str, order: int):
+    """Return the Lagrange element of a cell in reference coordinates; `points` are its nodes."""
+    family, variant = basix.ElementFamily.P, basix.LagrangeVariant.gll_warped
+    return basix.create_element(family, getattr(basix.CellType, cell), order, variant)
+
+
+def tabulate(cell: str, order: int, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return basis functions [points, nodes] and their gradients [points, nodes, dim] at
+    `points` [n, dim] of the reference cell."""
+    element, (count, dim) = reference_element(cell, order), points.shape
+    if not count:  # an assertion of basix stops the process
+        nodes = len(element.points)
+        return np.zeros((0, nodes)), np.zeros((0, nodes, dim))
+    table = element.tabulate(1, points)[..., 0]
+    return table[0], np.moveaxis(table[1 : dim + 1], 0, 2)
+
+
+def quadrature(cell: str, degree: int, lobatto: bool = False) -> tuple[np.ndarray, np.ndarray]:
+    """Return points [n, dim] and weights [n] on the reference cell, exact to this degree.
+
+    lobatto : Gauss-Lobatto-Legendre points, which tensor-product cells have.
+    """
+    kind, types = getattr(basix.CellType, cell), basix.QuadratureType
+    rule = types.gll if lobatto else getattr(types, "default", None) or types.Default
+    try:
+        return basix.make_quadrature(kind, degree, rule=rule)
+    except TypeError:  # older: the rule comes first, and nothing has a name
+        return basix.make_quadrature(rule, kind, degree)
+
+
+def vtx_writer():
+    """Return the class that writes VTX files; None where dolfinx is built without ADIOS2."""
+    import dolfinx.io
+
+    return getattr(dolfinx.io, "VTXWriter", None)

@@ -1,72 +1,169 @@
-"""The bar's stiffness and mass on Gauss-Lobatto-Legendre elements.
+"""Stiffness and mass of one piece of rock, by dolfinx.
 
-With the nodes at the quadrature points the mass is diagonal at every order, and as accurate as
-the order asks for (Komatitsch & Tromp, Geophys. J. Int. 139, 1999).
+On intervals, quadrilaterals and hexahedra stiffness and mass are integrated at the
+Gauss-Lobatto-Legendre nodes: the mass is diagonal at every order, and both as accurate as the
+order asks for (Komatitsch & Tromp, Geophys. J. Int. 139, 1999). Simplices take full quadrature for
+the stiffness, and for a diagonal mass the diagonal of the consistent one, scaled to the true mass
+(Hinton, Rock & Zienkiewicz, Earthq. Eng. Struct. Dyn. 4, 1976).
 """
 
 from typing import NamedTuple
 
 import numpy as np
 import ufl
-from scipy.sparse import csr_matrix
+from scipy.sparse import csr_matrix, kron
 
 from continuum import compat
-from continuum.mesh import Grid, create
+from continuum.meshing.description import Part
+
+AT_ONCE = 500  # cells whose nodes are put in order together
+TENSOR = ("interval", "quadrilateral", "hexahedron")
 
 
-class Bar(NamedTuple):
-    """A bar of unit modulus, density and section, its nodes numbered along y.
+class Material(NamedTuple):
+    """Linear elastic rock: Young's modulus, Pa; Poisson's ratio; density, kg/m3; Kelvin-Voigt
+    time constant, s."""
 
-    grid : the elements.
-    y : float array [nodes], m.
-    elements : int array [elements, order + 1], node numbers along y; the two nodes at a cut have
-        the same y and belong to one element each.
-    stiffness : [nodes, nodes], 1/m.
-    mass : float array [nodes], m, the diagonal of the mass matrix.
-    """
-
-    grid: Grid
-    y: np.ndarray
-    elements: np.ndarray
-    stiffness: csr_matrix
-    mass: np.ndarray
+    modulus: float
+    poisson: float
+    density: float
+    time_constant: float = 0.0
 
     @property
-    def order(self) -> int:
-        """Polynomial order of the elements."""
-        return self.elements.shape[1] - 1
+    def shear_modulus(self) -> float:
+        """G, Pa."""
+        return self.modulus / (2 * (1 + self.poisson))
 
 
-def discretise(grid: Grid, order: int) -> Bar:
-    """Return the bar on a grid, with elements of this order (1 to 4)."""
-    space = compat.lagrange_space(create(grid), order)
-    y = space.tabulate_dof_coordinates()[:, 0]
-    elements = _elements_along_y(space, y)
-    # Numbers in the order of first appearance along y: neighbours in the pillar are in memory.
-    flat = elements.ravel()
-    along = flat[np.sort(np.unique(flat, return_index=True)[1])]
-    number = np.empty_like(along)
-    number[along] = np.arange(along.size)
-    stiffness = compat.matrix(stiffness_form(space))[along][:, along]
-    stiffness.sort_indices()
-    mass = compat.vector(mass_form(space, order))[along]
-    return Bar(grid, y[along], number[elements], stiffness, mass)
+class Section(NamedTuple):
+    """What a mesh of this dimension leaves out: components of the motion, and the factor (m2, m
+    or 1) that makes an integral over the mesh one over the rock."""
+
+    components: int
+    extent: float
 
 
-def stiffness_form(space) -> ufl.Form:
-    """Return the integral of u' w' over the bar."""
+class Piece(NamedTuple):
+    """One piece of rock, discretised; freedom node * components + component.
+
+    x : float array [nodes, dim], m. cells : int array [cells, nodes per cell] in the order of the
+    reference element. stiffness, N/m, and viscosity, N s/m (None without dashpots) : [n, n].
+    mass : float array [nodes], kg, the diagonal; consistent : [n, n], kg, None where lumped.
+    """
+
+    x: np.ndarray
+    cells: np.ndarray
+    stiffness: csr_matrix
+    viscosity: csr_matrix | None
+    mass: np.ndarray
+    consistent: csr_matrix | None
+
+
+def discretise(
+    part: Part,
+    cell: str,
+    order: int,
+    materials: list[Material],
+    section: Section,
+    consistent: bool = False,
+) -> Piece:
+    """Return the operators of one piece of rock with elements of this order.
+
+    materials : of `part.material`. consistent : whether to keep the consistent mass of simplices.
+    """
+    domain = compat.cell_mesh(cell, part.cells, part.x)
+    space = compat.lagrange_space(domain, order)
+    of_cell = [materials[m] for m in part.material]
+    etas = np.array([m.time_constant for m in of_cell])
+    stiffness = _stiffness(domain, cell, order, of_cell, np.ones(len(of_cell)), section)
+    viscosity = None
+    if etas.any():
+        same = (etas == etas[0]).all()
+        viscosity = etas[0] * stiffness if same else None
+        if viscosity is None:
+            viscosity = _stiffness(domain, cell, order, of_cell, etas, section)
+    density = np.array([m.density for m in of_cell])
+    mass, whole = _mass(space, cell, order, density, section, consistent)
+    x = space.tabulate_dof_coordinates()[:, : part.x.shape[1]].copy()
+    nodes = _in_reference_order(space, part, cell, order, x)
+    return Piece(x, nodes, stiffness, viscosity, mass, whole)
+
+
+def strain(u):
+    """Return the small strain tensor of a displacement."""
+    return ufl.sym(ufl.grad(u))
+
+
+def stress(u, lame, shear):
+    """Return the stress tensor of Lame's constants lambda and G."""
+    return lame * ufl.tr(strain(u)) * ufl.Identity(len(u)) + 2 * shear * strain(u)
+
+
+def lame_constants(material: Material, dim: int) -> tuple[float, float]:
+    """Return lambda and G (Pa), in dim 2 those of plane stress."""
+    e, nu = material.modulus, material.poisson
+    lame = e * nu / (1 - nu**2) if dim == 2 else e * nu / ((1 + nu) * (1 - 2 * nu))
+    return lame, material.shear_modulus
+
+
+def _stiffness(domain, cell, order, of_cell, factor, section: Section) -> csr_matrix:
+    """Return the stiffness matrix, each cell's share times its factor."""
+    dim, dx = domain.geometry.dim, measure(cell, order)
+    if dim == 1:
+        return _of_bar(domain, order, dx, of_cell, factor, section)
+    space = compat.lagrange_space(domain, order, dim)
     u, w = ufl.TrialFunction(space), ufl.TestFunction(space)
-    return ufl.inner(u.dx(0), w.dx(0)) * ufl.dx
+    constants = np.array([lame_constants(m, dim) for m in of_cell]).T * factor
+    lame, shear = (compat.cell_values(domain, section.extent * c) for c in constants)
+    return compat.matrix(ufl.inner(stress(u, lame, shear), strain(w)) * dx)
 
 
-def mass_form(space, order: int) -> ufl.Form:
-    """Return the integral of w by GLL quadrature: each node's quadrature weight, its mass."""
+def _of_bar(domain, order, dx, of_cell, factor, section: Section) -> csr_matrix:
+    """Return the stiffness of a bar: E along it, and G across it where it moves in space."""
+    space = compat.lagrange_space(domain, order)
+    u, w = ufl.TrialFunction(space), ufl.TestFunction(space)
+
+    def stiffness(moduli: list[float]) -> csr_matrix:
+        modulus = compat.cell_values(domain, section.extent * np.array(moduli) * factor)
+        return compat.matrix(modulus * ufl.inner(ufl.grad(u), ufl.grad(w)) * dx)
+
+    along = stiffness([m.modulus for m in of_cell])
+    if section.components == 1:
+        return along
+    across = stiffness([m.shear_modulus for m in of_cell])
+    return csr_matrix(
+        kron(across, np.diag([1.0, 0.0, 1.0])) + kron(along, np.diag([0.0, 1.0, 0.0]))
+    )
+
+
+def measure(cell: str, order: int) -> ufl.Measure:
+    """Return the measure of integrals over rock: Lobatto's points on tensor-product cells."""
+    if cell not in TENSOR:
+        return ufl.dx
     rule = {"quadrature_rule": "GLL", "quadrature_degree": max(2 * order - 1, 1)}
-    return ufl.TestFunction(space) * ufl.dx(metadata=rule)
+    return ufl.dx(metadata=rule)
 
 
-def _elements_along_y(space, y: np.ndarray) -> np.ndarray:
-    nodes = compat.cell_nodes(space)
-    elements = np.empty_like(nodes)
-    elements[compat.input_cells(space.mesh)] = np.take_along_axis(nodes, np.argsort(y[nodes]), 1)
-    return elements
+def _mass(space, cell, order, density, section: Section, consistent: bool):
+    """Return the diagonal of the mass matrix, kg, and the consistent one where it is asked for."""
+    rho = compat.cell_values(space.mesh, section.extent * density)
+    w = ufl.TestFunction(space)
+    if cell in TENSOR:
+        return compat.vector(rho * w * measure(cell, order)), None
+    whole = compat.matrix(rho * ufl.TrialFunction(space) * w * ufl.dx)
+    # The scale is that of every cell: simplices of one order are affine images of each other.
+    lumped = whole.diagonal() * (whole.sum() / whole.diagonal().sum())
+    return lumped, kron(whole, np.eye(section.components)).tocsr() if consistent else None
+
+
+def _in_reference_order(space, part: Part, cell: str, order: int, x: np.ndarray) -> np.ndarray:
+    """Return each cell's node numbers in the order of the reference element, cells as in `part`."""
+    nodes = np.empty_like(compat.cell_nodes(space))
+    nodes[compat.input_cells(space.mesh)] = compat.cell_nodes(space)
+    reference = compat.reference_element(cell, order).points
+    shape, _ = compat.tabulate(cell, 1, reference)
+    for some in np.array_split(np.arange(len(nodes)), 1 + len(nodes) // AT_ONCE):
+        places = np.einsum("kv,cvd->ckd", shape, part.x[part.cells[some]])
+        distance = np.linalg.norm(places[:, :, None] - x[nodes[some]][:, None], axis=3)
+        nodes[some] = np.take_along_axis(nodes[some], distance.argmin(axis=2), 1)
+    return nodes

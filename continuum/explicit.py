@@ -1,55 +1,70 @@
-"""The compiled loop: leapfrog steps of a bar with joints.
+"""The compiled loop: leapfrog steps of jointed rock.
 
 Displacements u live at whole steps, velocities v half a step before or after. Dashpots in rock
 and joints see the rate extrapolated to the whole step, 1.5 v[n-1/2] - 0.5 v[n-3/2], which keeps
-second order without an equation to solve; quiet ends are centred implicitly on their node.
+second order without an equation to solve; quiet ends and mass-proportional damping are centred
+implicitly on their freedom.
 
 Absent parts of a model or state are None. Each is handed on as an argument of its own, where
 numba removes the branch that would use it.
 """
 
-from continuum.record import book, sample, sample_energy, sample_joints
-from continuum.sparse import row
+from continuum.operator import multiply
+from continuum.record import book, record
+from continuum.tractions import load_joints, push
+from joints.borrowed import borrowed
 from joints.jit import jitted
-from joints.laws import law_of, normal_traction, spring_traction
+from joints.tiny import flush_tiny, restore_tiny
 
 
 @jitted
 def run(model, state, samples, stride, first, last):
     """Take steps first .. last - 1 and a sample at every step that `stride` divides."""
-    # Unpacked once: a tuple of arrays read in every step would count its references in every step.
-    rock, interfaces, ends, receivers, load, dt = model
-    u, v, v_before, force, rate, traction, dashpot, drag, closure, reaction, ledger = state
+    old = flush_tiny()
+    model, state, samples = borrowed(model), borrowed(state), borrowed(samples)
     for n in range(first, last):
-        deform(force, rock.stiffness, u)
-        extrapolate(rate, v, v_before)
-        load_joints(interfaces, u, rate, traction, dashpot)
-        push(force, interfaces, traction)
-        damp(drag, rock, interfaces, rate, dashpot)
-        resist(force, drag)
-        force[ends.loaded] += load[n]
-        lean(force, ends.quiet, closure)
-        accelerate(v, v_before, rock.step_over_mass, force)
-        absorb(ends.quiet, reaction, closure, v, v_before)
-        hold(ends.fixed, v)
+        forces(model, state, n)
+        advance(model, state, samples, stride, n)
+    restore_tiny(old)
 
-        book(ledger, 0.5 * dt, load[n], ends.loaded, ends.quiet, reaction, drag, v_before)
-        if n % stride == 0:
-            sample(rock, receivers, samples, n // stride, u, v, v_before, rate, dt)
-            sample_joints(samples.stress, n // stride, receivers.contact, traction, dashpot)
-            sample_energy(samples.energy, rock, interfaces, n // stride, u, v, v_before, ledger)
-        book(ledger, 0.5 * dt, load[n], ends.loaded, ends.quiet, reaction, drag, v)
-        for i in range(u.size):
-            u[i] += dt * v[i]
-        close(ends.quiet, closure, v)
+
+@jitted
+def forces(model, state, n):
+    """Set the force on every freedom at step n, from the displacements and rates there."""
+    interfaces, ends = model.interfaces, model.ends
+    deform(state.force, model.rock.stiffness, state.u)
+    extrapolate(state.rate, state.v, state.v_before)
+    damp(state.drag, model.rock.viscosity, state.rate)
+    load_joints(interfaces, state.u, state.v, state.rate, state.memory, state, model.dt)
+    push(interfaces, state.tractions, state.force, state.drag)
+    add(state.force, state.drag)
+    add(state.force, model.weight)
+    press(state.force, ends.loaded, n)
+    lean(state.force, ends.quiet, state.closure)
+
+
+@jitted
+def advance(model, state, samples, stride, n):
+    """Move from step n to the next one under the forces of step n, and record step n."""
+    ends, dt = model.ends, model.dt
+    accelerate(model.rock, model.rock.keep, state)
+    absorb(ends.quiet, state.reaction, state.closure, state.v, state.v_before)
+    hold(ends.held, model, state, n)
+    book(state.ledger, 0.5 * dt, model, state, n, state.v_before)
+    if n % stride == 0:
+        record(model, state, samples, n // stride)
+    book(state.ledger, 0.5 * dt, model, state, n, state.v)
+    for i in range(state.u.size):
+        state.u[i] += dt * state.v[i]
+    close(ends.quiet, state.closure, state.v)
 
 
 @jitted
 def deform(force, stiffness, u):
-    """Set the elastic force (N) of the rock on every node."""
-    start, column, value = stiffness
+    """Set the elastic force (N) of the rock on every freedom."""
+    multiply(stiffness, u, force)
     for i in range(force.size):
-        force[i] = -row(start, column, value, u, i)
+        force[i] = -force[i]
 
 
 @jitted
@@ -61,76 +76,34 @@ def extrapolate(rate, v, v_before):
 
 
 @jitted
-def load_joints(interfaces, u, rate, traction, dashpot):
-    """Set the traction (Pa) at every interface point from the jump there.
-
-    Where there are dashpots it is the spring's part, and theirs is kept apart.
-    """
-    if interfaces is not None:
-        start, column, value = interfaces.jump
-        law = interfaces.law
-        for q in range(traction.size):
-            gap, one = row(start, column, value, u, q), law_of(law, q)
-            traction[q] = spring_traction(one, gap)
-            load_dashpot(dashpot, start, column, value, rate, one, gap, q)
-
-
-@jitted
-def load_dashpot(dashpot, start, column, value, rate, law, gap, q):
-    """Set what a joint's dashpot adds to its spring, tension cut from both together."""
-    if dashpot is not None:
-        gap_rate = row(start, column, value, rate, q)
-        dashpot[q] = normal_traction(law, gap, gap_rate) - spring_traction(law, gap)
-
-
-@jitted
-def push(force, interfaces, traction):
-    """Add the force (N) of joints of these tractions on every node, B^T W t."""
-    if interfaces is not None:
-        start, column, value = interfaces.gather
-        for i in range(force.size):
-            force[i] += row(start, column, value, traction, i)
-
-
-@jitted
-def damp(drag, rock, interfaces, rate, dashpot):
-    """Set the viscous force (N) of rock and joints on every node."""
+def damp(drag, viscosity, rate):
+    """Set the viscous force (N) of the rock on every freedom."""
     if drag is not None:
         drag[:] = 0.0
-        damp_rock(drag, rock.stiffness, rock.time_constant, rate)
-        damp_joints(drag, interfaces, dashpot)
+        damp_rock(drag, viscosity, rate)
 
 
 @jitted
-def damp_rock(drag, stiffness, time_constant, rate):
-    """Set the rock's part of the viscous force (N), Kelvin-Voigt: -eta K u'."""
-    if time_constant is not None:
-        start, column, value = stiffness
-        for i in range(drag.size):
-            drag[i] = -time_constant * row(start, column, value, rate, i)
+def damp_rock(drag, viscosity, rate):
+    """Set the viscous force of rock that has Kelvin-Voigt dashpots."""
+    if viscosity is not None:
+        deform(drag, viscosity, rate)
 
 
 @jitted
-def damp_joints(drag, interfaces, dashpot):
-    """Add the joints' part of the viscous force (N)."""
-    if dashpot is not None:
-        push(drag, interfaces, dashpot)
-
-
-@jitted
-def resist(force, drag):
-    """Add the viscous force to the others."""
-    if drag is not None:
+def add(force, more):
+    """Add other forces on every freedom, where there are any."""
+    if more is not None:
         for i in range(force.size):
-            force[i] += drag[i]
+            force[i] += more[i]
 
 
 @jitted
-def accelerate(v, v_before, step_over_mass, force):
-    """Advance every velocity by one step."""
-    for i in range(v.size):
-        v_before[i] = v[i]
-        v[i] += step_over_mass[i] * force[i]
+def press(force, loaded, n):
+    """Add the load (N)."""
+    if loaded is not None:
+        for k in range(loaded.freedom.size):
+            force[loaded.freedom[k]] += loaded.share[k] * loaded.pressure[n]
 
 
 @jitted
@@ -138,27 +111,32 @@ def lean(force, quiet, closure):
     """Add the force (N) of the springs in front of dashpots."""
     if closure is not None:
         for k in range(closure.size):
-            force[quiet.node[k]] -= quiet.springs.stiffness[k] * closure[k]
+            force[quiet.freedom[k]] -= quiet.springs.stiffness[k] * closure[k]
 
 
 @jitted
-def close(quiet, closure, v):
-    """Advance the closure of the springs in front of dashpots."""
-    if closure is not None:
-        springs = quiet.springs
-        for k in range(closure.size):
-            closure[k] = springs.decay[k] * closure[k] + springs.gain[k] * v[quiet.node[k]]
+def accelerate(rock, keep, state):
+    """Advance every velocity by one step."""
+    v, v_before, force = state.v, state.v_before, state.force
+    if keep is None:
+        for i in range(v.size):
+            v_before[i] = v[i]
+            v[i] += rock.step_over_mass[i] * force[i]
+    else:
+        for i in range(v.size):
+            v_before[i] = v[i]
+            v[i] = keep * v[i] + rock.step_over_mass[i] * force[i]
 
 
 @jitted
 def absorb(quiet, reaction, closure, v, v_before):
-    """Slow quiet nodes by their dashpots, centred: exactly the free motion where beta = 0.
+    """Slow quiet freedoms by their dashpots, centred: exactly the free motion where beta = 0.
 
     What holds each of them back, spring and dashpot (N), is left in `reaction`.
     """
     if quiet is not None:
-        for k in range(quiet.node.size):
-            i, beta = quiet.node[k], quiet.beta[k]
+        for k in range(quiet.freedom.size):
+            i, beta = quiet.freedom[k], quiet.beta[k]
             v[i] = (v[i] - beta * v_before[i]) / (1.0 + beta)
             reaction[k] = 0.5 * quiet.viscosity[k] * (v_before[i] + v[i])
         add_springs(reaction, quiet.springs, closure)
@@ -173,8 +151,32 @@ def add_springs(reaction, springs, closure):
 
 
 @jitted
-def hold(fixed, v):
-    """Hold fixed nodes at rest."""
-    if fixed is not None:
-        for i in fixed:
-            v[i] = 0.0
+def close(quiet, closure, v):
+    """Advance the closure of the springs in front of dashpots."""
+    if closure is not None:
+        springs = quiet.springs
+        for k in range(closure.size):
+            closure[k] = springs.decay[k] * closure[k] + springs.gain[k] * v[quiet.freedom[k]]
+
+
+@jitted
+def hold(held, model, state, n):
+    """Give held freedoms their motion, at rest or that of a shaken base."""
+    if held is not None:
+        shake(held.step, held, model, state, n)
+
+
+@jitted
+def shake(step, held, model, state, n):
+    """Move held freedoms as the base does, and leave in `wall` what that takes (N)."""
+    if step is None:
+        for i in held.freedom:
+            state.v[i] = 0.0
+    else:
+        for k in range(held.freedom.size):
+            i = held.freedom[k]
+            moved = held.way[k] * step[n] / model.dt
+            state.wall[k] = (
+                model.rock.mass[i] * (moved - state.v_before[i]) / model.dt - state.force[i]
+            )
+            state.v[i] = moved

@@ -1,8 +1,9 @@
-"""Joints as interfaces: where they are, the jump across them, and their law.
+"""Joints as interfaces: the jumps across them, at the quadrature points of their facets.
 
-With the jump operator B (nodal values to the gap at interface quadrature points), the weights W
-and the traction t (compression positive), the joints' internal force is -B^T W t(B u). Dimension
-and order show in B alone.
+With the jump operators B (freedoms to gap and slip at the points), the weights W and the traction
+t (normal compression positive), the joints' internal force is B^T W t(B u). Dimension, order and
+kind of element show in B alone. On quadrilaterals and hexahedra the points are the nodes of the
+facets (Gauss-Lobatto-Legendre), so that a joint does not couple its own nodes.
 """
 
 from typing import NamedTuple
@@ -10,48 +11,125 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from cases.calibrate import Properties
-from continuum.elasticity import Bar
-from joints.laws import Law
-from joints.uniform import law
+from continuum import compat
+from continuum.body import Body, along
+from continuum.places import matrix_of, places_in
+
+FACETS = {
+    "interval": "point",
+    "triangle": "interval",
+    "quadrilateral": "interval",
+    "tetrahedron": "triangle",
+    "hexahedron": "quadrilateral",
+}
 
 
-class Joints(NamedTuple):
-    """The joints that a model resolves.
+class Facets(NamedTuple):
+    """Quadrature points of facets [facets * points of each].
 
-    number : int array [n], which of the pillar's joints.
-    stiffness, time_constant, tension : [n], Pa/m, s (None without any dashpot), whether carried.
+    facet : int array, which of the facets. x : [q, dim], m. weight : share of the area, m2.
     """
 
-    number: np.ndarray
-    stiffness: np.ndarray
-    time_constant: np.ndarray | None
-    tension: np.ndarray
-
-    def law(self) -> Law:
-        """Return the law of these joints in its smallest form."""
-        return law(self.stiffness, self.time_constant, self.tension)
+    facet: np.ndarray
+    x: np.ndarray
+    weight: np.ndarray
 
 
-def resolved_joints(p: Properties, model: str) -> Joints:
-    """Return all joints ("jointed"), or the soft layers by their excess ("equivalent")."""
-    if model == "jointed":
-        assert p.own_stiffness is not None
-        number, stiffness = np.arange(p.block_count - 1), p.own_stiffness
+class Jumps(NamedTuple):
+    """The jumps at the quadrature points of the joints.
+
+    opening, slip_x, slip_z : B [q, freedoms], far side less near side; gap along the normal from
+        the near to the far side; None where the motion has no such component.
+    weight : W [q], m2. joint : int array [q], which of the pillar's joints.
+    x : [q, dim], m. flat : bool array [q], whether the joint is square to the axis there.
+    """
+
+    opening: csr_matrix
+    slip_x: csr_matrix | None
+    slip_z: csr_matrix | None
+    weight: np.ndarray
+    joint: np.ndarray
+    x: np.ndarray
+    flat: np.ndarray
+
+
+def facet_points(body: Body, corners: np.ndarray) -> Facets:
+    """Return the quadrature points of facets with these corners [facets, corners, dim]."""
+    count, _, dim = corners.shape
+    if dim == 1:
+        return Facets(np.arange(count), corners[:, 0], np.full(count, body.section.extent))
+    at, weight = _rule(FACETS[body.mesh.cell], body.mesh.cell, body.order)
+    basis, gradient = compat.tabulate(FACETS[body.mesh.cell], 1, at)
+    x = np.einsum("qv,fvd->fqd", basis, corners)
+    tangents = np.einsum("qvt,fvd->fqtd", gradient, corners)
+    if dim == 2:
+        area = np.linalg.norm(tangents[:, :, 0], axis=2)
     else:
-        excess = p.excess_compliance
-        number = np.flatnonzero(excess)
-        stiffness = 1 / excess[number]
-    eta = p.joint_time_constant
-    return Joints(number, stiffness, None if eta is None else eta[number], p.tension[number])
+        area = np.linalg.norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]), axis=2)
+    weight = body.section.extent * area * weight
+    facet = np.repeat(np.arange(count), len(at))
+    return Facets(facet, x.reshape(-1, dim), weight.ravel())
 
 
-def jump_operator(bar: Bar) -> csr_matrix:
-    """Return B [cuts, nodes]: gap = u(right) - u(left) of each cut, positive when open."""
-    cuts = np.flatnonzero(bar.grid.cut)
-    left, right = bar.elements[cuts, -1], bar.elements[cuts + 1, 0]
-    rows = np.arange(cuts.size)
-    ones = np.ones(cuts.size)
-    return csr_matrix(
-        (np.r_[-ones, ones], (np.r_[rows, rows], np.r_[left, right])), (cuts.size, bar.y.size)
+def _rule(facet: str, cell: str, order: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the points and weights on a reference facet."""
+    if cell in ("quadrilateral", "hexahedron") or facet == "interval":
+        return compat.quadrature(facet, max(2 * order - 1, 1), lobatto=True)
+    if order == 1:  # the corners, so that linear tetrahedra do not couple their own nodes either
+        return np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), np.full(3, 1 / 6)
+    return compat.quadrature(facet, 2 * order)
+
+
+def jumps(body: Body) -> Jumps:
+    """Return the jump operators of all joints of a mesh."""
+    joints = body.mesh.joints
+    points = facet_points(body, joints.corners)
+    left, right = joints.left[points.facet], joints.right[points.facet]
+    near, far = places_in(body, left, points.x), places_in(body, right, points.x)
+    frames = _frames(body)[points.facet]
+    count, rows = points.weight.size, np.arange(points.weight.size)
+
+    def jump(direction: int) -> csr_matrix:
+        parts = [
+            sign * side.basis[:, :, None] * frames[:, None, direction]
+            for sign, side in ((1.0, far), (-1.0, near))
+        ]
+        return matrix_of(body, rows, right, parts[0], count) + matrix_of(
+            body, rows, left, parts[1], count
+        )
+
+    directions = frames.shape[1]
+    return Jumps(
+        opening=jump(0),
+        slip_x=jump(1) if directions > 1 else None,
+        slip_z=jump(2) if directions > 2 else None,
+        weight=points.weight,
+        joint=joints.joint[points.facet],
+        x=points.x,
+        flat=np.abs(frames[:, 0, along(body.section)] - 1) < 1e-9,
     )
+
+
+def _frames(body: Body) -> np.ndarray:
+    """Return unit vectors [facets, directions, components]: the normal to the far side, then what
+    is nearest to x and z in the facet; on a joint square to the axis y, x and z themselves."""
+    joints, components = body.mesh.joints, body.section.components
+    if body.dim == 1:
+        alike = [[1.0]] if components == 1 else [[0, 1.0, 0], [1.0, 0, 0], [0, 0, 1.0]]
+        return np.tile(np.array(alike), (len(joints.joint), 1, 1))
+    edges = joints.corners[:, 1:] - joints.corners[:, :1]
+    if body.dim == 2:
+        normal = edges[:, 0] @ np.array([[0.0, 1.0], [-1.0, 0.0]])
+    else:
+        normal = np.cross(edges[:, 0], edges[:, 1])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    centre = body.corners.mean(axis=1)
+    outward = ((centre[joints.right] - centre[joints.left]) * normal).sum(axis=1)
+    normal *= np.sign(outward)[:, None]
+    if body.dim == 2:
+        return np.stack([normal, normal @ np.array([[0.0, -1.0], [1.0, 0.0]])], axis=1)
+    x = np.array([1.0, 0.0, 0.0]) - normal * normal[:, :1]
+    steep = np.linalg.norm(x, axis=1) < 1e-6
+    x[steep] = np.array([0.0, -1.0, 0.0])
+    x /= np.linalg.norm(x, axis=1)[:, None]
+    return np.stack([normal, x, np.cross(x, normal)], axis=1)

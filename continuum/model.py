@@ -1,9 +1,17 @@
-"""The constants of a run, and what changes in it, as two objects; absent parts are None."""
+"""The constants of a run in one, two or three dimensions, and what changes in it.
+
+Two objects; absent parts are None. A freedom is one component of the displacement of one node; where
+it stands in a vector, `continuum.operator.layout` says.
+
+Where several processes share a run, each holds part of the rock and of the joints. Every force,
+mass, viscosity and weight is then its own share, and `total` and `beta` are of all together.
+"""
 
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from continuum.operator import Operator
 from continuum.sparse import Rows
 from joints.laws import Law
 
@@ -11,31 +19,82 @@ from joints.laws import Law
 class Rock(NamedTuple):
     """The deformable rock.
 
-    stiffness : [n, n], N/m; time_constant : Kelvin-Voigt eta, s, or None.
-    mass : float array [n], kg; step_over_mass : dt / mass, s/kg.
+    stiffness : N/m; viscosity : N s/m, None without dashpots.
+    mass : float array [n], kg; step_over_mass : dt over the total mass, s/kg.
+    keep : (1 - alpha dt / 2) / (1 + alpha dt / 2) of mass-proportional damping alpha, None without;
+        step_over_mass is then divided by 1 + alpha dt / 2.
     """
 
-    stiffness: Rows
-    time_constant: Any
+    stiffness: Operator
+    viscosity: Any
     mass: np.ndarray
     step_over_mass: np.ndarray
+    keep: Any
 
 
 class Interfaces(NamedTuple):
     """The joints, at their quadrature points.
 
-    jump : B [q, n]; gather : B^T W [n, q], m2; area : W [q], m2; law : per unit area.
+    opening : B_n [q, n], the gap is opening times u.
+    slip_x, slip_z : B_x, B_z [q, n], likewise; None where nothing moves that way.
+    area : W [q], m2.
+    law : per unit area; parts are one number or an array [q].
+    prestress : normal traction (Pa) that every point and the rock between them carry at u = 0;
+        the gap is then short by prestress / K_n; None without.
     """
 
-    jump: Rows
-    gather: Rows
+    opening: Rows
+    slip_x: Any
+    slip_z: Any
     area: np.ndarray
     law: Law
+    prestress: Any
+
+
+class Memory(NamedTuple):
+    """What the points of the joints remember, float arrays [q].
+
+    opening : the largest so far, m; None without softening.
+    slide_x, slide_z : what has slid, m: the elastic part of the slip is B u - slide; None where
+        nothing slides, or has no such direction.
+    cohesion : of the point, Pa; None without residual cohesion.
+    """
+
+    opening: Any
+    slide_x: Any
+    slide_z: Any
+    cohesion: Any
+
+
+class Tractions(NamedTuple):
+    """On the joints at the step, float arrays [q], Pa: normal (compression positive), along x, z.
+
+    x, z : None without slip in that direction.
+    drag_n, drag_x, drag_z : the dashpots' part of these; None without dashpots.
+    """
+
+    normal: np.ndarray
+    x: Any
+    z: Any
+    drag_n: Any
+    drag_x: Any
+    drag_z: Any
+
+
+class Loaded(NamedTuple):
+    """The load: freedom [k], share [k] (m2) of each; force on them share times load[n] (Pa).
+
+    pressure : float array [steps + 1], mean over each step, Pa.
+    """
+
+    freedom: np.ndarray
+    share: np.ndarray
+    pressure: np.ndarray
 
 
 class HalfJoints(NamedTuple):
     """The springs in front of dashpots [k] (`joints.ends`): N/m in the reaction, and how their
-    closure advances; all zero where an end has none."""
+    closure advances; all zero where a freedom has none."""
 
     stiffness: np.ndarray
     decay: np.ndarray
@@ -43,45 +102,60 @@ class HalfJoints(NamedTuple):
 
 
 class Quiet(NamedTuple):
-    """Nodes on dashpots: node [k]; viscosity [k], N s/m; beta = viscosity dt / 2 mass.
+    """Freedoms on dashpots: freedom [k]; viscosity [k], N s/m; beta = viscosity dt / 2 mass.
 
-    springs : `HalfJoints`, None where every dashpot is on its node itself.
+    springs : `HalfJoints`, None where every dashpot is on its freedom itself.
     """
 
-    node: np.ndarray
+    freedom: np.ndarray
     viscosity: np.ndarray
     beta: np.ndarray
     springs: Any = None
 
 
-class Ends(NamedTuple):
-    """loaded : the node at y = 0; quiet : `Quiet` or None; fixed : int array of nodes or None."""
+class Held(NamedTuple):
+    """Freedoms whose motion is given: freedom [k]; way [k] times step[n] (m) from n to n + 1.
 
-    loaded: int
+    step : float array [steps + 1], m; None where they stand still.
+    """
+
+    freedom: np.ndarray
+    way: np.ndarray
+    step: Any
+
+
+class Ends(NamedTuple):
+    """loaded : `Loaded`; quiet : `Quiet`; held : `Held`; each None where there is none."""
+
+    loaded: Any
     quiet: Any
-    fixed: Any
+    held: Any
 
 
 class Receivers(NamedTuple):
-    """point [r, n]; stress of a section = elastic (u + eta rate) + inertia u'', Pa [s, n].
+    """point, turn : [r components, n], displacement and rotation (rad; None without) of points.
 
-    contact : [s, q], sections that read a joint's traction; None where there is none.
+    A section's force over its area = elastic (u + eta rate) + inertia u'', Pa [s components, n];
+    viscous : the elastic rows times their eta; None without dashpots.
+    contact : [s components, 3 q], tractions that sections on joints read; None where none is.
     """
 
     point: Rows
+    turn: Any
     elastic: Rows
+    viscous: Any
     inertia: Rows
     contact: Any
 
 
 class Model(NamedTuple):
-    """The constants of a run; load : float array [steps + 1], N, mean over each step; dt : s."""
+    """The constants of a run; weight : float array [n], N, None without gravity; dt : s."""
 
     rock: Rock
     interfaces: Any
     ends: Ends
+    weight: Any
     receivers: Receivers
-    load: np.ndarray
     dt: float
 
 
@@ -89,13 +163,14 @@ class State(NamedTuple):
     """What changes.
 
     u : displacement at the step, m; v, v_before : velocity half a step and one and a half before.
-    force : on each node, N.
-    rate : velocity extrapolated to the step, m/s; drag : viscous force on each node, N; both None
-        without dashpots.
-    traction, dashpot : of the joints' springs and dashpots, Pa; None without them.
+    force : on each freedom, N.
+    rate : velocity extrapolated to the step, m/s; drag : viscous force on each freedom, N; both
+        None without dashpots.
+    memory : `Memory`; tractions : `Tractions`; None without joints.
     closure : of the springs in front of dashpots [k], m; None without them.
     reaction : of the absorbing ends at the last step [k], N; None without them.
-    ledger : viscous, boundary and load work so far, J; None when not kept.
+    wall : force (N) on the held freedoms at the last step [k]; None where they stand still.
+    ledger : viscous, friction, boundary and load work so far, J; None when not kept.
     """
 
     u: np.ndarray
@@ -103,52 +178,23 @@ class State(NamedTuple):
     v_before: np.ndarray
     force: np.ndarray
     rate: Any
-    traction: Any
-    dashpot: Any
     drag: Any
+    memory: Any
+    tractions: Any
     closure: Any
     reaction: Any
+    wall: Any
     ledger: Any
 
 
 class Samples(NamedTuple):
-    """Room for what is recorded [receiver, sample]; energy [5, sample] or None."""
+    """Room for what is recorded [row of the receivers' matrices, sample]; turn None without.
+
+    energy : [term, sample] in the order of `continuum.record.TERMS`, None when not kept.
+    """
 
     stress: np.ndarray
     velocity: np.ndarray
     displacement: np.ndarray
+    turn: Any
     energy: Any
-
-
-def state_at_rest(model: Model, keep_ledger: bool) -> State:
-    """Return the state at rest, with no array for anything that the model does not have."""
-    n, joints = model.rock.mass.size, model.interfaces
-    q = 0 if joints is None else joints.area.size
-    viscous_joints = joints is not None and joints.law.normal_viscosity is not None
-    quiet = model.ends.quiet
-    sprung = quiet is not None and quiet.springs is not None
-    viscous = viscous_joints or model.rock.time_constant is not None
-    return State(
-        u=np.zeros(n),
-        v=np.zeros(n),
-        v_before=np.zeros(n),
-        force=np.zeros(n),
-        rate=np.zeros(n) if viscous else None,
-        traction=np.zeros(q) if q else None,
-        dashpot=np.zeros(q) if viscous_joints else None,
-        drag=np.zeros(n) if viscous else None,
-        closure=np.zeros(quiet.node.size) if sprung else None,
-        reaction=np.zeros(quiet.node.size) if quiet is not None else None,
-        ledger=np.zeros(3) if keep_ledger else None,
-    )
-
-
-def room(model: Model, state: State, samples: int) -> Samples:
-    """Return empty samples."""
-    sections, points = model.receivers.elastic.start.size - 1, model.receivers.point.start.size - 1
-    return Samples(
-        stress=np.zeros((sections, samples)),
-        velocity=np.zeros((points, samples)),
-        displacement=np.zeros((points, samples)),
-        energy=None if state.ledger is None else np.zeros((5, samples)),
-    )

@@ -1,85 +1,241 @@
-"""How motion and stress are read at any place along the bar."""
+"""How motion and stress are read at any place along the pillar."""
 
 from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import polynomial as poly
-from scipy.sparse import csr_matrix, lil_matrix
+from scipy.sparse import csr_matrix, vstack
 
-from continuum.elasticity import Bar
+from continuum import compat
+from continuum.body import Body, along, axis
+from continuum.elasticity import Material, lame_constants
+from continuum.interface import Jumps
+from continuum.places import Places, at_reference, cells_at, jacobians, matrix_of, places_in
+
+NEAR = 1e-9  # of the pillar: when a section is on a joint
+PER_SIDE = 8  # Gauss points across a section that the mesh does not follow
+
+
+class Points(NamedTuple):
+    """Motion on the axis: u [components * places, freedoms], all of one component together, and
+    rotation [3 * places, freedoms] about x, y, z; None where nothing turns."""
+
+    motion: csr_matrix
+    turn: csr_matrix | None
 
 
 class Sections(NamedTuple):
-    """Section force = elastic (u + eta u') + inertia u'', for a bar of unit E, rho and A.
+    """Force over a section, along y, then x, then z: elastic u + viscous u' + inertia u'', N.
 
-    elastic, inertia : [sections, nodes], 1/m and m; empty rows for sections on a cut.
-    contact : [sections, cuts], one where a section is on a cut and reads its traction.
+    elastic, viscous, inertia : [directions * sections, freedoms]; empty rows for sections on a
+    joint; viscous None where no rock has dashpots. contact : [sections, q], the area (m2) of the
+    points of the joint that a section is on.
     """
 
     elastic: csr_matrix
+    viscous: csr_matrix | None
     inertia: csr_matrix
     contact: csr_matrix
 
 
-def points(bar: Bar, places: list[float]) -> csr_matrix:
-    """Return the interpolation [places, nodes] by the elements' own polynomials.
+def points(body: Body, places: list[float]) -> Points:
+    """Return how motion is read on the axis; on a joint it is the mean of both sides."""
+    x = np.zeros((len(places), body.dim))
+    x[:, axis(body.dim)] = places
+    which, cell = cells_at(body, x)
+    share = 1 / np.bincount(which, minlength=len(places))[which]
+    at = places_in(body, cell, x[which])
+    components, count = body.section.components, len(places)
+    rows = [
+        matrix_of(body, which, cell, _only(share[:, None] * at.basis, c, components), count)
+        for c in range(components)
+    ]
+    turn = None
+    if body.dim > 1:
+        gradient = share[:, None, None] * at.gradient
+        parts = [_rotation(gradient, about, components) for about in range(3)]
+        turn = vstack([matrix_of(body, which, cell, part, count) for part in parts]).tocsr()
+    return Points(vstack(rows).tocsr(), turn)
 
-    On a joint the receiver reads the mean of both sides.
-    """
-    matrix = lil_matrix((len(places), bar.y.size))
-    for r, y in enumerate(places):
-        around = _elements_at(bar, y)
-        for e in around:
-            for i, share in zip(bar.elements[e], poly.polyval(*_local(bar, e, y)), strict=True):
-                matrix[r, i] += share / len(around)
-    return matrix.tocsr()
+
+def _only(weights: np.ndarray, component: int, components: int) -> np.ndarray:
+    """Return weights [n, nodes] of one component as [n, nodes, components]."""
+    found = np.zeros((*weights.shape, components))
+    found[:, :, component] = weights
+    return found
 
 
-def sections(bar: Bar, places: list[float]) -> Sections:
-    """Return how section forces are read, by the momentum balance of part of an element.
+def _rotation(gradient: np.ndarray, about: int, components: int) -> np.ndarray:
+    """Return the weights of half the curl about one axis; in dim 2 only that about z is there."""
+    found = np.zeros((*gradient.shape[:2], components))
+    one, other = (about + 1) % 3, (about + 2) % 3
+    if max(one, other) < components:
+        found[:, :, other] += 0.5 * gradient[:, :, one]
+        found[:, :, one] -= 0.5 * gradient[:, :, other]
+    return found
 
-    From the element's left end to y: force(y) = force(left) - integral of rho A u'', where
-    force(left) balances stiffness and inertia of the left node within the element. This is as
+
+def sections(
+    body: Body, jumps: Jumps | None, materials: list[Material], places: list[float]
+) -> Sections:
+    """Return how the forces over sections are read."""
+    directions = 1 if body.section.components == 1 else body.section.components
+    size, count = body.mass.size, len(places)
+    viscous = any(m.time_constant for m in materials)
+    parts: list[list[csr_matrix]] = [[], [], []]
+    contact = []
+    for place in places:
+        on_joint = _points_of_joint(body, jumps, place)
+        contact.append(on_joint)
+        found = _none(directions, size) if on_joint.nnz else _section(body, materials, place)
+        for part, rows in zip(parts, found, strict=True):
+            part.append(rows)
+    # One direction of all sections after the other.
+    order = np.arange(count * directions).reshape(count, directions).T.ravel()
+    elastic, damped, inertia = (
+        vstack(part).tocsr()[order] if part else csr_matrix((0, size)) for part in parts
+    )
+    return Sections(
+        elastic,
+        damped if viscous else None,
+        inertia,
+        vstack(contact).tocsr() if contact else csr_matrix((0, 0)),
+    )
+
+
+def _none(directions: int, size: int) -> tuple[csr_matrix, ...]:
+    return tuple(csr_matrix((directions, size)) for _ in range(3))
+
+
+def _points_of_joint(body: Body, jumps: Jumps | None, place: float) -> csr_matrix:
+    """Return the areas [1, q] of the joint's points, zero where the section is on none."""
+    if jumps is None:
+        return csr_matrix((1, 0))
+    near = np.abs(jumps.x[:, axis(body.dim)] - place) <= NEAR * np.ptp(body.y)
+    return csr_matrix(np.where(near & jumps.flat, jumps.weight, 0.0))
+
+
+def _section(body: Body, materials: list[Material], place: float) -> tuple[csr_matrix, ...]:
+    """Return the elastic, viscous and inertia rows [directions, freedoms] of one section."""
+    y = body.corners[:, :, axis(body.dim)]
+    low, high, slack = y.min(axis=1), y.max(axis=1), NEAR * np.ptp(body.y)
+    here = np.flatnonzero((low <= place + slack) & (place <= high + slack))
+    # At the border of two layers of cells, the first.
+    layer = here[np.abs(low[here] - low[here].min()) <= slack]
+    follows = (
+        (np.abs(low[layer] - low[layer[0]]) <= slack)
+        & (np.abs(high[layer] - high[layer[0]]) <= slack)
+        & (np.minimum(y[layer] - low[layer, None], high[layer, None] - y[layer]) <= slack).all(1)
+    ).all() and place <= high[layer[0]] + slack
+    if follows and body.mesh.cell in ("interval", "quadrilateral", "hexahedron"):
+        return _by_momentum(body, materials, layer, place)
+    return _by_stress(body, materials, place)
+
+
+def _by_momentum(
+    body: Body, materials: list[Material], layer: np.ndarray, place: float
+) -> tuple[csr_matrix, ...]:
+    """Return a section's force by the momentum balance of part of a layer of cells.
+
+    From the near face of the layer to y: force(y) = force(near) - integral of rho u'', where
+    force(near) balances stiffness and inertia of the near nodes within the layer. This is as
     accurate as the displacements; their derivative would lose an order (Wheeler, SIAM J. Numer.
     Anal. 11, 1974, for the flux at a node). At either end of the pillar it is the force applied
-    there; it tends to the joint's traction towards a cut, which is read where the section is on it.
+    there; it tends to the joint's traction towards a joint, which is read where a section is on it.
     """
-    cuts = np.flatnonzero(bar.grid.cut)
-    elastic, inertia = (lil_matrix((len(places), bar.y.size)) for _ in range(2))
-    contact = lil_matrix((len(places), cuts.size))
-    for r, y in enumerate(places):
-        e = _elements_at(bar, y)[0]
-        on = np.flatnonzero(_is_near(bar, bar.grid.edges[cuts + 1], y))
-        if on.size:
-            contact[r, on[0]] = 1.0
-            continue
-        nodes = bar.elements[e]
-        # Beside its first entry, the row of the left node holds this element alone.
-        stiffness = bar.stiffness[nodes[0], nodes].toarray()[0]
-        stiffness[0] = -stiffness[1:].sum()
-        local, basis = _local(bar, e, y)
-        running = poly.polyint(basis)
-        mass = -poly.polyval(local, running)
-        mass[0] += poly.polyval(1.0, running)[0]
-        elastic[r, nodes] = stiffness
-        inertia[r, nodes] = mass * (bar.grid.edges[e + 1] - bar.grid.edges[e])
-    return Sections(elastic.tocsr(), inertia.tocsr(), contact.tocsr())
+    cell, order, up = body.mesh.cell, body.order, axis(body.dim)
+    at, weight = compat.quadrature(cell, max(2 * order - 1, 1), lobatto=True)
+    point = at_reference(body, np.repeat(layer, len(at)), np.tile(at, (layer.size, 1)))
+    volume = _volumes(body, point.cell, np.tile(at, (layer.size, 1))) * np.tile(weight, layer.size)
+    near, far = body.corners[layer][:, :, up].min(), body.corners[layer][:, :, up].max()
+    local = (_heights(body, point) - near) / (far - near)
+    levels = np.unique(np.round(at[:, up], 9))
+    level = np.abs(local[:, None] - levels).argmin(axis=1)
+    basis = poly.polyfit(levels, np.eye(levels.size), order)
+    slope = poly.polyval(local, poly.polyder(basis)[:, 0]) / (far - near)
+    elastic, viscous = _stress_rows(body, materials, point, volume * slope)
+    running = poly.polyint(basis)
+    upto = -poly.polyval((place - near) / (far - near), running)
+    whole = poly.polyval(1.0, running)
+    upto[0] += whole[0]
+    density = np.array([m.density for m in materials])[body.material[point.cell]]
+    mass = density * volume * (upto / whole)[level]
+    return elastic, viscous, _sums(body, point, mass)
 
 
-def _elements_at(bar: Bar, y: float) -> np.ndarray:
-    near = _is_near(bar, bar.grid.edges, y)
-    inside = (bar.grid.edges[:-1] <= y) & (y <= bar.grid.edges[1:])
-    return np.flatnonzero(inside | near[:-1] | near[1:])
+def _by_stress(body: Body, materials: list[Material], place: float) -> tuple[csr_matrix, ...]:
+    """Return a section's force as the integral of the stress over it, by Gauss points."""
+    at, weight = np.polynomial.legendre.leggauss(PER_SIDE)
+    low, high = body.x.min(axis=0), body.x.max(axis=0)
+    across = [d for d in range(body.dim) if d != axis(body.dim)]
+    grids = np.meshgrid(*[(low[d] + high[d] + (high[d] - low[d]) * at) / 2 for d in across])
+    x = np.full((grids[0].size, body.dim), float(place))
+    x[:, across] = np.column_stack([g.ravel() for g in grids])
+    shares = np.meshgrid(*[weight * (high[d] - low[d]) / 2 for d in across])
+    area = body.section.extent * np.prod([s.ravel() for s in shares], axis=0)
+    which, cell = cells_at(body, x)
+    share = area[which] / np.bincount(which, minlength=len(x))[which]
+    point = places_in(body, cell, x[which])
+    elastic, viscous = _stress_rows(body, materials, point, -share)
+    return elastic, viscous, csr_matrix(elastic.shape)
 
 
-def _is_near(bar: Bar, edges: np.ndarray, y: float) -> np.ndarray:
-    return np.abs(edges - y) <= 1e-9 * bar.grid.edges[-1]
+def _volumes(body: Body, cell: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Return the rock's volume (m3) per unit of reference cell at points."""
+    found = np.linalg.det(jacobians(body.mesh.cell, body.corners[cell], at))
+    return body.section.extent * np.abs(found)
 
 
-def _local(bar: Bar, e: int, y: float) -> tuple[float, np.ndarray]:
-    """Return y in the element's coordinate 0 .. 1, and the coefficients of its basis there."""
-    nodes = bar.y[bar.elements[e]]
-    start, size = nodes[0], nodes[-1] - nodes[0]
-    local = (nodes - start) / size
-    basis = poly.polyfit(local, np.eye(local.size), bar.order)
-    return min(max((y - start) / size, 0.0), 1.0), basis
+def _heights(body: Body, point: Places) -> np.ndarray:
+    """Return y of points, m."""
+    return np.einsum("nk,nk->n", point.basis, body.y[body.cells[point.cell]])
+
+
+def _stress_rows(
+    body: Body, materials: list[Material], point: Places, weight: np.ndarray
+) -> tuple[csr_matrix, csr_matrix]:
+    """Return the weighted sum of the stresses on the section, sigma_y, then its shear along x and
+    z, as rows [directions, freedoms]: from u, and from its rate by the rock's dashpots."""
+    of_cell = [materials[m] for m in body.material[point.cell]]
+    eta = np.array([m.time_constant for m in of_cell])
+    tractions = _tractions(body, of_cell, point.gradient)
+    rows = [_sum(body, point.cell, weight[:, None, None] * traction) for traction in tractions]
+    damped = [
+        _sum(body, point.cell, (eta * weight)[:, None, None] * traction) for traction in tractions
+    ]
+    return vstack(rows).tocsr(), vstack(damped).tocsr()
+
+
+def _tractions(body: Body, of_cell: list[Material], gradient: np.ndarray) -> list[np.ndarray]:
+    """Return sigma_y, then sigma_xy and sigma_zy, as weights [n, nodes, components], tension
+    positive."""
+    n, nodes, dim = gradient.shape
+    components = body.section.components
+    found = [np.zeros((n, nodes, components)) for _ in range(components)]
+    if dim == 1:
+        modulus = np.array([m.modulus for m in of_cell])[:, None]
+        shear = np.array([m.shear_modulus for m in of_cell])[:, None]
+        found[0][:, :, along(body.section)] = modulus * gradient[:, :, 0]
+        for k, c in enumerate((0, 2)[: components - 1], 1):
+            found[k][:, :, c] = shear * gradient[:, :, 0]
+        return found
+    lame, shear = np.array([lame_constants(m, dim) for m in of_cell]).T[:, :, None, None]
+    found[0] += lame * gradient
+    found[0][:, :, 1] += 2 * shear[:, :, 0] * gradient[:, :, 1]
+    for k, c in enumerate((0, 2)[: components - 1], 1):
+        found[k][:, :, c] = shear[:, :, 0] * gradient[:, :, 1]
+        found[k][:, :, 1] = shear[:, :, 0] * gradient[:, :, c]
+    return found
+
+
+def _sum(body: Body, cell: np.ndarray, weights: np.ndarray) -> csr_matrix:
+    """Return the sum of weights [n, nodes, components] over all points, one row."""
+    return matrix_of(body, np.zeros(cell.size, dtype=np.int64), cell, weights, 1)
+
+
+def _sums(body: Body, point: Places, mass: np.ndarray) -> csr_matrix:
+    """Return the weighted sum of the motion at points, along y, then x and z, one row each."""
+    components = body.section.components
+    order = [0] if components == 1 else [1, 0, 2][:components]
+    weights = mass[:, None] * point.basis
+    return vstack([_sum(body, point.cell, _only(weights, c, components)) for c in order]).tocsr()

@@ -1,20 +1,32 @@
-"""Samples of a running bar: waveforms at receivers and the energy ledger, compiled."""
+"""Samples of running rock: waveforms at receivers and the energy ledger, compiled."""
 
+import numpy as np
+
+from continuum.operator import multiply
 from continuum.sparse import row
+from continuum.tractions import at, elastic_slip, gap_at
+from joints.energy import elastic_energy, fracture_energy_spent
 from joints.jit import jitted
-from joints.laws import law_of, spring_traction
+from joints.laws import law_of
+from joints.optional import given
+
+#: The rows of a ledger, in the order of `book` and `record_energy`.
+TERMS = ("kinetic", "elastic", "fracture", "gravity", "viscous", "friction", "boundary", "work")
+STATES = 4  # of these are energies of the step; the others are sums over all steps so far
 
 
 @jitted
-def book(ledger, half_step, load, loaded, quiet, reaction, drag, way):
+def book(ledger, half_step, model, state, n, way):
     """Add the work of every force of this step over one half of it, moving at velocity `way`.
 
     The two halves of all steps make the trapezoid rule that leapfrog conserves exactly.
     """
     if ledger is not None:
-        ledger[0] += half_step * viscous_power(drag, way)
-        ledger[1] += half_step * boundary_power(quiet, reaction, way)
-        ledger[2] += half_step * load * way[loaded]
+        ledger[0] += half_step * viscous_power(state.drag, way)
+        ledger[0] += half_step * mass_damping_power(model.rock.keep, model, state, way)
+        ledger[2] += half_step * boundary_power(model.ends.quiet, state.reaction, way)
+        ledger[3] += half_step * load_power(model.ends.loaded, n, way)
+        ledger[3] += half_step * wall_power(model.ends.held, state.wall, way)
 
 
 @jitted
@@ -28,73 +40,181 @@ def viscous_power(drag, way):
 
 
 @jitted
+def mass_damping_power(keep, model, state, way):
+    """Return the power (W) that mass-proportional damping takes."""
+    total = 0.0
+    if keep is not None:
+        alpha = 2.0 * (1.0 - keep) / (1.0 + keep) / model.dt
+        for i in range(way.size):
+            mean = 0.5 * (state.v_before[i] + state.v[i])
+            total += alpha * model.rock.mass[i] * mean * way[i]
+    return total
+
+
+@jitted
 def boundary_power(quiet, reaction, way):
     """Return the power (W) that goes into what absorbs at the ends."""
     total = 0.0
     if reaction is not None:
         for k in range(reaction.size):
-            total += reaction[k] * way[quiet.node[k]]
+            total += reaction[k] * way[quiet.freedom[k]]
     return total
 
 
 @jitted
-def sample(rock, receivers, samples, s, u, v, v_before, rate, dt):
-    """Record displacement and velocity of points, and stress of sections, at a whole step."""
+def load_power(loaded, n, way):
+    """Return the power (W) of the load."""
+    total = 0.0
+    if loaded is not None:
+        for k in range(loaded.freedom.size):
+            total += loaded.share[k] * loaded.pressure[n] * way[loaded.freedom[k]]
+    return total
+
+
+@jitted
+def wall_power(held, wall, way):
+    """Return the power (W) of a base that is shaken."""
+    total = 0.0
+    if wall is not None:
+        for k in range(wall.size):
+            total += wall[k] * way[held.freedom[k]]
+    return total
+
+
+@jitted
+def record(model, state, samples, s):
+    """Record motion of points, stress of sections and the ledger at a whole step."""
+    receivers, dt = model.receivers, model.dt
+    u, v, v_before = state.u, state.v, state.v_before
     read(samples.displacement, s, receivers.point, u, 1.0)
     read(samples.velocity, s, receivers.point, v_before, 0.5)
     read(samples.velocity, s, receivers.point, v, 0.5)
+    read_turn(receivers.turn, samples.turn, s, u)
     read(samples.stress, s, receivers.elastic, u, 1.0)
-    read_damped(samples.stress, s, receivers.elastic, rate, rock.time_constant)
+    read_damped(receivers.viscous, samples.stress, s, state.rate)
     read(samples.stress, s, receivers.inertia, v, 1.0 / dt)
     read(samples.stress, s, receivers.inertia, v_before, -1.0 / dt)
+    read_joints(receivers.contact, samples.stress, s, state.tractions)
+    record_energy(samples.energy, model, state, s)
 
 
 @jitted
 def read(wave, s, matrix, x, scale):
     """Add scale times matrix times x to sample s of every receiver."""
-    start, column, value = matrix
     for r in range(wave.shape[0]):
-        wave[r, s] += scale * row(start, column, value, x, r)
+        wave[r, s] += scale * row(matrix, x, r)
 
 
 @jitted
-def read_damped(wave, s, matrix, rate, time_constant):
+def read_turn(matrix, turn, s, u):
+    """Record the rotation of points, where there is any."""
+    if matrix is not None:
+        read(turn, s, matrix, u, 1.0)
+
+
+@jitted
+def read_damped(matrix, stress, s, rate):
     """Add the viscous part of the rock's stress."""
-    if time_constant is not None:
-        read(wave, s, matrix, rate, time_constant)
+    if matrix is not None:
+        read(stress, s, matrix, rate, 1.0)
 
 
 @jitted
-def sample_joints(stress, s, contact, traction, dashpot):
-    """Record the stress of sections on a joint: its traction, spring and dashpot."""
+def read_joints(contact, stress, s, tractions):
+    """Record the stress of sections on a joint: its tractions, springs and dashpots."""
     if contact is not None:
-        read(stress, s, contact, traction, 1.0)
-        if dashpot is not None:
-            read(stress, s, contact, dashpot, 1.0)
+        read_parts(contact, stress, s, 0, tractions.normal, tractions.drag_n)
+        read_parts(contact, stress, s, 1, tractions.x, tractions.drag_x)
+        read_parts(contact, stress, s, 2, tractions.z, tractions.drag_z)
 
 
 @jitted
-def sample_energy(energy, rock, interfaces, s, u, v, v_before, ledger):
-    """Record kinetic, elastic, viscous, boundary and work (J): their balance is exact."""
+def read_parts(contact, stress, s, direction, spring, dashpot):
+    """Record one component of the traction, where there is one: rows of y first, then x, then z."""
+    if spring is not None:
+        sections = contact.start.size - 1
+        for r in range(sections):
+            stress[direction * sections + r, s] += row(contact, spring, r)
+            stress[direction * sections + r, s] += part_of(contact, dashpot, r)
+
+
+@jitted
+def part_of(contact, dashpot, r):
+    """Return the dashpots' part of a section's traction, zero without them."""
+    if dashpot is None:
+        return 0.0
+    return row(contact, dashpot, r)
+
+
+@jitted
+def record_energy(energy, model, state, s):
+    """Record every term (J), in the order of TERMS: their balance is exact."""
     if energy is not None:
-        start, column, value = rock.stiffness
-        mass = rock.mass
+        mass, u, v, v_before = model.rock.mass, state.u, state.v, state.v_before
         for i in range(u.size):
             energy[0, s] += 0.5 * mass[i] * v_before[i] * v[i]
-            energy[1, s] += 0.5 * u[i] * row(start, column, value, u, i)
-        energy[1, s] += joint_energy(interfaces, u)
-        for k in range(3):
-            energy[2 + k, s] = ledger[k]
+        energy[1, s] = rock_energy(model.rock.stiffness, u)
+        record_joints(model.interfaces, state.memory, u, energy, s)
+        energy[3, s] = -weight_energy(model.weight, u)
+        for k in range(len(state.ledger)):
+            energy[STATES + k, s] = state.ledger[k]
 
 
 @jitted
-def joint_energy(interfaces, u):
-    """Return the elastic energy (J) of the joints that are closed or carry tension."""
-    total = 0.0
-    if interfaces is not None:
-        start, column, value = interfaces.jump
-        law, area = interfaces.law, interfaces.area
-        for q in range(area.size):
-            gap = row(start, column, value, u, q)
-            total -= 0.5 * area[q] * spring_traction(law_of(law, q), gap) * gap
+def rock_energy(stiffness, u):
+    """Return the elastic energy (J) of the rock."""
+    force, total = np.zeros(u.size), 0.0
+    multiply(stiffness, u, force)
+    for i in range(u.size):
+        total += 0.5 * u[i] * force[i]
     return total
+
+
+@jitted
+def weight_energy(weight, u):
+    """Return what gravity has done (J)."""
+    total = 0.0
+    if weight is not None:
+        for i in range(u.size):
+            total += weight[i] * u[i]
+    return total
+
+
+@jitted
+def record_joints(interfaces, memory, u, energy, s):
+    """Add what the joints hold, and record what opening them has spent (J)."""
+    if interfaces is not None:
+        for q in range(interfaces.area.size):
+            law, area = law_of(interfaces.law, q), interfaces.area[q]
+            gap = gap_at(interfaces.prestress, interfaces, law, u, q)
+            opening = given(memory.opening, at(memory.opening, q))
+            energy[1, s] += area * held(law.shear_stiffness, interfaces, memory, law, gap, u, q)
+            energy[1, s] += area * prestress_energy(interfaces.prestress, interfaces, u, q)
+            energy[2, s] += area * spent(opening, law)
+
+
+@jitted
+def held(shear_stiffness, interfaces, memory, law, gap, u, q):
+    """Return the energy (J/m2) in the springs of point q."""
+    opening = given(memory.opening, at(memory.opening, q))
+    if shear_stiffness is None:
+        return elastic_energy(law, gap, opening)
+    x = elastic_slip(interfaces.slip_x, memory.slide_x, u, q)
+    z = elastic_slip(interfaces.slip_z, memory.slide_z, u, q)
+    return elastic_energy(law, gap, opening, x, z)
+
+
+@jitted
+def prestress_energy(prestress, interfaces, u, q):
+    """Return what prestressed rock on both sides of point q gives off as the joint opens (J/m2)."""
+    if prestress is None:
+        return 0.0
+    return prestress * row(interfaces.opening, u, q)
+
+
+@jitted
+def spent(opening, law):
+    """Return what opening has spent (J/m2); nothing without softening."""
+    if opening is None:
+        return 0.0
+    return fracture_energy_spent(law, opening)

@@ -8,119 +8,98 @@ import numba
 import numpy as np
 import xarray as xr
 
-from cases.calibrate import Properties, calibrate
-from cases.effects import is_spatial
 from cases.errors import SceneError, UnstableError
 from cases.result import dataset
-from cases.sampling import Clock
+from cases.sampling import Clock, clock
 from cases.scene import Scene
 from continuum import compat
-from continuum.build import build
+from continuum.build import (
+    Discrete,
+    build_model,
+    critical_step_of,
+    discretise,
+    room,
+    state_at_rest,
+)
 from continuum.explicit import run
-from continuum.model import Model, Samples, State, room
+from continuum.kinematics import refuse
+from continuum.model import Model, Samples, State
+from continuum.reach import applies
+from continuum.waveforms import energy_terms, waveforms
 
-MODELS = ("jointed", "equivalent")
 NODE_STEPS_BETWEEN_LOOKS = 10_000_000  # some 0.1 s: often enough for a progress bar
 LEAST_LOOKS = 20  # so that a runaway motion is dated to a twentieth of the scene
 RUNAWAY = 100  # times the highest speed that the load can cause
 
 
-def applies(scene: Scene, model: str = "jointed") -> str:
-    """Return "" where this model can simulate the scene, else the reason why not."""
-    p = calibrate(scene)
-    reason = _beyond_the_bar(scene, p)
-    if reason:
-        return reason
-    if model == "jointed":
-        return "" if p.intact_modulus else "the jointed rock needs rock.intact_modulus"
-    excess = p.excess_compliance
-    if not p.tension[excess == 0].all():
-        return "a homogenised bar has no joints to open where tension is barred"
-    if (excess < 0).any():
-        return "a joint stiffer than the others cannot be added to the homogenised bar"
-    if p.damps_alone.any():
-        return "a homogenised bar cannot damp one ordinary joint by itself"
-    return ""
-
-
-def _beyond_the_bar(scene: Scene, p: Properties) -> str:
-    if is_spatial(scene):
-        return "the bar has no motion across its axis"
-    if p.tensile_strength is not None:
-        return "its joints have no tensile strength that softens"
-    if scene.gravity is not None:
-        return "the bar has no weight"
-    if scene.prestress is not None:
-        return "the bar has no stress before the load"
-    if p.mass_damping is not None or p.local_damping is not None:
-        return "the bar is damped by its strain rate alone"
-    if scene.ends.start == "fixed":
-        return "the loaded end of the bar can be neither fixed nor shaken"
-    return ""
-
-
 def simulate(
     scene: Scene,
     model: str = "jointed",
-    dim: int = 1,
+    dim: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> xr.Dataset:
     """Simulate a scene as deformable rock.
 
     Parameters
     ----------
-    model : "jointed" (intact rock, every joint an interface) or "equivalent" (homogenised bar,
-        soft layers as interfaces of their excess compliance).
-    dim : 1, the bar.
+    model : "jointed" (intact rock, every joint an interface) or "equivalent" (homogenised rock
+        mass, soft layers as interfaces of their excess compliance).
+    dim : 1, the bar; 2, plane stress; 3, the square column; None leaves it to the scene.
     progress : called with the finished fraction.
 
     Raises SceneError for what this model cannot simulate, UnstableError when the motion runs away.
     """
     refuse(scene, model, dim)
+    reason = applies(scene, model, dim)
+    if reason:
+        raise SceneError(scene.name or scene.title, "model", model, reason)
     began = perf_counter()
-    built, state, time, critical = build(scene, model)
+    numerics = scene.numerics.continuum
+    discrete = discretise(scene, model, dim)
+    time, critical = _steps(scene, discrete, model)
+    built = build_model(scene, discrete, model, time)
+    state = state_at_rest(built, scene.record.energy)
     samples = room(built, state, time.samples)
     ready = perf_counter()
     run(built, state, samples, time.stride, 0, 0)
     compiled = perf_counter()
     _run(built, state, samples, time, critical, progress)
+    stepped = perf_counter()
+    terms, energy = energy_terms(built, samples.energy)
     return dataset(
         scene,
         f"continuum-{model}",
         time.times,
-        samples.stress,
-        samples.velocity,
-        samples.displacement,
-        samples.energy,
+        **waveforms(scene, discrete, samples),
+        energy=energy,
+        terms=terms,
         model=model,
         scheme="explicit",
-        dim=dim,
-        order=scene.numerics.continuum.order,
+        dim=discrete.kinematics.dim,
+        order=numerics.order,
         dt=time.dt,
         critical_dt=critical,
         steps=time.steps,
-        degrees_of_freedom=state.u.size,
+        degrees_of_freedom=discrete.body.degrees_of_freedom,
         seconds_setup=ready - began,
         seconds_compile=compiled - ready,
-        seconds_stepping=perf_counter() - compiled,
+        seconds_stepping=stepped - compiled,
         versions=json.dumps(
             {"numpy": np.__version__, "numba": numba.__version__, "dolfinx": compat.VERSION}
         ),
     )
 
 
-def refuse(scene: Scene, model: str, dim: int) -> None:
-    """Raise SceneError for what is not built or does not fit the model."""
-    where = scene.name or scene.title
-    if model not in MODELS:
-        raise SceneError(where, "model", model, f"must be one of {', '.join(MODELS)}")
-    if dim != 1:
-        raise SceneError(where, "dim", dim, "not available yet")
-    if compat.process_count() > 1:
-        raise SceneError(where, "MPI processes", compat.process_count(), "not available yet")
-    reason = applies(scene, model)
-    if reason:
-        raise SceneError(where, "model", model, reason)
+def steps_of(scene: Scene, model: str, dim: int | None = None) -> tuple[Clock, float]:
+    """Return the clock and the critical step (s) of a scene."""
+    return _steps(scene, discretise(scene, model, dim), model)
+
+
+def _steps(scene: Scene, discrete: Discrete, model: str) -> tuple[Clock, float]:
+    numerics = scene.numerics.continuum
+    critical = critical_step_of(scene, discrete, model)
+    time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "continuum")
+    return time, critical
 
 
 def _run(
@@ -151,11 +130,16 @@ def _run(
 
 
 def highest_speed(model: Model) -> float:
-    """Return a bound on the speed of any node, m/s.
+    """Return a bound on the speed of any node, m/s; the largest number where none is known.
 
-    No part of the model puts energy in, so d sqrt(2 E) / dt is at most |F| / sqrt(m) of the loaded
-    node, and m v^2 of any node at most 2 E.
+    Where a load on the start is all that puts energy in, d sqrt(2 E) / dt is at most |F| in the
+    norm of 1 / m, and m v^2 of any node at most 2 E.
     """
+    loaded, held = model.ends.loaded, model.ends.held
+    shaken = held is not None and held.step is not None
+    if loaded is None or shaken or model.weight is not None:
+        return float(np.finfo(float).max) / RUNAWAY
     mass = model.rock.mass
-    impulse = model.dt * np.abs(model.load).sum()
-    return float(impulse / np.sqrt(mass[model.ends.loaded] * mass.min()))
+    impulse = model.dt * np.abs(loaded.pressure).sum()
+    drive = np.sqrt((loaded.share**2 / mass[loaded.freedom]).sum())
+    return float(impulse * drive / np.sqrt(mass[mass > 0].min()))

@@ -23,10 +23,22 @@ def rows(matrix: csr_matrix) -> Rows:
     return Rows(matrix.indptr, matrix.indices, matrix.data)
 
 
+def sparse(rows: Rows, columns: int) -> csr_matrix:
+    """Return a matrix of compiled code as scipy's; inverse of `rows`."""
+    return csr_matrix((rows.value, rows.column, rows.start), (rows.start.size - 1, columns))
+
+
 @jitted
-def row(start, column, value, x, i):
-    """Return row i of a sparse matrix times x; arrays, for a tuple would count its references."""
+def row(matrix, x, i):
+    """Return row i of a sparse matrix times x."""
     total = 0.0
-    for k in range(start[i], start[i + 1]):
-        total += value[k] * x[column[k]]
+    for k in range(matrix.start[i], matrix.start[i + 1]):
+        total += matrix.value[k] * x[matrix.column[k]]
     return total
+
+
+@jitted
+def add_row(matrix, y, i, a):
+    """Add a times row i of a sparse matrix to y."""
+    for k in range(matrix.start[i], matrix.start[i + 1]):
+        y[matrix.column[k]] += a * matrix.value[k]

@@ -1,0 +1,177 @@
+"""What acts on the two end faces: the load, what absorbs, and what is held."""
+
+import numpy as np
+
+from cases.calibrate import Properties
+from cases.loads import base_steps, load_history, step_means
+from cases.sampling import Clock
+from cases.scene import Scene
+from continuum.body import Body, along
+from continuum.interface import Facets, facet_points
+from continuum.meshing.description import Side
+from continuum.model import Ends, HalfJoints, Held, Loaded, Quiet
+from continuum.places import Places, places_in
+from joints.ends import HalfSpring, half_spring
+
+
+def build_ends(
+    scene: Scene, p: Properties, body: Body, model: str, time: Clock, mass: np.ndarray
+) -> Ends:
+    """Return what acts on the ends of a body; mass : float array [freedoms], kg, in total."""
+    return Ends(
+        loaded=load_on(scene, p, body, time),
+        quiet=quiet_ends(scene, p, body, model, time.dt, mass),
+        held=held_ends(scene, body, time),
+    )
+
+
+def load_on(scene: Scene, p: Properties, body: Body, time: Clock) -> Loaded | None:
+    """Return the end stress as forces on the freedoms of the start, None where there is none."""
+    if scene.load.shakes_base or not scene.load.amplitude:
+        return None
+    points, place = _face(body, body.mesh.start)
+    direction = load_shape(scene, p, body, points.x)
+    weights = points.weight[:, None, None] * place.basis[:, :, None] * direction[:, None]
+    share = on_freedoms(body, place, weights)
+    freedom = np.flatnonzero(share)
+    pressure = step_means(load_history(scene), time.dt, time.steps + 1)
+    return Loaded(freedom, share[freedom], pressure)
+
+
+def load_shape(scene: Scene, p: Properties, body: Body, x: np.ndarray) -> np.ndarray:
+    """Return the traction [q, components] of a unit end stress at points x [q, dim] of the face.
+
+    Force and moment are those that the load has; beside the uniform traction, moments are spread
+    as in a long column: linear in x and z (Navier), and in torsion along circles about the axis.
+    """
+    components, load = body.section.components, scene.load
+    if components == 1:
+        return np.full((len(x), 1), load.direction[1])
+    across = np.zeros((len(x), 2))
+    if body.dim > 1:
+        across[:, 0] = x[:, 0]
+        across[:, 1] = x[:, 2] if body.dim == 3 else 0.0
+    direction = np.array(load.direction, dtype=float)
+    if load.arm is None:
+        force, moment = direction, np.cross([load.at[0], 0.0, load.at[1]], direction)
+    else:
+        force, moment = np.zeros(3), load.arm * direction
+    bent, twisted = 12 / p.side**2, 6 / p.side**2
+    found = np.tile(force, (len(x), 1))
+    found[:, 1] += bent * (moment[2] * across[:, 0] - moment[0] * across[:, 1])
+    found[:, 0] += twisted * moment[1] * across[:, 1]
+    found[:, 2] -= twisted * moment[1] * across[:, 0]
+    return found[:, :components]
+
+
+def quiet_ends(
+    scene: Scene, p: Properties, body: Body, model: str, dt: float, mass: np.ndarray
+) -> Quiet | None:
+    """Return what absorbs at the ends, or None: dashpots rho c for P and S on the end faces.
+
+    In jointed rock a matched end has half a joint in front of it, as the rock beyond would have.
+    """
+    parts = []
+    for place in ("start", "end"):
+        kind = getattr(scene.ends, place)
+        if kind not in ("quiet", "matched"):
+            continue
+        area = face_area(body, getattr(body.mesh, place))
+        springs = absorbing(p, body, dt) if kind == "matched" and model == "jointed" else None
+        parts += [_absorber(p, body, c, a, springs) for c, a in enumerate(area)]
+    if not parts:
+        return None
+    freedom, viscosity, stiffness, decay, gain = (
+        np.concatenate(row) for row in zip(*parts, strict=True)
+    )
+    springs = HalfJoints(stiffness, decay, gain) if stiffness.any() else None
+    beta = viscosity * dt / (2 * mass[freedom])
+    return Quiet(freedom.astype(np.int64), viscosity, beta, springs)
+
+
+def _absorber(
+    p: Properties, body: Body, component: int, area: np.ndarray, springs: list[HalfSpring] | None
+) -> tuple[np.ndarray, ...]:
+    """Return freedoms, viscosities and springs of one component of one end face."""
+    freedom = np.flatnonzero(area)
+    share, none = area[freedom], np.zeros(freedom.size)
+    if springs is None:
+        z = p.impedance if component == along(body.section) else p.shear_impedance
+        return freedom, share * z, none, none, none
+    one = springs[component]
+    alike = np.ones(freedom.size)
+    return (
+        freedom,
+        share * one.viscosity,
+        share * one.stiffness,
+        alike * one.decay,
+        alike * one.gain,
+    )
+
+
+def absorbing(p: Properties, body: Body, dt: float = 0.0) -> list[HalfSpring]:
+    """Return half a joint before the rock beyond, per unit area, for every component."""
+    found = []
+    for component in range(body.section.components):
+        z, k = p.impedance, p.regular_own_stiffness
+        if component != along(body.section):
+            z, k = p.shear_impedance, p.regular_own_shear_stiffness
+        found.append(half_spring(2 * k, p.time_constant or 0.0, z, dt))
+    return found
+
+
+def end_stiffness(scene: Scene, p: Properties, body: Body, model: str) -> np.ndarray:
+    """Return what matched ends add to the stiffness at the critical step, N/m [freedoms]."""
+    found = np.zeros(body.mass.size)
+    for place in ("start", "end"):
+        if getattr(scene.ends, place) == "matched" and model == "jointed":
+            area = face_area(body, getattr(body.mesh, place))
+            for share, spring in zip(area, absorbing(p, body), strict=True):
+                found += share * spring.critical_stiffness
+    return found
+
+
+def held_ends(scene: Scene, body: Body, time: Clock | None = None) -> Held | None:
+    """Return the freedoms of fixed ends, those of a shaken base with its motion; None without."""
+    freedoms, ways = [], []
+    for place in ("start", "end"):
+        if getattr(scene.ends, place) != "fixed":
+            continue
+        for c, area in enumerate(face_area(body, getattr(body.mesh, place))):
+            freedoms.append(np.flatnonzero(area))
+            component = 1 if body.section.components == 1 else c
+            shaken = place == "start" and scene.load.shakes_base
+            way = scene.load.direction[component] if shaken else 0.0
+            ways.append(np.full(freedoms[-1].size, way))
+    if not freedoms:
+        return None
+    step = None
+    if scene.load.shakes_base and time is not None:
+        step = base_steps(scene, time.dt, time.steps + 1)
+    return Held(np.concatenate(freedoms), np.concatenate(ways).astype(float), step)
+
+
+def face_area(body: Body, side: Side) -> np.ndarray:
+    """Return the area (m2) of a face that each freedom stands for [components, freedoms]."""
+    points, place = _face(body, side)
+    components = body.section.components
+    found = []
+    for c in range(components):
+        weights = np.zeros((*place.basis.shape, components))
+        weights[:, :, c] = points.weight[:, None] * place.basis
+        found.append(on_freedoms(body, place, weights))
+    return np.array(found)
+
+
+def on_freedoms(body: Body, place: Places, weights: np.ndarray) -> np.ndarray:
+    """Return the sum of weights [q, nodes per cell, components] on every freedom."""
+    node = np.broadcast_to(body.cells[place.cell][:, :, None], weights.shape)
+    component = np.broadcast_to(np.arange(weights.shape[2]), weights.shape)
+    freedom = body.freedom(node, component)
+    return np.bincount(freedom.ravel(), weights.ravel(), minlength=body.mass.size)
+
+
+def _face(body: Body, side: Side) -> tuple[Facets, Places]:
+    """Return the quadrature points of an end face, and where they are in its cells."""
+    points = facet_points(body, side.corners)
+    return points, places_in(body, side.cell[points.facet], points.x)

@@ -1,0 +1,53 @@
+"""Which scenes the continuum can simulate, and why not the others."""
+
+import numpy as np
+
+from cases.calibrate import Properties, calibrate
+from cases.scene import Scene
+from continuum.kinematics import holds, kinematics
+from continuum.laws import resolved_joints
+
+
+def applies(scene: Scene, model: str = "jointed", dim: int | None = None) -> str:
+    """Return "" where this model can simulate the scene, else the reason why not."""
+    p, motion = calibrate(scene), kinematics(scene, dim)
+    reason = holds(scene, motion.dim) or _beyond(scene, p)
+    if reason:
+        return reason
+    if model == "jointed":
+        reason = "" if p.intact_modulus else "the jointed rock needs rock.intact_modulus"
+    else:
+        reason = _beyond_the_homogenised(p)
+    if reason:
+        return reason
+    joints = resolved_joints(p, model)
+    shear = joints.shear_stiffness[joints.number]
+    if motion.section.components > 1 and not (np.isfinite(shear) & (shear > 0)).all():
+        return "the intact rock alone is softer in shear than rock and joint together should be"
+    return ""
+
+
+def _beyond(scene: Scene, p: Properties) -> str:
+    if p.local_damping is not None:
+        return "the continuum has no local damping"
+    if scene.ends.start == "fixed" and not scene.load.shakes_base and scene.load.amplitude:
+        return "the load acts on a fixed face"
+    return ""
+
+
+def _beyond_the_homogenised(p: Properties) -> str:
+    ordinary = np.setdiff1d(np.arange(p.block_count - 1), p.soft)
+    if not p.tension[ordinary].all():
+        return "a homogenised bar has no joints to open where tension is barred"
+    if (p.excess_compliance < 0).any():
+        return "a joint stiffer than the others cannot be added to the homogenised bar"
+    if p.damps_alone.any():
+        return "a homogenised bar cannot damp one ordinary joint by itself"
+    from joints.shear import UNLIMITED
+
+    for strength in (p.cohesion, p.tensile_strength):
+        if strength is not None and (strength[ordinary] < UNLIMITED).any():
+            return "a homogenised bar has no joints that slide or break"
+    if p.cohesion is None and p.friction is not None:
+        return "a homogenised bar has no joints that slide"
+    return ""

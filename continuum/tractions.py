@@ -1,0 +1,200 @@
+"""The joints' law at every quadrature point, and its forces on the freedoms, compiled.
+
+With the jump operators B (freedoms to gap and slip), the weights W and the traction t (normal
+compression positive, on the far side), the joints' force on the freedoms is B^T W t(B u).
+"""
+
+from continuum.sparse import add_row, row
+from joints.energy import friction_work
+from joints.jit import jitted
+from joints.laws import law_of, normal_traction, spring_traction
+from joints.optional import either, given
+from joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
+from joints.softening import update_opening
+
+
+@jitted
+def load_joints(interfaces, u, v, rate, memory, state, dt):
+    """Set the traction (Pa) at every point of the joints, and what the points remember.
+
+    Where there are dashpots it is the springs' part, and theirs is kept apart.
+    """
+    if interfaces is not None:
+        for q in range(interfaces.area.size):
+            law = law_of(interfaces.law, q)
+            gap = gap_at(interfaces.prestress, interfaces, law, u, q)
+            gap_rate = rate_at(rate, interfaces.opening, q)
+            opening = opened(memory.opening, gap, q)
+            t_n = normal_traction(law, gap, gap_rate, opening)
+            spring = spring_traction(law, gap, opening)
+            keep_dashpot(state.tractions.drag_n, q, t_n - spring)
+            state.tractions.normal[q] = given_or(state.tractions.drag_n, spring, t_n)
+            load_shear(law.shear_stiffness, interfaces, law, u, v, rate, state, dt, q, t_n, gap)
+
+
+@jitted
+def load_shear(stiffness, interfaces, law, u, v, rate, state, dt, q, t_n, gap):
+    """Set the shear traction of point q, where there is shear."""
+    if stiffness is not None:
+        memory, tractions = state.memory, state.tractions
+        opening = given(memory.opening, at(memory.opening, q))
+        cohesion = given(memory.cohesion, at(memory.cohesion, q))
+        tau = shear_strength(law, t_n, gap, opening, cohesion)
+        x = elastic_slip(interfaces.slip_x, memory.slide_x, u, q)
+        z = elastic_slip(interfaces.slip_z, memory.slide_z, u, q)
+        rates = rate_at(rate, interfaces.slip_x, q), rate_at(rate, interfaces.slip_z, q)
+        turn = either(tau, stick, slide)
+        t_x, t_z, ex, ez = turn(
+            interfaces, law, v, state, dt, q, x, z, rates[0], rates[1], tau, cohesion
+        )
+        spring_x, spring_z = -law.shear_stiffness * ex, -law.shear_stiffness * ez
+        keep_dashpot(tractions.drag_x, q, t_x - spring_x)
+        keep_dashpot(tractions.drag_z, q, t_z - spring_z)
+        keep_spring(tractions.x, tractions.drag_x, q, spring_x, t_x)
+        keep_spring(tractions.z, tractions.drag_z, q, spring_z, t_z)
+
+
+@jitted
+def stick(interfaces, law, v, state, dt, q, x, z, rate_x, rate_z, tau, cohesion):
+    """Return the shear traction where nothing limits it, and its elastic slip."""
+    t_x, t_z = shear_traction(law, x, z, rate_x, rate_z)
+    return t_x, t_z, x, z
+
+
+@jitted
+def slide(interfaces, law, v, state, dt, q, x, z, rate_x, rate_z, tau, cohesion):
+    """Return the shear traction up to the strength and its elastic slip; remember what slid."""
+    memory = state.memory
+    dx, dz = dt * rate_at(v, interfaces.slip_x, q), dt * rate_at(v, interfaces.slip_z, q)
+    old_x, old_z = x - dx, z - dz
+    t_x, t_z, ex, ez, slipped = shear_return(law, x, z, old_x, old_z, rate_x, rate_z, tau, dt)
+    if slipped:
+        slid(memory.slide_x, q, x - ex)
+        slid(memory.slide_z, q, z - ez)
+        soften(memory.cohesion, q, law, cohesion)
+        work = friction_work(law, old_x, old_z, ex, ez, dx, dz)
+        keep_work(state.ledger, interfaces.area[q] * work)
+    return t_x, t_z, ex, ez
+
+
+@jitted
+def push(interfaces, tractions, force, drag):
+    """Add the joints' force (N) on every freedom, B^T W t; the dashpots' part to `drag`."""
+    if interfaces is not None:
+        for q in range(interfaces.area.size):
+            area = interfaces.area[q]
+            normal = less_prestress(interfaces.prestress, tractions.normal[q])
+            add_row(interfaces.opening, force, q, area * normal)
+            push_part(interfaces.slip_x, tractions.x, force, q, area)
+            push_part(interfaces.slip_z, tractions.z, force, q, area)
+            push_part(interfaces.opening, tractions.drag_n, drag, q, area)
+            push_part(interfaces.slip_x, tractions.drag_x, drag, q, area)
+            push_part(interfaces.slip_z, tractions.drag_z, drag, q, area)
+
+
+@jitted
+def push_part(matrix, traction, force, q, area):
+    """Add one component of a traction, where there is one."""
+    if traction is not None:
+        add_row(matrix, force, q, area * traction[q])
+
+
+@jitted
+def gap_at(prestress, interfaces, law, u, q):
+    """Return the gap (m) of point q: what its prestress has closed is counted."""
+    gap = row(interfaces.opening, u, q)
+    if prestress is None:
+        return gap
+    return gap - prestress / law.normal_stiffness
+
+
+@jitted
+def less_prestress(prestress, normal):
+    """Return what a traction differs from the prestress, which the rock carries on (Pa)."""
+    if prestress is None:
+        return normal
+    return normal - prestress
+
+
+@jitted
+def elastic_slip(matrix, slide, u, q):
+    """Return the elastic part (m) of the slip of point q; zero without such a direction."""
+    if matrix is None:
+        return 0.0
+    return less_slide(slide, row(matrix, u, q), q)
+
+
+@jitted
+def less_slide(slide, slip, q):
+    """Return a slip less what has slid."""
+    if slide is None:
+        return slip
+    return slip - slide[q]
+
+
+@jitted
+def rate_at(rate, matrix, q):
+    """Return the rate (m/s) of a jump at point q; zero where nothing asks for it."""
+    if rate is None or matrix is None:
+        return 0.0
+    return row(matrix, rate, q)
+
+
+@jitted
+def opened(opening, gap, q):
+    """Return the largest opening (m) of point q so far, and remember it; None without softening."""
+    if opening is None:
+        return None
+    opening[q] = update_opening(opening[q], gap)
+    return opening[q]
+
+
+@jitted
+def at(values, q):
+    """Return the value of point q, zero where there are none."""
+    if values is None:
+        return 0.0
+    return values[q]
+
+
+@jitted
+def given_or(flag, present, absent):
+    """Return one number where the flag is anything but None, else the other."""
+    if flag is None:
+        return absent
+    return present
+
+
+@jitted
+def keep_dashpot(drag, q, traction):
+    """Keep the dashpot's part of a traction, where there is one."""
+    if drag is not None:
+        drag[q] = traction
+
+
+@jitted
+def keep_spring(traction, drag, q, spring, whole):
+    """Keep the springs' part of a traction, the whole of it where there is no dashpot."""
+    if traction is not None:
+        traction[q] = given_or(drag, spring, whole)
+
+
+@jitted
+def slid(slide, q, more):
+    """Add to what point q has slid, m."""
+    if slide is not None:
+        slide[q] += more
+
+
+@jitted
+def soften(cohesions, q, law, cohesion):
+    """Keep the cohesion that slip leaves to point q."""
+    if cohesions is not None:
+        cohesions[q] = cohesion_left(law, cohesion, True)
+
+
+@jitted
+def keep_work(ledger, work):
+    """Add the work (J) of sliding to the ledger."""
+    if ledger is not None:
+        ledger[1] += work

@@ -1,0 +1,161 @@
+"""The operator of all blocks: every block gets its own K x, to the last bit, wherever it stands."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.sparse import csr_matrix, random
+
+from continuum.lanes import WIDTH
+from continuum.operator import (
+    CACHE_LINE,
+    layout,
+    multiply,
+    operator,
+    spread,
+    tile_widths,
+    without_round_off,
+    zeros,
+)
+
+COUNTS = (1, 2, 7, 8, 9, 17, 25, 33, 40, 41, 48, 100)  # every width of a tile, full and not
+
+
+def symmetric(size: int, seed: int = 0) -> csr_matrix:
+    """Return a random positive definite matrix, with some rows that couple to nothing."""
+    half = random(size, size, 0.2, random_state=seed)
+    return csr_matrix(half @ half.T + csr_matrix(np.diag(np.linspace(0.1, 1.0, size))))
+
+
+def in_turn(matrix: csr_matrix, x: np.ndarray) -> list[float]:
+    """Return K x in Python's numbers, products added in the order of the columns."""
+    products = []
+    for i in range(matrix.shape[0]):
+        total = 0.0
+        for k in range(matrix.indptr[i], matrix.indptr[i + 1]):
+            total += float(matrix.data[k]) * float(x[matrix.indices[k]])
+        products.append(total)
+    return products
+
+
+def places_of(where, sizes, counts):
+    """Return for each block its part and the indices of its values."""
+    part = np.repeat(np.arange(len(counts)), counts)
+    return [(p, where.first[b] + where.stride[b] * np.arange(sizes[p])) for b, p in enumerate(part)]
+
+
+@settings(max_examples=20)
+@given(
+    st.lists(st.tuples(st.sampled_from(COUNTS), st.integers(3, 40)), min_size=1, max_size=4),
+    st.sampled_from([1.0, -1.0, 0.1]),
+)
+def test_every_block_gets_its_own_product(parts, factor):
+    """Bit by bit that of scalar arithmetic without fused products, whatever else is in the vector;
+    what belongs to no block stays zero."""
+    counts, sizes = zip(*parts, strict=True)
+    matrices = [without_round_off(symmetric(size, p)) for p, size in enumerate(sizes)]
+    where = layout(counts, sizes)
+    x, y = zeros(where.length), zeros(where.length)
+    blocks = places_of(where, sizes, counts)
+    numbers = np.random.default_rng(1)
+    for _, places in blocks:
+        x[places] = numbers.standard_normal(places.size)
+    multiply(operator(where, matrices), x, y, factor)
+    left = np.ones(where.length, dtype=bool)
+    for p, places in blocks:
+        assert y[places].tolist() == [factor * total for total in in_turn(matrices[p], x[places])]
+        left[places] = False
+    assert not y[left].any()
+
+
+@pytest.mark.parametrize("count", [1, 3, 100, 100_000])
+def test_alike_blocks_move_alike(count):
+    """The same values give the same product in every lane of every tile."""
+    matrix = symmetric(12)
+    where = layout([count], [12])
+    values = np.random.default_rng(2).standard_normal(12)
+    x, y = spread(where, [values]), zeros(where.length)
+    multiply(operator(where, [matrix]), x, y)
+    product = y[where.first[:, None] + where.stride[:, None] * np.arange(12)]
+    assert (product == product[0]).all() and product.any()
+
+
+def test_a_large_block():
+    """A thousand rows, and more entries than one row of lanes holds, against scipy.
+
+    |error| <= n eps |K| |x| with n entries in the longest row (Higham, Accuracy and Stability of
+    Numerical Algorithms, 2002, section 3.1), for either.
+    """
+    matrix = without_round_off(symmetric(1000))
+    where = layout([5], [1000])
+    x, y = spread(where, [np.linspace(-1.0, 2.0, 1000)]), zeros(where.length)
+    multiply(operator(where, [matrix]), x, y)
+    values = x[where.first[0] + where.stride[0] * np.arange(1000)]
+    got = y[where.first[4] + where.stride[4] * np.arange(1000)]
+    entries = np.diff(matrix.indptr).max()
+    bound = 2 * entries * np.finfo(float).eps * (abs(matrix) @ np.abs(values))
+    assert (np.abs(got - matrix @ values) <= bound).all()
+
+
+@given(st.lists(st.tuples(st.integers(1, 300), st.integers(1, 50)), min_size=1, max_size=5))
+def test_every_value_has_a_place_of_its_own(parts):
+    """No two values share one; tiles start on whole registers and follow one another."""
+    counts, sizes = zip(*parts, strict=True)
+    where = layout(counts, sizes)
+    places = np.concatenate([index for _, index in places_of(where, sizes, counts)])
+    assert np.unique(places).size == places.size == np.dot(counts, sizes)
+    assert places.min() >= 0 and places.max() < where.length
+    assert not (where.offset % WIDTH).any()
+    ends = where.offset + where.width * np.array(sizes)[where.part]
+    assert (ends <= np.append(where.offset[1:], where.length)).all()
+
+
+@given(st.integers(1, 100_000))
+def test_tiles_hold_what_they_must_and_little_more(count):
+    """Less than one register of padding; no tile so wide that it leaves the nearest cache, none
+    narrow where there are many copies; a single copy has no padding at all."""
+    widths = tile_widths(count)
+    if count == 1:
+        assert widths.tolist() == [1]
+        return
+    assert count <= widths.sum() < count + WIDTH
+    assert not (widths % WIDTH).any() and np.ptp(widths) <= WIDTH
+    assert widths.max() <= 5 * WIDTH
+    assert count <= 2 * WIDTH or widths.min() >= 3 * WIDTH
+
+
+def test_spread_fills_the_padding():
+    """So that nothing divides by a mass of zero there."""
+    where = layout([3, 1], [2, 3])
+    vector = spread(where, [np.array([1.0, 2.0]), np.array([3.0, 4.0, 5.0])])
+    assert vector[:16].tolist() == [1.0] * 8 + [2.0] * 8
+    assert vector[16:19].tolist() == [3.0, 4.0, 5.0]
+
+
+@pytest.mark.parametrize("length", [1, 7, 100, 4097])
+def test_vectors_start_on_a_cache_line(length):
+    """No register then straddles two lines."""
+    vector = zeros(length)
+    assert vector.size == length and vector.ctypes.data % CACHE_LINE == 0
+    assert not vector.any()
+
+
+def test_round_off_is_told_from_small_entries():
+    """By the diagonal: a soft layer's small entries stay, what cancels in stiff rock goes."""
+    matrix = np.diag([1.0, 1.0, 1e-20, 1e-20])
+    matrix[0, 1] = matrix[1, 0] = 1e-15
+    matrix[2, 3] = matrix[3, 2] = -1e-20
+    matrix[1, 2] = matrix[2, 1] = 1e-12
+    kept = without_round_off(csr_matrix(matrix))
+    matrix[0, 1] = matrix[1, 0] = 0.0
+    assert (kept.toarray() == matrix).all()
+    assert kept.nnz == 8
+
+
+def test_an_empty_matrix_gives_zero():
+    """A part without dashpots among others that have them."""
+    where = layout([9, 2], [4, 3])
+    viscous = operator(where, [csr_matrix((4, 4)), csr_matrix(np.eye(3))])
+    y = np.ones(where.length)
+    multiply(viscous, np.ones(where.length), y)
+    assert not y[: 4 * 16].any() and (y[4 * 16 :] == 1.0).all()
