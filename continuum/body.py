@@ -1,7 +1,8 @@
 """A whole pillar of discretised rock: its pieces with all their copies, in one numbering.
 
-Nodes are numbered copy by copy; freedoms as `continuum.operator.layout` puts them. Where a plane wave is asked for in two or three dimensions, all nodes of a
-piece at the same y share their freedoms, and the rock moves as if it were of infinite extent.
+Nodes are numbered copy by copy; freedoms as `continuum.operator.layout` puts them. Where a plane
+wave is asked for in two or three dimensions, all nodes of a piece at the same y share their
+freedoms, and the rock moves as if it were of infinite extent.
 """
 
 from typing import NamedTuple
@@ -61,7 +62,7 @@ class Body(NamedTuple):
         """Heights of the nodes [nodes], m."""
         return self.x[:, axis(self.dim)]
 
-    def freedom(self, node: np.ndarray, component: int) -> np.ndarray:
+    def freedom(self, node: np.ndarray, component: int | np.ndarray) -> np.ndarray:
         """Return the freedoms of one component at nodes."""
         return self.first[node] + component * self.stride[node]
 
@@ -163,7 +164,7 @@ def _levels(piece: Piece) -> np.ndarray:
 
 
 def _tie(number: np.ndarray, components: int) -> csr_matrix:
-    """Return T [nodes * components, freedoms]: the nodes' motion is T times that of the freedoms."""
+    """Return T [nodes * components, freedoms]: the motion of nodes is T times that of freedoms."""
     count = number.size
     nodes = csr_matrix((np.ones(count), (np.arange(count), number)), (count, number.max() + 1))
     return csr_matrix(kron(nodes, np.eye(components)))
@@ -181,12 +182,7 @@ def _copies(mesh: Mesh, pieces: list[Piece]) -> tuple[np.ndarray, ...]:
         corners.append(places.reshape(-1, *part.x[part.cells].shape[1:]))
         material.append(np.tile(part.material, copies))
         base += nodes * copies
-    return (
-        np.concatenate(x),
-        np.concatenate(cells),
-        np.concatenate(corners),
-        np.concatenate(material),
-    )
+    return tuple(np.concatenate(rows) for rows in (x, cells, corners, material))
 
 
 def _numbering(

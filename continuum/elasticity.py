@@ -131,9 +131,8 @@ def _of_bar(domain, order, dx, of_cell, factor, section: Section) -> csr_matrix:
     if section.components == 1:
         return along
     across = stiffness([m.shear_modulus for m in of_cell])
-    return csr_matrix(
-        kron(across, np.diag([1.0, 0.0, 1.0])) + kron(along, np.diag([0.0, 1.0, 0.0]))
-    )
+    x_z, y = np.diag([1.0, 0.0, 1.0]), np.diag([0.0, 1.0, 0.0])
+    return csr_matrix(kron(across, x_z) + kron(along, y))
 
 
 def measure(cell: str, order: int) -> ufl.Measure:

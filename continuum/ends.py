@@ -81,12 +81,11 @@ def quiet_ends(
         parts += [_absorber(p, body, c, a, springs) for c, a in enumerate(area)]
     if not parts:
         return None
-    freedom, viscosity, stiffness, decay, gain = (
-        np.concatenate(row) for row in zip(*parts, strict=True)
-    )
-    springs = HalfJoints(stiffness, decay, gain) if stiffness.any() else None
+    columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
+    freedom, viscosity, stiffness, decay, gain = columns
+    half_joints = HalfJoints(stiffness, decay, gain) if stiffness.any() else None
     beta = viscosity * dt / (2 * mass[freedom])
-    return Quiet(freedom.astype(np.int64), viscosity, beta, springs)
+    return Quiet(freedom.astype(np.int64), viscosity, beta, half_joints)
 
 
 def _absorber(

@@ -134,6 +134,5 @@ def tractions(joints: Interfaces) -> Tractions:
     def room(needed: bool) -> np.ndarray | None:
         return np.zeros(q) if needed else None
 
-    return Tractions(
-        np.zeros(q), room(x), room(z), room(damped), room(damped and x), room(damped and z)
-    )
+    springs = np.zeros(q), room(x), room(z)
+    return Tractions(*springs, room(damped), room(damped and x), room(damped and z))

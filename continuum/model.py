@@ -1,7 +1,7 @@
 """The constants of a run in one, two or three dimensions, and what changes in it.
 
-Two objects; absent parts are None. A freedom is one component of the displacement of one node; where
-it stands in a vector, `continuum.operator.layout` says.
+Two objects; absent parts are None. A freedom is one component of the displacement of one node;
+where it stands in a vector, `continuum.operator.layout` says.
 
 Where several processes share a run, each holds part of the rock and of the joints. Every force,
 mass, viscosity and weight is then its own share, and `total` and `beta` are of all together.

@@ -86,9 +86,8 @@ def matrix_of(body: Body, rows: np.ndarray, cell: np.ndarray, weights: np.ndarra
 
     What falls on one place is added up.
     """
-    n, nodes, components = weights.shape
     node = np.broadcast_to(body.cells[cell][:, :, None], weights.shape)
-    component = np.broadcast_to(np.arange(components), weights.shape)
+    component = np.broadcast_to(np.arange(weights.shape[2]), weights.shape)
     row = np.broadcast_to(rows[:, None, None], weights.shape)
     there = weights != 0.0
     column = body.freedom(node[there], component[there])

@@ -50,11 +50,10 @@ def energy_terms(
     """Return the terms that the ledger of a model has, in the order of every result, and them."""
     joints = model.interfaces
     law = None if joints is None else joints.law
-    slides = law is not None and law.shear_stiffness is not None
-    slides = slides and (law.cohesion is not None or law.friction is not None)
+    shears = law is not None and law.shear_stiffness is not None
     there = {
         "fracture": law is not None and law.tensile_strength is not None,
-        "friction": slides,
+        "friction": shears and not (law.cohesion is None and law.friction is None),
         "gravity": model.weight is not None,
     }
     terms = tuple(t for t in ALL_TERMS if t in TERMS and there.get(t, True))
