@@ -26,7 +26,7 @@ class JointLaw(Table):
 class Joints(JointLaw):
     """The law of every joint, and how forces are spread over its face."""
 
-    contact_points: Annotated[int, Field(ge=1, le=16)] = 2  #: n x n per face
+    contact_points: Annotated[int, Field(ge=1, le=8)] = 2  #: n x n a face, written out
     point_rule: Literal["midpoint", "gauss"] = "midpoint"
 
 

@@ -7,7 +7,6 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from cases.availability import refuse_unavailable
 from cases.errors import SceneError
 from cases.files import read_text
 from cases.scene import Scene
@@ -117,7 +116,6 @@ def _validate(table: dict[str, Any], path: Path) -> Scene:
     except ValidationError as error:
         raise _scene_error(where, error) from None
     scene._where = where
-    refuse_unavailable(scene, where)
     return scene
 
 

@@ -90,9 +90,15 @@ def run(
     changes: SetOption = [],  # noqa: B006
     variant: VariantOption = None,
     out: OutOption = Path("results"),
+    vtx: Annotated[
+        bool, typer.Option("--vtx", help="Also write the snapshots of record.fields as VTX (.bp).")
+    ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Simulate a scene and write each result as DIR/[variant/]ENGINE[-MODEL].nc."""
+    """Simulate a scene and write each result as DIR/[variant/]ENGINE[-MODEL].nc.
+
+    With record.fields also its snapshots, as a .pvd file for ParaView.
+    """
     from compare import runs, terminal, views
 
     scenes = _load(scene, changes, variant)
@@ -100,7 +106,7 @@ def run(
     jobs = runs.plan(scenes, wanted, out)
     _warn(scenes)
     with terminal.progress(f"{len(jobs)} runs") as advance:
-        done = runs.execute(jobs, advance)
+        done = runs.execute(jobs, advance, vtx)
     views.show_runs(done, as_json)
 
 

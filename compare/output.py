@@ -34,6 +34,21 @@ def write(path: Path, save: Callable[[Path], object]) -> Path:
     return path
 
 
+def write_folder(path: Path, save: Callable[[Path], object]) -> Path:
+    """Let `save` make and fill a folder, and put it at `path` only when it is whole.
+
+    A folder that stood at `path` before is replaced by it, and stays as it is when `save` fails.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as place:
+        new, old = Path(place, path.name), Path(place, "old")
+        save(new)
+        if path.exists():
+            path.replace(old)
+        new.replace(path)
+    return path
+
+
 def write_text(path: Path, text: str) -> Path:
     """Write text as UTF-8."""
     return write(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))

@@ -8,14 +8,21 @@ from typing import NamedTuple
 
 from jinja2 import Environment, PackageLoader
 
+import cases
+from cases.calibrate import calibrate
+from cases.snapshots import snapshots_of
 from compare import tables
 from compare.figures import draw, save
 from compare.findings import Finding, findings
 from compare.output import write
 from compare.pairs import Comparison
 from compare.panels import curve_table
+from compare.scenes import find
 
 COMMAND = "jointwave report --out DIR"
+
+MOVING = "beyond/eccentric-blow"  # the scene that is shown as a whole, and with which changes
+CHANGES = {"record.fields": 5e-3, "time.duration": 0.035, "record.energy": False}
 
 
 class Section(NamedTuple):
@@ -54,6 +61,33 @@ def make_section(folder: Path, scene_file: Path, comparisons: list[Comparison]) 
     )
 
 
+class Motion(NamedTuple):
+    """Snapshots of a whole pillar.
+
+    file : shows them in ParaView, relative to the page. bar_speed : m/s.
+    """
+
+    title: str
+    svg: str
+    file: str
+    bar_speed: float
+
+
+def make_motion(out: Path) -> Motion:
+    """Simulate the moving pillar, write its snapshots, and draw them as they are read back."""
+    import dem
+    from compare.fieldfiles import read_pvd, write_pvd
+    from compare.snapshot_picture import draw_snapshots
+
+    scene = cases.load_variant(find(MOVING), "", CHANGES)
+    found = snapshots_of(dem.simulate_fields(scene))
+    assert found is not None
+    file = write_pvd(out / "fields" / "dem.pvd", found)
+    figure = draw_snapshots("snapshots", {"dem": read_pvd(file).since(1)})
+    svg = save(figure, out / "figures", "snapshots", scene.title)
+    return Motion(scene.title, svg, file.relative_to(out).as_posix(), calibrate(scene).bar_speed)
+
+
 def write_figure(folder: Path, name: str, comparisons: list[Comparison]) -> str:
     """Write NAME.svg, NAME.png, NAME.csv (curves) and NAME-misfits.csv; return the SVG's text."""
     curves, distances = curve_table(comparisons), tables.distance_frame(comparisons)
@@ -64,7 +98,7 @@ def write_figure(folder: Path, name: str, comparisons: list[Comparison]) -> str:
 
 
 def render(sections: list[Section], figures: dict[str, list[Comparison]], **parts: object) -> str:
-    """Return the page's HTML; `parts` are the overview's finding and tables."""
+    """Return the page's HTML; `parts` are the overview's finding and tables, and the motion."""
     environment = Environment(
         loader=PackageLoader("compare"), autoescape=True, trim_blocks=True, lstrip_blocks=True
     )

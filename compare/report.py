@@ -15,7 +15,7 @@ from compare.engines import Progress
 from compare.findings import Finding
 from compare.findings.overview import mostly_dispersion
 from compare.output import write_text
-from compare.page import Section, make_section, render, write_figure
+from compare.page import Motion, Section, make_motion, make_section, render, write_figure
 from compare.pairs import Comparison, compare
 
 SCENES = Path(cases.__file__).parent / "guo-li-2002"
@@ -58,13 +58,14 @@ def build(
     Raises SceneError and UnstableError, as `compare` does; the page is then not written.
     """
     began = perf_counter()
-    sections, figures = _compute(out, sorted(scenes.glob("fig-*.toml")), progress, workers)
+    files = sorted(scenes.glob("fig-*.toml"))
+    sections, figures, motion = _compute(Path(out), files, progress, workers)
     overview, free = None, None
     if FREE_PILLAR in figures:
         overview = mostly_dispersion(figures[FREE_PILLAR][0])
         free = tables.misfit_table(figures[FREE_PILLAR])
     summary = tables.summary_table({f"fig. {s.number}": figures[s.name] for s in sections})
-    html = render(sections, figures, overview=overview, free=free, summary=summary)
+    html = render(sections, figures, overview=overview, free=free, summary=summary, motion=motion)
     page = write_text(Path(out) / "index.html", html)
     found = {section.number: section.findings for section in sections}
     return Report(page, summary, overview, found, perf_counter() - began)
@@ -77,11 +78,12 @@ def write_comparisons(comparisons: list[Comparison], out: Path) -> None:
 
 def _compute(
     out: Path, files: list[Path], progress: Progress | None, workers: int
-) -> tuple[list[Section], dict[str, list[Comparison]]]:
-    """Solve and draw in processes of their own; return sections and comparisons by file."""
+) -> tuple[list[Section], dict[str, list[Comparison]], Motion]:
+    """Solve and draw in processes of their own; return sections, comparisons by file, and what
+    moves."""
     loaded = {file: cases.load(file) for file in files}
     unique = {_key(scene): scene for variants in loaded.values() for scene in variants}
-    jobs, done = len(unique) + len(files), 0
+    jobs, done = len(unique) + len(files) + 1, 0
 
     def finish(futures: Iterable[Future]) -> None:
         nonlocal done
@@ -95,20 +97,22 @@ def _compute(
         try:
             order = _longest_first(unique)
             solved = {key: pool.submit(compare, unique[key], None, True) for key in order}
-            finish(solved.values())
+            moving = pool.submit(make_motion, out)
+            finish([*solved.values(), moving])
             figures = {
                 file: [replace(solved[_key(scene)].result(), scene=scene) for scene in variants]
                 for file, variants in loaded.items()
             }
             drawn = [
-                pool.submit(make_section, Path(out) / "figures", file, comparisons)
+                pool.submit(make_section, out / "figures", file, comparisons)
                 for file, comparisons in figures.items()
             ]
             finish(drawn)
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
-    return [future.result() for future in drawn], {f.stem: c for f, c in figures.items()}
+    sections = [future.result() for future in drawn]
+    return sections, {f.stem: c for f, c in figures.items()}, moving.result()
 
 
 def _key(scene: Scene) -> str:

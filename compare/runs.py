@@ -26,6 +26,7 @@ class Done(NamedTuple):
 
     fragments : the pieces between broken joints, see `dem.fragments`; None where none can break.
     out_of_balance : force ratio of the static state that it started from; None where from none.
+    fields : the files that show its snapshots; none where it has no snapshots.
     """
 
     job: Job
@@ -34,6 +35,7 @@ class Done(NamedTuple):
     residual: float | None
     fragments: list[dict] | None
     out_of_balance: float | None
+    fields: list[Path]
 
 
 def wanted(engines: list[str], models: list[str]) -> list[tuple[str, str | None]]:
@@ -65,9 +67,14 @@ def plan(scenes: list[Scene], runs: list[tuple[str, str | None]], out: Path) -> 
     return jobs
 
 
-def execute(jobs: list[Job], progress: Progress) -> list[Done]:
-    """Run the jobs one after the other and write each result."""
+def execute(jobs: list[Job], progress: Progress, vtx: bool = False) -> list[Done]:
+    """Run the jobs one after the other and write each result; `vtx`: snapshots as VTX too.
+
+    Raises SceneError where a run cannot be made, or no VTX file be written.
+    """
     done = []
+    if vtx:
+        _refuse_vtx(jobs)
 
     def part_of(i: int) -> Progress:
         return lambda fraction: progress((i + fraction) / len(jobs))
@@ -83,10 +90,34 @@ def execute(jobs: list[Job], progress: Progress) -> list[Done]:
                 _residual(result),
                 _fragments(result),
                 result.attributes.get("static_out_of_balance"),
+                _write_snapshots(job, result, vtx),
             )
         )
         progress((i + 1) / len(jobs))
     return done
+
+
+def _refuse_vtx(jobs: list[Job]) -> None:
+    from compare.fieldfiles import refuse_vtx
+
+    for job in jobs:
+        if job.scene.record.fields is None:
+            raise SceneError(job.scene.where, "record.fields", None, "is required by --vtx")
+    refuse_vtx()
+
+
+def _write_snapshots(job: Job, result: Fields, vtx: bool) -> list[Path]:
+    """Write a result's snapshots beside it, where it has any; return the files to open."""
+    if job.scene.record.fields is None:
+        return []
+    from cases.snapshots import snapshots_of
+    from compare.fieldfiles import write_pvd, write_vtx
+
+    found = snapshots_of(result)
+    if found is None:
+        return []
+    files = [write_pvd(job.path.with_suffix(".pvd"), found)]
+    return [*files, write_vtx(job.path.with_suffix(".bp"), found)] if vtx else files
 
 
 def _fragments(result: Fields) -> list[dict] | None:

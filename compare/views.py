@@ -40,6 +40,7 @@ def show_runs(done: list[Any], as_json: bool) -> None:
             "file": str(d.job.path),
             "fragments": d.fragments,
             "static_out_of_balance": d.out_of_balance,
+            "fields": [str(path) for path in d.fields],
         }
         for d in done
     ]
@@ -54,6 +55,10 @@ def show_runs(done: list[Any], as_json: bool) -> None:
             say(f"{name}: starts at rest, out-of-balance force ratio {d.out_of_balance:.1e}")
         if d.fragments is not None:
             say(f"{name}: {_what_broke(d.fragments)}")
+        for path in d.fields:
+            say(f"{name}: snapshots for ParaView, {path}")
+        if d.job.scene.record.fields is not None and not d.fields:
+            say(f"{name}: no snapshots, its solution is known at the receivers only")
 
 
 def _what_broke(fragments: list[dict[str, Any]]) -> str:

@@ -116,25 +116,29 @@ def stiffen(model, now, trial, r, stiffness):
     r : rate factor, 1/s (`joints.tangent`).
     """
     model, now, trial = borrowed((model, now, trial))
-    interfaces, memory, u = model.interfaces, now.memory, trial.u
-    for q in range(interfaces.area.size):
-        law = law_of(interfaces.law, q)
-        gap = gap_at(interfaces.prestress, interfaces, law, u, q)
-        gap_rate = rate_at(trial.rate, interfaces.opening, q)
-        rate_x = rate_at(trial.rate, interfaces.slip_x, q)
-        rate_z = rate_at(trial.rate, interfaces.slip_z, q)
-        # The whole elastic slip of the trial: what the step adds to the old one is in it.
-        x, z = trial_slip(law.shear_stiffness, interfaces, memory, u, q)
-        before = History(
-            given(memory.opening, at(memory.opening, q)),
-            given(law.shear_stiffness, x),
-            given(law.shear_stiffness, z),
-            given(memory.cohesion, at(memory.cohesion, q)),
-        )
-        found = tangent(law, gap, gap_rate, (0.0, 0.0), (rate_x, rate_z), before, r)
-        area = interfaces.area[q]
-        stiffness[NN, q] = -area * found.nn
-        keep_shear(found.xx, found, stiffness, q, area)
+    stiffen_joints(model.interfaces, now.memory, trial.u, trial.rate, r, stiffness)
+
+
+@jitted
+def stiffen_joints(interfaces, memory, u, rate, r, stiffness):
+    """Set the stiffness of every point, where there are joints; memory : before the step."""
+    if interfaces is not None:
+        for q in range(interfaces.area.size):
+            law, area = law_of(interfaces.law, q), interfaces.area[q]
+            gap = gap_at(interfaces.prestress, interfaces, law, u, q)
+            gap_rate = rate_at(rate, interfaces.opening, q)
+            rates = rate_at(rate, interfaces.slip_x, q), rate_at(rate, interfaces.slip_z, q)
+            # The whole elastic slip of the trial: what the step adds to the old one is in it.
+            x, z = trial_slip(law.shear_stiffness, interfaces, memory, u, q)
+            before = History(
+                given(memory.opening, at(memory.opening, q)),
+                given(law.shear_stiffness, x),
+                given(law.shear_stiffness, z),
+                given(memory.cohesion, at(memory.cohesion, q)),
+            )
+            found = tangent(law, gap, gap_rate, (0.0, 0.0), rates, before, r)
+            stiffness[NN, q] = -area * found.nn
+            keep_shear(found.xx, found, stiffness, q, area)
 
 
 @jitted

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags
 
 from cases.calibrate import Properties, calibrate
+from cases.errors import SceneError
 from cases.sampling import Clock
 from cases.scene import Scene
 from continuum.body import Body, build_body, whole
@@ -68,18 +69,17 @@ def mesh_of(scene: Scene, p: Properties, model: str, motion: Kinematics) -> Mesh
     if numerics.mesh is not None:
         from continuum.meshing.given import given_mesh
 
-        return given_mesh(numerics.mesh, scene, p, motion.dim)
+        return given_mesh(numerics.mesh_path, scene, p, motion.dim)
     layers = layer_thickness(scene, p)
     cut = resolved_joints(p, model, tuple(layers)).number
-    return pillar_mesh(
-        p,
-        motion.dim,
-        numerics.cell,
-        numerics.elements_per_block or elements_for(scene, p, model),
-        numerics.elements_across,
-        cut,
-        layers,
-    )
+    elements = numerics.elements_per_block or elements_for(scene, p, model)
+    try:
+        return pillar_mesh(
+            p, motion.dim, numerics.cell, elements, numerics.elements_across, cut, layers
+        )
+    except (ImportError, OSError) as error:
+        key = "numerics.continuum.dim"
+        raise SceneError(scene.where, key, motion.dim, f"needs gmsh ({error})") from None
 
 
 def elements_for(scene: Scene, p: Properties, model: str) -> int:

@@ -9,10 +9,10 @@ from scipy.sparse.linalg import spsolve
 
 from cases.errors import StoppedError
 from continuum.balance import record_balanced, stiffen
-from continuum.held import motion_at
-from continuum.implicit_step import Matrices, Moment, Stepper, pressure_at
+from continuum.implicit_step import Matrices, Moment, Stepper, joint_room
 from continuum.model import Model, Samples, State
 from continuum.newton import Outcome
+from continuum.substeps import motion_at, pressure_at
 
 HALVINGS = 10
 WHOLE = 1 << HALVINGS
@@ -31,7 +31,7 @@ class Implicit:
     Attributes
     ----------
     stepper : counts iterations and factorisations. halvings : how many steps were halved.
-    outcome : of the last step or part of one.
+    outcome : of the last step or part of one. reached : the last whole step that was done, -1 none.
     """
 
     def __init__(self, model: Model, state: State, matrices: Matrices, rho: float) -> None:
@@ -40,7 +40,7 @@ class Implicit:
         self.now, self.trial = (
             Moment(s, np.zeros_like(state.u), np.zeros(1)) for s in (state, like(state))
         )
-        self.halvings = 0
+        self.halvings, self.reached = 0, -1
         self.outcome: Outcome | None = None
 
     def run(self, samples: Samples, stride: int, first: int, last: int) -> None:
@@ -51,6 +51,7 @@ class Implicit:
                 self._begin()
             else:
                 self._reach(n)
+            self.reached = n
             if n % stride == 0:
                 self._record(samples, n // stride)
 
@@ -58,10 +59,8 @@ class Implicit:
         """Compile every kernel of the run, and change nothing."""
         spare, state = Moment(like(self.state), np.zeros(1), np.zeros(1)), self.state
         self.stepper.settle(self.model, self.now, spare, 0, 0.0)
-        if self.model.interfaces is not None:
-            joints = np.zeros((6, self.model.interfaces.area.size))
-            stiffen(self.model, state, spare.state, 1.0, joints)
-        one = Samples(*(None if wave is None else np.zeros((len(wave), 1)) for wave in samples))
+        stiffen(self.model, state, spare.state, 1.0, joint_room(self.model))
+        one = _each(samples, lambda wave: np.zeros((len(wave), 1)))
         record_balanced(self.model, spare.state, np.zeros_like(state.u), one, 0)
 
     def _begin(self) -> None:

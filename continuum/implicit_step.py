@@ -12,14 +12,22 @@ factor r = gamma / (beta dt), and tangents of the joints; it is factorised only 
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csr_matrix
+from scipy.sparse import csr_matrix, diags
 
 from continuum.balance import settle, stiffen
+from continuum.body import Body, whole
 from continuum.generalised_alpha import scheme
-from continuum.held import motion_at, wall
-from continuum.model import HalfJoints, Model, Quiet, State
+from continuum.model import Model, State
 from continuum.newton import Factors, Outcome, newton
 from continuum.pattern import pattern
+from continuum.substeps import (
+    end_resistance,
+    mass_damping,
+    motion_at,
+    pressure_at,
+    shortened,
+    wall,
+)
 
 RESIDUAL = 1e-10  # what may be left, of the largest force that is summed up
 LAST_DIGITS = 8 * np.finfo(float).eps  # of a displacement: what they weigh cannot be balanced
@@ -35,6 +43,15 @@ class Matrices(NamedTuple):
     moves: np.ndarray
 
 
+def rock_matrices(body: Body) -> Matrices:
+    """Return the matrices of discretised rock."""
+    stiffness, viscosity = whole(body.layout, body.mesh, body.blocks), None
+    if body.viscous_blocks:
+        viscosity = whole(body.layout, body.mesh, body.viscous_blocks)
+    mass = csr_matrix(diags(body.mass)) if body.consistent is None else body.consistent
+    return Matrices(stiffness, viscosity, mass, stiffness.diagonal() > 0)
+
+
 class Moment(NamedTuple):
     """A state and its acceleration [n], m/s2; `state.force` counts what ends and mass damping do.
 
@@ -44,6 +61,11 @@ class Moment(NamedTuple):
     state: State
     acceleration: np.ndarray
     size: np.ndarray
+
+
+def joint_room(model: Model) -> np.ndarray:
+    """Return room for the joints' stiffness in a step [6, q]."""
+    return np.zeros((6, 0 if model.interfaces is None else model.interfaces.area.size))
 
 
 class Length(NamedTuple):
@@ -79,9 +101,8 @@ class Stepper:
         parts = [matrices.mass, matrices.stiffness, viscosity]
         self._pattern = pattern(parts, model.interfaces, self.free)
         self._factors = Factors(self._pattern.start, self._pattern.column)
-        joints = model.interfaces
-        self._joints = None if joints is None else np.zeros((6, joints.area.size))
-        self._factored: tuple[Length, np.ndarray | None] | None = None
+        self._joints = joint_room(model)
+        self._factored: tuple[Length, np.ndarray] | None = None
         self._weight = np.zeros(self.free.size)
         self._lengths: dict[int, Length] = {}
         self.iterations = self.factorisations = 0
@@ -150,57 +171,14 @@ class Stepper:
 
     def _factorise(self, length: Length, now: Moment, trial: Moment) -> None:
         """Take the matrix of a trial moment, unless it is the last one."""
-        if self._joints is not None:
-            stiffen(length.model, now.state, trial.state, length.r, self._joints)
+        stiffen(length.model, now.state, trial.state, length.r, self._joints)
         if self._factored is not None:
             last, joints = self._factored
-            if last is length and (joints is None or np.array_equal(joints, self._joints)):
+            if last is length and np.array_equal(joints, self._joints):
                 return
-        values = length.fixed
-        if self._joints is not None:
-            joints = self._joints.copy()
-            values = values + (1 - self.scheme.alpha_f) * (self._pattern.joints @ joints.ravel())
+        of_joints = self._pattern.joints @ self._joints.ravel()
+        values = length.fixed + (1 - self.scheme.alpha_f) * of_joints
         self._factors.factorise(values)
         self.factorisations += 1
         self._weight = np.abs(values - length.inertia)[self._pattern.diagonal]
-        self._factored = length, None if self._joints is None else joints
-
-
-def mass_damping(model: Model) -> float:
-    """Return the mass-proportional damping alpha, 1/s, that `rock.keep` stands for."""
-    keep = model.rock.keep
-    return 0.0 if keep is None else 2 * (1 - keep) / (1 + keep) / model.dt
-
-
-def pressure_at(model: Model, n: int, share: float) -> float:
-    """Return the pressure of the load (Pa) at step n and a share of the next, linear in between."""
-    loaded = model.ends.loaded
-    if loaded is None:
-        return 0.0
-    last = loaded.pressure[n + 1] if share else 0.0
-    return float((1 - share) * loaded.pressure[n] + share * last)
-
-
-def shortened(model: Model, share: float) -> Model:
-    """Return a model whose step is a share of what it was; only dt and half joints know it."""
-    quiet = model.ends.quiet
-    if quiet is not None and quiet.springs is not None:
-        springs = shorter_springs(quiet.springs, share)
-        model = model._replace(ends=model.ends._replace(quiet=quiet._replace(springs=springs)))
-    return model._replace(dt=share * model.dt)
-
-
-def shorter_springs(springs: HalfJoints, share: float) -> HalfJoints:
-    """Return half joints for a share of the step: decay = (1 - lag) / (1 + lag) and gain =
-    dt share / (1 + lag), lag in proportion to dt (`joints.ends.half_spring`)."""
-    lag = (1 - springs.decay) / (1 + springs.decay)
-    gain = springs.gain * (1 + lag) * share / (1 + share * lag)
-    return HalfJoints(springs.stiffness, (1 - share * lag) / (1 + share * lag), gain)
-
-
-def end_resistance(quiet: Quiet, r: float, dt: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the freedoms that ends absorb from and how they resist displacement there, N/m."""
-    resistance = r * quiet.viscosity
-    if quiet.springs is not None:
-        resistance = resistance + quiet.springs.stiffness * quiet.springs.gain / dt
-    return quiet.freedom, resistance
+        self._factored = length, self._joints.copy()

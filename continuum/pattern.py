@@ -23,14 +23,14 @@ class Pattern(NamedTuple):
 
     fixed : float array [matrices, nnz], each of the matrices on it.
     joints : [nnz, 6 q], times the joints' stiffness of `balance.stiffen` [6 q] gives B^T D B on
-        it; None without joints.
+        it.
     diagonal : int array [n], which of the places are on the diagonal.
     """
 
     start: np.ndarray
     column: np.ndarray
     fixed: np.ndarray
-    joints: csr_matrix | None
+    joints: csr_matrix
     diagonal: np.ndarray
 
 
@@ -57,7 +57,7 @@ def pattern(matrices: list[csr_matrix], interfaces: Interfaces | None, free: np.
         start=start,
         column=places % free.size,
         fixed=np.array(fixed),
-        joints=csr_matrix((joints.value, (at[-1], source)), (places.size, size)) if size else None,
+        joints=csr_matrix((joints.value, (at[-1], source)), (places.size, size)),
         diagonal=np.searchsorted(places, own),
     )
 

@@ -107,6 +107,11 @@ def _none(directions: int, size: int) -> tuple[csr_matrix, ...]:
     return tuple(csr_matrix((directions, size)) for _ in range(3))
 
 
+def places_on_joints(body: Body, jumps: Jumps | None, places: list[float]) -> list[float]:
+    """Return which sections are on a joint, and read its traction."""
+    return [place for place in places if _points_of_joint(body, jumps, place).nnz]
+
+
 def _points_of_joint(body: Body, jumps: Jumps | None, place: float) -> csr_matrix:
     """Return the areas [1, q] of the joint's points, zero where the section is on none."""
     if jumps is None:
@@ -196,9 +201,8 @@ def _stress_rows(
 ) -> tuple[csr_matrix, csr_matrix]:
     """Return the weighted sum of the stresses on the section, sigma_y, then its shear along x and
     z, as rows [directions, freedoms]: from u, and from its rate by the rock's dashpots."""
-    of_cell = [materials[m] for m in body.material[point.cell]]
-    eta = np.array([m.time_constant for m in of_cell])
-    tractions = _tractions(body, of_cell, point.gradient)
+    eta = np.array([m.time_constant for m in materials])[body.material[point.cell]]
+    tractions = section_tractions(body, materials, point)
     rows = [_sum(body, point.cell, weight[:, None, None] * traction) for traction in tractions]
     damped = [
         _sum(body, point.cell, (eta * weight)[:, None, None] * traction) for traction in tractions
@@ -206,9 +210,10 @@ def _stress_rows(
     return vstack(rows).tocsr(), vstack(damped).tocsr()
 
 
-def _tractions(body: Body, of_cell: list[Material], gradient: np.ndarray) -> list[np.ndarray]:
-    """Return sigma_y, then sigma_xy and sigma_zy, as weights [n, nodes, components], tension
-    positive."""
+def section_tractions(body: Body, materials: list[Material], point: Places) -> list[np.ndarray]:
+    """Return sigma_y, then sigma_xy and sigma_zy, as weights [n, nodes per cell, components] of
+    the motion, tension positive."""
+    gradient, of_cell = point.gradient, [materials[m] for m in body.material[point.cell]]
     n, nodes, dim = gradient.shape
     components = body.section.components
     found = [np.zeros((n, nodes, components)) for _ in range(components)]

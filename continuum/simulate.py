@@ -1,15 +1,18 @@
 """From a scene to its result by the continuum engine."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Callable
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 import numba
 import numpy as np
 import xarray as xr
 
-from cases.errors import SceneError, UnstableError
-from cases.result import dataset
+from cases.errors import SceneError
+from cases.result import fields
 from cases.sampling import Clock, clock
 from cases.scene import Scene
 from continuum import compat
@@ -23,13 +26,13 @@ from continuum.build import (
 )
 from continuum.explicit import run
 from continuum.kinematics import refuse
-from continuum.model import Model, Samples, State
+from continuum.looks import march_with_looks, runaway_check
+from continuum.model import State
 from continuum.reach import applies
 from continuum.waveforms import energy_terms, waveforms
 
-NODE_STEPS_BETWEEN_LOOKS = 10_000_000  # some 0.1 s: often enough for a progress bar
-LEAST_LOOKS = 20  # so that a runaway motion is dated to a twentieth of the scene
-RUNAWAY = 100  # times the highest speed that the load can cause
+if TYPE_CHECKING:
+    from continuum.snapshots import RockFilm
 
 
 def simulate(
@@ -63,10 +66,18 @@ def simulate(
     ready = perf_counter()
     run(built, state, samples, time.stride, 0, 0)
     compiled = perf_counter()
-    _run(built, state, samples, time, critical, progress)
+    film = _film(scene, discrete, state, time)
+    march_with_looks(
+        time,
+        state.u.size,
+        lambda first, last: run(built, state, samples, time.stride, first, last),
+        runaway_check(built, state, time.dt, critical),
+        progress,
+        film,
+    )
     stepped = perf_counter()
     terms, energy = energy_terms(built, samples.energy)
-    return dataset(
+    result = fields(
         scene,
         f"continuum-{model}",
         time.times,
@@ -88,6 +99,16 @@ def simulate(
             {"numpy": np.__version__, "numba": numba.__version__, "dolfinx": compat.VERSION}
         ),
     )
+    return xr.Dataset(*(result if film is None else film.developed(result, time)))
+
+
+def _film(scene: Scene, discrete: Discrete, state: State, time: Clock) -> RockFilm | None:
+    """Return what keeps snapshots; None, and nothing imported, where none are asked for."""
+    if scene.record.fields is None:
+        return None
+    from continuum.snapshots import RockFilm
+
+    return RockFilm(scene, discrete, state, time.dt)
 
 
 def steps_of(scene: Scene, model: str, dim: int | None = None) -> tuple[Clock, float]:
@@ -100,46 +121,3 @@ def _steps(scene: Scene, discrete: Discrete, model: str) -> tuple[Clock, float]:
     critical = critical_step_of(scene, discrete, model)
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "continuum")
     return time, critical
-
-
-def _run(
-    model: Model,
-    state: State,
-    samples: Samples,
-    time: Clock,
-    critical: float,
-    progress: Callable[[float], None] | None,
-) -> None:
-    limit = RUNAWAY * highest_speed(model)
-    chunk = NODE_STEPS_BETWEEN_LOOKS // (state.u.size * time.stride)
-    chunk = max(1, min(chunk, time.samples // LEAST_LOOKS))
-    step = 0
-    for first in range(0, time.samples, chunk):
-        last = min(first + chunk, time.samples)
-        # Up to the step of the last sample: what follows it belongs to the next chunk.
-        end = (last - 1) * time.stride + 1
-        run(model, state, samples, time.stride, step, end)
-        step = end
-        if not np.abs(state.v).max() <= limit:
-            raise UnstableError(
-                f"the continuum runs away before t = {step * time.dt:.4g} s "
-                f"(step {time.dt:.4g} s, critical {critical:.4g} s)"
-            )
-        if progress:
-            progress(last / time.samples)
-
-
-def highest_speed(model: Model) -> float:
-    """Return a bound on the speed of any node, m/s; the largest number where none is known.
-
-    Where a load on the start is all that puts energy in, d sqrt(2 E) / dt is at most |F| in the
-    norm of 1 / m, and m v^2 of any node at most 2 E.
-    """
-    loaded, held = model.ends.loaded, model.ends.held
-    shaken = held is not None and held.step is not None
-    if loaded is None or shaken or model.weight is not None:
-        return float(np.finfo(float).max) / RUNAWAY
-    mass = model.rock.mass
-    impulse = model.dt * np.abs(loaded.pressure).sum()
-    drive = np.sqrt((loaded.share**2 / mass[loaded.freedom]).sum())
-    return float(impulse * drive / np.sqrt(mass[mass > 0].min()))

@@ -6,17 +6,19 @@ from cases.result import ALL_TERMS
 from cases.scene import Scene
 from continuum.build import Discrete
 from continuum.model import Model, Samples
+from continuum.receivers import places_on_joints
 from continuum.record import TERMS
+from joints.laws import Law
 
 
 def waveforms(scene: Scene, discrete: Discrete, samples: Samples) -> dict[str, np.ndarray]:
     """Return the recorded fields at the scene's receivers, as `cases.result.fields` takes them.
 
-    Prestress is part of every stress. What a mesh in two dimensions has no room for is zero.
+    What a mesh in two dimensions has no room for is zero.
     """
     components = discrete.body.section.components
     force = _by_component(samples.stress, components)
-    stress = force[0] + (scene.prestress.normal if scene.prestress else 0.0)
+    stress = force[0] + _prestress(scene, discrete)[:, None]
     motion = {"velocity": samples.velocity, "displacement": samples.displacement}
     if components == 1:
         return {"stress": stress, **motion}
@@ -31,6 +33,15 @@ def waveforms(scene: Scene, discrete: Discrete, samples: Samples) -> dict[str, n
     if samples.turn is not None:
         found["rotation"] = np.moveaxis(_by_component(samples.turn, 3), 0, 2)
     return found
+
+
+def _prestress(scene: Scene, discrete: Discrete) -> np.ndarray:
+    """Return the prestress (Pa) of sections in the rock; that on a joint is in its traction."""
+    places = np.array(scene.record.stress, dtype=float)
+    if scene.prestress is None or discrete.joints is None:
+        return np.zeros(places.size)
+    on_joint = np.isin(places, places_on_joints(discrete.body, discrete.jumps, scene.record.stress))
+    return np.where(on_joint, 0.0, scene.prestress.normal)
 
 
 def _by_component(waves: np.ndarray, components: int) -> np.ndarray:
@@ -48,15 +59,18 @@ def energy_terms(
     model: Model, energy: np.ndarray | None
 ) -> tuple[tuple[str, ...], np.ndarray | None]:
     """Return the terms that the ledger of a model has, in the order of every result, and them."""
-    joints = model.interfaces
-    law = None if joints is None else joints.law
-    shears = law is not None and law.shear_stiffness is not None
+    law = None if model.interfaces is None else model.interfaces.law
     there = {
         "fracture": law is not None and law.tensile_strength is not None,
-        "friction": shears and not (law.cohesion is None and law.friction is None),
+        "friction": law is not None and slides(law),
         "gravity": model.weight is not None,
     }
     terms = tuple(t for t in ALL_TERMS if t in TERMS and there.get(t, True))
     if energy is None:
         return terms, None
     return terms, energy[[TERMS.index(t) for t in terms]]
+
+
+def slides(law: Law) -> bool:
+    """Return whether joints of this law have a strength in shear."""
+    return law.shear_stiffness is not None and not (law.cohesion is None and law.friction is None)

@@ -25,6 +25,8 @@ FACET_NAMES = {
     "hexahedron": "quad",
 }
 
+SAVE_GROUPS = "save it with Mesh.SaveAll = 0"
+
 
 class MeshError(ValueError):
     """What is wrong with a gmsh file, in one phrase."""
@@ -47,7 +49,7 @@ class Tagged(NamedTuple):
 
 
 def read_tagged(path: str | Path) -> Tagged:
-    """Read a gmsh file of any version that meshio reads; raises MeshError.
+    """Read a gmsh file, version 2.2 or 4.1, as text or binary; raises MeshError.
 
     The groups whose names start with "rock" are the rock; capitals do not matter.
     """
@@ -77,7 +79,9 @@ def _read(path: Path):
     # A broken file makes the reader fail in any way.
     except Exception as error:
         reason = str(error) or type(error).__name__
-        raise MeshError(f"cannot be read as a gmsh mesh with named groups: {reason}") from None
+        if "gmsh:physical" in reason:
+            raise MeshError(f"holds cells of no group, {SAVE_GROUPS}") from None
+        raise MeshError(f"cannot be read as a gmsh mesh, version 2.2 or 4.1: {reason}") from None
 
 
 def _rock(mesh, names: list[str]) -> tuple[str, np.ndarray]:
@@ -85,24 +89,33 @@ def _rock(mesh, names: list[str]) -> tuple[str, np.ndarray]:
     if not names:
         raise MeshError("has no group whose name starts with 'rock'")
     types = {block.type for block, inside in _blocks(mesh, names) if inside.any()}
-    if len(types) != 1:
-        found = " and ".join(sorted(types)) or "no"
+    if not types:
+        raise MeshError(f"no cells are in its group '{names[0]}', {SAVE_GROUPS}")
+    if len(types) > 1:
+        found = " and ".join(sorted(types))
         raise MeshError(f"its rock holds {found} cells, must be of one kind: {', '.join(KINDS)}")
     (name,) = types
     if name not in KINDS:
         raise MeshError(f"its rock holds {name} cells, must be first-order {', '.join(KINDS)}")
+    cells = _of_type(mesh, names, name)
     dim = next(block.dim for block in mesh.cells if block.type == name)
-    other = sum((~inside).sum() for block, inside in _blocks(mesh, names) if block.dim == dim)
-    if other:
-        raise MeshError(f"{other} of its cells are in no group whose name starts with 'rock'")
-    return KINDS[name], _of_type(mesh, names, name)
+    everything = [block for block in mesh.cells if block.dim == dim]
+    others = sum(len(block.data) for block in everything if block.type != name)
+    others += len(_each_once([b.data for b in everything if b.type == name])) - len(cells)
+    if others:
+        raise MeshError(f"{others} of its cells are in no group whose name starts with 'rock'")
+    return KINDS[name], cells
 
 
 def _of_type(mesh, names: list[str], cell: str) -> np.ndarray:
     """Return the cells of one type in these groups, each once, int array [n, corners]."""
     found = [block.data[inside] for block, inside in _blocks(mesh, names) if block.type == cell]
-    cells = np.concatenate(found).astype(np.int64) if found else np.empty((0, 1), dtype=np.int64)
-    # Version 2 of the format repeats a cell for each of its groups.
+    return _each_once(found) if found else np.empty((0, 1), dtype=np.int64)
+
+
+def _each_once(found: list[np.ndarray]) -> np.ndarray:
+    """Return cells without repetitions: version 2 of the format lists a cell for each group."""
+    cells = np.concatenate(found).astype(np.int64)
     first = np.unique(np.sort(cells, axis=1), axis=0, return_index=True)[1]
     return cells[np.sort(first)]
 

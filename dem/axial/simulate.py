@@ -1,18 +1,25 @@
 """From an axial scene to its result."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from cases.calibrate import calibrate
 from cases.result import Fields, fields
 from cases.scene import Scene
-from dem.axial.model import build
+from dem.axial.model import Model, build
 from dem.axial.record import room, run, terms
 from dem.axial.start import start
+from dem.axial.state import State
 from dem.fragments import break_times, with_fragments
 from dem.looks import Stretch, march_with_looks, versions
+
+if TYPE_CHECKING:
+    from dem.snapshots import BlockFilm
 
 
 def simulate_fields(scene: Scene, progress: Callable[[float], None] | None = None) -> Fields:
@@ -23,6 +30,7 @@ def simulate_fields(scene: Scene, progress: Callable[[float], None] | None = Non
     samples = room(model, state, time.samples)
     built = perf_counter()
     run(model, state, samples, time.stride, 0, 0)
+    film = _film(scene, model, state, time.stride)
     compiled = perf_counter()
 
     def march(first: int, last: int) -> None:
@@ -31,7 +39,7 @@ def simulate_fields(scene: Scene, progress: Callable[[float], None] | None = Non
     def check(stretch: Stretch) -> None:
         stretch.refuse_unless(bool(np.isfinite(state.u).all()))
 
-    march_with_looks(time, critical, state.u.size, march, check, progress)
+    march_with_looks(time, critical, state.u.size, march, check, progress, film)
     result = fields(
         scene,
         "dem",
@@ -54,7 +62,20 @@ def simulate_fields(scene: Scene, progress: Callable[[float], None] | None = Non
         seconds_stepping=perf_counter() - compiled,
         versions=versions(),
     )
+    if film is not None:
+        result = film.developed(result)
     if state.broke is None:
         return result
     times = break_times(state.broke, time.dt, time.steps)
     return with_fragments(result, calibrate(scene), ~np.isnan(times), state.v, times)
+
+
+def _film(scene: Scene, model: Model, state: State, stride: int) -> BlockFilm | None:
+    """Return what keeps snapshots; None, and nothing imported, where none are asked for."""
+    if scene.record.fields is None:
+        return None
+    from dem.axial.snapshots import shooter
+    from dem.snapshots import BlockFilm
+
+    p = calibrate(scene)
+    return BlockFilm(scene, p, shooter(p, model, state, stride))

@@ -1,8 +1,10 @@
 """From a spatial scene to its result."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from time import perf_counter
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -27,6 +29,9 @@ from dem.spatial.section import contact_points, face_of, section
 from dem.spatial.stability import critical_spatial_step
 from dem.spatial.start import start
 from dem.spatial.threads import marcher, thread_count
+
+if TYPE_CHECKING:
+    from dem.snapshots import BlockFilm
 
 MOST_TURN = 0.045  # rad: the part of a lever that small rotations neglect, 1 - cos, is then 1e-3
 
@@ -64,6 +69,7 @@ def simulate_fields(scene: Scene, progress: Callable[[float], None] | None = Non
     march = marcher(model, state, room_for(model, threads), samples)
     built = perf_counter()
     march(0, 0)
+    film = _film(scene, p, model, state, threads)
     compiled = perf_counter()
     march_with_looks(
         time,
@@ -72,6 +78,7 @@ def simulate_fields(scene: Scene, progress: Callable[[float], None] | None = Non
         lambda first, last: march(first * time.stride, last * time.stride),
         lambda stretch: check(scene, model, state, stretch),
         progress,
+        film,
     )
     stepped = perf_counter()
     result = fields(
@@ -94,7 +101,21 @@ def simulate_fields(scene: Scene, progress: Callable[[float], None] | None = Non
         seconds_stepping=stepped - compiled,
         versions=versions(),
     )
+    if film is not None:
+        result = film.developed(result)
     return with_breaks(result, p, model, state)
+
+
+def _film(
+    scene: Scene, p: Properties, model: Model, state: State, threads: int
+) -> BlockFilm | None:
+    """Return what keeps snapshots; None, and nothing imported, where none are asked for."""
+    if scene.record.fields is None:
+        return None
+    from dem.snapshots import BlockFilm
+    from dem.spatial.snapshots import shooter
+
+    return BlockFilm(scene, p, shooter(p, model, state, threads))
 
 
 def waveforms(

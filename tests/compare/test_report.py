@@ -15,6 +15,7 @@ from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 
 import cases
+from compare.fieldfiles import read_pvd
 from compare.findings import Finding
 from compare.page import Section, render
 from compare.pairs import Comparison
@@ -190,9 +191,28 @@ def test_page_needs_nothing_but_its_own_files(report):
     assert len(ids) == len(set(ids))
 
 
+def test_the_pillar_in_motion_is_visible(page):
+    """A picture of blocks in the colours of compression and of tension, and where to look on."""
+    figure = page.find_element(By.ID, "motion-figure")
+    assert figure.is_displayed()
+    image = pixels(figure.screenshot_as_png)
+    assert 0.05 < ink(image) < 0.7
+    assert shows(image, "#d6604d") and shows(image, "#4393c3")
+    groups = figure.find_elements(By.CSS_SELECTOR, "[id^=snapshots-][id$=-dem]")
+    assert len(groups) == 7 and all(group.rect["width"] > 900 for group in groups)
+    assert "1350\u00a0m/s" in page.find_element(By.ID, "motion").text
+
+
+def test_the_pillar_in_motion_can_be_opened_in_a_viewer(report):
+    found = read_pvd(report.page.parent / "fields" / "dem.pvd")
+    assert found.time == pytest.approx(5e-3 * np.arange(8))
+    assert found.kind == "hexahedron" and found.displacement[1:].any(axis=(1, 2)).all()
+
+
 def test_report_leaves_no_half_written_files(report):
     files = [path.name for path in report.page.parent.rglob("*") if path.is_file()]
-    assert len(files) == 1 + 4 * len(FIGURES)
+    motion = ["snapshots.svg", "snapshots.png", "dem.pvd", *(f"{i:04d}.vtu" for i in range(8))]
+    assert len(files) == 1 + 4 * len(FIGURES) + len(motion) and set(motion) <= set(files)
     assert not [name for name in files if name.startswith(".")]
 
 

@@ -1,10 +1,11 @@
-"""All benchmarks of the rigid blocks, as ratios and costs of one run on this machine.
+"""All benchmarks, as ratios and costs of one run on this machine.
 
-usage: python tools/bench [startup] [kernels] [effects] [memory]
+usage: python tools/bench [startup] [kernels] [continuum] [effects] [memory]
 """
 
 import sys
 
+import deformable
 import effects
 import kernels
 import memory
@@ -13,6 +14,7 @@ import startup
 PARTS = {
     "startup": startup.main,
     "kernels": kernels.main,
+    "continuum": deformable.main,
     "memory": memory.main,
     "effects": effects.main,
 }

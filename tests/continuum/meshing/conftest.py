@@ -115,9 +115,7 @@ def _draw(
         groups |= {"start": faces[0.0, 0.0], "end": faces[length, length]}
     for name, tags in groups.items():
         model.setPhysicalName(dim - 1, model.addPhysicalGroup(dim - 1, tags), name)
-    rock = model.addPhysicalGroup(
-        dim, volumes if doubled else [t for _, t in model.getEntities(dim)]
-    )
+    rock = model.addPhysicalGroup(dim, [tag for _, tag in model.getEntities(dim)])
     model.setPhysicalName(dim, rock, "Rock mass")
     model.mesh.generate(dim)
     model.mesh.setOrder(order)

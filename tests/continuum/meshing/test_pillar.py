@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from continuum.meshing.cells import jacobians
 from continuum.meshing.pillar import elements_in_block, pillar_mesh
@@ -162,6 +164,40 @@ def test_blocks_beside_a_layer_have_equal_elements(dim, cell, properties):
     expected = [0, 0.225, 0.45, 0.55, 0.775, 1.0, 1.25, 1.5]
     assert y == pytest.approx(expected, rel=1e-14)
     assert mesh.joints.joint.size == 0 and mesh.joints.corners.shape[2] == dim
+
+
+@given(
+    roles=st.lists(st.sampled_from(["cut", "layer", "rock"]), min_size=1, max_size=30),
+    elements=st.integers(1, 4),
+    thickness=st.floats(1e-3, 0.49),
+)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=50)
+def test_any_mix_of_joints_fills_the_pillar(roles, elements, thickness, properties):
+    p = properties(len(roles) + 1)
+    cut, layers = ([j for j, role in enumerate(roles) if role == kind] for kind in ("cut", "layer"))
+    mesh = pillar_mesh(
+        p, 1, "simplex", elements, 1, np.array(cut, dtype=int), dict.fromkeys(layers, thickness)
+    )
+    assert mesh.joints.joint.tolist() == cut and mesh.layers == tuple(layers)
+    assert sum(part.copies for part in mesh.parts) == len(cut) + 1
+    cells = [
+        (part.shifts[:, None] + part.x[part.cells][..., 0]).reshape(-1, 2) for part in mesh.parts
+    ]
+    ends = np.concatenate(cells)
+    ends = ends[np.argsort(ends[:, 0])]
+    # Neighbours meet to round-off of their place, cells are no thinner than asked for.
+    assert ends[1:, 0] == pytest.approx(ends[:-1, 1], rel=1e-15, abs=1e-15)
+    assert (ends[0, 0], ends[-1, 1]) == pytest.approx((0.0, 0.5 * p.block_count), rel=1e-15)
+    size = np.diff(ends, axis=1)
+    assert size.min() >= min(thickness, (0.5 - thickness) / elements) * (1 - 1e-12)
+    assert len(ends) == elements * p.block_count + len(layers)
+    for k, joint in enumerate(layers):
+        middle = [
+            (part.x[cell].mean() + part.shifts[0, 0])
+            for part in mesh.parts
+            for cell in part.cells[part.material == k + 1]
+        ]
+        assert middle == pytest.approx([p.joint_y[joint]], rel=1e-12)
 
 
 def test_what_cannot_be_meshed_is_refused(properties):

@@ -1,0 +1,110 @@
+"""Snapshots of rigid blocks: hexahedra that move by the blocks' displacement and rotation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cases.calibrate import Properties
+from cases.result import Fields
+from cases.scene import Scene
+from cases.snapshots import (
+    Film,
+    in_space,
+    refuse_beyond_room,
+    samples_between,
+    snapshots,
+    with_snapshots,
+)
+from cases.subcells import CORNERS
+
+CORNERS_OF_A_BLOCK = 8
+
+
+class Shot(NamedTuple):
+    """All blocks and contacts at one instant, in the freedoms of the engine.
+
+    stress : float array [N + 1], of contacts 0 .. N, Pa.
+    displacement, velocity : float arrays [N, freedoms], m and m/s: 1, along y; 3, along x, y, z; 6,
+        with rotation vectors (rad) and their rates; 7 and 6, with the quaternion, scalar last, and
+        the angular momentum (kg m2/s).
+    """
+
+    stress: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+
+
+def copied(state: Any) -> Any:
+    """Return a copy of a state: of every array in a tuple of arrays, tuples and Nones."""
+    if isinstance(state, tuple):
+        return type(state)(*map(copied, state))
+    return None if state is None else state.copy()
+
+
+class BlockFilm(Film):
+    """The blocks at every snapshot that a scene asks for; raises SceneError for too many."""
+
+    def __init__(self, scene: Scene, p: Properties, shoot: Callable[[int], Shot]) -> None:
+        refuse_beyond_room(scene, CORNERS_OF_A_BLOCK * p.block_count)
+        super().__init__(samples_between(scene) or 1, shoot)
+        self.p = p
+
+    def developed(self, result: Fields) -> Fields:
+        """Return the run's result with its snapshots."""
+        time, count = result.coords["time"][1][:: self.every], self.p.block_count
+        corners, centres = corners_of(self.p), np.zeros((count, 1, 3))
+        centres[:, 0, 1] = self.p.spacing * (np.arange(count) + 0.5)
+        motion = [corner_motion(shot, corners, self.p) for shot in self.shots]
+        u, v = (np.stack(x).reshape(len(time), -1, 3) for x in zip(*motion, strict=True))
+        found = snapshots(
+            time,
+            (centres + corners).reshape(-1, 3),
+            "hexahedron",
+            np.arange(count * len(corners)).reshape(count, -1),
+            np.arange(count),
+            u,
+            v,
+            np.stack([(shot.stress[:-1] + shot.stress[1:]) / 2 for shot in self.shots]),
+        )
+        return with_snapshots(result, found)
+
+
+def corners_of(p: Properties) -> np.ndarray:
+    """Return the corners of a block from its centroid [8, 3], m, in VTK's order."""
+    return (np.array(CORNERS["hexahedron"]) - 0.5) * [p.side, p.spacing, p.side]
+
+
+def corner_motion(shot: Shot, corners: np.ndarray, p: Properties) -> tuple[np.ndarray, np.ndarray]:
+    """Return displacement (m) and velocity (m/s) of every block's corners, each [N, 8, 3]."""
+    freedoms = shot.displacement.shape[1]
+    along = slice(min(freedoms, 3))
+    u, v = (in_space(x[:, along])[:, None] for x in (shot.displacement, shot.velocity))
+    u, v = (np.broadcast_to(x, (len(x), *corners.shape)) for x in (u, v))
+    if freedoms == 6:
+        turn, spin = shot.displacement[:, None, 3:], shot.velocity[:, None, 3:]
+        return u + np.cross(turn, corners), v + np.cross(spin, corners)
+    if freedoms == 7:
+        turn = shot.displacement[:, None, 3:]
+        arms = corners + turning(turn, corners)
+        return u + turning(turn, corners), v + np.cross(spin_of(turn, shot.velocity, p), arms)
+    return u, v
+
+
+def turning(quaternion: np.ndarray, r: np.ndarray) -> np.ndarray:
+    """Return what unit quaternions [..., 4], scalar last, add to vectors [..., 3] that they turn.
+
+    Rr - r = 2 q x (q x r + w r), which keeps the digits of small turns.
+    """
+    q, w = quaternion[..., :3], quaternion[..., 3:]
+    return 2 * np.cross(q, np.cross(q, r) + w * r)
+
+
+def spin_of(turn: np.ndarray, velocity: np.ndarray, p: Properties) -> np.ndarray:
+    """Return the angular velocities [N, 1, 3], rad/s, of angular momenta velocity[:, 3:]."""
+    momentum, back = velocity[:, None, 3:], turn * [-1, -1, -1, 1]
+    own = momentum + turning(back, momentum)
+    own = own / [p.inertia_across, p.inertia_along, p.inertia_across]
+    return own + turning(turn, own)

@@ -1,0 +1,124 @@
+"""What the tests of the continuum share: short pillars, their bodies, and runs step by step."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+from cases.calibrate import calibrate
+from cases.sampling import Clock
+from cases.scene import Scene
+from continuum.body import build_body
+from continuum.build import (
+    Discrete,
+    build_model,
+    critical_step_of,
+    discretise,
+    room,
+    state_at_rest,
+)
+from continuum.elasticity import Material, Section
+from continuum.explicit import run
+from continuum.meshing.pillar import pillar_mesh
+from continuum.waveforms import waveforms
+
+ROCK = Material(modulus=8.64e10, poisson=0.25, density=2400.0)
+
+SHORT: dict[str, Any] = {
+    "pillar__length": 2.0,
+    "load__amplitude": 1e5,
+    "time__duration": 4e-3,
+    "record": {"stress": [0.2, 1.0, 1.6], "velocity": [0.0, 0.3, 1.0], "interval": 5e-5},
+    "numerics__continuum__elements_per_block": 1,
+}
+
+
+class Run(NamedTuple):
+    """A scene in the middle of its steps."""
+
+    scene: Scene
+    discrete: Discrete
+    model: Any
+    state: Any
+    samples: Any
+    time: Clock
+
+    def take(self, first: int, last: int) -> "Run":
+        """Take the steps first .. last - 1."""
+        run(self.model, self.state, self.samples, self.time.stride, first, last)
+        return self
+
+    def to_the_end(self) -> "Run":
+        """Take all steps, up to the last sample."""
+        return self.take(0, self.time.steps + 1)
+
+    @property
+    def waves(self) -> dict[str, np.ndarray]:
+        """What has been recorded, as `cases.result` takes it."""
+        return waveforms(self.scene, self.discrete, self.samples)
+
+
+@pytest.fixture
+def short(pillar):
+    """Return a function that gives four blocks of 0.5 m, one element long, keys changed."""
+
+    def scene(**changes):
+        record = SHORT["record"] | changes.pop("record", {})
+        return pillar(**(SHORT | {"record": record} | changes))
+
+    return scene
+
+
+@pytest.fixture
+def ready():
+    """Return a function that gives the `Run` of a scene before its first step.
+
+    fraction : of the critical step; samples : how many, one at every step. Or a whole clock.
+    """
+
+    def prepared(scene, model="jointed", dim=None, fraction=0.5, samples=81, clock=None):
+        discrete = discretise(scene, model, dim)
+        if clock is None:
+            clock = Clock(fraction * critical_step_of(scene, discrete, model), 1, samples)
+        built = build_model(scene, discrete, model, clock)
+        state = state_at_rest(built, scene.record.energy)
+        return Run(scene, discrete, built, state, room(built, state, clock.samples), clock)
+
+    return prepared
+
+
+@pytest.fixture
+def body(pillar):
+    """Return a function that gives the discretised rock of a pillar that all its joints cut.
+
+    Blocks are 0.5 m long, the section is 0.5 m x 0.5 m. bent : function of the vertices [n, dim]
+    that moves them.
+    """
+
+    def build(dim, cell="hexahedron", order=2, blocks=3, along=1, across=2, rock=ROCK, bent=None):
+        p = calibrate(pillar(pillar__length=0.5 * blocks, record={"stress": [0.5]}))
+        mesh = pillar_mesh(p, dim, cell, along, across, np.arange(blocks - 1))
+        if bent is not None:
+            mesh = moved(mesh, bent)
+        extent = {1: p.area, 2: p.side, 3: 1.0}[dim]
+        return build_body(mesh, order, [rock], Section(dim, extent))
+
+    return build
+
+
+@pytest.fixture
+def rebuilt():
+    """Return a function that discretises another mesh as a body is discretised."""
+    return lambda body, mesh, rock=ROCK: build_body(mesh, body.order, [rock], body.section)
+
+
+def moved(mesh, bent):
+    """Return a mesh whose vertices a function has moved: as parts that stand once."""
+    parts = []
+    for part in mesh.parts:
+        for shift in part.shifts:
+            once = np.zeros((1, len(shift)))
+            parts.append(part._replace(x=bent(part.x + shift), shifts=once))
+    joints = mesh.joints._replace(corners=bent(mesh.joints.corners))
+    start, end = (s._replace(corners=bent(s.corners)) for s in (mesh.start, mesh.end))
+    return mesh._replace(parts=tuple(parts), joints=joints, start=start, end=end)

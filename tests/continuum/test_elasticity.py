@@ -1,0 +1,178 @@
+"""Mass and stiffness of rock against what each must reproduce exactly."""
+
+import numpy as np
+import pytest
+import ufl
+from scipy.linalg import eigh
+from scipy.sparse.csgraph import connected_components
+
+from continuum import compat
+from continuum.body import whole
+from continuum.elasticity import Material, Section, discretise, measure
+from continuum.meshing.description import Part
+
+ROCK = Material(modulus=8.64e10, poisson=0.25, density=2400.0)
+UNIT = Material(modulus=1.0, poisson=0.0, density=1.0)
+ORDERS = [1, 2, 3, 4]
+HEXAHEDRA = [(dim, "hexahedron", order) for dim in (1, 2, 3) for order in ORDERS]
+SIMPLICES = [(dim, "simplex", order) for dim in (2, 3) for order in (1, 2)]
+cells = pytest.mark.parametrize(("dim", "cell", "order"), HEXAHEDRA + SIMPLICES)
+
+#: m/m; du/dx of a motion that strains, shears and turns.
+GRADIENT = np.array([[0.3, -0.5, 0.2], [0.4, 0.7, -0.6], [-0.1, 0.9, 0.5]])
+
+
+def bar(elements: int = 6, length: float = 3.0) -> Part:
+    """Return a bar between 0 and its length."""
+    cells = np.arange(elements)[:, None] + np.arange(2)
+    x = length / elements * np.arange(elements + 1.0)[:, None]
+    return Part(x, cells, np.zeros(elements, dtype=int), np.zeros((1, 1)))
+
+
+def of_bar(order: int, elements: int = 6):
+    """Return the piece of a bar of unit modulus, density and area."""
+    return discretise(bar(elements), "interval", order, [UNIT], Section(1, 1.0))
+
+
+def assembled(body):
+    """Return the stiffness of a whole body, N/m."""
+    return whole(body.layout, body.mesh, body.blocks)
+
+
+def moved_by(body, gradient: np.ndarray) -> np.ndarray:
+    """Return the freedoms of the displacement u = gradient x."""
+    u, gradient = np.zeros(body.mass.size), np.atleast_2d(gradient)
+    for c in range(body.section.components):
+        u[body.freedom(np.arange(len(body.x)), c)] = body.x @ gradient[c]
+    return u
+
+
+@cells
+def test_pieces_between_joints_are_disconnected(dim, cell, order, body):
+    at = body(dim, cell, order, blocks=3)
+    nodes = at.freedom(np.arange(len(at.x)), 0)
+    pieces, label = connected_components(assembled(at)[nodes][:, nodes])
+    assert pieces == 3 and at.mesh.parts[0].copies == 3
+    assert (np.ptp(label.reshape(3, -1), axis=1) == 0).all()
+
+
+@cells
+def test_mass_adds_up_to_that_of_the_rock_in_every_direction(dim, cell, order, body):
+    at = body(dim, cell, order)
+    for c in range(at.section.components):
+        mass = at.mass[at.freedom(np.arange(len(at.x)), c)]
+        assert (mass > 0).all()
+        assert mass.sum() == pytest.approx(2400.0 * 0.25 * 1.5, rel=1e-13)
+
+
+@pytest.mark.parametrize(("dim", "cell", "order"), HEXAHEDRA)
+def test_mass_of_hexahedra_is_the_diagonal_of_the_matrix(dim, cell, order, body):
+    """By Lobatto's rule the mass matrix has no other entries, and is not lumped by hand."""
+    part = body(dim, cell, order).mesh.parts[0]
+    kind = {1: "interval", 2: "quadrilateral", 3: "hexahedron"}[dim]
+    space = compat.lagrange_space(compat.cell_mesh(kind, part.cells, part.x), order)
+    u, w = ufl.TrialFunction(space), ufl.TestFunction(space)
+    matrix = compat.matrix(u * w * measure(kind, order)).toarray()
+    mass = compat.vector(w * measure(kind, order))
+    assert np.abs(matrix - np.diag(mass)).max() < 1e-13 * mass.max()
+    assert (mass > 0).all()
+
+
+@pytest.mark.parametrize(("dim", "cell", "order"), SIMPLICES)
+def test_lumped_mass_of_simplices_has_the_proportions_of_the_consistent_diagonal(
+    dim, cell, order, body
+):
+    """Hinton, Rock & Zienkiewicz (1976): cell by cell, the diagonal scaled to the cell's mass."""
+    part = body(dim, cell, order).mesh.parts[0]
+    kind = {2: "triangle", 3: "tetrahedron"}[dim]
+    section = Section(dim, 1.0)
+    piece = discretise(part, kind, order, [ROCK], section, consistent=True)
+    whole_mass = piece.consistent.toarray()[::dim, ::dim]
+    assert whole_mass.sum() == pytest.approx(piece.mass.sum(), rel=1e-13)
+    assert np.linalg.eigvalsh(whole_mass).min() > 0
+    assert np.ptp(piece.mass / whole_mass.diagonal()) < 1e-12
+
+
+@cells
+def test_stiffness_is_symmetric_and_knows_no_rigid_motion(dim, cell, order, body):
+    """Turns about any axis included, small ones."""
+    at = body(dim, cell, order)
+    matrix = assembled(at)
+    largest = np.abs(matrix).max()
+    assert np.abs(matrix - matrix.T).max() < 1e-13 * largest
+    for c in range(at.section.components):
+        u = np.zeros(at.mass.size)
+        u[at.freedom(np.arange(len(at.x)), c)] = 1.0
+        assert np.abs(matrix @ u).max() < 1e-12 * largest
+    if dim > 1:
+        turn = (GRADIENT - GRADIENT.T)[:dim, :dim]
+        assert np.abs(matrix @ moved_by(at, turn)).max() < 1e-12 * largest
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_uniform_strain_of_a_bar_is_in_equilibrium(order):
+    piece = of_bar(order)
+    force = piece.stiffness @ (0.5 + 2.0 * piece.x[:, 0])
+    expected = -2.0 * (piece.x[:, 0] == 0.0) + 2.0 * (piece.x[:, 0] == 3.0)
+    assert np.abs(force - expected).max() < 1e-12
+    assert np.abs(piece.stiffness - piece.stiffness.T).max() < 1e-13
+
+
+def bent_across(x: np.ndarray) -> np.ndarray:
+    """Move vertices inside the section, alike in all sections: faces of cells stay plane."""
+    bump = np.cos(np.pi * x[..., :1] / 0.5)
+    if x.shape[-1] == 2:
+        return x + 0.02 * np.concatenate([bump * np.sin(7 * x[..., 1:]), 0 * bump], axis=-1)
+    bump = bump * np.cos(np.pi * x[..., 2:] / 0.5)
+    return x + 0.05 * bump * np.array([1.0, 0.0, -0.6])
+
+
+def bent_everywhere(x: np.ndarray) -> np.ndarray:
+    """Move vertices inside the pillar along y too: faces of hexahedra are warped."""
+    inside = np.prod(np.cos(np.pi * np.delete(x, 1, axis=-1) / 0.5), axis=-1, keepdims=True)
+    along = np.sin(2 * np.pi * x[..., 1:2]) * inside
+    return bent_across(x) + 0.05 * along * np.eye(x.shape[-1])[1]
+
+
+@pytest.mark.parametrize("bent", [None, bent_across, bent_everywhere])
+@cells
+def test_patch_of_any_shape_carries_uniform_strain_exactly(dim, cell, order, bent, body):
+    """No force on nodes inside (Irons' patch test), and sum of f x over all nodes = V sigma.
+
+    Lobatto's rule integrates cof(J) grad w exactly, but for warped faces of trilinear hexahedra:
+    it is of degree order + 1 in each coordinate there, the rule of degree 2 order - 1.
+    """
+    if dim == 1 or (bent is bent_everywhere and (dim, cell, order) == (3, "hexahedron", 1)):
+        return
+    at = body(dim, cell, order, along=3, across=4, bent=bent)
+    gradient = GRADIENT[:dim, :dim]
+    force = assembled(at) @ moved_by(at, gradient)
+    half, nodes = 0.25, np.arange(len(at.x))
+    inside = (np.abs(np.delete(at.x, 1, axis=1)) < half - 1e-9).all(axis=1)
+    inside &= np.abs(at.x[:, 1] / 0.5 - np.round(at.x[:, 1] / 0.5)) > 1e-9
+    every = np.stack([force[at.freedom(nodes, c)] for c in range(dim)], axis=1)
+    stress = stress_of(gradient, dim)
+    assert inside.any()
+    assert np.abs(every[inside]).max() < 1e-12 * np.abs(stress).max()
+    volume = 0.25 * 1.5
+    assert np.abs(every.T @ at.x - volume * stress).max() < 1e-12 * np.abs(stress).max()
+
+
+def stress_of(gradient: np.ndarray, dim: int) -> np.ndarray:
+    """Return the stress of a displacement gradient, Pa; plane stress in dim 2."""
+    strain, nu = (gradient + gradient.T) / 2, ROCK.poisson
+    shear = ROCK.modulus / (2 * (1 + nu))
+    lame = 2 * shear * nu / (1 - nu if dim == 2 else 1 - 2 * nu)
+    return lame * np.trace(strain) * np.eye(dim) + 2 * shear * strain
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_frequencies_converge_at_twice_the_order(order):
+    """Lumped by GLL quadrature, omega converges at 2p (Cohen, Higher-Order Numerical Methods for
+    Transient Wave Equations, 2002); the second free mode of a bar of length 3 is 2 pi / 3."""
+    errors = []
+    for elements in (4, 8):
+        piece = of_bar(order, elements)
+        values = eigh(piece.stiffness.toarray(), np.diag(piece.mass), eigvals_only=True)
+        errors.append(abs(np.sqrt(values[2]) - 2 * np.pi / 3))
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2 * order, abs=0.25)

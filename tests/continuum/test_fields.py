@@ -1,0 +1,98 @@
+"""Snapshots of the continuum: what its receivers record, on cells that joints keep apart."""
+
+import numpy as np
+import pytest
+
+import continuum
+from cases.snapshots import snapshots_of
+from compare.fieldfiles import read_pvd, write_pvd
+
+LENGTH, BLOCK, SIDE = 2.0, 0.5, 0.5
+SHORT = {
+    "pillar__length": LENGTH,
+    "rock__intact_modulus": 8.64e10,
+    "load__amplitude": 1e6,
+    "load__period": 2e-3,
+    "ends__end": "free",
+    "time__duration": 4e-3,
+    "record": {"velocity": [0.0, 0.25, 2.0], "interval": 2e-5, "fields": 4e-4},
+}
+KINDS = {1: "line", 2: "quad", 3: "hexahedron"}
+SIZE = {1: LENGTH, 2: LENGTH * SIDE, 3: LENGTH * SIDE**2}
+
+
+@pytest.fixture(params=KINDS)
+def dim(request):
+    return request.param
+
+
+@pytest.fixture
+def short(pillar):
+    """Return a function of the dimension that gives four blocks of rock, keys changed."""
+    return lambda dim, **changes: pillar(**SHORT | {"numerics__continuum__dim": dim} | changes)
+
+
+def extents(found):
+    """Return the extents of every cell along x, y, z [cells, 3]."""
+    return np.ptp(found.points[found.cells], axis=1)
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+@pytest.mark.parametrize("model", continuum.MODELS)
+def test_cells_fill_the_pillar_and_know_their_block(short, dim, model, order):
+    scene = short(dim, numerics__continuum__order=order)
+    found = snapshots_of(continuum.simulate(scene, model=model))
+    assert found.kind == KINDS[dim]
+    axes = {1: [1], 2: [0, 1], 3: [0, 1, 2]}[dim]
+    assert extents(found)[:, axes].prod(axis=1).sum() == pytest.approx(SIZE[dim], rel=1e-12)
+    middle = found.points[found.cells].mean(axis=1)
+    np.testing.assert_array_equal(found.block, (middle[:, 1] / BLOCK).astype(int))
+
+
+def test_blocks_share_no_node(short, dim):
+    found = snapshots_of(continuum.simulate(short(dim)))
+    blocks = [set(found.cells[found.block == i].ravel()) for i in range(4)]
+    assert sum(map(len, blocks)) == len(set().union(*blocks)) == len(found.points)
+
+
+def test_a_run_with_snapshots_is_the_same_to_the_last_bit(short, dim):
+    record = {key: value for key, value in SHORT["record"].items() if key != "fields"}
+    filmed, bare = (continuum.simulate(s) for s in (short(dim), short(dim, record=record)))
+    assert snapshots_of(bare) is None
+    for name in bare.data_vars:
+        np.testing.assert_array_equal(bare[name].values, filmed[name].values, str(name))
+
+
+@pytest.mark.parametrize("quantity", ["displacement", "velocity"])
+def test_snapshots_of_the_bar_are_what_receivers_record(short, quantity):
+    """At nodes that are receivers: both ends, and the middle of the first block."""
+    result = continuum.simulate(short(1))
+    found, recorded = snapshots_of(result), result[quantity].values[:, ::20, 0]
+    np.testing.assert_array_equal(found.time, result.time.values[::20])
+    for y, waveform in zip(SHORT["record"]["velocity"], recorded, strict=True):
+        node = int(np.argmin(np.abs(found.points[:, 1] - y)))
+        assert found.points[node, 1] == pytest.approx(y, abs=1e-12)
+        scale = np.abs(recorded).max()
+        np.testing.assert_allclose(
+            getattr(found, quantity)[:, node, 1], waveform, rtol=0, atol=1e-13 * scale
+        )
+
+
+def test_a_joint_without_tension_opens_between_its_own_nodes(short, dim, tmp_path):
+    """Read back from the files: facing nodes lie at one place, and part once tension comes."""
+    scene = short(dim, joints__tension=False)
+    found = read_pvd(write_pvd(tmp_path / "rock.pvd", snapshots_of(continuum.simulate(scene))))
+    nodes = np.unique(found.cells[found.block == 2]), np.unique(found.cells[found.block == 3])
+    facing = [n[np.isclose(found.points[n, 1], 1.5)] for n in nodes]
+    left, right = (n[np.lexsort(found.points[n][:, [0, 2]].round(9).T)] for n in facing)
+    np.testing.assert_allclose(found.points[left], found.points[right], atol=1e-12)
+    gap = found.displacement[:, right, 1] - found.displacement[:, left, 1]
+    assert gap.max() > 0.1 * np.abs(found.displacement).max()
+
+
+def test_stress_of_a_slow_push_is_the_load(short, dim):
+    """Against a fixed end every cell comes to carry what presses on the loaded end."""
+    slow = {"load__shape": "step", "load__period": None, "joints__damping_ratio": 0.5}
+    scene = short(dim, ends__end="fixed", time__duration=0.05, **slow)
+    found = snapshots_of(continuum.simulate(scene))
+    assert found.stress[-1] == pytest.approx(1e6, rel=1e-2)

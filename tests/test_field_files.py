@@ -1,0 +1,227 @@
+"""Field files as a viewer meets them: read back by meshio, whole or not there at all."""
+
+import json
+import subprocess
+import sys
+from xml.etree import ElementTree
+
+import meshio
+import numpy as np
+import pytest
+
+import dem
+from cases import SceneError
+from cases.snapshots import snapshots, snapshots_of
+from compare import fieldfiles
+from compare.fieldfiles import read_pvd, refuse_vtx, write_pvd, write_vtx
+from continuum import compat
+
+SPALL = {
+    "pillar__length": 8.0,
+    "ends__start": "matched",
+    "joints__tensile_strength": 1e5,
+    "joints__fracture_energy": 5.0,
+    "time__duration": 0.02,
+    "record": {"velocity": [7.75], "fields": 4e-3, "energy": False},
+}
+
+
+@pytest.fixture(scope="module")
+def unit_cells():
+    """One cell of each kind: name to its corners in VTK's order."""
+    box = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
+    return {
+        "line": [[0, 0, 0], [0, 1, 0]],
+        "triangle": box[:2] + box[3:4],
+        "quad": box[:4],
+        "tetra": [box[i] for i in (0, 1, 3, 4)],
+        "hexahedron": box,
+    }
+
+
+@pytest.fixture
+def two_cells(unit_cells):
+    """Return a function that gives two cells of a kind, a joint between them, at three instants."""
+
+    def made(kind):
+        one, draw = np.array(unit_cells[kind], dtype=float), np.random.default_rng(7).normal
+        points = np.concatenate([one, one + np.array([0.0, 1.0, 0.0])])
+        return snapshots(
+            np.array([0.0, 0.1, 0.30000000000000004]),
+            points,
+            kind,
+            np.arange(len(points)).reshape(2, -1),
+            np.array([0, 1]),
+            draw(size=(3, *points.shape)),
+            draw(size=(3, *points.shape)),
+            draw(size=(3, 2)),
+        )
+
+    return made
+
+
+def assert_equal(one, other):
+    for name, values in one._asdict().items():
+        np.testing.assert_array_equal(values, getattr(other, name), name)
+
+
+@pytest.mark.parametrize("kind", ["line", "triangle", "quad", "tetra", "hexahedron"])
+def test_files_hold_every_bit(two_cells, kind, tmp_path):
+    found = two_cells(kind)
+    assert_equal(read_pvd(write_pvd(tmp_path / "deep" / "dem.pvd", found)), found)
+
+
+def test_files_without_stress_have_none(two_cells, tmp_path):
+    found = two_cells("quad")._replace(stress=None)
+    assert read_pvd(write_pvd(tmp_path / "dem.pvd", found)).stress is None
+
+
+def test_a_torn_pillar_is_seen_torn_by_another_reader(pillar, tmp_path):
+    """meshio's own reading of each file: points, cells, displacement, and the gap that is open."""
+    result = dem.simulate(pillar(**SPALL))
+    found, broke = snapshots_of(result), np.flatnonzero(~np.isnan(result.break_time.values))
+    path = write_pvd(tmp_path / "dem.pvd", found)
+    sets = list(ElementTree.parse(path).getroot().iter("DataSet"))
+    assert [float(s.get("timestep")) for s in sets] == found.time.tolist()
+    assert [s.get("file") for s in sets] == [f"dem-fields/000{i}.vtu" for i in range(6)]
+    for i, part in enumerate(sets):
+        mesh = meshio.read(tmp_path / part.get("file"))
+        np.testing.assert_array_equal(mesh.points, found.points)
+        np.testing.assert_array_equal(mesh.cells_dict["hexahedron"], np.arange(128).reshape(16, 8))
+        np.testing.assert_array_equal(mesh.point_data["displacement"], found.displacement[i])
+        np.testing.assert_array_equal(mesh.point_data["velocity"], found.velocity[i])
+        np.testing.assert_array_equal(mesh.cell_data["stress"][0], found.stress[i])
+        np.testing.assert_array_equal(mesh.cell_data["block"][0], np.arange(16))
+    last = result.displacement.values[0, -1, 0]
+    assert mesh.point_data["displacement"][8 * 15 :, 1] == pytest.approx(last, rel=1e-15)
+    joint = int(broke[-1])
+    place = np.isclose(mesh.points[:, 1], result.joint_y.values[joint])
+    at = mesh.point_data["displacement"][place, 1].reshape(2, 4)
+    assert (at[1] - at[0] > 2 * 5.0 / 1e5).all()  # beyond the opening at which nothing holds
+
+
+def test_a_second_run_replaces_all_files_of_the_first(two_cells, tmp_path):
+    found = two_cells("quad")
+    write_pvd(tmp_path / "dem.pvd", found)
+    write_pvd(tmp_path / "dem.pvd", found.since(1))
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["dem-fields", "dem.pvd"]
+    assert len(list((tmp_path / "dem-fields").iterdir())) == 2
+    assert_equal(read_pvd(tmp_path / "dem.pvd"), found.since(1))
+
+
+def test_a_failed_write_leaves_the_old_files_and_no_others(two_cells, tmp_path, monkeypatch):
+    old, whole = two_cells("quad"), meshio.Mesh.write
+    path = write_pvd(tmp_path / "dem.pvd", old)
+
+    def fail_at_the_second(mesh, file):
+        if file.name == "0001.vtu":
+            raise OSError(28, "No space left on device")
+        whole(mesh, file)
+
+    monkeypatch.setattr(meshio.Mesh, "write", fail_at_the_second)
+    with pytest.raises(OSError, match="No space"):
+        write_pvd(path, old._replace(displacement=2 * old.displacement))
+    assert_equal(read_pvd(path), old)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["dem-fields", "dem.pvd"]
+
+
+def jointwave(*arguments, code=0):
+    """Run the command and return its process, having checked the exit status."""
+    command = [sys.executable, "-m", "compare", *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == code, done.stderr
+    assert "Traceback" not in done.stderr
+    return done
+
+
+SCENE = ("guo-li-2002/fig-03", "--set", "time.duration=0.02")
+FIELDS = ("--set", "record.fields=4e-3")
+
+
+def test_run_names_the_file_to_open_for_each_variant(tmp_path):
+    done = jointwave("run", *SCENE, *FIELDS, "--out", tmp_path)
+    for path in (tmp_path / "dem.pvd", tmp_path / "zeta 0.02" / "dem.pvd"):
+        assert str(path) in done.stdout.replace("\n", "")
+        assert read_pvd(path).time == pytest.approx(4e-3 * np.arange(6))
+
+
+def test_run_without_fields_writes_none(tmp_path):
+    (fact,) = json.loads(
+        jointwave("run", *SCENE, "--variant", "", "--out", tmp_path, "--json").stdout
+    )
+    assert fact["fields"] == [] and [p.name for p in tmp_path.iterdir()] == ["dem.nc"]
+
+
+def test_the_result_holds_what_the_files_show(tmp_path):
+    import xarray as xr
+
+    options = ("--variant", "", "--out", tmp_path, "--json")
+    (fact,) = json.loads(jointwave("run", *SCENE, *FIELDS, *options).stdout)
+    assert fact["fields"] == [str(tmp_path / "dem.pvd")]
+    assert_equal(read_pvd(tmp_path / "dem.pvd"), snapshots_of(xr.load_dataset(tmp_path / "dem.nc")))
+
+
+def test_an_exact_solution_says_that_it_has_no_snapshots(tmp_path):
+    exact = ("--engine", "exact", "--model", "images", "--variant", "")
+    assert "no snapshots" in jointwave("run", *SCENE, *FIELDS, *exact, "--out", tmp_path).stdout
+
+
+def test_vtx_needs_snapshots(tmp_path):
+    done = jointwave("run", *SCENE, "--vtx", "--out", tmp_path / "out", code=2)
+    assert done.stderr.count("\n") == 1 and "record.fields: is required by --vtx" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_vtx_is_written_where_dolfinx_can_and_refused_where_not(tmp_path):
+    can = compat.vtx_writer() is not None
+    options = ("--variant", "", "--vtx", "--out", tmp_path / "out")
+    done = jointwave("run", *SCENE, *FIELDS, *options, code=0 if can else 2)
+    if can:
+        assert {p.name for p in (tmp_path / "out").iterdir()} == {
+            *("dem.nc", "dem.pvd", "dem-fields", "dem.bp")
+        }
+        assert sum(p.stat().st_size for p in (tmp_path / "out" / "dem.bp").iterdir()) > 1e5
+    else:
+        assert done.stderr.count("\n") == 1 and "built without ADIOS2" in done.stderr
+        assert not (tmp_path / "out").exists()
+
+
+def test_vtx_is_refused_where_there_is_no_dolfinx(monkeypatch):
+    monkeypatch.setitem(sys.modules, "continuum.compat", None)
+    monkeypatch.delattr("continuum.compat", raising=False)
+    with pytest.raises(SceneError, match="--vtx: dolfinx cannot be imported"):
+        refuse_vtx()
+
+
+@pytest.mark.parametrize("kind", ["line", "triangle", "quad", "tetra", "hexahedron"])
+def test_vtx_gets_every_value_at_its_node(two_cells, kind, tmp_path, monkeypatch):
+    """What dolfinx writes are the functions' values at its own nodes, in its own order."""
+    found, seen = two_cells(kind), []
+
+    class Recorder:
+        def __init__(self, comm, path, functions):
+            assert comm.size == 1 and [f.name for f in functions] == ["displacement", "velocity"]
+            self.functions = functions
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *error):
+            (tmp_path / "made").mkdir()
+
+        def write(self, time):
+            space = self.functions[0].function_space
+            at = space.tabulate_dof_coordinates()
+            values = [f.x.array.reshape(-1, 3).copy() for f in self.functions]
+            seen.append((time, at, *values))
+
+    monkeypatch.setattr(compat, "vtx_writer", lambda: Recorder)
+    monkeypatch.setattr(fieldfiles, "write_folder", lambda path, save: save(tmp_path / "made"))
+    write_vtx(tmp_path / "dem.bp", found)
+    assert [time for time, *_ in seen] == found.time.tolist()
+    for i, (_, at, displacement, velocity) in enumerate(seen):
+        for expected, values in ((found.displacement, displacement), (found.velocity, velocity)):
+            # Facing nodes of both cells lie at one place: compare the pairs.
+            wanted = np.hstack([found.points, expected[i]])
+            given = np.hstack([at.round(12), values])
+            np.testing.assert_array_equal(*(x[np.lexsort(x.T)] for x in (wanted, given)))

@@ -1,0 +1,84 @@
+"""Harmonic transmission through linear joints: one, and several in parallel.
+
+Amplitudes are those of a Ricker pulse at its peak frequency, of which the exact incident wave is
+known. Per wavelength there are 20 quadratic elements, whose phase error per wavelength, below
+(k h)^4 / 1440 = 7e-6, and a step of a 300th of the period, (omega dt)^2 / 24 = 2e-5, leave far less
+than the bounds.
+"""
+
+import numpy as np
+import pytest
+
+import continuum
+from cases.loads import load_history
+from compare.exact import one_joint, parallel_joints
+
+KAPPA = {0.25: 0.4472, 0.5: 0.7071, 1.0: 0.8944, 2.0: 0.9701, 5.0: 0.9950}
+PARALLEL = {
+    2: (0.7822, 0.8890, 0.9864),
+    3: (0.7927, 0.9995, 0.9138),
+    5: (0.9963, 0.8840, 0.9468),
+}
+
+
+@pytest.mark.parametrize("kappa, passes", KAPPA.items())
+def test_one_joint(bar, soft_joint, amplitude, kappa, passes):
+    """|T| and |R| of Schoenberg (1980) within 0.1 %."""
+    scene = bar(soft_layers=[soft_joint(20.0, kappa)])
+    result = continuum.simulate(scene, "equivalent", 1)
+    times = result.time.values
+    front, behind = result.stress.values
+    incident = load_history(scene).value(times - 10.0 / 2000.0) / 2
+    whole = amplitude(times, incident)
+    T, R = amplitude(times, behind) / whole, amplitude(times, front - incident) / whole
+    exact = np.abs(one_joint.coefficients(1.0, kappa, 1.0))
+    assert exact[0] == pytest.approx(passes, abs=5e-5)
+    print(T, R, exact, T/exact[0]-1, R/exact[1]-1)
+    assert pytest.approx(exact, rel=1e-3) == (T, R)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_one_joint_in_rock_of_large_extent(bar, soft_joint, amplitude, dim):
+    """The same in a plane wave, whose impedance is that of rock that cannot widen.
+
+    120 m between free ends: up to 0.075 s no reflection of theirs is at the receivers.
+    """
+    nu, E, rho = 0.25, 9.6e9, 2400.0
+    modulus = E / (1 - nu**2) if dim == 2 else E * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
+    speed = np.sqrt(modulus / rho)
+    scene = bar(
+        pillar__length=120.0,
+        motion__rotation="none",
+        soft_layers=[soft_joint(60.0, 0.5, rho * speed)],
+        ends={"start": "free", "end": "free"},
+        time__duration=0.075,
+        record__stress=[50.0, 70.0],
+    )
+    result = continuum.simulate(scene, "equivalent", dim)
+    times = result.time.values
+    front, behind = result.stress.values
+    incident = load_history(scene).value(times - 50.0 / speed)
+    whole = amplitude(times, incident)
+    T, R = amplitude(times, behind) / whole, amplitude(times, front - incident) / whole
+    print(T,R)
+    assert pytest.approx((0.7071, 0.7071), rel=5e-3) == (T, R)
+
+
+@pytest.mark.parametrize("count", PARALLEL)
+@pytest.mark.parametrize("i, spacing", enumerate((0.05, 0.1, 0.2)))
+def test_parallel_joints(bar, soft_joint, amplitude, count, i, spacing):
+    """|T| at kappa = 1 by transfer matrices (Cai & Zhao, 2000) within 0.1 %."""
+    places = 20.0 + 20.0 * spacing * np.arange(count)
+    scene = bar(
+        soft_layers=[soft_joint(y, 1.0) for y in places],
+        time__duration=0.4,
+        record__stress=[50.0],
+    )
+    result = continuum.simulate(scene, "equivalent", 1)
+    times = result.time.values
+    incident = load_history(scene).value(times - 10.0 / 2000.0) / 2
+    T = amplitude(times, result.stress.values[0]) / amplitude(times, incident)
+    exact = parallel_joints.transmission(count, 1.0, spacing)
+    print(T, exact, T/exact-1)
+    assert exact == pytest.approx(PARALLEL[count][i], abs=5e-5)
+    assert pytest.approx(exact, rel=1e-3) == T

@@ -1,0 +1,31 @@
+"""The same steps with the stiffness of all blocks as one scipy matrix."""
+
+import numpy as np
+import plain_dolfinx
+import ufl
+from plain_dolfinx import Pillar, Steps
+from scipy.sparse import csr_matrix
+
+from continuum import compat
+from continuum.operator import without_round_off
+
+
+def stiffness(pillar: Pillar) -> csr_matrix:
+    """Return the stiffness of all blocks as dolfinx assembles it, N/m."""
+    space = plain_dolfinx.vector_space(pillar)
+    return compat.matrix(plain_dolfinx.internal_work(pillar, space, ufl.TrialFunction(space)))
+
+
+def without_zeros(pillar: Pillar) -> csr_matrix:
+    """Return the stiffness without the entries that quadrature at the nodes makes zero, N/m."""
+    return without_round_off(stiffness(pillar))
+
+
+def multiplied(pillar: Pillar, zeros: bool = False) -> Steps:
+    """Return the steps that multiply; `zeros`: with the entries that are zero, as assembled."""
+    matrix = -(stiffness(pillar) if zeros else without_zeros(pillar))
+
+    def internal(u: np.ndarray, force: np.ndarray) -> None:
+        force[:] = matrix @ u
+
+    return Steps(pillar, plain_dolfinx.vector_space(pillar), internal)
