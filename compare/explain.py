@@ -65,5 +65,6 @@ def _step(name: str, scene: Scene) -> StepChoice:
     else:
         from continuum.simulate import steps_of
 
-        time, critical = steps_of(scene, name.removeprefix("continuum-"))
+        choice, critical = steps_of(scene, name.removeprefix("continuum-"))
+        time = choice.time
     return StepChoice(name, critical, time.dt, time.steps)

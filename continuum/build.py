@@ -66,7 +66,7 @@ def discretise(scene: Scene, model: str, dim: int | None = None) -> Discrete:
 def mesh_of(scene: Scene, p: Properties, model: str, motion: Kinematics) -> Mesh:
     """Return the mesh of a scene's pillar: its own file, or blocks by gmsh."""
     numerics = scene.numerics.continuum
-    if numerics.mesh is not None:
+    if numerics.mesh_path is not None:
         from continuum.meshing.given import given_mesh
 
         return given_mesh(numerics.mesh_path, scene, p, motion.dim)

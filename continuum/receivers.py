@@ -154,7 +154,7 @@ def _by_momentum(
     volume = _volumes(body, point.cell, np.tile(at, (layer.size, 1))) * np.tile(weight, layer.size)
     near, far = body.corners[layer][:, :, up].min(), body.corners[layer][:, :, up].max()
     local = (_heights(body, point) - near) / (far - near)
-    levels = np.unique(np.round(at[:, up], 9))
+    levels = np.sort(compat.quadrature("interval", max(2 * order - 1, 1), lobatto=True)[0][:, 0])
     level = np.abs(local[:, None] - levels).argmin(axis=1)
     basis = poly.polyfit(levels, np.eye(levels.size), order)
     slope = poly.polyval(local, poly.polyder(basis)[:, 0]) / (far - near)

@@ -5,15 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numba
 import numpy as np
 import xarray as xr
 
-from cases.errors import SceneError
-from cases.result import fields
-from cases.sampling import Clock, clock
+from cases.errors import SceneError, StoppedError
+from cases.result import Fields, fields
 from cases.scene import Scene
 from continuum import compat
 from continuum.build import (
@@ -24,11 +23,12 @@ from continuum.build import (
     room,
     state_at_rest,
 )
-from continuum.explicit import run
+from continuum.engines import explicit_engine, implicit_engine
 from continuum.kinematics import refuse
 from continuum.looks import march_with_looks, runaway_check
-from continuum.model import State
+from continuum.model import Model, Samples, State
 from continuum.reach import applies
+from continuum.scheme import Choice, choose
 from continuum.waveforms import energy_terms, waveforms
 
 if TYPE_CHECKING:
@@ -50,74 +50,103 @@ def simulate(
     dim : 1, the bar; 2, plane stress; 3, the square column; None leaves it to the scene.
     progress : called with the finished fraction.
 
-    Raises SceneError for what this model cannot simulate, UnstableError when the motion runs away.
+    Raises SceneError for what this model cannot simulate, UnstableError when the motion runs away,
+    StoppedError, with the result so far, when implicit steps do not converge.
     """
     refuse(scene, model, dim)
     reason = applies(scene, model, dim)
     if reason:
         raise SceneError(scene.name or scene.title, "model", model, reason)
     began = perf_counter()
-    numerics = scene.numerics.continuum
     discrete = discretise(scene, model, dim)
-    time, critical = _steps(scene, discrete, model)
+    choice, critical = _steps(scene, discrete, model)
+    time = choice.time
     built = build_model(scene, discrete, model, time)
     state = state_at_rest(built, scene.record.energy)
     samples = room(built, state, time.samples)
+    start = explicit_engine if choice.scheme == "explicit" else implicit_engine
+    engine = start(scene, discrete, built, state, samples, time)
+    film = _film(scene, discrete, state, engine.ahead)
     ready = perf_counter()
-    run(built, state, samples, time.stride, 0, 0)
+    engine.compile()
     compiled = perf_counter()
-    film = _film(scene, discrete, state, time)
-    march_with_looks(
-        time,
-        state.u.size,
-        lambda first, last: run(built, state, samples, time.stride, first, last),
-        runaway_check(built, state, time.dt, critical),
-        progress,
-        film,
-    )
-    stepped = perf_counter()
-    terms, energy = energy_terms(built, samples.energy)
-    result = fields(
+
+    def result(count: int) -> xr.Dataset:
+        seconds = {
+            "seconds_setup": ready - began,
+            "seconds_compile": compiled - ready,
+            "seconds_stepping": perf_counter() - compiled,
+        }
+        about = _about(scene, discrete, model, choice, critical) | engine.attributes() | seconds
+        found = _recorded(scene, discrete, built, samples, time.times[:count], about)
+        return xr.Dataset(*(found if film is None else film.developed(found)))
+
+    check = runaway_check(built, state, time.dt, critical)
+    try:
+        march_with_looks(time, state.u.size, engine.march, check, progress, film)
+    except StoppedError as error:
+        error.result = result(engine.samples_done(time))
+        raise
+    return result(time.samples)
+
+
+def steps_of(scene: Scene, model: str, dim: int | None = None) -> tuple[Choice, float]:
+    """Return how a scene is stepped, and the critical step of explicit steps (s)."""
+    return _steps(scene, discretise(scene, model, dim), model)
+
+
+def _steps(scene: Scene, discrete: Discrete, model: str) -> tuple[Choice, float]:
+    critical = critical_step_of(scene, discrete, model)
+    return choose(scene, discrete, critical), critical
+
+
+def _recorded(
+    scene: Scene,
+    discrete: Discrete,
+    built: Model,
+    samples: Samples,
+    times: np.ndarray,
+    about: dict[str, Any],
+) -> Fields:
+    """Return what was recorded at these times as a result, with attributes about the run."""
+    taken: list[Any] = [None if wave is None else wave[:, : times.size] for wave in samples]
+    until = Samples(*taken)
+    terms, energy = energy_terms(built, until.energy)
+    return fields(
         scene,
-        f"continuum-{model}",
-        time.times,
-        **waveforms(scene, discrete, samples),
+        f"continuum-{about['model']}",
+        times,
+        **waveforms(scene, discrete, until),
         energy=energy,
         terms=terms,
-        model=model,
-        scheme="explicit",
-        dim=discrete.kinematics.dim,
-        order=numerics.order,
-        dt=time.dt,
-        critical_dt=critical,
-        steps=time.steps,
-        degrees_of_freedom=discrete.body.degrees_of_freedom,
-        seconds_setup=ready - began,
-        seconds_compile=compiled - ready,
-        seconds_stepping=stepped - compiled,
-        versions=json.dumps(
-            {"numpy": np.__version__, "numba": numba.__version__, "dolfinx": compat.VERSION}
-        ),
+        **about,
     )
-    return xr.Dataset(*(result if film is None else film.developed(result, time)))
 
 
-def _film(scene: Scene, discrete: Discrete, state: State, time: Clock) -> RockFilm | None:
+def _about(
+    scene: Scene, discrete: Discrete, model: str, choice: Choice, critical: float
+) -> dict[str, Any]:
+    """Return what a result says of its run."""
+    versions = {"numpy": np.__version__, "numba": numba.__version__, "dolfinx": compat.VERSION}
+    return {
+        "model": model,
+        "scheme": choice.scheme,
+        "scheme_reason": choice.reason,
+        "dim": discrete.kinematics.dim,
+        "cell": discrete.body.mesh.cell,
+        "order": scene.numerics.continuum.order,
+        "dt": choice.time.dt,
+        "critical_dt": critical,
+        "steps": choice.time.steps,
+        "degrees_of_freedom": discrete.body.degrees_of_freedom,
+        "versions": json.dumps(versions),
+    }
+
+
+def _film(scene: Scene, discrete: Discrete, state: State, ahead: float) -> RockFilm | None:
     """Return what keeps snapshots; None, and nothing imported, where none are asked for."""
     if scene.record.fields is None:
         return None
     from continuum.snapshots import RockFilm
 
-    return RockFilm(scene, discrete, state, time.dt)
-
-
-def steps_of(scene: Scene, model: str, dim: int | None = None) -> tuple[Clock, float]:
-    """Return the clock and the critical step (s) of a scene."""
-    return _steps(scene, discretise(scene, model, dim), model)
-
-
-def _steps(scene: Scene, discrete: Discrete, model: str) -> tuple[Clock, float]:
-    numerics = scene.numerics.continuum
-    critical = critical_step_of(scene, discrete, model)
-    time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "continuum")
-    return time, critical
+    return RockFilm(scene, discrete, state, ahead)

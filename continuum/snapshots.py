@@ -6,7 +6,6 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from cases.result import Fields
-from cases.sampling import Clock
 from cases.scene import Scene
 from cases.snapshots import Film, refuse_beyond_room, samples_between, snapshots, with_snapshots
 from cases.subcells import KINDS, linear_cells
@@ -18,13 +17,16 @@ from continuum.receivers import section_tractions
 
 
 class RockFilm(Film):
-    """The rock at every snapshot that a scene asks for; raises SceneError for too many."""
+    """The rock at every snapshot that a scene asks for; raises SceneError for too many.
 
-    def __init__(self, scene: Scene, discrete: Discrete, state: State, dt: float) -> None:
+    ahead : s, how far the displacements of the state are beyond the step of a sample.
+    """
+
+    def __init__(self, scene: Scene, discrete: Discrete, state: State, ahead: float) -> None:
         body = discrete.body
         refuse_beyond_room(scene, len(body.x))
         super().__init__(samples_between(scene) or 1, self.shot)
-        self.discrete, self.state, self.dt = discrete, state, dt
+        self.discrete, self.state, self.ahead = discrete, state, ahead
         self.freedoms = body.freedom(
             np.arange(len(body.x))[:, None], np.arange(body.section.components)
         )
@@ -38,20 +40,19 @@ class RockFilm(Film):
         """Return displacement, velocity of the nodes and stress of the cells at this sample, whose
         step has just been taken."""
         state = self.state
-        u = state.u - self.dt * state.v
+        u = state.u - self.ahead * state.v
         v = (state.v + state.v_before) / 2
         return u[self.freedoms], v[self.freedoms], self.stress @ u + self.prestress
 
-    def developed(self, result: Fields, time: Clock) -> Fields:
+    def developed(self, result: Fields) -> Fields:
         """Return the run's result with its snapshots."""
         body, mesh = self.discrete.body, self.discrete.body.mesh
         u, v, stress = (np.stack(column) for column in zip(*self.shots, strict=True))
         cells = body.cells[:, self.parts].reshape(-1, self.parts.shape[1])
         height = body.y[cells].mean(axis=1)
         block = np.floor(height / self.discrete.properties.spacing).astype(int)
-        found = snapshots(
-            time.times[:: self.every], body.x, KINDS[mesh.cell], cells, block, u, v, stress
-        )
+        time = result.coords["time"][1][:: self.every]
+        found = snapshots(time[: len(u)], body.x, KINDS[mesh.cell], cells, block, u, v, stress)
         return with_snapshots(result, found)
 
 

@@ -1,0 +1,108 @@
+"""Which nodes of different processes are one and the same, told by the mesh alone.
+
+A node lies on a corner, an edge or a facet of its cell, or inside: the vertices of that, and where
+between them the node is, are the same from every cell that has the node. No two coordinates need
+to be compared, which could not tell the two sides of a joint apart.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from continuum import compat
+from continuum.body import SAME
+from continuum.meshing.description import Mesh
+from continuum.meshing.facets import row_numbers
+from continuum.parallel.partition import Copies, copies_of
+
+STEPS = 1_000_000  # of a place between vertices: nodes are much farther apart than one of them
+
+
+class Border(NamedTuple):
+    """The cells whose nodes several processes may have in common.
+
+    cell : int array [cells], in the whole mesh. node : int array [cells, nodes per cell], numbers
+    that are the same on every process; those of tied nodes are equal.
+    """
+
+    cell: np.ndarray
+    node: np.ndarray
+
+
+def border(mesh: Mesh, rank_of: np.ndarray, order: int, plane_wave: bool) -> Border:
+    """Return the border between the processes of a whole mesh, the same on each of them.
+
+    rank_of : int array [cells]. plane_wave : whether all nodes of a copy at one height are tied.
+    """
+    copies, joints = copies_of(mesh), mesh.joints
+    is_there = np.zeros(rank_of.size, dtype=bool)
+    is_there[joints.right[rank_of[joints.left] != rank_of[joints.right]]] = True
+    first, last = (f.reduceat(rank_of, copies.first) for f in (np.minimum, np.maximum))
+    cut = (first != last)[copies.of(np.arange(rank_of.size))]
+    if plane_wave:
+        cell = np.flatnonzero(is_there | cut)
+        return Border(cell, _levels(mesh, copies, cell, order))
+    vertices = _vertices(mesh, copies, np.flatnonzero(cut))
+    is_there[np.flatnonzero(cut)[_meet_others(vertices, rank_of[cut])]] = True
+    cell = np.flatnonzero(is_there)
+    return Border(cell, _nodes(mesh, copies, cell, order))
+
+
+def _meet_others(vertices: np.ndarray, rank: np.ndarray) -> np.ndarray:
+    """Return which cells share a vertex with one of another process, bool array [cells]."""
+    low = np.full(vertices.max(initial=-1) + 1, rank.max(initial=0))
+    high = np.zeros_like(low)
+    np.minimum.at(low, vertices, rank[:, None])
+    np.maximum.at(high, vertices, rank[:, None])
+    return (low != high)[vertices].any(axis=1)
+
+
+def _vertices(mesh: Mesh, copies: Copies, cell: np.ndarray) -> np.ndarray:
+    """Return the vertices of cells, numbered through all copies [cells, corners]."""
+    sizes = np.array([len(part.x) for part in mesh.parts])[copies.part]
+    copy, base = copies.of(cell), np.cumsum(sizes) - sizes
+    found = np.empty((cell.size, mesh.parts[0].cells.shape[1]), dtype=np.int64)
+    for number, part in enumerate(mesh.parts):
+        here = copies.part[copy] == number
+        found[here] = part.cells[(cell - copies.first[copy])[here]] + base[copy[here], None]
+    return found
+
+
+def _nodes(mesh: Mesh, copies: Copies, cell: np.ndarray, order: int) -> np.ndarray:
+    """Return the numbers of the nodes of cells by the vertices around them."""
+    weight = np.rint(STEPS * _shape(mesh, order)).astype(np.int64)
+    vertices = _vertices(mesh, copies, cell)[:, None]
+    around = np.where(weight == 0, -1, vertices)
+    turn = np.argsort(around, axis=2)
+    rows = [np.take_along_axis(a, turn, axis=2) for a in (around, weight[None] + 0 * around)]
+    return _numbered(np.concatenate(rows, axis=2))
+
+
+def _levels(mesh: Mesh, copies: Copies, cell: np.ndarray, order: int) -> np.ndarray:
+    """Return the numbers of the nodes of cells by their copy and height."""
+    copy, shape = copies.of(cell), _shape(mesh, order)
+    y = np.empty((cell.size, shape.shape[0]))
+    along = min(1, mesh.parts[0].x.shape[1] - 1)
+    for number, part in enumerate(mesh.parts):
+        here = copies.part[copy] == number
+        corners = part.x[part.cells[(cell - copies.first[copy])[here]], along]
+        y[here] = corners @ shape.T
+    place = np.argsort(y, axis=None)
+    apart = np.diff(y.ravel()[place]) > SAME * max(np.ptp(part.x) for part in mesh.parts)
+    level = np.empty(y.size, dtype=np.int64)
+    level[place] = np.concatenate([[0], np.cumsum(apart)])
+    level = level.reshape(y.shape)
+    return _numbered(np.stack([np.broadcast_to(copy[:, None], y.shape), level], axis=2))
+
+
+def _numbered(keys: np.ndarray) -> np.ndarray:
+    """Return a number for every key [cells, nodes, entries], the same for equal ones."""
+    if not keys.size:
+        return np.empty(keys.shape[:2], dtype=np.int64)
+    return row_numbers(keys.reshape(-1, keys.shape[2])).reshape(keys.shape[:2])
+
+
+def _shape(mesh: Mesh, order: int) -> np.ndarray:
+    """Return by how much each corner of a cell counts in the place of each node [nodes, corners]."""
+    nodes = compat.reference_element(mesh.cell, order).points
+    return compat.tabulate(mesh.cell, 1, nodes)[0]

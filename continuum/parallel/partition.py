@@ -1,0 +1,144 @@
+"""Which process holds which cells of a mesh, and the part of the mesh that one of them holds."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from cases.errors import SceneError
+from continuum.meshing.description import Joints, Mesh, Part
+
+#: Of the cells of one process: copies of at most so many stay whole. Many alike blocks make one
+#: operator; half of a block is one of its own.
+WHOLE = 0.5
+
+LAYER = 1e-6  # of the pillar: cells at one height
+
+
+class Copies(NamedTuple):
+    """Copies of parts, in the order that cells are numbered in; arrays [copies].
+
+    part : whose copy it is. first, cells : its first cell, and how many it has.
+    """
+
+    part: np.ndarray
+    first: np.ndarray
+    cells: np.ndarray
+
+    def of(self, cell: np.ndarray) -> np.ndarray:
+        """Return the copies that cells belong to."""
+        return np.searchsorted(self.first, cell, side="right") - 1
+
+
+class Share(NamedTuple):
+    """What one process holds of a mesh.
+
+    parts : its own cells, and as ghosts those beyond its joints; copies that are whole stand
+        together, and of others only what is held. The material of ghosts is 1 + len(mesh.layers).
+    cell : int array, for each cell of the parts its number in the whole mesh.
+    ghost : bool array, whether it is a ghost.
+    joints : its own.
+    """
+
+    parts: tuple[Part, ...]
+    cell: np.ndarray
+    ghost: np.ndarray
+    joints: Joints
+
+
+def copies_of(mesh: Mesh) -> Copies:
+    """Return all copies of all parts of a mesh."""
+    part = np.repeat(np.arange(len(mesh.parts)), [p.copies for p in mesh.parts])
+    cells = np.array([len(p.cells) for p in mesh.parts])[part]
+    return Copies(part, np.cumsum(cells) - cells, cells)
+
+
+def ranks_of_cells(mesh: Mesh, size: int) -> np.ndarray:
+    """Return which of `size` processes each cell belongs to, int array [cells].
+
+    All get as many cells as the others, in contiguous stretches along the pillar, but that small
+    copies stay whole. Raises SceneError where there are more processes than cells.
+    """
+    copies = copies_of(mesh)
+    total = int(copies.cells.sum())
+    if size > total:
+        allowed = f"are more processes than the mesh has cells: at most {total}"
+        raise SceneError("mpiexec", "-n", size, allowed)
+    queue = np.argsort(_heights(mesh), kind="stable")
+    order = [_along_pillar(part) for part in mesh.parts]
+    cells = np.concatenate([copies.first[c] + order[copies.part[c]] for c in queue])
+    rank = np.empty(total, dtype=np.int64)
+    cuts = _cuts(copies.cells[queue], size)
+    rank[cells] = np.searchsorted(cuts, np.arange(total), side="right")
+    return rank
+
+
+def _heights(mesh: Mesh) -> np.ndarray:
+    """Return the mean height of every copy [copies], m."""
+    along = min(1, mesh.parts[0].x.shape[1] - 1)
+    return np.concatenate(
+        [part.x[part.cells, along].mean() + part.shifts[:, along] for part in mesh.parts]
+    )
+
+
+def _along_pillar(part: Part) -> np.ndarray:
+    """Return the order of a part's cells layer by layer along the pillar, int array [cells]."""
+    centre = part.x[part.cells].mean(axis=1)
+    dim = centre.shape[1]
+    x, y, z = (centre[:, axis] for axis in (0, min(1, dim - 1), dim - 1))
+    return np.lexsort((z, x, np.rint(y / (LAYER * np.ptp(part.x)))))
+
+
+def _cuts(cells: np.ndarray, size: int) -> np.ndarray:
+    """Return where a queue of copies with so many cells each is cut, int array [size - 1]."""
+    end, share = np.cumsum(cells), cells.sum() / size
+    found = []
+    for wanted in share * np.arange(1, size):
+        copy = np.searchsorted(end, wanted)
+        begin = end[copy] - cells[copy]
+        near = begin if wanted - begin < end[copy] - wanted else end[copy]
+        found.append(near if cells[copy] <= WHOLE * share else int(wanted + 0.5))
+    return np.array(found, dtype=np.int64)
+
+
+def restrict(mesh: Mesh, rank_of: np.ndarray, rank: int) -> Share:
+    """Return what a process holds where cells belong to the processes `rank_of` [cells].
+
+    A joint's facet belongs to the process of its left cell.
+    """
+    own, joints = rank_of == rank, mesh.joints
+    mine = own[joints.left]
+    held = own.copy()
+    held[joints.right[mine]] = True
+    parts, cell = [], []
+    for part, numbers in zip(mesh.parts, _numbers(mesh), strict=True):
+        is_whole = own[numbers].all(axis=1)
+        if is_whole.any():
+            parts.append(part._replace(shifts=part.shifts[is_whole]))
+            cell.append(numbers[is_whole].ravel())
+        for copy in np.flatnonzero(~is_whole & held[numbers].any(axis=1)):
+            some = held[numbers[copy]]
+            ghosts = ~own[numbers[copy][some]]
+            parts.append(_some_cells(part, copy, some, ghosts, 1 + len(mesh.layers)))
+            cell.append(numbers[copy][some])
+    number = np.concatenate(cell)
+    return Share(tuple(parts), number, ~own[number], Joints(*(field[mine] for field in joints)))
+
+
+def _numbers(mesh: Mesh) -> list[np.ndarray]:
+    """Return for each part the numbers of its cells, int arrays [copies, cells]."""
+    counts = [p.copies * len(p.cells) for p in mesh.parts]
+    cells = np.split(np.arange(sum(counts)), np.cumsum(counts)[:-1])
+    return [n.reshape(p.copies, -1) for n, p in zip(cells, mesh.parts, strict=True)]
+
+
+def _some_cells(
+    part: Part, copy: int, some: np.ndarray, ghosts: np.ndarray, ghost: int
+) -> Part:
+    """Return some cells of a copy as a part of their own."""
+    used, cells = np.unique(part.cells[some], return_inverse=True)
+    return Part(
+        part.x[used],
+        cells.reshape(-1, part.cells.shape[1]),
+        np.where(ghosts, ghost, part.material[some]),
+        part.shifts[copy : copy + 1],
+    )

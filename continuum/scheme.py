@@ -1,0 +1,114 @@
+"""Explicit or implicit steps: which a scene asks for, or which cost less, and why."""
+
+from __future__ import annotations
+
+from math import ceil
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+from cases.errors import SceneError
+from cases.sampling import MOST_STEPS, Clock, clock, sample_times
+from cases.scene import Scene
+from continuum.build import Discrete, operators, resolved_period
+
+#: How many explicit steps one implicit step must replace before its cost is looked into: it solves
+#: an equation with several times the entries of the stiffness, and is not vectorised over blocks.
+WORTH_A_LOOK = 20
+
+#: Entries that a step takes in a second: of the block operators, and of triangular factors.
+OPERATOR_RATE, FACTOR_RATE = 3e9, 3e8
+#: Operations a second of a factorisation, and what an implicit step costs besides, s.
+FACTORISATION_RATE, OVERHEAD = 1e9, 5e-4
+ITERATIONS = 3  # of Newton's method where joints open, slide or break
+
+
+class Choice(NamedTuple):
+    """How a scene is stepped: "explicit" or "implicit", its clock, and the reason in a phrase."""
+
+    scheme: str
+    time: Clock
+    reason: str
+
+
+def choose(scene: Scene, discrete: Discrete, critical: float) -> Choice:
+    """Return how a scene is stepped; critical : the critical step of explicit ones, s.
+
+    Raises SceneError for a step that cannot be taken.
+    """
+    numerics = scene.numerics.continuum
+    if numerics.scheme == "explicit":
+        return _explicit(scene, critical, "numerics.continuum.scheme = 'explicit'")
+    if numerics.scheme == "implicit":
+        return _implicit(scene, "numerics.continuum.scheme = 'implicit'")
+    if numerics.mass == "consistent":
+        return _implicit(scene, "a consistent mass is not diagonal")
+    return _cheaper(scene, discrete, critical)
+
+
+def _explicit(scene: Scene, critical: float, reason: str) -> Choice:
+    numerics = scene.numerics.continuum
+    fraction, allowed = numerics.step_fraction, numerics.allow_unstable
+    return Choice("explicit", clock(scene, critical, fraction, allowed, "continuum"), reason)
+
+
+def _implicit(scene: Scene, reason: str) -> Choice:
+    wanted = resolved_period(scene) / scene.numerics.continuum.steps_per_period
+    stride = max(1, ceil(scene.interval / wanted * (1 - 1e-12)))
+    time = Clock(scene.interval / stride, stride, len(sample_times(scene)))
+    if time.steps > MOST_STEPS:
+        key = "numerics.continuum.steps_per_period"
+        value = scene.numerics.continuum.steps_per_period
+        raise SceneError(scene.where, key, value, f"gives {time.steps:.3g} steps")
+    return Choice("implicit", time, reason)
+
+
+def _cheaper(scene: Scene, discrete: Discrete, critical: float) -> Choice:
+    """Return the scheme that takes less time, by the operations of both."""
+    implicit = _implicit(scene, "")
+    many = scene.time.duration / (critical * scene.numerics.continuum.step_fraction)
+    few = implicit.time.steps
+    if many < WORTH_A_LOOK * few:
+        reason = f"{many:,.0f} explicit steps are fewer than {WORTH_A_LOOK} x {few:,} implicit ones"
+        return _explicit(scene, critical, reason)
+    explicit_cost = many * _explicit_entries(discrete) / OPERATOR_RATE
+    implicit_cost = _implicit_seconds(discrete, few)
+    costs = f"{many:,.0f} explicit steps, some {explicit_cost:.2g} s, against {few:,} implicit ones"
+    reason = f"{costs}, some {implicit_cost:.2g} s"
+    if explicit_cost <= implicit_cost:
+        return _explicit(scene, critical, reason)
+    return implicit._replace(reason=reason)
+
+
+def _explicit_entries(discrete: Discrete) -> float:
+    stiffness, viscosity = operators(discrete)
+    return (
+        stiffness.nnz + (0 if viscosity is None else viscosity.nnz) + 10 * discrete.body.mass.size
+    )
+
+
+def _implicit_seconds(discrete: Discrete, steps: int) -> float:
+    """Return a guess of the seconds that so many implicit steps take."""
+    stiffness, _ = operators(discrete)
+    entries = factor_entries(stiffness)
+    solve = entries / FACTOR_RATE + OVERHEAD
+    factorise = entries**2 / max(stiffness.shape[0], 1) / FACTORISATION_RATE
+    joints = discrete.joints
+    law = None if joints is None else joints.law
+    bends = law is not None and any(
+        part is not None
+        for part in (law.carries_tension, law.tensile_strength, law.cohesion, law.friction)
+    )
+    return steps * ITERATIONS * (solve + factorise) if bends else steps * solve + factorise
+
+
+def factor_entries(matrix: csr_matrix) -> int:
+    """Return how many entries triangular factors have within the envelope of a narrow numbering,
+    which for a row of blocks is close to the fewest."""
+    order = reverse_cuthill_mckee(matrix, symmetric_mode=True)
+    narrow = matrix[order][:, order].tocoo()
+    reach = np.zeros(matrix.shape[0], dtype=np.int64)
+    np.maximum.at(reach, narrow.row, narrow.row - narrow.col)
+    return int(2 * reach.sum() + reach.size)

@@ -1,0 +1,44 @@
+"""The processes that share a run, seen from one of them; here the only one there is.
+
+`continuum.parallel.team` has the same for several. What is called on one is called on all of them,
+in the same order.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from continuum.explicit import run
+
+
+class Alone:
+    """One process that has all of the rock.
+
+    rank, size : which of how many processes this is.
+    """
+
+    rank = 0
+    size = 1
+
+    def total(self, share: np.ndarray) -> np.ndarray:
+        """Return values on the freedoms [..., n], summed up over all who have each of them."""
+        return share
+
+    def sum(self, value: float) -> float:
+        """Return the sum of one number of every process."""
+        return value
+
+    def largest(self, value: float) -> float:
+        """Return the largest of one number of every process."""
+        return value
+
+    def all(self, holds: bool) -> bool:
+        """Return whether something holds on every process."""
+        return holds
+
+    def gather(self, waves: np.ndarray) -> None:
+        """Replace shares of waveforms by their sums over all processes."""
+
+    def stepping(self, held: np.ndarray) -> Callable[..., None]:
+        """Return what takes the steps, as `explicit.run`; held : freedoms whose motion is given."""
+        return run

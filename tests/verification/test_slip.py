@@ -1,0 +1,59 @@
+"""A joint that slips in deformable rock, under a harmonic shear wave."""
+
+import numpy as np
+import pytest
+
+import cases
+import continuum
+from compare.exact import sliding_joint
+from compare.scenes import SHIPPED
+
+SCENE = SHIPPED / "beyond" / "slip-three-cohesions.toml"
+PERIOD, INTERVAL = 0.04, 1e-4
+#: The last of the cycles is at the joint from 0.15125 to 0.19125 s.
+CYCLE = slice(1501, 1901)
+SHARES = {
+    0.5: (0.6253, 0.4159, 0.6603),
+    0.1: (0.1384, 0.8746, 0.4647),
+    0.02: (0.0282, 0.9746, 0.2221),
+}
+
+
+def simulate(strength, dim=1):
+    """Return the shear stress at the joint (Pa) and the work of friction (J)."""
+    changes = {
+        "soft_layers": [{"y": 25.0, "cohesion": strength, "friction_angle": 0.0}],
+        "record.stress": [25.0],
+        "record.interval": INTERVAL,
+        "variants": [],
+        "expect": {},
+    }
+    result = continuum.simulate(cases.load_variant(SCENE, "", changes), "equivalent", dim)
+    return result.shear.values[0, :, 0], result.energy.sel(term="friction").values
+
+
+@pytest.fixture(scope="module")
+def incident():
+    """The stress of the wave at a joint that holds."""
+    return simulate(1e9)[0]
+
+
+@pytest.mark.parametrize("a", SHARES)
+def test_harmonic_wave(incident, a):
+    """T, R and A of Miller (1978) within 1 %.
+
+    The reflected wave is what slip changes at the joint; A^2 is the share of the incident energy
+    that friction takes in a cycle.
+    """
+    shear, friction = simulate(a * 1e5)
+    whole = np.mean(incident[CYCLE] ** 2)
+    T = np.sqrt(np.mean(shear[CYCLE] ** 2) / whole)
+    R = np.sqrt(np.mean((shear - incident)[CYCLE] ** 2) / whole)
+    z, area = 2400.0 * 800.0, 0.25
+    taken = friction[CYCLE.stop - 1] - friction[CYCLE.start - 1]
+    A = np.sqrt(taken / (whole * PERIOD * area / z))
+    exact = sliding_joint.coefficients(a)
+    print(a, T, R, A, exact, [x/y-1 for x,y in zip((T,R,A),exact)], np.abs(shear).max()/(a*1e5)-1)
+    assert exact == pytest.approx(SHARES[a], abs=1e-4)
+    assert pytest.approx(exact, rel=0.01) == (T, R, A)
+    assert np.abs(shear).max() <= a * 1e5 * (1 + 1e-9)
