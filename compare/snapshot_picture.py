@@ -123,6 +123,8 @@ def _add_key(figure: Figure, colour: ScalarMappable, scale: float) -> None:
     inch = 1 / figure.get_figheight()
     bar = figure.add_axes((LEFT / WIDTH, 1 - 0.32 * inch, 0.3, 0.14 * inch))
     figure.colorbar(colour, cax=bar, orientation="horizontal")
+    for part in bar.collections:
+        part.set(rasterized=False, edgecolor="face")  # an SVG would hold an image of it
     bar.set_title("axial stress (MPa), compression positive", loc="left", pad=3)
     figure.text(1 - RIGHT / WIDTH, 1 - 0.3 * inch, f"displacements drawn × {scale:,g}", ha="right")
 

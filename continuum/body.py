@@ -13,6 +13,7 @@ from scipy.sparse import csr_matrix, kron
 from continuum.elasticity import Material, Piece, Section, discretise
 from continuum.meshing.description import Mesh
 from continuum.operator import Layout, Operator, layout, operator, spread
+from continuum.team import ALONE, Alone
 
 SAME = 1e-9  # of the pillar's size: nodes that are at one height
 
@@ -27,6 +28,8 @@ class Body(NamedTuple):
     stiffness, viscosity : of all copies, N/m and N s/m; viscosity None without dashpots in rock.
     blocks, viscous_blocks : the same of one copy of each part [n, n], for `whole`.
     mass : float array [layout.length], kg; consistent : as a matrix, kg, None where lumped.
+    team : the processes that share the body. Where there are several, `mesh.parts`, nodes, freedoms
+        and operators are of one of them; cells are those of all, and -1 the nodes that it lacks.
     """
 
     mesh: Mesh
@@ -45,6 +48,7 @@ class Body(NamedTuple):
     viscous_blocks: list[csr_matrix]
     mass: np.ndarray
     consistent: csr_matrix | None
+    team: Alone = ALONE
 
     @property
     def dim(self) -> int:
@@ -54,8 +58,15 @@ class Body(NamedTuple):
     @property
     def degrees_of_freedom(self) -> int:
         """Values that move, padding left out."""
+        if self.team.size > 1:
+            return self.team.degrees_of_freedom
         sizes = (block.shape[0] for block in self.blocks)
         return sum(p.copies * n for p, n in zip(self.mesh.parts, sizes, strict=True))
+
+    @property
+    def length(self) -> float:
+        """Of the pillar, m."""
+        return float(np.ptp(self.corners[:, :, axis(self.dim)]))
 
     @property
     def y(self) -> np.ndarray:
@@ -99,7 +110,8 @@ def build_body(
         tie.T @ np.repeat(piece.mass, section.components)
         for tie, piece in zip(ties, pieces, strict=True)
     ]
-    x, cells, corners, material = _copies(mesh, pieces)
+    x, cells = _copies(mesh, pieces)
+    corners, material = cell_geometry(mesh)
     first, stride = _numbering(places, counts, numbers, section.components)
     blocks = [tie.T @ piece.stiffness @ tie for tie, piece in zip(ties, pieces, strict=True)]
     dashpots = _viscosities(pieces, ties) if viscous else []
@@ -170,19 +182,26 @@ def _tie(number: np.ndarray, components: int) -> csr_matrix:
     return csr_matrix(kron(nodes, np.eye(components)))
 
 
-def _copies(mesh: Mesh, pieces: list[Piece]) -> tuple[np.ndarray, ...]:
-    """Return nodes, cells, corners and materials of all copies, one copy after the other."""
-    x, cells, corners, material, base = [], [], [], [], 0
+def cell_geometry(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """Return corners and materials of the cells of all copies, one copy after the other."""
+    corners, material = [], []
+    for part in mesh.parts:
+        places = part.x[part.cells] + part.shifts[:, None, None, :]
+        corners.append(places.reshape(-1, *places.shape[2:]))
+        material.append(np.tile(part.material, part.copies))
+    return np.concatenate(corners), np.concatenate(material)
+
+
+def _copies(mesh: Mesh, pieces: list[Piece]) -> tuple[np.ndarray, np.ndarray]:
+    """Return nodes and cells of all copies, one copy after the other."""
+    x, cells, base = [], [], 0
     for part, piece in zip(mesh.parts, pieces, strict=True):
         nodes, copies = len(piece.x), part.copies
         x.append((piece.x + part.shifts[:, None]).reshape(-1, piece.x.shape[1]))
         numbers = base + nodes * np.arange(copies)[:, None, None] + piece.cells
         cells.append(numbers.reshape(-1, piece.cells.shape[1]))
-        places = part.x[part.cells] + part.shifts[:, None, None]
-        corners.append(places.reshape(-1, *part.x[part.cells].shape[1:]))
-        material.append(np.tile(part.material, copies))
         base += nodes * copies
-    return tuple(np.concatenate(rows) for rows in (x, cells, corners, material))
+    return np.concatenate(x), np.concatenate(cells)
 
 
 def _numbering(

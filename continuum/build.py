@@ -11,7 +11,7 @@ from cases.errors import SceneError
 from cases.sampling import Clock
 from cases.scene import Scene
 from continuum.body import Body, build_body, whole
-from continuum.critical import critical_time_step
+from continuum.critical import any_motion, critical_time_step
 from continuum.elasticity import Material
 from continuum.ends import build_ends, end_stiffness, held_ends
 from continuum.interface import Jumps, jumps
@@ -37,22 +37,25 @@ class Discrete(NamedTuple):
     joints: Interfaces | None
 
 
-def discretise(scene: Scene, model: str, dim: int | None = None) -> Discrete:
-    """Return a scene in space; `model` is "jointed" or "equivalent"."""
+def discretise(scene: Scene, model: str, dim: int | None = None, comm=None) -> Discrete:
+    """Return a scene in space; `model` is "jointed" or "equivalent".
+
+    comm : mpi4py's communicator of the processes that each take a share of it; None for one alone.
+    """
     p, motion, numerics = calibrate(scene), kinematics(scene, dim), scene.numerics.continuum
     mesh = mesh_of(scene, p, model, motion)
     rock = materials(scene, p, model, mesh.layers)
-    body = build_body(
-        mesh,
-        numerics.order,
-        rock,
-        motion.section,
-        motion.plane_wave,
-        numerics.mass == "consistent",
-    )
-    if not mesh.joints.joint.size:
+    consistent = numerics.mass == "consistent"
+    asked = mesh, numerics.order, rock, motion.section, motion.plane_wave, consistent
+    if comm is not None:
+        from continuum.parallel.body import share_of
+
+        body, across = share_of(comm, *asked)
+    else:
+        body = build_body(*asked)
+        across = jumps(body) if mesh.joints.joint.size else None
+    if across is None:
         return Discrete(p, motion, rock, body, None, None)
-    across = jumps(body)
     law = joint_law(
         p,
         resolved_joints(p, model, mesh.layers),
@@ -101,9 +104,13 @@ def critical_step_of(scene: Scene, discrete: Discrete, model: str) -> float:
     stiffness, viscosity = operators(discrete)
     stiffness = stiffness + diags(end_stiffness(scene, p, body, model))
     held = held_ends(scene, body)
-    return critical_time_step(
-        body.mass, stiffness, viscosity, None if held is None else held.freedom
-    )
+    fixed = np.zeros(0, dtype=np.int64) if held is None else held.freedom
+    assembled = body.mass, stiffness, viscosity, fixed, any_motion(body)
+    if body.team.size == 1:
+        return critical_time_step(*assembled)
+    from continuum.parallel.critical import shared_critical_step
+
+    return shared_critical_step(body.team, *assembled)
 
 
 def operators(discrete: Discrete) -> tuple[csr_matrix, csr_matrix | None]:
@@ -138,13 +145,16 @@ def build_model(scene: Scene, discrete: Discrete, model: str, time: Clock) -> Mo
     """Return the constants of a scene in space, for a given clock."""
     p, body = discrete.properties, discrete.body
     alpha = (p.mass_damping or 0.0) * time.dt / 2
-    mass = body.mass
+    mass = body.team.total(body.mass)
+    step_over_mass = zeros(mass.size)
+    # Nothing moves what has no mass: nodes of another process's cell beyond a joint.
+    np.divide(time.dt / (1 + alpha), mass, out=step_over_mass, where=mass > 0)
     return Model(
         rock=Rock(
             stiffness=body.stiffness,
             viscosity=body.viscosity,
-            mass=mass,
-            step_over_mass=time.dt / mass / (1 + alpha),
+            mass=body.mass,
+            step_over_mass=step_over_mass,
             keep=None if p.mass_damping is None else (1 - alpha) / (1 + alpha),
         ),
         interfaces=discrete.joints,
@@ -178,7 +188,7 @@ def receivers(scene: Scene, discrete: Discrete) -> Receivers:
         point=rows(motion.motion),
         turn=None if motion.turn is None else rows(motion.turn),
         elastic=rows(force.elastic / area),
-        viscous=None if force.viscous is None else rows(force.viscous / area),
+        viscous=rows(force.viscous / area) if force.viscous.nnz else None,
         inertia=rows(force.inertia / area),
         contact=rows(force.contact / area) if force.contact.nnz else None,
     )

@@ -29,7 +29,8 @@ def load_on(scene: Scene, p: Properties, body: Body, time: Clock) -> Loaded | No
     """Return the end stress as forces on the freedoms of the start, None where there is none."""
     if scene.load.shakes_base or not scene.load.amplitude:
         return None
-    points, place = _face(body, body.mesh.start)
+    # A moment is traction linear across the face: Lobatto's two points of linear elements miss it.
+    points, place = _face(body, body.mesh.start, body.order + 1)
     direction = load_shape(scene, p, body, points.x)
     weights = points.weight[:, None, None] * place.basis[:, :, None] * direction[:, None]
     share = on_freedoms(body, place, weights)
@@ -71,37 +72,46 @@ def quiet_ends(
 
     In jointed rock a matched end has half a joint in front of it, as the rock beyond would have.
     """
-    parts = []
+    parts: list[tuple[np.ndarray, ...]] = []
     for place in ("start", "end"):
         kind = getattr(scene.ends, place)
         if kind not in ("quiet", "matched"):
             continue
         area = face_area(body, getattr(body.mesh, place))
         springs = absorbing(p, body, dt) if kind == "matched" and model == "jointed" else None
-        parts += [_absorber(p, body, c, a, springs) for c, a in enumerate(area)]
+        whole = body.team.total(area)
+        for c in range(len(area)):
+            parts.append(_absorber(p, body, c, area[c], whole[c], springs))
     if not parts:
         return None
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
-    freedom, viscosity, stiffness, decay, gain = columns
+    freedom, viscosity, whole, stiffness, decay, gain = columns
     half_joints = HalfJoints(stiffness, decay, gain) if stiffness.any() else None
-    beta = viscosity * dt / (2 * mass[freedom])
+    beta = whole * dt / (2 * mass[freedom])
     return Quiet(freedom.astype(np.int64), viscosity, beta, half_joints)
 
 
 def _absorber(
-    p: Properties, body: Body, component: int, area: np.ndarray, springs: list[HalfSpring] | None
+    p: Properties,
+    body: Body,
+    component: int,
+    area: np.ndarray,
+    whole: np.ndarray,
+    springs: list[HalfSpring] | None,
 ) -> tuple[np.ndarray, ...]:
-    """Return freedoms, viscosities and springs of one component of one end face."""
-    freedom = np.flatnonzero(area)
-    share, none = area[freedom], np.zeros(freedom.size)
+    """Return freedoms, viscosities, those of all processes together, and springs of one component
+    of one end face; area, whole : of the freedoms, here and in total."""
+    freedom = np.flatnonzero(whole)
+    share, whole, none = area[freedom], whole[freedom], np.zeros(freedom.size)
     if springs is None:
         z = p.impedance if component == along(body.section) else p.shear_impedance
-        return freedom, share * z, none, none, none
+        return freedom, share * z, whole * z, none, none, none
     one = springs[component]
     alike = np.ones(freedom.size)
     return (
         freedom,
         share * one.viscosity,
+        whole * one.viscosity,
         share * one.stiffness,
         alike * one.decay,
         alike * one.gain,
@@ -136,7 +146,8 @@ def held_ends(scene: Scene, body: Body, time: Clock | None = None) -> Held | Non
     for place in ("start", "end"):
         if getattr(scene.ends, place) != "fixed":
             continue
-        for c, area in enumerate(face_area(body, getattr(body.mesh, place))):
+        whole = body.team.total(face_area(body, getattr(body.mesh, place)))
+        for c, area in enumerate(whole):
             freedoms.append(np.flatnonzero(area))
             component = 1 if body.section.components == 1 else c
             shaken = place == "start" and scene.load.shakes_base
@@ -166,11 +177,12 @@ def on_freedoms(body: Body, place: Places, weights: np.ndarray) -> np.ndarray:
     """Return the sum of weights [q, nodes per cell, components] on every freedom."""
     node = np.broadcast_to(body.cells[place.cell][:, :, None], weights.shape)
     component = np.broadcast_to(np.arange(weights.shape[2]), weights.shape)
-    freedom = body.freedom(node, component)
-    return np.bincount(freedom.ravel(), weights.ravel(), minlength=body.mass.size)
+    here = node >= 0
+    freedom = body.freedom(node[here], component[here])
+    return np.bincount(freedom, weights[here], minlength=body.mass.size)
 
 
-def _face(body: Body, side: Side) -> tuple[Facets, Places]:
+def _face(body: Body, side: Side, degree: int | None = None) -> tuple[Facets, Places]:
     """Return the quadrature points of an end face, and where they are in its cells."""
-    points = facet_points(body, side.corners)
+    points = facet_points(body, side.corners, degree)
     return points, places_in(body, side.cell[points.facet], points.x)

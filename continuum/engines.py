@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from cases.sampling import Clock
 from cases.scene import Scene
 from continuum.build import Discrete
@@ -35,12 +37,17 @@ def explicit_engine(
     scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, time: Clock
 ) -> Engine:
     """Return leapfrog."""
-    from continuum.explicit import run
+    team, held = discrete.body.team, model.ends.held
+    run = team.stepping(np.zeros(0, dtype=np.int64) if held is None else held.freedom)
 
     def march(first: int, last: int) -> None:
         run(model, state, samples, time.stride, first, last)
 
-    return Engine(lambda: march(0, 0), march, time.dt, dict, lambda: time.steps)
+    def compile() -> None:
+        with team.in_turn():
+            march(0, 0)
+
+    return Engine(compile, march, time.dt, dict, lambda: time.steps)
 
 
 def implicit_engine(

@@ -53,13 +53,20 @@ class Jumps(NamedTuple):
     flat: np.ndarray
 
 
-def facet_points(body: Body, corners: np.ndarray) -> Facets:
-    """Return the quadrature points of facets with these corners [facets, corners, dim]."""
+def facet_points(body: Body, corners: np.ndarray, degree: int | None = None) -> Facets:
+    """Return the quadrature points of facets with these corners [facets, corners, dim].
+
+    degree : to which they are exact; absent: the points of a joint, as its elements have them.
+    """
     count, _, dim = corners.shape
     if dim == 1:
         return Facets(np.arange(count), corners[:, 0], np.full(count, body.section.extent))
-    at, weight = _rule(FACETS[body.mesh.cell], body.mesh.cell, body.order)
-    basis, gradient = compat.tabulate(FACETS[body.mesh.cell], 1, at)
+    facet = FACETS[body.mesh.cell]
+    if degree is None:
+        at, weight = _rule(facet, body.mesh.cell, body.order)
+    else:
+        at, weight = compat.quadrature(facet, degree)
+    basis, gradient = compat.tabulate(facet, 1, at)
     x = np.einsum("qv,fvd->fqd", basis, corners)
     tangents = np.einsum("qvt,fvd->fqtd", gradient, corners)
     if dim == 2:
@@ -67,8 +74,7 @@ def facet_points(body: Body, corners: np.ndarray) -> Facets:
     else:
         area = np.linalg.norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]), axis=2)
     weight = body.section.extent * area * weight
-    facet = np.repeat(np.arange(count), len(at))
-    return Facets(facet, x.reshape(-1, dim), weight.ravel())
+    return Facets(np.repeat(np.arange(count), len(at)), x.reshape(-1, dim), weight.ravel())
 
 
 def _rule(facet: str, cell: str, order: int) -> tuple[np.ndarray, np.ndarray]:

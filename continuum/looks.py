@@ -11,6 +11,7 @@ import numpy as np
 from cases.errors import UnstableError
 from cases.sampling import Clock
 from continuum.model import Model, State
+from continuum.team import ALONE, Alone
 
 if TYPE_CHECKING:
     from cases.snapshots import Film
@@ -51,13 +52,13 @@ def march_with_looks(
 
 
 def runaway_check(
-    model: Model, state: State, dt: float, critical: float
+    model: Model, state: State, dt: float, critical: float, team: Alone = ALONE
 ) -> Callable[[float], None]:
     """Return what raises UnstableError where motion has no bound any more."""
-    limit = RUNAWAY * highest_speed(model)
+    limit = RUNAWAY * highest_speed(model, team)
 
     def check(t: float) -> None:
-        if not np.abs(state.v).max() <= limit:
+        if not team.all(np.abs(state.v).max() <= limit):
             raise UnstableError(
                 f"the continuum runs away before t = {t:.4g} s "
                 f"(step {dt:.4g} s, critical {critical:.4g} s)"
@@ -66,11 +67,12 @@ def runaway_check(
     return check
 
 
-def highest_speed(model: Model) -> float:
+def highest_speed(model: Model, team: Alone = ALONE) -> float:
     """Return a bound on the speed of any node, m/s; the largest number where none is known.
 
     Where a load on the start is all that puts energy in, d sqrt(2 E) / dt is at most |F| in the
-    norm of 1 / m, and m v^2 of any node at most 2 E.
+    norm of 1 / m, and m v^2 of any node at most 2 E. Of a node that several processes share, the
+    shares of F^2 / m add up to no less than the whole: (a + b)^2 / (m + n) <= a^2 / m + b^2 / n.
     """
     loaded, held = model.ends.loaded, model.ends.held
     shaken = held is not None and held.step is not None
@@ -80,5 +82,5 @@ def highest_speed(model: Model) -> float:
         return float(np.finfo(float).max) / RUNAWAY
     mass = model.rock.mass
     impulse = model.dt * np.abs(loaded.pressure).sum()
-    drive = np.sqrt((loaded.share**2 / mass[loaded.freedom]).sum())
-    return float(impulse * drive / np.sqrt(mass[mass > 0].min()))
+    drive = team.sum((loaded.share**2 / mass[loaded.freedom]).sum())
+    return float(impulse * np.sqrt(drive * team.largest(1 / mass[mass > 0].min())))

@@ -84,11 +84,11 @@ def _is_inside(cell: str, at: np.ndarray) -> np.ndarray:
 def matrix_of(body: Body, rows: np.ndarray, cell: np.ndarray, weights: np.ndarray, count: int):
     """Return the matrix [count, freedoms] of weights [n, nodes per cell, components] in rows [n].
 
-    What falls on one place is added up.
+    What falls on one place is added up; cells without nodes here have none.
     """
     node = np.broadcast_to(body.cells[cell][:, :, None], weights.shape)
     component = np.broadcast_to(np.arange(weights.shape[2]), weights.shape)
     row = np.broadcast_to(rows[:, None, None], weights.shape)
-    there = weights != 0.0
+    there = (weights != 0.0) & (node >= 0)
     column = body.freedom(node[there], component[there])
     return csr_matrix((weights[there], (row[there], column)), (count, body.mass.size))

@@ -28,12 +28,11 @@ class Sections(NamedTuple):
     """Force over a section, along y, then x, then z: elastic u + viscous u' + inertia u'', N.
 
     elastic, viscous, inertia : [directions * sections, freedoms]; empty rows for sections on a
-    joint; viscous None where no rock has dashpots. contact : [sections, q], the area (m2) of the
-    points of the joint that a section is on.
+    joint. contact : [sections, q], the area (m2) of the points of the joint that a section is on.
     """
 
     elastic: csr_matrix
-    viscous: csr_matrix | None
+    viscous: csr_matrix
     inertia: csr_matrix
     contact: csr_matrix
 
@@ -81,13 +80,12 @@ def sections(
     """Return how the forces over sections are read."""
     directions = 1 if body.section.components == 1 else body.section.components
     size, count = body.mass.size, len(places)
-    viscous = any(m.time_constant for m in materials)
     parts: list[list[csr_matrix]] = [[], [], []]
     contact = []
     for place in places:
-        on_joint = _points_of_joint(body, jumps, place)
-        contact.append(on_joint)
-        found = _none(directions, size) if on_joint.nnz else _section(body, materials, place)
+        contact.append(_points_of_joint(body, jumps, place))
+        on_joint = is_on_joint(body, place)
+        found = _none(directions, size) if on_joint else _section(body, materials, place)
         for part, rows in zip(parts, found, strict=True):
             part.append(rows)
     # One direction of all sections after the other.
@@ -97,7 +95,7 @@ def sections(
     )
     return Sections(
         elastic,
-        damped if viscous else None,
+        damped,
         inertia,
         vstack(contact).tocsr() if contact else csr_matrix((0, 0)),
     )
@@ -107,23 +105,26 @@ def _none(directions: int, size: int) -> tuple[csr_matrix, ...]:
     return tuple(csr_matrix((directions, size)) for _ in range(3))
 
 
-def places_on_joints(body: Body, jumps: Jumps | None, places: list[float]) -> list[float]:
-    """Return which sections are on a joint, and read its traction."""
-    return [place for place in places if _points_of_joint(body, jumps, place).nnz]
+def is_on_joint(body: Body, place: float) -> bool:
+    """Return whether a section is on a joint, and reads its traction."""
+    y = body.mesh.joints.corners[:, :, axis(body.dim)]
+    return bool((np.abs(y - place) <= NEAR * body.length).all(axis=1).any())
 
 
 def _points_of_joint(body: Body, jumps: Jumps | None, place: float) -> csr_matrix:
     """Return the areas [1, q] of the joint's points, zero where the section is on none."""
     if jumps is None:
         return csr_matrix((1, 0))
-    near = np.abs(jumps.x[:, axis(body.dim)] - place) <= NEAR * np.ptp(body.y)
+    if not is_on_joint(body, place):
+        return csr_matrix((1, jumps.weight.size))
+    near = np.abs(jumps.x[:, axis(body.dim)] - place) <= NEAR * body.length
     return csr_matrix(np.where(near & jumps.flat, jumps.weight, 0.0))
 
 
 def _section(body: Body, materials: list[Material], place: float) -> tuple[csr_matrix, ...]:
     """Return the elastic, viscous and inertia rows [directions, freedoms] of one section."""
     y = body.corners[:, :, axis(body.dim)]
-    low, high, slack = y.min(axis=1), y.max(axis=1), NEAR * np.ptp(body.y)
+    low, high, slack = y.min(axis=1), y.max(axis=1), NEAR * body.length
     here = np.flatnonzero((low <= place + slack) & (place <= high + slack))
     # At the border of two layers of cells, the first.
     layer = here[np.abs(low[here] - low[here].min()) <= slack]
@@ -150,10 +151,11 @@ def _by_momentum(
     """
     cell, order, up = body.mesh.cell, body.order, axis(body.dim)
     at, weight = compat.quadrature(cell, max(2 * order - 1, 1), lobatto=True)
-    point = at_reference(body, np.repeat(layer, len(at)), np.tile(at, (layer.size, 1)))
-    volume = _volumes(body, point.cell, np.tile(at, (layer.size, 1))) * np.tile(weight, layer.size)
+    everywhere = np.tile(at, (layer.size, 1))
+    point = at_reference(body, np.repeat(layer, len(at)), everywhere)
+    volume = _volumes(body, point.cell, everywhere) * np.tile(weight, layer.size)
     near, far = body.corners[layer][:, :, up].min(), body.corners[layer][:, :, up].max()
-    local = (_heights(body, point) - near) / (far - near)
+    local = (_heights(body, point.cell, everywhere) - near) / (far - near)
     levels = np.sort(compat.quadrature("interval", max(2 * order - 1, 1), lobatto=True)[0][:, 0])
     level = np.abs(local[:, None] - levels).argmin(axis=1)
     basis = poly.polyfit(levels, np.eye(levels.size), order)
@@ -171,7 +173,7 @@ def _by_momentum(
 def _by_stress(body: Body, materials: list[Material], place: float) -> tuple[csr_matrix, ...]:
     """Return a section's force as the integral of the stress over it, by Gauss points."""
     at, weight = np.polynomial.legendre.leggauss(PER_SIDE)
-    low, high = body.x.min(axis=0), body.x.max(axis=0)
+    low, high = body.corners.min(axis=(0, 1)), body.corners.max(axis=(0, 1))
     across = [d for d in range(body.dim) if d != axis(body.dim)]
     grids = np.meshgrid(*[(low[d] + high[d] + (high[d] - low[d]) * at) / 2 for d in across])
     x = np.full((grids[0].size, body.dim), float(place))
@@ -191,9 +193,10 @@ def _volumes(body: Body, cell: np.ndarray, at: np.ndarray) -> np.ndarray:
     return body.section.extent * np.abs(found)
 
 
-def _heights(body: Body, point: Places) -> np.ndarray:
-    """Return y of points, m."""
-    return np.einsum("nk,nk->n", point.basis, body.y[body.cells[point.cell]])
+def _heights(body: Body, cell: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Return y (m) of points in reference coordinates of their cells."""
+    shape, _ = compat.tabulate(body.mesh.cell, 1, at)
+    return np.einsum("nv,nv->n", shape, body.corners[cell][:, :, axis(body.dim)])
 
 
 def _stress_rows(

@@ -40,6 +40,7 @@ def simulate(
     model: str = "jointed",
     dim: int | None = None,
     progress: Callable[[float], None] | None = None,
+    comm=None,
 ) -> xr.Dataset:
     """Simulate a scene as deformable rock.
 
@@ -49,6 +50,8 @@ def simulate(
         mass, soft layers as interfaces of their excess compliance).
     dim : 1, the bar; 2, plane stress; 3, the square column; None leaves it to the scene.
     progress : called with the finished fraction.
+    comm : mpi4py's communicator of processes that share the run: all call this alike, each steps
+        its part of the rock, and all get the whole result. None: this one alone.
 
     Raises SceneError for what this model cannot simulate, UnstableError when the motion runs away,
     StoppedError, with the result so far, when implicit steps do not converge.
@@ -58,11 +61,13 @@ def simulate(
     if reason:
         raise SceneError(scene.name or scene.title, "model", model, reason)
     began = perf_counter()
-    discrete = discretise(scene, model, dim)
+    discrete = discretise(scene, model, dim, comm if comm is not None and comm.size > 1 else None)
+    team = discrete.body.team
     choice, critical = _steps(scene, discrete, model)
     time = choice.time
     built = build_model(scene, discrete, model, time)
     state = state_at_rest(built, scene.record.energy)
+    rest = _at_rest(scene, built, state, discrete)
     samples = room(built, state, time.samples)
     start = explicit_engine if choice.scheme == "explicit" else implicit_engine
     engine = start(scene, discrete, built, state, samples, time)
@@ -77,13 +82,16 @@ def simulate(
             "seconds_compile": compiled - ready,
             "seconds_stepping": perf_counter() - compiled,
         }
-        about = _about(scene, discrete, model, choice, critical) | engine.attributes() | seconds
-        found = _recorded(scene, discrete, built, samples, time.times[:count], about)
+        about = _about(scene, discrete, model, choice, critical) | rest | engine.attributes()
+        for wave in samples:
+            if wave is not None:
+                team.gather(wave)
+        found = _recorded(scene, discrete, built, samples, time.times[:count], about | seconds)
         return xr.Dataset(*(found if film is None else film.developed(found)))
 
-    check = runaway_check(built, state, time.dt, critical)
+    check = runaway_check(built, state, time.dt, critical, team)
     try:
-        march_with_looks(time, state.u.size, engine.march, check, progress, film)
+        march_with_looks(time, int(team.largest(state.u.size)), engine.march, check, progress, film)
     except StoppedError as error:
         error.result = result(engine.samples_done(time))
         raise
@@ -111,7 +119,7 @@ def _recorded(
     """Return what was recorded at these times as a result, with attributes about the run."""
     taken: list[Any] = [None if wave is None else wave[:, : times.size] for wave in samples]
     until = Samples(*taken)
-    terms, energy = energy_terms(built, until.energy)
+    terms, energy = energy_terms(built, until.energy, discrete.body.team)
     return fields(
         scene,
         f"continuum-{about['model']}",
@@ -139,8 +147,18 @@ def _about(
         "critical_dt": critical,
         "steps": choice.time.steps,
         "degrees_of_freedom": discrete.body.degrees_of_freedom,
+        "processes": discrete.body.team.size,
         "versions": json.dumps(versions),
     }
+
+
+def _at_rest(scene: Scene, built: Model, state: State, discrete: Discrete) -> dict[str, Any]:
+    """Bring a scene's rock to rest under gravity, and return what a result says of that."""
+    if scene.gravity is None or not scene.gravity.static:
+        return {}
+    from continuum.static import settle_static
+
+    return settle_static(scene, built, state, discrete.body).attributes
 
 
 def _film(scene: Scene, discrete: Discrete, state: State, ahead: float) -> RockFilm | None:

@@ -4,12 +4,10 @@
 in the same order.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 import numpy as np
-
-from continuum.explicit import run
-
 
 class Alone:
     """One process that has all of the rock.
@@ -39,6 +37,16 @@ class Alone:
     def gather(self, waves: np.ndarray) -> None:
         """Replace shares of waveforms by their sums over all processes."""
 
+    @contextmanager
+    def in_turn(self) -> Iterator[None]:
+        """Let the first process of every machine compile: the others find it in the cache."""
+        yield
+
     def stepping(self, held: np.ndarray) -> Callable[..., None]:
         """Return what takes the steps, as `explicit.run`; held : freedoms whose motion is given."""
+        from continuum.explicit import run
+
         return run
+
+
+ALONE = Alone()

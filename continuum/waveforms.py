@@ -6,8 +6,9 @@ from cases.result import ALL_TERMS
 from cases.scene import Scene
 from continuum.build import Discrete
 from continuum.model import Model, Samples
-from continuum.receivers import places_on_joints
+from continuum.receivers import is_on_joint
 from continuum.record import TERMS
+from continuum.team import ALONE, Alone
 from joints.laws import Law
 
 
@@ -38,9 +39,9 @@ def waveforms(scene: Scene, discrete: Discrete, samples: Samples) -> dict[str, n
 def _prestress(scene: Scene, discrete: Discrete) -> np.ndarray:
     """Return the prestress (Pa) of sections in the rock; that on a joint is in its traction."""
     places = np.array(scene.record.stress, dtype=float)
-    if scene.prestress is None or discrete.joints is None:
+    if scene.prestress is None or not discrete.body.mesh.joints.joint.size:
         return np.zeros(places.size)
-    on_joint = np.isin(places, places_on_joints(discrete.body, discrete.jumps, scene.record.stress))
+    on_joint = np.array([is_on_joint(discrete.body, place) for place in places], dtype=bool)
     return np.where(on_joint, 0.0, scene.prestress.normal)
 
 
@@ -56,7 +57,7 @@ def _padded(waves: np.ndarray, components: int) -> np.ndarray:
 
 
 def energy_terms(
-    model: Model, energy: np.ndarray | None
+    model: Model, energy: np.ndarray | None, team: Alone = ALONE
 ) -> tuple[tuple[str, ...], np.ndarray | None]:
     """Return the terms that the ledger of a model has, in the order of every result, and them."""
     law = None if model.interfaces is None else model.interfaces.law
@@ -65,7 +66,8 @@ def energy_terms(
         "friction": law is not None and slides(law),
         "gravity": model.weight is not None,
     }
-    terms = tuple(t for t in ALL_TERMS if t in TERMS and there.get(t, True))
+    absent = {term for term, is_there in there.items() if team.all(not is_there)}
+    terms = tuple(t for t in ALL_TERMS if t in TERMS and t not in absent)
     if energy is None:
         return terms, None
     return terms, energy[[TERMS.index(t) for t in terms]]

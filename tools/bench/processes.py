@@ -1,0 +1,55 @@
+"""Two processes over one: whole runs of the continuum under mpiexec.
+
+usage: mpiexec -n N python tools/bench/processes.py CASE (prints freedoms x steps a second)
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+from statistics import median
+
+from rock import scene_of
+
+from continuum import compat, simulate
+from continuum.simulate import steps_of
+
+ROUNDS = 5
+STEPS = 4000  # some seconds
+
+#: In a container one is root, which Open MPI does not run as unless told twice.
+AS_ROOT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+
+
+def compared(case: str) -> None:
+    """Print the rates of two processes and of one, which take turns, and their ratio."""
+    if shutil.which("mpiexec") is None:
+        print("  two processes: no mpiexec here")
+        return
+    pairs = [(_under_mpi(case, 1), _under_mpi(case, 2)) for _ in range(ROUNDS)]
+    ratios = sorted(two / one for one, two in pairs)
+    one, two = (median(column) for column in zip(*pairs, strict=True))
+    print(
+        f"  two processes over one, whole runs: {two:.2e} over {one:.2e}: "
+        f"{median(ratios):.2f} ({ratios[0]:.2f} to {ratios[-1]:.2f})",
+        flush=True,
+    )
+
+
+def _under_mpi(case: str, count: int) -> float:
+    command = ("mpiexec", "-n", str(count), sys.executable, __file__, case)
+    done = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True, env=AS_ROOT)
+    return float(done.stdout)
+
+
+def one_run(case: str) -> None:
+    """Run a case in all processes there are, and print its rate."""
+    time, _ = steps_of(scene_of(case), "jointed", 3)
+    result = simulate(scene_of(case, **{"time.duration": STEPS * time.dt}), "jointed", 3)
+    a = result.attrs
+    if compat.MPI.COMM_WORLD.rank == 0:
+        print(a["degrees_of_freedom"] * a["steps"] / a["seconds_stepping"])
+
+
+if __name__ == "__main__":
+    one_run(sys.argv[1])
