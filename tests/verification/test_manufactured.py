@@ -25,7 +25,7 @@ MESHES = [
     ("triangle", 1, 8, 2),
     ("triangle", 2, 4, 2),
     ("tetrahedron", 1, 4, 2),
-    ("tetrahedron", 2, 2, 2),
+    ("tetrahedron", 2, 3, 2),
 ]
 SIMPLICES = ("triangle", "tetrahedron")
 END = 1e-3  # s, 0.6 of a period
