@@ -15,6 +15,7 @@ import typer
 
 import cases
 from cases.errors import SceneError, UnstableError
+from compare.processes import Processes, started
 from compare.scenes import find, shipped
 
 # Older typer raises click's own errors and newer typer its copy of them: ask the class itself.
@@ -60,12 +61,17 @@ def _print_version(wanted: bool) -> None:
 
 @app.callback()
 def root(
+    context: typer.Context,
     version: Annotated[
         bool,
         typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version."),
     ] = False,
 ) -> None:
     """Stress waves in jointed rock: rigid blocks and continuum, refereed by exact solutions."""
+    command = context.invoked_subcommand
+    if command != "run" and started().comm is not None:
+        allowed = f"jointwave {command} works in one process; only jointwave run shares its work"
+        raise SceneError("mpiexec", "", None, allowed)
 
 
 @app.command("list")
@@ -97,7 +103,8 @@ def run(
 ) -> None:
     """Simulate a scene and write each result as DIR/[variant/]ENGINE[-MODEL].nc.
 
-    With record.fields also its snapshots, as a .pvd file for ParaView.
+    With record.fields also its snapshots, as a .pvd file for ParaView. Under mpiexec the processes
+    share each run of the continuum; everything else is done by the first of them.
     """
     from compare import runs, terminal, views
 
@@ -105,9 +112,10 @@ def run(
     wanted = runs.wanted([e.value for e in engine], model or [])
     jobs = runs.plan(scenes, wanted, out)
     _warn(scenes)
+    processes = started()
     with terminal.progress(f"{len(jobs)} runs") as advance:
-        done = runs.execute(jobs, advance, vtx)
-    views.show_runs(done, as_json)
+        done = runs.execute(jobs, advance, vtx, processes)
+    processes.by_first(lambda: views.show_runs(done, as_json))
 
 
 @app.command()
@@ -189,23 +197,30 @@ def main() -> None:
     gc.set_threshold(100_000)
     if len(sys.argv) == 1:
         sys.argv.append("--help")
+    processes = Processes()
     try:
+        processes = started()
+        processes.mute_others()
         code = app(standalone_mode=False)
     except SceneError as error:
-        _fail(str(error), 2)
+        _fail(processes, str(error), 2)
     except UnstableError as error:
-        _fail(str(error), 3)
+        _fail(processes, str(error), 3)
     except UsageError as error:
-        _fail(_usage(error), 2)
+        _fail(processes, _usage(error), 2)
     except (typer.Abort, KeyboardInterrupt):
-        _fail("interrupted", 130)
+        _fail(processes, "interrupted", 130)
     except BrokenPipeError:  # the reader has seen enough; flushing at exit must not complain
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)
     except OSError as error:
-        _fail(f"{error.filename or 'output'}: {error.strerror or error}", 2)
+        _fail(processes, f"{error.filename or 'output'}: {error.strerror or error}", 2)
     except MemoryError as error:
-        _fail(f"not enough memory: {error}", 2)
+        _fail(processes, f"not enough memory: {error}", 2)
+    except Exception:
+        if processes.comm is None:
+            raise
+        processes.crash()
     else:
         sys.exit(code if isinstance(code, int) else 0)
 
@@ -214,6 +229,5 @@ def _usage(error: Any) -> str:
     return error.format_message().replace("Value error, ", "")
 
 
-def _fail(message: str, code: int) -> None:
-    print(f"jointwave: {' '.join(message.split())}", file=sys.stderr)
-    sys.exit(code)
+def _fail(processes: Processes, message: str, code: int) -> None:
+    processes.fail(f"jointwave: {' '.join(message.split())}", code)

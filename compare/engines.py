@@ -43,9 +43,10 @@ def applies(name: str, scene: Scene) -> Answer:
     return _exact(name).applies(scene)
 
 
-def solve(name: str, scene: Scene, progress: Progress | None = None) -> xr.Dataset:
+def solve(name: str, scene: Scene, progress: Progress | None = None, comm=None) -> xr.Dataset:
     """Return the result of one engine or exact solution.
 
+    comm : mpi4py's communicator of processes that share a run of the continuum, None without.
     Raises SceneError where it does not apply or the name is unknown, UnstableError where a run
     goes unstable.
     """
@@ -60,7 +61,7 @@ def solve(name: str, scene: Scene, progress: Progress | None = None) -> xr.Datas
         from continuum import simulate as simulate_continuum
 
         model = name.removeprefix("continuum-")
-        return simulate_continuum(scene, model=model, progress=progress)
+        return simulate_continuum(scene, model=model, progress=progress, comm=comm)
     return _exact(name).solve(scene)
 
 

@@ -9,6 +9,7 @@ from cases.result import Fields, imbalance
 from cases.scene import Scene
 from compare.engines import Progress, applies, exact_names, solve
 from compare.output import fields_of, write_fields
+from compare.processes import ALONE, Processes
 
 CONTINUUM_MODELS = ("jointed", "equivalent")
 
@@ -67,12 +68,16 @@ def plan(scenes: list[Scene], runs: list[tuple[str, str | None]], out: Path) -> 
     return jobs
 
 
-def execute(jobs: list[Job], progress: Progress, vtx: bool = False) -> list[Done]:
+def execute(
+    jobs: list[Job], progress: Progress, vtx: bool = False, processes: Processes = ALONE
+) -> list[Done]:
     """Run the jobs one after the other and write each result; `vtx`: snapshots as VTX too.
 
+    processes : share the runs of the continuum. The first of them makes the others, writes all
+    files, and alone returns what was done.
     Raises SceneError where a run cannot be made, or no VTX file be written.
     """
-    done = []
+    done: list[Done] = []
     if vtx:
         _refuse_vtx(jobs)
 
@@ -80,21 +85,33 @@ def execute(jobs: list[Job], progress: Progress, vtx: bool = False) -> list[Done
         return lambda fraction: progress((i + fraction) / len(jobs))
 
     for i, job in enumerate(jobs):
-        result = _solve(job, part_of(i))
-        write_fields(job.path, result)
-        done.append(
-            Done(
-                job,
-                int(result.attributes.get("steps", 0)),
-                float(result.attributes.get("seconds_stepping", 0.0)),
-                _residual(result),
-                _fragments(result),
-                result.attributes.get("static_out_of_balance"),
-                _write_snapshots(job, result, vtx),
-            )
-        )
+        done += _made(job, part_of(i), vtx, processes)
         progress((i + 1) / len(jobs))
     return done
+
+
+def _made(job: Job, progress: Progress, vtx: bool, processes: Processes) -> list[Done]:
+    """Run a job and write its result; return what was done, nothing but on the first process."""
+    if job.name.startswith("continuum-"):
+        result = _solve(job, progress, processes.comm)
+        done = processes.by_first(lambda: _written(job, result, vtx))
+    else:
+        done = processes.by_first(lambda: _written(job, _solve(job, progress), vtx))
+    return [] if done is None else [done]
+
+
+def _written(job: Job, result: Fields, vtx: bool) -> Done:
+    """Write a result with its snapshots."""
+    write_fields(job.path, result)
+    return Done(
+        job,
+        int(result.attributes.get("steps", 0)),
+        float(result.attributes.get("seconds_stepping", 0.0)),
+        _residual(result),
+        _fragments(result),
+        result.attributes.get("static_out_of_balance"),
+        _write_snapshots(job, result, vtx),
+    )
 
 
 def _refuse_vtx(jobs: list[Job]) -> None:
@@ -132,12 +149,12 @@ def _residual(result: Fields) -> float | None:
     return imbalance(result.variables["energy"][1], terms.tolist())
 
 
-def _solve(job: Job, progress: Progress) -> Fields:
+def _solve(job: Job, progress: Progress, comm=None) -> Fields:
     if job.name == "dem":
         from dem import simulate_fields
 
         return simulate_fields(job.scene, progress)
-    return fields_of(solve(job.name, job.scene, progress))
+    return fields_of(solve(job.name, job.scene, progress, comm))
 
 
 def _names(engine: str, model: str | None, scene: Scene) -> list[str]:

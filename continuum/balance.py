@@ -5,7 +5,15 @@ A trial starts from what the state `now` remembers, and changes nothing of it.
 """
 
 from continuum.explicit import add, damp, deform
-from continuum.record import read, read_damped, read_joints, read_turn, record_energy
+from continuum.record import (
+    read,
+    read_braked,
+    read_damped,
+    read_joints,
+    read_turn,
+    read_weight,
+    record_energy,
+)
 from continuum.tractions import at, elastic_slip, gap_at, load_joints, push, rate_at
 from joints.borrowed import borrowed
 from joints.jit import jitted
@@ -39,7 +47,7 @@ def settle(model, now, trial, pressure):
     # A joint slides by what it slips in the step, whatever the velocity at the end of it.
     way, rate, dt = trial.v_before, trial.rate, model.dt
     load_joints(model.interfaces, trial.u, way, rate, trial.memory, trial, dt)
-    push(model.interfaces, trial.tractions, trial.force, trial.drag)
+    push(model.interfaces, trial.tractions, trial.jumps, trial.force, trial.drag)
     add(trial.force, trial.drag)
     add(trial.force, model.weight)
     size = max(size, press_by(trial.force, model.ends.loaded, pressure))
@@ -174,5 +182,7 @@ def record_balanced(model, state, acceleration, samples, s):
     read(samples.stress, s, receivers.elastic, state.u, 1.0)
     read_damped(receivers.viscous, samples.stress, s, state.rate)
     read(samples.stress, s, receivers.inertia, acceleration, 1.0)
+    read_braked(model.rock.keep, receivers.inertia, samples.stress, s, state.v, 1.0, model.dt)
+    read_weight(receivers.weight, samples.stress, s)
     read_joints(receivers.contact, samples.stress, s, state.tractions)
     record_energy(samples.energy, model, state, s)

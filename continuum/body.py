@@ -58,10 +58,10 @@ class Body(NamedTuple):
     @property
     def degrees_of_freedom(self) -> int:
         """Values that move, padding left out."""
-        if self.team.size > 1:
-            return self.team.degrees_of_freedom
         sizes = (block.shape[0] for block in self.blocks)
-        return sum(p.copies * n for p, n in zip(self.mesh.parts, sizes, strict=True))
+        return self.team.count(
+            sum(p.copies * n for p, n in zip(self.mesh.parts, sizes, strict=True))
+        )
 
     @property
     def length(self) -> float:

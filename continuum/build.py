@@ -11,12 +11,12 @@ from cases.errors import SceneError
 from cases.sampling import Clock
 from cases.scene import Scene
 from continuum.body import Body, build_body, whole
-from continuum.critical import any_motion, critical_time_step
+from continuum.critical import any_motion
 from continuum.elasticity import Material
 from continuum.ends import build_ends, end_stiffness, held_ends
 from continuum.interface import Jumps, jumps
 from continuum.kinematics import Kinematics, kinematics, layer_thickness, materials
-from continuum.laws import interfaces, joint_law, memory, resolved_joints, tractions
+from continuum.laws import interfaces, joint_law, measured, memory, resolved_joints, tractions
 from continuum.meshing.description import Mesh
 from continuum.meshing.pillar import elements_in_block, pillar_mesh
 from continuum.model import Interfaces, Model, Receivers, Rock, Samples, State
@@ -106,11 +106,7 @@ def critical_step_of(scene: Scene, discrete: Discrete, model: str) -> float:
     held = held_ends(scene, body)
     fixed = np.zeros(0, dtype=np.int64) if held is None else held.freedom
     assembled = body.mass, stiffness, viscosity, fixed, any_motion(body)
-    if body.team.size == 1:
-        return critical_time_step(*assembled)
-    from continuum.parallel.critical import shared_critical_step
-
-    return shared_critical_step(body.team, *assembled)
+    return body.team.critical_step(*assembled)
 
 
 def operators(discrete: Discrete) -> tuple[csr_matrix, csr_matrix | None]:
@@ -167,6 +163,12 @@ def build_model(scene: Scene, discrete: Discrete, model: str, time: Clock) -> Mo
 
 def weight_of(scene: Scene, body: Body) -> np.ndarray | None:
     """Return the weight on every freedom, N; None without gravity."""
+    pull = pull_of(scene, body)
+    return None if pull is None else body.mass * pull
+
+
+def pull_of(scene: Scene, body: Body) -> np.ndarray | None:
+    """Return the acceleration of gravity on every freedom, m/s2; None without gravity."""
     if scene.gravity is None:
         return None
     components = body.section.components
@@ -174,23 +176,25 @@ def weight_of(scene: Scene, body: Body) -> np.ndarray | None:
     found = np.zeros(body.mass.size)
     nodes = np.arange(len(body.x))
     for c in range(components):
-        freedom = np.unique(body.freedom(nodes, c))
-        found[freedom] = body.mass[freedom] * pull[1 if components == 1 else c]
+        found[body.freedom(nodes, c)] = pull[1 if components == 1 else c]
     return found
 
 
 def receivers(scene: Scene, discrete: Discrete) -> Receivers:
     """Return how a scene's places are read, stresses over the pillar's section."""
     body, area = discrete.body, discrete.properties.area
-    motion = points(body, scene.record.velocity)
+    motion, pull = points(body, scene.record.velocity), pull_of(scene, body)
     force = sections(body, discrete.jumps, discrete.materials, scene.record.stress)
+    # Alike on all processes that have joints, which then share what is compiled.
+    viscous, contact = (body.team.any(part.nnz > 0) for part in (force.viscous, force.contact))
     return Receivers(
         point=rows(motion.motion),
         turn=None if motion.turn is None else rows(motion.turn),
         elastic=rows(force.elastic / area),
-        viscous=rows(force.viscous / area) if force.viscous.nnz else None,
+        viscous=rows(force.viscous / area) if viscous else None,
         inertia=rows(force.inertia / area),
-        contact=rows(force.contact / area) if force.contact.nnz else None,
+        contact=rows(force.contact / area) if contact and discrete.joints is not None else None,
+        weight=None if pull is None else -(force.inertia / area) @ pull,
     )
 
 
@@ -199,9 +203,9 @@ def state_at_rest(model: Model, keep_ledger: bool) -> State:
     n, joints, ends = model.rock.mass.size, model.interfaces, model.ends
     quiet, held = ends.quiet, ends.held
     sprung = quiet is not None and quiet.springs is not None
-    viscous = model.rock.viscosity is not None or (
-        joints is not None and joints.law.normal_viscosity is not None
-    )
+    damped = joints is not None and joints.law.normal_viscosity is not None
+    read = model.receivers.viscous is not None
+    viscous = model.rock.viscosity is not None or damped or read
     return State(
         u=zeros(n),
         v=zeros(n),
@@ -211,6 +215,7 @@ def state_at_rest(model: Model, keep_ledger: bool) -> State:
         drag=zeros(n) if viscous else None,
         memory=None if joints is None else memory(joints),
         tractions=None if joints is None else tractions(joints),
+        jumps=None if joints is None else measured(joints),
         closure=np.zeros(quiet.freedom.size) if sprung else None,
         reaction=np.zeros(quiet.freedom.size) if quiet is not None else None,
         wall=np.zeros(held.freedom.size) if held is not None and held.step is not None else None,

@@ -8,6 +8,7 @@ from cases.sampling import Clock
 from cases.scene import Scene
 from continuum.body import Body, along
 from continuum.interface import Facets, facet_points
+from continuum.kinematics import impedances
 from continuum.meshing.description import Side
 from continuum.model import Ends, HalfJoints, Held, Loaded, Quiet
 from continuum.places import Places, places_in
@@ -78,53 +79,49 @@ def quiet_ends(
         if kind not in ("quiet", "matched"):
             continue
         area = face_area(body, getattr(body.mesh, place))
-        springs = absorbing(p, body, dt) if kind == "matched" and model == "jointed" else None
+        impedance = impedances(scene, p, model, body.dim, len(area))
+        sprung = kind == "matched" and model == "jointed"
+        springs = absorbing(scene, p, body, dt) if sprung else None
         whole = body.team.total(area)
         for c in range(len(area)):
-            parts.append(_absorber(p, body, c, area[c], whole[c], springs))
+            spring = None if springs is None else springs[c]
+            parts.append(_absorber(impedance[c], area[c], whole[c], spring))
     if not parts:
         return None
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
     freedom, viscosity, whole, stiffness, decay, gain = columns
-    half_joints = HalfJoints(stiffness, decay, gain) if stiffness.any() else None
+    sprung = body.team.any(bool(stiffness.any()))
+    half_joints = HalfJoints(stiffness, decay, gain) if sprung else None
     beta = whole * dt / (2 * mass[freedom])
     return Quiet(freedom.astype(np.int64), viscosity, beta, half_joints)
 
 
 def _absorber(
-    p: Properties,
-    body: Body,
-    component: int,
-    area: np.ndarray,
-    whole: np.ndarray,
-    springs: list[HalfSpring] | None,
+    impedance: float, area: np.ndarray, whole: np.ndarray, spring: HalfSpring | None
 ) -> tuple[np.ndarray, ...]:
     """Return freedoms, viscosities, those of all processes together, and springs of one component
     of one end face; area, whole : of the freedoms, here and in total."""
     freedom = np.flatnonzero(whole)
-    share, whole, none = area[freedom], whole[freedom], np.zeros(freedom.size)
-    if springs is None:
-        z = p.impedance if component == along(body.section) else p.shear_impedance
-        return freedom, share * z, whole * z, none, none, none
-    one = springs[component]
-    alike = np.ones(freedom.size)
+    share, whole, alike = area[freedom], whole[freedom], np.ones(freedom.size)
+    if spring is None:
+        return freedom, share * impedance, whole * impedance, 0 * alike, 0 * alike, 0 * alike
     return (
         freedom,
-        share * one.viscosity,
-        whole * one.viscosity,
-        share * one.stiffness,
-        alike * one.decay,
-        alike * one.gain,
+        share * spring.viscosity,
+        whole * spring.viscosity,
+        share * spring.stiffness,
+        alike * spring.decay,
+        alike * spring.gain,
     )
 
 
-def absorbing(p: Properties, body: Body, dt: float = 0.0) -> list[HalfSpring]:
+def absorbing(scene: Scene, p: Properties, body: Body, dt: float = 0.0) -> list[HalfSpring]:
     """Return half a joint before the rock beyond, per unit area, for every component."""
-    found = []
-    for component in range(body.section.components):
-        z, k = p.impedance, p.regular_own_stiffness
+    found, components = [], body.section.components
+    for component, z in enumerate(impedances(scene, p, "jointed", body.dim, components)):
+        k = p.regular_own_stiffness
         if component != along(body.section):
-            z, k = p.shear_impedance, p.regular_own_shear_stiffness
+            k = p.regular_own_shear_stiffness
         found.append(half_spring(2 * k, p.time_constant or 0.0, z, dt))
     return found
 
@@ -135,7 +132,7 @@ def end_stiffness(scene: Scene, p: Properties, body: Body, model: str) -> np.nda
     for place in ("start", "end"):
         if getattr(scene.ends, place) == "matched" and model == "jointed":
             area = face_area(body, getattr(body.mesh, place))
-            for share, spring in zip(area, absorbing(p, body), strict=True):
+            for share, spring in zip(area, absorbing(scene, p, body), strict=True):
                 found += share * spring.critical_stiffness
     return found
 

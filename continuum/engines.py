@@ -9,6 +9,7 @@ import numpy as np
 
 from cases.sampling import Clock
 from cases.scene import Scene
+from continuum.body import Body
 from continuum.build import Discrete
 from continuum.model import Model, Samples, State
 
@@ -38,6 +39,8 @@ def explicit_engine(
 ) -> Engine:
     """Return leapfrog."""
     team, held = discrete.body.team, model.ends.held
+    if scene.gravity is not None and not scene.gravity.static:
+        let_go(model, state, discrete.body)
     run = team.stepping(np.zeros(0, dtype=np.int64) if held is None else held.freedom)
 
     def march(first: int, last: int) -> None:
@@ -48,6 +51,19 @@ def explicit_engine(
             march(0, 0)
 
     return Engine(compile, march, time.dt, dict, lambda: time.steps)
+
+
+def let_go(model: Model, state: State, body: Body) -> None:
+    """Set the velocities before the first step of rock that gravity acts on from t = 0 on.
+
+    At t = 0, in the middle of the first two, it is at rest.
+    """
+    fall = 0.5 * model.rock.step_over_mass * body.team.total(model.weight)
+    if model.rock.keep is not None:
+        fall *= 2 / (1 + model.rock.keep)  # step_over_mass is that of damped motion
+    if model.ends.held is not None:
+        fall[model.ends.held.freedom] = 0.0
+    state.v[:], state.v_before[:] = -fall, -3 * fall
 
 
 def implicit_engine(

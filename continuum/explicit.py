@@ -36,7 +36,7 @@ def forces(model, state, n):
     extrapolate(state.rate, state.v, state.v_before)
     damp(state.drag, model.rock.viscosity, state.rate)
     load_joints(interfaces, state.u, state.v, state.rate, state.memory, state, model.dt)
-    push(interfaces, state.tractions, state.force, state.drag)
+    push(interfaces, state.tractions, state.jumps, state.force, state.drag)
     add(state.force, state.drag)
     add(state.force, model.weight)
     press(state.force, ends.loaded, n)
@@ -62,9 +62,7 @@ def advance(model, state, samples, stride, n):
 @jitted
 def deform(force, stiffness, u):
     """Set the elastic force (N) of the rock on every freedom."""
-    multiply(stiffness, u, force)
-    for i in range(force.size):
-        force[i] = -force[i]
+    multiply(stiffness, u, force, -1.0)
 
 
 @jitted

@@ -14,6 +14,7 @@ from scipy.sparse import csr_matrix
 from continuum import compat
 from continuum.body import Body, along
 from continuum.places import matrix_of, places_in
+from continuum.runs import distinct
 
 FACETS = {
     "interval": "point",
@@ -87,7 +88,7 @@ def _rule(facet: str, cell: str, order: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def jumps(body: Body) -> Jumps:
-    """Return the jump operators of all joints of a mesh."""
+    """Return the jump operators of all joints of a mesh; points on the same nodes are one."""
     joints = body.mesh.joints
     points = facet_points(body, joints.corners)
     left, right = joints.left[points.facet], joints.right[points.facet]
@@ -104,15 +105,17 @@ def jumps(body: Body) -> Jumps:
             body, rows, left, parts[1], count
         )
 
-    directions = frames.shape[1]
+    matrices = [jump(direction) for direction in range(frames.shape[1])]
+    kept, group = distinct(matrices)
+    opening, slip_x, slip_z = (*(m[kept] for m in matrices), None, None)[:3]
     return Jumps(
-        opening=jump(0),
-        slip_x=jump(1) if directions > 1 else None,
-        slip_z=jump(2) if directions > 2 else None,
-        weight=points.weight,
-        joint=joints.joint[points.facet],
-        x=points.x,
-        flat=np.abs(frames[:, 0, along(body.section)] - 1) < 1e-9,
+        opening=opening,
+        slip_x=slip_x,
+        slip_z=slip_z,
+        weight=np.bincount(group, points.weight, kept.size),
+        joint=joints.joint[points.facet[kept]],
+        x=points.x[kept],
+        flat=np.abs(frames[kept, 0, along(body.section)] - 1) < 1e-9,
     )
 
 

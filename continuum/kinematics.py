@@ -1,9 +1,11 @@
 """What a scene asks of the continuum: its dimension, its components of motion, its rock."""
 
+from math import sqrt
 from typing import NamedTuple
 
 from cases.calibrate import Properties
 from cases.effects import is_spatial
+from cases.elastic import equivalent_modulus
 from cases.errors import SceneError
 from cases.scene import Scene
 from continuum.elasticity import Material, Section
@@ -106,3 +108,30 @@ def refuse(scene: Scene, model: str, dim: int | None) -> None:
         raise SceneError(where, "model", model, f"must be one of {', '.join(MODELS)}")
     if dim not in (None, 1, 2, 3):
         raise SceneError(where, "dim", dim, "must be 1, 2 or 3")
+
+
+def impedances(scene: Scene, p: Properties, model: str, dim: int, components: int) -> list[float]:
+    """Return rho c (Pa s/m) of the rock mass for every component of the motion: what absorbs.
+
+    Along the pillar that of the bar, or of the P wave where a plane wave keeps the rock from
+    widening; across it that of the S wave.
+    """
+    along = p.impedance
+    if dim > 1 and scene.motion.rotation == "none":
+        along = sqrt(p.density * _confined_modulus(scene, p, model, dim))
+    return (
+        [along] if components == 1 else [p.shear_impedance, along, p.shear_impedance][:components]
+    )
+
+
+def _confined_modulus(scene: Scene, p: Properties, model: str, dim: int) -> float:
+    """Return the modulus (Pa) of the rock mass that cannot widen: in plane stress along x alone."""
+
+    def confined(modulus: float, nu: float) -> float:
+        return modulus / (1 - nu**2 if dim == 2 else (1 + nu) * (1 - 2 * nu) / (1 - nu))
+
+    if model == "equivalent":
+        return confined(p.modulus, p.poisson)
+    assert p.intact_modulus is not None
+    intact = confined(p.intact_modulus, scene.rock.intact_poisson)
+    return equivalent_modulus(p.regular_own_stiffness, intact, p.spacing)

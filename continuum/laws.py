@@ -6,7 +6,9 @@ import numpy as np
 
 from cases.calibrate import Properties
 from continuum.interface import Jumps
-from continuum.model import Interfaces, Memory, Tractions
+from continuum.model import Interfaces, Measured, Memory, Tractions
+from continuum.operator import zeros
+from continuum.runs import runs
 from continuum.sparse import rows
 from joints.laws import Law
 from joints.uniform import law
@@ -94,13 +96,13 @@ def joint_law(p: Properties, joints: Resolved, joint: np.ndarray, shears: bool) 
 
 def interfaces(jumps: Jumps, law: Law, prestress: float | None) -> Interfaces:
     """Return the joints of a model."""
+    matrices = jumps.opening, jumps.slip_x, jumps.slip_z
     return Interfaces(
-        rows(jumps.opening),
-        None if jumps.slip_x is None else rows(jumps.slip_x),
-        None if jumps.slip_z is None else rows(jumps.slip_z),
+        *(None if matrix is None else rows(matrix) for matrix in matrices),
         jumps.weight,
         law,
         prestress,
+        tuple(None if matrix is None else runs(matrix) for matrix in matrices),
     )
 
 
@@ -136,3 +138,23 @@ def tractions(joints: Interfaces) -> Tractions:
 
     springs = np.zeros(q), room(x), room(z)
     return Tractions(*springs, room(damped), room(damped and x), room(damped and z))
+
+
+def measured(joints: Interfaces) -> Measured:
+    """Return room for the jumps that the law asks for."""
+    q, kept, loads = joints.area.size, memory(joints), tractions(joints)
+
+    def room(asked: np.ndarray | None) -> np.ndarray | None:
+        return None if asked is None else zeros(q)
+
+    return Measured(
+        gap=zeros(q),
+        x=room(loads.x),
+        z=room(loads.z),
+        gap_rate=room(loads.drag_n),
+        rate_x=room(loads.drag_x),
+        rate_z=room(loads.drag_z),
+        way_x=room(kept.slide_x),
+        way_z=room(kept.slide_z),
+        pull=zeros(q),
+    )

@@ -41,6 +41,7 @@ class Interfaces(NamedTuple):
     law : per unit area; parts are one number or an array [q].
     prestress : normal traction (Pa) that every point and the rock between them carry at u = 0;
         the gap is then short by prestress / K_n; None without.
+    runs : opening, slip_x, slip_z by runs of alike points.
     """
 
     opening: Rows
@@ -49,6 +50,7 @@ class Interfaces(NamedTuple):
     area: np.ndarray
     law: Law
     prestress: Any
+    runs: Any
 
 
 class Memory(NamedTuple):
@@ -79,6 +81,24 @@ class Tractions(NamedTuple):
     drag_n: Any
     drag_x: Any
     drag_z: Any
+
+
+class Measured(NamedTuple):
+    """Jumps of all points at the step, float arrays [q]; None where nothing asks for them.
+
+    gap, x, z : of the displacement, m. gap_rate, rate_x, rate_z : of the rate, m/s.
+    way_x, way_z : of the velocity, m/s. pull : room for a component of the points' forces, N.
+    """
+
+    gap: np.ndarray
+    x: Any
+    z: Any
+    gap_rate: Any
+    rate_x: Any
+    rate_z: Any
+    way_x: Any
+    way_z: Any
+    pull: np.ndarray
 
 
 class Loaded(NamedTuple):
@@ -135,9 +155,11 @@ class Ends(NamedTuple):
 class Receivers(NamedTuple):
     """point, turn : [r components, n], displacement and rotation (rad; None without) of points.
 
-    A section's force over its area = elastic (u + eta rate) + inertia u'', Pa [s components, n];
+    A section's force over its area = elastic (u + eta rate) + inertia (u'' + alpha u') + weight,
+    Pa [s components, n].
     viscous : the elastic rows times their eta; None without dashpots.
-    contact : [s components, 3 q], tractions that sections on joints read; None where none is.
+    contact : [s, q], tractions that sections on joints read; None where none is.
+    weight : of the rock that `inertia` accelerates, Pa [s components]; None without gravity.
     """
 
     point: Rows
@@ -146,6 +168,7 @@ class Receivers(NamedTuple):
     viscous: Any
     inertia: Rows
     contact: Any
+    weight: Any = None
 
 
 class Model(NamedTuple):
@@ -166,7 +189,7 @@ class State(NamedTuple):
     force : on each freedom, N.
     rate : velocity extrapolated to the step, m/s; drag : viscous force on each freedom, N; both
         None without dashpots.
-    memory : `Memory`; tractions : `Tractions`; None without joints.
+    memory : `Memory`; tractions : `Tractions`; jumps : `Measured`; None without joints.
     closure : of the springs in front of dashpots [k], m; None without them.
     reaction : of the absorbing ends at the last step [k], N; None without them.
     wall : force (N) on the held freedoms at the last step [k]; None where they stand still.
@@ -181,6 +204,7 @@ class State(NamedTuple):
     drag: Any
     memory: Any
     tractions: Any
+    jumps: Any
     closure: Any
     reaction: Any
     wall: Any

@@ -44,11 +44,17 @@ def mass_damping_power(keep, model, state, way):
     """Return the power (W) that mass-proportional damping takes."""
     total = 0.0
     if keep is not None:
-        alpha = 2.0 * (1.0 - keep) / (1.0 + keep) / model.dt
+        alpha = mass_damping(keep, model.dt)
         for i in range(way.size):
             mean = 0.5 * (state.v_before[i] + state.v[i])
             total += alpha * model.rock.mass[i] * mean * way[i]
     return total
+
+
+@jitted
+def mass_damping(keep, dt):
+    """Return the alpha (1/s) of mass-proportional damping."""
+    return 2.0 * (1.0 - keep) / (1.0 + keep) / dt
 
 
 @jitted
@@ -94,6 +100,9 @@ def record(model, state, samples, s):
     read_damped(receivers.viscous, samples.stress, s, state.rate)
     read(samples.stress, s, receivers.inertia, v, 1.0 / dt)
     read(samples.stress, s, receivers.inertia, v_before, -1.0 / dt)
+    read_braked(model.rock.keep, receivers.inertia, samples.stress, s, v, 0.5, dt)
+    read_braked(model.rock.keep, receivers.inertia, samples.stress, s, v_before, 0.5, dt)
+    read_weight(receivers.weight, samples.stress, s)
     read_joints(receivers.contact, samples.stress, s, state.tractions)
     record_energy(samples.energy, model, state, s)
 
@@ -117,6 +126,21 @@ def read_damped(matrix, stress, s, rate):
     """Add the viscous part of the rock's stress."""
     if matrix is not None:
         read(stress, s, matrix, rate, 1.0)
+
+
+@jitted
+def read_braked(keep, inertia, stress, s, v, share, dt):
+    """Add what mass-proportional damping takes of a share of velocities, where there is any."""
+    if keep is not None:
+        read(stress, s, inertia, v, share * mass_damping(keep, dt))
+
+
+@jitted
+def read_weight(weight, stress, s):
+    """Add the weight of the rock up to the section, where there is any."""
+    if weight is not None:
+        for r in range(weight.size):
+            stress[r, s] += weight[r]
 
 
 @jitted

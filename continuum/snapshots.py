@@ -7,13 +7,22 @@ from scipy.sparse import csr_matrix
 
 from cases.result import Fields
 from cases.scene import Scene
-from cases.snapshots import Film, refuse_beyond_room, samples_between, snapshots, with_snapshots
+from cases.snapshots import (
+    Film,
+    Snapshots,
+    refuse_beyond_room,
+    samples_between,
+    snapshots,
+    with_snapshots,
+)
 from cases.subcells import KINDS, linear_cells
 from continuum import compat
+from continuum.body import axis
 from continuum.build import Discrete
 from continuum.model import State
 from continuum.places import at_reference, matrix_of
 from continuum.receivers import section_tractions
+from continuum.team import Pieces
 
 
 class RockFilm(Film):
@@ -24,16 +33,17 @@ class RockFilm(Film):
 
     def __init__(self, scene: Scene, discrete: Discrete, state: State, ahead: float) -> None:
         body = discrete.body
-        refuse_beyond_room(scene, len(body.x))
+        self.cell = np.flatnonzero(body.cells[:, 0] >= 0)
+        self.nodes, numbers = np.unique(body.cells[self.cell], return_inverse=True)
+        self.table = numbers.reshape(self.cell.size, -1)
+        refuse_beyond_room(scene, int(body.team.sum(self.nodes.size)))
         super().__init__(samples_between(scene) or 1, self.shot)
         self.discrete, self.state, self.ahead = discrete, state, ahead
-        self.freedoms = body.freedom(
-            np.arange(len(body.x))[:, None], np.arange(body.section.components)
-        )
+        self.freedoms = body.freedom(self.nodes[:, None], np.arange(body.section.components))
         self.parts = linear_cells(
             body.mesh.cell, compat.reference_element(body.mesh.cell, body.order).points
         )
-        self.stress = axial_stress(discrete, self.parts)
+        self.stress = axial_stress(discrete, self.cell, self.parts)
         self.prestress = scene.prestress.normal if scene.prestress else 0.0
 
     def shot(self, sample: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -45,24 +55,35 @@ class RockFilm(Film):
         return u[self.freedoms], v[self.freedoms], self.stress @ u + self.prestress
 
     def developed(self, result: Fields) -> Fields:
-        """Return the run's result with its snapshots."""
-        body, mesh = self.discrete.body, self.discrete.body.mesh
-        u, v, stress = (np.stack(column) for column in zip(*self.shots, strict=True))
-        cells = body.cells[:, self.parts].reshape(-1, self.parts.shape[1])
-        height = body.y[cells].mean(axis=1)
+        """Return the run's result with its snapshots, which the first process alone has."""
+        body = self.discrete.body
+        u, v, stress = (np.stack(column, axis=1) for column in zip(*self.shots, strict=True))
+        of_cells = (stress.reshape(self.cell.size, len(self.parts), -1),)
+        own = Pieces(self.cell, self.table, of_cells, (body.x[self.nodes], u, v))
+        whole = body.team.joined(own)
+        return result if whole is None else with_snapshots(result, self._of_all(result, whole))
+
+    def _of_all(self, result: Fields, whole: Pieces) -> Snapshots:
+        """Return the snapshots of the whole pillar."""
+        (stress,), (x, u, v) = whole.of_cells, whole.of_nodes
+        cells = whole.table[:, self.parts].reshape(-1, self.parts.shape[1])
+        height = x[cells, axis(x.shape[1])].mean(axis=1)
         block = np.floor(height / self.discrete.properties.spacing).astype(int)
-        time = result.coords["time"][1][:: self.every]
-        found = snapshots(time[: len(u)], body.x, KINDS[mesh.cell], cells, block, u, v, stress)
-        return with_snapshots(result, found)
+        time = result.coords["time"][1][:: self.every][: u.shape[1]]
+        u, v, stress = (
+            np.ascontiguousarray(np.moveaxis(a, 1, 0))
+            for a in (u, v, stress.reshape(len(cells), -1))
+        )
+        return snapshots(time, x, KINDS[self.discrete.body.mesh.cell], cells, block, u, v, stress)
 
 
-def axial_stress(discrete: Discrete, parts: np.ndarray) -> csr_matrix:
+def axial_stress(discrete: Discrete, cells: np.ndarray, parts: np.ndarray) -> csr_matrix:
     """Return the stress along the pillar (compression positive) at the centres of the linear cells
-    of every cell, from the freedoms [cells * parts, freedoms]."""
+    of cells, from the freedoms [cells * parts, freedoms]."""
     body = discrete.body
     nodes = compat.reference_element(body.mesh.cell, body.order).points
     centres = nodes[parts].mean(axis=1)
-    cell = np.repeat(np.arange(len(body.cells)), len(parts))
-    point = at_reference(body, cell, np.tile(centres, (len(body.cells), 1)))
+    cell = np.repeat(cells, len(parts))
+    point = at_reference(body, cell, np.tile(centres, (cells.size, 1)))
     weights = -section_tractions(body, discrete.materials, point)[0]
     return matrix_of(body, np.arange(cell.size), cell, weights, cell.size)

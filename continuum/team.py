@@ -6,8 +6,24 @@ in the same order.
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import NamedTuple
 
 import numpy as np
+
+
+class Pieces(NamedTuple):
+    """Values on some cells of a mesh, and on the nodes of these.
+
+    cell : int array [cells], their numbers in the whole mesh.
+    table : int array [cells, nodes per cell], nodes that values count from 0.
+    of_cells, of_nodes : arrays [cells, ...] and [nodes, ...].
+    """
+
+    cell: np.ndarray
+    table: np.ndarray
+    of_cells: tuple[np.ndarray, ...]
+    of_nodes: tuple[np.ndarray, ...]
+
 
 class Alone:
     """One process that has all of the rock.
@@ -34,8 +50,26 @@ class Alone:
         """Return whether something holds on every process."""
         return holds
 
+    def any(self, holds: bool) -> bool:
+        """Return whether something holds on any process."""
+        return not self.all(not holds)
+
+    def count(self, here: int) -> int:
+        """Return how many freedoms there are in all, of so many here."""
+        return here
+
+    def critical_step(self, *assembled) -> float:
+        """Return what `critical.critical_time_step` does for what all processes have assembled."""
+        from continuum.critical import critical_time_step
+
+        return critical_time_step(*assembled)
+
     def gather(self, waves: np.ndarray) -> None:
         """Replace shares of waveforms by their sums over all processes."""
+
+    def joined(self, pieces: Pieces) -> Pieces | None:
+        """Return the pieces of all processes as one; the first process alone, None on others."""
+        return pieces
 
     @contextmanager
     def in_turn(self) -> Iterator[None]:

@@ -4,7 +4,8 @@ With the jump operators B (freedoms to gap and slip), the weights W and the trac
 compression positive, on the far side), the joints' force on the freedoms is B^T W t(B u).
 """
 
-from continuum.sparse import add_row, row
+from continuum.runs import add_runs, multiply_runs
+from continuum.sparse import row
 from joints.energy import friction_work
 from joints.jit import jitted
 from joints.laws import law_of, normal_traction, spring_traction
@@ -20,32 +21,55 @@ def load_joints(interfaces, u, v, rate, memory, state, dt):
     Where there are dashpots it is the springs' part, and theirs is kept apart.
     """
     if interfaces is not None:
+        jumps = state.jumps
+        measure(interfaces.runs, u, v, rate, jumps)
         for q in range(interfaces.area.size):
             law = law_of(interfaces.law, q)
-            gap = gap_at(interfaces.prestress, interfaces, law, u, q)
-            gap_rate = rate_at(rate, interfaces.opening, q)
+            gap = prestressed(interfaces.prestress, law, jumps.gap[q])
+            gap_rate = at(jumps.gap_rate, q)
             opening = opened(memory.opening, gap, q)
             t_n = normal_traction(law, gap, gap_rate, opening)
             spring = spring_traction(law, gap, opening)
             keep_dashpot(state.tractions.drag_n, q, t_n - spring)
             state.tractions.normal[q] = given_or(state.tractions.drag_n, spring, t_n)
-            load_shear(law.shear_stiffness, interfaces, law, u, v, rate, state, dt, q, t_n, gap)
+            load_shear(law.shear_stiffness, interfaces, law, state, dt, q, t_n, gap)
 
 
 @jitted
-def load_shear(stiffness, interfaces, law, u, v, rate, state, dt, q, t_n, gap):
+def measure(runs, u, v, rate, jumps):
+    """Set the jumps of all points that the law asks for."""
+    opening, slip_x, slip_z = runs
+    multiply_runs(opening, u, jumps.gap)
+    measure_one(jumps.x, slip_x, u)
+    measure_one(jumps.z, slip_z, u)
+    measure_one(jumps.gap_rate, opening, rate)
+    measure_one(jumps.rate_x, slip_x, rate)
+    measure_one(jumps.rate_z, slip_z, rate)
+    measure_one(jumps.way_x, slip_x, v)
+    measure_one(jumps.way_z, slip_z, v)
+
+
+@jitted
+def measure_one(jump, runs, x):
+    """Set one kind of jump, where anything asks for it."""
+    if jump is not None:
+        multiply_runs(runs, x, jump)
+
+
+@jitted
+def load_shear(stiffness, interfaces, law, state, dt, q, t_n, gap):
     """Set the shear traction of point q, where there is shear."""
     if stiffness is not None:
-        memory, tractions = state.memory, state.tractions
+        memory, tractions, jumps = state.memory, state.tractions, state.jumps
         opening = given(memory.opening, at(memory.opening, q))
         cohesion = given(memory.cohesion, at(memory.cohesion, q))
         tau = shear_strength(law, t_n, gap, opening, cohesion)
-        x = elastic_slip(interfaces.slip_x, memory.slide_x, u, q)
-        z = elastic_slip(interfaces.slip_z, memory.slide_z, u, q)
-        rates = rate_at(rate, interfaces.slip_x, q), rate_at(rate, interfaces.slip_z, q)
+        x = less_slide(memory.slide_x, at(jumps.x, q), q)
+        z = less_slide(memory.slide_z, at(jumps.z, q), q)
+        rates = at(jumps.rate_x, q), at(jumps.rate_z, q)
         turn = either(tau, stick, slide)
         t_x, t_z, ex, ez = turn(
-            interfaces, law, v, state, dt, q, x, z, rates[0], rates[1], tau, cohesion
+            interfaces, law, state, dt, q, x, z, rates[0], rates[1], tau, cohesion
         )
         spring_x, spring_z = -law.shear_stiffness * ex, -law.shear_stiffness * ez
         keep_dashpot(tractions.drag_x, q, t_x - spring_x)
@@ -55,17 +79,17 @@ def load_shear(stiffness, interfaces, law, u, v, rate, state, dt, q, t_n, gap):
 
 
 @jitted
-def stick(interfaces, law, v, state, dt, q, x, z, rate_x, rate_z, tau, cohesion):
+def stick(interfaces, law, state, dt, q, x, z, rate_x, rate_z, tau, cohesion):
     """Return the shear traction where nothing limits it, and its elastic slip."""
     t_x, t_z = shear_traction(law, x, z, rate_x, rate_z)
     return t_x, t_z, x, z
 
 
 @jitted
-def slide(interfaces, law, v, state, dt, q, x, z, rate_x, rate_z, tau, cohesion):
+def slide(interfaces, law, state, dt, q, x, z, rate_x, rate_z, tau, cohesion):
     """Return the shear traction up to the strength and its elastic slip; remember what slid."""
     memory = state.memory
-    dx, dz = dt * rate_at(v, interfaces.slip_x, q), dt * rate_at(v, interfaces.slip_z, q)
+    dx, dz = dt * at(state.jumps.way_x, q), dt * at(state.jumps.way_z, q)
     old_x, old_z = x - dx, z - dz
     t_x, t_z, ex, ez, slipped = shear_return(law, x, z, old_x, old_z, rate_x, rate_z, tau, dt)
     if slipped:
@@ -78,31 +102,37 @@ def slide(interfaces, law, v, state, dt, q, x, z, rate_x, rate_z, tau, cohesion)
 
 
 @jitted
-def push(interfaces, tractions, force, drag):
+def push(interfaces, tractions, jumps, force, drag):
     """Add the joints' force (N) on every freedom, B^T W t; the dashpots' part to `drag`."""
     if interfaces is not None:
-        for q in range(interfaces.area.size):
-            area = interfaces.area[q]
-            normal = less_prestress(interfaces.prestress, tractions.normal[q])
-            add_row(interfaces.opening, force, q, area * normal)
-            push_part(interfaces.slip_x, tractions.x, force, q, area)
-            push_part(interfaces.slip_z, tractions.z, force, q, area)
-            push_part(interfaces.opening, tractions.drag_n, drag, q, area)
-            push_part(interfaces.slip_x, tractions.drag_x, drag, q, area)
-            push_part(interfaces.slip_z, tractions.drag_z, drag, q, area)
+        opening, slip_x, slip_z = interfaces.runs
+        area, prestress, pull = interfaces.area, interfaces.prestress, jumps.pull
+        push_part(opening, tractions.normal, prestress, area, pull, force)
+        push_part(slip_x, tractions.x, None, area, pull, force)
+        push_part(slip_z, tractions.z, None, area, pull, force)
+        push_part(opening, tractions.drag_n, None, area, pull, drag)
+        push_part(slip_x, tractions.drag_x, None, area, pull, drag)
+        push_part(slip_z, tractions.drag_z, None, area, pull, drag)
 
 
 @jitted
-def push_part(matrix, traction, force, q, area):
-    """Add one component of a traction, where there is one."""
+def push_part(runs, traction, prestress, area, pull, force):
+    """Add one component of the tractions less the prestress, where there is one."""
     if traction is not None:
-        add_row(matrix, force, q, area * traction[q])
+        for q in range(area.size):
+            pull[q] = area[q] * less_prestress(prestress, traction[q])
+        add_runs(runs, pull, force)
 
 
 @jitted
 def gap_at(prestress, interfaces, law, u, q):
     """Return the gap (m) of point q: what its prestress has closed is counted."""
-    gap = row(interfaces.opening, u, q)
+    return prestressed(prestress, law, row(interfaces.opening, u, q))
+
+
+@jitted
+def prestressed(prestress, law, gap):
+    """Return the gap (m) less what prestress has closed."""
     if prestress is None:
         return gap
     return gap - prestress / law.normal_stiffness

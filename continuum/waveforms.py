@@ -66,8 +66,8 @@ def energy_terms(
         "friction": law is not None and slides(law),
         "gravity": model.weight is not None,
     }
-    absent = {term for term, is_there in there.items() if team.all(not is_there)}
-    terms = tuple(t for t in ALL_TERMS if t in TERMS and t not in absent)
+    there = {term: team.any(is_there) for term, is_there in there.items()}
+    terms = tuple(t for t in ALL_TERMS if t in TERMS and there.get(t, True))
     if energy is None:
         return terms, None
     return terms, energy[[TERMS.index(t) for t in terms]]

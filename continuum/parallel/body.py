@@ -48,8 +48,10 @@ def share_of(
         across = jumps(everything._replace(mesh=local._replace(joints=share.joints)))
     own = np.where(rank_of[:, None] == comm.rank, everything.cells, -1)
     body = everything._replace(cells=own, mass=_own_mass(held, share))
-    names = _names(everything, own, across, border(mesh, rank_of, order, plane_wave))
-    return body._replace(team=Team(comm, *names, held.mass.size)), across
+    meeting = border(mesh, rank_of, order)
+    tied = border(mesh, rank_of, order, plane_wave) if plane_wave else meeting
+    names = _names(everything, own, across, tied)
+    return body._replace(team=Team(comm, *names, held.mass.size, meeting)), across
 
 
 def _compile(

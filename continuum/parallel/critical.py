@@ -46,7 +46,7 @@ def shared_critical_step(
 
 
 def _whole(team: Team, matrices: list, which: int, scale: np.ndarray) -> LinearOperator:
-    """Return one of the operators of the whole rock, scaled on both sides, for the first process."""
+    """Return one of the operators of the whole rock, scaled on both sides; first process alone."""
 
     def product(x: np.ndarray) -> np.ndarray:
         message = np.append(scale * x.ravel(), which)

@@ -34,7 +34,7 @@ class Link(NamedTuple):
     source : int array [s], the freedoms to send, process by process; sent : float array [s].
     place, value : arrays [r], what comes from every process in turn, this one among them: which of
         `freedom` it adds to. own : where its own values begin.
-    count : of requests. requests, statuses : bytes that MPI reads and writes.
+    calls : how many requests there are. requests, statuses : bytes that MPI reads and writes.
     """
 
     freedom: np.ndarray
@@ -44,7 +44,7 @@ class Link(NamedTuple):
     place: np.ndarray
     value: np.ndarray
     own: int
-    count: int
+    calls: int
     requests: np.ndarray
     statuses: np.ndarray
 
@@ -58,11 +58,11 @@ def add_shares(link, values):
     """
     for k in range(link.source.size):
         link.sent[k] = values[link.source[k]]
-    failed = start_all(link.count, link.requests.ctypes)
+    failed = start_all(link.calls, link.requests.ctypes)
     for i in range(link.freedom.size):
         link.value[link.own + i] = values[link.freedom[i]]
         link.sum[i] = 0.0
-    failed = failed or wait_all(link.count, link.requests.ctypes, link.statuses.ctypes)
+    failed = failed or wait_all(link.calls, link.requests.ctypes, link.statuses.ctypes)
     for k in range(link.place.size):
         link.sum[link.place[k]] += link.value[k]
     for i in range(link.freedom.size):

@@ -14,6 +14,7 @@ from continuum.body import SAME
 from continuum.meshing.description import Mesh
 from continuum.meshing.facets import row_numbers
 from continuum.parallel.partition import Copies, copies_of
+from continuum.team import Pieces
 
 STEPS = 1_000_000  # of a place between vertices: nodes are much farther apart than one of them
 
@@ -29,7 +30,7 @@ class Border(NamedTuple):
     node: np.ndarray
 
 
-def border(mesh: Mesh, rank_of: np.ndarray, order: int, plane_wave: bool) -> Border:
+def border(mesh: Mesh, rank_of: np.ndarray, order: int, plane_wave: bool = False) -> Border:
     """Return the border between the processes of a whole mesh, the same on each of them.
 
     rank_of : int array [cells]. plane_wave : whether all nodes of a copy at one height are tied.
@@ -95,6 +96,24 @@ def _levels(mesh: Mesh, copies: Copies, cell: np.ndarray, order: int) -> np.ndar
     return _numbered(np.stack([np.broadcast_to(copy[:, None], y.shape), level], axis=2))
 
 
+def joined(pieces: list[Pieces], border: Border) -> Pieces:
+    """Return the pieces of all processes as one, cells in the order of the whole mesh."""
+    sizes = [len(p.of_nodes[0]) for p in pieces]
+    first = np.cumsum(sizes) - sizes
+    order = np.argsort(np.concatenate([p.cell for p in pieces]))
+    table = np.concatenate([p.table + n for p, n in zip(pieces, first, strict=True)])[order]
+    same, label = np.arange(sum(sizes)), border.node
+    lowest = np.full(label.max(initial=-1) + 1, same.size)
+    np.minimum.at(lowest, label, table[border.cell])
+    same[table[border.cell]] = lowest[label]
+    kept, number = np.unique(same[table], return_inverse=True)
+    of_cells = (np.concatenate(a)[order] for a in zip(*(p.of_cells for p in pieces), strict=True))
+    of_nodes = (np.concatenate(a)[kept] for a in zip(*(p.of_nodes for p in pieces), strict=True))
+    return Pieces(
+        np.arange(len(table)), number.reshape(table.shape), tuple(of_cells), tuple(of_nodes)
+    )
+
+
 def _numbered(keys: np.ndarray) -> np.ndarray:
     """Return a number for every key [cells, nodes, entries], the same for equal ones."""
     if not keys.size:
@@ -103,6 +122,6 @@ def _numbered(keys: np.ndarray) -> np.ndarray:
 
 
 def _shape(mesh: Mesh, order: int) -> np.ndarray:
-    """Return by how much each corner of a cell counts in the place of each node [nodes, corners]."""
+    """Return how much each corner of a cell counts in the place of each node [nodes, corners]."""
     nodes = compat.reference_element(mesh.cell, order).points
     return compat.tabulate(mesh.cell, 1, nodes)[0]

@@ -61,7 +61,7 @@ def ranks_of_cells(mesh: Mesh, size: int) -> np.ndarray:
     copies = copies_of(mesh)
     total = int(copies.cells.sum())
     if size > total:
-        allowed = f"are more processes than the mesh has cells: at most {total}"
+        allowed = f"must be at most {total}, the cells of the mesh"
         raise SceneError("mpiexec", "-n", size, allowed)
     queue = np.argsort(_heights(mesh), kind="stable")
     order = [_along_pillar(part) for part in mesh.parts]
@@ -131,9 +131,7 @@ def _numbers(mesh: Mesh) -> list[np.ndarray]:
     return [n.reshape(p.copies, -1) for n, p in zip(cells, mesh.parts, strict=True)]
 
 
-def _some_cells(
-    part: Part, copy: int, some: np.ndarray, ghosts: np.ndarray, ghost: int
-) -> Part:
+def _some_cells(part: Part, copy: int, some: np.ndarray, ghosts: np.ndarray, ghost: int) -> Part:
     """Return some cells of a copy as a part of their own."""
     used, cells = np.unique(part.cells[some], return_inverse=True)
     return Part(

@@ -10,8 +10,9 @@ import numpy as np
 from mpi4py import MPI
 
 from continuum.parallel.exchange import Link, add_shares
+from continuum.parallel.identity import Border, joined
 from continuum.parallel.march import run_together
-from continuum.team import Alone
+from continuum.team import Alone, Pieces
 
 TAG = 0x4A57  # of messages between neighbours
 
@@ -26,6 +27,7 @@ class Team(Alone):
     border : int array [k], of these the ones that others may have too.
     name : int array [k], ascending: what each of them is called by every process.
     length : of the vectors of freedoms.
+    meeting : the cells where processes meet, and which of their nodes are the same.
 
     Attributes
     ----------
@@ -33,10 +35,16 @@ class Team(Alone):
     """
 
     def __init__(
-        self, comm, freedom: np.ndarray, border: np.ndarray, name: np.ndarray, length: int
+        self,
+        comm,
+        freedom: np.ndarray,
+        border: np.ndarray,
+        name: np.ndarray,
+        length: int,
+        meeting: Border,
     ) -> None:
         self.comm, self.rank, self.size = comm, comm.rank, comm.size
-        self.freedom, self.length = freedom, length
+        self.freedom, self.length, self._meeting = freedom, length, meeting
         self._common = [
             border[np.isin(name, other, assume_unique=True)] for other in comm.allgather(name)
         ]
@@ -67,6 +75,11 @@ class Team(Alone):
         self.comm.Reduce(waves, whole)
         self.comm.Bcast(whole)
         waves[:] = whole
+
+    def joined(self, pieces: Pieces) -> Pieces | None:
+        """Return the pieces of all processes as one; the first process alone, None on others."""
+        gathered = self.comm.gather(pieces)
+        return None if gathered is None else joined(gathered, self._meeting)
 
     @contextmanager
     def in_turn(self) -> Iterator[None]:
@@ -108,6 +121,16 @@ class Team(Alone):
         """How many freedoms there are in all."""
         return 1 + int(self.largest(self.number.max()))
 
+    def count(self, here: int) -> int:
+        """Return how many freedoms there are in all."""
+        return self.degrees_of_freedom
+
+    def critical_step(self, *assembled) -> float:
+        """Return the critical step (s), from what each process has assembled."""
+        from continuum.parallel.critical import shared_critical_step
+
+        return shared_critical_step(self, *assembled)
+
     def on_first(self, share: np.ndarray) -> np.ndarray:
         """Return values [n] summed up as one vector by `number`, on the first process alone."""
         found = np.zeros(self.degrees_of_freedom)
@@ -140,7 +163,7 @@ class Team(Alone):
             place=np.concatenate(place),
             value=value,
             own=int(ends[self.rank] - freedom.size),
-            count=len(requests),
+            calls=len(requests),
             requests=_handles(requests),
             statuses=np.zeros(MPI._sizeof(MPI.Status) * len(requests), dtype=np.uint8),
         )
@@ -170,7 +193,7 @@ def _check(code: int) -> None:
 
 @contextmanager
 def in_turn(comm) -> Iterator[None]:
-    """Let the first process of every machine do first what leaves compiled code in its cache."""
+    """Let the first process of every machine go before the others, and leave together."""
     local = comm.Split_type(MPI.COMM_TYPE_SHARED)
     if local.rank:
         local.barrier()
@@ -179,4 +202,5 @@ def in_turn(comm) -> Iterator[None]:
     finally:
         if not local.rank:
             local.barrier()
+        comm.barrier()
         local.Free()

@@ -11,18 +11,19 @@ from scipy.sparse.linalg import eigsh
 
 from compare.exact import beam, column
 from continuum.build import discretise, operators
-from continuum.ends import face_area, held_ends
+from continuum.ends import face_area
 
 DENSITY, MODULUS, SIDE = 2400.0, 9.6e9, 0.5
 
 
 @pytest.fixture
 def rock(pillar):
-    """Return a function that gives a column of this length (m) and Poisson's ratio in space."""
+    """Return a function that gives a column of this length (m) and Poisson's ratio in space, four
+    elements along."""
 
-    def discrete(length, poisson, dim, order=4, blocks=4, across=1):
+    def discrete(length, poisson, dim, across=1):
         scene = pillar(
-            pillar={"length": length, "side": SIDE, "block": length / blocks},
+            pillar={"length": length, "side": SIDE, "block": length / 4},
             rock={
                 "density": DENSITY,
                 "equivalent_modulus": MODULUS,
@@ -30,11 +31,11 @@ def rock(pillar):
             },
             load={"shape": "step", "amplitude": 0.0},
             record={"stress": [], "velocity": [0.0], "interval": 1e-4},
-            numerics__continuum__order=order,
+            numerics__continuum__order=4,
             numerics__continuum__elements_per_block=1,
             numerics__continuum__elements_across=across,
         )
-        return scene, discretise(scene, "equivalent", dim)
+        return discretise(scene, "equivalent", dim)
 
     return discrete
 
@@ -53,62 +54,75 @@ def modes(discrete, held, near, count=4):
     return np.sqrt(square), found
 
 
-def faces(discrete, components):
-    """Return the freedoms of both end faces in these directions."""
+def mirrors(discrete, components):
+    """Return the freedoms of both end faces in the directions that a mirror there holds."""
     body = discrete.body
     areas = [face_area(body, side) for side in (body.mesh.start, body.mesh.end)]
     return np.concatenate([np.flatnonzero(area[c]) for area in areas for c in components])
 
 
-def closest(discrete, held, near, shape):
-    """Return the frequency of the mode that is most like a shape [nodes, components]."""
+def frequency(discrete, held, near, shape):
+    """Return the frequency (rad/s) of the mode that is like a shape [nodes, components], which
+    holds all but 1 % of the shape's energy."""
     body, like = discrete.body, np.zeros(discrete.body.mass.size)
     for c, values in enumerate(shape.T):
         like[body.freedom(np.arange(len(body.x)), c)] = values
     omega, shapes = modes(discrete, held, near)
-    overlap = np.abs(shapes.T @ (body.mass * like))
-    overlap /= np.sqrt(like @ (body.mass * like))
-    return omega[overlap.argmax()], overlap.max()
+    overlap = (shapes.T @ (body.mass * like)) ** 2 / (like @ (body.mass * like))
+    assert overlap.max() > 0.99
+    return omega[overlap.argmax()]
 
 
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("poisson", [0.25, 0.35])
-def test_long_waves(rock, dim, poisson):
-    bar = np.sqrt(MODULUS / DENSITY)
-    found = []
+def test_long_waves_are_slowed_as_love_and_rayleigh_say(rock, dim, poisson):
+    """c falls short of sqrt(E/rho) by nu^2 k^2 r_p^2 / 2, within 1 % of that at k a = 0.2, and
+    within 0.1 % once its term in k^4 is extrapolated away.
+
+    What is left is the term in k^6, some 1e-4; elements of the fourth order, four to half a wave,
+    err by 1e-10 of c, 1e-6 of the deviation.
+    """
+    bar, found = np.sqrt(MODULUS / DENSITY), []
     for ka in (0.2, 0.4):
         k = ka / SIDE
-        _, discrete = rock(np.pi / k, poisson, dim)
+        discrete = rock(np.pi / k, poisson, dim)
         y = discrete.body.x[:, 1]
-        shape = np.zeros((len(y), dim))
+        shape = np.zeros((y.size, dim))
         shape[:, 1] = np.sin(k * y)
-        omega, like = closest(discrete, faces(discrete, [1]), bar * k, shape)
+        omega = frequency(discrete, mirrors(discrete, [1]), k * bar, shape)
         found.append((1 - omega / (k * bar)) / column.love_rayleigh(poisson, k, SIDE, dim))
-        print(dim, poisson, ka, found[-1], like, discrete.body.degrees_of_freedom)
-    print((4 * found[0] - found[1]) / 3)
+    assert found[0] == pytest.approx(1, abs=1e-2)
+    assert (4 * found[0] - found[1]) / 3 == pytest.approx(1, abs=1e-3)
 
 
-def test_torsion(rock):
-    shear = np.sqrt(MODULUS / 2.5 / DENSITY)
-    speeds=[]
-    for ka in (0.2, 0.4):
-        k = ka / SIDE
-        _, discrete = rock(np.pi / k, 0.25, 3)
-        x, y, z = discrete.body.x.T
-        shape = np.stack([z * np.sin(k * y), 0 * y, -x * np.sin(k * y)], axis=1)
-        omega, like = closest(discrete, faces(discrete, [0, 2]), shear * k * .92, shape)
-        speeds.append(omega/k)
-        print(omega / k / shear, like)
-    print((4 * speeds[0] - speeds[1]) / 3/shear, column.torsion_speed(1))
+def test_torsion_runs_at_saint_venants_speed(rock):
+    """sqrt(G J / (rho I_p)), 0.9184 of the shear speed, within 0.02 %: four quartic elements
+    resolve the warping to 3e-5 of the speed, and terms in k^2 are 2e-6 of it at k a = 0.2."""
+    shear, k = np.sqrt(MODULUS / 2.5 / DENSITY), 0.2 / SIDE
+    discrete = rock(np.pi / k, 0.25, 3, across=2)
+    x, y, z = discrete.body.x.T
+    shape = np.stack([z, 0 * y, -x], axis=1) * np.sin(k * y)[:, None]
+    speed = column.torsion_speed(shear)
+    omega = frequency(discrete, mirrors(discrete, [0, 2]), k * speed, shape)
+    assert speed == pytest.approx(0.9184 * shear, rel=1e-4)
+    assert omega / k == pytest.approx(speed, rel=2e-4)
 
 
 @pytest.mark.parametrize("dim", [2, 3])
-@pytest.mark.parametrize("poisson", [0., 0.25])
-def test_bending(rock, dim, poisson):
+@pytest.mark.parametrize("poisson, bound", [(0.0, 2e-5), (0.25, 5e-3)])
+def test_a_cantilever_swings_at_timoshenkos_frequency(rock, dim, poisson, bound):
+    """The lowest of a beam of 20 sides, 0.2 % below Euler's and Bernoulli's.
+
+    Where Poisson's ratio is zero that beam is the whole truth but for terms in (a/L)^4, 6e-6. Else
+    the clamp also keeps the section from widening, and stiffens the column over some twentieth of
+    its side: omega falls with the square of the length, by 0.1 a/L.
+    """
     length = 20 * SIDE
-    scene, discrete = rock(length, poisson, dim)
+    discrete = rock(length, poisson, dim)
     body = discrete.body
-    start = np.concatenate([np.flatnonzero(a) for a in face_area(body, body.mesh.start)])
+    clamped = np.concatenate([np.flatnonzero(area) for area in face_area(body, body.mesh.start)])
     exact = beam.timoshenko(MODULUS, poisson, DENSITY, SIDE, length)
-    omega, shapes = modes(discrete, start, exact)
-    print(dim, poisson, omega[:3], exact, omega.min()/exact-1, beam.euler_bernoulli(MODULUS, DENSITY, SIDE, length)/exact-1)
+    omega = modes(discrete, clamped, exact)[0].min()
+    assert omega == pytest.approx(exact, rel=bound)
+    slender = beam.euler_bernoulli(MODULUS, DENSITY, SIDE, length)
+    assert 0.995 < exact / slender < 0.999

@@ -10,7 +10,7 @@ from compare.scenes import SHIPPED
 
 SCENE = SHIPPED / "beyond" / "slip-three-cohesions.toml"
 PERIOD, INTERVAL = 0.04, 1e-4
-#: The last of the cycles is at the joint from 0.15125 to 0.19125 s.
+#: One period of the four that are at the joint from 0.03125 to 0.19125 s.
 CYCLE = slice(1501, 1901)
 SHARES = {
     0.5: (0.6253, 0.4159, 0.6603),
@@ -19,7 +19,7 @@ SHARES = {
 }
 
 
-def simulate(strength, dim=1):
+def simulate(strength):
     """Return the shear stress at the joint (Pa) and the work of friction (J)."""
     changes = {
         "soft_layers": [{"y": 25.0, "cohesion": strength, "friction_angle": 0.0}],
@@ -28,7 +28,7 @@ def simulate(strength, dim=1):
         "variants": [],
         "expect": {},
     }
-    result = continuum.simulate(cases.load_variant(SCENE, "", changes), "equivalent", dim)
+    result = continuum.simulate(cases.load_variant(SCENE, "", changes), "equivalent", 1)
     return result.shear.values[0, :, 0], result.energy.sel(term="friction").values
 
 
@@ -40,7 +40,8 @@ def incident():
 
 @pytest.mark.parametrize("a", SHARES)
 def test_harmonic_wave(incident, a):
-    """T, R and A of Miller (1978) within 1 %.
+    """T, R and A of Miller (1978) within 0.2 %: 128 quadratic elements and more a wavelength, 25 of
+    the fifth harmonic.
 
     The reflected wave is what slip changes at the joint; A^2 is the share of the incident energy
     that friction takes in a cycle.
@@ -53,7 +54,6 @@ def test_harmonic_wave(incident, a):
     taken = friction[CYCLE.stop - 1] - friction[CYCLE.start - 1]
     A = np.sqrt(taken / (whole * PERIOD * area / z))
     exact = sliding_joint.coefficients(a)
-    print(a, T, R, A, exact, [x/y-1 for x,y in zip((T,R,A),exact)], np.abs(shear).max()/(a*1e5)-1)
     assert exact == pytest.approx(SHARES[a], abs=1e-4)
-    assert pytest.approx(exact, rel=0.01) == (T, R, A)
+    assert pytest.approx(exact, rel=2e-3) == (T, R, A)
     assert np.abs(shear).max() <= a * 1e5 * (1 + 1e-9)

@@ -29,7 +29,6 @@ def test_the_meshed_layer_has_its_mass(bar, amplitude):
     layer = {"y": 20.0, "normal_stiffness": RATIO**2 * MODULUS / THICKNESS, "thickness": THICKNESS}
     exact = thin_layer.transmission(RATIO, PHASE)
     T = transmission(bar(soft_layers=[layer]), amplitude)
-    print(T, exact)
     assert exact == pytest.approx(0.5643, abs=5e-5)
     assert pytest.approx(exact, rel=1e-3) == T
 
@@ -39,6 +38,5 @@ def test_the_interface_has_none(bar, soft_joint, amplitude):
     kappa = thin_layer.joint(RATIO, PHASE)
     exact = abs(one_joint.coefficients(1.0, kappa, 1.0)[0])
     T = transmission(bar(soft_layers=[soft_joint(20.0, kappa)]), amplitude)
-    print(T, exact)
     assert exact == pytest.approx(0.5547, abs=5e-5)
     assert pytest.approx(exact, rel=1e-3) == T

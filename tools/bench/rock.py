@@ -56,6 +56,7 @@ def scene_of(case: str, **changes) -> Scene:
             "record.stress": [],
             "record.velocity": [20.25],
             "numerics.continuum.dim": 3,
+            "numerics.continuum.scheme": "explicit",
             "numerics.continuum.order": order,
             "numerics.continuum.elements_per_block": elements,
             "numerics.continuum.elements_across": elements,
@@ -68,7 +69,7 @@ def scene_of(case: str, **changes) -> Scene:
 def engine_of(case: str) -> Engine:
     """Return the engine on a case, at rest."""
     scene = scene_of(case)
-    discrete, (time, _) = discretise(scene, "jointed", 3), steps_of(scene, "jointed", 3)
+    discrete, time = discretise(scene, "jointed", 3), steps_of(scene, "jointed", 3)[0].time
     model = build_model(scene, discrete, "jointed", time)
     state = state_at_rest(model, False)
     return Engine(discrete, model, state, room(model, state, time.samples), time)

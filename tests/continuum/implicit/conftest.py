@@ -35,15 +35,16 @@ def implicit():
     """Return a function that makes a run of a scene, ready to go.
 
     rho : spectral radius. stride : steps per sample. dim, kind : of the model. change : function
-    of the model that returns another.
+    of the model that returns another. ledger : whether it is kept.
     """
 
-    def make(scene, rho=1.0, stride=1, kind="jointed", dim=None, change=lambda model: model):
+    def make(scene, rho=1.0, stride=1, kind="jointed", dim=None, change=None, ledger=True):
         discrete = discretise(scene, kind, dim)
         samples = int(scene.time.duration / scene.interval + 1e-9) + 1
         clock = Clock(scene.interval / stride, stride, samples)
-        model = change(build_model(scene, discrete, kind, clock))
-        state = state_at_rest(model, True)
+        model = build_model(scene, discrete, kind, clock)
+        model = model if change is None else change(model)
+        state = state_at_rest(model, ledger)
         stepper = Implicit(model, state, rock_matrices(discrete.body), rho)
         return Run(discrete, model, state, room(model, state, samples), clock, stepper)
 

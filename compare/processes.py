@@ -1,0 +1,108 @@
+"""The processes of one command: this one alone, or all that mpiexec has started.
+
+They do the same with the same input. What is not shared out among them the first one does for all;
+what it prints is printed once.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from time import monotonic, sleep
+from typing import Any, NoReturn, TypeVar
+
+from cases.errors import SceneError
+
+#: Any of them is set by those who start processes: Open MPI, MPICH and its kin, PMIx, MVAPICH.
+VARIABLES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK", "MV2_COMM_WORLD_SIZE")
+
+PATIENCE = 5.0  # s: who fails alike on all processes does so at nearly the same time
+
+T = TypeVar("T")
+
+
+class Processes:
+    """The processes of a command.
+
+    comm : mpi4py's communicator of all of them; None where this one is alone.
+    """
+
+    def __init__(self, comm: Any = None) -> None:
+        self.comm = comm
+        self.stderr = sys.stderr
+        # Messages about the command itself: no run ever uses this one.
+        self._own: Any = None if comm is None else comm.Dup()
+
+    @property
+    def is_first(self) -> bool:
+        """Whether this process prints and writes for all."""
+        return self.comm is None or self.comm.rank == 0
+
+    def mute_others(self) -> None:
+        """Let only the first process print."""
+        if not self.is_first:
+            sys.stdout = sys.stderr = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115
+
+    def by_first(self, work: Callable[[], T]) -> T | None:
+        """Return what `work` returns on the first process, None on the others, which sleep.
+
+        What it raises there is raised on all.
+        """
+        if self._own is None:
+            return work()
+        done, error = None, None
+        if self.is_first:
+            try:
+                done = work()
+            except Exception as raised:
+                error = raised
+        self._all_arrive()
+        error = self._own.bcast(error)
+        if error is not None:
+            raise error
+        return done
+
+    def fail(self, message: str, code: int) -> NoReturn:
+        """Print one line and leave with an exit code, together or else for all."""
+        if self.is_first:
+            print(message, file=self.stderr, flush=True)
+        if self._own is not None and not self._all_arrive(PATIENCE):
+            if not self.is_first:
+                print(message, file=self.stderr, flush=True)
+            self._own.Abort(code)
+        sys.exit(code)
+
+    def crash(self) -> NoReturn:
+        """Show a mistake of the program itself, and end all processes."""
+        traceback.print_exc(file=self.stderr)
+        self.stderr.flush()
+        self._own.Abort(1)
+        raise SystemExit(1)
+
+    def _all_arrive(self, patience: float = float("inf")) -> bool:
+        """Sleep until all processes are here, and return whether they came in time (s)."""
+        began, request = monotonic(), self._own.Ibarrier()
+        while not request.Test():
+            if monotonic() - began > patience:
+                return False
+            sleep(0.01)
+        return True
+
+
+ALONE = Processes()
+
+
+@cache
+def started() -> Processes:
+    """Return the processes of this command; raises SceneError where they cannot work together."""
+    if not any(name in os.environ for name in VARIABLES):
+        return Processes()
+    try:
+        from mpi4py import MPI
+    except ImportError as error:
+        raise SceneError("mpiexec", "", None, f"needs mpi4py ({error})") from None
+    return Processes(MPI.COMM_WORLD if MPI.COMM_WORLD.size > 1 else None)
