@@ -96,13 +96,15 @@ def joint_law(p: Properties, joints: Resolved, joint: np.ndarray, shears: bool) 
 
 def interfaces(jumps: Jumps, law: Law, prestress: float | None) -> Interfaces:
     """Return the joints of a model."""
-    matrices = jumps.opening, jumps.slip_x, jumps.slip_z
+    x, z = jumps.slip_x, jumps.slip_z
     return Interfaces(
-        *(None if matrix is None else rows(matrix) for matrix in matrices),
-        jumps.weight,
-        law,
-        prestress,
-        tuple(None if matrix is None else runs(matrix) for matrix in matrices),
+        opening=rows(jumps.opening),
+        slip_x=None if x is None else rows(x),
+        slip_z=None if z is None else rows(z),
+        area=jumps.weight,
+        law=law,
+        prestress=prestress,
+        runs=tuple(None if matrix is None else runs(matrix) for matrix in (jumps.opening, x, z)),
     )
 
 
