@@ -24,7 +24,7 @@ check: setup  ## lint, formatting, types, and the direction of imports
 	@$(RUN) mypy
 	@$(RUN) lint-imports
 
-bench: setup  ## the rigid blocks: start-up, kernels against bare loops, threads, memory, cost of each effect
+bench: setup  ## both engines: start-up, kernels against bare loops and other solvers, threads, MPI, memory, cost of each effect
 	@$(RUN) python tools/bench
 
 test-debian13:  ## make test in a fresh Debian 13, with newer dolfinx, numpy and Python (needs root or sudo)

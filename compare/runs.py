@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from typing import NamedTuple
 
-from cases.errors import SceneError
+from cases.errors import SceneError, StoppedError
 from cases.result import Fields, imbalance
 from cases.scene import Scene
 from compare.engines import Progress, applies, exact_names, solve
@@ -93,11 +93,23 @@ def execute(
 def _made(job: Job, progress: Progress, vtx: bool, processes: Processes) -> list[Done]:
     """Run a job and write its result; return what was done, nothing but on the first process."""
     if job.name.startswith("continuum-"):
-        result = _solve(job, progress, processes.comm)
+        try:
+            result = _solve(job, progress, processes.comm)
+        except StoppedError as error:
+            processes.by_first(lambda: _keep(job, error))
+            raise
         done = processes.by_first(lambda: _written(job, result, vtx))
     else:
         done = processes.by_first(lambda: _written(job, _solve(job, progress), vtx))
     return [] if done is None else [done]
+
+
+def _keep(job: Job, error: StoppedError) -> None:
+    """Write what a run had computed when it stopped, beside where its result would be."""
+    if error.result is not None:
+        path = job.path.with_suffix(".stopped.nc")
+        write_fields(path, fields_of(error.result))
+        error.args = (f"{error}; what was computed is in {path}",)
 
 
 def _written(job: Job, result: Fields, vtx: bool) -> Done:

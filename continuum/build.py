@@ -164,7 +164,9 @@ def build_model(scene: Scene, discrete: Discrete, model: str, time: Clock) -> Mo
 def weight_of(scene: Scene, body: Body) -> np.ndarray | None:
     """Return the weight on every freedom, N; None without gravity."""
     pull = pull_of(scene, body)
-    return None if pull is None else body.mass * pull
+    if pull is None:
+        return None
+    return body.mass * pull if body.consistent is None else body.consistent @ pull
 
 
 def pull_of(scene: Scene, body: Body) -> np.ndarray | None:

@@ -151,7 +151,8 @@ def _mass(space, cell, order, density, section: Section, consistent: bool):
         return compat.vector(rho * w * measure(cell, order)), None
     whole = compat.matrix(rho * ufl.TrialFunction(space) * w * ufl.dx)
     # The scale is that of every cell: simplices of one order are affine images of each other.
-    lumped = whole.diagonal() * (whole.sum() / whole.diagonal().sum())
+    diagonal = whole.diagonal()
+    lumped = diagonal * (whole.sum() / diagonal.sum()) if diagonal.any() else diagonal
     return lumped, kron(whole, np.eye(section.components)).tocsr() if consistent else None
 
 

@@ -17,7 +17,7 @@ def applies(scene: Scene, model: str = "jointed", dim: int | None = None) -> str
     if model == "jointed":
         reason = "" if p.intact_modulus else "the jointed rock needs rock.intact_modulus"
     else:
-        reason = _beyond_the_homogenised(p)
+        reason = _beyond_the_homogenised(p, shears=motion.section.components > 1)
     if reason:
         return reason
     joints = resolved_joints(p, model)
@@ -35,7 +35,7 @@ def _beyond(scene: Scene, p: Properties) -> str:
     return ""
 
 
-def _beyond_the_homogenised(p: Properties) -> str:
+def _beyond_the_homogenised(p: Properties, shears: bool) -> str:
     ordinary = np.setdiff1d(np.arange(p.block_count - 1), p.soft)
     if not p.tension[ordinary].all():
         return "a homogenised bar has no joints to open where tension is barred"
@@ -45,9 +45,9 @@ def _beyond_the_homogenised(p: Properties) -> str:
         return "a homogenised bar cannot damp one ordinary joint by itself"
     from joints.shear import UNLIMITED
 
-    for strength in (p.cohesion, p.tensile_strength):
+    for strength in (p.cohesion if shears else None, p.tensile_strength):
         if strength is not None and (strength[ordinary] < UNLIMITED).any():
             return "a homogenised bar has no joints that slide or break"
-    if p.cohesion is None and p.friction is not None:
+    if shears and p.cohesion is None and p.friction is not None:
         return "a homogenised bar has no joints that slide"
     return ""

@@ -35,10 +35,3 @@ def row(matrix, x, i):
     for k in range(matrix.start[i], matrix.start[i + 1]):
         total += matrix.value[k] * x[matrix.column[k]]
     return total
-
-
-@jitted
-def add_row(matrix, y, i, a):
-    """Add a times row i of a sparse matrix to y."""
-    for k in range(matrix.start[i], matrix.start[i + 1]):
-        y[matrix.column[k]] += a * matrix.value[k]

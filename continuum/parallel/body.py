@@ -36,22 +36,35 @@ def share_of(
     share = restrict(mesh, rank_of, comm.rank)
     with in_turn(comm):
         _compile(mesh, order, materials, section, consistent)
-    materials = [*materials, NOTHING]
-    local = mesh._replace(parts=share.parts)
-    held = build_body(local, order, materials, section, plane_wave, consistent)
-    corners, material = cell_geometry(mesh)
-    everything = held._replace(
-        cells=_table(held, share, rank_of.size), corners=corners, material=material
-    )
-    across = None
-    if share.joints.joint.size:
-        across = jumps(everything._replace(mesh=local._replace(joints=share.joints)))
-    own = np.where(rank_of[:, None] == comm.rank, everything.cells, -1)
-    body = everything._replace(cells=own, mass=_own_mass(held, share))
+    asked = order, materials, section, plane_wave, consistent
+    held, across = held_share(mesh, share, *asked)
+    own = np.where(rank_of[:, None] == comm.rank, held.cells, -1)
     meeting = border(mesh, rank_of, order)
     tied = border(mesh, rank_of, order, plane_wave) if plane_wave else meeting
-    names = _names(everything, own, across, tied)
-    return body._replace(team=Team(comm, *names, held.mass.size, meeting)), across
+    names = _names(held, own, across, tied)
+    team = Team(comm, *names, held.mass.size, meeting)
+    return held._replace(cells=own, team=team), across
+
+
+def held_share(
+    mesh: Mesh, share: Share, order: int, materials: list[Material], *asked
+) -> tuple[Body, Jumps | None]:
+    """Return the rock that a process holds, ghosts included, and the jumps across its own joints.
+
+    Ghosts have neither stiffness nor mass.
+    """
+    local = mesh._replace(parts=share.parts)
+    built = build_body(local, order, [*materials, NOTHING], *asked)
+    corners, material = cell_geometry(mesh)
+    cells = np.full((len(corners), built.cells.shape[1]), -1)
+    cells[share.cell] = built.cells
+    own, ghosts = (_freedoms(built, built.cells[g]) for g in (~share.ghost, share.ghost))
+    mass = built.mass.copy()
+    mass[np.setdiff1d(ghosts, own)] = 0.0
+    held = built._replace(cells=cells, corners=corners, material=material, mass=mass)
+    if not share.joints.joint.size:
+        return held, None
+    return held, jumps(held._replace(mesh=local._replace(joints=share.joints)))
 
 
 def _compile(
@@ -62,21 +75,6 @@ def _compile(
     corners = part.cells.shape[1]
     one = Part(part.x[part.cells[0]], np.arange(corners)[None], part.material[:1], part.shifts[:1])
     discretise(one, mesh.cell, order, materials, section, consistent)
-
-
-def _table(held: Body, share: Share, count: int) -> np.ndarray:
-    """Return the nodes of all `count` cells [count, nodes per cell], -1 of those not held."""
-    found = np.full((count, held.cells.shape[1]), -1)
-    found[share.cell] = held.cells
-    return found
-
-
-def _own_mass(held: Body, share: Share) -> np.ndarray:
-    """Return the mass, of which mere ghosts have none."""
-    mass = held.mass.copy()
-    own = _freedoms(held, held.cells[~share.ghost])
-    mass[np.setdiff1d(_freedoms(held, held.cells[share.ghost]), own)] = 0.0
-    return mass
 
 
 class Names(NamedTuple):

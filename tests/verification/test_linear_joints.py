@@ -46,7 +46,7 @@ def modulus(dim, wave):
     return E / (1 - NU**2) if dim == 2 else E * (1 - NU) / ((1 + NU) * (1 - 2 * NU))
 
 
-@pytest.mark.parametrize("dim, wave", [(1, "S"), (2, "P"), (2, "S"), (3, "P"), (3, "S")])
+@pytest.mark.parametrize("dim, wave", [(2, "P"), (2, "S"), (3, "P"), (3, "S")])
 def test_plane_waves_and_one_joint(bar, soft_joint, amplitude, dim, wave):
     """d'Alembert's wave at the speed of its dimension within 0.2 % (shear waves have 12.6 elements
     a wavelength), and |T|, |R| of a joint of kappa = 0.5 within 0.1 %.

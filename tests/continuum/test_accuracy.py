@@ -1,4 +1,4 @@
-"""The continuum against the exact bars: misfits at the default numerics, and how they fall."""
+"""The bar against exact solutions: misfits at the default numerics, and how they fall."""
 
 import numpy as np
 import pytest

@@ -1,0 +1,112 @@
+"""The command in several processes: what goes wrong is said once, and ends all of them."""
+
+import json
+
+import pytest
+
+SCENE = ("guo-li-2002/fig-03", "--variant", "")
+CONTINUUM = ("--engine", "continuum", "--model", "jointed")
+SHORT = (
+    *("--set", "pillar.length=3.0", "--set", "record.stress=[1.0]", "--set", "time.duration=2e-3"),
+    *("--set", "numerics.continuum.elements_per_block=1"),
+    *("--set", "numerics.continuum.scheme='explicit'"),
+)
+
+
+def said(done):
+    """Return the lines that the command itself has printed as errors."""
+    assert "Traceback" not in done.stderr
+    return [line for line in done.stderr.splitlines() if line.startswith("jointwave: ")]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (("run", *SCENE, *CONTINUUM, "--set", "pillar.length=-1"), 2, "pillar.length = -1"),
+        (("run", "no-such.toml", *CONTINUUM), 2, "no-such.toml"),
+        (("run", *SCENE, "--engine", "granular"), 2, "granular"),
+        (("compare", *SCENE), 2, "mpiexec: jointwave compare works in one process"),
+        (("report",), 2, "mpiexec: jointwave report works in one process"),
+        (("explain", *SCENE), 2, "mpiexec: jointwave explain works in one process"),
+        (
+            ("run", *SCENE, *CONTINUUM, *SHORT, "--set", "numerics.continuum.step_fraction=1.5"),
+            2,
+            "above the critical step",
+        ),
+        (
+            (
+                *("run", *SCENE, *CONTINUUM, *SHORT, "--set", "time.duration=0.02"),
+                *("--set", "numerics.continuum.step_fraction=1.2"),
+                *("--set", "numerics.continuum.allow_unstable=true"),
+            ),
+            3,
+            "the continuum runs away",
+        ),
+    ],
+)
+def test_what_goes_wrong_is_one_line_of_one_process(arguments, code, words, jointwave, tmp_path):
+    """All processes meet the same mistake: one says so, all leave with the same status."""
+    where = ("--out", tmp_path) if arguments[0] != "explain" else ()
+    (line,) = said(jointwave(3, *arguments, *where, code=code))
+    assert words in line
+    assert not list(tmp_path.rglob("*.nc"))
+
+
+def test_more_processes_than_cells_are_refused(jointwave, tmp_path):
+    """There is nothing that some of them could do."""
+    two_cells = ("--set", "pillar.length=1.0", "--set", "record.stress=[0.5]")
+    arguments = ("run", *SCENE, *CONTINUUM, *SHORT, *two_cells, "--out", tmp_path)
+    (line,) = said(jointwave(3, *arguments, code=2))
+    assert line == "jointwave: mpiexec: -n = 3: must be at most 2, the cells of the mesh"
+
+
+#: One process fails where the others wait for it.
+ALONE = """
+import sys
+from mpi4py import MPI
+from compare import cli
+from continuum import build
+
+def broken(*arguments):
+    raise {error}
+
+if MPI.COMM_WORLD.rank == {rank}:
+    build.{function} = broken
+sys.argv = ["jointwave", *sys.argv[1:]]
+cli.main()
+"""
+
+
+@pytest.mark.parametrize("rank", [0, 2])
+@pytest.mark.parametrize("function", ["jumps", "weight_of"])
+def test_a_process_that_fails_alone_ends_all(rank, function, under_mpi, tmp_path):
+    """Others wait for what it would have sent them; its line is the only one."""
+    program = ALONE.format(error="MemoryError('of one')", rank=rank, function=function)
+    arguments = ("run", *SCENE, *CONTINUUM, *SHORT, "--out", tmp_path)
+    done = under_mpi(3, "-c", program, *arguments, code=2)
+    assert said(done) == ["jointwave: not enough memory: of one"]
+
+
+def test_a_mistake_of_the_program_on_one_process_ends_all(under_mpi, tmp_path):
+    """A traceback, because it is a bug, and no processes left waiting."""
+    program = ALONE.format(error="KeyError('bug')", rank=1, function="weight_of")
+    arguments = ("run", *SCENE, *CONTINUUM, *SHORT, "--out", tmp_path)
+    done = under_mpi(3, "-c", program, *arguments, code=1)
+    assert done.stderr.count("KeyError: 'bug'") == 1
+
+
+def test_rigid_blocks_run_once_in_the_first_process(jointwave, tmp_path):
+    """Only the continuum is shared out; results, and what is said of them, are those of one."""
+    engines = ("--engine", "dem", "--engine", "exact", "--model", "lattice")
+    done = jointwave(2, "run", *SCENE, *engines, *SHORT, "--out", tmp_path, "--json")
+    facts = json.loads(done.stdout)
+    assert [fact["engine"] for fact in facts] == ["dem", "lattice"]
+    assert {path.name for path in tmp_path.iterdir()} == {"dem.nc", "exact-lattice.nc"}
+
+
+def test_a_mistake_of_the_first_process_reaches_the_others(jointwave, tmp_path):
+    """Rigid blocks that go unstable, or a folder that cannot be written, end all at once."""
+    blocked = tmp_path / "file"
+    blocked.write_text("")
+    (line,) = said(jointwave(2, "run", *SCENE, *SHORT, "--out", blocked / "folder", code=2))
+    assert "Not a directory" in line

@@ -1,0 +1,92 @@
+"""Dealing out the cells of a mesh: all of them, each once, in stretches along the pillar."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cases.errors import SceneError
+from continuum.meshing.description import Joints, Mesh, Part, Side
+from continuum.parallel.partition import WHOLE, copies_of, ranks_of_cells, restrict
+
+NOBODY = Side(np.zeros(0, dtype=np.int64), np.zeros((0, 1, 1)))
+
+
+def bar(counts: list[tuple[int, int]]) -> Mesh:
+    """Return a bar of parts with so many cells and copies, 1 m long each, joints between all."""
+    parts, places = [], np.random.default_rng(0).permutation(sum(c for _, c in counts))
+    for cells, copies in counts:
+        vertex = np.arange(cells + 1)
+        shifts, places = places[:copies, None].astype(float), places[copies:]
+        ends = np.stack([vertex[:-1], vertex[1:]], axis=1)
+        parts.append(Part(vertex[:, None] / cells, ends, np.zeros(cells, dtype=np.int64), shifts))
+    first = copies_of(Mesh("interval", tuple(parts), (), None, NOBODY, NOBODY))
+    begin = np.concatenate([p.shifts[:, 0] for p in parts])
+    order = np.argsort(begin)
+    last = (first.first + first.cells - 1)[order][:-1]
+    right = first.first[order][1:]
+    corners = begin[order][1:, None, None]
+    joints = Joints(np.arange(len(last)), last, right, corners)
+    return Mesh("interval", tuple(parts), (), joints, NOBODY, NOBODY)
+
+
+some_parts = st.lists(st.tuples(st.integers(1, 40), st.integers(1, 12)), min_size=1, max_size=4)
+
+
+@given(counts=some_parts, size=st.integers(1, 9))
+def test_every_cell_and_every_joint_belongs_to_one_process(counts, size):
+    """What all processes hold of their own is the whole mesh; ghosts lie beyond own joints."""
+    mesh = bar(counts)
+    total = sum(cells * copies for cells, copies in counts)
+    if size > total:
+        with pytest.raises(SceneError, match=f"at most {total}"):
+            ranks_of_cells(mesh, size)
+        return
+    rank_of = ranks_of_cells(mesh, size)
+    shares = [restrict(mesh, rank_of, rank) for rank in range(size)]
+    own = np.concatenate([share.cell[~share.ghost] for share in shares])
+    assert np.sort(own).tolist() == list(range(total))
+    joints = np.concatenate([share.joints.joint for share in shares])
+    assert np.sort(joints).tolist() == mesh.joints.joint.tolist()
+    for rank, share in enumerate(shares):
+        assert np.unique(share.cell).size == share.cell.size
+        assert (rank_of[share.joints.left] == rank).all()
+        beyond = share.joints.right[rank_of[share.joints.right] != rank]
+        assert set(share.cell[share.ghost]) == set(beyond)
+
+
+@given(counts=some_parts, size=st.integers(1, 9))
+def test_processes_follow_one_another_along_the_pillar_with_equal_loads(counts, size):
+    """Nobody has more than its share by more than the copies that stay whole at both its ends."""
+    mesh = bar(counts)
+    total = sum(cells * copies for cells, copies in counts)
+    size = min(size, total)
+    rank_of = ranks_of_cells(mesh, size)
+    copies = copies_of(mesh)
+    middle = np.concatenate([(p.x[p.cells, 0].mean(1) + p.shifts).ravel() for p in mesh.parts])
+    assert (np.diff(rank_of[np.argsort(middle)]) >= 0).all()
+    share = total / size
+    small = copies.cells[copies.cells <= WHOLE * share].max(initial=1)
+    assert np.abs(np.bincount(rank_of, minlength=size) - share).max() <= max(small, 1)
+    for first, cells in zip(copies.first, copies.cells, strict=True):
+        if cells <= WHOLE * share:
+            assert np.ptp(rank_of[first : first + cells]) == 0
+
+
+def test_parts_of_a_share_are_those_of_the_mesh_where_they_stand():
+    """Whole copies stay together, so that they share an operator; of others what is held."""
+    mesh = bar([(2, 6), (30, 1)])
+    rank_of = ranks_of_cells(mesh, 3)
+    x = np.concatenate(
+        [(p.x[p.cells] + p.shifts[:, None, None]).reshape(-1, 2, 1) for p in mesh.parts]
+    )
+    for rank in range(3):
+        share = restrict(mesh, rank_of, rank)
+        here = np.concatenate(
+            [(p.x[p.cells] + p.shifts[:, None, None]).reshape(-1, 2, 1) for p in share.parts]
+        )
+        assert (here == x[share.cell]).all()
+        material = np.concatenate([np.tile(p.material, p.copies) for p in share.parts])
+        assert ((material == 1) == share.ghost).all()
+        together = [p.copies for p in share.parts if len(p.cells) == 2 and not p.material.any()]
+        assert len(together) <= 1

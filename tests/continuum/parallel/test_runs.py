@@ -1,0 +1,164 @@
+"""Real processes: the waveforms of one, whatever their number; one file, one message."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from cases.result import energy_residual
+from cases.snapshots import snapshots_of
+
+SCENE = "guo-li-2002/fig-03"
+SAME = 1e-10  # of the largest value of a waveform
+BALANCED = 1e-11  # of the work done: round-off of some thousand steps
+
+SHORT = {
+    "pillar.length": 3.0,
+    "record.stress": [0.0, 0.5, 1.1, 3.0],
+    "record.velocity": [0.0, 0.6, 1.5],
+    "record.interval": 5e-5,
+    "record.energy": True,
+    "time.duration": 2e-3,
+    "load.period": 1e-3,
+    "numerics.continuum.scheme": "explicit",
+    "numerics.continuum.elements_per_block": 2,
+}
+
+INCLINED = {"load.direction": [0.6, 0.8, 0.0], "motion.rotation": "small"}
+
+#: Cut between blocks, through blocks, through one piece; joints of all kinds on the cuts.
+SCENES = {
+    "bar, no tension, dashpots, mass damping": (
+        "jointed",
+        {
+            "numerics.continuum.dim": 1,
+            "numerics.continuum.order": 3,
+            "joints.tension": False,
+            "joints.damping_ratio": 0.002,
+            "damping.mass_proportional": 50.0,
+            "ends.end": "matched",
+        },
+    ),
+    "plane wave in two dimensions, shaken base": (
+        "equivalent",
+        {
+            "numerics.continuum.dim": 2,
+            "motion.rotation": "none",
+            "load.quantity": "velocity",
+            "load.amplitude": 0.1,
+            "load.direction": [0.6, 0.8, 0.0],
+            "ends.start": "fixed",
+            "ends.end": "quiet",
+            "soft_layers": [{"y": 1.5, "spacing_stiffness": 4.4e8, "cohesion": 1e4}],
+        },
+    ),
+    "blocks in space that slip and break": (
+        "jointed",
+        {
+            **INCLINED,
+            "joints.friction_angle": 30.0,
+            "joints.cohesion": 1e4,
+            "joints.residual_cohesion": 1e3,
+            "joints.tensile_strength": 3e4,
+            "joints.fracture_energy": 0.3,
+            "ends.start": "quiet",
+            "ends.end": "quiet",
+            "numerics.continuum.order": 1,
+        },
+    ),
+    "one piece of tetrahedra with dashpots": (
+        "equivalent",
+        {
+            **INCLINED,
+            "numerics.continuum.dim": 3,
+            "numerics.continuum.cell": "simplex",
+            "numerics.continuum.order": 2,
+            "joints.damping_ratio": 0.02,
+            "ends.end": "quiet",
+        },
+    ),
+}
+
+
+CUT = "one piece of tetrahedra with dashpots"
+
+#: Terms of the ledger that a scene is there for.
+WHAT_HAPPENS = {
+    "bar, no tension, dashpots, mass damping": ["viscous", "boundary"],
+    "plane wave in two dimensions, shaken base": ["friction", "boundary"],
+    "blocks in space that slip and break": ["friction", "fracture", "boundary"],
+    CUT: ["viscous", "boundary"],
+}
+
+WAVES = {"stress", "velocity", "displacement", "shear", "rotation", "energy"}
+
+
+def options(scene, out):
+    """Return the arguments that run a scene into a folder."""
+    model, changes = SCENES[scene]
+    changes = {**SHORT, **changes}
+    keys = [part for k, v in changes.items() for part in ("--set", f"{k}={_toml(v)}")]
+    engine = ("--engine", "continuum", "--model", model)
+    return "run", SCENE, "--variant", "", *engine, *keys, "--out", out, "--json"
+
+
+def _toml(value):
+    """Return a value as TOML spells it; tables inline."""
+    if isinstance(value, list):
+        return f"[{', '.join(map(_toml, value))}]"
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{k} = {_toml(v)}" for k, v in value.items()) + "}"
+    return json.dumps(value)
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_any_number_of_processes_gives_the_same_waveforms(scene, jointwave, tmp_path):
+    """To round-off, with one file and one report; what the scene is there for does happen."""
+    results = []
+    for count in (1, 2, 3):
+        done = jointwave(count, *options(scene, tmp_path / str(count)))
+        (fact,) = json.loads(done.stdout)
+        assert done.stderr == ""
+        assert list((tmp_path / str(count)).glob("*.nc")) == [Path(fact["file"])]
+        results.append(xr.load_dataset(fact["file"]))
+    one, *others = results
+    for count, other in enumerate(others, 2):
+        assert other.attrs["processes"] == count
+        assert other.attrs["critical_dt"] == pytest.approx(one.attrs["critical_dt"], rel=1e-12)
+        for name in ("dt", "steps", "degrees_of_freedom"):
+            assert other.attrs[name] == one.attrs[name]
+        assert set(other.variables) == set(one.variables)
+        for name in WAVES & set(one.variables):
+            alike(other[name].values, one[name].values)
+    spent = one["energy"].max("time")
+    assert (spent.sel(term=WHAT_HAPPENS[scene]) > 1e-4 * spent.sel(term="work")).all()
+
+
+def test_the_ledger_of_three_processes_closes(jointwave, tmp_path):
+    """Shares of every energy and of every work add up to a balance that leapfrog keeps exactly."""
+    done = jointwave(3, *options(CUT, tmp_path))
+    (fact,) = json.loads(done.stdout)
+    assert energy_residual(xr.load_dataset(fact["file"])) < BALANCED
+
+
+def test_snapshots_are_those_of_one_process(jointwave, tmp_path):
+    """The same nodes, each once, and the same motion of each; cells in the same order."""
+    one, three = (
+        snapshots_of(xr.load_dataset(tmp_path / str(count) / "continuum-equivalent.nc"))
+        for count in (1, 3)
+        if jointwave(count, *options(CUT, tmp_path / str(count)), "--set", "record.fields=1e-3")
+    )
+    assert one.displacement.shape == three.displacement.shape
+    assert (one.block == three.block).all() and one.time.tolist() == three.time.tolist()
+    alike(three.stress, one.stress)
+    for name in ("points", "displacement", "velocity"):
+        found, expected = (getattr(s, name)[..., s.cells, :] for s in (three, one))
+        alike(found, expected)
+
+
+def alike(found, expected):
+    """Assert that values differ by round-off alone, relative to the largest."""
+    assert found.shape == expected.shape
+    assert np.abs(found - expected).max() <= SAME * np.abs(expected).max()

@@ -1,0 +1,313 @@
+"""Effects that are idle change no bit; those that are absent leave no array, no instruction."""
+
+import numpy as np
+import pytest
+
+from cases.calibrate import calibrate
+from cases.errors import SceneError
+from continuum import applies, simulate
+from continuum.build import discretise, state_at_rest
+from continuum.explicit import absorb, accelerate, add, forces, hold, run
+from continuum.model import Quiet
+from continuum.simulate import steps_of
+
+SUDDEN = {"direction": [0.0, 1.0, 0.0], "static": False}
+SHAKEN = {"shape": "sine", "amplitude": 0.1, "period": 1e-3, "quantity": "velocity"}
+BREAKS = {"tensile_strength": 5e6, "fracture_energy": 2000.0}
+SILENT = {"record__energy": False}
+
+
+@pytest.fixture
+def waves(ready):
+    """Return a function: stress, velocity and displacement of a run whose model was changed."""
+
+    def of(scene, model, change=lambda built: built):
+        choice, _ = steps_of(scene, model)
+        at = ready(scene, model, clock=choice.time)
+        built = change(at.model)
+        state = state_at_rest(built, scene.record.energy)
+        at = at._replace(model=built, state=state).to_the_end()
+        return np.concatenate([at.samples.stress, at.samples.velocity, at.samples.displacement])
+
+    return of
+
+
+@pytest.mark.parametrize("model", ["jointed", "equivalent"])
+def test_dashpots_of_ratio_zero_change_nothing(pillar, model):
+    step = {"numerics__continuum__step_fraction": 0.2, "time__duration": 0.06}
+    idle = simulate(pillar(joints__damping_ratio=0.0, **step), model)
+    assert idle["stress"].equals(simulate(pillar(**step), model)["stress"])
+    assert idle["velocity"].equals(simulate(pillar(**step), model)["velocity"])
+
+
+def test_joints_that_all_carry_tension_one_by_one_change_nothing(pillar, waves):
+    scene = pillar(time__duration=0.06)
+
+    def change(built):
+        every = np.ones(built.interfaces.area.size, dtype=bool)
+        law = built.interfaces.law._replace(carries_tension=every)
+        return built._replace(interfaces=built.interfaces._replace(law=law))
+
+    assert np.array_equal(waves(scene, "jointed"), waves(scene, "jointed", change))
+
+
+def test_barred_tension_changes_nothing_while_all_is_compressed(pillar):
+    """A step that has not reached the far end pulls no joint. Linear elements, for higher ones
+    send ripples of 1e-11 of it ahead of the front."""
+    step = {"load": {"shape": "step", "amplitude": 1e6}, "numerics__continuum__order": 1}
+    places = np.arange(0.5, 50.0, 0.5).tolist()
+    changes = {"joints__damping_ratio": 0.05, "time__duration": 0.03, "record__stress": places}
+    free = simulate(pillar(**step, **changes))
+    assert float(free["stress"].min()) >= 0.0
+    barred = simulate(pillar(joints__tension=False, **step, **changes))
+    assert barred["stress"].equals(free["stress"])
+    assert barred["velocity"].equals(free["velocity"])
+
+
+@pytest.mark.parametrize(
+    "idle",
+    [
+        {"joints": {"cohesion": 1e12}},
+        {"joints": {"cohesion": 1e12, "residual_cohesion": 0.0}},
+        {"joints": {"tensile_strength": 1e12, "fracture_energy": 1e18}},
+        {"prestress": {"normal": 0.0}},
+        {"gravity": {"direction": [0.6, 0.8, 0.0], "acceleration": 0.0, "static": False}},
+    ],
+    ids=["cohesion", "residual cohesion", "tensile strength", "prestress", "weight"],
+)
+def test_strength_that_nothing_reaches_changes_nothing(idle, short):
+    """An oblique and eccentric blow in the plane, which opens and shears the joints."""
+    blow = {"load__direction": [0.6, 0.8, 0.0], "load__at": [0.1, 0.0], "time__duration": 2e-3}
+    one, other = (simulate(short(**blow, **changes), "jointed", 2) for changes in ({}, idle))
+    for quantity in ("stress", "shear", "velocity", "rotation"):
+        assert other[quantity].equals(one[quantity]), quantity
+
+
+@pytest.mark.parametrize("model", ["jointed", "equivalent"])
+def test_quiet_end_without_impedance_changes_nothing(pillar, waves, model):
+    scene = pillar(time__duration=0.06)
+
+    def change(built):
+        quiet = Quiet(np.array([0, built.rock.mass.size - 1]), np.zeros(2), np.zeros(2))
+        return built._replace(ends=built.ends._replace(quiet=quiet))
+
+    assert np.array_equal(waves(scene, model), waves(scene, model, change))
+
+
+def test_ledger_changes_nothing(pillar, waves):
+    scene = pillar(joints__damping_ratio=0.02, time__duration=0.06)
+    silent = pillar(joints__damping_ratio=0.02, time__duration=0.06, **SILENT)
+    assert np.array_equal(waves(scene, "jointed"), waves(silent, "jointed"))
+
+
+def test_absent_effects_leave_no_array(short, ready):
+    at = ready(short(**SILENT), "equivalent")
+    assert at.model.interfaces is None and at.model.weight is None
+    assert at.model.ends.quiet is None and at.model.ends.held is None
+    assert at.model.rock.viscosity is None and at.model.rock.keep is None
+    receivers = at.model.receivers
+    assert (receivers.turn, receivers.viscous, receivers.contact, receivers.weight) == (None,) * 4
+    state = at.state
+    assert (state.rate, state.drag, state.memory, state.tractions) == (None,) * 4
+    assert (state.closure, state.reaction, state.wall, state.ledger) == (None,) * 4
+
+
+def test_alike_undamped_joints_are_one_number(short, ready):
+    at = ready(short(), "jointed")
+    law = at.model.interfaces.law
+    assert isinstance(law.normal_stiffness, float)
+    assert law[1:] == (None,) * (len(law) - 1)
+    assert at.state.memory == (None,) * 4
+    assert at.state.tractions[1:] == (None,) * 5
+    assert at.state.rate is None and at.state.drag is None
+
+
+@pytest.mark.parametrize(
+    ("joints", "kept"),
+    [
+        ({}, ()),
+        ({"cohesion": 1e5}, ("slide_x", "slide_z")),
+        ({"tension": False}, ("slide_x", "slide_z")),
+        (
+            {"cohesion": 1e5, "residual_cohesion": 1e4},
+            ("slide_x", "slide_z", "cohesion"),
+        ),
+        (BREAKS, ("opening", "slide_x", "slide_z")),
+    ],
+)
+def test_joints_remember_what_their_law_asks_for(joints, kept, short, ready):
+    at = ready(short(joints=joints), "jointed", 3)
+    memory = at.state.memory._asdict()
+    assert {name for name, values in memory.items() if values is not None} == set(kept)
+    assert at.state.tractions.drag_n is None
+
+
+def test_absent_effects_leave_no_instruction(short, ready, instructions):
+    """Without no-tension nothing is compared, without a quiet end nothing is divided."""
+
+    def count(kind, model="jointed", **changes):
+        at = ready(short(**SILENT, **changes), model)
+        return instructions(run, (at.model, at.state, at.samples, 1, 0, 0), kind)
+
+    assert count("fcmp") == 0 < count("fcmp", joints__tension=False)
+    assert count("fdiv") < count("fdiv", ends__end="quiet")
+    assert count("fmul", "equivalent") < count("fmul") < count("fmul", joints__damping_ratio=0.02)
+
+
+@pytest.mark.parametrize(
+    ("kind", "changes"),
+    [
+        ("fcmp", {"joints": {"cohesion": 1e5}}),
+        ("fcmp", {"joints": BREAKS}),
+        ("fdiv", {"joints": {"cohesion": 1e5}}),
+        ("fdiv", {"joints": BREAKS}),
+        ("fdiv", {"prestress": {"normal": 1e5}}),
+    ],
+    ids=["slip compares", "softening compares", "slip divides", "softening divides", "prestress"],
+)
+def test_elastic_joints_in_space_compare_and_divide_nothing(
+    kind, changes, short, ready, instructions
+):
+    """The forces of a step: joints that hold, with no load before, are sums and products."""
+
+    def count(**changes):
+        at = ready(short(**SILENT, **changes), "jointed", 2)
+        return instructions(forces, (at.model, at.state, 0), kind)
+
+    assert count() == 0 < count(**changes)
+
+
+def test_joints_of_the_bar_have_no_shear(short, ready, instructions):
+    def count(dim):
+        at = ready(short(**SILENT), "jointed", dim)
+        return instructions(forces, (at.model, at.state, 0), "fmul")
+
+    assert count(1) < count(2) < count(3)
+
+
+def test_absent_effects_of_the_rock_leave_no_instruction(short, ready, instructions):
+    """One product and one sum for a velocity; weight is one more sum, damping one more product."""
+
+    def parts(**changes):
+        at = ready(short(**SILENT, **changes), "equivalent")
+        model, state = at.model, at.state
+        quiet = (model.ends.quiet, state.reaction, state.closure, state.v, state.v_before)
+        return {
+            accelerate: (model.rock, model.rock.keep, state),
+            add: (state.force, model.weight),
+            absorb: quiet,
+            hold: (model.ends.held, model, state, 0),
+        }
+
+    def count(kernel, kind, **changes):
+        return instructions(kernel, parts(**changes)[kernel], kind)
+
+    fixed = {"ends__start": "fixed", "load__amplitude": 0.0}
+    shaken = {"ends__start": "fixed", "load": SHAKEN}
+    damped = {"damping__mass_proportional": 10.0}
+    plain = count(accelerate, "fmul")
+    assert 0 < plain < count(accelerate, "fmul", **damped)
+    assert count(add, "fadd") == 0 < count(add, "fadd", gravity=SUDDEN)
+    assert count(absorb, "fdiv") == 0 < count(absorb, "fdiv", ends__end="quiet")
+    assert count(hold, "fdiv") == count(hold, "fdiv", **fixed) == 0 < count(hold, "fdiv", **shaken)
+
+
+def test_homogenised_rock_is_whole_but_for_soft_layers(pillar):
+    layer = [{"y": 20.0, "spacing_stiffness": 4.375e8}, {"y": 30.0}]
+    scene = pillar(soft_layers=layer)
+    p = calibrate(scene)
+    joints = discretise(scene, "equivalent").joints
+    assert joints.area.size == 1
+    excess = 1 / p.stiffness[39] - 1 / p.regular_stiffness
+    assert joints.law.normal_stiffness == pytest.approx(1 / excess, rel=1e-12)
+
+
+def test_homogenised_rock_keeps_a_joint_that_can_fail_as_stiff_as_ten(pillar):
+    """A joint as stiff as the others is in the homogenised rock already."""
+    scene = pillar(soft_layers=[{"y": 20.0, "cohesion": 1e5}], load__direction=[0.6, 0.8, 0.0])
+    p = calibrate(scene)
+    law = discretise(scene, "equivalent", 2).joints.law
+    assert law.normal_stiffness == pytest.approx(10 * p.regular_stiffness, rel=1e-12)
+    assert law.shear_stiffness == pytest.approx(10 * p.regular_shear_stiffness, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("changes", "model", "reason"),
+    [
+        ({"rock__intact_modulus": None}, "jointed", "needs rock.intact_modulus"),
+        ({"joints__tension": False}, "equivalent", "no joints to open"),
+        ({"soft_layers": [{"y": 20.0, "spacing_stiffness": 9e9}]}, "equivalent", "stiffer"),
+        ({"soft_layers": [{"y": 20.0, "damping_ratio": 0.1}]}, "equivalent", "one ordinary joint"),
+        ({"joints": BREAKS}, "equivalent", "no joints that slide or break"),
+        (
+            {"joints__friction_angle": 30.0, "load__direction": [0.6, 0.8, 0.0]},
+            "equivalent",
+            "no joints that slide",
+        ),
+        ({"damping__local": 0.5}, "jointed", "no local damping"),
+        ({"damping__local": 0.5}, "equivalent", "no local damping"),
+    ],
+)
+def test_model_that_does_not_apply_says_why(pillar, changes, model, reason):
+    scene = pillar(**changes)
+    assert reason in applies(scene, model)
+    with pytest.raises(SceneError, match=reason):
+        simulate(scene, model)
+
+
+@pytest.mark.parametrize("model", ["jointed", "equivalent"])
+@pytest.mark.parametrize(
+    ("changes", "dim", "reason"),
+    [
+        ({"load__at": [0.1, 0.0]}, 1, "the bar has no bending and no torsion"),
+        ({"load__direction": [0.0, 0.8, 0.6]}, 1, "the bar has no bending and no torsion"),
+        ({"load__direction": [0.0, 0.8, 0.6]}, 2, "leaves the plane of x and y"),
+        ({"load__at": [0.0, 0.1]}, 2, "leaves the plane of x and y"),
+        ({"load__arm": 0.1}, 2, "leaves the plane of x and y"),
+        (
+            {"load__at": [0.1, 0.0], "motion__rotation": "finite"},
+            3,
+            "its strains and rotations are small",
+        ),
+    ],
+)
+def test_dimension_that_does_not_hold_the_motion_says_why(pillar, changes, dim, reason, model):
+    assert reason in applies(pillar(**changes), model, dim)
+
+
+@pytest.mark.parametrize("model", ["jointed", "equivalent"])
+@pytest.mark.parametrize(
+    ("changes", "dim"),
+    [
+        ({}, 1),
+        ({"load__direction": [0.0, 0.8, 0.6], "motion__rotation": "none"}, 1),
+        ({"load__direction": [0.6, 0.8, 0.0]}, 2),
+        ({"load__at": [0.1, 0.0]}, 2),
+        ({"load__arm": 0.1, "load__direction": [0.0, 0.0, 1.0]}, 2),
+        ({"load__arm": 0.1}, 3),
+        ({"load__at": [0.0, 0.1]}, 3),
+    ],
+)
+def test_the_least_dimension_that_holds_the_motion_is_taken(pillar, changes, dim, model):
+    scene = pillar(**changes)
+    assert discretise(scene, model).kinematics.dim == dim
+    assert applies(scene, model) == ""
+
+
+@pytest.mark.parametrize("model", ["jointed", "equivalent"])
+def test_friction_that_nothing_calls_for_is_no_obstacle(pillar, model):
+    assert applies(pillar(joints__friction_angle=30.0), model) == ""
+
+
+def test_soft_layer_without_tension_opens_in_the_homogenised_rock(pillar):
+    layer = [{"y": 20.0, "spacing_stiffness": 4.375e8, "tension": False}]
+    scene = pillar(soft_layers=layer)
+    assert applies(scene, "equivalent") == ""
+    stress = simulate(scene, "equivalent")["stress"]
+    assert float(stress.min()) > -1e-10 * float(stress.max())
+
+
+@pytest.mark.parametrize(("key", "value"), [("dim", 0), ("dim", 4), ("model", "discrete")])
+def test_what_is_not_there_is_refused(pillar, key, value):
+    with pytest.raises(SceneError, match=key):
+        simulate(pillar(), **{key: value})
