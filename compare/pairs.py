@@ -42,6 +42,7 @@ PAIRS = (
     Pair("continuum-equivalent", "jointed-bar", MODELLING),
     # Against one mechanism alone.
     Pair("dem", "slip-joint", MODELLING),
+    Pair("continuum-equivalent", "slip-joint", MODELLING),
     Pair("dem", "sliding-block", MODELLING),
     Pair("dem", "continuum-jointed", ENGINES),
     Pair("dem", "continuum-equivalent", ENGINES),

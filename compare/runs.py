@@ -1,6 +1,7 @@
 """The runs that `jointwave run` was asked for: checked first, then executed, each file whole."""
 
 import json
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -96,7 +97,7 @@ def _made(job: Job, progress: Progress, vtx: bool, processes: Processes) -> list
         try:
             result = _solve(job, progress, processes.comm)
         except StoppedError as error:
-            processes.by_first(lambda: _keep(job, error))
+            processes.by_first(partial(_keep, job, error))
             raise
         done = processes.by_first(lambda: _written(job, result, vtx))
     else:

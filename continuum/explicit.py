@@ -24,6 +24,7 @@ def run(model, state, samples, stride, first, last):
     model, state, samples = borrowed(model), borrowed(state), borrowed(samples)
     for n in range(first, last):
         forces(model, state, n)
+        accelerate(model.rock, model.rock.keep, state)
         advance(model, state, samples, stride, n)
     restore_tiny(old)
 
@@ -45,9 +46,9 @@ def forces(model, state, n):
 
 @jitted
 def advance(model, state, samples, stride, n):
-    """Move from step n to the next one under the forces of step n, and record step n."""
+    """Move on to the next step at the velocities that the forces of step n have given, but for what
+    absorbs or holds, and record step n."""
     ends, dt = model.ends, model.dt
-    accelerate(model.rock, model.rock.keep, state)
     absorb(ends.quiet, state.reaction, state.closure, state.v, state.v_before)
     hold(ends.held, model, state, n)
     book(state.ledger, 0.5 * dt, model, state, n, state.v_before)

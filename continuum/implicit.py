@@ -5,7 +5,6 @@ longer ones again, so that whole steps end on the clock.
 """
 
 import numpy as np
-from scipy.sparse.linalg import spsolve
 
 from cases.errors import StoppedError
 from continuum.balance import record_balanced, stiffen
@@ -40,6 +39,8 @@ class Implicit:
         self.now, self.trial = (
             Moment(s, np.zeros_like(state.u), np.zeros(1)) for s in (state, like(state))
         )
+        self.team, mass = matrices.team, matrices.team.total(model.rock.mass)
+        self.mass = np.where(mass > 0, mass, np.inf)  # what no rock is part of does not move
         self.halvings, self.reached = 0, -1
         self.outcome: Outcome | None = None
 
@@ -58,10 +59,11 @@ class Implicit:
     def compile(self, samples: Samples) -> None:
         """Compile every kernel of the run, and change nothing."""
         spare, state = Moment(like(self.state), np.zeros(1), np.zeros(1)), self.state
-        self.stepper.settle(self.model, self.now, spare, 0, 0.0)
-        stiffen(self.model, state, spare.state, 1.0, joint_room(self.model))
         one = _each(samples, lambda wave: np.zeros((len(wave), 1)))
-        record_balanced(self.model, spare.state, np.zeros_like(state.u), one, 0)
+        with self.team.in_turn():
+            self.stepper.settle(self.model, self.now, spare, 0, 0.0)
+            stiffen(self.model, state, spare.state, 1.0, joint_room(self.model))
+            record_balanced(self.model, spare.state, np.zeros_like(state.u), one, 0)
 
     def _begin(self) -> None:
         """Balance the forces of the first moment by its acceleration."""
@@ -71,10 +73,8 @@ class Implicit:
             values[stepper.wall.freedom] = given
         copy_arrays(now.state, trial.state)
         stepper.settle(self.model, now, trial, 0, 0.0)
-        free, mass = stepper.free, stepper.mass
-        rest = trial.state.force - mass @ now.acceleration
         trial.acceleration[:] = now.acceleration
-        trial.acceleration[free] = spsolve(mass[free][:, free].tocsc(), rest[free])
+        stepper.balance(trial)
         self._accept(0, 0.0, 0.0)
 
     def _reach(self, n: int) -> None:
@@ -138,7 +138,7 @@ class Implicit:
         """Take sample s. Accelerations are those that balance the forces at the step itself: those
         of the scheme are of an earlier time, by alpha_f - alpha_m of a step."""
         state, held = self.now.state, self.stepper.wall.freedom
-        balancing = state.force / self.model.rock.mass
+        balancing = self.team.total(state.force) / self.mass
         balancing[held] = self.now.acceleration[held]
         record_balanced(self.model, state, balancing, samples, s)
         if samples.energy is not None:  # of a mass that may be consistent

@@ -18,7 +18,7 @@ from continuum.balance import settle, stiffen
 from continuum.body import Body, whole
 from continuum.generalised_alpha import scheme
 from continuum.model import Model, State
-from continuum.newton import Factors, Outcome, newton
+from continuum.newton import Outcome, factors_of, newton
 from continuum.pattern import pattern
 from continuum.substeps import (
     end_resistance,
@@ -28,6 +28,7 @@ from continuum.substeps import (
     shortened,
     wall,
 )
+from continuum.team import ALONE, Alone
 
 RESIDUAL = 1e-10  # what may be left, of the largest force that is summed up
 LAST_DIGITS = 8 * np.finfo(float).eps  # of a displacement: what they weigh cannot be balanced
@@ -35,12 +36,14 @@ LAST_DIGITS = 8 * np.finfo(float).eps  # of a displacement: what they weigh cann
 
 class Matrices(NamedTuple):
     """Of the rock, [n, n]: stiffness, N/m; viscosity, N s/m, None without dashpots; mass, kg,
-    diagonal or consistent. moves : bool array [n], false for padding."""
+    diagonal or consistent. moves : bool array [n], false for padding. team : the processes that
+    share the rock, each with its share of the matrices."""
 
     stiffness: csr_matrix
     viscosity: csr_matrix | None
     mass: csr_matrix
     moves: np.ndarray
+    team: Alone = ALONE
 
 
 def rock_matrices(body: Body) -> Matrices:
@@ -49,7 +52,8 @@ def rock_matrices(body: Body) -> Matrices:
     if body.viscous_blocks:
         viscosity = whole(body.layout, body.mesh, body.viscous_blocks)
     mass = csr_matrix(diags(body.mass)) if body.consistent is None else body.consistent
-    return Matrices(stiffness, viscosity, mass, stiffness.diagonal() > 0)
+    moves = body.team.total(stiffness.diagonal()) > 0
+    return Matrices(stiffness, viscosity, mass, moves, body.team)
 
 
 class Moment(NamedTuple):
@@ -91,7 +95,8 @@ class Stepper:
     """
 
     def __init__(self, model: Model, matrices: Matrices, rho: float) -> None:
-        self.model, self.mass, self.scheme = model, matrices.mass, scheme(rho)
+        self.model, self.scheme = model, scheme(rho)
+        self.mass, self.team = matrices.mass, matrices.team
         self.mass_damping = mass_damping(model)
         self.wall = wall(model.ends.held, model.dt)
         moves = matrices.moves.copy()
@@ -100,7 +105,8 @@ class Stepper:
         viscosity = 0 * matrices.mass if matrices.viscosity is None else matrices.viscosity
         parts = [matrices.mass, matrices.stiffness, viscosity]
         self._pattern = pattern(parts, model.interfaces, self.free)
-        self._factors = Factors(self._pattern.start, self._pattern.column)
+        place = self._pattern.start, self._pattern.column, self.free
+        self._factors = factors_of(*place, self.team)
         self._joints = joint_room(model)
         self._factored: tuple[Length, np.ndarray] | None = None
         self._weight = np.zeros(self.free.size)
@@ -126,14 +132,15 @@ class Stepper:
             rest = (1 - alpha_f) * state.force + before - (1 - alpha_m) * inertia
             size = max(trial.size[0], now.size[0], np.abs(inertia).max())
             digits = LAST_DIGITS * np.abs(self._weight * state.u[free]).max(initial=0.0)
-            return rest[free], RESIDUAL * size + digits
+            return self.team.total(rest)[free], RESIDUAL * size + digits
 
         def correction(rest: np.ndarray) -> np.ndarray:
             self._factorise(length, now, trial)
             self.iterations += 1
             return self._factors.solve(rest)
 
-        return newton(residual, correction, (drift + beta * dt**2 * now.acceleration)[free])
+        start = (drift + beta * dt**2 * now.acceleration)[free]
+        return newton(residual, correction, start, self.team)
 
     def settle(self, model: Model, now: Moment, trial: Moment, n: int, share: float) -> None:
         """Set the forces of a trial moment whose displacement and velocity are given."""
@@ -143,6 +150,13 @@ class Stepper:
         trial.size[0] = settle(model, now.state, state, pressure_at(self.model, n, share))
         if self.mass_damping:
             state.force[:] -= self.mass_damping * (self.mass @ state.v)
+
+    def balance(self, moment: Moment) -> None:
+        """Set the acceleration of the freedoms that move by the forces of a moment."""
+        rest = self.team.total(moment.state.force - self.mass @ moment.acceleration)
+        self._factors.factorise(self._pattern.fixed[0])
+        self._factored = None
+        moment.acceleration[self.free] += self._factors.solve(rest[self.free])
 
     def _hold(self, trial: Moment, n: int, share: float) -> None:
         motion = motion_at(self.wall, n, share)
@@ -174,7 +188,7 @@ class Stepper:
         stiffen(length.model, now.state, trial.state, length.r, self._joints)
         if self._factored is not None:
             last, joints = self._factored
-            if last is length and np.array_equal(joints, self._joints):
+            if last is length and self.team.all(np.array_equal(joints, self._joints)):
                 return
         of_joints = self._pattern.joints @ self._joints.ravel()
         values = length.fixed + (1 - self.scheme.alpha_f) * of_joints

@@ -1,10 +1,12 @@
 """Newton's method, and the factorised matrix that its steps solve."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from petsc4py import PETSc  # started by `continuum.compat`
+
+from continuum.team import ALONE, Alone
 
 MOST_ITERATIONS = 12
 #: Unknowns from which MUMPS outweighs what it costs to call; PETSc's own factors are quicker below.
@@ -25,6 +27,7 @@ def newton(
     residual: Callable[[np.ndarray], tuple[np.ndarray, float]],
     correction: Callable[[np.ndarray], np.ndarray],
     start: np.ndarray,
+    team: Alone = ALONE,
 ) -> Outcome:
     """Return what Newton's method makes of a start, after one correction at least.
 
@@ -34,17 +37,52 @@ def newton(
     ----------
     residual : function of x that returns the residual and what of it may be left.
     correction : function of a residual that returns by what to move the last x.
+    team : the processes that each have a part of x; all come to the same end.
     """
     x, errors, tolerance = start.copy(), [], 0.0
     for _ in range(MOST_ITERATIONS + 1):
-        rest, tolerance = residual(x)
-        errors.append(float(np.abs(rest).max(initial=0.0)))
+        rest, left = residual(x)
+        errors.append(team.largest(_size(rest)))
+        tolerance = team.largest(left)
         if errors[-1] == 0 or (len(errors) > 1 and errors[-1] <= tolerance):
             return Outcome(x, True, errors, tolerance)
         if not np.isfinite(errors[-1]) or len(errors) > MOST_ITERATIONS:
             break
         x += correction(rest)
     return Outcome(x, False, errors, tolerance)
+
+
+def _size(values: np.ndarray) -> float:
+    """Return the largest magnitude; infinite where one is not a number."""
+    found = float(np.abs(values).max(initial=0.0))
+    return found if np.isfinite(found) else np.inf
+
+
+class LinearSolver(Protocol):
+    """The LU factors of matrices that share one pattern.
+
+    factorise : takes the matrix of these values on the pattern. solve : returns x of A x = right.
+    """
+
+    def factorise(self, values: np.ndarray) -> None: ...
+
+    def solve(self, right: np.ndarray) -> np.ndarray: ...
+
+
+def factors_of(
+    start: np.ndarray, column: np.ndarray, free: np.ndarray, team: Alone = ALONE
+) -> LinearSolver:
+    """Return what factorises a matrix of this pattern, the sum of those of all processes.
+
+    start [n + 1], column [nnz] : CSR. free : int array [n], the freedoms that its rows are.
+    """
+    if team.size == 1:
+        return Factors(start, column)
+    from continuum.parallel.factors import SharedFactors
+    from continuum.parallel.team import Team
+
+    assert isinstance(team, Team)
+    return SharedFactors(start, column, free, team)
 
 
 class Factors:

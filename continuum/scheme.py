@@ -73,8 +73,7 @@ def _cheaper(scene: Scene, discrete: Discrete, critical: float) -> Choice:
     if many < WORTH_A_LOOK * few:
         reason = f"{many:,.0f} explicit steps are fewer than {WORTH_A_LOOK} x {few:,} implicit ones"
         return _explicit(scene, critical, reason)
-    explicit_cost = many * _explicit_entries(discrete) / OPERATOR_RATE
-    implicit_cost = _implicit_seconds(discrete, few)
+    explicit_cost, implicit_cost = _costs(discrete, many, few)
     costs = f"{many:,.0f} explicit steps, some {explicit_cost:.2g} s, against {few:,} implicit ones"
     reason = f"{costs}, some {implicit_cost:.2g} s"
     if explicit_cost <= implicit_cost:
@@ -82,25 +81,36 @@ def _cheaper(scene: Scene, discrete: Discrete, critical: float) -> Choice:
     return implicit._replace(reason=reason)
 
 
-def _explicit_entries(discrete: Discrete) -> float:
+def _costs(discrete: Discrete, many: float, few: int) -> tuple[float, float]:
+    """Return guesses of the seconds that so many explicit and so few implicit steps take.
+
+    They are those of one process, so that any number of them comes to the same choice.
+    """
+    team, found = discrete.body.team, (0.0, 0.0)
     stiffness, viscosity = operators(discrete)
-    return (
-        stiffness.nnz + (0 if viscosity is None else viscosity.nnz) + 10 * discrete.body.mass.size
-    )
+    none = csr_matrix(stiffness.shape)
+    shares = stiffness, none if viscosity is None else viscosity
+    bends = team.any(_bends(discrete))
+    stiffness, viscosity = (team.assembled(share) for share in shares)
+    if stiffness is not None and viscosity is not None:
+        entries = stiffness.nnz + viscosity.nnz + 10 * stiffness.shape[0]
+        found = many * entries / OPERATOR_RATE, _implicit_seconds(stiffness, bends, few)
+    return team.same(found)
 
 
-def _implicit_seconds(discrete: Discrete, steps: int) -> float:
-    """Return a guess of the seconds that so many implicit steps take."""
-    stiffness, _ = operators(discrete)
-    entries = factor_entries(stiffness)
-    solve = entries / FACTOR_RATE + OVERHEAD
-    factorise = entries**2 / max(stiffness.shape[0], 1) / FACTORISATION_RATE
-    joints = discrete.joints
-    law = None if joints is None else joints.law
-    bends = law is not None and any(
+def _bends(discrete: Discrete) -> bool:
+    """Return whether joints open, slide or break."""
+    law = None if discrete.joints is None else discrete.joints.law
+    return law is not None and any(
         part is not None
         for part in (law.carries_tension, law.tensile_strength, law.cohesion, law.friction)
     )
+
+
+def _implicit_seconds(stiffness: csr_matrix, bends: bool, steps: int) -> float:
+    entries = factor_entries(stiffness)
+    solve = entries / FACTOR_RATE + OVERHEAD
+    factorise = entries**2 / max(stiffness.shape[0], 1) / FACTORISATION_RATE
     return steps * ITERATIONS * (solve + factorise) if bends else steps * solve + factorise
 
 

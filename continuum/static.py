@@ -17,7 +17,7 @@ from continuum.body import Body
 from continuum.implicit import copy_arrays, like
 from continuum.implicit_step import joint_room, rock_matrices
 from continuum.model import Model, State
-from continuum.newton import Factors, Outcome, newton
+from continuum.newton import Outcome, factors_of, newton
 from continuum.pattern import pattern
 
 TOLERANCE = 1e-10  # what may be left of the largest force that is summed up
@@ -51,7 +51,7 @@ def settle_static(scene: Scene, model: Model, state: State, body: Body) -> Rest:
         else:
             _refuse(scene, done)
     copy_arrays(system.state, state)
-    return Rest(steps, outcome.errors[-1] / system.size)
+    return Rest(steps, outcome.errors[-1] / body.team.largest(system.size))
 
 
 def _refuse(scene: Scene, done: float) -> None:
@@ -79,7 +79,8 @@ class _Static:
             moves[model.ends.held.freedom] = False
         self.free = np.flatnonzero(moves)
         self.pattern = pattern([matrices.stiffness], model.interfaces, self.free)
-        self.factors = Factors(self.pattern.start, self.pattern.column)
+        self.team = body.team
+        self.factors = factors_of(self.pattern.start, self.pattern.column, self.free, self.team)
         self.joints = joint_room(model)
 
     def balance(self, share: float) -> Outcome:
@@ -89,7 +90,7 @@ class _Static:
         def residual(u: np.ndarray) -> tuple[np.ndarray, float]:
             self.trial.u[self.free] = u
             self.size = settle(model, self.state, self.trial, 0.0)
-            return self.trial.force[self.free], TOLERANCE * self.size
+            return self.team.total(self.trial.force)[self.free], TOLERANCE * self.size
 
         def correction(rest: np.ndarray) -> np.ndarray:
             stiffen(model, self.state, self.trial, 0.0, self.joints)
@@ -97,7 +98,7 @@ class _Static:
             self.factors.factorise(self.pattern.fixed[0] + of_joints)
             return self.factors.solve(rest)
 
-        outcome = newton(residual, correction, self.state.u[self.free])
+        outcome = newton(residual, correction, self.state.u[self.free], self.team)
         if outcome.converged:
             self.trial.v_before[:] = 0.0
             copy_arrays(self.trial, self.state)

@@ -6,9 +6,12 @@ in the same order.
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
+from scipy.sparse import csr_matrix
+
+T = TypeVar("T")
 
 
 class Pieces(NamedTuple):
@@ -63,6 +66,14 @@ class Alone:
         from continuum.critical import critical_time_step
 
         return critical_time_step(*assembled)
+
+    def same(self, value: T) -> T:
+        """Return what the first process has."""
+        return value
+
+    def assembled(self, share: csr_matrix) -> csr_matrix | None:
+        """Return the sum of matrices on the freedoms, on the first process alone."""
+        return share
 
     def gather(self, waves: np.ndarray) -> None:
         """Replace shares of waveforms by their sums over all processes."""

@@ -53,16 +53,30 @@ class Link(NamedTuple):
 def add_shares(link, values):
     """Replace a process's shares of values on common freedoms by their sums.
 
-    All who have a freedom add in the order of their ranks, and come to the same bits. Returns MPI's
-    error code, 0 without.
+    Returns MPI's error code, 0 without.
     """
+    failed = send(link, values)
+    return failed or receive(link, values)
+
+
+@jitted
+def send(link, values):
+    """Begin to send a process's shares of values to all who have the freedoms too."""
     for k in range(link.source.size):
         link.sent[k] = values[link.source[k]]
-    failed = start_all(link.calls, link.requests.ctypes)
+    return start_all(link.calls, link.requests.ctypes)
+
+
+@jitted
+def receive(link, values):
+    """Add what the others have sent to a process's own shares.
+
+    All who have a freedom add in the order of their ranks, and come to the same bits.
+    """
     for i in range(link.freedom.size):
         link.value[link.own + i] = values[link.freedom[i]]
         link.sum[i] = 0.0
-    failed = failed or wait_all(link.calls, link.requests.ctypes, link.statuses.ctypes)
+    failed = wait_all(link.calls, link.requests.ctypes, link.statuses.ctypes)
     for k in range(link.place.size):
         link.sum[link.place[k]] += link.value[k]
     for i in range(link.freedom.size):

@@ -1,7 +1,11 @@
-"""The compiled loop of a process that shares a run: leapfrog steps with an exchange in each."""
+"""The compiled loop of a process that shares a run: leapfrog steps with an exchange in each.
 
-from continuum.explicit import advance, forces
-from continuum.parallel.exchange import add_shares
+While shares of forces are on their way all freedoms are accelerated; those that others have too
+once more when the shares are there.
+"""
+
+from continuum.explicit import accelerate, advance, forces
+from continuum.parallel.exchange import receive, send
 from joints.borrowed import borrowed
 from joints.jit import jitted
 from joints.tiny import flush_tiny, restore_tiny
@@ -18,7 +22,22 @@ def run_together(link, model, state, samples, stride, first, last):
     link, model, state, samples = borrowed((link, model, state, samples))
     for n in range(first, last):
         forces(model, state, n)
-        failed = failed or add_shares(link, state.force)
+        failed = failed or send(link, state.force)
+        accelerate(model.rock, model.rock.keep, state)
+        failed = failed or receive(link, state.force)
+        accelerate_again(link.freedom, model.rock, model.rock.keep, state)
         advance(model, state, samples, stride, n)
     restore_tiny(old)
     return failed
+
+
+@jitted
+def accelerate_again(freedom, rock, keep, state):
+    """Set the velocities of some freedoms by forces that have changed since."""
+    v, v_before, force = state.v, state.v_before, state.force
+    if keep is None:
+        for i in freedom:
+            v[i] = v_before[i] + rock.step_over_mass[i] * force[i]
+    else:
+        for i in freedom:
+            v[i] = keep * v_before[i] + rock.step_over_mass[i] * force[i]

@@ -8,11 +8,12 @@ from functools import cached_property
 
 import numpy as np
 from mpi4py import MPI
+from scipy.sparse import csr_matrix
 
 from continuum.parallel.exchange import Link, add_shares
 from continuum.parallel.identity import Border, joined
 from continuum.parallel.march import run_together
-from continuum.team import Alone, Pieces
+from continuum.team import Alone, Pieces, T
 
 TAG = 0x4A57  # of messages between neighbours
 
@@ -68,6 +69,21 @@ class Team(Alone):
     def all(self, holds: bool) -> bool:
         """Return whether something holds on every process."""
         return self.comm.allreduce(bool(holds), MPI.LAND)
+
+    def same(self, value: T) -> T:
+        """Return what the first process has."""
+        return self.comm.bcast(value)
+
+    def assembled(self, share: csr_matrix) -> csr_matrix | None:
+        """Return the sum of matrices on the freedoms [n, n] by `number`, on the first process."""
+        entries = share.tocoo()
+        row, column = self.number[entries.row], self.number[entries.col]
+        there = (row >= 0) & (column >= 0)
+        found = self.comm.gather((row[there], column[there], entries.data[there]))
+        if found is None:
+            return None
+        rows, columns, values = (np.concatenate(parts) for parts in zip(*found, strict=True))
+        return csr_matrix((values, (rows, columns)), 2 * [self.degrees_of_freedom])
 
     def gather(self, waves: np.ndarray) -> None:
         """Replace shares of waveforms by their sums over all processes, the same bits for all."""

@@ -64,7 +64,10 @@ def short(pillar):
 
     def scene(**changes):
         record = SHORT["record"] | changes.pop("record", {})
-        return pillar(**(SHORT | {"record": record} | changes))
+        keys = SHORT | {"record": record} | changes
+        if "numerics__continuum__mesh" in changes:
+            del keys["numerics__continuum__elements_per_block"]
+        return pillar(**keys)
 
     return scene
 

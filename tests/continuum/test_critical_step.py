@@ -8,7 +8,10 @@ from cases.errors import SceneError, UnstableError
 from continuum import simulate
 from continuum.simulate import steps_of
 
-QUIET = {"load__amplitude": 0.0, "record": {"stress": [1.0], "velocity": []}}
+QUIET = {
+    "load__amplitude": 0.0,
+    "record": {"stress": [1.0], "velocity": [], "energy": False},
+}
 SHORT = {**QUIET, "pillar__length": 4.0}
 LAYER = {"soft_layers": [{"y": 2.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.1}]}
 DAMPED = {"joints__damping_ratio": 0.05}

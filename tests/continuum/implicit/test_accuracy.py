@@ -132,10 +132,9 @@ def explicit(scene, implicit, stride, kind="jointed"):
 STRENGTHS = {
     "linear": {},
     "no tension": {"joints__tension": False},
-    "no tension, dashpots": {"joints__tension": False, "joints__damping_ratio": 0.02},
     "softening": {"joints__tensile_strength": 1e5, "joints__fracture_energy": 10.0},
-    "friction": {"joints__friction_angle": 30.0, "prestress": {"normal": 1e5}, **ACROSS},
-    "cohesion": {
+    "friction": {"joints__friction_angle": 30.0, **ACROSS},
+    "cohesion, dashpots": {
         "joints__friction_angle": 30.0,
         "joints__cohesion": 2e5,
         "joints__residual_cohesion": 1e5,

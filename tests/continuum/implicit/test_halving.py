@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from cases.errors import StoppedError, UnstableError
+from continuum import implicit_step, simulate
 from continuum.implicit import HALVINGS
 from continuum.substeps import end_resistance, shortened
 from joints.ends import half_spring
@@ -44,10 +45,12 @@ def test_halves_end_on_the_clock_and_make_way_again(short, implicit):
     assert run.implicit.reached == 4
 
 
+DAMPED = {"joints__damping_ratio": 0.05}
 ENDS = {
-    "matched": {"ends__start": "matched", "ends__end": "quiet", "joints__damping_ratio": 0.05},
-    "mass damping": {"ends__end": "fixed", "damping": {"mass_proportional": 50.0}},
-    "shaken": {
+    "matched": DAMPED | {"ends__start": "matched", "ends__end": "quiet"},
+    "mass damping": DAMPED | {"ends__end": "fixed", "damping": {"mass_proportional": 50.0}},
+    "shaken": DAMPED
+    | {
         "load": {"shape": "ricker", "amplitude": 0.1, "period": 0.002, "quantity": "velocity"},
         "ends__start": "fixed",
     },
@@ -128,9 +131,26 @@ def test_what_was_computed_outlives_a_step_that_is_given_up(short, implicit):
     assert isinstance(caught.value, UnstableError) and caught.value.result is None
 
 
+def test_simulate_hands_over_what_was_computed(short, monkeypatch):
+    """The same from outside: the error carries a result like any other, up to the last sample."""
+    scene = short(numerics__continuum__scheme="implicit", numerics__continuum__steps_per_period=400)
+    whole, pressure_at = simulate(scene), implicit_step.pressure_at
+
+    def broken(model, n, share):
+        return pressure_at(model, n, share) if n + share <= 40 else np.nan
+
+    monkeypatch.setattr(implicit_step, "pressure_at", broken)
+    with pytest.raises(StoppedError) as caught:
+        simulate(scene)
+    result = caught.value.result
+    assert result.sizes["time"] == 21  # two steps a sample
+    assert (result.stress == whole.stress.isel(time=slice(21))).all()
+    assert result.attrs["halved_steps"] == HALVINGS
+
+
 def test_compiling_changes_nothing(short, implicit):
     """State and samples are as before, and the run is the same to the last bit."""
-    scene = short(joints__tensile_strength=1e5, joints__fracture_energy=10.0, ends__end="matched")
+    scene = short(joints__tensile_strength=1e5, joints__fracture_energy=10.0)
     plain, warm = implicit(scene), implicit(scene)
     warm.implicit.compile(warm.samples)
     assert not any(wave.any() for wave in warm.samples if wave is not None)

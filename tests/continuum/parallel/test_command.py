@@ -66,19 +66,20 @@ import sys
 from mpi4py import MPI
 from compare import cli
 from continuum import build
+from continuum.parallel import body
 
 def broken(*arguments):
     raise {error}
 
 if MPI.COMM_WORLD.rank == {rank}:
-    build.{function} = broken
+    {function} = broken
 sys.argv = ["jointwave", *sys.argv[1:]]
 cli.main()
 """
 
 
 @pytest.mark.parametrize("rank", [0, 2])
-@pytest.mark.parametrize("function", ["jumps", "weight_of"])
+@pytest.mark.parametrize("function", ["body.restrict", "body.held_share", "build.weight_of"])
 def test_a_process_that_fails_alone_ends_all(rank, function, under_mpi, tmp_path):
     """Others wait for what it would have sent them; its line is the only one."""
     program = ALONE.format(error="MemoryError('of one')", rank=rank, function=function)
@@ -89,7 +90,7 @@ def test_a_process_that_fails_alone_ends_all(rank, function, under_mpi, tmp_path
 
 def test_a_mistake_of_the_program_on_one_process_ends_all(under_mpi, tmp_path):
     """A traceback, because it is a bug, and no processes left waiting."""
-    program = ALONE.format(error="KeyError('bug')", rank=1, function="weight_of")
+    program = ALONE.format(error="KeyError('bug')", rank=1, function="build.weight_of")
     arguments = ("run", *SCENE, *CONTINUUM, *SHORT, "--out", tmp_path)
     done = under_mpi(3, "-c", program, *arguments, code=1)
     assert done.stderr.count("KeyError: 'bug'") == 1

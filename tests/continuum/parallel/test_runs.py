@@ -47,11 +47,12 @@ SCENES = {
             "numerics.continuum.dim": 2,
             "motion.rotation": "none",
             "load.quantity": "velocity",
+            "time.duration": 4e-3,
             "load.amplitude": 0.1,
             "load.direction": [0.6, 0.8, 0.0],
             "ends.start": "fixed",
             "ends.end": "quiet",
-            "soft_layers": [{"y": 1.5, "spacing_stiffness": 4.4e8, "cohesion": 1e4}],
+            "soft_layers": [{"y": 0.5, "spacing_stiffness": 4.4e8, "cohesion": 1e4}],
         },
     ),
     "blocks in space that slip and break": (
