@@ -13,12 +13,14 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from time import monotonic, sleep
-from typing import Any, NoReturn, TypeVar
+from typing import Any, NoReturn, TextIO, TypeVar
 
 from cases.errors import SceneError
 
-#: Any of them is set by those who start processes: Open MPI, MPICH and its kin, PMIx, MVAPICH.
-VARIABLES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK", "MV2_COMM_WORLD_SIZE")
+#: Of those who start processes, how many these are: Open MPI, MPICH and its kin, MVAPICH.
+SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE")
+#: Set without saying how many there are, by PMIx.
+STARTED = "PMIX_RANK"
 
 PATIENCE = 5.0  # s: who fails alike on all processes does so at nearly the same time
 
@@ -33,7 +35,7 @@ class Processes:
 
     def __init__(self, comm: Any = None) -> None:
         self.comm = comm
-        self.stderr = sys.stderr
+        self._muted: TextIO | None = None
         # Messages about the command itself: no run ever uses this one.
         self._own: Any = None if comm is None else comm.Dup()
 
@@ -42,9 +44,15 @@ class Processes:
         """Whether this process prints and writes for all."""
         return self.comm is None or self.comm.rank == 0
 
+    @property
+    def stderr(self) -> TextIO:
+        """Where errors go, even of a process that is muted."""
+        return self._muted or sys.stderr
+
     def mute_others(self) -> None:
         """Let only the first process print."""
         if not self.is_first:
+            self._muted = sys.stderr
             sys.stdout = sys.stderr = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115
 
     def by_first(self, work: Callable[[], T]) -> T | None:
@@ -99,10 +107,14 @@ ALONE = Processes()
 @cache
 def started() -> Processes:
     """Return the processes of this command; raises SceneError where they cannot work together."""
-    if not any(name in os.environ for name in VARIABLES):
+    counts = [int(os.environ[name]) for name in SIZES if name in os.environ]
+    if not counts and STARTED not in os.environ:
         return Processes()
     try:
         from mpi4py import MPI
     except ImportError as error:
         raise SceneError("mpiexec", "", None, f"needs mpi4py ({error})") from None
+    if MPI.COMM_WORLD.size < max(counts, default=1):
+        allowed = "belongs to another MPI than mpi4py, which sees one process"
+        raise SceneError("mpiexec", "-n", max(counts), allowed)
     return Processes(MPI.COMM_WORLD if MPI.COMM_WORLD.size > 1 else None)

@@ -24,7 +24,8 @@ class Body(NamedTuple):
     mesh, order, section : what it was made from. layout : where every freedom stands.
     x : float array [nodes, dim], m. first, stride : int arrays [nodes]; component c of a node is
         the freedom first + c stride. cells : int array [cells, nodes per cell], reference order.
-    corners : float array [cells, corners, dim], m. material : int array [cells].
+    corners : float array [cells, corners, dim], m. material, piece : int arrays [cells], what each
+        is made of, and which copy of which part it belongs to.
     stiffness, viscosity : of all copies, N/m and N s/m; viscosity None without dashpots in rock.
     blocks, viscous_blocks : the same of one copy of each part [n, n], for `whole`.
     mass : float array [layout.length], kg; consistent : as a matrix, kg, None where lumped.
@@ -42,6 +43,7 @@ class Body(NamedTuple):
     cells: np.ndarray
     corners: np.ndarray
     material: np.ndarray
+    piece: np.ndarray
     stiffness: Operator
     viscosity: Operator | None
     blocks: list[csr_matrix]
@@ -111,7 +113,7 @@ def build_body(
         for tie, piece in zip(ties, pieces, strict=True)
     ]
     x, cells = _copies(mesh, pieces)
-    corners, material = cell_geometry(mesh)
+    corners, material, piece = cell_geometry(mesh)
     first, stride = _numbering(places, counts, numbers, section.components)
     blocks = [tie.T @ piece.stiffness @ tie for tie, piece in zip(ties, pieces, strict=True)]
     dashpots = _viscosities(pieces, ties) if viscous else []
@@ -129,6 +131,7 @@ def build_body(
         cells=cells,
         corners=corners,
         material=material,
+        piece=piece,
         stiffness=operator(places, blocks),
         viscosity=operator(places, dashpots) if viscous else None,
         blocks=blocks,
@@ -182,14 +185,16 @@ def _tie(number: np.ndarray, components: int) -> csr_matrix:
     return csr_matrix(kron(nodes, np.eye(components)))
 
 
-def cell_geometry(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
-    """Return corners and materials of the cells of all copies, one copy after the other."""
-    corners, material = [], []
+def cell_geometry(mesh: Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return corners, materials and pieces of the cells of all copies, one copy after the other."""
+    corners, material, cells = [], [], []
     for part in mesh.parts:
         places = part.x[part.cells] + part.shifts[:, None, None, :]
         corners.append(places.reshape(-1, *places.shape[2:]))
         material.append(np.tile(part.material, part.copies))
-    return np.concatenate(corners), np.concatenate(material)
+        cells += [len(part.cells)] * part.copies
+    piece = np.repeat(np.arange(len(cells)), cells)
+    return np.concatenate(corners), np.concatenate(material), piece
 
 
 def _copies(mesh: Mesh, pieces: list[Piece]) -> tuple[np.ndarray, np.ndarray]:

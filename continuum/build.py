@@ -58,9 +58,9 @@ def discretise(scene: Scene, model: str, dim: int | None = None, comm=None) -> D
         return Discrete(p, motion, rock, body, None, None)
     law = joint_law(
         p,
-        resolved_joints(p, model, mesh.layers),
+        resolved_joints(p, model, motion.shears, mesh.layers),
         across.joint,
-        shears=motion.section.components > 1,
+        motion.shears,
     )
     prestress = scene.prestress.normal if scene.prestress else None
     return Discrete(p, motion, rock, body, across, interfaces(across, law, prestress or None))
@@ -74,7 +74,7 @@ def mesh_of(scene: Scene, p: Properties, model: str, motion: Kinematics) -> Mesh
 
         return given_mesh(numerics.mesh_path, scene, p, motion.dim)
     layers = layer_thickness(scene, p)
-    cut = resolved_joints(p, model, tuple(layers)).number
+    cut = resolved_joints(p, model, motion.shears, tuple(layers)).number
     elements = numerics.elements_per_block or elements_for(scene, p, model)
     try:
         return pillar_mesh(

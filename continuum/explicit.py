@@ -178,4 +178,14 @@ def shake(step, held, model, state, n):
             state.wall[k] = (
                 model.rock.mass[i] * (moved - state.v_before[i]) / model.dt - state.force[i]
             )
+            state.wall[k] += mass_damping(model.rock.keep, model, i, moved, state.v_before[i])
             state.v[i] = moved
+
+
+@jitted
+def mass_damping(keep, model, i, v, v_before):
+    """Return the force (N) of mass-proportional damping on a freedom, zero without it."""
+    if keep is None:
+        return 0.0
+    alpha = 2.0 * (1.0 - keep) / (1.0 + keep) / model.dt
+    return alpha * model.rock.mass[i] * 0.5 * (v + v_before)

@@ -194,5 +194,7 @@ class Stepper:
         values = length.fixed + (1 - self.scheme.alpha_f) * of_joints
         self._factors.factorise(values)
         self.factorisations += 1
-        self._weight = np.abs(values - length.inertia)[self._pattern.diagonal]
+        diagonal = np.zeros(self.mass.shape[0])
+        diagonal[self.free] = (values - length.inertia)[self._pattern.diagonal]
+        self._weight = np.abs(self.team.total(diagonal)[self.free])
         self._factored = length, self._joints.copy()

@@ -21,6 +21,11 @@ class Kinematics(NamedTuple):
     section: Section
     plane_wave: bool
 
+    @property
+    def shears(self) -> bool:
+        """Whether the motion has components along joints."""
+        return self.section.components > 1
+
 
 def kinematics(scene: Scene, dim: int | None = None) -> Kinematics:
     """Return how a scene moves; `dim` overrules numerics.continuum.dim."""

@@ -29,10 +29,13 @@ class Resolved(NamedTuple):
     shear_stiffness: np.ndarray
 
 
-def resolved_joints(p: Properties, model: str, meshed: tuple[int, ...] = ()) -> Resolved:
+def resolved_joints(
+    p: Properties, model: str, shears: bool, meshed: tuple[int, ...] = ()
+) -> Resolved:
     """Return all joints ("jointed"), or the soft layers by their excess ("equivalent").
 
-    meshed : joints that are layers of rock in the mesh.
+    shears : whether the motion has components along the joints. meshed : joints that are layers of
+    rock in the mesh.
     """
     if model == "jointed":
         assert p.own_stiffness is not None and p.own_shear_stiffness is not None
@@ -44,7 +47,8 @@ def resolved_joints(p: Properties, model: str, meshed: tuple[int, ...] = ()) -> 
         same = np.isclose(p.shear_stiffness, p.regular_shear_stiffness, rtol=1e-9, atol=0)
         compliance = np.where(same, 0.0, 1 / p.shear_stiffness - 1 / p.regular_shear_stiffness)
         shear = _excess(compliance, p.regular_shear_stiffness)
-        number = number[(p.excess_compliance[number] != 0) | _fails(p)[number]]
+        differs = (p.excess_compliance != 0) | (shears & (compliance != 0)) | _fails(p, shears)
+        number = number[differs[number]]
     return Resolved(np.setdiff1d(number, meshed), normal, shear)
 
 
@@ -53,14 +57,14 @@ def _excess(compliance: np.ndarray, regular: float) -> np.ndarray:
         return np.where(compliance == 0, RIGID * regular, 1 / compliance)
 
 
-def _fails(p: Properties) -> np.ndarray:
+def _fails(p: Properties, shears: bool) -> np.ndarray:
     """Return which joints can open, slide or break, bool array [N - 1]."""
     from joints.shear import UNLIMITED
 
     found = ~p.tension
-    if p.cohesion is not None:
+    if shears and p.cohesion is not None:
         found = found | (p.cohesion < UNLIMITED)
-    elif p.friction is not None:
+    elif shears and p.friction is not None:
         found = np.ones_like(found)
     if p.tensile_strength is not None:
         found = found | (p.tensile_strength < UNLIMITED)

@@ -17,13 +17,18 @@ def applies(scene: Scene, model: str = "jointed", dim: int | None = None) -> str
     if model == "jointed":
         reason = "" if p.intact_modulus else "the jointed rock needs rock.intact_modulus"
     else:
-        reason = _beyond_the_homogenised(p, shears=motion.section.components > 1)
+        reason = _beyond_the_homogenised(p, motion.shears)
     if reason:
         return reason
-    joints = resolved_joints(p, model)
-    shear = joints.shear_stiffness[joints.number]
-    if motion.section.components > 1 and not (np.isfinite(shear) & (shear > 0)).all():
+    joints = resolved_joints(p, model, motion.shears)
+    return _beyond_shear(joints.shear_stiffness[joints.number]) if motion.shears else ""
+
+
+def _beyond_shear(stiffness: np.ndarray) -> str:
+    if not np.isfinite(stiffness).all():
         return "the intact rock alone is softer in shear than rock and joint together should be"
+    if (stiffness < 0).any():
+        return "a joint stiffer than the others in shear cannot be added to the homogenised rock"
     return ""
 
 

@@ -42,7 +42,7 @@ def points(body: Body, places: list[float]) -> Points:
     x = np.zeros((len(places), body.dim))
     x[:, axis(body.dim)] = places
     which, cell = cells_at(body, x)
-    share = 1 / np.bincount(which, minlength=len(places))[which]
+    share = _shares(which, body.piece[cell])
     at = places_in(body, cell, x[which])
     components, count = body.section.components, len(places)
     rows = [
@@ -55,6 +55,17 @@ def points(body: Body, places: list[float]) -> Points:
         parts = [_rotation(gradient, about, components) for about in range(3)]
         turn = vstack([matrix_of(body, which, cell, part, count) for part in parts]).tocsr()
     return Points(vstack(rows).tocsr(), turn)
+
+
+def _shares(which: np.ndarray, piece: np.ndarray) -> np.ndarray:
+    """Return the share of each cell [n] in the mean at the point that it is at: pieces that meet
+    there count alike, however many of their cells do."""
+    pieces = 1 + piece.max(initial=0)
+    side, of_cell, cells = np.unique(
+        which * pieces + piece, return_inverse=True, return_counts=True
+    )
+    sides = np.bincount(side // pieces)
+    return 1 / (sides[which] * cells[of_cell])
 
 
 def _only(weights: np.ndarray, component: int, components: int) -> np.ndarray:

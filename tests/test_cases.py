@@ -103,6 +103,7 @@ def test_shipped_scene_meets_what_it_expects(scene):
 def test_no_solution_of_axial_motion_claims_a_spatial_scene():
     """What solves a scene that leaves its axis is made for it; each other one says why not."""
     spatial = {"dem", "spatial-lattice", "slip-joint", "sliding-block"}
+    spatial |= {"continuum-jointed", "continuum-equivalent"}
     scenes = [s for path in shipped() for s in cases.load(path) if is_spatial(s)]
     assert scenes
     for scene in scenes:

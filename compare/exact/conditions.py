@@ -43,3 +43,8 @@ def bars_tension(p: Properties) -> bool:
 def has_interfaces(p: Properties) -> bool:
     """Return whether a soft layer differs in stiffness from the ordinary joints."""
     return bool(p.excess_compliance.any())
+
+
+def has_thick_layer(scene: Scene) -> bool:
+    """Return whether a soft layer is rock of some thickness, not a joint."""
+    return any(layer.thickness is not None for layer in scene.soft_layers)

@@ -13,7 +13,7 @@ import xarray as xr
 from cases.calibrate import calibrate
 from cases.scene import Scene
 from compare.exact.answer import YES, Answer, no
-from compare.exact.conditions import bars_tension, beyond
+from compare.exact.conditions import bars_tension, beyond, has_thick_layer
 from compare.exact.laplace import Bar, end_of, solved
 
 NAME = "equivalent-bar"
@@ -24,6 +24,8 @@ def applies(scene: Scene) -> Answer:
     p = calibrate(scene)
     if reason := beyond(scene):
         return no(reason)
+    if has_thick_layer(scene):
+        return no("a soft layer has a thickness")
     if bars_tension(p):
         return no("a joint bars tension")
     if (p.excess_compliance < 0).any():

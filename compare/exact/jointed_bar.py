@@ -14,7 +14,7 @@ import xarray as xr
 from cases.calibrate import calibrate
 from cases.scene import Scene
 from compare.exact.answer import YES, Answer, no
-from compare.exact.conditions import bars_tension, beyond
+from compare.exact.conditions import bars_tension, beyond, has_thick_layer
 from compare.exact.laplace import Bar, end_of, solved
 
 NAME = "jointed-bar"
@@ -25,6 +25,8 @@ def applies(scene: Scene) -> Answer:
     p = calibrate(scene)
     if reason := beyond(scene):
         return no(reason)
+    if has_thick_layer(scene):
+        return no("a soft layer has a thickness")
     if p.own_stiffness is None:
         return no("rock.intact_modulus is not given")
     if bars_tension(p):

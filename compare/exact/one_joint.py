@@ -25,7 +25,7 @@ from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
 from compare.exact.answer import YES, Answer, no
-from compare.exact.conditions import bars_tension, beyond, rock_is_damped
+from compare.exact.conditions import bars_tension, beyond, has_thick_layer, rock_is_damped
 from compare.exact.images import ENTERS
 from compare.exact.linear import response
 
@@ -46,6 +46,8 @@ def applies(scene: Scene) -> Answer:
     compliance = p.excess_compliance
     if reason := beyond(scene):
         return no(reason)
+    if has_thick_layer(scene):
+        return no("a soft layer has a thickness")
     if bars_tension(p):
         return no("a joint bars tension")
     if rock_is_damped(p):

@@ -55,13 +55,13 @@ def held_share(
     """
     local = mesh._replace(parts=share.parts)
     built = build_body(local, order, [*materials, NOTHING], *asked)
-    corners, material = cell_geometry(mesh)
+    corners, material, piece = cell_geometry(mesh)
     cells = np.full((len(corners), built.cells.shape[1]), -1)
     cells[share.cell] = built.cells
     own, ghosts = (_freedoms(built, built.cells[g]) for g in (~share.ghost, share.ghost))
     mass = built.mass.copy()
     mass[np.setdiff1d(ghosts, own)] = 0.0
-    held = built._replace(cells=cells, corners=corners, material=material, mass=mass)
+    held = built._replace(cells=cells, corners=corners, material=material, piece=piece, mass=mass)
     if not share.joints.joint.size:
         return held, None
     return held, jumps(held._replace(mesh=local._replace(joints=share.joints)))

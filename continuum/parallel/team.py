@@ -1,6 +1,5 @@
 """The processes that share a run: what they have in common, and what they do together."""
 
-import ctypes
 import weakref
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -10,12 +9,11 @@ import numpy as np
 from mpi4py import MPI
 from scipy.sparse import csr_matrix
 
-from continuum.parallel.exchange import Link, add_shares
+from continuum.parallel.connection import TAG, connect, release
+from continuum.parallel.exchange import add_shares
 from continuum.parallel.identity import Border, joined
 from continuum.parallel.march import run_together
 from continuum.team import Alone, Pieces, T
-
-TAG = 0x4A57  # of messages between neighbours
 
 
 class Team(Alone):
@@ -49,13 +47,14 @@ class Team(Alone):
         self._common = [
             border[np.isin(name, other, assume_unique=True)] for other in comm.allgather(name)
         ]
-        self._link = self._connect(np.zeros(0, dtype=np.int64))
+        self._all = connect(comm, self._common)
+        weakref.finalize(self, release, self._all)
 
     def total(self, share: np.ndarray) -> np.ndarray:
         """Return values on the freedoms [..., n], summed up over all who have each of them."""
         found = np.array(share, dtype=float)
         for values in found.reshape(-1, self.length):
-            _check(add_shares(self._link, values))
+            _check(add_shares(self._all.link, values))
         return found
 
     def sum(self, value: float) -> float:
@@ -79,11 +78,12 @@ class Team(Alone):
         entries = share.tocoo()
         row, column = self.number[entries.row], self.number[entries.col]
         there = (row >= 0) & (column >= 0)
-        found = self.comm.gather((row[there], column[there], entries.data[there]))
-        if found is None:
+        size = self.degrees_of_freedom
+        found = self._sent_to_first([row[there], column[there], entries.data[there]])
+        if not found:
             return None
         rows, columns, values = (np.concatenate(parts) for parts in zip(*found, strict=True))
-        return csr_matrix((values, (rows, columns)), 2 * [self.degrees_of_freedom])
+        return csr_matrix((values, (rows, columns)), (size, size))
 
     def gather(self, waves: np.ndarray) -> None:
         """Replace shares of waveforms by their sums over all processes, the same bits for all."""
@@ -94,8 +94,11 @@ class Team(Alone):
 
     def joined(self, pieces: Pieces) -> Pieces | None:
         """Return the pieces of all processes as one; the first process alone, None on others."""
-        gathered = self.comm.gather(pieces)
-        return None if gathered is None else joined(gathered, self._meeting)
+        cell, table, of_cells, of_nodes = pieces
+        found = self._sent_to_first([cell, table, *of_cells, *of_nodes])
+        last = 2 + len(of_cells)
+        gathered = [Pieces(a[0], a[1], tuple(a[2:last]), tuple(a[last:])) for a in found]
+        return joined(gathered, self._meeting) if gathered else None
 
     @contextmanager
     def in_turn(self) -> Iterator[None]:
@@ -108,10 +111,11 @@ class Team(Alone):
 
         These need no force, and keep their shares of it, which sum up to what holds them.
         """
-        link = self._connect(held)
+        connection = connect(self.comm, [f[~np.isin(f, held)] for f in self._common])
+        weakref.finalize(self, release, connection)
 
         def run(*arguments) -> None:
-            _check(run_together(link, *arguments))
+            _check(run_together(connection.link, *arguments))
 
         return run
 
@@ -155,51 +159,22 @@ class Team(Alone):
         self.comm.Reduce(found, whole)
         return whole
 
-    def _connect(self, apart: np.ndarray) -> Link:
-        """Return the link to all others by the common freedoms, but for those set apart."""
-        common = [f[~np.isin(f, apart)] for f in self._common]
-        others = [r for r, f in enumerate(common) if f.size and r != self.rank]
-        none = np.zeros(0, dtype=np.int64)
-        freedom = np.unique(np.concatenate([none, *(common[r] for r in others)]))
-        common[self.rank] = freedom
-        place = [np.searchsorted(freedom, f) for f in common]
-        ends = np.cumsum([p.size for p in place])
-        value = np.zeros(ends[-1])
-        source = np.concatenate([none, *(common[r] for r in others)])
-        sent = np.zeros(source.size)
-        slices = np.split(sent, np.cumsum([common[r].size for r in others])[:-1])
-        of_rank = np.split(value, ends[:-1])
-        requests = [self.comm.Recv_init(of_rank[r], r, TAG) for r in others]
-        requests += [self.comm.Send_init(b, r, TAG) for r, b in zip(others, slices, strict=False)]
-        link = Link(
-            freedom=freedom,
-            sum=np.zeros(freedom.size),
-            source=source,
-            sent=sent,
-            place=np.concatenate(place),
-            value=value,
-            own=int(ends[self.rank] - freedom.size),
-            calls=len(requests),
-            requests=_handles(requests),
-            statuses=np.zeros(MPI._sizeof(MPI.Status) * len(requests), dtype=np.uint8),
-        )
-        weakref.finalize(self, _release, requests, link.requests)
-        return link
+    def _sent_to_first(self, arrays: list[np.ndarray]) -> list[list[np.ndarray]]:
+        """Return the arrays of every process on the first one, an empty list on others.
 
-
-def _handles(requests: list) -> np.ndarray:
-    """Return the handles of requests side by side, as MPI takes them."""
-    size = MPI._sizeof(MPI.Request)
-    return np.frombuffer(
-        b"".join(ctypes.string_at(MPI._addressof(r), size) for r in requests), dtype=np.uint8
-    ).copy()
-
-
-def _release(requests: list, handles: np.ndarray) -> None:
-    """Give requests back to MPI, which may have changed their handles."""
-    for request, handle in zip(requests, handles.reshape(len(requests), -1), strict=True):
-        ctypes.memmove(MPI._addressof(request), handle.tobytes(), handle.size)
-        request.Free()
+        One message for each array: pickled together they might be longer than a message can be.
+        """
+        shapes = self.comm.gather([(a.shape, a.dtype) for a in arrays])
+        if self.rank:
+            for array in arrays:
+                self.comm.Send(np.ascontiguousarray(array), 0, TAG)
+            return []
+        found = [arrays]
+        for rank in range(1, self.size):
+            found.append([np.empty(*kind) for kind in shapes[rank]])
+            for array in found[-1]:
+                self.comm.Recv(array, rank, TAG)
+        return found
 
 
 def _check(code: int) -> None:

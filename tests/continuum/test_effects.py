@@ -231,6 +231,19 @@ def test_homogenised_rock_keeps_a_joint_that_can_fail_as_stiff_as_ten(pillar):
     assert law.shear_stiffness == pytest.approx(10 * p.regular_shear_stiffness, rel=1e-12)
 
 
+def test_joint_that_differs_in_shear_alone_is_there_where_rock_moves_across(pillar):
+    """By its excess of shear compliance; along the axis it is as stiff as ten. In axial motion
+    neither that nor its strength calls for a joint."""
+    layer = [{"y": 20.0, "shear_stiffness": 1e9}, {"y": 30.0, "cohesion": 1e5}]
+    scene = pillar(soft_layers=layer)
+    p = calibrate(scene)
+    joints = discretise(scene, "equivalent", 2).joints
+    excess = 1 / p.shear_stiffness[39] - 1 / p.regular_shear_stiffness
+    assert joints.law.shear_stiffness.min() == pytest.approx(1 / excess, rel=1e-12)
+    assert joints.law.normal_stiffness == pytest.approx(10 * p.regular_stiffness, rel=1e-12)
+    assert discretise(scene, "equivalent", 1).joints is None
+
+
 @pytest.mark.parametrize(
     ("changes", "model", "reason"),
     [
@@ -238,6 +251,14 @@ def test_homogenised_rock_keeps_a_joint_that_can_fail_as_stiff_as_ten(pillar):
         ({"joints__tension": False}, "equivalent", "no joints to open"),
         ({"soft_layers": [{"y": 20.0, "spacing_stiffness": 9e9}]}, "equivalent", "stiffer"),
         ({"soft_layers": [{"y": 20.0, "damping_ratio": 0.1}]}, "equivalent", "one ordinary joint"),
+        (
+            {
+                "soft_layers": [{"y": 20.0, "shear_stiffness": 1e11}],
+                "load__direction": [0.6, 0.8, 0.0],
+            },
+            "equivalent",
+            "stiffer than the others in shear",
+        ),
         ({"joints": BREAKS}, "equivalent", "no joints that slide or break"),
         (
             {"joints__friction_angle": 30.0, "load__direction": [0.6, 0.8, 0.0]},

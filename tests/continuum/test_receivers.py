@@ -49,6 +49,32 @@ def test_points_read_polynomials_exactly_and_the_mean_on_a_joint(dim, cell, orde
     assert read == pytest.approx(expected, rel=1e-12, abs=1e-12)
 
 
+def test_both_sides_of_a_joint_count_alike_however_many_cells_meet_there(body, rebuilt):
+    """Three triangles meet the axis at the joint from one side, four from the other."""
+    at = body(2, "simplex", 1, blocks=2)
+    x = np.array([[-0.25, 0], [0, 0], [0.25, 0], [-0.25, 0.5], [0, 0.5], [0.25, 0.5]])
+    few = np.array([[0, 1, 3], [1, 4, 3], [1, 2, 4], [2, 5, 4]])
+    many = np.array([[0, 1, 3], [1, 4, 3], [1, 5, 4], [1, 2, 5]])
+    part = at.mesh.parts[0]
+    halves = [
+        part._replace(
+            x=x + np.array([0.0, y]),
+            cells=cells,
+            material=np.zeros(4, int),
+            shifts=np.zeros((1, 2)),
+        )
+        for y, cells in ((0.0, few), (0.5, many))
+    ]
+    left, right = np.array([1, 3]), np.array([4, 7])
+    corners = np.array([[[-0.25, 0.5], [0, 0.5]], [[0, 0.5], [0.25, 0.5]]])
+    joints = at.mesh.joints._replace(
+        left=left, right=right, corners=corners, joint=np.zeros(2, int)
+    )
+    at = rebuilt(at, at.mesh._replace(parts=tuple(halves), joints=joints))
+    far = np.repeat([0.0, 1.0], 6)[:, None] * np.ones(2)
+    assert points(at, [0.5]).motion @ moved_by(at, lambda x: far) == pytest.approx([0.5, 0.5])
+
+
 @deep
 def test_rotation_is_half_the_curl(dim, cell, order, body):
     """Of an affine motion, everywhere: (A - A^T) / 2 as a vector; in dim 2 about z alone."""

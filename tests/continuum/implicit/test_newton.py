@@ -134,7 +134,9 @@ def test_slip_that_turns_converges_quadratically(pillar, implicit, monkeypatch, 
     for distance in (1e-2, 1e-3, 1e-4):
         start = solution + distance * way
         monkeypatch.setattr(
-            implicit_step, "newton", lambda rest, correct, _, x=start: newton(rest, correct, x)
+            implicit_step,
+            "newton",
+            lambda rest, correct, _, team, x=start: newton(rest, correct, x),
         )
         errors.append(run.implicit.stepper.step(now, trial, 3, 1.0, 0).errors[:2])
     orders = np.log10(np.divide(errors[:-1], errors[1:]))

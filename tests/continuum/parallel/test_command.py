@@ -1,6 +1,9 @@
 """The command in several processes: what goes wrong is said once, and ends all of them."""
 
 import json
+import os
+import subprocess
+import sys
 
 import pytest
 
@@ -111,3 +114,14 @@ def test_a_mistake_of_the_first_process_reaches_the_others(jointwave, tmp_path):
     blocked.write_text("")
     (line,) = said(jointwave(2, "run", *SCENE, *SHORT, "--out", blocked / "folder", code=2))
     assert "Not a directory" in line
+
+
+def test_an_mpiexec_of_another_mpi_is_refused():
+    """Its processes would not know of each other, and all write the same file."""
+    environment = {**os.environ, "MV2_COMM_WORLD_SIZE": "4"}
+    command = [sys.executable, "-m", "compare", "run", *SCENE]
+    done = subprocess.run(command, capture_output=True, text=True, env=environment)
+    assert done.returncode == 2
+    assert said(done) == [
+        "jointwave: mpiexec: -n = 4: belongs to another MPI than mpi4py, which sees one process"
+    ]

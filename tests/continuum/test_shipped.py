@@ -1,0 +1,52 @@
+"""The first steps of every shipped scene in deformable rock, homogenised and jointed."""
+
+import numpy as np
+import pytest
+
+import cases
+from cases.result import energy_residual
+from compare.scenes import SHIPPED
+from continuum import applies, simulate
+
+SAMPLES = 30
+INTACT = 8.64e10  # Pa, for scenes that say nothing of the rock in the blocks
+
+
+def scenes():
+    for path in sorted((SHIPPED / "beyond").glob("*.toml")):
+        for scene in cases.load(path):
+            yield pytest.param(path, scene.name, id=f"{path.stem}-{scene.name or 'base'}")
+
+
+def first_steps(path, name: str):
+    """Return a scene's first samples, with linear elements, one in each block."""
+    scene = cases.load_variant(path, name, {})
+    changes = {
+        "time.duration": SAMPLES * scene.interval,
+        "record.interval": scene.interval,
+        "rock.intact_modulus": scene.rock.intact_modulus or INTACT,
+        "numerics.continuum": {"elements_per_block": 1, "order": 1},
+        "variants": [],
+        "expect": {},
+    }
+    return cases.load_variant(path, name, changes)
+
+
+@pytest.mark.parametrize("model", ["equivalent", "jointed"])
+@pytest.mark.parametrize(("path", "name"), scenes())
+def test_scene_runs_wherever_the_continuum_says_so(path, name, model):
+    """Finite, of the shape that was asked for, and with an energy ledger that closes: to round-off
+    where all is linear, to the corners of the law elsewhere."""
+    scene = first_steps(path, name)
+    reason = applies(scene, model)
+    if reason:
+        with pytest.raises(cases.SceneError, match=reason[:20]):
+            simulate(scene, model)
+        return
+    result = simulate(scene, model)
+    assert result["time"].size == SAMPLES + 1
+    assert all(np.isfinite(values).all() for values in result.data_vars.values())
+    assert np.abs(result["velocity"].values).max() > 0
+    law = scene.joints, *scene.layers
+    bends = any(joint.tension is False or joint.tensile_strength for joint in law)
+    assert energy_residual(result) < (1e-3 if bends else 1e-9)
