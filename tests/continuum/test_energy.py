@@ -35,10 +35,9 @@ EVERYTHING = {
         "joints__damping_ratio": 0.05,
         "prestress": {"normal": 1e5},
     },
-    "damped, shaken base, weight, mass damping": {
+    "damped, shaken base, weight": {
         "soft_layers": SOFT,
         "joints__damping_ratio": 0.02,
-        "damping__mass_proportional": 50.0,
         "ends": {"start": "fixed", "end": "quiet"},
         "gravity": {"static": False},
         "load": {"shape": "sine", "amplitude": 0.1, "period": PERIOD, "quantity": "velocity"},
