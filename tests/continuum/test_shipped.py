@@ -12,10 +12,11 @@ SAMPLES = 30
 INTACT = 8.64e10  # Pa, for scenes that say nothing of the rock in the blocks
 
 
-def scenes():
-    for path in sorted((SHIPPED / "beyond").glob("*.toml")):
-        for scene in cases.load(path):
-            yield pytest.param(path, scene.name, id=f"{path.stem}-{scene.name or 'base'}")
+SCENES = [
+    pytest.param(path, scene.name, id=f"{path.stem}-{scene.name or 'base'}")
+    for path in sorted((SHIPPED / "beyond").glob("*.toml"))
+    for scene in cases.load(path)
+]
 
 
 def first_steps(path, name: str):
@@ -23,20 +24,20 @@ def first_steps(path, name: str):
     scene = cases.load_variant(path, name, {})
     changes = {
         "time.duration": SAMPLES * scene.interval,
-        "record.interval": scene.interval,
+        "record": {"interval": scene.interval, "velocity": [0.0, scene.pillar.length]},
         "rock.intact_modulus": scene.rock.intact_modulus or INTACT,
         "numerics.continuum": {"elements_per_block": 1, "order": 1},
-        "variants": [],
         "expect": {},
     }
     return cases.load_variant(path, name, changes)
 
 
 @pytest.mark.parametrize("model", ["equivalent", "jointed"])
-@pytest.mark.parametrize(("path", "name"), scenes())
+@pytest.mark.parametrize(("path", "name"), SCENES)
 def test_scene_runs_wherever_the_continuum_says_so(path, name, model):
     """Finite, of the shape that was asked for, and with an energy ledger that closes: to round-off
-    where all is linear, to the corners of the law elsewhere."""
+    where explicit steps of linear rock are taken; elsewhere to the corners of the law, or to what
+    implicit steps take from short waves."""
     scene = first_steps(path, name)
     reason = applies(scene, model)
     if reason:
@@ -46,7 +47,8 @@ def test_scene_runs_wherever_the_continuum_says_so(path, name, model):
     result = simulate(scene, model)
     assert result["time"].size == SAMPLES + 1
     assert all(np.isfinite(values).all() for values in result.data_vars.values())
-    assert np.abs(result["velocity"].values).max() > 0
+    assert result["velocity"].values.any()
     law = scene.joints, *scene.layers
     bends = any(joint.tension is False or joint.tensile_strength for joint in law)
-    assert energy_residual(result) < (1e-3 if bends else 1e-9)
+    exact = result.attrs["scheme"] == "explicit" and not bends
+    assert energy_residual(result) < (1e-9 if exact else 1e-3)

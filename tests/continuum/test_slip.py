@@ -1,7 +1,6 @@
 """Where joints slide: rigid blocks, deformable rock and the exact joint tend to each other."""
 
 import numpy as np
-import pytest
 
 import cases
 import dem
@@ -20,21 +19,20 @@ def sliding(block: float):
         "rock.intact_modulus": 8.64e10,
         "numerics.continuum.elements_per_block": 1,
         "record.interval": 2e-4,
-        "variants": [],
         "expect": {},
     }
     return cases.load_variant(SCENE, "", changes)
 
 
-def test_blocks_and_rock_tend_to_the_exact_sliding_joint(subtests=None):
-    """Blocks of 2, 1 and 0.5 m in a wave of 32 m, one joint at half the strength that it needs.
+def test_blocks_and_rock_tend_to_the_exact_sliding_joint():
+    """Blocks of 1, 0.5 and 0.25 m in a wave of 32 m, one joint at half the strength that it needs.
 
     Both engines disperse waves by the square of the block over the wavelength, and put as much
-    rock in series with the joint as a block has: a misfit of first order. At every halving both
-    lose at least 40 % of theirs, and of the misfit between them.
+    rock in series with the joint as a block has: a misfit of first order. At every halving
+    both lose at least 40 % of theirs; extrapolated to no block length, half a percent is left.
     """
     misfits = []
-    for block in (2.0, 1.0, 0.5):
+    for block in (1.0, 0.5, 0.25):
         scene = sliding(block)
         blocks, rock = dem.simulate(scene), simulate(scene, "jointed", 1)
         exact = sliding_joint.solve(scene)
@@ -47,5 +45,6 @@ def test_blocks_and_rock_tend_to_the_exact_sliding_joint(subtests=None):
             ]
         )
     misfits = np.array(misfits)
-    assert (misfits[1:] < 0.6 * misfits[:-1]).all()
-    assert misfits[-1] == pytest.approx([0.1, 0.1, 0.1], abs=0.1)
+    assert (misfits[1:, :2] < 0.6 * misfits[:-1, :2]).all()
+    assert (misfits[1:, 2] < 0.7 * misfits[:-1, 2]).all()
+    assert (np.abs(2 * misfits[-1] - misfits[-2]) < 0.005).all()
