@@ -16,7 +16,7 @@ from continuum.record import (
 )
 from continuum.tractions import at, elastic_slip, gap_at, load_joints, push, rate_at
 from joints.borrowed import borrowed
-from joints.jit import jitted
+from joints.jit import inlined, jitted
 from joints.laws import History, law_of
 from joints.optional import given
 from joints.tangent import tangent
@@ -55,7 +55,7 @@ def settle(model, now, trial, pressure):
     return size
 
 
-@jitted
+@inlined
 def recall(kept, memory):
     """Let the points of the joints remember what they did before the step."""
     if memory is not None:
@@ -65,7 +65,7 @@ def recall(kept, memory):
         copy(kept.cohesion, memory.cohesion)
 
 
-@jitted
+@inlined
 def copy(kept, values):
     """Copy an array, where there is one."""
     if kept is not None:
@@ -73,7 +73,7 @@ def copy(kept, values):
             values[i] = kept[i]
 
 
-@jitted
+@inlined
 def largest(values):
     """Return the largest magnitude in an array, zero where there is none."""
     found = 0.0
@@ -83,7 +83,7 @@ def largest(values):
     return found
 
 
-@jitted
+@inlined
 def press_by(force, loaded, pressure):
     """Add the load (N) and return the largest of it."""
     found = 0.0
@@ -94,7 +94,7 @@ def press_by(force, loaded, pressure):
     return found
 
 
-@jitted
+@inlined
 def brace(quiet, closure, trial):
     """Set what absorbs at the ends, and count it among the forces."""
     if quiet is not None:
@@ -105,7 +105,7 @@ def brace(quiet, closure, trial):
             trial.force[quiet.freedom[k]] -= trial.reaction[k]
 
 
-@jitted
+@inlined
 def brace_springs(closure, quiet, trial):
     """Add the springs in front of dashpots, closed by the mean velocity of the step."""
     if closure is not None:
@@ -127,7 +127,7 @@ def stiffen(model, now, trial, r, stiffness):
     stiffen_joints(model.interfaces, now.memory, trial.u, trial.rate, r, stiffness)
 
 
-@jitted
+@inlined
 def stiffen_joints(interfaces, memory, u, rate, r, stiffness):
     """Set the stiffness of every point, where there are joints; memory : before the step."""
     if interfaces is not None:
@@ -149,7 +149,7 @@ def stiffen_joints(interfaces, memory, u, rate, r, stiffness):
             keep_shear(found.xx, found, stiffness, q, area)
 
 
-@jitted
+@inlined
 def trial_slip(shear_stiffness, interfaces, memory, u, q):
     """Return the trial elastic slips (m) of point q, as if nothing slid in the step."""
     if shear_stiffness is None:
@@ -159,7 +159,7 @@ def trial_slip(shear_stiffness, interfaces, memory, u, q):
     return x, z
 
 
-@jitted
+@inlined
 def keep_shear(flag, found, stiffness, q, area):
     """Set the entries of shear, where there is any."""
     if flag is not None:

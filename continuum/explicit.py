@@ -13,7 +13,7 @@ from continuum.operator import multiply
 from continuum.record import book, record
 from continuum.tractions import load_joints, push
 from joints.borrowed import borrowed
-from joints.jit import jitted
+from joints.jit import inlined, jitted
 from joints.tiny import flush_tiny, restore_tiny
 
 
@@ -29,7 +29,7 @@ def run(model, state, samples, stride, first, last):
     restore_tiny(old)
 
 
-@jitted
+@inlined
 def forces(model, state, n):
     """Set the force on every freedom at step n, from the displacements and rates there."""
     interfaces, ends = model.interfaces, model.ends
@@ -44,7 +44,7 @@ def forces(model, state, n):
     lean(state.force, ends.quiet, state.closure)
 
 
-@jitted
+@inlined
 def advance(model, state, samples, stride, n):
     """Move on to the next step at the velocities that the forces of step n have given, but for what
     absorbs or holds, and record step n."""
@@ -60,13 +60,13 @@ def advance(model, state, samples, stride, n):
     close(ends.quiet, state.closure, state.v)
 
 
-@jitted
+@inlined
 def deform(force, stiffness, u):
     """Set the elastic force (N) of the rock on every freedom."""
     multiply(stiffness, u, force, -1.0)
 
 
-@jitted
+@inlined
 def extrapolate(rate, v, v_before):
     """Set the rate of displacement at the whole step, second order."""
     if rate is not None:
@@ -74,7 +74,7 @@ def extrapolate(rate, v, v_before):
             rate[i] = 1.5 * v[i] - 0.5 * v_before[i]
 
 
-@jitted
+@inlined
 def damp(drag, viscosity, rate):
     """Set the viscous force (N) of the rock on every freedom."""
     if drag is not None:
@@ -82,14 +82,14 @@ def damp(drag, viscosity, rate):
         damp_rock(drag, viscosity, rate)
 
 
-@jitted
+@inlined
 def damp_rock(drag, viscosity, rate):
     """Set the viscous force of rock that has Kelvin-Voigt dashpots."""
     if viscosity is not None:
         deform(drag, viscosity, rate)
 
 
-@jitted
+@inlined
 def add(force, more):
     """Add other forces on every freedom, where there are any."""
     if more is not None:
@@ -97,7 +97,7 @@ def add(force, more):
             force[i] += more[i]
 
 
-@jitted
+@inlined
 def press(force, loaded, n):
     """Add the load (N)."""
     if loaded is not None:
@@ -105,7 +105,7 @@ def press(force, loaded, n):
             force[loaded.freedom[k]] += loaded.share[k] * loaded.pressure[n]
 
 
-@jitted
+@inlined
 def lean(force, quiet, closure):
     """Add the force (N) of the springs in front of dashpots."""
     if closure is not None:
@@ -113,7 +113,7 @@ def lean(force, quiet, closure):
             force[quiet.freedom[k]] -= quiet.springs.stiffness[k] * closure[k]
 
 
-@jitted
+@inlined
 def accelerate(rock, keep, state):
     """Advance every velocity by one step."""
     v, v_before, force = state.v, state.v_before, state.force
@@ -127,7 +127,7 @@ def accelerate(rock, keep, state):
             v[i] = keep * v[i] + rock.step_over_mass[i] * force[i]
 
 
-@jitted
+@inlined
 def absorb(quiet, reaction, closure, v, v_before):
     """Slow quiet freedoms by their dashpots, centred: exactly the free motion where beta = 0.
 
@@ -141,7 +141,7 @@ def absorb(quiet, reaction, closure, v, v_before):
         add_springs(reaction, quiet.springs, closure)
 
 
-@jitted
+@inlined
 def add_springs(reaction, springs, closure):
     """Add the springs' part of the reactions."""
     if closure is not None:
@@ -149,7 +149,7 @@ def add_springs(reaction, springs, closure):
             reaction[k] += springs.stiffness[k] * closure[k]
 
 
-@jitted
+@inlined
 def close(quiet, closure, v):
     """Advance the closure of the springs in front of dashpots."""
     if closure is not None:
@@ -158,14 +158,14 @@ def close(quiet, closure, v):
             closure[k] = springs.decay[k] * closure[k] + springs.gain[k] * v[quiet.freedom[k]]
 
 
-@jitted
+@inlined
 def hold(held, model, state, n):
     """Give held freedoms their motion, at rest or that of a shaken base."""
     if held is not None:
         shake(held.step, held, model, state, n)
 
 
-@jitted
+@inlined
 def shake(step, held, model, state, n):
     """Move held freedoms as the base does, and leave in `wall` what that takes (N)."""
     if step is None:
@@ -182,7 +182,7 @@ def shake(step, held, model, state, n):
             state.v[i] = moved
 
 
-@jitted
+@inlined
 def mass_damping(keep, model, i, v, v_before):
     """Return the force (N) of mass-proportional damping on a freedom, zero without it."""
     if keep is None:

@@ -44,9 +44,11 @@ def newton(
         rest, left = residual(x)
         errors.append(team.largest(_size(rest)))
         tolerance = team.largest(left)
+        if not np.isfinite(errors[-1]):
+            break
         if errors[-1] == 0 or (len(errors) > 1 and errors[-1] <= tolerance):
             return Outcome(x, True, errors, tolerance)
-        if not np.isfinite(errors[-1]) or len(errors) > MOST_ITERATIONS:
+        if len(errors) > MOST_ITERATIONS:
             break
         x += correction(rest)
     return Outcome(x, False, errors, tolerance)

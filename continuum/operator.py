@@ -12,7 +12,7 @@ from scipy.sparse import block_diag, csr_matrix
 
 from continuum.lanes import WIDTH, add_scaled, load, store, zero
 from continuum.sparse import Rows
-from joints.jit import jitted
+from joints.jit import inlined, jitted
 
 TILE = 4  # registers wide; a part's blocks are dealt out evenly, so that tiles have 3 to 5
 ROUND_OFF = 1e-13  # of two diagonal entries: what quadrature leaves of entries that are zero
@@ -126,7 +126,7 @@ def multiply(operator, x, y, factor=1.0):
         multiply_tile(operator, t, x, y, factor)
 
 
-@jitted
+@inlined
 def multiply_tile(operator, t, x, y, factor):
     """Set y = factor K x in tile t."""
     rows, first, size = operator.rows, operator.row[t], operator.size[t]
@@ -145,7 +145,7 @@ def multiply_tile(operator, t, x, y, factor):
         multiply_lanes(zero(5), 5 * WIDTH, rows, first, size, x, y, at, factor)
 
 
-@jitted
+@inlined
 def multiply_lanes(none, width, rows, first, size, x, y, at, factor):
     """Set y = factor K x in a tile of this width at `at`; `none` is zero in as many registers."""
     start, column, value = rows
@@ -159,7 +159,7 @@ def multiply_lanes(none, width, rows, first, size, x, y, at, factor):
         store(y, at + i * width, add_scaled(none, factor, total))
 
 
-@jitted
+@inlined
 def multiply_one(rows, first, size, x, y, at, factor):
     """Set y = factor K x for one block at `at`."""
     start, column, value = rows

@@ -6,7 +6,7 @@ from continuum.operator import multiply
 from continuum.sparse import row
 from continuum.tractions import at, elastic_slip, gap_at
 from joints.energy import elastic_energy, fracture_energy_spent
-from joints.jit import jitted
+from joints.jit import inlined
 from joints.laws import law_of
 from joints.optional import given
 
@@ -15,7 +15,7 @@ TERMS = ("kinetic", "elastic", "fracture", "gravity", "viscous", "friction", "bo
 STATES = 4  # of these are energies of the step; the others are sums over all steps so far
 
 
-@jitted
+@inlined
 def book(ledger, half_step, model, state, n, way):
     """Add the work of every force of this step over one half of it, moving at velocity `way`.
 
@@ -29,7 +29,7 @@ def book(ledger, half_step, model, state, n, way):
         ledger[3] += half_step * wall_power(model.ends.held, state.wall, way)
 
 
-@jitted
+@inlined
 def viscous_power(drag, way):
     """Return the power (W) that dashpots in rock and joints take."""
     total = 0.0
@@ -39,7 +39,7 @@ def viscous_power(drag, way):
     return total
 
 
-@jitted
+@inlined
 def mass_damping_power(keep, model, state, way):
     """Return the power (W) that mass-proportional damping takes."""
     total = 0.0
@@ -51,13 +51,13 @@ def mass_damping_power(keep, model, state, way):
     return total
 
 
-@jitted
+@inlined
 def mass_damping(keep, dt):
     """Return the alpha (1/s) of mass-proportional damping."""
     return 2.0 * (1.0 - keep) / (1.0 + keep) / dt
 
 
-@jitted
+@inlined
 def boundary_power(quiet, reaction, way):
     """Return the power (W) that goes into what absorbs at the ends."""
     total = 0.0
@@ -67,7 +67,7 @@ def boundary_power(quiet, reaction, way):
     return total
 
 
-@jitted
+@inlined
 def load_power(loaded, n, way):
     """Return the power (W) of the load."""
     total = 0.0
@@ -77,7 +77,7 @@ def load_power(loaded, n, way):
     return total
 
 
-@jitted
+@inlined
 def wall_power(held, wall, way):
     """Return the power (W) of a base that is shaken."""
     total = 0.0
@@ -87,7 +87,7 @@ def wall_power(held, wall, way):
     return total
 
 
-@jitted
+@inlined
 def record(model, state, samples, s):
     """Record motion of points, stress of sections and the ledger at a whole step."""
     receivers, dt = model.receivers, model.dt
@@ -107,35 +107,35 @@ def record(model, state, samples, s):
     record_energy(samples.energy, model, state, s)
 
 
-@jitted
+@inlined
 def read(wave, s, matrix, x, scale):
     """Add scale times matrix times x to sample s of every receiver."""
     for r in range(wave.shape[0]):
         wave[r, s] += scale * row(matrix, x, r)
 
 
-@jitted
+@inlined
 def read_turn(matrix, turn, s, u):
     """Record the rotation of points, where there is any."""
     if matrix is not None:
         read(turn, s, matrix, u, 1.0)
 
 
-@jitted
+@inlined
 def read_damped(matrix, stress, s, rate):
     """Add the viscous part of the rock's stress."""
     if matrix is not None:
         read(stress, s, matrix, rate, 1.0)
 
 
-@jitted
+@inlined
 def read_braked(keep, inertia, stress, s, v, share, dt):
     """Add what mass-proportional damping takes of a share of velocities, where there is any."""
     if keep is not None:
         read(stress, s, inertia, v, share * mass_damping(keep, dt))
 
 
-@jitted
+@inlined
 def read_weight(weight, stress, s):
     """Add the weight of the rock up to the section, where there is any."""
     if weight is not None:
@@ -143,7 +143,7 @@ def read_weight(weight, stress, s):
             stress[r, s] += weight[r]
 
 
-@jitted
+@inlined
 def read_joints(contact, stress, s, tractions):
     """Record the stress of sections on a joint: its tractions, springs and dashpots."""
     if contact is not None:
@@ -152,7 +152,7 @@ def read_joints(contact, stress, s, tractions):
         read_parts(contact, stress, s, 2, tractions.z, tractions.drag_z)
 
 
-@jitted
+@inlined
 def read_parts(contact, stress, s, direction, spring, dashpot):
     """Record one component of the traction, where there is one: rows of y first, then x, then z."""
     if spring is not None:
@@ -162,7 +162,7 @@ def read_parts(contact, stress, s, direction, spring, dashpot):
             stress[direction * sections + r, s] += part_of(contact, dashpot, r)
 
 
-@jitted
+@inlined
 def part_of(contact, dashpot, r):
     """Return the dashpots' part of a section's traction, zero without them."""
     if dashpot is None:
@@ -170,7 +170,7 @@ def part_of(contact, dashpot, r):
     return row(contact, dashpot, r)
 
 
-@jitted
+@inlined
 def record_energy(energy, model, state, s):
     """Record every term (J), in the order of TERMS: their balance is exact."""
     if energy is not None:
@@ -184,7 +184,7 @@ def record_energy(energy, model, state, s):
             energy[STATES + k, s] = state.ledger[k]
 
 
-@jitted
+@inlined
 def rock_energy(stiffness, u):
     """Return the elastic energy (J) of the rock."""
     force, total = np.zeros(u.size), 0.0
@@ -194,7 +194,7 @@ def rock_energy(stiffness, u):
     return total
 
 
-@jitted
+@inlined
 def weight_energy(weight, u):
     """Return what gravity has done (J)."""
     total = 0.0
@@ -204,7 +204,7 @@ def weight_energy(weight, u):
     return total
 
 
-@jitted
+@inlined
 def record_joints(interfaces, memory, u, energy, s):
     """Add what the joints hold, and record what opening them has spent (J)."""
     if interfaces is not None:
@@ -217,7 +217,7 @@ def record_joints(interfaces, memory, u, energy, s):
             energy[2, s] += area * spent(opening, law)
 
 
-@jitted
+@inlined
 def held(shear_stiffness, interfaces, memory, law, gap, u, q):
     """Return the energy (J/m2) in the springs of point q."""
     opening = given(memory.opening, at(memory.opening, q))
@@ -228,7 +228,7 @@ def held(shear_stiffness, interfaces, memory, law, gap, u, q):
     return elastic_energy(law, gap, opening, x, z)
 
 
-@jitted
+@inlined
 def prestress_energy(prestress, interfaces, u, q):
     """Return what prestressed rock on both sides of point q gives off as the joint opens (J/m2)."""
     if prestress is None:
@@ -236,7 +236,7 @@ def prestress_energy(prestress, interfaces, u, q):
     return prestress * row(interfaces.opening, u, q)
 
 
-@jitted
+@inlined
 def spent(opening, law):
     """Return what opening has spent (J/m2); nothing without softening."""
     if opening is None:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, hstack
 
-from joints.jit import jitted
+from joints.jit import inlined, jitted
 
 ROUND_OFF = 1e-11  # of coefficients, which are basis functions and of the order of 1
 
@@ -86,7 +86,7 @@ def multiply_runs(matrix, x, y):
                 accumulate(out, matrix.value[entry], x[matrix.column[entry] :])
 
 
-@jitted
+@inlined
 def combine(matrix, k, x, out):
     """Set the rows of a run with two entries, as where nodes face each other."""
     a, b = matrix.value[k], matrix.value[k + 1]
@@ -105,7 +105,7 @@ def add_runs(matrix, t, f):
             accumulate(f[column : column + part.size], matrix.value[k], part)
 
 
-@jitted
+@inlined
 def accumulate(out, a, x):
     """Add a x to as many numbers as there are in `out`."""
     for i in range(out.size):

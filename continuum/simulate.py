@@ -65,7 +65,6 @@ def simulate(
     team = discrete.body.team
     choice, critical = _steps(scene, discrete, model)
     time = choice.time
-    _refuse_shared(scene, choice, comm)
     built = build_model(scene, discrete, model, time)
     state = state_at_rest(built, scene.record.energy)
     rest = _at_rest(scene, built, state, discrete)
@@ -97,17 +96,6 @@ def simulate(
         error.result = result(engine.samples_done(time))
         raise
     return result(time.samples)
-
-
-def _refuse_shared(scene: Scene, choice: Choice, comm) -> None:
-    """Raise SceneError for what several processes cannot do together."""
-    if comm is None or comm.size == 1:
-        return
-    if choice.scheme == "implicit":
-        key, allowed = "numerics.continuum.scheme", "implicit steps are for one process: explicit"
-        raise SceneError(scene.where, key, scene.numerics.continuum.scheme, allowed)
-    if scene.gravity is not None and scene.gravity.static:
-        raise SceneError(scene.where, "gravity.static", True, "is for one process")
 
 
 def steps_of(scene: Scene, model: str, dim: int | None = None) -> tuple[Choice, float]:

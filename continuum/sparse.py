@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from joints.jit import jitted
+from joints.jit import inlined
 
 
 class Rows(NamedTuple):
@@ -28,7 +28,7 @@ def sparse(rows: Rows, columns: int) -> csr_matrix:
     return csr_matrix((rows.value, rows.column, rows.start), (rows.start.size - 1, columns))
 
 
-@jitted
+@inlined
 def row(matrix, x, i):
     """Return row i of a sparse matrix times x."""
     total = 0.0

@@ -12,7 +12,7 @@ import numpy as np
 
 from cases.errors import SceneError
 from cases.scene import Scene
-from continuum.balance import settle, stiffen
+from continuum.balance import NN, XX, ZZ, settle, stiffen
 from continuum.body import Body
 from continuum.implicit import copy_arrays, like
 from continuum.implicit_step import joint_room, rock_matrices
@@ -93,7 +93,10 @@ class _Static:
             return self.team.total(self.trial.force)[self.free], TOLERANCE * self.size
 
         def correction(rest: np.ndarray) -> np.ndarray:
-            stiffen(model, self.state, self.trial, 0.0, self.joints)
+            if self.trial.u.any():
+                stiffen(model, self.state, self.trial, 0.0, self.joints)
+            else:
+                self._hold_joints()
             of_joints = self.pattern.joints @ self.joints.ravel()
             self.factors.factorise(self.pattern.fixed[0] + of_joints)
             return self.factors.solve(rest)
@@ -103,3 +106,12 @@ class _Static:
             self.trial.v_before[:] = 0.0
             copy_arrays(self.trial, self.state)
         return outcome
+
+    def _hold_joints(self) -> None:
+        """Give all joints their elastic stiffness: one that nothing presses has no friction, and
+        rock at rest on such joints could be anywhere."""
+        joints = self.model.interfaces
+        if joints is not None:
+            self.joints[NN] = joints.area * joints.law.normal_stiffness
+            shear = joints.law.shear_stiffness
+            self.joints[[XX, ZZ]] = 0.0 if shear is None else joints.area * shear

@@ -7,14 +7,14 @@ compression positive, on the far side), the joints' force on the freedoms is B^T
 from continuum.runs import add_runs, multiply_runs
 from continuum.sparse import row
 from joints.energy import friction_work
-from joints.jit import jitted
+from joints.jit import inlined
 from joints.laws import law_of, normal_traction, spring_traction
 from joints.optional import either, given
 from joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
 from joints.softening import update_opening
 
 
-@jitted
+@inlined
 def load_joints(interfaces, u, v, rate, memory, state, dt):
     """Set the traction (Pa) at every point of the joints, and what the points remember.
 
@@ -35,7 +35,7 @@ def load_joints(interfaces, u, v, rate, memory, state, dt):
             load_shear(law.shear_stiffness, interfaces, law, state, dt, q, t_n, gap)
 
 
-@jitted
+@inlined
 def measure(runs, u, v, rate, jumps):
     """Set the jumps of all points that the law asks for."""
     opening, slip_x, slip_z = runs
@@ -49,14 +49,14 @@ def measure(runs, u, v, rate, jumps):
     measure_one(jumps.way_z, slip_z, v)
 
 
-@jitted
+@inlined
 def measure_one(jump, runs, x):
     """Set one kind of jump, where anything asks for it."""
     if jump is not None:
         multiply_runs(runs, x, jump)
 
 
-@jitted
+@inlined
 def load_shear(stiffness, interfaces, law, state, dt, q, t_n, gap):
     """Set the shear traction of point q, where there is shear."""
     if stiffness is not None:
@@ -78,14 +78,14 @@ def load_shear(stiffness, interfaces, law, state, dt, q, t_n, gap):
         keep_spring(tractions.z, tractions.drag_z, q, spring_z, t_z)
 
 
-@jitted
+@inlined
 def stick(interfaces, law, state, dt, q, x, z, rate_x, rate_z, tau, cohesion):
     """Return the shear traction where nothing limits it, and its elastic slip."""
     t_x, t_z = shear_traction(law, x, z, rate_x, rate_z)
     return t_x, t_z, x, z
 
 
-@jitted
+@inlined
 def slide(interfaces, law, state, dt, q, x, z, rate_x, rate_z, tau, cohesion):
     """Return the shear traction up to the strength and its elastic slip; remember what slid."""
     memory = state.memory
@@ -101,7 +101,7 @@ def slide(interfaces, law, state, dt, q, x, z, rate_x, rate_z, tau, cohesion):
     return t_x, t_z, ex, ez
 
 
-@jitted
+@inlined
 def push(interfaces, tractions, jumps, force, drag):
     """Add the joints' force (N) on every freedom, B^T W t; the dashpots' part to `drag`."""
     if interfaces is not None:
@@ -115,7 +115,7 @@ def push(interfaces, tractions, jumps, force, drag):
         push_part(slip_z, tractions.drag_z, None, area, pull, drag)
 
 
-@jitted
+@inlined
 def push_part(runs, traction, prestress, area, pull, force):
     """Add one component of the tractions less the prestress, where there is one."""
     if traction is not None:
@@ -124,13 +124,13 @@ def push_part(runs, traction, prestress, area, pull, force):
         add_runs(runs, pull, force)
 
 
-@jitted
+@inlined
 def gap_at(prestress, interfaces, law, u, q):
     """Return the gap (m) of point q: what its prestress has closed is counted."""
     return prestressed(prestress, law, row(interfaces.opening, u, q))
 
 
-@jitted
+@inlined
 def prestressed(prestress, law, gap):
     """Return the gap (m) less what prestress has closed."""
     if prestress is None:
@@ -138,7 +138,7 @@ def prestressed(prestress, law, gap):
     return gap - prestress / law.normal_stiffness
 
 
-@jitted
+@inlined
 def less_prestress(prestress, normal):
     """Return what a traction differs from the prestress, which the rock carries on (Pa)."""
     if prestress is None:
@@ -146,7 +146,7 @@ def less_prestress(prestress, normal):
     return normal - prestress
 
 
-@jitted
+@inlined
 def elastic_slip(matrix, slide, u, q):
     """Return the elastic part (m) of the slip of point q; zero without such a direction."""
     if matrix is None:
@@ -154,7 +154,7 @@ def elastic_slip(matrix, slide, u, q):
     return less_slide(slide, row(matrix, u, q), q)
 
 
-@jitted
+@inlined
 def less_slide(slide, slip, q):
     """Return a slip less what has slid."""
     if slide is None:
@@ -162,7 +162,7 @@ def less_slide(slide, slip, q):
     return slip - slide[q]
 
 
-@jitted
+@inlined
 def rate_at(rate, matrix, q):
     """Return the rate (m/s) of a jump at point q; zero where nothing asks for it."""
     if rate is None or matrix is None:
@@ -170,7 +170,7 @@ def rate_at(rate, matrix, q):
     return row(matrix, rate, q)
 
 
-@jitted
+@inlined
 def opened(opening, gap, q):
     """Return the largest opening (m) of point q so far, and remember it; None without softening."""
     if opening is None:
@@ -179,7 +179,7 @@ def opened(opening, gap, q):
     return opening[q]
 
 
-@jitted
+@inlined
 def at(values, q):
     """Return the value of point q, zero where there are none."""
     if values is None:
@@ -187,7 +187,7 @@ def at(values, q):
     return values[q]
 
 
-@jitted
+@inlined
 def given_or(flag, present, absent):
     """Return one number where the flag is anything but None, else the other."""
     if flag is None:
@@ -195,35 +195,35 @@ def given_or(flag, present, absent):
     return present
 
 
-@jitted
+@inlined
 def keep_dashpot(drag, q, traction):
     """Keep the dashpot's part of a traction, where there is one."""
     if drag is not None:
         drag[q] = traction
 
 
-@jitted
+@inlined
 def keep_spring(traction, drag, q, spring, whole):
     """Keep the springs' part of a traction, the whole of it where there is no dashpot."""
     if traction is not None:
         traction[q] = given_or(drag, spring, whole)
 
 
-@jitted
+@inlined
 def slid(slide, q, more):
     """Add to what point q has slid, m."""
     if slide is not None:
         slide[q] += more
 
 
-@jitted
+@inlined
 def soften(cohesions, q, law, cohesion):
     """Keep the cohesion that slip leaves to point q."""
     if cohesions is not None:
         cohesions[q] = cohesion_left(law, cohesion, True)
 
 
-@jitted
+@inlined
 def keep_work(ledger, work):
     """Add the work (J) of sliding to the ledger."""
     if ledger is not None:

@@ -2,16 +2,16 @@
 
 from math import copysign
 
-from joints.jit import jitted
+from joints.jit import inlined
 
 
-@jitted
+@inlined
 def advanced(keep, local, v, gain):
     """Return a velocity after the step, from that before it and what its forces would add."""
     return kept(keep, v) + braked(local, v, gain)
 
 
-@jitted
+@inlined
 def kept(keep, v):
     """Return what mass-proportional damping leaves of a velocity."""
     if keep is None:
@@ -19,7 +19,7 @@ def kept(keep, v):
     return keep * v
 
 
-@jitted
+@inlined
 def braked(local, v, gain):
     """Return a gain of velocity after Cundall's damping: less by local |gain| along v."""
     if local is None:

@@ -1,6 +1,6 @@
 """What a joint stores and what it spends, per unit area (J/m2)."""
 
-from joints.jit import jitted
+from joints.jit import inlined, jitted
 from joints.normal import spring_traction
 
 
@@ -14,7 +14,7 @@ def elastic_energy(law, gap, opening=None, ex=None, ez=None):
     return normal + _shear_energy(law, ex, ez)
 
 
-@jitted
+@inlined
 def _shear_energy(law, ex, ez):
     if ex is None:
         return 0.0

@@ -51,8 +51,27 @@ def jitted(function: Callable) -> Callable:
     Kernels become part of their callers, so that absent parts fall away and loops over many
     blocks are vectorised; they hold no lock of Python's, so that threads run side by side.
     """
+    return _compiled(function)
+
+
+def inlined(function: Callable) -> Callable:
+    """Compile a part of kernels, as `jitted` does, that only kernels call.
+
+    Python cannot call it (it would crash): the code that would unpack a whole model at every part
+    would take longer to compile than the parts.
+    """
+    return _compiled(function, no_cpython_wrapper=True)
+
+
+def _compiled(function: Callable, **options: bool) -> Callable:
     kernel = numba.njit(
-        cache=True, fastmath=False, error_model="numpy", forceinline=True, nogil=True
+        cache=True,
+        fastmath=False,
+        error_model="numpy",
+        forceinline=True,
+        nogil=True,
+        no_cfunc_wrapper=True,
+        **options,
     )(function)
     kernel._cache.save_overload = _one_at_a_time(kernel._cache.save_overload)
     return kernel

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from numba import types
 from numba.extending import overload
 
-from joints.jit import jitted
+from joints.jit import inlined, jitted
 from joints.normal import normal_traction, spring_traction
 from joints.shear import cohesion_left, shear_return, shear_strength
 from joints.softening import update_opening
@@ -104,7 +104,7 @@ def traction(law, gap, gap_rate, slip, slip_rate, dt, history):
     return t_n, t_x, t_z, History(opening, ex, ez, cohesion)
 
 
-@jitted
+@inlined
 def _shear(law, t_n, gap, slip, slip_rate, dt, opening, ex, ez, cohesion):
     if ex is None:
         return 0.0, 0.0, None, None, cohesion

@@ -1,6 +1,6 @@
 """Normal traction of a joint: spring, dashpot, softening, no tension."""
 
-from joints.jit import jitted
+from joints.jit import inlined, jitted
 from joints.softening import stiffness_left, strength_left
 
 
@@ -22,20 +22,20 @@ def spring_traction(law, gap, opening=None):
     return _cut(law, -law.normal_stiffness * gap, gap, opening)
 
 
-@jitted
+@inlined
 def _cut(law, t, gap, opening):
     softened = _softened(t, law.tensile_strength, law, gap, opening)
     return _without_tension(softened, law.carries_tension, gap)
 
 
-@jitted
+@inlined
 def _with_dashpot(t, viscosity, gap_rate):
     if viscosity is None:
         return t
     return t - viscosity * gap_rate
 
 
-@jitted
+@inlined
 def _softened(t, strength, law, gap, opening):
     if strength is None:
         return t
@@ -43,7 +43,7 @@ def _softened(t, strength, law, gap, opening):
     return max(share * t, -strength_left(law, opening))
 
 
-@jitted
+@inlined
 def _without_tension(t, carries_tension, gap):
     if carries_tension is None:
         return t

@@ -8,14 +8,14 @@ and de/dt taken over the step, e is where spring and dashpot together carry exac
 
 from math import sqrt
 
-from joints.jit import jitted
+from joints.jit import inlined, jitted
 from joints.softening import is_broken, strength_left
 
 # Pa; more than any joint carries, and still a number when squared.
 UNLIMITED = 1e100
 
 
-@jitted
+@inlined
 def shear_traction(law, slip_x, slip_z, rate_x, rate_z):
     """Return (t_x, t_z) (Pa) where nothing slides, from the whole slip (m) and its rate."""
     t_x = _with_dashpot(-law.shear_stiffness * slip_x, law.shear_viscosity, rate_x)
@@ -37,7 +37,7 @@ def shear_strength(law, t_n, gap, opening=None, cohesion=None):
     return _where_it_holds(tau, law.carries_tension, law.tensile_strength, law, gap, opening)
 
 
-@jitted
+@inlined
 def _coulomb(own_cohesion, friction, cohesion, law, t_n, opening):
     if own_cohesion is None and friction is None:
         return None
@@ -45,7 +45,7 @@ def _coulomb(own_cohesion, friction, cohesion, law, t_n, opening):
     return max(_with_friction(c, friction, t_n), 0.0)
 
 
-@jitted
+@inlined
 def _cohesion_left(own_cohesion, cohesion, strength, law, opening):
     if own_cohesion is None:
         return 0.0
@@ -56,41 +56,41 @@ def _cohesion_left(own_cohesion, cohesion, strength, law, opening):
     return c if c >= UNLIMITED else c * (strength_left(law, opening) / strength)
 
 
-@jitted
+@inlined
 def _of_this_point(own_cohesion, cohesion):
     if cohesion is None:
         return own_cohesion
     return cohesion
 
 
-@jitted
+@inlined
 def _with_friction(c, friction, t_n):
     if friction is None:
         return c
     return c + t_n * friction
 
 
-@jitted
+@inlined
 def _where_it_holds(tau, carries_tension, strength, law, gap, opening):
     if carries_tension is None and strength is None:
         return tau
     return _or_unlimited(tau) if holds(law, gap, opening) else 0.0
 
 
-@jitted
+@inlined
 def _or_unlimited(tau):
     if tau is None:
         return UNLIMITED
     return tau
 
 
-@jitted
+@inlined
 def holds(law, gap, opening=None):
     """Return whether the two faces hold each other: not where open without tension, or broken."""
     return gap <= 0.0 or (_holds_open(law.carries_tension) and not is_broken(law, opening))
 
 
-@jitted
+@inlined
 def _holds_open(carries_tension):
     if carries_tension is None:
         return True
@@ -109,7 +109,7 @@ def shear_return(law, ex, ez, ex_old, ez_old, rate_x, rate_z, tau, dt):
     return _radial_return(law, t_x, t_z, ex, ez, ex_old, ez_old, tau, dt)
 
 
-@jitted
+@inlined
 def _radial_return(law, t_x, t_z, ex, ez, ex_old, ez_old, tau, dt):
     if tau is None:
         return t_x, t_z, ex, ez, False
@@ -122,7 +122,7 @@ def _radial_return(law, t_x, t_z, ex, ez, ex_old, ez_old, tau, dt):
     return t_x, t_z, x if slipped else ex, z if slipped else ez, slipped
 
 
-@jitted
+@inlined
 def _elastic_slip(scaled, t, old, viscosity, stiffness, dt):
     if viscosity is None:
         return scaled
@@ -139,7 +139,7 @@ def cohesion_left(law, cohesion, slipped):
     return min(cohesion, law.residual_cohesion) if slipped else cohesion
 
 
-@jitted
+@inlined
 def _with_dashpot(t, viscosity, rate):
     if viscosity is None:
         return t

@@ -9,7 +9,7 @@ Below k it unloads and reloads through the origin with the secant stiffness s(k)
 Hillerborg, Modeer & Petersson (1976); Camacho & Ortiz (1996).
 """
 
-from joints.jit import jitted
+from joints.jit import inlined, jitted
 
 
 @jitted
@@ -29,7 +29,7 @@ def strength_left(law, opening):
     return law.tensile_strength if opening <= first else falling
 
 
-@jitted
+@inlined
 def stiffness_left(law, opening):
     """Return the secant stiffness over K: 1 before the strength is reached, 0 when broken."""
     first = law.tensile_strength / law.normal_stiffness
@@ -43,7 +43,7 @@ def is_broken(law, opening=None):
     return _is_broken(law.tensile_strength, law, opening)
 
 
-@jitted
+@inlined
 def _is_broken(strength, law, opening):
     if strength is None:
         return False

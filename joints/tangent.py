@@ -12,7 +12,7 @@ closed, one at its largest opening unloads, shear on the strength has not slippe
 from math import sqrt
 from typing import Any, NamedTuple
 
-from joints.jit import jitted
+from joints.jit import inlined, jitted
 from joints.laws import normal_traction
 from joints.shear import UNLIMITED, shear_strength, shear_traction
 from joints.softening import stiffness_left, strength_left, update_opening
@@ -55,14 +55,14 @@ def normal_tangent(law, gap, gap_rate, before, r):
     return _without_tension(softened, t, law.carries_tension, gap)
 
 
-@jitted
+@inlined
 def _uncut(stiffness, viscosity, x, rate):
     if viscosity is None:
         return -stiffness * x
     return -stiffness * x - viscosity * rate
 
 
-@jitted
+@inlined
 def _softened(slope, t, strength, viscosity, law, gap, before):
     if strength is None:
         return slope
@@ -75,7 +75,7 @@ def _softened(slope, t, strength, viscosity, law, gap, before):
     return -loss if cut else share * slope + falling * t
 
 
-@jitted
+@inlined
 def _strength_loss(strength, law, gap, before):
     """Return d s(k) / d gap (Pa/m), zero but where the joint opens further and softens."""
     if strength is None:
@@ -85,7 +85,7 @@ def _strength_loss(strength, law, gap, before):
     return -strength / (law.critical_opening - first) if softens else 0.0
 
 
-@jitted
+@inlined
 def _pulls_more(viscosity, t, strength):
     # The spring alone reaches the strength left and never exceeds it, but for round-off.
     if viscosity is None:
@@ -93,14 +93,14 @@ def _pulls_more(viscosity, t, strength):
     return t < -strength
 
 
-@jitted
+@inlined
 def _without_tension(slope, t, carries_tension, gap):
     if carries_tension is None:
         return slope
     return slope if carries_tension or (gap <= 0.0 and t >= 0.0) else 0.0
 
 
-@jitted
+@inlined
 def _shear(law, nn, gap, gap_rate, slip, slip_rate, before, ex, ez, cohesion, r):
     if ex is None:
         return None, None, None, None, None
@@ -113,7 +113,7 @@ def _shear(law, nn, gap, gap_rate, slip, slip_rate, before, ex, ez, cohesion, r)
     return _returned(tau, rise, trial[0], trial[1], slope)
 
 
-@jitted
+@inlined
 def _strength_rise(law, nn, tau, gap, before, cohesion):
     """Return d tau / d gap (Pa/m) of the shear strength tau, zero where nothing is left of it."""
     if tau is None:
@@ -122,7 +122,7 @@ def _strength_rise(law, nn, tau, gap, before, cohesion):
     return rise + _friction_rise(law.friction, nn) if 0.0 < tau < UNLIMITED else 0.0
 
 
-@jitted
+@inlined
 def _cohesion_rise(own_cohesion, cohesion, strength, law, gap, before):
     if own_cohesion is None or strength is None:
         return 0.0
@@ -130,21 +130,21 @@ def _cohesion_rise(own_cohesion, cohesion, strength, law, gap, before):
     return 0.0 if c >= UNLIMITED else c / strength * _strength_loss(strength, law, gap, before)
 
 
-@jitted
+@inlined
 def _of_this_point(own_cohesion, cohesion):
     if cohesion is None:
         return own_cohesion
     return cohesion
 
 
-@jitted
+@inlined
 def _friction_rise(friction, nn):
     if friction is None:
         return 0.0
     return friction * nn
 
 
-@jitted
+@inlined
 def _returned(tau, rise, t_x, t_z, slope):
     """Return (xn, zn, xx, xz, zz) of a trial traction of this slope with slip.
 

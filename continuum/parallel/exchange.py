@@ -12,7 +12,7 @@ import numpy as np
 from mpi4py import MPI
 from numba import types
 
-from joints.jit import jitted
+from joints.jit import inlined, jitted
 
 
 def _from_mpi(name: str, signature):
@@ -59,7 +59,7 @@ def add_shares(link, values):
     return failed or receive(link, values)
 
 
-@jitted
+@inlined
 def send(link, values):
     """Begin to send a process's shares of values to all who have the freedoms too."""
     for k in range(link.source.size):
@@ -67,7 +67,7 @@ def send(link, values):
     return start_all(link.calls, link.requests.ctypes)
 
 
-@jitted
+@inlined
 def receive(link, values):
     """Add what the others have sent to a process's own shares.
 

@@ -7,7 +7,7 @@ once more when the shares are there.
 from continuum.explicit import accelerate, advance, forces
 from continuum.parallel.exchange import receive, send
 from joints.borrowed import borrowed
-from joints.jit import jitted
+from joints.jit import inlined, jitted
 from joints.tiny import flush_tiny, restore_tiny
 
 
@@ -31,7 +31,7 @@ def run_together(link, model, state, samples, stride, first, last):
     return failed
 
 
-@jitted
+@inlined
 def accelerate_again(freedom, rock, keep, state):
     """Set the velocities of some freedoms by forces that have changed since."""
     v, v_before, force = state.v, state.v_before, state.force

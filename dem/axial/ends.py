@@ -14,7 +14,7 @@ from cases.calibrate import Properties
 from dem.axial.motion import advanced
 from dem.damping import kept
 from joints.ends import HalfSpring, half_spring
-from joints.jit import jitted
+from joints.jit import inlined
 
 
 class End(NamedTuple):
@@ -60,7 +60,7 @@ def end_state(end: End | None) -> np.ndarray | None:
     return None if end is None else np.zeros(2)
 
 
-@jitted
+@inlined
 def advance_end(chain, ledger, end, state, v, push, before, after):
     """Return the outward velocity of the end block after the step.
 
@@ -80,28 +80,28 @@ def advance_end(chain, ledger, end, state, v, push, before, after):
     return v_new
 
 
-@jitted
+@inlined
 def _spring(stiffness, closure):
     if stiffness is None:
         return 0.0
     return stiffness * closure
 
 
-@jitted
+@inlined
 def _less_wall(pace, before, after, dt):
     if before is None:
         return pace
     return pace - (before + after) / dt
 
 
-@jitted
+@inlined
 def _less(closure, after):
     if after is None:
         return closure
     return closure - after
 
 
-@jitted
+@inlined
 def reaction(state):
     """Return the reaction (N) at the last step, compression positive."""
     if state is None:

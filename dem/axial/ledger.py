@@ -4,18 +4,18 @@ The work of a force from one whole step to the next is the mean of its two value
 With the kinetic energy m v[n-1/2] v[n+1/2] / 2 the sum is then exact at a step of any length.
 """
 
-from joints.jit import jitted
+from joints.jit import inlined
 from joints.laws import spring_traction
 
 
-@jitted
+@inlined
 def book_dashpot(ledger, j, area, t, law, gap, opening, half_way):
     """Add a dashpot's work over the last half steps."""
     if ledger is not None:
         _book_dashpot(ledger.dashpots, ledger.sums, j, area, t, law, gap, opening, half_way)
 
 
-@jitted
+@inlined
 def _book_dashpot(dashpots, sums, j, area, t, law, gap, opening, half_way):
     if dashpots is not None:
         f = area * (t - spring_traction(law, gap, opening))
@@ -23,7 +23,7 @@ def _book_dashpot(dashpots, sums, j, area, t, law, gap, opening, half_way):
         dashpots[j] = f
 
 
-@jitted
+@inlined
 def book_damping(chain, ledger, v, v_new, force):
     """Add the work of what damps a block itself, by what is missing in its momentum.
 
@@ -34,7 +34,7 @@ def book_damping(chain, ledger, v, v_new, force):
         _book_damping(chain.keep, chain.local, ledger.sums, chain, v, v_new, force)
 
 
-@jitted
+@inlined
 def _book_damping(keep, local, sums, chain, v, v_new, force):
     if keep is None and local is None:
         return
@@ -43,14 +43,14 @@ def _book_damping(keep, local, sums, chain, v, v_new, force):
     sums[3] -= half_impulse * v_new
 
 
-@jitted
+@inlined
 def carry_over(chain, ledger):
     """Add what the damping of the blocks has done since the last whole step."""
     if ledger is not None:
         _carry_over(chain.keep, chain.local, ledger.sums)
 
 
-@jitted
+@inlined
 def _carry_over(keep, local, sums):
     if keep is None and local is None:
         return
@@ -58,7 +58,7 @@ def _carry_over(keep, local, sums):
     sums[3] = 0.0
 
 
-@jitted
+@inlined
 def book_ends(chain, ledger, reactions, load, v_start, v_end, before):
     """Add the work done on both ends, by the load, by a prestress and by a shaken base.
 
@@ -74,13 +74,13 @@ def book_ends(chain, ledger, reactions, load, v_start, v_end, before):
         f[0], f[1], f[2] = reactions[0], reactions[1], load
 
 
-@jitted
+@inlined
 def _book_prestress(steady, sums, dt, v_start, v_end):
     if steady is not None:
         sums[2] += dt * (steady[0] * v_start - steady[1] * v_end)
 
 
-@jitted
+@inlined
 def _book_base(before, sums, twice_reaction):
     if before is not None:
         work = -0.5 * twice_reaction * before

@@ -2,7 +2,7 @@
 
 from dem.axial.ledger import book_damping
 from dem.damping import advanced as damped
-from joints.jit import jitted
+from joints.jit import inlined, jitted
 
 
 @jitted
@@ -13,7 +13,7 @@ def advanced(chain, ledger, v, force):
     return v_new
 
 
-@jitted
+@inlined
 def weighed(weight, force):
     """Return a force along y with the weight of the block."""
     if weight is None:
@@ -21,7 +21,7 @@ def weighed(weight, force):
     return force + weight
 
 
-@jitted
+@inlined
 def steady_at(steady, k):
     """Return what a prestress always presses on the start (k = 0) or the end (k = 1), N."""
     if steady is None:

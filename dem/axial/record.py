@@ -11,7 +11,7 @@ from dem.axial.state import State
 from dem.axial.step import joint_stress, load_at, march, opened
 from joints.borrowed import borrowed
 from joints.energy import elastic_energy, fracture_energy_spent
-from joints.jit import jitted
+from joints.jit import inlined, jitted
 from joints.laws import law_of
 from joints.tiny import flush_tiny, restore_tiny
 
@@ -64,7 +64,7 @@ def run(model, state, samples, stride, first, last):
     restore_tiny(tiny)
 
 
-@jitted
+@inlined
 def sample_before(model, state, samples, s):
     """Read what the step is about to change: joint stresses, displacement, half the velocity."""
     u, v, gap_rate, opening = state.u, state.v, state.gap_rate, state.opening
@@ -82,7 +82,7 @@ def sample_before(model, state, samples, s):
     energy_before(samples.energy, model.chain, u, v, opening, samples.v_before, s)
 
 
-@jitted
+@inlined
 def sample_after(model, state, samples, s, n):
     """Add what only the step itself decides: end reactions, the other half of the velocity."""
     at, contacts, chain = model.receivers.sections, state.u.size, model.chain
@@ -100,13 +100,13 @@ def sample_after(model, state, samples, s, n):
     energy_after(samples.energy, chain, state, samples.v_before, s)
 
 
-@jitted
+@inlined
 def between(values, at, i):
     """Return values interpolated to the i-th place."""
     return (1.0 - at.weight[i]) * values[at.left[i]] + at.weight[i] * values[at.right[i]]
 
 
-@jitted
+@inlined
 def energy_before(energy, chain, u, v, opening, v_before, s):
     """Sample what depends on where the blocks are, and keep the velocities before the step."""
     if energy is not None:
@@ -121,7 +121,7 @@ def energy_before(energy, chain, u, v, opening, v_before, s):
         v_before[:] = v
 
 
-@jitted
+@inlined
 def sample_fracture(energy, chain, u, opening, s):
     """Sample what opening has spent of the joints' fracture energy."""
     if opening is not None:
@@ -132,14 +132,14 @@ def sample_fracture(energy, chain, u, opening, s):
         energy[3, s] = spent
 
 
-@jitted
+@inlined
 def sample_weight(energy, weight, u, s):
     """Sample the potential energy in gravity, zero in the unloaded pillar."""
     if weight is not None:
         energy[-2, s] = -weight * u.sum()
 
 
-@jitted
+@inlined
 def energy_after(energy, chain, state, v_before, s):
     """Sample the kinetic energy, in the form that leapfrog conserves, and the running sums."""
     if energy is not None:
@@ -151,7 +151,7 @@ def energy_after(energy, chain, state, v_before, s):
         energy[boundary_row(state.opening), s] = sums[1]
 
 
-@jitted
+@inlined
 def boundary_row(opening):
     """Return the row of the boundary's work: behind that of fracture, where there is one."""
     if opening is None:

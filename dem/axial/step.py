@@ -9,7 +9,7 @@ step, which keeps second order.
 from dem.axial.ends import advance_end, reaction
 from dem.axial.ledger import book_dashpot, book_ends, carry_over
 from dem.axial.motion import advanced, steady_at, weighed
-from joints.jit import jitted
+from joints.jit import inlined, jitted
 from joints.laws import law_of, normal_traction, update_opening
 from joints.softening import is_broken
 
@@ -25,7 +25,7 @@ def march(model, state, first, last):
         step(chain, u, v, gap_rate, opening, broke, start, end, ledger, n, p, before, after)
 
 
-@jitted
+@inlined
 def step(chain, u, v, gap_rate, opening, broke, start, end, ledger, n, load, before, after):
     """Advance every block by step n under its joints, its weight, the load and the ends."""
     dt, weight, tail = chain.dt, chain.weight, u.size - 1
@@ -48,13 +48,13 @@ def step(chain, u, v, gap_rate, opening, broke, start, end, ledger, n, load, bef
     book_ends(chain, ledger, (reaction(start), reaction(end)), load, v_start, v_end, before)
 
 
-@jitted
+@inlined
 def load_at(load, n):
     """Return the load (N) of step n; it is zero after the last that acts."""
     return load[n] if n < load.size else 0.0
 
 
-@jitted
+@inlined
 def way_at(base, n):
     """Return the way (m) of a shaken base in step n - 1; None where no base is shaken."""
     if base is None:
@@ -75,14 +75,14 @@ def joint_force(chain, u, v, gap_rate, opening, broke, ledger, n, j):
     return chain.area * t
 
 
-@jitted
+@inlined
 def joint_stress(chain, u, v, gap_rate, opening, j):
     """Return the traction (Pa) of joint j at the present step, and change nothing."""
     gap, rate = u[j + 1] - u[j], centred(gap_rate, j, v[j + 1] - v[j])
     return normal_traction(law_of(chain.law, j), gap, rate, opened(opening, j, gap))
 
 
-@jitted
+@inlined
 def opened(opening, j, gap):
     """Return the largest gap (m) of joint j so far, this one included; None without softening."""
     if opening is None:
@@ -90,7 +90,7 @@ def opened(opening, j, gap):
     return update_opening(opening[j], gap)
 
 
-@jitted
+@inlined
 def centred(previous, j, rate):
     """Return the gap rate at the whole step from those half a step and one and a half before."""
     if previous is None:
@@ -98,14 +98,14 @@ def centred(previous, j, rate):
     return 1.5 * rate - 0.5 * previous[j]
 
 
-@jitted
+@inlined
 def remember(values, j, value):
     """Keep a joint's value for the next step, where there is a place for it."""
     if values is not None:
         values[j] = value
 
 
-@jitted
+@inlined
 def note_break(broke, law, opening, n, j):
     """Keep the step at which joint j has lost its tensile strength."""
     if broke is not None and broke[j] < 0 and is_broken(law, opening):

@@ -7,7 +7,7 @@ apart: at a sample only the first half has been done.
 
 from dem.spatial.layout import LANES
 from dem.spatial.layout import STRIDE as R
-from joints.jit import jitted
+from joints.jit import inlined
 
 VISCOUS, BOUNDARY, WORK, FRICTION = 0, 1, 2, 3  # running sums, up to the step
 AFTER = 4
@@ -28,7 +28,7 @@ ACCOUNT_OF = {
 }
 
 
-@jitted
+@inlined
 def close(book, sums, energy, accounts, n, stride):
     """Add the accounts of step n to the running sums, and sample them where n is a sample.
 
@@ -48,7 +48,7 @@ def close(book, sums, energy, accounts, n, stride):
         book[i] = 0.0
 
 
-@jitted
+@inlined
 def total(lanes):
     """Return the sum of all lanes, always in the same order."""
     s = 0.0

@@ -18,7 +18,7 @@ from dem.spatial.layout import LANES as L
 from dem.spatial.layout import STRIDE as R
 from dem.spatial.points import NO_FORCE, every_point, plus
 from dem.spatial.scratch import DRAG, SLID
-from joints.jit import jitted
+from joints.jit import inlined
 from joints.laws import Law
 from joints.optional import either, given
 
@@ -66,7 +66,7 @@ class Contact(NamedTuple):
     half_side: float
 
 
-@jitted
+@inlined
 def law_at(law, table, i):
     """Return the law of the joint in lane i of a tile's table."""
     if table is None:
@@ -85,7 +85,7 @@ def law_at(law, table, i):
     )
 
 
-@jitted
+@inlined
 def forces(contact, table, m, h, q, drag, n, book, slides):
     """Compute the forces of the first n joints of a tile into the scratch q.
 
@@ -98,14 +98,14 @@ def forces(contact, table, m, h, q, drag, n, book, slides):
     remember(contact.damped, contact, m, h, n)
 
 
-@jitted
+@inlined
 def of_section(contact, section, table, m, h, q, drag, n):
     """Compute the forces of joints that always hold."""
     if section is not None:
         linear_forces(contact, section, table, m, h, q, drag, n)
 
 
-@jitted
+@inlined
 def of_points(contact, points, table, m, h, q, drag, n, book, slides):
     """Compute the forces of joints that may open, slide or break.
 
@@ -123,7 +123,7 @@ def of_points(contact, points, table, m, h, q, drag, n, book, slides):
             book_slides(book, q, n)
 
 
-@jitted
+@inlined
 def book_slides(book, q, n):
     """Book the work done by sliding, where there is a ledger."""
     if book is not None:
@@ -131,7 +131,7 @@ def book_slides(book, q, n):
             book[FRICTION * R + i] += q[SLID + i]
 
 
-@jitted
+@inlined
 def point_forces(contact, points, table, m, h, q, drag, n, book, returns):
     """Sum the tractions over the contact points; return how many are beyond their shear strength.
 
@@ -152,7 +152,7 @@ def point_forces(contact, points, table, m, h, q, drag, n, book, returns):
     return beyond
 
 
-@jitted
+@inlined
 def linear_forces(contact, section, table, m, h, q, drag, n):
     """Compute the forces of joints that always hold, from their stiffness as a whole."""
     for i in range(min(n, L)):
@@ -163,7 +163,7 @@ def linear_forces(contact, section, table, m, h, q, drag, n):
         leave_drag(drag, q, i, contact, motion, d)
 
 
-@jitted
+@inlined
 def resist(section, k_n, k_s, g, phi):
     """Return the force and moment of springs k_n and k_s, Pa/m, over a face."""
     area, across = section.area, section.across
@@ -177,7 +177,7 @@ def resist(section, k_n, k_s, g, phi):
     )
 
 
-@jitted
+@inlined
 def resist_rates(damped, section, law, motion):
     """Return the force and moment of the dashpots over a face."""
     if damped is None:
@@ -186,28 +186,28 @@ def resist_rates(damped, section, law, motion):
     return resist(section, k_n, k_s, motion.g_mid, motion.phi_mid)
 
 
-@jitted
+@inlined
 def leave(q, i, contact, motion, f):
     """Leave the force and moment of joint i in the scratch, one lane beyond its left block."""
     q[i + 1], q[R + i + 1], q[2 * R + i + 1] = f[0], f[1], f[2]
     leave_moment(contact.arm, q, i, f)
 
 
-@jitted
+@inlined
 def leave_moment(arm, q, i, f):
     """Leave the moment, where blocks turn."""
     if arm is not None:
         q[3 * R + i + 1], q[4 * R + i + 1], q[5 * R + i + 1] = f[3], f[4], f[5]
 
 
-@jitted
+@inlined
 def leave_drag(drag, q, i, contact, motion, d):
     """Leave the dashpots' share, where a ledger asks for it."""
     if drag is not None:
         either(contact.finite, leave, finite.finite_leave)(q, DRAG + i, contact, motion, d)
 
 
-@jitted
+@inlined
 def leave_work(book, q, i, work):
     """Leave the work done by sliding, where a ledger asks for it."""
     if book is not None:

@@ -30,24 +30,24 @@ from dem.spatial.vectors import (
     turned,
     turned_back,
 )
-from joints.jit import jitted
+from joints.jit import inlined
 
 SCALAR = 12 * R  # place of the quaternions' scalar part in the motion
 
 
-@jitted
+@inlined
 def orientation(m, i):
     """Return the unit quaternion of block i, scalar part first."""
     return m[SCALAR + i], m[3 * R + i], m[4 * R + i], m[5 * R + i]
 
 
-@jitted
+@inlined
 def three(m, row, i):
     """Return the three numbers of block i from this row on."""
     return m[row * R + i], m[(row + 1) * R + i], m[(row + 2) * R + i]
 
 
-@jitted
+@inlined
 def spin(finite, columns, momentum):
     """Return the angular velocity of an angular momentum, for a symmetric top about its y axis.
 
@@ -58,7 +58,7 @@ def spin(finite, columns, momentum):
     return sum_of(times(finite[0], momentum), times(along, axis))
 
 
-@jitted
+@inlined
 def finite_relative(contact, m, h, i):
     """Return the relative motion of joint i, in the frame of its right block."""
     arm, finite, damped = contact.arm, contact.finite, contact.damped
@@ -97,13 +97,13 @@ def finite_relative(contact, m, h, i):
     )
 
 
-@jitted
+@inlined
 def less_columns(a):
     """Return the columns x and z of 1 - A."""
     return -a[0][0], -a[0][1], -a[0][2], -a[2][0], -a[2][1], -a[2][2]
 
 
-@jitted
+@inlined
 def turning(w, a):
     """Return the rates of the columns x and z of 1 - A for the relative spin w."""
     x = cross((1.0 + a[0][0], a[0][1], a[0][2]), w)
@@ -111,19 +111,19 @@ def turning(w, a):
     return x[0], x[1], x[2], z[0], z[1], z[2]
 
 
-@jitted
+@inlined
 def finite_gap_at(arm, g, c, x, z):
     """Return the gap, or its rate, at the point (x, z)."""
     return g[1] + x * c[1] + z * c[4]
 
 
-@jitted
+@inlined
 def finite_slip_at(arm, g, c, x, z):
     """Return the slip, or its rate, at the point (x, z)."""
     return g[0] + x * c[0] + z * c[3], g[2] + x * c[2] + z * c[5]
 
 
-@jitted
+@inlined
 def area_in_contact(contact, area, x, z, gap, slip):
     """Return a point's area, none where it is off the other block's face or behind the block."""
     half = contact.half_side
@@ -132,7 +132,7 @@ def area_in_contact(contact, area, x, z, gap, slip):
     return area if off <= 0.0 else 0.0
 
 
-@jitted
+@inlined
 def finite_force_at(x, z, gap, slip, t_x, t_y, t_z):
     """Return a force on the right face with its moment about that face's centre."""
     f = t_x, t_y, t_z
@@ -140,7 +140,7 @@ def finite_force_at(x, z, gap, slip, t_x, t_y, t_z):
     return f[0], f[1], f[2], moment[0], moment[1], moment[2]
 
 
-@jitted
+@inlined
 def finite_leave(q, i, contact, motion, f):
     """Leave a joint's force, and its moments about both blocks' centroids, in the scratch."""
     frame, apart = motion.frame
@@ -153,7 +153,7 @@ def finite_leave(q, i, contact, motion, f):
     q[LEFT + i + 1], q[LEFT + R + i + 1], q[LEFT + 2 * R + i + 1] = left
 
 
-@jitted
+@inlined
 def finite_remember_rates(damped, contact, m, h, n):
     """Keep the rates of the relative motion for the next step."""
     if damped is not None:

@@ -12,11 +12,11 @@ from dem.spatial.motion import (
     turns,
 )
 from dem.spatial.scratch import LEFT
-from joints.jit import jitted
+from joints.jit import inlined
 from joints.optional import either
 
 
-@jitted
+@inlined
 def hold(end, state, motion, s, q, i, moved):
     """Add the force of an end on block i of tile s to the scratch, where there is an end.
 
@@ -26,7 +26,7 @@ def hold(end, state, motion, s, q, i, moved):
         _hold(end, state, motion, s, q, i, moved)
 
 
-@jitted
+@inlined
 def _hold(end, state, motion, s, q, i, moved):
     lane = i if end.side > 0.0 else i + 1
     put(q, lane, end.side, end.steady, motion)
@@ -43,7 +43,7 @@ def _hold(end, state, motion, s, q, i, moved):
     put(q, lane, end.side, r, motion)
 
 
-@jitted
+@inlined
 def less_base(pace, moved, base, dt):
     """Return the sum of a face's velocities before and after the step, less that of its base."""
     if moved is None:
@@ -51,7 +51,7 @@ def less_base(pace, moved, base, dt):
     return pace - moved * base / dt
 
 
-@jitted
+@inlined
 def settle(end, state, motion, s, i, base):
     """Advance the closure of an end by the step just taken and the way of its base (m)."""
     if end is not None:
@@ -61,20 +61,20 @@ def settle(end, state, motion, s, i, base):
             w[k] = end.decay[k] * w[k] + end.gain[k] * after[k] - base * end.base[k]
 
 
-@jitted
+@inlined
 def put(q, lane, side, f, motion):
     """Add a force on the block, given at its face, to the joint's force in this lane."""
     either(motion.finite, put_at_face, put_at_centroid)(q, lane, side, f, motion.arm)
 
 
-@jitted
+@inlined
 def put_at_face(q, lane, side, f, arm):
     """Add force and moment about the face's centre."""
     for k in range(f.size):
         q[k * R + lane] += side * f[k]
 
 
-@jitted
+@inlined
 def put_at_centroid(q, lane, side, f, arm):
     """Add force and moment about the centroid, which is where finite rotations take it."""
     at = 3 * R if side > 0.0 else LEFT
@@ -85,7 +85,7 @@ def put_at_centroid(q, lane, side, f, arm):
     q[at + 2 * R + lane] += f[5] + side * arm * f[0]
 
 
-@jitted
+@inlined
 def face_velocity(p, s, i, arm, motion):
     """Write the velocity of the end face of block i into p."""
     v = p.size * R + i
@@ -93,7 +93,7 @@ def face_velocity(p, s, i, arm, motion):
     turn_face(p, s, i, arm, motion)
 
 
-@jitted
+@inlined
 def turn_face(p, s, i, arm, motion):
     """Add what the block's rotation gives to its face, where blocks turn."""
     if arm is not None:
@@ -101,7 +101,7 @@ def turn_face(p, s, i, arm, motion):
         lever(p, arm)
 
 
-@jitted
+@inlined
 def lever(p, arm):
     """Carry a velocity from the centroid to the face, in place."""
     if arm is not None:
@@ -109,7 +109,7 @@ def lever(p, arm):
         p[2] -= arm * p[3]
 
 
-@jitted
+@inlined
 def expected_velocity(p, motion, s, q, i, arm):
     """Write the velocity of the face after the step, without the end, into p."""
     v = p.size * R + i
@@ -120,7 +120,7 @@ def expected_velocity(p, motion, s, q, i, arm):
     _expected_turn(p, motion, s, q, i, arm)
 
 
-@jitted
+@inlined
 def _expected_turn(p, motion, s, q, i, arm):
     if arm is not None:
         moment = either(motion.finite, net_moment, finite_moment)(q, i, motion.arm)

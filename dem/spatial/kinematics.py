@@ -15,11 +15,11 @@ from typing import Any, NamedTuple
 from dem.spatial.layout import LANES as L
 from dem.spatial.layout import STRIDE as R
 from dem.spatial.layout import velocities
-from joints.jit import jitted
+from joints.jit import inlined
 from joints.optional import given
 
 
-@jitted
+@inlined
 def shift(s, at, i, arm):
     """Return the relative displacement (g_x, g_y, g_z) of joint i; `at` is its first row.
 
@@ -35,7 +35,7 @@ def shift(s, at, i, arm):
     return gx, gy, gz
 
 
-@jitted
+@inlined
 def turn(s, at, i, arm):
     """Return the relative rotation phi of joint i; zero where blocks do not turn."""
     if arm is None:
@@ -46,7 +46,7 @@ def turn(s, at, i, arm):
     return px, py, pz
 
 
-@jitted
+@inlined
 def gap_at(arm, g, phi, x, z):
     """Return the gap, or its rate, at the point (x, z)."""
     if arm is None:
@@ -54,7 +54,7 @@ def gap_at(arm, g, phi, x, z):
     return g[1] + phi[2] * x - phi[0] * z
 
 
-@jitted
+@inlined
 def slip_at(arm, g, phi, x, z):
     """Return the slip, or its rate, at the point (x, z)."""
     if arm is None:
@@ -79,7 +79,7 @@ class Relative(NamedTuple):
     spin: Any
 
 
-@jitted
+@inlined
 def relative(contact, m, h, i):
     """Return the relative motion of joint i."""
     arm, damped, v = contact.arm, contact.damped, velocities(contact.rows)
@@ -96,7 +96,7 @@ def relative(contact, m, h, i):
     )
 
 
-@jitted
+@inlined
 def centred(damped, h, row, i, g):
     """Return three rates at the whole step, from half a step before it and one and a half."""
     if damped is None:
@@ -105,7 +105,7 @@ def centred(damped, h, row, i, g):
     return 1.5 * g[0] - 0.5 * h[at], 1.5 * g[1] - 0.5 * h[at + L], 1.5 * g[2] - 0.5 * h[at + 2 * L]
 
 
-@jitted
+@inlined
 def remember_rates(damped, contact, m, h, n):
     """Keep the rates of the relative motion for the next step."""
     if damped is not None:
@@ -115,7 +115,7 @@ def remember_rates(damped, contact, m, h, n):
             remember_turn(arm, h, i, turn(m, v, i, arm))
 
 
-@jitted
+@inlined
 def remember_turn(arm, h, i, phi):
     """Keep the rates of the relative rotation, where blocks turn."""
     if arm is not None:

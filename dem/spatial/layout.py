@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from joints.jit import jitted
+from joints.jit import inlined, jitted
 
 LANES = 64  # blocks in a tile
 STRIDE = 72  # lanes in a row of motion: the tile's own, the next one's first, whole cache lines
@@ -41,7 +41,7 @@ def layout(motion: int, rates: int, slides: int, openings: int, cohesions: int) 
     return Layout(tuple(range(motion)), *history)
 
 
-@jitted
+@inlined
 def count(rows):
     """Return how many rows of a kind there are."""
     if rows is None:
@@ -55,25 +55,25 @@ def freedoms(rows):
     return len(rows.motion) // 2
 
 
-@jitted
+@inlined
 def velocities(rows):
     """Return the place of the first velocity in a tile's motion."""
     return len(rows.motion) // 2 * STRIDE
 
 
-@jitted
+@inlined
 def first_slide(rows):
     """Return the place of the first slide in a tile's history."""
     return count(rows.rates) * LANES
 
 
-@jitted
+@inlined
 def first_opening(rows):
     """Return the place of the first largest opening in a tile's history."""
     return first_slide(rows) + count(rows.slides) * LANES
 
 
-@jitted
+@inlined
 def first_cohesion(rows):
     """Return the place of the first cohesion in a tile's history."""
     return first_opening(rows) + count(rows.openings) * LANES

@@ -15,11 +15,11 @@ from dem.spatial.outside import book_base, book_end, book_load
 from dem.spatial.scratch import BEFORE, MOMENTA
 from dem.spatial.vectors import dot
 from dem.spatial.viscous import book_viscous
-from joints.jit import jitted
+from joints.jit import inlined
 from joints.optional import either
 
 
-@jitted
+@inlined
 def keep_velocities(book, motion, half, s, q, n):
     """Keep the velocities before the step in the scratch, for the ledger."""
     if book is not None:
@@ -29,7 +29,7 @@ def keep_velocities(book, motion, half, s, q, n):
         keep_momenta(motion.finite, motion, s, q, n)
 
 
-@jitted
+@inlined
 def keep_momenta(finite, motion, s, q, n):
     """Tell angular velocity and angular momentum apart, where blocks turn by any angle."""
     if finite is not None:
@@ -40,7 +40,7 @@ def keep_momenta(finite, motion, s, q, n):
             q[at], q[at + R], q[at + 2 * R] = spin_of(motion, s, i)
 
 
-@jitted
+@inlined
 def book_motion(model, state, book, drag, s, q, n, t, step, sampled):
     """Book what the step has done to a tile: viscous work, ends, load, and at a sample motion."""
     if book is not None:
@@ -56,7 +56,7 @@ def book_motion(model, state, book, drag, s, q, n, t, step, sampled):
             book_kinetic(motion, motion.arm, rows, book, s, q, n)
 
 
-@jitted
+@inlined
 def book_kinetic(motion, arm, rows, book, s, q, n):
     """Book the kinetic energy in the form that leapfrog conserves: m v[n-1/2] v[n+1/2] / 2."""
     m, v = 0.5 * motion.mass, velocities(rows)
@@ -69,7 +69,7 @@ def book_kinetic(motion, arm, rows, book, s, q, n):
     either(motion.finite, book_rotation, book_spin)(motion, arm, book, s, q, n)
 
 
-@jitted
+@inlined
 def book_rotation(motion, arm, book, s, q, n):
     """Book the energy of rotation, where blocks turn."""
     if arm is not None:
@@ -82,7 +82,7 @@ def book_rotation(motion, arm, book, s, q, n):
             )
 
 
-@jitted
+@inlined
 def book_spin(motion, arm, book, s, q, n):
     """Book the energy of rotation from angular velocity before and angular momentum after."""
     for i in range(min(n, L)):

@@ -14,7 +14,7 @@ from dem.spatial.layout import STRIDE as R
 from dem.spatial.layout import velocities
 from dem.spatial.scratch import LEFT
 from dem.spatial.vectors import columns_less_one, dot, normalised, product, times, turn_by
-from joints.jit import jitted
+from joints.jit import inlined
 from joints.optional import either
 
 
@@ -43,13 +43,13 @@ class Motion(NamedTuple):
     finite: Any
 
 
-@jitted
+@inlined
 def net_force(q, i):
     """Return the force of both joints on the block in lane i, N."""
     return q[i] - q[i + 1], q[R + i] - q[R + i + 1], q[2 * R + i] - q[2 * R + i + 1]
 
 
-@jitted
+@inlined
 def net_moment(q, i, arm):
     """Return the moment of both joints about the centroid of the block in lane i, N m."""
     mx = q[3 * R + i] - q[3 * R + i + 1] - arm * (q[2 * R + i] + q[2 * R + i + 1])
@@ -58,20 +58,20 @@ def net_moment(q, i, arm):
     return mx, my, mz
 
 
-@jitted
+@inlined
 def angular_velocity(motion, s, i):
     """Return the angular velocity of block i."""
     return s[9 * R + i], s[10 * R + i], s[11 * R + i]
 
 
-@jitted
+@inlined
 def spin_of(motion, s, i):
     """Return the angular velocity of block i from its angular momentum and orientation."""
     columns = columns_less_one(orientation(s, i))
     return spin(motion.finite, columns, angular_velocity(motion, s, i))
 
 
-@jitted
+@inlined
 def gains(push, fall, f):
     """Return what force f adds to a velocity in a step, with gravity."""
     x, y, z = push * f[0], push * f[1], push * f[2]
@@ -80,20 +80,20 @@ def gains(push, fall, f):
     return x + fall[0], y + fall[1], z + fall[2]
 
 
-@jitted
+@inlined
 def turns(twist, m):
     """Return what moment m adds to an angular velocity in a step."""
     return twist[0] * m[0], twist[1] * m[1], twist[2] * m[2]
 
 
-@jitted
+@inlined
 def advance(motion, rows, s, q, n):
     """Advance the first n blocks of a tile's motion s by one step."""
     translate(motion, motion.fall, rows, s, q, n)
     either(motion.finite, rotate, rotate_by_momentum)(motion, motion.arm, s, q, n)
 
 
-@jitted
+@inlined
 def translate(motion, fall, rows, s, q, n):
     """Advance velocities and displacements."""
     dt, push, keep, local = motion.dt, motion.push, motion.keep, motion.local
@@ -109,7 +109,7 @@ def translate(motion, fall, rows, s, q, n):
         s[2 * R + i] += dt * z
 
 
-@jitted
+@inlined
 def rotate(motion, arm, s, q, n):
     """Advance angular velocities and rotations, where blocks turn."""
     if arm is not None:
@@ -125,7 +125,7 @@ def rotate(motion, arm, s, q, n):
             s[5 * R + i] += dt * z
 
 
-@jitted
+@inlined
 def finite_moment(q, i, arm):
     """Return the moment of both joints about the centroid of the block in lane i, N m."""
     return (
@@ -135,7 +135,7 @@ def finite_moment(q, i, arm):
     )
 
 
-@jitted
+@inlined
 def rotate_by_momentum(motion, arm, s, q, n):
     """Advance angular momenta by the moments of a step, and turn the blocks by them."""
     dt, finite, keep, local = motion.dt, motion.finite, motion.keep, motion.local

@@ -11,13 +11,13 @@ from dem.spatial.layout import STRIDE as R
 from dem.spatial.motion import angular_velocity, spin_of
 from dem.spatial.scratch import BEFORE
 from dem.spatial.vectors import dot
-from joints.jit import jitted
+from joints.jit import inlined
 from joints.optional import either
 
 NO_SPIN = (0.0, 0.0, 0.0)
 
 
-@jitted
+@inlined
 def book_load(load, motion, book, s, q, n):
     """Book the work of the load on the start's face."""
     if n < load.stress.size:
@@ -28,7 +28,7 @@ def book_load(load, motion, book, s, q, n):
         book[WORK_AFTER * R] += half * power(f, after, 0, arm, new)
 
 
-@jitted
+@inlined
 def book_end(end, state, motion, book, s, q, i):
     """Book the work done on an end, and that of what acts there all the time."""
     if end is not None:
@@ -40,7 +40,7 @@ def book_end(end, state, motion, book, s, q, i):
         book[WORK_AFTER * R] += half * power(end.steady, after, i, arm, new)
 
 
-@jitted
+@inlined
 def book_base(base, end, state, book, n):
     """Book the work of a shaken base; what its wall takes is less by as much."""
     if base is not None:
@@ -50,7 +50,7 @@ def book_base(base, end, state, book, n):
             book[(BOUNDARY + account) * R] += push * way
 
 
-@jitted
+@inlined
 def power(f, rows, i, arm, spin):
     """Return the power of a force and moment f at a face, from the block's velocity (rows of a
     tile) and angular velocity."""
@@ -59,7 +59,7 @@ def power(f, rows, i, arm, spin):
     )
 
 
-@jitted
+@inlined
 def power_of_turn(f, arm, spin):
     """Return the power that the rotation has in it; zero where blocks do not turn."""
     if arm is None:
@@ -67,7 +67,7 @@ def power_of_turn(f, arm, spin):
     return dot((f[3], f[4], f[5]), spin) + arm * (f[0] * spin[2] - f[2] * spin[0])
 
 
-@jitted
+@inlined
 def spins(motion, arm, s, q, i):
     """Return the angular velocity of a block before and after the step."""
     if arm is None:

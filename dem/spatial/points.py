@@ -7,7 +7,7 @@ from dem.spatial.kinematics import gap_at, slip_at
 from dem.spatial.layout import LANES as L
 from dem.spatial.layout import first_cohesion, first_opening, first_slide
 from joints.energy import friction_work
-from joints.jit import jitted
+from joints.jit import inlined
 from joints.laws import normal_traction, spring_traction
 from joints.optional import either, given
 from joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
@@ -59,7 +59,7 @@ def next_point(xs, zs, areas, p, contact, law, motion, h, drag, i, book, returns
     return plus(f, rest), plus(d, drags), over + more, work + works
 
 
-@jitted
+@inlined
 def at_point(x, z, area, p, contact, law, motion, h, drag, i, book, returns):
     """Return the force of point p with its moment, the dashpots' share, and 1 where beyond."""
     arm, rows = contact.arm, contact.rows
@@ -90,13 +90,13 @@ def at_point(x, z, area, p, contact, law, motion, h, drag, i, book, returns):
     return f, d, over, area * work
 
 
-@jitted
+@inlined
 def whole_area(contact, area, x, z, gap, slip):
     """Return a point's area: where rotations are small the faces stay in front of each other."""
     return area
 
 
-@jitted
+@inlined
 def shear_at_point(
     x, z, area, p, contact, slip_of, slip, law, motion, h, i, tau, cohesion, book, returns
 ):
@@ -119,21 +119,21 @@ def shear_at_point(
     return t_x, t_z, ex, ez, 1 if slipped else 0, work
 
 
-@jitted
+@inlined
 def keep_opening(rows, h, at, opening):
     """Keep the largest opening of a point, with softening."""
     if rows is not None:
         h[at] = opening
 
 
-@jitted
+@inlined
 def keep(rows, h, at, law, cohesion, slipped):
     """Keep the cohesion that slip leaves to a point."""
     if rows is not None:
         h[at] = cohesion_left(law, cohesion, slipped)
 
 
-@jitted
+@inlined
 def exceeds(tau, t_x, t_z):
     """Return 1 where the shear traction is beyond its strength."""
     if tau is None:
@@ -141,19 +141,19 @@ def exceeds(tau, t_x, t_z):
     return 1 if t_x * t_x + t_z * t_z > tau * tau else 0
 
 
-@jitted
+@inlined
 def plus(f, d):
     """Return the sum of two forces with their moments."""
     return f[0] + d[0], f[1] + d[1], f[2] + d[2], f[3] + d[3], f[4] + d[4], f[5] + d[5]
 
 
-@jitted
+@inlined
 def force_at(x, z, gap, slip, t_x, t_y, t_z):
     """Return a force (N) on the point (x, z) with its moment about the centre."""
     return t_x, t_y, t_z, -z * t_y, z * t_x - x * t_z, x * t_y
 
 
-@jitted
+@inlined
 def dragged(drag, law, gap, opening, t_n, t_x, t_z, ex, ez):
     """Return the dashpots' share of a traction: what is not its springs'."""
     if drag is None:

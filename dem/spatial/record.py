@@ -1,10 +1,10 @@
 """What a tile leaves of itself at a sample: forces of contacts, motion of blocks."""
 
 from dem.spatial.layout import STRIDE as R
-from joints.jit import jitted
+from joints.jit import inlined
 
 
-@jitted
+@inlined
 def sample_before(receivers, samples, half, s, q, t, c):
     """Read forces, displacements and half the velocities of tile t for sample c."""
     for r in range(receivers.contact_tile.size):
@@ -21,7 +21,7 @@ def sample_before(receivers, samples, half, s, q, t, c):
                 samples.displacement[r, k, c] = s[(half + k) * R + lane]
 
 
-@jitted
+@inlined
 def sample_after(receivers, samples, half, s, t, c):
     """Add the other half of the velocities."""
     for r in range(receivers.block_tile.size):

@@ -19,7 +19,7 @@ from dem.spatial.scratch import DRAG, LEFT
 from dem.spatial.stored import book_states
 from joints.atomic import give_way, peek, post
 from joints.borrowed import borrowed
-from joints.jit import jitted
+from joints.jit import inlined, jitted
 from joints.laws import pick
 from joints.optional import either, given
 from joints.tiny import flush_tiny, restore_tiny
@@ -39,7 +39,7 @@ def march(model, state, room, samples, first, last):
     restore_tiny(tiny)
 
 
-@jitted
+@inlined
 def run_diagonals(model, state, room, samples, n, depth, thread, first, last):
     """Let diagonal k = first .. last - 1 take tile k - j by step n + j, j = 0 .. depth - 1."""
     tiles = len(state.motion)
@@ -76,14 +76,14 @@ def march_in_turn(model, state, room, samples, first, last, thread, progress):
     restore_tiny(tiny)
 
 
-@jitted
+@inlined
 def await_count(progress, k, count):
     """Wait until a counter has got so far."""
     while peek(progress, k) < count:
         give_way()
 
 
-@jitted
+@inlined
 def close_books(model, state, books, samples, n, depth, slot):
     """Sum up the accounts of steps n .. n + depth - 1, in their order."""
     if books is not None:
@@ -91,7 +91,7 @@ def close_books(model, state, books, samples, n, depth, slot):
             close(books[slot + j], state.sums, samples.energy, model.accounts, n + j, model.stride)
 
 
-@jitted
+@inlined
 def step(model, state, room, samples, t, n, thread, slot):
     """Advance tile t by step n."""
     s, h = state.motion[t], pick(state.history, t)
@@ -135,14 +135,14 @@ def step(model, state, room, samples, t, n, thread, slot):
     pass_on(carry, q, drag, half)
 
 
-@jitted
+@inlined
 def put_load(load, motion, q, n):
     """Add the load of step n on the start's face; it is zero after the last step that acts."""
     if n < load.stress.size:
         put(q, 0, 1.0, load.stress[n] * load.direction, motion)
 
 
-@jitted
+@inlined
 def way(base, n):
     """Return the way (m) of a shaken base in step n - 1."""
     if base is None:
@@ -150,7 +150,7 @@ def way(base, n):
     return base[n] if n < base.size else 0.0
 
 
-@jitted
+@inlined
 def ways(base, n):
     """Return the way (m) of a shaken base in steps n - 1 and n together; None where it stands."""
     if base is None:
@@ -158,14 +158,14 @@ def ways(base, n):
     return way(base, n) + way(base, n + 1)
 
 
-@jitted
+@inlined
 def show_next(s, following, rows):
     """Put the next tile's first block into this tile's last lane."""
     for k in range(rows):
         s[k * R + LANES] = following[k * R]
 
 
-@jitted
+@inlined
 def receive(carry, q, drag, half):
     """Take over the force of the joint left of the tile."""
     for k in range(half):
@@ -174,7 +174,7 @@ def receive(carry, q, drag, half):
             q[DRAG + k * R] = carry[6 + k]
 
 
-@jitted
+@inlined
 def pass_on(carry, q, drag, half):
     """Leave the force of the tile's last joint to the next tile."""
     for k in range(half):
@@ -183,7 +183,7 @@ def pass_on(carry, q, drag, half):
             carry[6 + k] = q[DRAG + k * R + LANES]
 
 
-@jitted
+@inlined
 def clear(q, drag, half, lane):
     """Take away what stands where the last block would have a joint."""
     for k in range(half):
@@ -192,12 +192,12 @@ def clear(q, drag, half, lane):
             q[DRAG + k * R + lane] = 0.0
 
 
-@jitted
+@inlined
 def nothing(q, drag, lane):
     """Do nothing: small rotations have their moments about the faces."""
 
 
-@jitted
+@inlined
 def clear_left(q, drag, lane):
     """Take away the moment on the last block of a joint that it does not have."""
     for k in range(3):

@@ -18,11 +18,11 @@ from dem.spatial.layout import STRIDE as R
 from dem.spatial.layout import first_opening, first_slide
 from dem.spatial.points import whole_area
 from joints.energy import elastic_energy, fracture_energy_spent
-from joints.jit import jitted
+from joints.jit import inlined
 from joints.optional import either, given
 
 
-@jitted
+@inlined
 def book_states(model, book, table, s, h, n, final):
     """Book what a tile holds at a sample: in its joints and in gravity."""
     if book is not None:
@@ -33,7 +33,7 @@ def book_states(model, book, table, s, h, n, final):
         book_weight(model.weight, book, s, n)
 
 
-@jitted
+@inlined
 def book_section(contact, section, table, book, s, n):
     """Book the energy of the first n joints, where they always hold."""
     if section is not None:
@@ -50,7 +50,7 @@ def book_section(contact, section, table, book, s, n):
             )
 
 
-@jitted
+@inlined
 def book_points(contact, points, table, book, s, h, n):
     """Book what the first n joints hold and what they have spent, at every contact point."""
     if points is not None:
@@ -74,14 +74,14 @@ def book_points(contact, points, table, book, s, h, n):
                 book_fracture(opening, book, i, area, law)
 
 
-@jitted
+@inlined
 def book_fracture(opening, book, i, area, law):
     """Book what opening has spent, with softening."""
     if opening is not None:
         book[FRACTURE * R + i] += area * fracture_energy_spent(law, opening)
 
 
-@jitted
+@inlined
 def book_weight(weight, book, s, n):
     """Book the potential energy in gravity, from the unloaded pillar on."""
     if weight is not None:

@@ -1,39 +1,39 @@
 """Vectors, rotation matrices and unit quaternions as tuples of numbers, for use in kernels."""
 
-from joints.jit import jitted
+from joints.jit import inlined
 
 
-@jitted
+@inlined
 def cross(a, b):
     """Return a x b."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-@jitted
+@inlined
 def dot(a, b):
     """Return a . b."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@jitted
+@inlined
 def sum_of(a, b):
     """Return a + b."""
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
-@jitted
+@inlined
 def less(a, b):
     """Return a - b."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
-@jitted
+@inlined
 def times(k, a):
     """Return k a."""
     return k * a[0], k * a[1], k * a[2]
 
 
-@jitted
+@inlined
 def product(p, q):
     """Return the quaternion p q, scalar part first: q first, then p."""
     return (
@@ -44,13 +44,13 @@ def product(p, q):
     )
 
 
-@jitted
+@inlined
 def back(q):
     """Return the quaternion of the opposite rotation."""
     return q[0], -q[1], -q[2], -q[3]
 
 
-@jitted
+@inlined
 def columns_less_one(q):
     """Return the three columns of R - 1, with nothing lost where the rotation is small."""
     w, x, y, z = q
@@ -61,7 +61,7 @@ def columns_less_one(q):
     )
 
 
-@jitted
+@inlined
 def turned(columns, a):
     """Return R a, from the columns of R - 1."""
     c = columns
@@ -72,14 +72,14 @@ def turned(columns, a):
     )
 
 
-@jitted
+@inlined
 def turned_back(columns, a):
     """Return the transpose of R times a, from the columns of R - 1."""
     c = columns
     return a[0] + dot(c[0], a), a[1] + dot(c[1], a), a[2] + dot(c[2], a)
 
 
-@jitted
+@inlined
 def turn_by(half):
     """Return the unit quaternion of a rotation by twice the vector `half`, for small angles.
 
@@ -91,7 +91,7 @@ def turn_by(half):
     return c, k * half[0], k * half[1], k * half[2]
 
 
-@jitted
+@inlined
 def normalised(q):
     """Return q brought back to unit length, from which round-off takes it: one Newton step."""
     k = 1.5 - 0.5 * (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])

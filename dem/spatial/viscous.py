@@ -12,11 +12,11 @@ from dem.spatial.layout import STRIDE as R
 from dem.spatial.motion import finite_moment, net_force, net_moment, spin_of
 from dem.spatial.scratch import BEFORE, DRAG, MOMENTA
 from dem.spatial.vectors import dot, less, sum_of, times
-from joints.jit import jitted
+from joints.jit import inlined
 from joints.optional import either
 
 
-@jitted
+@inlined
 def book_viscous(viscous, motion, rows, weight, drag, book, s, q, n):
     """Book the work of dashpots, mass-proportional and local damping over both half steps."""
     if viscous is not None:
@@ -30,7 +30,7 @@ def book_viscous(viscous, motion, rows, weight, drag, book, s, q, n):
         book_turn(motion, motion.arm, drag, book, s, q, n)
 
 
-@jitted
+@inlined
 def book_viscous_turn(motion, arm, drag, book, s, q, n):
     """Book the work of the same moments, where blocks turn."""
     if arm is not None:
@@ -43,7 +43,7 @@ def book_viscous_turn(motion, arm, drag, book, s, q, n):
             book_impulse(book, i, impulse(motion, drags, net_moment(q, i, arm), gain), old, new)
 
 
-@jitted
+@inlined
 def book_viscous_spin(motion, arm, drag, book, s, q, n):
     """Book the work of the same moments, where blocks turn by any angle."""
     for i in range(min(n, L)):
@@ -53,14 +53,14 @@ def book_viscous_spin(motion, arm, drag, book, s, q, n):
         book_impulse(book, i, impulse(motion, drags, finite_moment(q, i, arm), gain), old, new)
 
 
-@jitted
+@inlined
 def book_impulse(book, i, given_off, old, new):
     """Book the work of an impulse (N s) against the velocities before and after the step."""
     book[VISCOUS * R + i] -= 0.5 * dot(given_off, old)
     book[VISCOUS_AFTER * R + i] -= 0.5 * dot(given_off, new)
 
 
-@jitted
+@inlined
 def impulse(motion, drags, pull, gain):
     """Return the impulse of the dashpots, and of what damps a block itself: what its momentum's
     gain has less than the pull of everything else."""
@@ -68,7 +68,7 @@ def impulse(motion, drags, pull, gain):
     return sum_of(times(motion.dt, drags), damped(motion.keep, motion.local, missing))
 
 
-@jitted
+@inlined
 def damped(keep, local, missing):
     """Return what is missing where a block is damped itself, else nothing: it is round-off."""
     if keep is None and local is None:
@@ -76,7 +76,7 @@ def damped(keep, local, missing):
     return missing
 
 
-@jitted
+@inlined
 def dragged(drag, q, i):
     """Return the force of the dashpots on a block."""
     if drag is None:
@@ -84,7 +84,7 @@ def dragged(drag, q, i):
     return net_force(q, DRAG + i)
 
 
-@jitted
+@inlined
 def dragged_round(drag, q, i, arm):
     """Return the moment of the dashpots on a block."""
     if drag is None:
@@ -92,7 +92,7 @@ def dragged_round(drag, q, i, arm):
     return net_moment(q, DRAG + i, arm)
 
 
-@jitted
+@inlined
 def spin_drag(drag, q, i, arm):
     """Return the moment of the dashpots on a block that turns by any angle."""
     if drag is None:
@@ -100,7 +100,7 @@ def spin_drag(drag, q, i, arm):
     return finite_moment(q, DRAG + i, arm)
 
 
-@jitted
+@inlined
 def weighed(weight):
     """Return a block's weight, N."""
     if weight is None:

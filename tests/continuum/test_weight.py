@@ -72,6 +72,28 @@ def test_standing_rock_carries_the_weight_above(dim, cell, places, short):
     assert np.abs(stress - expected[:, None]).max() < 1e-8 * expected.max()
 
 
+@pytest.mark.parametrize(
+    "law", [{"friction_angle": 30.0}, {"friction_angle": 30.0, "tension": False}]
+)
+def test_joints_of_friction_alone_stand_under_weight_on_a_slope(law, short):
+    """Nothing presses them before the weight is on. At 10 degrees all of a single joint holds, and
+    carries the weight above it: along the joint g sin, across it g cos."""
+    scene = short(
+        **STILL,
+        pillar__length=1.0,
+        gravity={"direction": [np.sin(np.pi / 18), np.cos(np.pi / 18), 0.0]},
+        ends__end="fixed",
+        joints=law,
+        record={"stress": [0.5], "velocity": [0.0]},
+        time__duration=2e-4,
+    )
+    result = simulate(scene, "jointed", 2)
+    stress, shear = (result[name].values[0].ravel() for name in ("stress", "shear"))
+    weight = 2400.0 * 9.81 * 0.5
+    assert stress == pytest.approx(weight * np.cos(np.pi / 18), rel=1e-8)
+    assert np.abs(shear).max() == pytest.approx(weight * np.sin(np.pi / 18), rel=1e-8)
+
+
 @pytest.mark.parametrize("dim", [1, 3])
 def test_drag_on_rock_that_drifts_strains_nothing(dim, short, ready):
     """v shrinks by (1 - a) / (1 + a), a = alpha dt / 2, at every step, and no section is loaded."""

@@ -53,6 +53,12 @@ def test_failure_is_told_and_bounded(rest):
     assert len(outcome.errors) == (1 if np.isnan(rest[0]) else MOST_ITERATIONS + 1)
 
 
+def test_what_is_no_number_is_no_solution():
+    """Not even where what may be left grows with it."""
+    outcome = newton(lambda x: (x + np.nan, np.inf), lambda rest: rest, np.zeros(1))
+    assert not outcome.converged
+
+
 def test_factors_solve_what_they_were_given_last():
     """Two matrices of one pattern, neither symmetric."""
     rng = np.random.default_rng(1)

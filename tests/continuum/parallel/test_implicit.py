@@ -1,4 +1,4 @@
-"""Implicit steps that several processes share: what one process finds, to round-off."""
+"""Implicit steps and static states that several processes share: what one finds, to round-off."""
 
 import json
 
@@ -7,9 +7,7 @@ import pytest
 import xarray as xr
 
 SCENE = "guo-li-2002/fig-03"
-#: Of the largest value of a waveform: the residual that Newton's method may leave, over some
-#: hundred steps.
-SAME = 1e-8
+SAME = 1e-10  # of the largest value of a waveform
 
 SHORT = {
     "pillar.length": 3.0,
@@ -49,26 +47,40 @@ SCENES = {
         "ends.start": "fixed",
         "joints.damping_ratio": 0.02,
     },
+    "explicit steps from rest under weight that makes joints slide": {
+        "numerics.continuum.dim": 3,
+        "numerics.continuum.order": 1,
+        "numerics.continuum.elements_per_block": 1,
+        "numerics.continuum.scheme": "explicit",
+        "joints.tension": False,
+        "joints.friction_angle": 30.0,
+        "pillar.length": 1.5,
+        "soft_layers": [],
+        "gravity.direction": [0.28, 0.96, 0.0],
+        "ends.end": "fixed",
+    },
 }
 
 
 @pytest.mark.parametrize("scene", SCENES)
-def test_any_number_of_processes_takes_the_same_steps(scene, jointwave, tmp_path):
-    """The same corrections and factorisations, and the same waveforms."""
+def test_any_number_of_processes_gives_the_same_waveforms(scene, jointwave, tmp_path):
+    """Newton's method ends far below what it may leave, so that sums in another order differ by
+    round-off; an iterate more or less, where a residual is at the bound, changes nothing."""
     changes = {**SHORT, **SCENES[scene]}
     keys = [part for k, v in changes.items() for part in ("--set", f"{k}={json.dumps(v)}")]
     results = []
-    for count in (1, 3):
+    for count in (1, 2, 3):
         out = ("--out", tmp_path / str(count), "--json")
         engine = ("--engine", "continuum", "--model", "jointed")
         done = jointwave(count, "run", SCENE, "--variant", "", *engine, *keys, *out)
         (fact,) = json.loads(done.stdout)
         results.append(xr.load_dataset(fact["file"]))
-    one, three = results
-    assert (one.attrs["processes"], three.attrs["processes"]) == (1, 3)
-    assert one.attrs["scheme"] == three.attrs["scheme"] == "implicit"
-    for name in ("steps", "newton_iterations", "factorisations", "halved_steps"):
-        assert three.attrs[name] == one.attrs[name]
-    for name in one.data_vars:
-        found, expected = three[name].values, one[name].values
-        assert np.abs(found - expected).max() <= SAME * np.abs(expected).max()
+    one, *others = results
+    assert one.attrs["scheme"] == changes["numerics.continuum.scheme"]
+    for count, other in enumerate(others, 2):
+        assert other.attrs["processes"] == count
+        for name in ("scheme", "steps", "halved_steps"):
+            assert other.attrs.get(name) == one.attrs.get(name)
+        for name in one.data_vars:
+            found, expected = other[name].values, one[name].values
+            assert np.abs(found - expected).max() <= SAME * np.abs(expected).max()
