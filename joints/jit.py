@@ -10,6 +10,8 @@ from typing import Any
 
 import llvmlite.binding
 import numba
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
 
 PACKAGES = ("joints", "dem", "continuum")
 
@@ -60,10 +62,27 @@ def inlined(function: Callable) -> Callable:
     Python cannot call it (it would crash): the code that would unpack a whole model at every part
     would take longer to compile than the parts.
     """
-    return _compiled(function, no_cpython_wrapper=True)
+    return _compiled(function, no_cpython_wrapper=True, pipeline_class=_PartCompiler)
 
 
-def _compiled(function: Callable, **options: bool) -> Callable:
+class _PartLibrary(JITCodeLibrary):
+    """Code that is optimised where it has been inlined, and not at every level on the way."""
+
+    def _optimize_final_module(self) -> None:
+        passes, builder = self._codegen._module_pass_manager(opt=0, loop_vectorize=False)
+        passes.run(self._final_module, builder)
+
+
+class _PartCompiler(Compiler):
+    """The usual steps of compiling, into a `_PartLibrary`."""
+
+    def __init__(self, typing_context, target_context, library, *others) -> None:
+        library = _PartLibrary(target_context.codegen(), "part")
+        library.enable_object_caching()
+        super().__init__(typing_context, target_context, library, *others)
+
+
+def _compiled(function: Callable, **options: Any) -> Callable:
     kernel = numba.njit(
         cache=True,
         fastmath=False,
