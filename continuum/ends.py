@@ -92,7 +92,8 @@ def quiet_ends(
     freedom, viscosity, whole, stiffness, decay, gain = columns
     sprung = body.team.any(bool(stiffness.any()))
     half_joints = HalfJoints(stiffness, decay, gain) if sprung else None
-    beta = whole * dt / (2 * mass[freedom])
+    braked = 1 + (p.mass_damping or 0.0) * dt / 2  # as in the step over the mass
+    beta = whole * dt / (2 * braked * mass[freedom])
     return Quiet(freedom.astype(np.int64), viscosity, beta, half_joints)
 
 

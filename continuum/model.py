@@ -122,7 +122,8 @@ class HalfJoints(NamedTuple):
 
 
 class Quiet(NamedTuple):
-    """Freedoms on dashpots: freedom [k]; viscosity [k], N s/m; beta = viscosity dt / 2 mass.
+    """Freedoms on dashpots: freedom [k]; viscosity [k], N s/m; beta = viscosity dt / 2 mass, over
+    1 + alpha dt / 2 where there is mass-proportional damping.
 
     springs : `HalfJoints`, None where every dashpot is on its freedom itself.
     """

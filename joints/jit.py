@@ -70,6 +70,11 @@ class _PartLibrary(JITCodeLibrary):
 
     def _optimize_final_module(self) -> None:
         passes, builder = self._codegen._module_pass_manager(opt=0, loop_vectorize=False)
+        # Addresses in branches that fall away would keep numba from saving the part.
+        passes.add_sroa_pass()
+        passes.add_simplify_cfg_pass()
+        passes.add_dead_code_elimination_pass()
+        passes.add_global_dead_code_eliminate_pass()
         passes.run(self._final_module, builder)
 
 

@@ -31,6 +31,7 @@ PERIOD = 1e-3
 SOFT = [{"y": 1.0, "spacing_stiffness": 4e8, "shear_stiffness": 5e8, "damping_ratio": 0.1}]
 EVERYTHING = {
     "damped, quiet and matched": {
+        "damping__mass_proportional": 50.0,
         "ends": {"start": "quiet", "end": "matched"},
         "joints__damping_ratio": 0.05,
         "prestress": {"normal": 1e5},
@@ -38,6 +39,7 @@ EVERYTHING = {
     "damped, shaken base, weight": {
         "soft_layers": SOFT,
         "joints__damping_ratio": 0.02,
+        "damping__mass_proportional": 50.0,
         "ends": {"start": "fixed", "end": "quiet"},
         "gravity": {"static": False},
         "load": {"shape": "sine", "amplitude": 0.1, "period": PERIOD, "quantity": "velocity"},
