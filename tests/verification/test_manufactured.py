@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 from scipy.sparse import csr_matrix
-from scipy.sparse.linalg import factorized
 
 from continuum.body import whole
 from continuum.build import room, state_at_rest
 from continuum.critical import critical_time_step
 from continuum.explicit import run
+from continuum.implicit import Implicit
+from continuum.implicit_step import rock_matrices
 from continuum.model import Ends, Model, Receivers, Rock
 from continuum.operator import zeros
 from continuum.sparse import rows
@@ -32,15 +33,12 @@ SIMPLICES = ("triangle", "tetrahedron")
 END = 1e-3  # s, 0.6 of a period
 
 
-def drive(problem, dt, steps, inertia):
-    """Return the displacement after so many steps dt (s) of leapfrog from the exact start.
-
-    inertia : g'' (1/s2) at a time (s).
-    """
+def model_of(problem, dt):
+    """Return the constants of a run of the body alone, whose weight may change from step to step:
+    it is the load."""
     body, n = problem.body, problem.body.mass.size
-    g, start = problem.motion.history, problem.at_nodes()
     none = rows(csr_matrix((0, n)))
-    model = Model(
+    return Model(
         rock=Rock(body.stiffness, None, body.mass, dt / body.mass, None),
         interfaces=None,
         ends=Ends(None, None, None),
@@ -48,12 +46,19 @@ def drive(problem, dt, steps, inertia):
         receivers=Receivers(none, None, none, None, none, None),
         dt=dt,
     )
+
+
+def drive(problem, dt, steps, inertia):
+    """Return the displacement after so many steps dt (s) of leapfrog from the exact start.
+
+    inertia : g'' (1/s2) at a time (s).
+    """
+    model, g, start = model_of(problem, dt), problem.motion.history, problem.at_nodes()
     state = state_at_rest(model, keep_ledger=False)
     state.u[:], state.v[:] = g(0.0) * start, (g(0.0) - g(-dt)) / dt * start
     samples = room(model, state, 1)
     for k in range(steps):
         t = k * dt
-        # The weight is a force that may change from step to step.
         model.weight[:] = inertia(t) * problem.inertia + g(t) * problem.elastic
         run(model, state, samples, steps, k, k + 1)
     return state.u
@@ -64,23 +69,26 @@ def stiffness(body):
     return whole(body.layout, body.mesh, body.blocks)
 
 
-def drive_by_trapezoids(problem, dt, steps):
-    """Return the displacement after so many steps dt (s) of the trapezoidal rule, consistent mass.
+def drive_implicitly(problem, dt, steps, frequency, rho=1.0):
+    """Return the displacement after so many implicit steps dt (s) of spectral radius rho, from the
+    exact start; frequency : rad/s, that velocity and inertia of the motion are taken with."""
+    model, motion, start = model_of(problem, dt), problem.motion, problem.at_nodes()
+    state = state_at_rest(model, keep_ledger=False)
+    speed = frequency * np.cos(motion.start)
+    state.u[:], state.v[:] = motion.history(0.0) * start, speed * start
+    samples = room(model, state, 1)
+    stepper = Implicit(model, state, rock_matrices(problem.body), rho)
+    for k in range(steps + 1):
+        load = problem.elastic - frequency**2 * problem.inertia
+        model.weight[:] = motion.history(k * dt) * load
+        stepper.run(samples, steps + 1, k, k + 1)
+    return state.u
 
-    Inertia and elastic force of g are taken by the differences and means that the rule takes, so
-    that its steps make no error.
-    """
-    n = np.flatnonzero(problem.body.consistent.diagonal())
-    mass, k = (a[n][:, n].tocsc() for a in (problem.body.consistent, stiffness(problem.body)))
-    solve, g, found = factorized(mass / dt**2 + k / 4), problem.motion.history, problem.at_nodes()
-    before, now = g(-dt) * found[n], g(0.0) * found[n]
-    for t in dt * np.arange(steps):
-        inertia = (g(t + dt) - 2 * g(t) + g(t - dt)) / dt**2 * problem.inertia[n]
-        elastic = (g(t + dt) + 2 * g(t) + g(t - dt)) / 4 * problem.elastic[n]
-        old = mass @ (before - 2 * now) / dt**2 + k @ (before + 2 * now) / 4
-        before, now = now, solve(inertia + elastic - old)
-    found[n] = now
-    return found
+
+def trapezoids_own(motion, dt):
+    """Return the frequency (rad/s) that the trapezoidal rule sees a sine with: under it, its steps
+    make no error."""
+    return 2 / dt * np.tan(motion.omega * dt / 2)
 
 
 def steps_of(problem, fraction):
@@ -135,16 +143,20 @@ def test_order_of_the_elements(problem, kind, order, count, expected, distorted)
     assert expected - 0.2 < rate < expected + 0.5
 
 
-@pytest.mark.parametrize("distorted", [False, True], ids=["straight", "distorted"])
-@pytest.mark.parametrize("kind, order, count", [m[:3] for m in MESHES if m[0] in SIMPLICES])
-def test_order_of_simplices_with_consistent_mass(problem, kind, order, count, distorted):
-    """p + 1, quadratic ones too."""
-    errors = []
+@pytest.mark.parametrize(
+    "kind, order, count, expected, consistent",
+    [(*mesh, False) for mesh in MESHES]
+    + [(*mesh[:3], mesh[1] + 1, True) for mesh in MESHES if mesh[0] in SIMPLICES],
+)
+def test_order_of_the_elements_in_implicit_steps(problem, kind, order, count, expected, consistent):
+    """The same orders; p + 1 for quadratic simplices too, where their mass is consistent."""
+    errors, dt = [], END / 40
     for cells in (count, 2 * count):
-        one = problem(kind, cells, order, distorted, consistent=True)
-        errors.append(one.error(drive_by_trapezoids(one, END / 40, 40), one.motion.history(END)))
+        one = problem(kind, cells, order, True, consistent)
+        u = drive_implicitly(one, dt, 40, trapezoids_own(one.motion, dt))
+        errors.append(one.error(u, one.motion.history(END)))
     rate = np.log2(errors[0] / errors[1])
-    assert order + 0.8 < rate < order + 1.5
+    assert expected - 0.2 < rate < expected + 0.5
 
 
 @pytest.mark.parametrize("kind", ["quadrilateral", "hexahedron"])
@@ -157,3 +169,16 @@ def test_order_of_the_step(problem, kind):
         u = drive(one, dt, steps, one.motion.acceleration)
         errors.append(np.linalg.norm(u - drive(one, dt, steps, leapfrogs_own(one.motion, dt))))
     assert np.diff(-np.log2(errors)) == pytest.approx([2, 2], abs=0.02)
+
+
+@pytest.mark.parametrize("rho", [1.0, 0.5, 0.0])
+@pytest.mark.parametrize("kind", ["quadrilateral", "hexahedron"])
+def test_order_of_the_implicit_step(problem, kind, rho):
+    """Two for every spectral radius: the distance from steps that make no error."""
+    one, errors = problem(kind, 1, 4), []
+    for steps in (60, 120, 240):
+        dt = END / steps
+        exact = drive_implicitly(one, dt, steps, trapezoids_own(one.motion, dt))
+        u = drive_implicitly(one, dt, steps, one.motion.omega, rho)
+        errors.append(np.linalg.norm(u - exact))
+    assert np.diff(-np.log2(errors)) == pytest.approx([2, 2], abs=0.05)
