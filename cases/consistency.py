@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from cases.calibrate import calibrate
 from cases.discretisation import check_discretisation
 from cases.joint import JointLaw
+from cases.scheme import check_scheme
 from cases.stiffness import equivalent_constants
 from cases.values import contradiction
 
@@ -34,6 +35,7 @@ def check(scene: Scene) -> None:
         _check_strength(f"soft_layers[{i}]", layer)
     _check_fracture(scene)
     check_discretisation(scene)
+    check_scheme(scene)
 
 
 def _check_layers(scene: Scene) -> None:

@@ -46,14 +46,7 @@ def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[Scen
     Raises SceneError, in one line, for anything that cannot be simulated.
     """
     path = Path(path)
-    table = _read_toml(path)
-    for key, value in (overrides or {}).items():
-        _assign(table, key, value, str(path))
-    if "name" in table:
-        raise SceneError(str(path), "name", table["name"], "only [[variants]] have a name")
-    variants = table.pop("variants", [])
-    if not isinstance(variants, list) or not all(isinstance(v, dict) for v in variants):
-        raise SceneError(str(path), "variants", variants, "must be [[variants]] tables")
+    table, variants = _read(path, overrides or {})
     scenes = [_validate(table, path)]
     for i, variant in enumerate(variants):
         scenes.append(_variant(table, variant, path, i, overrides or {}))
@@ -67,11 +60,31 @@ def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[Scen
 def load_variant(
     path: str | Path, name: str = "", overrides: dict[str, Any] | None = None
 ) -> Scene:
-    """Read one variant of a scene file; the empty name is the scene as it stands."""
-    scenes = {scene.name: scene for scene in load(path, overrides)}
-    if name not in scenes:
-        raise SceneError(str(path), "variants.name", name, f"must be one of {sorted(scenes)}")
-    return scenes[name]
+    """Read one variant of a scene file, whatever the others are; the empty name is the scene as it
+    stands."""
+    path = Path(path)
+    table, variants = _read(path, overrides or {})
+    if not name:
+        return _validate(table, path)
+    names = [variant.get("name") for variant in variants]
+    if name not in names:
+        known = sorted(str(n) for n in ["", *names])
+        raise SceneError(str(path), "variants.name", name, f"must be one of {known}")
+    which = names.index(name)
+    return _variant(table, variants[which], path, which, overrides or {})
+
+
+def _read(path: Path, overrides: dict[str, Any]) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """Return the table of a scene, changed, and those of its variants."""
+    table = _read_toml(path)
+    for key, value in overrides.items():
+        _assign(table, key, value, str(path))
+    if "name" in table:
+        raise SceneError(str(path), "name", table["name"], "only [[variants]] have a name")
+    variants = table.pop("variants", [])
+    if not isinstance(variants, list) or not all(isinstance(v, dict) for v in variants):
+        raise SceneError(str(path), "variants", variants, "must be [[variants]] tables")
+    return table, variants
 
 
 def parse_override(text: str) -> tuple[str, Any]:

@@ -131,8 +131,9 @@ class Record(Table):
 class DemNumerics(Table):
     """How the rigid blocks are stepped; the default step is for accuracy, not only stability."""
 
-    step_fraction: Positive = 0.05  #: of the critical step
-    scheme: Literal["leapfrog"] = "leapfrog"
+    step_fraction: Positive = 0.05  #: of the scheme's own critical step
+    #: fourth-order: four forces a step (PEFRL), for axial motion without any damping
+    scheme: Literal["leapfrog", "fourth-order"] = "leapfrog"
     allow_unstable: bool = False  #: go on with a step above the critical one
     static_tolerance: Positive = 1e-8  #: out-of-balance force ratio that ends the static state
     threads: Annotated[int, Field(ge=1, le=1024)] | None = None  #: absent: by the number of blocks

@@ -69,8 +69,8 @@ def root(
 ) -> None:
     """Stress waves in jointed rock: rigid blocks and continuum, refereed by exact solutions."""
     command = context.invoked_subcommand
-    if command != "run" and started().comm is not None:
-        allowed = f"jointwave {command} works in one process; only jointwave run shares its work"
+    if command not in ("run", "study") and started().comm is not None:
+        allowed = f"jointwave {command} works in one process; only run and study share their work"
         raise SceneError("mpiexec", "", None, allowed)
 
 
@@ -147,20 +147,69 @@ def compare(
     spectral: Annotated[
         bool, typer.Option(help="Add envelope and phase misfit (Kristekova et al. 2006).")
     ] = True,
+    given: Annotated[
+        list[str],
+        typer.Option("--with", metavar="FILE[:LABEL]", help="Curves of others; more than once."),
+    ] = [],  # noqa: B006
+    align: Annotated[
+        bool, typer.Option("--align", help="Move the clock of each --with by cross-correlation.")
+    ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Solve a scene by all that applies, and print how far apart the solutions are."""
+    """Solve a scene by all that applies, and print how far apart the solutions are.
+
+    --with puts a waveform of another code, figure or experiment beside them: a CSV file with a
+    header such as "time [ms], stress@20 [MPa]" (# starts a comment; commas, semicolons or tabs),
+    or a NetCDF file of jointwave run or with time and stress(time). A label names the only curve
+    of a file without names, or takes one out of several: curve.csv:stress@20,
+    "run.nc:-velocity@20.25 [mm/s]". Without a unit, SI. Stress is positive in compression; a minus
+    sign says that the file has the negative. Only the overlap in time is compared, at the times of
+    whichever has fewer samples there, the other interpolated linearly; amplitudes are never scaled,
+    and clocks never moved without --align.
+    """
     from compare import pairs, terminal, views
 
+    scenes = _load(scene, changes, variant)
+    curves = _read_curves(given, scenes, align)
     found = []
-    for one in _load(scene, changes, variant):
+    for one in scenes:
         with terminal.progress(one.name or one.title) as advance:
-            found.append(pairs.compare(one, advance, spectral))
+            found.append(pairs.compare(one, advance, spectral, curves, align))
     if out is not None:
         from compare.report import write_comparisons
 
         write_comparisons(found, out)
     views.show_comparisons(found, as_json)
+
+
+@app.command()
+def study(
+    name: Annotated[str, typer.Argument(help="A shipped study or a study's TOML file.")],
+    out: Annotated[Path, typer.Option(help="Folder for tables and points.")] = Path("studies"),
+    workers: Annotated[
+        int, typer.Option(min=1, help="Processes, where points are not timed.")
+    ] = os.cpu_count() or 1,
+    as_json: JsonOption = False,
+) -> None:
+    """Run a study: a scene solved in many ways, each with its error and its cost, as one table.
+
+    Points that are done are kept in DIR/NAME/ and not run again. Under mpiexec the processes share
+    the points; those of a timed study are run one at a time.
+    """
+    from compare import terminal
+    from compare.studies.pool import on_pool
+    from compare.studies.runner import run as run_points
+    from compare.studies.show import show_study
+    from compare.studies.study import load
+    from compare.studies.table import write_table
+
+    asked, stem = load(name), Path(name).stem
+    with terminal.progress(asked.title) as advance:
+        rows = on_pool(
+            started(), workers, lambda pool: run_points(asked, out / stem, pool, advance)
+        )
+    if rows is not None:
+        show_study(asked, rows, write_table(out, stem, asked, rows), as_json)
 
 
 @app.command()
@@ -182,6 +231,23 @@ def _load(scene: str, changes: list[str], variant: str | None) -> list[cases.Sce
     if variant is None:
         return cases.load(path, overrides)
     return [cases.load_variant(path, variant, overrides)]
+
+
+def _read_curves(given: list[str], scenes: list[cases.Scene], align: bool) -> list[Any]:
+    """Read what `--with` names; what is wrong with it is said before anything is solved."""
+    if not given:
+        if align:
+            raise SceneError("--align", "", None, "needs --with: there is no clock to move")
+        return []
+    from compare.aligned import common_times
+    from compare.curves import read_curves
+
+    curves = read_curves(given, scenes)
+    if not align:
+        for scene in scenes:
+            for one in curves:
+                common_times(one, scene)
+    return curves
 
 
 def _warn(scenes: list[cases.Scene]) -> None:

@@ -70,16 +70,14 @@ def stretch(scene: Scene, threads: int = 1) -> tuple[Callable[[], None], int]:
 
 
 def _along_axis(scene: Scene) -> tuple[Callable[[], None], int]:
-    from dem.axial.model import build
-    from dem.axial.record import room, run
+    from dem.axial.record import room
+    from dem.axial.simulate import scheme_of
 
-    model, state, time, _ = build(scene)
+    scheme = scheme_of(scene)
+    model, state, time, _ = scheme.build(scene)
     count = _samples(time, state.u.size)
-    samples = room(model, state, count)
-    return (
-        lambda: run(model, state, samples, time.stride, 0, count),
-        count * time.stride * state.u.size,
-    )
+    march = scheme.marcher(scene, model, state, room(model, state, count), time)
+    return lambda: march(0, count), count * time.stride * state.u.size
 
 
 def _in_space(scene: Scene, threads: int) -> tuple[Callable[[], None], int]:

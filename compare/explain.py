@@ -59,9 +59,9 @@ def _step(name: str, scene: Scene) -> StepChoice:
 
         _, _, time, critical = prepare(scene)
     elif name == "dem":
-        from dem.axial.model import build as build_chain
+        from dem.axial.simulate import scheme_of
 
-        _, _, time, critical = build_chain(scene)
+        _, _, time, critical = scheme_of(scene).build(scene)
     else:
         from continuum.simulate import steps_of
 

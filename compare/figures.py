@@ -6,6 +6,7 @@ Stress in MPa, compression positive, over time in ms, as in Guo & Li (2002).
 import io
 import re
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -14,10 +15,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from compare.aligned import Beside
 from compare.output import write, write_text
 from compare.pairs import Comparison
 from compare.panels import Panel, panels
-from compare.style import FAMILIES, RC, WIDTH, in_order, is_engine, style
+from compare.style import FAMILIES, GIVEN, MARKERS, RC, WIDTH, in_order, is_engine, style
 
 #: Factor from SI to the unit that is drawn, and that unit.
 UNITS = {
@@ -28,12 +30,14 @@ UNITS = {
 }
 
 DOTS = 160  # of the PNG, per inch
+MOST_MARKS = 150  # samples of a curve in a panel that are marked one by one
 
 
 def draw(name: str, comparisons: list[Comparison]) -> Figure:
     """Return a figure of all variants; `name` scopes the ids of its parts ("fig-03").
 
-    The curve of solution S in row i, column j is the SVG group NAME-i-j-S.
+    The curve of solution S in row i, column j is the SVG group NAME-i-j-S, that of the k-th file of
+    others NAME-i-j-given-k.
     """
     grid = panels(comparisons)
     rows, columns = len(grid), max(map(len, grid))
@@ -49,7 +53,8 @@ def draw(name: str, comparisons: list[Comparison]) -> Figure:
                     f"({chr(97 + i * columns + j)})  {panel.place}, {panel.variant}", pad=4
                 )
         _label_axes(axes, grid, alike)
-        _add_legend(figure, {n for row in grid for panel in row for n in panel.curves})
+        names = {n for row in grid for panel in row for n in panel.curves}
+        _add_legend(figure, names, comparisons[0].besides)
     return figure
 
 
@@ -59,6 +64,12 @@ def _draw_panel(ax: Axes, panel: Panel, gid: str) -> None:
     for name, curve in panel.curves.items():
         (line,) = ax.plot(1e3 * curve.index, factor * curve.values, **style(name).of_line())
         line.set_gid(f"{gid}-{name}")
+    given = panel.given
+    for k, beside in enumerate(panel.comparison.besides):
+        if beside.curves.name in given:
+            curve = given[beside.curves.name]
+            (line,) = ax.plot(1e3 * curve.index, factor * curve.values, **_of_given(k, beside))
+            line.set_gid(f"{gid}-given-{k}")
     ax.margins(x=0)
 
 
@@ -70,7 +81,14 @@ def _label_axes(axes: np.ndarray, grid: list[list[Panel]], alike: bool) -> None:
         ax.set_xlabel("time (ms)")
 
 
-def _add_legend(figure: Figure, names: set[str]) -> None:
+def _of_given(k: int, beside: Beside) -> dict[str, Any]:
+    """Return how the curve of the k-th file of others is drawn, its samples marked if few."""
+    look = GIVEN[k % len(GIVEN)].of_line()
+    marker = {"marker": MARKERS[k % len(MARKERS)], "markersize": 3.0, "markerfacecolor": "none"}
+    return look | marker if len(beside.time) <= MOST_MARKS else look
+
+
+def _add_legend(figure: Figure, names: set[str], besides: list[Beside]) -> None:
     """Put one column of entries per model above the panels, where it hides no curve."""
     columns = [
         [_heading(family), *(_entry(name) for name in styles if name in names)]
@@ -80,6 +98,12 @@ def _add_legend(figure: Figure, names: set[str]) -> None:
     known = {name for styles in FAMILIES.values() for name in styles}
     if names - known:
         columns.append([_heading("Other"), *(_entry(name) for name in in_order(names - known))])
+    if besides:
+        entries = [
+            Line2D([], [], label=_short(beside.curves.name), **_of_given(k, beside))
+            for k, beside in enumerate(besides)
+        ]
+        columns.append([_heading("Given"), *entries])
     depth = max(map(len, columns))
     handles = [h for column in columns for h in column + [_heading("")] * (depth - len(column))]
     legend = figure.legend(
@@ -93,7 +117,7 @@ def _add_legend(figure: Figure, names: set[str]) -> None:
         labelspacing=0.25,
     )
     for text in legend.get_texts():
-        if text.get_text() in FAMILIES:
+        if text.get_text() in (*FAMILIES, "Given"):
             text.set_fontweight("bold")
     top = 1 - (0.16 + 0.165 * depth) / figure.get_figheight()
     figure.tight_layout(rect=(0, 0, 1, top), h_pad=0.8, w_pad=1.5)
@@ -101,6 +125,11 @@ def _add_legend(figure: Figure, names: set[str]) -> None:
 
 def _heading(text: str) -> Line2D:
     return Line2D([], [], linestyle="none", label=text)
+
+
+def _short(file: str) -> str:
+    """Return a file's name as a legend has room for; a dollar sign would begin a formula."""
+    return (file if len(file) <= 28 else f"{file[:12]}…{file[-15:]}").replace("$", r"\$")
 
 
 def _entry(name: str) -> Line2D:

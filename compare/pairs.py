@@ -1,6 +1,6 @@
 """A scene solved by all that applies to it, and how far apart the solutions are, pair by pair."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -8,6 +8,8 @@ import numpy as np
 import xarray as xr
 
 from cases.scene import Scene
+from compare.aligned import Beside, distances, lay_beside
+from compare.curves import Curves
 from compare.engines import Progress, applies, names, solve
 from compare.metrics import Distance, distance
 
@@ -23,6 +25,7 @@ class Pair(NamedTuple):
 NUMERICAL = "numerical error"
 MODELLING = "modelling error"
 ENGINES = "between engines"
+GIVEN = "given curves"  # those of others
 ROUND_OFF = 1e-9  # of the largest stress
 QUANTITIES = ("stress", "shear", "velocity", "rotation")
 
@@ -64,18 +67,27 @@ class Comparison:
     """One variant of a scene, everything that solved it, and why the rest did not.
 
     results : by name. reasons : name to reason, of what does not apply. rows : the distances.
+    besides : the curves of others, a file each.
     """
 
     scene: Scene
     results: dict[str, xr.Dataset] = field(default_factory=dict)
     reasons: dict[str, str] = field(default_factory=dict)
     rows: list[Row] = field(default_factory=list)
+    besides: list[Beside] = field(default_factory=list)
 
 
-def compare(scene: Scene, progress: Progress | None = None, spectral: bool = False) -> Comparison:
+def compare(
+    scene: Scene,
+    progress: Progress | None = None,
+    spectral: bool = False,
+    curves: Sequence[Curves] = (),
+    align: bool = False,
+) -> Comparison:
     """Solve a scene by everything that applies to it and measure every pair.
 
-    `progress` is called with the finished fraction; `spectral` adds envelope and phase misfits.
+    `progress` is called with the finished fraction; `spectral` adds envelope and phase misfits;
+    `curves` of others are held against every solution, their clocks moved onto it by `align`.
     """
     comparison, everything = Comparison(scene), names()
     for i, name in enumerate(everything):
@@ -88,6 +100,10 @@ def compare(scene: Scene, progress: Progress | None = None, spectral: bool = Fal
             progress((i + 1) / len(everything))
     displaced = scene.gravity is not None or scene.prestress is not None
     comparison.rows = measure(comparison.results, spectral, displaced)
+    for one in curves:
+        beside = lay_beside(one, scene, comparison.results, align)
+        comparison.besides.append(beside)
+        comparison.rows += measure_curves(beside, comparison.results, spectral)
     return comparison
 
 
@@ -111,6 +127,18 @@ def measure(
                     Row(pair, quantity, y, distance(a, b, dt, spectral))
                     for y, a, b in _waveforms(one, other, quantity)
                 ]
+    return rows
+
+
+def measure_curves(
+    beside: Beside, results: dict[str, xr.Dataset], spectral: bool = False
+) -> list[Row]:
+    """Return the distances of a file's curves from every solution that has a waveform there."""
+    rows = []
+    for name, place, found in distances(beside, results, spectral):
+        spatial = place.axis and np.size(results[name].get("axis", "y")) > 1
+        quantity = f"{place.quantity} {place.axis}" if spatial else place.quantity
+        rows.append(Row(Pair(beside.curves.name, name, GIVEN), quantity, place.y, found))
     return rows
 
 

@@ -7,6 +7,7 @@ import pandas as pd
 import xarray as xr
 
 from cases.scene import Scene
+from compare.curves import Place
 from compare.pairs import Comparison
 from compare.style import in_order
 
@@ -33,6 +34,17 @@ class Panel(NamedTuple):
     def place(self) -> str:
         """Quantity, component and receiver, in words."""
         return f"{self.quantity}{self._axis} at y = {self.y:g} m"
+
+    @property
+    def given(self) -> dict[str, pd.Series]:
+        """The curves of others here: their own samples while the scene lasts, by their file."""
+        axis = self._axis.strip() or ("" if self.quantity in FORCES else "y")
+        place = Place(self.quantity, axis, self.y)
+        return {
+            beside.curves.name: beside.series(place)
+            for beside in self.comparison.besides
+            if place in beside.curves.waveforms
+        }
 
     @property
     def _axis(self) -> str:
@@ -130,6 +142,6 @@ def curve_table(comparisons: list[Comparison]) -> pd.DataFrame:
     for row in panels(comparisons):
         for panel in row:
             unit = UNITS[panel.quantity]
-            for name, curve in panel.curves.items():
+            for name, curve in [*panel.curves.items(), *panel.given.items()]:
                 columns[f"{name} | {panel.place} | {panel.variant} ({unit})"] = curve
     return pd.DataFrame(columns).rename_axis("time (s)")

@@ -14,9 +14,10 @@ from compare import tables
 from compare.engines import Progress
 from compare.findings import Finding
 from compare.findings.overview import mostly_dispersion
-from compare.output import write_text
+from compare.output import write, write_text
 from compare.page import Motion, Section, make_motion, make_section, render, write_figure
 from compare.pairs import Comparison, compare
+from compare.studies.section import REPORTED, make_sections, measured_on
 
 SCENES = Path(cases.__file__).parent / "guo-li-2002"
 
@@ -50,9 +51,14 @@ class Report:
 
 
 def build(
-    out: Path, progress: Progress | None = None, workers: int = 2, scenes: Path = SCENES
+    out: Path,
+    progress: Progress | None = None,
+    workers: int = 2,
+    scenes: Path = SCENES,
+    studies: tuple[str, ...] = REPORTED,
 ) -> Report:
-    """Solve the scene of every figure and write figures, CSV tables and `out`/index.html.
+    """Solve the scene of every figure, run the studies, and write figures, CSV tables and
+    `out`/index.html.
 
     `progress` is called with the finished fraction; `scenes` is a folder of fig-NN.toml.
     Raises SceneError and UnstableError, as `compare` does; the page is then not written.
@@ -65,15 +71,33 @@ def build(
         overview = mostly_dispersion(figures[FREE_PILLAR][0])
         free = tables.misfit_table(figures[FREE_PILLAR])
     summary = tables.summary_table({f"fig. {s.number}": figures[s.name] for s in sections})
-    html = render(sections, figures, overview=overview, free=free, summary=summary, motion=motion)
+    # Seconds count: after everything else, and alone.
+    measured = make_sections(Path(out), studies)
+    html = render(
+        sections,
+        figures,
+        overview=overview,
+        free=free,
+        summary=summary,
+        motion=motion,
+        studies=measured,
+        machine=measured_on(),
+    )
     page = write_text(Path(out) / "index.html", html)
     found = {section.number: section.findings for section in sections}
     return Report(page, summary, overview, found, perf_counter() - began)
 
 
 def write_comparisons(comparisons: list[Comparison], out: Path) -> None:
-    """Write the figure, the curves and the distances of one scene's variants into a folder."""
+    """Write the figure, the curves and the distances of one scene's variants into a folder.
+
+    With curves of others also how they were aligned, as comparison-alignment.csv.
+    """
     write_figure(Path(out), "comparison", comparisons)
+    if any(comparison.besides for comparison in comparisons):
+        frame = tables.alignment_frame(comparisons)
+        file = Path(out) / "comparison-alignment.csv"
+        write(file, lambda path: frame.to_csv(path, float_format="%.9g", index=False))
 
 
 def _compute(

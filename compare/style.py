@@ -66,6 +66,16 @@ FAMILIES: dict[str, dict[str, Style]] = {
     },
 }
 
+#: Of others' curves, one file after the other: black and grey, which no solution has, between
+#: engines and exact solutions.
+GIVEN = (
+    Style("#000000", 0.9, "-", 3),
+    Style("#6e6e6e", 0.9, (0, (6, 2)), 3),
+    Style("#000000", 0.9, (0, (1.5, 1.5)), 3),
+    Style("#6e6e6e", 0.9, (0, (6, 2, 1.5, 2)), 3),
+)
+MARKERS = "oxs+"  # of the samples, where they are few enough to be told apart
+
 STYLES = {name: style for family in FAMILIES.values() for name, style in family.items()}
 
 RC: dict[Any, Any] = {

@@ -1,6 +1,6 @@
 """The tables of the report, as plain text in rows."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from math import isfinite
 from typing import NamedTuple
 
@@ -8,7 +8,7 @@ import pandas as pd
 
 from cases.result import energy_residual
 from compare.metrics import misfit
-from compare.pairs import PAIRS, Comparison, Pair, Row
+from compare.pairs import GIVEN, PAIRS, Comparison, Pair, Row
 from compare.panels import variant_names
 
 #: What each pair's distance is made of.
@@ -71,16 +71,26 @@ def misfit_table(comparisons: list[Comparison]) -> Table:
         found = [cells[pair].get(column, "") for column in columns]
         return [title(pair), MEANING.get(title(pair), ""), *found]
 
-    return Table(header, _by_kind(lambda pair: [line(pair)] if pair in cells else []))
+    return Table(
+        header, _by_kind(lambda pair: [line(pair)] if pair in cells else [], given(comparisons))
+    )
 
 
 def _longest(comparisons: list[Comparison]) -> list[Row]:
     return max((c.rows for c in comparisons), key=len)
 
 
-def _by_kind(lines: Callable[[Pair], list[list[str]]]) -> dict[str, list[list[str]]]:
+def given(comparisons: list[Comparison]) -> list[Pair]:
+    """Return the pairs of others' curves, a file after the other."""
+    rows = [row for comparison in comparisons for row in comparison.rows]
+    return list(dict.fromkeys(row.pair for row in rows if row.pair.kind == GIVEN))
+
+
+def _by_kind(
+    lines: Callable[[Pair], list[list[str]]], more: Iterable[Pair] = ()
+) -> dict[str, list[list[str]]]:
     groups: dict[str, list[list[str]]] = {}
-    for pair in PAIRS:
+    for pair in (*PAIRS, *more):
         if found := lines(pair):
             groups.setdefault(pair.kind, []).extend(found)
     return groups
@@ -111,7 +121,7 @@ def distance_table(comparisons: list[Comparison]) -> Table:
             if row.pair == pair
         ]
 
-    return Table(DISTANCE_HEADER, _by_kind(lines))
+    return Table(DISTANCE_HEADER, _by_kind(lines, given(comparisons)))
 
 
 def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
@@ -132,6 +142,27 @@ def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
         }
         for name, comparison in zip(variant_names(comparisons), comparisons, strict=True)
         for row in comparison.rows
+    )
+
+
+def alignment_frame(comparisons: list[Comparison]) -> pd.DataFrame:
+    """Return how each file of others' curves was put beside each variant, SI."""
+    return pd.DataFrame(
+        {
+            "file": beside.curves.name,
+            "variant": name,
+            "samples": len(beside.time),
+            "times": "file" if beside.own_times else "scene",
+            "start (s)": beside.time[0],
+            "end (s)": beside.time[-1],
+            "outside": beside.outside,
+            "missed": beside.missed,
+            "moved by (s)": beside.shift.seconds if beside.shift else 0.0,
+            "onto": beside.shift.onto if beside.shift else "",
+            "correlation": beside.shift.correlation if beside.shift else None,
+        }
+        for name, comparison in zip(variant_names(comparisons), comparisons, strict=True)
+        for beside in comparison.besides
     )
 
 

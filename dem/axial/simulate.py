@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from cases.calibrate import calibrate
 from cases.result import Fields, fields
+from cases.sampling import Clock
 from cases.scene import Scene
 from dem.axial.model import Model, build
-from dem.axial.record import room, run, terms
+from dem.axial.record import Samples, room, run, terms
 from dem.axial.start import start
 from dem.axial.state import State
 from dem.fragments import break_times, with_fragments
@@ -22,19 +23,51 @@ if TYPE_CHECKING:
     from dem.snapshots import BlockFilm
 
 
+March = Callable[[int, int], None]
+
+
+class Scheme(NamedTuple):
+    """How the chain is stepped.
+
+    build : of (scene), to the model that is recorded, the state, the clock and the critical step.
+    marcher : of (scene, model, state, samples, clock), to what takes samples first .. last - 1.
+    forces : how often a step computes the force of every joint.
+    """
+
+    build: Callable[[Scene], tuple[Model, State, Clock, float]]
+    marcher: Callable[[Scene, Model, State, Samples, Clock], March]
+    forces: int
+
+
+def _leapfrog(scene: Scene, model: Model, state: State, samples: Samples, time: Clock) -> March:
+    def march(first: int, last: int) -> None:
+        run(model, state, samples, time.stride, first, last)
+
+    return march
+
+
+def scheme_of(scene: Scene) -> Scheme:
+    """Return how a scene's chain is stepped; a scheme that it does not name is not imported."""
+    if scene.numerics.dem.scheme == "leapfrog":
+        return Scheme(build, _leapfrog, 1)
+    from dem.axial import fourth_order
+    from dem.axial.composition import KICKS
+
+    return Scheme(fourth_order.build, fourth_order.marcher, len(KICKS))
+
+
 def simulate_fields(scene: Scene, progress: Callable[[float], None] | None = None) -> Fields:
     """Simulate a scene of axial motion, one freedom a block."""
     began = perf_counter()
-    model, state, time, critical = build(scene)
+    scheme = scheme_of(scene)
+    model, state, time, critical = scheme.build(scene)
     rest = start(scene, model, state)
     samples = room(model, state, time.samples)
+    march = scheme.marcher(scene, model, state, samples, time)
     built = perf_counter()
-    run(model, state, samples, time.stride, 0, 0)
+    march(0, 0)
     film = _film(scene, model, state, time.stride)
     compiled = perf_counter()
-
-    def march(first: int, last: int) -> None:
-        run(model, state, samples, time.stride, first, last)
 
     def check(stretch: Stretch) -> None:
         stretch.refuse_unless(bool(np.isfinite(state.u).all()))
@@ -54,6 +87,7 @@ def simulate_fields(scene: Scene, progress: Callable[[float], None] | None = Non
         dt=time.dt,
         critical_dt=critical,
         steps=time.steps,
+        force_evaluations=scheme.forces * time.steps,
         degrees_of_freedom=state.u.size,
         threads=1,
         **({} if rest is None else rest.attributes),

@@ -1,0 +1,186 @@
+"""Waveforms of others as files hold them: a CSV or NetCDF file as named columns over time."""
+
+import csv
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from cases.errors import SceneError
+from cases.files import read_text
+from cases.history import LARGEST, LARGEST_FILE
+
+LEAST_SAMPLES = 3  # what a parabola through the peak of a correlation takes
+NETCDF = (".nc", ".nc3", ".nc4", ".netcdf", ".cdf")
+
+#: By quantity: the dimension of its receivers and that of its components, as results have them.
+DIMENSIONS = {
+    "stress": ("stress_y", "across"),
+    "shear": ("stress_y", "across"),
+    "velocity": ("velocity_y", "axis"),
+    "displacement": ("velocity_y", "axis"),
+    "rotation": ("velocity_y", "axis"),
+}
+
+
+class Column(NamedTuple):
+    """The numbers of one column [n] in the file's unit; unit is empty where the file has none."""
+
+    name: str
+    unit: str
+    values: np.ndarray
+
+
+class Columns(NamedTuple):
+    """A file's columns over one time; `row` says where in the file sample i stands."""
+
+    time: Column
+    rest: list[Column]
+    row: Callable[[int], str]
+
+
+def read_columns(path: Path) -> Columns:
+    """Return the columns of a NetCDF file, known by its suffix, or of a CSV file.
+
+    Raises SceneError, which names file, row and what is allowed: times must increase strictly, and
+    every number be finite and at most 1e30.
+    """
+    found = (_read_netcdf if path.suffix.lower() in NETCDF else _read_csv)(path)
+    time = found.time.values
+    if len(time) < LEAST_SAMPLES:
+        allowed = f"must hold at least {LEAST_SAMPLES} samples, not {len(time)}"
+        raise SceneError(str(path), "", None, allowed)
+    for column in (found.time, *found.rest):
+        wrong = ~(np.abs(column.values) <= LARGEST)
+        if wrong.any():
+            i = int(np.argmax(wrong))
+            value = float(column.values[i])
+            allowed = "must be a finite number of at most 1e30"
+            raise SceneError(found.row(i), column.name or "value", value, allowed)
+    late = np.diff(time) <= 0
+    if late.any():
+        i = int(np.argmax(late))
+        fault = "is there twice; each time must be" if time[i] == time[i + 1] else "must be"
+        allowed = f"{fault} later than the one before it, {time[i]:.12g}"
+        raise SceneError(found.row(i + 1), "time", float(time[i + 1]), allowed)
+    return found
+
+
+def split_unit(text: str) -> tuple[str, str]:
+    """Return name and unit of `name [unit]` or `name (unit)`; the unit is empty without one."""
+    text = text.strip()
+    for opening, closing in ("[]", "()"):
+        if text.endswith(closing) and opening in text:
+            name, _, unit = text[:-1].rpartition(opening)
+            return name.strip(), unit.strip()
+    return text, ""
+
+
+def _read_csv(path: Path) -> Columns:
+    try:
+        rows = list(_rows(read_text(path, LARGEST_FILE).splitlines()))
+    except ValueError as error:
+        raise SceneError(str(path), "", None, str(error)) from None
+    named = bool(rows) and not _is_number(rows[0][1][0])
+    header = rows.pop(0)[1] if named else ["time", ""]
+    numbers = [number for number, _ in rows]
+
+    def row(i: int) -> str:
+        return f"{path}, line {numbers[i]}"
+
+    data = np.array([_numbers(row(i), header, cells) for i, (_, cells) in enumerate(rows)])
+    data = data.reshape(-1, len(header))
+    columns = [Column(*split_unit(text), data[:, i]) for i, text in enumerate(header)]
+    times = [c for c in columns if c.name.lower() == "time"]
+    if len(times) != 1 or len(columns) < 2:
+        allowed = "must name one column time, and one or more as stress@20"
+        raise SceneError(str(path), "header", ", ".join(header), allowed)
+    return Columns(times[0], [c for c in columns if c is not times[0]], row)
+
+
+def _rows(lines: list[str]) -> Iterator[tuple[int, list[str]]]:
+    """Yield line number and cells, separated by what the first line that is no comment has."""
+    separator = ""
+    for number, line in enumerate(lines, 1):
+        text = line.split("#", 1)[0].strip()
+        if not text:
+            continue
+        separator = separator or next((s for s in ";\t" if s in text), ",")
+        try:
+            cells = next(csv.reader([text], delimiter=separator, skipinitialspace=True))
+        except csv.Error:
+            raise ValueError(f"is not a CSV file (line {number})") from None
+        yield number, [cell.strip() for cell in cells]
+
+
+def _numbers(where: str, header: list[str], cells: list[str]) -> list[float]:
+    if len(cells) != len(header):
+        columns = ", ".join(header) if header[1] else "time and value, without a header"
+        allowed = f"must hold {len(header)} numbers ({columns}), not {len(cells)}"
+        raise SceneError(where, "", None, allowed)
+    for name, cell in zip(header, cells, strict=True):
+        if not _is_number(cell):
+            raise SceneError(where, name or "value", cell, "must be a number")
+    return [float(cell) for cell in cells]
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
+
+
+def _read_netcdf(path: Path) -> Columns:
+    try:
+        # Undecoded, times keep the numbers and the unit that the file gives them.
+        found = xr.load_dataset(path, decode_times=False)
+    except FileNotFoundError as error:
+        raise SceneError(str(path), "", None, f"cannot be read: {error.strerror}") from None
+    except Exception as error:  # of whichever library xarray finds, on a file that is not whole
+        reason = str(error).partition(". ")[0]
+        raise SceneError(str(path), "", None, f"cannot be read as NetCDF: {reason}") from None
+    if "time" not in found.variables or found.time.dims != ("time",):
+        raise SceneError(str(path), "time", None, "must be a coordinate over itself")
+    columns = [
+        column
+        for quantity in DIMENSIONS
+        if quantity in found
+        for column in _columns_of(path, found[quantity])
+    ]
+    if not columns:
+        allowed = f"must hold one or more of {', '.join(DIMENSIONS)} over time"
+        raise SceneError(str(path), "", None, allowed)
+    time = Column("time", _unit(found.time), _floats(path, found.time))
+    return Columns(time, columns, lambda i: f"{path}, sample {i}")
+
+
+def _columns_of(path: Path, variable: xr.DataArray) -> Iterator[Column]:
+    """Yield `velocity_x@20` for each component and receiver; what the file lacks is left out."""
+    name = str(variable.name)
+    place, component = DIMENSIONS[name]
+    if not {"time"} <= set(variable.dims) <= {"time", place, component}:
+        allowed = f"must have the dimension time, and at most {place} and {component} beside it"
+        raise SceneError(str(path), name, ", ".join(map(str, variable.dims)), allowed)
+    # A receiver that was selected from a result is still there, as a coordinate without dimension.
+    for key in (place, component):
+        if key not in variable.dims:
+            variable = variable.expand_dims(key)
+    values = _floats(path, variable.transpose(place, component, "time"))
+    for i, j in np.ndindex(values.shape[:2]):
+        axis = f"_{variable[component].values[j]}" if component in variable.coords else ""
+        at = f"@{float(variable[place][i]):.12g}" if place in variable.coords else ""
+        yield Column(f"{name}{axis}{at}", _unit(variable), values[i, j])
+
+
+def _unit(variable: xr.DataArray) -> str:
+    return str(variable.attrs.get("units", "")).strip()
+
+
+def _floats(path: Path, variable: xr.DataArray) -> np.ndarray:
+    if variable.dtype.kind not in "fiu":
+        raise SceneError(str(path), str(variable.name), None, "must hold numbers")
+    return variable.values.astype(float)

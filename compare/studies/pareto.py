@@ -1,0 +1,53 @@
+"""Which points of a study no other one beats, and what the cheapest of them reach."""
+
+import math
+from typing import NamedTuple
+
+from compare.studies.measure import Row
+
+TARGETS = (0.1, 0.01, 1e-3, 1e-4)
+
+
+class Cheapest(NamedTuple):
+    """The cheapest point within a misfit."""
+
+    misfit: float
+    row: Row
+
+
+def measured(rows: list[Row], error: str, cost: str) -> list[Row]:
+    """Return the rows that have both numbers, of points that were done."""
+    return [
+        row
+        for row in rows
+        if row.state == "done" and getattr(row, error) > 0 and getattr(row, cost) > 0
+    ]
+
+
+def front(rows: list[Row], error: str = "total", cost: str = "seconds") -> list[Row]:
+    """Return the points that no other one beats in both, the cheapest first (Pareto's front)."""
+    found: list[Row] = []
+    least = math.inf
+    ordered = sorted(
+        measured(rows, error, cost), key=lambda row: (getattr(row, cost), getattr(row, error))
+    )
+    for row in ordered:
+        if getattr(row, error) < least:
+            least = getattr(row, error)
+            found.append(row)
+    return found
+
+
+def cheapest(rows: list[Row], error: str = "total", cost: str = "seconds") -> list[Cheapest]:
+    """Return the cheapest point within each of `TARGETS`, as far as there are any."""
+    found = []
+    for target in TARGETS:
+        within = [r for r in front(rows, error, cost) if getattr(r, error) <= target]
+        if within:
+            found.append(Cheapest(target, within[0]))
+    return found
+
+
+def digits_per_second(row: Row, error: str = "total") -> float:
+    """Return the decimal digits that a point gets right over the seconds that it steps."""
+    return -math.log10(getattr(row, error)) / row.seconds

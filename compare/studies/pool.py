@@ -1,0 +1,36 @@
+"""What maps the points of a study: processes of this machine, or of a cluster by mpi4py."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor, ProcessPoolExecutor
+from functools import partial
+from multiprocessing import get_context
+from typing import TypeVar
+
+from compare.processes import Processes
+
+T = TypeVar("T")
+Pool = Callable[[], Executor]
+
+
+def on_pool(processes: Processes, workers: int, work: Callable[[Pool | None], T]) -> T | None:
+    """Return what `work` makes of a pool; of several MPI processes the first works with the others
+    as its pool, and these return None when it has done.
+
+    workers : processes of this machine where MPI has started none; 1: none but this one.
+    """
+    if processes.comm is None:
+        pool = partial(ProcessPoolExecutor, workers, get_context("spawn"))
+        return work(pool if workers > 1 else None)
+    from mpi4py.futures import MPICommExecutor
+
+    with MPICommExecutor(processes.comm, root=0) as executor:
+        return None if executor is None else work(lambda: _Lent(executor))
+
+
+class _Lent(Executor):
+    """An executor that outlives those who use it."""
+
+    def __init__(self, executor: Executor) -> None:
+        self.submit = executor.submit  # type: ignore[method-assign]

@@ -1,0 +1,66 @@
+"""A study's section of the report: its diagrams, its table, and what it shows."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+from compare.engines import Progress
+from compare.figures import save
+from compare.studies.diagram import draw
+from compare.studies.findings import sentences
+from compare.studies.measure import Row
+from compare.studies.orders import orders
+from compare.studies.runner import run
+from compare.studies.show import COLUMNS, cells, sentence
+from compare.studies.study import load
+from compare.studies.table import machine, write_table
+from compare.tables import Table
+
+#: The studies of the report, in its order.
+REPORTED = ("free-pillar", "convergence", "uniform-chain")
+
+
+class StudySection(NamedTuple):
+    """One study of the page; `name` is that of its files."""
+
+    name: str
+    title: str
+    note: str
+    svg: str
+    sentences: list[str]
+    table: Table
+    failed: list[str]
+
+
+def make_sections(
+    out: Path, names: tuple[str, ...] = REPORTED, progress: Progress | None = None
+) -> list[StudySection]:
+    """Run studies one after the other, here and alone; write figures and tables into `out`."""
+    found = []
+    for i, name in enumerate(names):
+        found.append(_section(out / "studies", name))
+        if progress:
+            progress((i + 1) / len(names))
+    return found
+
+
+def _section(folder: Path, name: str) -> StudySection:
+    study = load(name)
+    rows = run(study, folder / name)
+    write_table(folder, name, study, rows)
+    svg = save(draw(name, study, rows), folder, name, study.title)
+    said = sentences(study, rows) + [sentence(order) + "." for order in orders(study, rows)]
+    failed = [f"{row.curve}: {row.message}" for row in rows if row.state == "failed"]
+    return StudySection(name, study.title, study.note, svg, said, _table(rows), failed)
+
+
+def _table(rows: list[Row]) -> Table:
+    groups: dict[str, list[list[str]]] = {}
+    for row in rows:
+        groups.setdefault(row.curve, []).append(cells(row))
+    return Table(COLUMNS, groups)
+
+
+def measured_on() -> str:
+    """Return the machine that seconds were measured on, in words."""
+    about = machine()
+    return f"{about['processor']}, {about['cores']} cores, numba {about['numba']}"

@@ -1,0 +1,69 @@
+"""What a study has found, on the terminal."""
+
+from math import isfinite, isnan
+from pathlib import Path
+
+from compare.studies.findings import sentences
+from compare.studies.measure import Row
+from compare.studies.orders import Order, orders
+from compare.studies.study import Study
+from compare.terminal import print_json, say, show_numbers
+
+COLUMNS = ["point", "numerical, %", "total, %", "steps", "freedom-steps", "seconds", "±"]
+
+
+def show_study(study: Study, rows: list[Row], files: tuple[Path, ...], as_json: bool) -> None:
+    """Print the table of a study, its orders, and what failed."""
+    found = orders(study, rows)
+    if as_json:
+        print_json(
+            {
+                "rows": [_without_nan(row._asdict()) for row in rows],
+                "orders": [_without_nan(order._asdict()) for order in found],
+                "files": [str(file) for file in files],
+            }
+        )
+        return
+    groups: dict[str, list[list[str]]] = {}
+    for row in rows:
+        groups.setdefault(row.curve, []).append(cells(row))
+    show_numbers(COLUMNS, groups)
+    for line in [sentence(order) for order in found] + sentences(study, rows):
+        say(line)
+    for row in rows:
+        if row.state == "failed":
+            say(f"failed: {row.curve}, {_settings(row)}: {row.message}")
+    if study.note:
+        say(study.note)
+    say(f"written: {', '.join(map(str, files))}")
+
+
+def _without_nan(facts: dict) -> dict:
+    """Return facts as JSON can say them."""
+    return {k: None if isinstance(v, float) and isnan(v) else v for k, v in facts.items()}
+
+
+def sentence(order: Order) -> str:
+    """Return what was measured beside what theory says."""
+    return f"{order.curve}: order {order.measured:.2f} with {order.key}, in theory {order.theory:g}"
+
+
+def cells(row: Row) -> list[str]:
+    """Return a row as text, under `COLUMNS`."""
+    return [
+        _settings(row) or "as it stands",
+        _number(100 * row.numerical, ".3g"),
+        _number(100 * row.total, ".3g"),
+        _number(row.steps, ".0f"),
+        _number(row.work, ".2e"),
+        _number(row.seconds, ".3g"),
+        _number(row.spread, ".1g"),
+    ]
+
+
+def _settings(row: Row) -> str:
+    return ", ".join(f"{k.rpartition('.')[2]} {v}" for k, v in row.settings.items())
+
+
+def _number(value: float, form: str) -> str:
+    return f"{value:{form}}" if isfinite(value) else ""

@@ -1,0 +1,137 @@
+"""What a study is: a scene, curves of what is varied, and what errors are measured against."""
+
+import tomllib
+from collections.abc import Iterator
+from itertools import product
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+import cases
+from cases.errors import SceneError
+from cases.files import read_text
+from cases.scene import Scene
+from compare.scenes import find
+
+LARGEST_FILE = 1_000_000  # bytes
+SHIPPED = Path(__file__).parent
+
+
+class Table(BaseModel):
+    """A table of a study's file; unknown keys are errors."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Curve(Table):
+    """One way to solve the scene, with what of it is varied.
+
+    method : an engine, an exact solution, or a method of `compare.studies.methods`.
+    vary : dotted keys and their values, all combinations; `terms` is an exact series' own.
+    own : the exact solution of the curve's own model, for its numerical error; absent: none.
+    order : in theory, of the numerical error, with the first varied key or, where that falls as
+        its value grows (elements, steps per period), with its inverse.
+    """
+
+    label: str
+    method: str
+    changes: dict[str, Any] = Field(default_factory=dict)
+    vary: dict[str, Annotated[list[Any], Field(min_length=1)]] = Field(default_factory=dict)
+    own: str | None = None
+    order: float | None = None
+
+    def settings(self) -> Iterator[dict[str, Any]]:
+        """Yield the varied keys of every point."""
+        for values in product(*self.vary.values()):
+            yield dict(zip(self.vary, values, strict=True))
+
+
+class Study(Table):
+    """A scene, the finest physics that it is known by, and curves.
+
+    finest : the exact solution or engine that total errors are measured against; absent: none.
+    quantity : what misfits are taken over; absent: `compare.metrics.misfit` decides.
+    note : what to know when reading it.
+    timed : whether seconds count: points are then run one at a time, `repeats` times each.
+    """
+
+    title: str
+    scene: str
+    variant: str = ""
+    changes: dict[str, Any] = Field(default_factory=dict)
+    finest: str | None = None
+    quantity: Literal["stress", "velocity", "displacement"] | None = None
+    note: str = ""
+    timed: bool = False
+    repeats: Annotated[int, Field(ge=1, le=100)] = 3
+    curves: Annotated[list[Curve], Field(min_length=1)]
+
+    @property
+    def base(self) -> Scene:
+        """The scene without what curves change."""
+        return self.changed({})
+
+    def changed(self, changes: dict[str, Any]) -> Scene:
+        """Return the scene with changes; raises SceneError where there is none."""
+        changes = self.changes | changes | {"expect": {}}
+        return cases.load_variant(find(self.scene), self.variant, changes)
+
+    def points(self) -> list["Point"]:
+        """Return all points, curve by curve."""
+        return [
+            Point(study=self, curve=curve, settings=settings)
+            for curve in self.curves
+            for settings in curve.settings()
+        ]
+
+
+class Point(Table):
+    """One run of a study: a curve with one value of each varied key."""
+
+    study: Study
+    curve: Curve
+    settings: dict[str, Any]
+
+    @property
+    def scene(self) -> Scene:
+        """The scene that is solved; raises SceneError where there is none."""
+        changes = self.curve.changes | self.settings
+        return self.study.changed({k: v for k, v in changes.items() if k not in ARGUMENTS})
+
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """What is varied beside the scene's keys, such as the terms of a series."""
+        everything = self.curve.changes | self.settings
+        return {key: value for key, value in everything.items() if key in ARGUMENTS}
+
+
+#: Settings that are no keys of a scene.
+ARGUMENTS = ("n_terms", "rtol")
+
+
+def shipped() -> dict[str, Path]:
+    """Return the shipped studies by name."""
+    return {path.stem: path for path in sorted(SHIPPED.glob("*.toml"))}
+
+
+def load(name: str) -> Study:
+    """Read a shipped study or a study's file; raises SceneError, in one line."""
+    path = shipped().get(name, Path(name))
+    if not path.is_file():
+        raise SceneError(name, "", None, f"is no file, nor one of {', '.join(shipped())}")
+    try:
+        table = tomllib.loads(read_text(path, LARGEST_FILE))
+    except ValueError as error:
+        raise SceneError(str(path), "", None, f"is not valid TOML: {error}") from None
+    try:
+        return Study.model_validate(table)
+    except ValidationError as error:
+        raise _study_error(path, error) from None
+
+
+def _study_error(path: Path, error: ValidationError) -> SceneError:
+    first = error.errors()[0]
+    key = ".".join(str(part) for part in first["loc"])
+    value = None if isinstance(first["input"], dict) else first["input"]
+    return SceneError(str(path), key, value, first["msg"].lower())

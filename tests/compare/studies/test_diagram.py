@@ -1,0 +1,43 @@
+"""Work-precision diagrams show every point, and sentences say their numbers."""
+
+import numpy as np
+
+from compare.studies.diagram import draw
+from compare.studies.findings import sentences
+from compare.studies.pareto import measured
+from compare.studies.runner import run
+
+
+def test_every_point_is_drawn_where_it_was_measured(study, tmp_path):
+    """Two errors over two costs; each curve's line holds its points, the cheapest first."""
+    timed = study(timed=True, repeats=1, finest="jointed-bar")
+    rows = run(timed, tmp_path)
+    figure = draw("wp", timed, rows)
+    lines = {line.get_gid(): line for ax in figure.axes for line in ax.lines}
+    for i, error in enumerate(("numerical", "total")):
+        for j, cost in enumerate(("seconds", "work")):
+            line = lines[f"wp-{i}-{j}-0"]
+            x = sorted(getattr(row, cost) for row in rows)
+            assert list(line.get_xdata()) == x
+            assert sorted(line.get_ydata()) == sorted(getattr(row, error) for row in rows)
+    assert all(ax.get_xscale() == ax.get_yscale() == "log" for ax in figure.axes)
+
+
+def test_sentences_hold_for_their_numbers(study, tmp_path):
+    timed = study(timed=True, repeats=1, finest="lattice")
+    rows = [
+        row._replace(total=error, seconds=cost, curve=name)
+        for row, error, cost, name in zip(
+            run(timed, tmp_path), (0.05, 0.02, 0.005, 0.004), (1, 2, 4, 12.0), "abab", strict=True
+        )
+    ]
+    one, two = sentences(timed, rows)
+    assert "Within 10.0 %" in one and "a (5.00 %)" in one and "b, takes 2 times" in one
+    assert "Within 1.00 %" in two and "a (0.500 %)" in two and "b, takes 3 times" in two
+    assert sentences(study(), rows) == []
+
+
+def test_points_without_a_number_are_not_drawn(study, tmp_path):
+    rows = run(study(), tmp_path)
+    assert measured(rows, "total", "work") == []
+    assert np.isfinite([row.numerical for row in measured(rows, "numerical", "work")]).all()

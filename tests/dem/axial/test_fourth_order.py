@@ -1,0 +1,284 @@
+"""Steps of fourth order: their order, what they conserve, where they are stable or refused."""
+
+import numpy as np
+import pytest
+
+import dem
+from cases.calibrate import calibrate
+from cases.errors import SceneError
+from cases.result import energy_residual
+from cases.sampling import Clock
+from compare.exact import lattice, no_tension
+from compare.metrics import misfit
+from dem.axial.composition import DRIFTS, KICKS, half_trace, stability_limit
+from dem.axial.fourth_order import build, compose, march
+from dem.axial.state import state_at_rest
+
+RICKER = {"shape": "ricker", "amplitude": 1e6, "period": 0.01}
+SOFT = [{"y": 20.0, "spacing_stiffness": 4.375e8}]
+DOWN = {"direction": [0, 1, 0]}
+RECORD = {"stress": [0.0, 20.0], "velocity": [0.25, 20.25], "interval": 1e-3}
+CHAINS = {
+    "free": {},
+    "soft layer": {"soft_layers": SOFT},
+    "fixed ends, no load": {
+        "ends": {"start": "fixed", "end": "fixed"},
+        "load": {**RICKER, "amplitude": 0.0},
+        "gravity": {**DOWN, "acceleration": 1000.0, "static": False},
+    },
+    "against the axis, under its weight and a prestress": {
+        "load": {**RICKER, "direction": [0, -1, 0]},
+        "soft_layers": SOFT,
+        "ends__end": "fixed",
+        "gravity": DOWN,
+        "prestress": {"normal": 2e6},
+    },
+    "sine from whole step to whole step": {"load": {**RICKER, "shape": "sine"}},
+    "load that jumps at a whole step": {"load": {"shape": "step", "amplitude": 1e6}},
+}
+
+
+@pytest.fixture
+def fourth(pillar):
+    """Return a function (step_fraction, ...) that gives the pillar under a Ricker wavelet."""
+
+    def scene(fraction, **changes):
+        numerics = {"scheme": "fourth-order", "step_fraction": fraction, "allow_unstable": True}
+        return pillar(**{"load": RICKER, "record": RECORD, "numerics__dem": numerics, **changes})
+
+    return scene
+
+
+def stepped(scene, dt):
+    """Return an unloaded state at rest and a function that takes so many steps dt (s) of it."""
+    p, model = calibrate(scene), build(scene)[0]
+    state = state_at_rest(model.chain, p.block_count, False)
+    steps = compose(scene, Clock(dt, 1, 1))
+    steps = steps._replace(loads=np.zeros((0, 4)), impulses=np.zeros((0, 5)))
+    return state, lambda count: march(steps, state, 0, count)
+
+
+def step_matrix(scene, dt):
+    """Return the matrix of one step: displacements and velocities dt, closures of fixed ends."""
+    state, advance = stepped(scene, dt)
+    ends = [end[:1] for end in (state.start, state.end) if end is not None]
+    parts, scale = [state.u, state.v, *ends], [1.0, 1 / dt, *(1.0 for _ in ends)]
+    columns = []
+    for unit in np.eye(sum(x.size for x in parts)):
+        for x, s, value in zip(
+            parts, scale, np.split(unit, np.cumsum([x.size for x in parts])[:-1]), strict=True
+        ):
+            x[:] = s * value
+        advance(1)
+        columns.append(np.concatenate([x / s for x, s in zip(parts, scale, strict=True)]))
+    return np.array(columns).T
+
+
+def orders(steps, errors):
+    """Return the order from each step to the next."""
+    return np.diff(np.log(errors)) / np.diff(np.log(steps))
+
+
+@pytest.mark.parametrize("changes", CHAINS.values(), ids=CHAINS)
+def test_fourth_order_against_the_time_exact_chain(fourth, changes):
+    """Stress, velocity and displacement; jumps and kinks at whole steps cost no order."""
+    steps, errors = [], []
+    for fraction in (0.3, 0.15, 0.075):
+        scene = fourth(fraction, **changes)
+        result, exact = dem.simulate(scene), lattice.solve(scene)
+        steps.append(result.attrs["dt"])
+        largest = [abs(result[x] - exact[x]).max() / abs(exact[x]).max() for x in exact.data_vars]
+        errors.append([misfit(result, exact), *map(float, largest)])
+    assert orders(steps, np.array(errors).T) == pytest.approx(4.0, abs=0.1)
+
+
+def test_kink_within_a_step_leaves_second_order(fourth):
+    """A sine that ends a third of a sample behind a sample: still convergent, and no better."""
+    steps, errors = [], []
+    for fraction in (0.3, 0.01):
+        scene = fourth(fraction, load={**RICKER, "shape": "sine", "period": 0.01 + 1e-3 / 3})
+        result = dem.simulate(scene)
+        steps.append(result.attrs["dt"])
+        errors.append(misfit(result, lattice.solve(scene)))
+    assert orders(steps, errors) == pytest.approx(2.0, abs=0.4)
+
+
+def test_beats_leapfrog_at_equal_work(fourth):
+    """Three more digits than leapfrog where that is 0.3 % off, at as many forces."""
+    scene = fourth(0.3)
+    exact, found = lattice.solve(scene), dem.simulate(scene)
+    fraction = found.attrs["dt"] / found.attrs["critical_dt"] * stability_limit() / 8 * (1 + 1e-9)
+    leapfrog = dem.simulate(
+        fourth(0.3, numerics__dem={"scheme": "leapfrog", "step_fraction": fraction})
+    )
+    assert leapfrog.attrs["force_evaluations"] == found.attrs["force_evaluations"]
+    assert misfit(found, exact) < 1e-3 * misfit(leapfrog, exact)
+
+
+@pytest.mark.parametrize(
+    "changes", [CHAINS[key] for key in ("free", "soft layer")], ids=("free", "soft layer")
+)
+def test_step_is_symplectic(fourth, changes):
+    """S^T J S = J of one step near the critical one, to round-off."""
+    scene = fourth(0.9, pillar__length=25.0, **changes)
+    critical = build(scene)[3]
+    S = step_matrix(scene, 0.9 * critical)
+    n = len(S) // 2
+    J = np.block([[np.zeros((n, n)), np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
+    assert np.abs(S.T @ J @ S - J).max() < 1e-12
+
+
+def test_energy_has_no_trend_in_a_hundred_thousand_steps(fourth):
+    """The energy's error swings, at most as far at the end as at the beginning."""
+    probe = fourth(0.9)
+    dt = 0.9 * build(probe)[3]
+    record = {"stress": [20.0], "interval": 100 * dt}
+    result = dem.simulate(fourth(0.9, record=record, time__duration=100_000.5 * dt))
+    assert result.attrs["steps"] == 100_000
+    energy = result.energy.sel(term=["kinetic", "elastic"]).sum("term").values
+    swing = energy[10:] / float(result.energy.sel(term="work")[-1])  # the load has ended
+    early, late, trend = swing[:300], swing[-300:], np.polyfit(np.linspace(0, 1, 991), swing, 1)[0]
+    assert np.ptp(late) < 1.5 * np.ptp(early) < 1e-4
+    assert abs(trend) < 0.05 * np.ptp(swing)
+
+
+def test_reverses_in_time_to_round_off(fourth):
+    """A thousand steps and, with all velocities turned, a thousand back."""
+    scene = fourth(0.9, soft_layers=SOFT, ends={"start": "free", "end": "fixed"})
+    state, advance = stepped(scene, 0.9 * build(scene)[3])
+    random = np.random.default_rng(1)
+    state.u[:], state.v[:] = random.normal(size=(2, state.u.size))
+    state.v[:] *= 1e3
+    before = state.u.copy(), state.v.copy()
+    for _ in range(2):
+        advance(1000)
+        state.v[:] *= -1
+    for x, y in zip((state.u, state.v), before, strict=True):
+        assert np.abs(x - y).max() < 1e-11 * np.abs(y).max()
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"ends": {"start": "fixed", "end": "fixed"}, "load": {**RICKER, "amplitude": 0.0}},
+        {"soft_layers": [{"y": 5.0, "spacing_stiffness": 4e10}]},
+        {"soft_layers": [{"y": 5.0, "spacing_stiffness": 4e8}], "ends__end": "fixed"},
+    ],
+    ids=["free", "fixed", "stiff layer", "soft layer"],
+)
+def test_growth_begins_at_the_critical_step(fourth, changes):
+    """No eigenvalue of the step leaves the unit circle below; one does 0.1 % above."""
+    scene = fourth(0.5, pillar__length=12.0, **{**changes, "record": {"stress": [5.0]}})
+    critical = build(scene)[3]
+    below, above = (
+        np.abs(np.linalg.eigvals(step_matrix(scene, fraction * critical))).max()
+        for fraction in (0.999, 1.001)
+    )
+    assert below < 1 + 1e-6
+    assert above > 1 + 1e-3
+
+
+def test_every_shorter_step_is_stable():
+    """Half the trace stays within one all the way to the limit, which is 1.4947 of leapfrog's."""
+    limit, trace = stability_limit(), half_trace()
+    assert limit / 2 == pytest.approx(1.494725, abs=1e-6)
+    assert np.abs(trace(np.linspace(0, limit, 100_001) ** 2)).max() <= 1 + 1e-12
+    assert abs(trace((1.0001 * limit) ** 2)) > 1
+
+
+def test_weights_sum_to_one_step():
+    """Drifts and kicks each add up to the step, and both are symmetric."""
+    for weights in (DRIFTS, KICKS):
+        assert sum(weights) == pytest.approx(1.0, abs=1e-15)
+        assert weights == weights[::-1]
+
+
+def test_ledger_closes_to_fourth_order(fourth):
+    """Kinetic, elastic, the fixed end, weight and prestress against the load's work."""
+    changes = CHAINS["against the axis, under its weight and a prestress"]
+    results = [dem.simulate(fourth(fraction, **changes)) for fraction in (0.3, 0.15, 0.075)]
+    found = orders([x.attrs["dt"] for x in results], [energy_residual(x) for x in results])
+    assert found == pytest.approx(4.0, abs=0.1)
+
+
+def test_ledger_books_what_leapfrog_books(fourth):
+    """Every term, from the same zero, as far as leapfrog's own error allows."""
+    changes = CHAINS["against the axis, under its weight and a prestress"]
+    found = dem.simulate(fourth(0.1, **changes)).energy
+    expected = dem.simulate(
+        fourth(0.1, numerics__dem={"scheme": "leapfrog", "step_fraction": 0.01}, **changes)
+    ).energy
+    assert found.term.values.tolist() == expected.term.values.tolist()
+    scale = float(abs(expected.sel(term="work")).max())
+    assert np.abs(found.values - expected.values).max() < 1e-3 * scale
+
+
+def test_no_tension_converges_at_second_order(fourth):
+    """The force has a kink where a joint opens or closes: order two, if not at every halving."""
+    errors, steps = [], []
+    for fraction in (0.1, 0.0125):
+        scene = fourth(
+            fraction,
+            joints__tension=False,
+            ends__end="fixed",
+            prestress={"normal": 3e5},
+            time__duration=0.05,
+            record={"stress": [20.0], "interval": 1e-3},
+        )
+        result = dem.simulate(scene)
+        assert float(result.stress.min()) >= 0.0
+        steps.append(result.attrs["dt"])
+        errors.append(misfit(result, no_tension.solve(scene)))
+    assert errors[1] < 1e-4
+    assert orders(steps, errors) == pytest.approx(2.0, abs=0.4)
+
+
+def test_snapshots_show_what_the_receivers_record(fourth):
+    """A block moves as the point at its centre, at the same time."""
+    record = {**RECORD, "velocity": [20.25], "fields": 0.01}
+    result = dem.simulate(fourth(0.3, record=record, ends__end="fixed", gravity=DOWN))
+    corners = result.field_cells.values[40]
+    for name in ("velocity", "displacement"):
+        expected = result[name].values[0, ::10]
+        found = result[f"field_{name}"].values[:, corners, 1]
+        assert found == pytest.approx(np.broadcast_to(expected, found.shape), rel=1e-12)
+    assert result.field_stress.values[:, -1].max() > 1e6  # the fixed end's reaction is there
+
+
+def test_result_says_how_it_was_stepped(fourth, pillar):
+    """Scheme, steps and forces; leapfrog takes one force a step."""
+    result, leapfrog = dem.simulate(fourth(0.3)), dem.simulate(pillar())
+    assert result.attrs["scheme"] == "fourth-order"
+    assert result.attrs["force_evaluations"] == 4 * result.attrs["steps"]
+    assert leapfrog.attrs["force_evaluations"] == leapfrog.attrs["steps"]
+    assert result.attrs["critical_dt"] / leapfrog.attrs["critical_dt"] == pytest.approx(
+        stability_limit() / 2, rel=1e-12
+    )
+
+
+@pytest.mark.parametrize(
+    "changes, name",
+    [
+        ({"joints__damping_ratio": 0.02}, "dashpots"),
+        ({"soft_layers": [{"y": 20.0, "damping_ratio": 0.1}]}, "dashpots"),
+        ({"damping__mass_proportional": 10.0}, "mass damping"),
+        ({"damping__local": 0.5}, "local damping"),
+        ({"ends__end": "quiet"}, "quiet ends"),
+        ({"ends__start": "matched"}, "matched ends"),
+        ({"joints__tensile_strength": 2e6, "joints__fracture_energy": 500.0}, "softening"),
+        ({"load": {**RICKER, "quantity": "velocity"}, "ends__start": "fixed"}, "shaken base"),
+        ({"load": {**RICKER, "direction": [1, 0, 0]}}, "spatial motion"),
+    ],
+)
+def test_refuses_what_it_cannot_step(fourth, changes, name):
+    """One line with the key, the value and what the scene calls for."""
+    with pytest.raises(SceneError, match=rf"numerics\.dem\.scheme = 'fourth-order': has no {name}"):
+        fourth(0.3, **changes)
+
+
+def test_refuses_a_step_above_its_own_limit(pillar):
+    """The limit is the composition's, not leapfrog's."""
+    numerics = {"scheme": "fourth-order", "step_fraction": 1.01}
+    with pytest.raises(SceneError, match=r"above the critical step 0\.0005537"):
+        dem.simulate(pillar(numerics__dem=numerics))
