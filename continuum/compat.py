@@ -139,7 +139,8 @@ def quadrature(cell: str, degree: int, lobatto: bool = False) -> tuple[np.ndarra
     lobatto : Gauss-Lobatto-Legendre points, which tensor-product cells have.
     """
     kind, types = getattr(basix.CellType, cell), basix.QuadratureType
-    rule = types.gll if lobatto else getattr(types, "default", None) or types.Default
+    usual = types.default if hasattr(types, "default") else types.Default
+    rule = types.gll if lobatto else usual
     try:
         return basix.make_quadrature(kind, degree, rule=rule)
     except TypeError:  # older: the rule comes first, and nothing has a name
