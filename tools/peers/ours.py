@@ -1,0 +1,171 @@
+"""The same pillar in this project, as its user runs it: `jointwave run` in a process of its own."""
+
+import json
+import sys
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from job import Job, Reading, Twin, folder_of
+from pillar import pillar
+
+import cases
+from cases.result import scene_hash
+from cases.scene import Scene
+from compare.effort import PILLAR
+from compare.engines import solve
+from compare.output import write
+
+#: A blow so close to the axis that it turns nothing, yet calls for all six freedoms.
+IN_SPACE = {"load.at": [1e-12, 0.0]}
+ALIKE = {"record.energy": False}  # no peer keeps a ledger
+#: No formula is exact for the square column: ours at order 4, which is within 1 % of order 3.
+COLUMN = "continuum-equivalent in space, order 4"
+
+
+class Kind(NamedTuple):
+    """One model of ours: its curve, what it solves, the engine, and what it changes."""
+
+    curve: str
+    solves: str
+    engine: str
+    own: str
+    changes: dict
+
+
+def _continuum(dim: int, order: int) -> dict:
+    numerics = {"dim": dim, "order": order, "scheme": "explicit"}
+    return {f"numerics.continuum.{key}": value for key, value in numerics.items()}
+
+
+KINDS = {
+    "blocks along the axis": Kind(
+        "jointwave blocks", "rigid blocks, 1 freedom each", "dem", "lattice", {}
+    ),
+    "blocks in space": Kind(
+        "jointwave blocks in space", "rigid blocks, 6 freedoms each", "dem", "lattice", IN_SPACE
+    ),
+    "homogenised bar": Kind(
+        "jointwave bar",
+        "continuum: the homogenised bar, 1 freedom a node",
+        "continuum-equivalent",
+        "equivalent-bar",
+        _continuum(1, 1),
+    ),
+    "homogenised column": Kind(
+        "jointwave hexahedra",
+        "continuum: the homogenised column in space, 3 freedoms a node",
+        "continuum-equivalent",
+        COLUMN,
+        _continuum(3, 1),
+    ),
+    "homogenised column, order 2": Kind(
+        "jointwave hexahedra of order 2",
+        "continuum: the homogenised column in space, 3 freedoms a node",
+        "continuum-equivalent",
+        COLUMN,
+        _continuum(3, 2),
+    ),
+    "jointed bar": Kind(
+        "jointwave jointed bar",
+        "continuum: intact rock and every joint, 1 freedom a node",
+        "continuum-jointed",
+        "jointed-bar",
+        _continuum(1, 2),
+    ),
+}
+
+#: What no peer runs: higher order, and the jointed rock itself.
+ALONE = (
+    Twin("homogenised column, order 2", 2, 1),
+    Twin("jointed bar", 4, 1),
+    Twin("jointed bar", 8, 2),
+)
+
+
+def job(scene: Scene, twin: Twin, root: Path) -> Job:
+    """Return the run of one of our models at the twin's step."""
+    kind, p = KINDS[twin.model], pillar(scene, twin.stride)
+    elements = {"elements_per_block": twin.elements} if twin.elements else {}
+    settings = {**elements, "stride": twin.stride}
+    critical, freedoms = _critical(twin.model, twin.elements)
+    changes = _changes(twin.model, twin.elements)
+    changes[_key(kind, "step_fraction")] = p.dt / critical * (1 + 1e-9)  # the step, not below it
+    folder = folder_of(root, kind.curve, **settings)
+    return Job(
+        curve=kind.curve,
+        method=_method(kind),
+        solves=kind.solves,
+        own=kind.own,
+        settings=settings,
+        freedoms=freedoms,
+        steps=p.steps,
+        work=(p.blocks if kind.engine == "dem" else freedoms) * p.steps,
+        samples=p.samples,
+        folder=folder,
+        command=_command(kind, changes, folder),
+        read=lambda place: read(place, kind.engine),
+    )
+
+
+def read(folder: Path, engine: str) -> Reading:
+    """Read the result file of a run."""
+    with xr.open_dataset(folder / f"{engine}.nc") as found:
+        return Reading(found["stress"].values[0], float(found.attrs["seconds_stepping"]))
+
+
+def _method(kind: Kind) -> str:
+    order = kind.changes.get("numerics.continuum.order")
+    return f"elements of order {order}, lumped mass, leapfrog" if order else "leapfrog"
+
+
+def _command(kind: Kind, changes: dict, folder: Path) -> list[str]:
+    engine, _, model = kind.engine.partition("-")
+    options = ["--variant", "", "--engine", engine, "--out", str(folder)]
+    options += ["--model", model] if model else []
+    for key, value in changes.items():
+        options += ["--set", f"{key}={json.dumps(value)}"]
+    return [sys.executable, "-m", "compare", "run", str(PILLAR), *options]
+
+
+def _changes(model: str, elements: int) -> dict:
+    changes = {**ALIKE, **KINDS[model].changes}
+    if elements:
+        changes["numerics.continuum.elements_per_block"] = elements
+    if changes.get("numerics.continuum.dim") == 3:
+        changes["numerics.continuum.elements_across"] = elements
+    return changes
+
+
+def _key(kind: Kind, name: str) -> str:
+    return f"numerics.{kind.engine.partition('-')[0]}.{name}"
+
+
+@cache
+def _critical(model: str, elements: int) -> tuple[float, int]:
+    """Return the critical step (s) and the number of freedoms, from a run of one sample."""
+    changes = _changes(model, elements) | {"time.duration": 5e-5, "expect": {}}
+    scene = cases.load_variant(PILLAR, "", changes)
+    found = solve(KINDS[model].engine, scene)
+    return float(found.attrs["critical_dt"]), int(found.attrs["degrees_of_freedom"])
+
+
+def references(scene: Scene, root: Path) -> dict[str, np.ndarray]:
+    """Return the waveforms that all are held against, by name; that of the column is kept."""
+    names = {kind.own for kind in KINDS.values()} - {COLUMN}
+    found = {name: solve(name, scene)["stress"].values[0] for name in sorted(names)}
+    return found | {COLUMN: _column(scene, root / f"column-{scene_hash(scene)}.txt")}
+
+
+def _column(scene: Scene, kept: Path) -> np.ndarray:
+    if not kept.exists():
+        changes = {
+            "numerics.continuum.elements_per_block": 1,
+            "numerics.continuum.step_fraction": 0.5,
+        }
+        fine = cases.load_variant(PILLAR, "", {**ALIKE, **_continuum(3, 4), **changes})
+        stress = solve("continuum-equivalent", fine)["stress"].values[0]
+        write(kept, lambda path: np.savetxt(path, stress, fmt="%.17g"))
+    return np.loadtxt(kept)
