@@ -8,7 +8,7 @@ from scipy.sparse import csr_matrix, vstack
 
 from continuum import compat
 from continuum.body import Body, along, axis
-from continuum.elasticity import Material, lame_constants
+from continuum.elasticity import Material, lame_constants, stiffness_rule
 from continuum.interface import Jumps
 from continuum.places import Places, at_reference, cells_at, jacobians, matrix_of, places_in
 
@@ -160,25 +160,37 @@ def _by_momentum(
     Anal. 11, 1974, for the flux at a node). At either end of the pillar it is the force applied
     there; it tends to the joint's traction towards a joint, which is read where a section is on it.
     """
-    cell, order, up = body.mesh.cell, body.order, axis(body.dim)
-    at, weight = compat.quadrature(cell, max(2 * order - 1, 1), lobatto=True)
-    everywhere = np.tile(at, (layer.size, 1))
-    point = at_reference(body, np.repeat(layer, len(at)), everywhere)
-    volume = _volumes(body, point.cell, everywhere) * np.tile(weight, layer.size)
-    near, far = body.corners[layer][:, :, up].min(), body.corners[layer][:, :, up].max()
-    local = (_heights(body, point.cell, everywhere) - near) / (far - near)
-    levels = np.sort(compat.quadrature("interval", max(2 * order - 1, 1), lobatto=True)[0][:, 0])
-    level = np.abs(local[:, None] - levels).argmin(axis=1)
+    order, lobatto = body.order, (max(2 * body.order - 1, 1), True)
+    levels = np.sort(compat.quadrature("interval", *lobatto)[0][:, 0])
     basis = poly.polyfit(levels, np.eye(levels.size), order)
-    slope = poly.polyval(local, poly.polyder(basis)[:, 0]) / (far - near)
+    point, volume, local, thickness = _in_layer(body, layer, *stiffness_rule(body.mesh.cell, order))
+    slope = poly.polyval(local, poly.polyder(basis)[:, 0]) / thickness
     elastic, viscous = _stress_rows(body, materials, point, volume * slope)
+    point, volume, local, thickness = _in_layer(body, layer, *lobatto)
+    level = np.abs(local[:, None] - levels).argmin(axis=1)
+    near = body.corners[layer][:, :, axis(body.dim)].min()
     running = poly.polyint(basis)
-    upto = -poly.polyval((place - near) / (far - near), running)
+    upto = -poly.polyval((place - near) / thickness, running)
     whole = poly.polyval(1.0, running)
     upto[0] += whole[0]
     density = np.array([m.density for m in materials])[body.material[point.cell]]
     mass = density * volume * (upto / whole)[level]
     return elastic, viscous, _sums(body, point, mass)
+
+
+def _in_layer(
+    body: Body, layer: np.ndarray, degree: int, lobatto: bool
+) -> tuple[Places, np.ndarray, np.ndarray, float]:
+    """Return the quadrature points of a layer of cells, their volumes (m3), their heights in the
+    layer (0 .. 1) and its thickness (m)."""
+    at, weight = compat.quadrature(body.mesh.cell, degree, lobatto)
+    everywhere = np.tile(at, (layer.size, 1))
+    point = at_reference(body, np.repeat(layer, len(at)), everywhere)
+    volume = _volumes(body, point.cell, everywhere) * np.tile(weight, layer.size)
+    y = body.corners[layer][:, :, axis(body.dim)]
+    thickness = float(y.max() - y.min())
+    local = (_heights(body, point.cell, everywhere) - y.min()) / thickness
+    return point, volume, local, thickness
 
 
 def _by_stress(body: Body, materials: list[Material], place: float) -> tuple[csr_matrix, ...]:

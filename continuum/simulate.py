@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from cases.errors import SceneError, StoppedError
-from cases.result import Fields, fields
+from cases.result import Fields, fields, size_of
 from cases.scene import Scene
 from continuum import compat
 from continuum.build import (
@@ -83,6 +83,7 @@ def simulate(
             "seconds_stepping": perf_counter() - compiled,
         }
         about = _about(scene, discrete, model, choice, critical) | rest | engine.attributes()
+        about |= {"bytes": int(team.sum(size_of(built, state)))}
         for wave in samples:
             if wave is not None:
                 team.gather(wave)

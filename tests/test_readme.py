@@ -9,21 +9,23 @@ import pytest
 import cases
 from compare.engines import solve
 from compare.metrics import misfit
+from compare.studies.orders import orders
+from compare.studies.runner import run
+from compare.studies.study import load
 
 README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
 
 
-def block(language):
-    """Return the one code block of this language."""
-    (found,) = re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
-    return found
+def blocks(language):
+    """Return the code blocks of this language."""
+    return re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
 
 
 @pytest.fixture
 def scene_file(tmp_path):
     """Return the README's scene as a file."""
     path = tmp_path / "my-scene.toml"
-    path.write_text(block("toml"), encoding="utf-8")
+    path.write_text(blocks("toml")[0], encoding="utf-8")
     return path
 
 
@@ -37,10 +39,21 @@ def test_scene_meets_its_own_expectations(scene_file):
             assert misfit(one, other) <= bound
 
 
+def test_study_runs_on_its_scene(scene_file):
+    """The study names the scene beside it; every point is done, at the order that it says."""
+    path = scene_file.with_name("my-study.toml")
+    path.write_text(blocks("toml")[1], encoding="utf-8")
+    study = load(str(path))
+    rows = run(study, scene_file.parent / "points")
+    assert [row.state for row in rows] == ["done"] * 3
+    (order,) = orders(study, rows)
+    assert order.measured == pytest.approx(order.theory, abs=0.1)
+
+
 def test_python_prints_what_it_says(scene_file, capsys, monkeypatch):
     """The snippet, run where the scene is."""
     monkeypatch.chdir(scene_file.parent)
-    exec(compile(block("python"), "README.md", "exec"), {})
+    exec(compile(blocks("python")[0], "README.md", "exec"), {})
     said = capsys.readouterr().out
     assert 0 < float(said.split()[0]) < 0.02
 

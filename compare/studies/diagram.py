@@ -14,7 +14,7 @@ ERRORS = {
     "numerical": "misfit from the exact solution of its own model",
     "total": "misfit from the finest physics",
 }
-COSTS = {"seconds": "seconds of stepping", "work": "freedoms x steps"}
+COSTS = {"seconds": "seconds of stepping", "work": "freedoms x evaluations of the forces"}
 MARKERS = "osD^vP*X<>hp"
 
 

@@ -25,8 +25,8 @@ class Row(NamedTuple):
 
     state : "done" or "failed", with the reason in `message`.
     numerical : misfit against the exact solution of the method's own model; total : against the
-        finest physics. steps : of time. work : degree-of-freedom-steps; block-steps where a block
-        has one freedom. bytes : of the model and its state.
+        finest physics. steps : of time. work : freedoms times evaluations of all forces, which are
+        degree-of-freedom-steps where a step takes one. bytes : of the model and its state.
     seconds, spread : stepping, median and half the range of the repeats; setup, compile : of the
         first run.
     """
@@ -78,13 +78,19 @@ def _measured(point: Point) -> Row:
         dt=float(first.get("dt", math.nan)),
         steps=float(steps),
         freedoms=float(freedoms),
-        work=float(steps) * float(freedoms),
+        work=_evaluations(first) * float(freedoms),
         bytes=float(first.get("bytes", math.nan)),
         seconds=median(seconds),
         spread=(max(seconds) - min(seconds)) / 2,
         setup=float(first.get("seconds_setup", math.nan)),
         compile=float(first.get("seconds_compile", math.nan)),
     )
+
+
+def _evaluations(attributes: dict[str, Any]) -> float:
+    """Return how often all forces were evaluated: in stages, by Newton's method, once a step."""
+    names = ("force_evaluations", "newton_iterations", "steps")
+    return float(next((attributes[name] for name in names if name in attributes), math.nan))
 
 
 def runner(point: Point, scene: Scene) -> Callable[[], xr.Dataset]:

@@ -9,7 +9,7 @@ from compare.studies.orders import Order, orders
 from compare.studies.study import Study
 from compare.terminal import print_json, say, show_numbers
 
-COLUMNS = ["point", "numerical, %", "total, %", "steps", "freedom-steps", "seconds", "±"]
+COLUMNS = ["point", "numerical, %", "total, %", "steps", "work", "kB", "seconds", "±"]
 
 
 def show_study(study: Study, rows: list[Row], files: tuple[Path, ...], as_json: bool) -> None:
@@ -56,6 +56,7 @@ def cells(row: Row) -> list[str]:
         _number(100 * row.total, ".3g"),
         _number(row.steps, ".0f"),
         _number(row.work, ".2e"),
+        _number(row.bytes / 1e3, ".3g"),
         _number(row.seconds, ".3g"),
         _number(row.spread, ".1g"),
     ]

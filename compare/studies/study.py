@@ -116,7 +116,10 @@ def shipped() -> dict[str, Path]:
 
 
 def load(name: str) -> Study:
-    """Read a shipped study or a study's file; raises SceneError, in one line."""
+    """Read a shipped study or a study's file, whose scene may be named by its place beside it.
+
+    Raises SceneError, in one line.
+    """
     path = shipped().get(name, Path(name))
     if not path.is_file():
         raise SceneError(name, "", None, f"is no file, nor one of {', '.join(shipped())}")
@@ -125,9 +128,11 @@ def load(name: str) -> Study:
     except ValueError as error:
         raise SceneError(str(path), "", None, f"is not valid TOML: {error}") from None
     try:
-        return Study.model_validate(table)
+        study = Study.model_validate(table)
     except ValidationError as error:
         raise _study_error(path, error) from None
+    beside = path.parent / study.scene
+    return study.model_copy(update={"scene": str(beside)}) if beside.is_file() else study
 
 
 def _study_error(path: Path, error: ValidationError) -> SceneError:

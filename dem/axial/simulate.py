@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from cases.calibrate import calibrate
-from cases.result import Fields, fields
+from cases.result import Fields, fields, size_of
 from cases.sampling import Clock
 from cases.scene import Scene
 from dem.axial.model import Model, build
@@ -90,6 +90,7 @@ def simulate_fields(scene: Scene, progress: Callable[[float], None] | None = Non
         force_evaluations=scheme.forces * time.steps,
         degrees_of_freedom=state.u.size,
         threads=1,
+        bytes=size_of(model, state),
         **({} if rest is None else rest.attributes),
         seconds_setup=built - began,
         seconds_compile=compiled - built,

@@ -10,7 +10,7 @@ import numpy as np
 
 from cases.calibrate import Properties, calibrate
 from cases.errors import SceneError
-from cases.result import Fields, fields
+from cases.result import Fields, fields, size_of
 from cases.sampling import Clock, Interpolation, clock
 from cases.scene import Scene
 from dem.looks import Stretch, march_with_looks, versions
@@ -95,6 +95,7 @@ def simulate_fields(scene: Scene, progress: Callable[[float], None] | None = Non
         steps=time.steps,
         degrees_of_freedom=len(model.contact.rows.motion) // 2 * p.block_count,
         threads=threads,
+        bytes=size_of(model, state),
         **({} if rest is None else rest.attributes),
         seconds_setup=built - began,
         seconds_compile=compiled - built,

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from cases import Scene, load
-from cases.result import ALL_TERMS, TERMS, dataset, energy_residual, imbalance, scene_hash
+from cases.result import ALL_TERMS, TERMS, dataset, energy_residual, imbalance, scene_hash, size_of
 from cases.sampling import sample_times
 
 POINTS = {"record.velocity": [19.75, 20.25]}
@@ -143,3 +143,9 @@ def test_where_no_work_is_done_the_largest_term_is_the_scale():
     energy[1] -= fall
     assert imbalance(energy, terms) == pytest.approx(0.25)
     assert imbalance(0 * energy, terms) == 0.0
+
+
+def test_size_is_that_of_all_arrays_in_nested_tuples():
+    """Absent parts and plain numbers hold nothing."""
+    parts = (np.zeros(3), None, 2.0, (np.zeros((2, 2), dtype=np.int32), (None, np.zeros(1))))
+    assert size_of(parts, np.zeros(5)) == 24 + 16 + 8 + 40

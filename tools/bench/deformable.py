@@ -17,6 +17,7 @@ from kernels import ROUNDS, rate
 from plain_dolfinx import Pillar
 from rock import BLOCKS, CASES, SAME_STEPS, Engine, assert_same, engine_of, pillar_of
 
+from cases.result import size_of
 from continuum.operator import Operator, layout, multiply, operator, zeros
 
 
@@ -79,7 +80,7 @@ def against_machine(engine: Engine, rates: dict[str, float]) -> None:
     freedoms = 3 * len(engine.discrete.body.x)
     most, stream = machine.peak(), machine.bandwidth()
     work, moved = flops(engine, freedoms), bytes_moved(engine, freedoms)
-    held = sum(a.nbytes for a in arrays((engine.model, engine.state)))
+    held = size_of(engine.model, engine.state)
     speed, alone = rates["engine"], rates["engine, K u alone"]
     product = flops_of(engine.model.rock.stiffness) / freedoms
     print(f"  {held / freedoms:.0f} bytes a freedom in memory")
@@ -115,15 +116,6 @@ def bytes_moved(engine: Engine, freedoms: int) -> float:
     u, f; f, dt / m, v, v and v before; v, u, u: ten numbers.
     """
     return 10 * 8 * engine.state.u.size / freedoms
-
-
-def arrays(value) -> Iterator[np.ndarray]:
-    """Yield all arrays in nested tuples."""
-    if isinstance(value, np.ndarray):
-        yield value
-    elif isinstance(value, tuple):
-        for part in value:
-            yield from arrays(part)
 
 
 def main() -> None:

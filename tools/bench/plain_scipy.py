@@ -17,7 +17,7 @@ def stiffness(pillar: Pillar) -> csr_matrix:
 
 
 def without_zeros(pillar: Pillar) -> csr_matrix:
-    """Return the stiffness without the entries that quadrature at the nodes makes zero, N/m."""
+    """Return the stiffness without the entries that quadrature makes zero, N/m."""
     return without_round_off(stiffness(pillar))
 
 
