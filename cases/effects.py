@@ -32,6 +32,7 @@ def effects(scene: Scene) -> list[Effect]:
             scene.record.energy,
             "record.energy is on" if scene.record.energy else "record.energy = false",
         ),
+        _of_fields(scene),
         *_of_motion(scene, p),
         *_of_forces(scene, p),
     ]
@@ -87,6 +88,12 @@ def _of_ends(scene: Scene, kind: str) -> Effect:
     places = [k for k in ("start", "end") if getattr(scene.ends, k) == kind]
     reason = f"ends.{' and ends.'.join(places)}" if places else f"no end is {kind}"
     return Effect(f"{kind} ends", bool(places), reason)
+
+
+def _of_fields(scene: Scene) -> Effect:
+    every = scene.record.fields
+    reason = "no record.fields" if every is None else f"a snapshot every {every:g} s"
+    return Effect("field output", every is not None, reason)
 
 
 def _of_motion(scene: Scene, p: Properties) -> Iterator[Effect]:

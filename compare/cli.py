@@ -183,6 +183,23 @@ def compare(
 
 
 @app.command()
+def effects(
+    scene: SceneArgument,
+    changes: SetOption = [],  # noqa: B006
+    variant: VariantOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Say what every effect of a scene costs, and how far the answer is without it."""
+    from compare import terminal, views, worth
+
+    found = []
+    for one in _load(scene, changes, variant if variant is not None else ""):
+        with terminal.progress(one.name or one.title) as advance:
+            found.append(worth.balance(one, advance))
+    views.show_balances(found, as_json)
+
+
+@app.command()
 def study(
     name: Annotated[str, typer.Argument(help="A shipped study or a study's TOML file.")],
     out: Annotated[Path, typer.Option(help="Folder for tables and points.")] = Path("studies"),

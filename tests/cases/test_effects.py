@@ -17,6 +17,7 @@ CALLS = {
     "matched ends": {"ends.start": "matched"},
     "fixed ends": {"ends.end": "fixed"},
     "energy ledger": {"record.energy": True},
+    "field output": {"record.fields": 0.01},
     "spatial motion": ACROSS,
     "softening": TENSILE,
     "mass damping": {"damping": {"mass_proportional": 5.0}},

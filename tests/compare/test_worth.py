@@ -1,0 +1,71 @@
+"""What effects cost and are worth: leaving one out leaves exactly that one out."""
+
+import numpy as np
+import pytest
+
+import dem
+from cases.effects import active_effects
+from cases.errors import SceneError
+from compare import worth
+from compare.metrics import relative_l2
+from compare.worth import WITHOUT, balance, left_out
+
+LAYER = [{"y": 20.0, "spacing_stiffness": 4e8, "damping_ratio": 0.05, "tension": False}]
+ACROSS = {"load__direction": [0.6, 0.8, 0.0]}
+FALL = {"direction": [0, 1, 0], "static": False}
+CALLS = {
+    "dashpots": {"joints__damping_ratio": 0.02, "soft_layers": LAYER},
+    "no tension": {"joints__tension": False, "soft_layers": LAYER},
+    "joints that differ": {"soft_layers": LAYER},
+    "quiet ends": {"ends__end": "quiet"},
+    "matched ends": {"ends__start": "matched"},
+    "fixed ends": {"ends__end": "fixed"},
+    "energy ledger": {},
+    "field output": {"record__fields": 0.01},
+    "finite rotation": {**ACROSS, "motion__rotation": "finite"},
+    "slip": {**ACROSS, "joints__friction_angle": 30.0, "joints__cohesion": 1e4},
+    "softening": {"joints__tensile_strength": 1e5, "joints__fracture_energy": 10.0},
+    "mass damping": {"damping__mass_proportional": 5.0},
+    "local damping": {"damping": {"local": 0.5}},
+    "gravity": {"gravity": FALL},
+    "prestress": {"prestress": {"normal": 1e5}},
+}
+
+
+def test_every_effect_that_can_be_left_out_is_tried():
+    assert set(CALLS) == set(WITHOUT)
+
+
+@pytest.mark.parametrize("effect", CALLS)
+def test_leaving_one_out_leaves_the_others(effect, pillar):
+    """But dashpots and what bars tension in a layer that goes with the layers."""
+    scene = pillar(**CALLS[effect])
+    before, after = set(active_effects(scene)), set(active_effects(left_out(scene, effect)))
+    of_layer = {"dashpots", "no tension"} if effect == "joints that differ" else set()
+    assert before - after == {effect} | of_layer
+    assert not after - before
+
+
+def test_what_the_scene_is_about_stays(pillar):
+    with pytest.raises(SceneError, match="is what the scene is about"):
+        left_out(pillar(**ACROSS), "spatial motion")
+
+
+def test_an_end_that_the_load_needs_stays(pillar):
+    """The base that shakes cannot be free; the reason is the scene's own."""
+    load = {"shape": "sine", "amplitude": 0.1, "period": 0.01, "quantity": "velocity"}
+    with pytest.raises(SceneError, match=r"fixed ends: .*fixed"):
+        left_out(pillar(ends__start="fixed", load=load), "fixed ends")
+
+
+def test_worth_is_the_misfit_of_the_answer_without(pillar, monkeypatch):
+    """The ledger is worth nothing, dashpots are worth what they change."""
+    monkeypatch.setattr(worth, "whole", lambda: 40.0)
+    scene = pillar(joints__damping_ratio=0.05, time__duration=0.03)
+    found = {w.effect: w for w in balance(scene).effects}
+    assert set(found) == {"dashpots", "energy ledger"}
+    assert found["energy ledger"].misfit == 0
+    plain = dem.simulate(left_out(scene, "dashpots"))["stress"].values
+    expected = relative_l2(plain, dem.simulate(scene)["stress"].values)
+    assert found["dashpots"].misfit == pytest.approx(expected) and expected > 0.01
+    assert all(np.isfinite(w.cost) and w.share < 1 for w in found.values())
