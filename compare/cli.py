@@ -190,13 +190,34 @@ def effects(
     as_json: JsonOption = False,
 ) -> None:
     """Say what every effect of a scene costs, and how far the answer is without it."""
-    from compare import terminal, views, worth
+    from compare import terminal, worth, worth_view
 
     found = []
     for one in _load(scene, changes, variant if variant is not None else ""):
         with terminal.progress(one.name or one.title) as advance:
             found.append(worth.balance(one, advance))
-    views.show_balances(found, as_json)
+    worth_view.show_balances(found, as_json)
+
+
+@app.command()
+def plan(
+    scene: SceneArgument,
+    misfit: Annotated[float, typer.Option(min=0.0, help="Relative L2, from the finest physics.")],
+    seconds: Annotated[
+        float | None, typer.Option(min=0.0, help="At most so long a run, the best within it.")
+    ] = None,
+    changes: SetOption = [],  # noqa: B006
+    variant: VariantOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Find the cheapest engine, elements and step that meet a misfit, by a few cheap runs."""
+    from compare import plan_view, planner, terminal
+
+    found = []
+    for one in _load(scene, changes, variant if variant is not None else ""):
+        with terminal.progress(one.name or one.title) as advance:
+            found.append(planner.plan(one, misfit, seconds, advance))
+    plan_view.show_plans(found, misfit, as_json)
 
 
 @app.command()

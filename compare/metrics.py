@@ -48,10 +48,16 @@ def relative_l2(one: np.ndarray, other: np.ndarray) -> float:
 
 
 def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
-    """Return the relative L2 misfit of two results over all recorded stresses, shears included.
+    """Return the relative L2 misfit of two results over what `recorded` returns of them."""
+    a, b = recorded(one, other)
+    return relative_l2(a, b) if a.size else 0.0
 
-    Where both results have none or only zeros of these, over all velocities, then all rotations. A
-    quantity that only one of them has is left out.
+
+def recorded(one: xr.Dataset, other: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """Return all recorded stresses of two results, shears included, as one array each.
+
+    Where both results have none or only zeros of these, all velocities, then all rotations; empty
+    where nothing moves. A quantity that only one of them has is left out.
     """
     for quantities in MEASURED:
         shared = [q for q in quantities if q in one and q in other]
@@ -60,8 +66,8 @@ def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
             for r in (one, other)
         )
         if a.any() or b.any():
-            return relative_l2(a, b)
-    return 0.0
+            return a, b
+    return np.zeros(0), np.zeros(0)
 
 
 def delay(one: np.ndarray, other: np.ndarray, dt: float) -> float:
