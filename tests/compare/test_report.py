@@ -1,5 +1,6 @@
 """The report as its reader meets it: in a browser, in its files, and with claims that fail."""
 
+import html
 import io
 import re
 import shutil
@@ -224,7 +225,7 @@ def test_report_leaves_no_half_written_files(report):
 @pytest.mark.parametrize("name", REPORTED)
 def test_page_shows_what_each_study_found(name, report):
     """Its diagram, and every point of its table."""
-    text = report.page.read_text()
+    text = html.unescape(report.page.read_text())
     part = text[text.index(f'<section id="{name}">') :]
     part = part[: part.index("</section>")]
     assert "<svg" in part and "Failed points" not in part
