@@ -10,8 +10,6 @@ from typing import Any
 
 import llvmlite.binding
 import numba
-from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler
 
 PACKAGES = ("joints", "dem", "continuum")
 
@@ -62,32 +60,10 @@ def inlined(function: Callable) -> Callable:
     Python cannot call it (it would crash): the code that would unpack a whole model at every part
     would take longer to compile than the parts.
     """
-    return _compiled(function, no_cpython_wrapper=True, pipeline_class=_PartCompiler)
+    return _compiled(function, no_cpython_wrapper=True)
 
 
-class _PartLibrary(JITCodeLibrary):
-    """Code that is optimised where it has been inlined, and not at every level on the way."""
-
-    def _optimize_final_module(self) -> None:
-        passes, builder = self._codegen._module_pass_manager(opt=0, loop_vectorize=False)
-        # Addresses in branches that fall away would keep numba from saving the part.
-        passes.add_sroa_pass()
-        passes.add_simplify_cfg_pass()
-        passes.add_dead_code_elimination_pass()
-        passes.add_global_dead_code_eliminate_pass()
-        passes.run(self._final_module, builder)
-
-
-class _PartCompiler(Compiler):
-    """The usual steps of compiling, into a `_PartLibrary`."""
-
-    def __init__(self, typing_context, target_context, library, *others) -> None:
-        library = _PartLibrary(target_context.codegen(), "part")
-        library.enable_object_caching()
-        super().__init__(typing_context, target_context, library, *others)
-
-
-def _compiled(function: Callable, **options: Any) -> Callable:
+def _compiled(function: Callable, **options: bool) -> Callable:
     kernel = numba.njit(
         cache=True,
         fastmath=False,
