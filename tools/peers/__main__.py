@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import akantu_bar
+import diagram
 import environment
 import lammps_bonds
 import measure
@@ -100,7 +101,8 @@ def main() -> None:
     rows += missing
     print(f"{scene.title}; {options.rounds} rounds; {about}")
     table.show(rows)
-    print(f"written: {table.write(root / 'points.csv', rows)}")
+    files = table.write(root / "points.csv", rows), diagram.write(root, scene.title, rows)
+    print(f"written: {', '.join(map(str, files))}")
 
 
 if __name__ == "__main__":

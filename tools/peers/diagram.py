@@ -1,0 +1,54 @@
+"""The work-precision diagram of all codes: their errors over stepping and over whole processes."""
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from compare.figures import save
+from compare.studies.diagram import draw
+from compare.studies.study import Curve, Study
+
+COSTS = {"seconds": "seconds of stepping", "whole": "seconds of the whole process"}
+OURS = {  # how our curves are coloured: as their engines are everywhere
+    "jointwave blocks": "dem",
+    "jointwave blocks in space": "dem",
+    "jointwave bar": "continuum-equivalent",
+    "jointwave hexahedra": "continuum-equivalent",
+    "jointwave hexahedra of order 2": "continuum-equivalent",
+    "jointwave jointed bar": "continuum-jointed",
+}
+
+
+class Point(NamedTuple):
+    """What the diagram shows of a row of the table."""
+
+    curve: str
+    state: str
+    numerical: float
+    total: float
+    seconds: float
+    whole: float
+    work: float
+
+
+def write(folder: Path, title: str, rows: list[dict[str, Any]]) -> Path:
+    """Draw the rows that were done into FOLDER/points.svg and .png, each curve with what it solves;
+    return the SVG."""
+    done = [row for row in rows if row["state"] == "done"]
+    solves = {row["curve"]: row["solves"] for row in done}
+    curves = [
+        Curve(label=_label(curve, text), method=OURS.get(curve, curve))
+        for curve, text in solves.items()
+    ]
+    study = Study(title=title, scene="", timed=True, curves=curves)
+    points: Any = [_point(row) for row in done]
+    save(draw("peers", study, points, COSTS), folder, "points", title)
+    return folder / "points.svg"
+
+
+def _label(curve: str, solves: str) -> str:
+    return f"{curve}: {solves}"
+
+
+def _point(row: dict[str, Any]) -> Point:
+    numbers = [float(row[k]) for k in ("misfit", "total_misfit", "seconds", "whole", "work")]
+    return Point(_label(row["curve"], row["solves"]), "done", *numbers)
