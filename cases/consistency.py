@@ -5,8 +5,11 @@ from __future__ import annotations
 from math import ceil, floor, log10
 from typing import TYPE_CHECKING
 
+from pydantic_core import PydanticCustomError
+
 from cases.calibrate import calibrate
 from cases.discretisation import check_discretisation
+from cases.errors import SceneError
 from cases.joint import JointLaw
 from cases.scheme import check_scheme
 from cases.stiffness import equivalent_constants
@@ -36,6 +39,18 @@ def check(scene: Scene) -> None:
     _check_fracture(scene)
     check_discretisation(scene)
     check_scheme(scene)
+
+
+def checked(scene: Scene) -> Scene:
+    """Return a scene whose tables were changed in memory; raises SceneError where they do not fit
+    together any more."""
+    try:
+        check(scene)
+    except PydanticCustomError as error:
+        about = error.context or {}
+        key, found, allowed = about.get("key", ""), about.get("found"), error.message()
+        raise SceneError(scene.where, key, found, allowed) from None
+    return scene
 
 
 def _check_layers(scene: Scene) -> None:

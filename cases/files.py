@@ -20,3 +20,12 @@ def read_text(path: Path, largest: int) -> str:
         raise ValueError(f"cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise ValueError("is not UTF-8 text") from None
+
+
+def is_number(cell: str) -> bool:
+    """Return whether a cell of a table reads as a number."""
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from cases.files import read_text
+from cases.files import is_number, read_text
 
 LARGEST_FILE = 200_000_000  # bytes; some ten million samples
 LARGEST = 1e30  # s, Pa; what lies beyond is a mistake, and its squares overflow
@@ -54,9 +54,9 @@ def _rows(lines: list[str]) -> tuple[list[int], np.ndarray]:
     numbers: list[int] = []
     rows: list[list[float]] = []
     for number, cells in _cells(lines):
-        if not rows and not any(map(_is_number, cells)):
+        if not rows and not any(map(is_number, cells)):
             continue  # a header
-        if len(cells) != 2 or not all(map(_is_number, cells)):
+        if len(cells) != 2 or not all(map(is_number, cells)):
             raise ValueError(
                 f"must hold two numbers a line, time and load (line {number} does not)"
             )
@@ -72,11 +72,3 @@ def _cells(lines: list[str]) -> Iterator[tuple[int, list[str]]]:
                 yield number, next(csv.reader([line]))
             except csv.Error:
                 raise ValueError(f"is not a CSV file (line {number})") from None
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True

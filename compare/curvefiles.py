@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from cases.errors import SceneError
-from cases.files import read_text
+from cases.files import is_number, read_text
 from cases.history import LARGEST, LARGEST_FILE
 
 LEAST_SAMPLES = 3  # what a parabola through the peak of a correlation takes
@@ -83,7 +83,7 @@ def _read_csv(path: Path) -> Columns:
         rows = list(_rows(read_text(path, LARGEST_FILE).splitlines()))
     except ValueError as error:
         raise SceneError(str(path), "", None, str(error)) from None
-    named = bool(rows) and not _is_number(rows[0][1][0])
+    named = bool(rows) and not is_number(rows[0][1][0])
     header = rows.pop(0)[1] if named else ["time", ""]
     numbers = [number for number, _ in rows]
 
@@ -121,17 +121,9 @@ def _numbers(where: str, header: list[str], cells: list[str]) -> list[float]:
         allowed = f"must hold {len(header)} numbers ({columns}), not {len(cells)}"
         raise SceneError(where, "", None, allowed)
     for name, cell in zip(header, cells, strict=True):
-        if not _is_number(cell):
+        if not is_number(cell):
             raise SceneError(where, name or "value", cell, "must be a number")
     return [float(cell) for cell in cells]
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True
 
 
 def _read_netcdf(path: Path) -> Columns:

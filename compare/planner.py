@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from math import ceil, inf
 from typing import Any, NamedTuple
 
+from cases.consistency import checked
 from cases.errors import SceneError, UnstableError
 from cases.scene import Numerics, Scene
 from compare.engines import Progress, applies, solve
@@ -119,19 +120,11 @@ def plain(scene: Scene) -> Scene:
 
 
 def configured(scene: Scene, family: Family, settings: dict[str, Any]) -> Scene:
-    """Return a scene with a family's numerics; raises SceneError where it cannot have them."""
-    from cases.scheme import check_scheme
-
-    numerics = Numerics()
-    table = getattr(numerics, family.engine).model_copy(update=family.changes | settings)
-    made = plain(scene)
-    made = made.model_copy(update={"numerics": numerics.model_copy(update={family.engine: table})})
-    try:
-        check_scheme(made)
-    except ValueError as error:
-        context = getattr(error, "context", None) or {}
-        raise SceneError(scene.where, "", None, context.get("allowed", str(error))) from None
-    return made
+    """Return a scene with a family's numerics, its own where the family has none; raises SceneError
+    where it cannot have them."""
+    table = getattr(scene.numerics, family.engine).model_copy(update=family.changes | settings)
+    numerics = scene.numerics.model_copy(update={family.engine: table})
+    return checked(plain(scene).model_copy(update={"numerics": numerics}))
 
 
 def _predicted(scene: Scene, family: Family, exact) -> Iterator[Choice]:

@@ -11,7 +11,7 @@ from math import nan
 from typing import Any, NamedTuple
 
 import dem
-from cases.consistency import check
+from cases.consistency import checked
 from cases.effects import effects
 from cases.errors import SceneError, UnstableError
 from cases.scene import Scene
@@ -67,13 +67,7 @@ def left_out(scene: Scene, name: str) -> Scene:
     """Return a scene without one of its effects; raises SceneError where there is none."""
     if name not in WITHOUT:
         raise SceneError(scene.where, name, None, "is what the scene is about")
-    changed = WITHOUT[name](scene)
-    try:
-        check(changed)
-    except ValueError as error:
-        allowed = getattr(error, "context", None) or {}
-        raise SceneError(scene.where, name, None, allowed.get("allowed", str(error))) from None
-    return changed
+    return checked(WITHOUT[name](scene))
 
 
 def _joints(**values: Any) -> Callable[[Scene], Scene]:

@@ -48,6 +48,8 @@ def cheapest(rows: list[Row], error: str = "total", cost: str = "seconds") -> li
     return found
 
 
-def digits_per_second(row: Row, error: str = "total") -> float:
-    """Return the decimal digits that a point gets right over the seconds that it steps."""
-    return -math.log10(getattr(row, error)) / row.seconds
+def digits_per_second(row: Row) -> float:
+    """Return the decimal digits that a point gets right over the seconds that it steps: of the
+    finest physics where that is known, else of its own model; nan without either."""
+    error = row.numerical if math.isnan(row.total) else row.total
+    return -math.log10(error) / row.seconds if error > 0 and row.seconds > 0 else math.nan

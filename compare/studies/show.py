@@ -6,10 +6,11 @@ from pathlib import Path
 from compare.studies.findings import sentences
 from compare.studies.measure import Row
 from compare.studies.orders import Order, orders
+from compare.studies.pareto import digits_per_second
 from compare.studies.study import Study
 from compare.terminal import print_json, say, show_numbers
 
-COLUMNS = ["point", "numerical, %", "total, %", "steps", "work", "kB", "seconds", "±"]
+COLUMNS = ["point", "numerical, %", "total, %", "steps", "work", "kB", "seconds", "±", "digits/s"]
 
 
 def show_study(study: Study, rows: list[Row], files: tuple[Path, ...], as_json: bool) -> None:
@@ -59,6 +60,7 @@ def cells(row: Row) -> list[str]:
         _number(row.bytes / 1e3, ".3g"),
         _number(row.seconds, ".3g"),
         _number(row.spread, ".1g"),
+        _number(digits_per_second(row), ".3g"),
     ]
 
 

@@ -46,6 +46,19 @@ def test_options_make_the_configuration(pillar):
     assert misfit(solve(found.chosen.family.name, again), exact) == found.misfit
 
 
+def test_what_no_family_is_about_stays_the_scenes_own(pillar):
+    """The dimension, and points of a face."""
+    scene = pillar(**SHORT, numerics__continuum__dim=2, joints__contact_points=3)
+    (rock,) = [
+        f
+        for f in planner.FAMILIES
+        if f.changes == {"scheme": "explicit", "order": 3, "elements_per_block": 1}
+    ]
+    made = planner.configured(scene, rock, {"step_fraction": 0.5})
+    assert made.numerics.continuum.dim == 2 and made.joints.contact_points == 3
+    assert (made.numerics.continuum.order, made.numerics.continuum.step_fraction) == (3, 0.5)
+
+
 def test_what_nothing_reaches_is_said(pillar):
     found = plan(pillar(load=RICKER, **SHORT), 1e-12)
     assert found.chosen is None and found.trials > 0
