@@ -12,7 +12,7 @@ from compare.studies.study import Study
 from compare.style import RC, STYLES, WIDTH, style
 
 ERRORS = {
-    "numerical": "misfit from the exact solution of its own model",
+    "numerical": "misfit from each curve's exact solution",
     "total": "misfit from the finest physics",
 }
 COSTS = {"seconds": "seconds of stepping", "work": "freedoms x evaluations of the forces"}
@@ -54,15 +54,16 @@ def draw(name: str, study: Study, rows: list[Row], costs: dict[str, str] | None 
 
 
 def _draw_panel(ax: Axes, study: Study, rows: list[Row], error: str, cost: str, name: str) -> None:
-    best = front(rows, error, cost)
-    ax.plot(
-        [getattr(r, cost) for r in best],
-        [getattr(r, error) for r in best],
-        color="#bbbbbb",
-        linewidth=5,
-        zorder=1,
-        label="none is better (Pareto's front)",
-    )
+    best = front(rows, error, cost) if len(study.curves) > 1 else []
+    if best:
+        ax.plot(
+            [getattr(r, cost) for r in best],
+            [getattr(r, error) for r in best],
+            color="#bbbbbb",
+            linewidth=5,
+            zorder=1,
+            label="none is better (Pareto's front)",
+        )
     for k, curve in enumerate(study.curves):
         found = measured([r for r in rows if r.curve == curve.label], error, cost)
         found.sort(key=lambda row: getattr(row, cost))

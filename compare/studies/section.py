@@ -20,11 +20,13 @@ REPORTED = ("free-pillar", "convergence", "uniform-chain")
 
 
 class StudySection(NamedTuple):
-    """One study of the page; `name` is that of its files."""
+    """One study of the page; `name` is that of its files, `quantity` that of its misfits."""
 
     name: str
     title: str
     note: str
+    quantity: str
+    timed: bool
     svg: str
     sentences: list[str]
     table: Table
@@ -50,7 +52,8 @@ def _section(folder: Path, name: str) -> StudySection:
     svg = save(draw(name, study, rows), folder, name, study.title)
     said = sentences(study, rows) + [sentence(order) + "." for order in orders(study, rows)]
     failed = [f"{row.curve}: {row.message}" for row in rows if row.state == "failed"]
-    return StudySection(name, study.title, study.note, svg, said, _table(rows), failed)
+    about = study.title, study.note, study.quantity or "stress", study.timed
+    return StudySection(name, *about, svg, said, _table(rows), failed)
 
 
 def _table(rows: list[Row]) -> Table:
