@@ -1,4 +1,4 @@
-"""What a block-step of the rigid blocks costs here, with the effects that a scene calls for."""
+"""What a step costs here, with the effects that a scene calls for: of one block, of one freedom."""
 
 from __future__ import annotations
 
@@ -13,11 +13,13 @@ import cases
 from cases.effects import is_spatial
 from cases.sampling import Clock
 from cases.scene import Scene
+from compare.engines import solve
 from compare.output import write_text
 
 PILLAR = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
 REPEATS = 5
 SHORTEST = 0.02  # s, of what a clock is read for
+LONGEST = 1.0  # s: a continuum that took as long is not run again
 BLOCK_STEPS = 5_000_000  # of one call, at most, but for one sample
 BLOCKS = 1000  # of the pillar that effects are compared on
 
@@ -52,6 +54,18 @@ def nanoseconds(scene: Scene, threads: int = 1) -> float:
     march, block_steps = stretch(scene, threads)
     march()  # compiles, and sets the blocks in motion
     return 1e9 * min(_seconds(march) for _ in range(REPEATS)) / block_steps
+
+
+def freedom_nanoseconds(engine: str, scene: Scene) -> float:
+    """Return what one step of one freedom of a continuum engine costs, ns: the least of some runs.
+
+    Raises SceneError where the engine does not apply, UnstableError where it goes unstable.
+    """
+    found: list[float] = []
+    while len(found) < REPEATS and sum(found) < LONGEST:
+        a = solve(engine, scene).attrs
+        found.append(a["seconds_stepping"])
+    return 1e9 * min(found) / (a["steps"] * a["degrees_of_freedom"])
 
 
 def _seconds(march: Callable[[], None]) -> float:
