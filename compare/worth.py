@@ -7,6 +7,7 @@ of the scene as it stands.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from math import nan
 from typing import Any, NamedTuple
 
@@ -14,24 +15,27 @@ import dem
 from cases.effects import active_effects
 from cases.errors import SceneError, UnstableError
 from cases.scene import Scene
-from compare.effort import freedom_nanoseconds, nanoseconds, stretch, whole
-from compare.engines import applies
+from compare.effort import EVERYTHING, changed, freedoms_in_turns, in_turns, stretch
+from compare.engines import applies, solve
 from compare.metrics import misfit
 from compare.without import left_out, only
 
 ROCK = "continuum-jointed"
+OWN = "own"  # the scene as it stands, among those without one of its effects
 
 
 class Dropped(NamedTuple):
     """The answer without an effect.
 
     misfit : from the answer with it. steps : of the scene over those without it, where the effect
-    shortens the step. reason : why it cannot be left out; empty where it can.
+    shortens the step. rock : whether the jointed rock can be without it too. reason : why it cannot
+    be left out; empty where it can.
     """
 
     effect: str
     misfit: float
     steps: float
+    rock: bool
     reason: str
 
 
@@ -79,33 +83,28 @@ class Balance(NamedTuple):
 def prepare(scene: Scene) -> list[Dropped]:
     """Return what leaving out each effect does to the answer, and compile all that is timed."""
     answer = dem.simulate(scene)
-    called = active_effects(scene)
-    for one in _sets(scene, called):
+    dropped = [_drop(scene, name, answer) for name in active_effects(scene)]
+    for one in (only(scene, None), *_alone(scene).values()):
         stretch(one)[0]()
-    dropped = [_drop(scene, name, answer) for name in called]
-    for one in (scene, *(left_out(scene, d.effect) for d in dropped if not d.reason)):
-        _rock(one)
     return dropped
-
-
-def _sets(scene: Scene, called: list[str]) -> list[Scene]:
-    """Return the scene bare, and with each effect alone that can be."""
-    found = [only(scene, None)]
-    for name in called:
-        try:
-            found.append(only(scene, name))
-        except SceneError:
-            continue
-    return found
 
 
 def _drop(scene: Scene, name: str, answer: Any) -> Dropped:
     try:
-        without = dem.simulate(left_out(scene, name))
+        one = left_out(scene, name)
+        without = dem.simulate(one)
     except (SceneError, UnstableError) as error:
-        return Dropped(name, nan, nan, getattr(error, "allowed", str(error)))
+        return Dropped(name, nan, nan, False, getattr(error, "allowed", str(error)))
     steps = answer.attrs["steps"] / without.attrs["steps"]
-    return Dropped(name, misfit(without, answer), float(steps), "")
+    return Dropped(name, misfit(without, answer), float(steps), _runs_in_rock(one), "")
+
+
+def _runs_in_rock(scene: Scene) -> bool:
+    try:
+        solve(ROCK, scene)
+    except (SceneError, UnstableError):
+        return False
+    return True
 
 
 def balance(name: str, scene: Scene, dropped: list[Dropped]) -> Balance:
@@ -113,30 +112,47 @@ def balance(name: str, scene: Scene, dropped: list[Dropped]) -> Balance:
 
     name : of the scene, as its user knows it. dropped : what `prepare` returned.
     """
-    bare, own, rock = nanoseconds(only(scene, None)), nanoseconds(scene), _rock(scene)
-    found = [_worth(scene, one, bare, own, rock) for one in dropped]
-    return Balance(name, scene.title, scene.name, bare, own, whole(), rock, found)
+    alone, without = _alone(scene), _without(scene, dropped)
+    first = [changed(EVERYTHING), only(scene, None), scene]
+    everything, bare, own, *rest = in_turns([*first, *alone.values(), *without.values()])
+    ns_alone = dict(zip(alone, rest, strict=False))
+    ns_without = dict(zip(without, rest[len(alone) :], strict=True))
+    in_rock = _in_rock(scene, dropped)
+    rock = dict(zip(in_rock, freedoms_in_turns(ROCK, list(in_rock.values())), strict=True))
+    found = [
+        Worth(
+            one.effect,
+            ns_alone.get(one.effect, nan) - bare,
+            (cost := own - ns_without.get(one.effect, nan)),
+            cost / own,
+            one.steps,
+            rock.get(OWN, nan) - rock.get(one.effect, nan),
+            one.misfit,
+            one.reason,
+        )
+        for one in dropped
+    ]
+    return Balance(name, scene.title, scene.name, bare, own, everything, rock.get(OWN, nan), found)
 
 
-def _worth(scene: Scene, one: Dropped, bare: float, own: float, rock: float) -> Worth:
-    if one.reason:
-        return Worth(one.effect, nan, nan, nan, nan, nan, nan, one.reason)
-    without = left_out(scene, one.effect)
-    cost = own - nanoseconds(without)
-    alone = _alone(scene, one.effect, bare)
-    added = rock - _rock(without)
-    return Worth(one.effect, alone, cost, cost / own, one.steps, added, one.misfit, "")
+def _without(scene: Scene, dropped: list[Dropped]) -> dict[str, Scene]:
+    """Return the scene without each effect that can be left out."""
+    return {one.effect: left_out(scene, one.effect) for one in dropped if not one.reason}
 
 
-def _alone(scene: Scene, effect: str, bare: float) -> float:
-    try:
-        return nanoseconds(only(scene, effect)) - bare
-    except SceneError:
-        return nan
+def _alone(scene: Scene) -> dict[str, Scene]:
+    """Return the scene with each effect alone that it can be without and that acts alone."""
+    bare, found = set(active_effects(only(scene, None))), {}
+    for name in active_effects(scene):
+        if name not in bare:
+            with suppress(SceneError):
+                found[name] = only(scene, name)
+    return found
 
 
-def _rock(scene: Scene) -> float:
-    try:
-        return freedom_nanoseconds(ROCK, scene) if applies(ROCK, scene) else nan
-    except UnstableError:
-        return nan
+def _in_rock(scene: Scene, dropped: list[Dropped]) -> dict[str, Scene]:
+    """Return the scenes that are timed in jointed rock: as it stands, and without each effect."""
+    if not applies(ROCK, scene):
+        return {}
+    others = _without(scene, dropped)
+    return {OWN: scene} | {one.effect: others[one.effect] for one in dropped if one.rock}

@@ -72,11 +72,13 @@ def write_table(folder: Path, found: list[Balance]) -> Path:
 
 def table(found: list[Balance]) -> Table:
     """Return all numbers, the effects of each scene under what its own set costs."""
+    stays = any(w.reason for b in found for w in b.effects)
+    columns = len(HEADER) if stays else len(HEADER) - 1
     groups = {
-        f"{i}. {heading(b)}": [cells(w) for w in dearest_first(b)]
+        f"{i}. {heading(b)}": [cells(w)[:columns] for w in dearest_first(b)]
         for i, b in enumerate(found, start=1)
     }
-    return Table(HEADER, groups)
+    return Table(HEADER[:columns], groups)
 
 
 def heading(b: Balance) -> str:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import cases
 from cases.result import scene_hash
 from cases.scene import Scene
-from compare.effort import EVERYTHING, changed, is_measured, stretch
+from compare.effort import EVERYTHING, changed, stretch
 from compare.engines import Progress
 from compare.output import write_text
 from compare.scenes import find, shipped
@@ -99,9 +99,8 @@ def submit(executor: Executor, new: list[Case], folder: Path) -> list[Future]:
 
 
 def prepare_whole() -> None:
-    """Compile the block-step with every effect, if its cost is not known yet."""
-    if not is_measured():
-        stretch(changed(EVERYTHING))[0]()
+    """Compile the block-step with every effect."""
+    stretch(changed(EVERYTHING))[0]()
 
 
 def prepare_case(case: Case, folder: Path) -> None:
