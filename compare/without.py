@@ -21,8 +21,10 @@ def left_out(scene: Scene, name: str) -> Scene:
 def only(scene: Scene, name: str | None) -> Scene:
     """Return a scene with one of its effects, or none, besides those that it cannot be without.
 
-    Raises SceneError where the scene cannot be so.
+    Raises SceneError where the scene cannot be so, or cannot be without the effect either.
     """
+    if name is not None and name in active_effects(only(scene, None)):
+        raise SceneError(scene.where, name, None, "stays when all others go")
     for other in active_effects(scene):
         if other != name and other in WITHOUT:
             try:

@@ -7,7 +7,7 @@ of the scene as it stands.
 
 from __future__ import annotations
 
-from contextlib import suppress
+from collections.abc import Callable
 from math import nan
 from typing import Any, NamedTuple
 
@@ -20,6 +20,7 @@ from compare.engines import applies, solve
 from compare.metrics import misfit
 from compare.without import left_out, only
 
+FAILURES = (SceneError, UnstableError)  # of a scene that cannot be so
 ROCK = "continuum-jointed"
 OWN = "own"  # the scene as it stands, among those without one of its effects
 
@@ -28,13 +29,14 @@ class Dropped(NamedTuple):
     """The answer without an effect.
 
     misfit : from the answer with it. steps : of the scene over those without it, where the effect
-    shortens the step. rock : whether the jointed rock can be without it too. reason : why it cannot
-    be left out; empty where it can.
+    shortens the step. alone : whether the scene can have it without the others. rock : whether the
+    jointed rock can be without it. reason : why it cannot be left out; empty where it can.
     """
 
     effect: str
     misfit: float
     steps: float
+    alone: bool
     rock: bool
     reason: str
 
@@ -84,8 +86,8 @@ def prepare(scene: Scene) -> list[Dropped]:
     """Return what leaving out each effect does to the answer, and compile all that is timed."""
     answer = dem.simulate(scene)
     dropped = [_drop(scene, name, answer) for name in active_effects(scene)]
-    for one in (only(scene, None), *_alone(scene).values()):
-        stretch(one)[0]()
+    _step(only(scene, None))
+    _runs(lambda: solve(ROCK, scene))
     return dropped
 
 
@@ -93,16 +95,21 @@ def _drop(scene: Scene, name: str, answer: Any) -> Dropped:
     try:
         one = left_out(scene, name)
         without = dem.simulate(one)
-    except (SceneError, UnstableError) as error:
-        return Dropped(name, nan, nan, False, getattr(error, "allowed", str(error)))
+    except FAILURES as error:
+        return Dropped(name, nan, nan, False, False, getattr(error, "allowed", str(error)))
     steps = answer.attrs["steps"] / without.attrs["steps"]
-    return Dropped(name, misfit(without, answer), float(steps), _runs_in_rock(one), "")
+    alone, rock = _runs(lambda: _step(only(scene, name))), _runs(lambda: solve(ROCK, one))
+    return Dropped(name, misfit(without, answer), float(steps), alone, rock, "")
 
 
-def _runs_in_rock(scene: Scene) -> bool:
+def _step(scene: Scene) -> None:
+    stretch(scene)[0]()
+
+
+def _runs(work: Callable[[], object]) -> bool:
     try:
-        solve(ROCK, scene)
-    except (SceneError, UnstableError):
+        work()
+    except FAILURES:
         return False
     return True
 
@@ -112,7 +119,8 @@ def balance(name: str, scene: Scene, dropped: list[Dropped]) -> Balance:
 
     name : of the scene, as its user knows it. dropped : what `prepare` returned.
     """
-    alone, without = _alone(scene), _without(scene, dropped)
+    alone = {one.effect: only(scene, one.effect) for one in dropped if one.alone}
+    without = _without(scene, dropped)
     first = [changed(EVERYTHING), only(scene, None), scene]
     everything, bare, own, *rest = in_turns([*first, *alone.values(), *without.values()])
     ns_alone = dict(zip(alone, rest, strict=False))
@@ -138,16 +146,6 @@ def balance(name: str, scene: Scene, dropped: list[Dropped]) -> Balance:
 def _without(scene: Scene, dropped: list[Dropped]) -> dict[str, Scene]:
     """Return the scene without each effect that can be left out."""
     return {one.effect: left_out(scene, one.effect) for one in dropped if not one.reason}
-
-
-def _alone(scene: Scene) -> dict[str, Scene]:
-    """Return the scene with each effect alone that it can be without and that acts alone."""
-    bare, found = set(active_effects(only(scene, None))), {}
-    for name in active_effects(scene):
-        if name not in bare:
-            with suppress(SceneError):
-                found[name] = only(scene, name)
-    return found
 
 
 def _in_rock(scene: Scene, dropped: list[Dropped]) -> dict[str, Scene]:

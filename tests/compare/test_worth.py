@@ -105,7 +105,7 @@ def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, cheap):
     stays = worth._drop(pillar(ends__start="fixed", load=load), "fixed ends", None)
     assert "moves the wall" in stays.reason
     scene = pillar(time__duration=0.01)
-    there = worth.Dropped("energy ledger", 0.0, 1.0, False, "")
+    there = worth.Dropped("energy ledger", 0.0, 1.0, True, False, "")
     fixed, ledger = balance("a/b", scene, [stays, there]).effects
     assert fixed.reason == stays.reason
     assert np.isnan([fixed.alone, fixed.cost, fixed.share, fixed.rock, fixed.misfit]).all()

@@ -31,7 +31,7 @@ def counted(monkeypatch):
     timed = []
     monkeypatch.setattr(worth_study, "prepare_whole", lambda: None)
     monkeypatch.setattr(
-        worth_study, "prepare", lambda scene: [Dropped("energy ledger", 0.0, 1.0, False, "")]
+        worth_study, "prepare", lambda scene: [Dropped("energy ledger", 0.0, 1.0, True, False, "")]
     )
 
     def balance(name, scene, dropped):
@@ -60,7 +60,7 @@ def test_an_interrupted_run_keeps_what_was_solved(counted, pillar, tmp_path, mon
     worth_study.prepare_case(wanted[0], tmp_path)
     monkeypatch.setattr(worth_study, "prepare", lambda scene: pytest.fail("solved again"))
     run(wanted, tmp_path, None, None)
-    assert counted[0][1] == [Dropped("energy ledger", 0.0, 1.0, False, "")]
+    assert counted[0][1] == [Dropped("energy ledger", 0.0, 1.0, True, False, "")]
 
 
 def test_cases_are_told_apart_by_all_that_decides_them(pillar):
