@@ -41,6 +41,10 @@ class StoppedError(UnstableError):
     result: Any = None
 
 
+class InterruptedRun(StoppedError):
+    """A run that was asked to stop, by the user or the machine."""
+
+
 class _Found(reprlib.Repr):
     """Values as a scene file spells them, shortened."""
 
