@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from cases.arrays import copied
 from cases.errors import SceneError
 from cases.result import Fields, Variable
 from cases.scene import Scene
@@ -70,6 +71,10 @@ class Film:
         """Keep this sample, where it is one of those."""
         if sample % self.every == 0:
             self.shots.append(self.shoot(sample))
+
+    def expect(self, samples: int) -> None:
+        """Make room for what so many samples have left, to be filled from elsewhere."""
+        self.shots[:] = [copied(self.shoot(0)) for _ in range(0, samples, self.every)]
 
 
 def samples_between(scene: Scene) -> int | None:

@@ -1,0 +1,39 @@
+"""Nested tuples and lists of arrays, with None for absent parts: models, states and samples."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+
+def arrays(parts: Any) -> Iterator[np.ndarray]:
+    """Yield all arrays of nested tuples and lists, in their order; what is no array is left out."""
+    if isinstance(parts, tuple | list):
+        for part in parts:
+            yield from arrays(part)
+    elif isinstance(parts, np.ndarray):
+        yield parts
+
+
+def changed(parts: Any, change: Callable[[np.ndarray], np.ndarray]) -> Any:
+    """Return nested tuples with every array changed."""
+    if isinstance(parts, tuple):
+        found = [changed(part, change) for part in parts]
+        return type(parts)(*found) if hasattr(parts, "_fields") else tuple(found)
+    return change(parts) if isinstance(parts, np.ndarray) else parts
+
+
+def copied(parts: Any) -> Any:
+    """Return nested tuples with arrays of their own."""
+    return changed(parts, np.copy)
+
+
+def fill(parts: Any, values: Any) -> None:
+    """Copy the arrays of `values` into those of `parts`, which are as many of the same shapes."""
+    for own, given in zip(arrays(parts), arrays(values), strict=True):
+        own[...] = given
+
+
+def size_of(*parts: Any) -> int:
+    """Return the bytes of all arrays in nested tuples and lists."""
+    return sum(array.nbytes for array in arrays(parts))
