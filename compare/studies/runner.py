@@ -60,12 +60,12 @@ def key(point: Point) -> str:
     """Return what tells points apart: everything that decides a row, this program included."""
     study = point.study.model_copy(update={"title": "", "curves": ()})
     about = [study.model_dump(mode="json", exclude={"curves"}), point.curve.model_dump(mode="json")]
-    text = json.dumps([*about, point.settings, _program()], sort_keys=True)
+    text = json.dumps([*about, point.settings, program()], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 @cache
-def _program() -> str:
+def program() -> str:
     """Return a hash of all that computes."""
     digest, root = hashlib.sha256(), Path(cases.__file__).parent.parent
     for package in ("cases", "joints", "dem", "continuum", "compare"):
