@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import inf
 from typing import Any, NamedTuple
 
@@ -12,7 +11,7 @@ from cases.errors import SceneError
 from cases.scene import Scene
 from compare.engines import applies, solve
 from compare.metrics import misfit
-from compare.plan_families import Family, configured, plain
+from compare.plan_families import Family, configured, plain, settings
 
 #: Whatever knows the physics of a scene best, the first that applies.
 EXACT = ("jointed-bar", "slip-joint", "no-tension-chain", "spatial-lattice", "lattice")
@@ -69,16 +68,17 @@ def finest_name(scene: Scene) -> str:
 def _converged(scene: Scene, asked: float) -> Reference:
     """Return the finest engine's run that differs from the one before by little enough.
 
-    Each has half the step, and half the elements' size, of the one before. Its error is at most
-    the difference where the error falls at least in proportion to the step.
+    Each has at most half the step, and half the elements' size, of the one before. Its error is at
+    most the difference where the error falls at least in proportion to the step.
     """
     name, before, apart = finest_name(scene), None, inf
-    for family, numerics in _levels(name):
-        result = solve(name, configured(scene, family, numerics))
+    for level in range(LEVELS):
+        family = _family(name, level)
+        numerics, result = _at_most(scene, family, _half(before))
         apart = inf if before is None else misfit(before, result)
         if apart < SHARE * asked:
-            settings = ", ".join(f"{k} {v}" for k, v in numerics.items())
-            return Reference(name, result, settings, apart)
+            made = ", ".join(f"{k} {v}" for k, v in (family.changes | numerics).items())
+            return Reference(name, result, made, apart)
         before = result
         if float(result.attrs["seconds_stepping"]) * 4 > LONGEST:
             break
@@ -91,10 +91,26 @@ def _converged(scene: Scene, asked: float) -> Reference:
     )
 
 
-def _levels(name: str) -> Iterator[tuple[Family, dict[str, Any]]]:
-    for level in range(LEVELS):
-        if name == "dem":
-            yield Family(name, "dem", {"scheme": "leapfrog"}, 2), {"step_fraction": 0.4 / 2**level}
-        else:
-            elements = {"order": 2, "elements_per_block": 2**level, "step_fraction": 0.4}
-            yield Family(name, "continuum", {"scheme": "explicit"}, 2), elements
+def _half(before: xr.Dataset | None) -> float:
+    return inf if before is None else float(before.attrs["dt"]) / 2
+
+
+def _family(name: str, level: int) -> Family:
+    if name == "dem":
+        return Family(name, "dem", {"scheme": "leapfrog"}, 2)
+    changes = {"scheme": "explicit", "order": 2, "elements_per_block": 2**level}
+    return Family(name, "continuum", changes, 2)
+
+
+def _at_most(scene: Scene, family: Family, dt: float) -> tuple[dict[str, Any], xr.Dataset]:
+    """Return the numerics and the result of steps of 0.4 critical ones, or dt (s) if that is less.
+
+    The step divides the sampling interval, so that a part of the critical one may be no other.
+    """
+    numerics = {"step_fraction": 0.4}
+    result = solve(family.name, configured(scene, family, numerics))
+    if float(result.attrs["dt"]) > dt * (1 + 1e-9):
+        per_sample, critical = round(scene.interval / dt), float(result.attrs["critical_dt"])
+        numerics = settings(scene, family, per_sample, critical)
+        result = solve(family.name, configured(scene, family, numerics))
+    return numerics, result

@@ -8,7 +8,7 @@ three, so is q: half the steps leave 2^q times the difference. Seconds are a + b
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from math import ceil, log2
+from math import ceil, inf, log2
 from statistics import median
 from typing import Any, NamedTuple
 
@@ -24,7 +24,7 @@ SHORT = 0.05  # s: a shorter run is timed three times more, as it is noise alone
 SLOWEST = 0.5  # order at which errors fall, at least: they do at kinks that repeat
 FINEST = 64  # times the steps of the coarsest
 LONGEST = 1.0  # s: a trial that takes as long is the last of its family
-HIT = 0.1  # of the misfit asked for, that a trial may be from where those before it put it
+HIT = 0.1  # of the misfit, that a trial may be from where those before it put it
 
 
 class Trial(NamedTuple):
@@ -84,17 +84,21 @@ def _trial(scene: Scene, family: Family, numerics: dict[str, Any], reference: xr
 
 
 def is_trusted(trials: list[Trial], order: int, asked: float) -> bool:
-    """Return whether finer steps can be told from these: the last one is where those before it
-    put it, or it is of no use to know more."""
+    """Return whether finer steps can be told from these, or none comes within the misfit.
+
+    They can where the last trial is where those before it put it, to a part of the misfit that is
+    asked for or, if that is more, of what the model leaves at the finest steps.
+    """
     if len(trials) < 2:
         return False
     if is_hopeless(trials, asked):
         return True
     if len(trials) < 3:
         return False
-    told = forecast(trials[:-1], order)(trials[-1].per_sample)
-    off = np.linalg.norm(told - trials[-1].wave) / np.linalg.norm(trials[-1].goal)
-    return bool(off < HIT * asked)
+    last = trials[-1]
+    told, limit = forecast(trials[:-1], order)(last.per_sample), forecast(trials, order)(inf)
+    off = float(np.linalg.norm(told - last.wave) / np.linalg.norm(last.goal))
+    return off < HIT * max(asked, relative_l2(limit, last.goal))
 
 
 def is_hopeless(trials: list[Trial], asked: float) -> bool:
@@ -122,7 +126,7 @@ def measured(scene: Scene, family: Family, trial: Trial) -> Choice:
     return Choice(family, numerics, trial.misfit, trial.seconds, True)
 
 
-def forecast(trials: list[Trial], order: int) -> Callable[[int], np.ndarray]:
+def forecast(trials: list[Trial], order: int) -> Callable[[float], np.ndarray]:
     """Return a function from steps per sample to waveforms, w + c n^-q through the last trials."""
     coarse, fine = trials[-2:]
     q = rate(trials, order)

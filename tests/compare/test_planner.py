@@ -63,7 +63,8 @@ def test_what_no_family_is_about_stays_the_scenes_own(pillar):
     assert (made.numerics.continuum.order, made.numerics.continuum.step_fraction) == (3, 0.5)
 
 
-def test_what_nothing_reaches_is_said(pillar):
+def test_what_nothing_reaches_is_said(pillar, monkeypatch):
+    monkeypatch.setattr(planner, "FAMILIES", planner.FAMILIES[:2])
     found = plan(pillar(load=RICKER, **SHORT), 1e-12)
     assert found.chosen is None and found.trials > 0
 
@@ -87,20 +88,20 @@ LOCAL = {"damping": {"local": 0.5}}
 
 
 def test_a_scene_without_exact_solution_is_held_against_a_converged_run(pillar):
-    """The run's own error is what it says: one with an eighth of its step is as close."""
+    """The run's own error is what it says: one of far finer steps is no further."""
     scene = pillar(load=RICKER, **SHORT, **LOCAL)
     found = plan(scene, 0.01)
     assert found.reference.name == "dem" and not found.reference.is_exact
     assert 0 < found.reference.error < 0.1 * 0.01
     (dem, *_) = plan_families.FAMILIES
-    finer = plan_families.configured(scene, dem, {"step_fraction": 0.01})
+    finer = plan_families.configured(scene, dem, {"step_fraction": 3e-4})
     assert misfit(found.reference.result, solve("dem", finer)) <= found.reference.error
     assert found.misfit <= 0.01
 
 
 def test_a_scene_whose_runs_do_not_converge_in_reach_is_refused(pillar, monkeypatch):
     monkeypatch.setattr(plan_reference, "LEVELS", 2)
-    with pytest.raises(SceneError, match="no exact solution to plan by, and dem .* converges to"):
+    with pytest.raises(SceneError, match=r"no exact solution to plan by, and dem .* converges to"):
         plan(pillar(load=RICKER, **SHORT, **LOCAL), 1e-9)
 
 
