@@ -104,7 +104,9 @@ def is_trusted(trials: list[Trial], order: int, asked: float) -> bool:
 def is_hopeless(trials: list[Trial], asked: float) -> bool:
     """Return whether no step comes within the misfit, even if the error falls at the slowest."""
     coarse, fine = trials[-2:]
-    left = relative_l2(coarse.wave, fine.wave) / (2**SLOWEST - 1)
+    left = relative_l2(coarse.wave, fine.wave) / (
+        (fine.per_sample / coarse.per_sample) ** SLOWEST - 1
+    )
     reach = left * float(np.linalg.norm(fine.wave) / np.linalg.norm(fine.goal))
     return fine.misfit - reach > asked
 

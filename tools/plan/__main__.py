@@ -1,9 +1,10 @@
 """What is planned for every shipped scene, held against a full study of it.
 
 The study runs every family of the planner at two steps to a doubling. A family ends where it meets
-the misfits, and where a run takes over three times the seconds of the cheapest that does, as finer
-steps cost more, or over 2 s. It is not begun where its freedom-steps would take as long, even at
-half of the least that one has taken. The configurations that are compared are timed in turns.
+the misfits, where a run takes over three times the seconds of the cheapest that does (finer steps
+cost more) or over 2 s, and where no finer step could come within a misfit even if the error fell
+with the square root of the step alone. It is not begun where its freedom-steps would be too dear
+at half of the least that one has taken. The configurations that are compared are timed in turns.
 Rows that are done are kept, and not run again.
 """
 

@@ -7,7 +7,16 @@ from cases.errors import SceneError
 from cases.scene import Scene
 from compare.plan_families import FAMILIES, Family, effort
 from compare.plan_reference import Reference
-from compare.plan_trials import FINEST, Choice, Trial, first_trial, measured, steps, trial_at
+from compare.plan_trials import (
+    FINEST,
+    Choice,
+    Trial,
+    first_trial,
+    is_hopeless,
+    measured,
+    steps,
+    trial_at,
+)
 from compare.planner import FAILURES, reason_of
 
 #: A family ends where a run takes so many times the seconds of the cheapest that does, as finer
@@ -56,8 +65,10 @@ class Study:
             wanted = [m for m in self.misfits if last.misfit > m]
             if last.seconds > min(LONGEST, self._dear(wanted)):
                 return
-            last = trial_at(self.scene, family, n, first, self.reference.result)
+            before, last = last, trial_at(self.scene, family, n, first, self.reference.result)
             yield last
+            if all(is_hopeless([before, last], m) for m in wanted):
+                return
 
     def _dear(self, misfits: list[float]) -> float:
         """Return the seconds above which no run can be the cheapest for any of these misfits."""
