@@ -75,7 +75,9 @@ def write_diagram(folder: Path, name: str, study: Study, rows: list[Row]) -> tup
 
 
 def _draw_panel(ax: Axes, study: Study, rows: list[Row], error: str, cost: str, name: str) -> None:
-    best = front(rows, error, cost) if len(study.curves) > 1 else []
+    least = floor(rows, error)
+    best = [r for r in front(rows, error, cost) if getattr(r, error) >= least]
+    best = best if study.timed and len(study.curves) > 1 else []
     if best:
         ax.plot(
             [getattr(r, cost) for r in best],
@@ -93,9 +95,9 @@ def _draw_panel(ax: Axes, study: Study, rows: list[Row], error: str, cost: str, 
         line.set_gid(f"{name}-{k}")
     ax.xaxis.set_minor_formatter(NullFormatter())
     ax.grid(which="major", axis="both" if cost == "work" else "y", color="#e4e7ea", linewidth=0.6)
-    if least := floor(rows, error):
+    if least:
         ax.axhspan(0, least, color="#f2f2f2", zorder=0)
-        ax.text(0.01, least, " not known below", transform=ax.get_yaxis_transform(), **SMALL)
+        ax.text(0.01, least, "fine runs differ", transform=ax.get_yaxis_transform(), **SMALL)
     if cost != "work":
         _draw_digits_per_second(ax)
 
@@ -107,7 +109,7 @@ def _draw_digits_per_second(ax: Axes) -> None:
     digits = -np.log10(errors)
     for power in range(-6, 9):
         seconds = digits / 10.0**power
-        ax.plot(seconds, errors, color="#c3c9cf", linewidth=0.7, linestyle=":", zorder=0)
+        ax.plot(seconds, errors, color="#aab2b9", linewidth=0.7, linestyle=":", zorder=0)
         if left < seconds[0] < right:
             words = f"$10^{{{power}}}$" + (" digits/s" if seconds[0] * 10 > right else "")
             ax.text(seconds[0], low, words, ha="right", rotation=0, **SMALL)

@@ -72,9 +72,7 @@ def solve(scene: Scene) -> xr.Dataset:
     began = perf_counter()
     bar = _bar(scene)
     numerics = scene.numerics.continuum
-    time = clock(
-        scene, bar.critical, numerics.step_fraction, numerics.allow_unstable, "continuum"
-    )
+    time = clock(scene, bar.critical, numerics.step_fraction, numerics.allow_unstable, "continuum")
     slopes, values = _receivers(scene, bar)
     ready = perf_counter()
     u, v = _march(scene, bar, time)

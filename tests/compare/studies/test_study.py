@@ -11,7 +11,7 @@ import xarray as xr
 
 from cases.errors import SceneError
 from compare.metrics import misfit
-from compare.studies import adaptive, plain_dolfinx
+from compare.studies import adaptive
 from compare.studies.reference import reference
 from compare.studies.study import load
 
@@ -60,7 +60,7 @@ def test_a_mistake_in_a_study_is_one_line(tmp_path, old, new, words):
 
 def test_a_study_that_is_not_there_names_those_that_are(tmp_path):
     done = command("no-such", "--out", tmp_path, code=2)
-    assert done.stderr.startswith("jointwave: no-such: is no file, nor one of convergence")
+    assert done.stderr.startswith("jointwave: no-such: is no file, nor one of column-3d")
 
 
 def test_command_writes_what_it_prints(tmp_path):
