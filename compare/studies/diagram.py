@@ -1,7 +1,7 @@
 """Work-precision diagrams: error over seconds and over counted work, both axes logarithmic.
 
-Colours are those of models; a marker is the order of the elements, a dash what is not explicit or
-not in one dimension. Over seconds, dotted lines join what is worth the same in digits a second.
+Colours are those of models; a marker is the order of the elements, open where steps are implicit;
+dashes tell dimensions. Over seconds, thin dotted lines join equal digits a second.
 """
 
 from pathlib import Path
@@ -16,8 +16,8 @@ from matplotlib.ticker import NullFormatter
 
 from compare.figures import save
 from compare.studies.measure import Row
-from compare.studies.pareto import floor, front, measured
-from compare.studies.study import Curve, Study
+from compare.studies.pareto import floor, front, is_known, measured
+from compare.studies.study import Study
 from compare.style import RC, STYLES, WIDTH, style
 
 ERRORS = {
@@ -27,7 +27,7 @@ ERRORS = {
 COSTS = {"seconds": "seconds of stepping", "work": "freedoms x evaluations of the forces"}
 MARKERS = "DPX*<>hpd8H"
 OF_ORDER = {1: "o", 2: "s", 3: "^", 4: "v"}  # of elements
-OF_DIM = {2: (0, (1, 1)), 3: (0, (5, 1, 1, 1))}  # dashes; one dimension is solid
+OF_DIM = {2: (0, (1, 1)), 3: (0, (5, 1, 1, 1))}  # dashes; in one dimension a line is solid
 IMPLICIT = (0, (5, 2))
 LONG = 45  # characters of a legend's entry, of which three stand in a row
 SMALL: dict[str, Any] = {"fontsize": 6.5, "color": "#8a9299", "va": "bottom", "zorder": 1}
@@ -76,7 +76,7 @@ def write_diagram(folder: Path, name: str, study: Study, rows: list[Row]) -> tup
 
 def _draw_panel(ax: Axes, study: Study, rows: list[Row], error: str, cost: str, name: str) -> None:
     least = floor(rows, error)
-    best = [r for r in front(rows, error, cost) if getattr(r, error) >= least]
+    best = [r for r in front(rows, error, cost) if is_known(r, error)]
     best = best if study.timed and len(study.curves) > 1 else []
     if best:
         ax.plot(
@@ -89,7 +89,6 @@ def _draw_panel(ax: Axes, study: Study, rows: list[Row], error: str, cost: str, 
         )
     for k, curve in enumerate(study.curves):
         found = measured([r for r in rows if r.curve == curve.label], error, cost)
-        found.sort(key=lambda row: getattr(row, cost))
         x, y = ([getattr(r, name) for r in found] for name in (cost, error))
         (line,) = ax.loglog(x, y, label=curve.label, zorder=2, **look(study, k))
         line.set_gid(f"{name}-{k}")
@@ -110,7 +109,7 @@ def _draw_digits_per_second(ax: Axes) -> None:
     for power in range(-6, 9):
         seconds = digits / 10.0**power
         ax.plot(seconds, errors, color="#aab2b9", linewidth=0.7, linestyle=":", zorder=0)
-        if left < seconds[0] < right:
+        if 1.5 * left < seconds[0] < right:
             words = f"$10^{{{power}}}$" + (" digits/s" if seconds[0] * 10 > right else "")
             ax.text(seconds[0], low, words, ha="right", rotation=0, **SMALL)
     ax.set_xlim(left, right)
@@ -120,21 +119,16 @@ def _draw_digits_per_second(ax: Axes) -> None:
 def look(study: Study, k: int) -> dict[str, Any]:
     """Return how matplotlib draws a curve."""
     changes = study.curves[k].changes
-    order = changes.get("numerics.continuum.order")
+    order, dim = (changes.get(f"numerics.continuum.{key}") for key in ("order", "dim"))
+    implicit = changes.get("numerics.continuum.scheme") == "implicit"
     return {
         "color": colour(study, k),
         "marker": OF_ORDER[order] if order else MARKERS[k % len(MARKERS)],
         "markersize": 4.5,
         "linewidth": 1.2,
-        "linestyle": _dashes(study.curves[k]),
-        "markerfacecolor": "white" if _dashes(study.curves[k]) != "-" else None,
+        "linestyle": OF_DIM.get(dim, IMPLICIT if implicit else "-"),
+        "markerfacecolor": "white" if implicit else None,
     }
-
-
-def _dashes(curve: Curve) -> Any:
-    if curve.changes.get("numerics.continuum.scheme") == "implicit":
-        return IMPLICIT
-    return OF_DIM.get(curve.changes.get("numerics.continuum.dim", 1), "-")
 
 
 def colour(study: Study, k: int) -> str:

@@ -54,7 +54,12 @@ def cheapest(rows: list[Row], error: str = "total", cost: str = "seconds") -> li
 def floor(rows: list[Row], error: str) -> float:
     """Return the error below which these are not known; 0 against exact solutions."""
     floors = [getattr(row, f"{error}_floor", 0.0) for row in rows]
-    return max((value for value in floors if value == value), default=0.0)
+    return max((value for value in floors if not math.isnan(value)), default=0.0)
+
+
+def is_known(row: Row, error: str) -> bool:
+    """Return whether a point's error is not below what it is measured against is known to."""
+    return getattr(row, error) >= floor([row], error)
 
 
 def most_digits_per_second(rows: list[Row]) -> Row | None:
