@@ -81,12 +81,14 @@ def study(
     workers: WorkersOption = CORES,
     as_json: JsonOption = False,
 ) -> None:
-    """Run a study: a scene solved in many ways, each with its error and its cost, as one table.
+    """Run a study: a scene solved in many ways, each with its error and its cost, as one table
+    and its diagram.
 
     Points that are done are kept in DIR/NAME/ and not run again. Under mpiexec the processes share
     the points; those of a timed study are run one at a time.
     """
     from compare import terminal
+    from compare.studies.diagram import write_diagram
     from compare.studies.pool import on_pool
     from compare.studies.runner import run as run_points
     from compare.studies.show import show_study
@@ -99,7 +101,8 @@ def study(
             started(), workers, lambda pool: run_points(asked, out / stem, pool, advance)
         )
     if rows is not None:
-        show_study(asked, rows, write_table(out, stem, asked, rows), as_json)
+        files = (*write_table(out, stem, asked, rows), *write_diagram(out, stem, asked, rows))
+        show_study(asked, rows, files, as_json)
 
 
 @app.command()
