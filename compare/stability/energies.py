@@ -47,9 +47,9 @@ def no_trend(steps: int):
 
     Leapfrog conserves its discrete energy exactly, the composition of fourth order and the
     trapezoidal rule likewise an energy near it: what is recorded may swing, by what each sample
-    shows, but not drift. Each step rounds each velocity and displacement by half an eps, at random:
-    a walk of sqrt(N) steps of eps at most, of which four standard deviations are allowed. A linear
-    trend fitted through n samples that swing by s is uncertain by sqrt(12 / n) s; four of these too.
+    shows, but not drift. Each step rounds velocities and displacements by half an eps, at random: a
+    walk of sqrt(N) steps of eps at most, of which four standard deviations are allowed. A linear
+    trend through n samples that swing by s is uncertain by sqrt(12 / n) s; four of these too.
     Implicit steps solve with factors of a matrix that is wrong by an eps, the same in every step:
     theirs may add up to eps a step.
     """

@@ -43,9 +43,7 @@ def row_of(case: Case, solver: Solver) -> Row:
     margin = bound / value if value > 0 else (inf if value == 0 else float("nan"))
     about = case.name, solver.engine, solver.scheme, case.criterion
     seconds = perf_counter() - began
-    return Row(
-        *about, bound, value, margin, state, finding.said, seconds, case.scene, case.changes
-    )
+    return Row(*about, bound, value, margin, state, finding.said, seconds, case.scene, case.changes)
 
 
 def _judged(case: Case, solver: Solver) -> tuple[str, Finding]:
