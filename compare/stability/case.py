@@ -111,24 +111,14 @@ class Trial:
 
 
 def critical_step(solver: Solver, scene: Scene) -> float:
-    """Return the critical step (s) of a solver's explicit steps."""
+    """Return the critical step (s) of a solver's explicit steps along the axis."""
     if solver.engine == "dem":
-        return _critical_of_blocks(scene)
+        from dem.axial.simulate import scheme_of
+
+        return scheme_of(scene).build(scene)[3]
     from continuum.simulate import steps_of
 
     return steps_of(scene, solver.engine.removeprefix("continuum-"))[1]
-
-
-def _critical_of_blocks(scene: Scene) -> float:
-    from cases.effects import is_spatial
-
-    if is_spatial(scene):
-        from dem.spatial.build import build
-
-        return build(scene)[3]
-    from dem.axial.simulate import scheme_of
-
-    return scheme_of(scene).build(scene)[3]
 
 
 def is_refusal_of_scheme(error: SceneError) -> bool:
