@@ -23,15 +23,16 @@ def _periods() -> list[Case]:
         "numerics.dem.step_fraction": 0.02,
         "numerics.continuum.step_fraction": 0.1,
         "numerics.continuum.steps_per_period": 400,
-        "load.shape": "sine",
-        "load.cycles": 10,
         "time.duration": 0.01,
     }
     found = []
     for words, period in (("at", CUT_OFF), ("twice", CUT_OFF / 2)):
         name = f"load {words} the lattice cut-off"
         changes = fine | {"load.period": period}
-        chain = Case(f"{name}, rigid blocks", SHORT, SECOND_ORDER, layers.as_chain, changes, ROCKS)
+        cycles = {"load.shape": "sine", "load.cycles": 10}
+        chain = Case(
+            f"{name}, rigid blocks", SHORT, SECOND_ORDER, layers.as_chain, changes | cycles, ROCKS
+        )
         rock = Case(
             f"{name}, deformable rock", SHORT, SECOND_ORDER, accuracy.near_exact, changes, BLOCKS
         )
@@ -60,6 +61,28 @@ def _loads() -> list[Case]:
     still = "largest number of the result"
     return [
         Case("step in stress", SHORT, front, extremes.shock, step),
+        *(
+            Case(
+                f"amplitude {text} Pa",
+                SHORT,
+                "misfit from the result of 1 Pa times the amplitude",
+                extremes.scaled,
+                {"load.amplitude": float(text), "record.energy": False},
+            )
+            for text in ("1e-300", "1e-200", "1e200", "1e300")
+        ),
+        Case(
+            "amplitude 1e300 Pa on joints with a strength",
+            SHORT,
+            "refused in one line that names the key",
+            extremes.refused,
+            {
+                "load.amplitude": 1e300,
+                "joints.tensile_strength": 1e5,
+                "joints.fracture_energy": 1e2,
+            },
+            {"continuum-equivalent": "it has no joints that break"},
+        ),
         Case("zero load", SHORT, still, extremes.nothing, {"load.amplitude": 0.0}),
     ]
 

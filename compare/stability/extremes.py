@@ -12,42 +12,35 @@ from cases.errors import SceneError
 from compare.engines import applies, solve
 from compare.exact import equivalent_bar, jointed_bar
 from compare.metrics import misfit, relative_l2
-from compare.stability.accuracy import ERROR, HIGHEST, REFEREES, SPATIAL, phase_error
+from compare.stability.accuracy import (
+    CUBES,
+    REFEREE,
+    REFEREES,
+    element_error,
+    lost_after,
+    peak,
+    phase_error,
+)
 from compare.stability.case import Finding, Trial
 
 
 def shock(trial: Trial) -> Finding:
     """A jump in stress is as wrong as the dispersion of steps and elements makes it.
 
-    The spectrum of a jump is 1 / omega. A frequency has the phase error C (omega dt)^2 omega t of
-    the steps and (omega h / c)^4 omega t / 2880 of quadratic GLL elements (Ainsworth & Wajid, SIAM
-    J. Numer. Anal. 47, 2009). Beyond the w where it is 1 a frequency is lost (twice its amplitude
-    at worst), below it is wrong by its phase: with it growing as a power of three or more, Parseval
-    gives the square of the error as (4 + 1/5) / (pi w). That of the signal is at least t / 4: each
+    The spectrum of a jump is 1 / omega. A frequency beyond the w of `lost_after` is lost (twice its
+    amplitude at worst), one below it is wrong by its phase: as this grows as the third power or
+    more, Parseval gives the square of the error as (4 + 1/5) / (pi w). That of the signal is at
+    least t / 4: each
     section is under stress for a quarter of the time or more.
     """
     result, scene = trial.run(), trial.scene()
     names = [name for name in REFEREES[trial.solver.engine] if applies(name, scene)]
-    t, dt = scene.time.duration, float(result.attrs["dt"])
-    lost = (ERROR[trial.solver.scheme] * dt**2 * t) ** (1 / 3)
-    lost += (_time_of_element(trial) ** 4 * t / 2880) ** (1 / 5)
+    lost = lost_after(trial, result)
     return Finding(
         misfit(result, solve(names[0], scene)),
-        sqrt(4.2 / pi * lost / (t / 4)),
+        sqrt(4.2 / pi * lost / (scene.time.duration / 4)),
         f"misfit from {names[0]}",
     )
-
-
-def _time_of_element(trial: Trial) -> float:
-    """Return how long a wave takes through an element, s; 0 in rigid blocks."""
-    if trial.solver.engine == "dem":
-        return 0.0
-    from continuum.build import elements_for
-
-    scene, model = trial.scene(), trial.solver.engine.removeprefix("continuum-")
-    p = calibrate(scene)
-    modulus = p.intact_modulus if model == "jointed" else p.modulus
-    return p.spacing / elements_for(scene, p, model) / sqrt((modulus or p.modulus) / p.density)
 
 
 def in_space(trial: Trial) -> Finding:
@@ -91,8 +84,8 @@ def refused(trial: Trial) -> Finding:
     try:
         trial.run()
     except SceneError as error:
-        text = str(error)
-        return Finding(float("\n" in text or error.key not in text), 0.0, text)
+        wrong = "\n" in str(error) or not error.key
+        return Finding(float(wrong), 0.0, f"{error.key}: {error.allowed}")
     return Finding(1.0, 0.0, "was not refused")
 
 
@@ -115,10 +108,10 @@ def as_bar(trial: Trial) -> Finding:
     result, scene = trial.run(), trial.scene()
     exact = _bar(trial, scene)
     p = calibrate(scene)
-    omega = 2 * pi * HIGHEST / (scene.load.period or scene.time.duration)
+    omega = peak(trial)
     poisson = max(p.poisson, scene.rock.intact_poisson)
-    love = (poisson * omega / p.bar_speed * p.side) ** 2 / 12 * omega * scene.time.duration
-    bound = phase_error(trial, result) + SPATIAL + love
+    love = (poisson * omega / p.bar_speed * p.side) ** 2 / 12 * CUBES * omega * scene.time.duration
+    bound = phase_error(trial, result) + element_error(trial) + REFEREE + love
     return Finding(relative_l2(result["stress"].values, exact["stress"].values), bound, "misfit")
 
 
