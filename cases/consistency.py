@@ -159,7 +159,7 @@ def _beyond_scaling(scene: Scene) -> Iterator[tuple[str, object, bool]]:
     yield "load.at", load.at, load.is_eccentric
     yield "load.arm", load.arm, load.arm is not None
     yield "load.file", load.file, load.file is not None
-    laws = {"joints": scene.joints}
+    laws: dict[str, JointLaw] = {"joints": scene.joints}
     laws |= {f"soft_layers[{i}]": layer for i, layer in enumerate(scene.soft_layers)}
     for table, law in laws.items():
         for key in ("tensile_strength", "cohesion"):
