@@ -85,8 +85,12 @@ def study(
     and its diagram.
 
     Points that are done are kept in DIR/NAME/ and not run again. Under mpiexec the processes share
-    the points; those of a timed study are run one at a time.
+    the points; those of a timed study are run one at a time. The study `stability` puts both
+    engines to hard cases, each with a criterion from theory.
     """
+    if name == "stability":
+        _study_stability(out, workers, as_json)
+        return
     from compare import terminal
     from compare.studies.diagram import write_diagram
     from compare.studies.pool import on_pool
@@ -103,6 +107,18 @@ def study(
     if rows is not None:
         files = (*write_table(out, stem, asked, rows), *write_diagram(out, stem, asked, rows))
         show_study(asked, rows, files, as_json)
+
+
+def _study_stability(out: Path, workers: int, as_json: bool) -> None:
+    from compare import terminal
+    from compare.stability.section import TITLE, make_study
+    from compare.stability.show import show
+    from compare.studies.pool import on_pool
+
+    with terminal.progress(TITLE) as advance:
+        found = on_pool(started(), workers, lambda pool: make_study(out, pool, progress=advance))
+    if found is not None:
+        show(found, as_json)
 
 
 @app.command()
