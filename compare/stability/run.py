@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Callable
 from concurrent.futures import Executor, as_completed
+from pathlib import Path
 
 from compare.engines import Progress
+from compare.output import write_text
 from compare.stability.battery import CASES
 from compare.stability.case import SOLVERS
 from compare.stability.row import Row, row_of
+from compare.studies.runner import program
 
 Pool = Callable[[], Executor]
 
@@ -28,22 +33,47 @@ def row_at(place: tuple[int, int]) -> Row:
     return row_of(CASES[place[0]], SOLVERS[place[1]])
 
 
-def run(pool: Pool | None = None, slow: bool = True, progress: Progress | None = None) -> list[Row]:
-    """Return all rows; pool : makes the standard Executor that maps them, None: one by one."""
+def run(
+    pool: Pool | None = None,
+    slow: bool = True,
+    progress: Progress | None = None,
+    folder: Path | None = None,
+) -> list[Row]:
+    """Return all rows.
+
+    pool : makes the standard Executor that maps them; None: one by one. folder : where each is
+    kept as soon as it is done, and taken from when the battery is run again; None: nowhere.
+    """
     asked = places(slow)
-    found: dict[tuple[int, int], Row] = {}
+    found = {place: row for place in asked if (row := _kept(place, folder)) is not None}
 
     def note(place: tuple[int, int], row: Row) -> None:
         found[place] = row
+        if folder is not None:
+            write_text(_file(place, folder), json.dumps(row._asdict()))
         if progress:
             progress(len(found) / len(asked))
 
+    missing = [place for place in asked if place not in found]
     if pool is None:
-        for place in asked:
+        for place in missing:
             note(place, row_at(place))
-    else:
+    elif missing:
         with pool() as executor:
-            futures = {executor.submit(row_at, place): place for place in asked}
+            futures = {executor.submit(row_at, place): place for place in missing}
             for future in as_completed(futures):
                 note(futures[future], future.result())
     return [found[place] for place in asked]
+
+
+def _kept(place: tuple[int, int], folder: Path | None) -> Row | None:
+    if folder is None or not _file(place, folder).is_file():
+        return None
+    return Row(**json.loads(_file(place, folder).read_text(encoding="utf-8")))
+
+
+def _file(place: tuple[int, int], folder: Path) -> Path:
+    """Return the file of a row, named by all that decides it, this program included."""
+    case, solver = CASES[place[0]], SOLVERS[place[1]]
+    about = [program(), case.name, case.scene, case.changes, solver.name]
+    return folder / f"{hashlib.sha256(json.dumps(about).encode()).hexdigest()[:16]}.json"

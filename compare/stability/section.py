@@ -47,9 +47,10 @@ def make_study(
 ) -> Found:
     """Run the battery, the maps and the long runs; write their tables and figure into `out`.
 
+    Rows that are done are kept in OUT/stability/ and not run again.
     pool : makes the standard Executor that maps the rows; slow : also the rows that take long.
     """
-    rows = run(pool, slow, progress)
+    rows = run(pool, slow, progress, out / NAME)
     maps = [make_map(engine) for engine in ENGINES]
     svg = save(draw(maps, drifts()), out, NAME, TITLE)
     files = [write_rows(out / f"{NAME}.csv", rows), write_maps(out / f"{NAME}-map.csv", maps)]
