@@ -7,6 +7,7 @@ without dolfinx and matplotlib.
 import gc
 import os
 import sys
+from contextlib import ExitStack
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
@@ -14,7 +15,9 @@ from typing import Annotated, Any
 import typer
 
 import cases
-from cases.errors import SceneError, UnstableError
+from cases.errors import InterruptedRun, SceneError, UnstableError
+from compare.keeping.lock import locked
+from compare.keeping.signals import Ended, exit_code, watched
 from compare.processes import Processes, started
 from compare.scenes import find, shipped
 
@@ -99,22 +102,37 @@ def run(
     vtx: Annotated[
         bool, typer.Option("--vtx", help="Also write the snapshots of record.fields as VTX (.bp).")
     ] = False,
+    every: Annotated[
+        float,
+        typer.Option(
+            "--checkpoint-every", metavar="SECONDS", min=0.0, help="Of wall time; 0: none are kept."
+        ),
+    ] = 60.0,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on where an earlier run of the same has stopped.")
+    ] = False,
     as_json: JsonOption = False,
 ) -> None:
     """Simulate a scene and write each result as DIR/[variant/]ENGINE[-MODEL].nc.
 
     With record.fields also its snapshots, as a .pvd file for ParaView. Under mpiexec the processes
     share each run of the continuum; everything else is done by the first of them.
+
+    A run that is killed goes on from its last checkpoint with --resume, to the same bits as if it
+    had not been; results that are whole already are kept. Ctrl-C keeps what is there.
     """
     from compare import runs, terminal, views
+    from compare.keeping.watch import Keeping
 
     scenes = _load(scene, changes, variant)
     wanted = runs.wanted([e.value for e in engine], model or [])
     jobs = runs.plan(scenes, wanted, out)
     _warn(scenes)
     processes = started()
-    with terminal.progress(f"{len(jobs)} runs") as advance:
-        done = runs.execute(jobs, advance, vtx, processes)
+    folders, keeping = {job.path.parent for job in jobs}, Keeping(every, resume, watched())
+    with ExitStack() as held, terminal.progress(f"{len(jobs)} runs") as advance:
+        processes.by_first(lambda: held.enter_context(locked(out, *folders)))
+        done = runs.execute(jobs, advance, vtx, processes, keeping)
     processes.by_first(lambda: views.show_runs(done, as_json))
 
 
@@ -303,21 +321,28 @@ def main() -> None:
         sys.argv.append("--help")
     processes = Processes()
     try:
+        signals = watched()
         processes = started()
         processes.mute_others()
+        signals.patient = not processes.is_first  # the first decides for all
         code = app(standalone_mode=False)
+        sys.stdout.flush()
     except SceneError as error:
         _fail(processes, str(error), 2)
+    except InterruptedRun as error:
+        _fail(processes, str(error), getattr(error, "code", 1))
     except UnstableError as error:
         _fail(processes, str(error), 3)
     except UsageError as error:
         _fail(processes, _usage(error), 2)
-    except (typer.Abort, KeyboardInterrupt):
-        _fail(processes, "interrupted", 130)
-    except BrokenPipeError:  # the reader has seen enough; flushing at exit must not complain
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except Ended as end:
+        _fail(processes, str(end), exit_code(end.number))
+    except BrokenPipeError:  # the reader has seen enough
+        _drop_output()
         sys.exit(1)
     except OSError as error:
+        if error.filename is None:
+            _drop_output()
         _fail(processes, f"{error.filename or 'output'}: {error.strerror or error}", 2)
     except MemoryError as error:
         _fail(processes, f"not enough memory: {error}", 2)
@@ -327,6 +352,11 @@ def main() -> None:
         processes.crash()
     else:
         sys.exit(code if isinstance(code, int) else 0)
+
+
+def _drop_output() -> None:
+    """Let what cannot be written to standard output go: flushing at exit must not complain."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _usage(error: Any) -> str:
