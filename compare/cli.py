@@ -259,10 +259,11 @@ def study(
     from compare.studies.study import load
     from compare.studies.table import write_table
 
-    asked, stem = load(name), Path(name).stem
-    with terminal.progress(asked.title) as advance:
+    asked, stem, processes = load(name), Path(name).stem, started()
+    with ExitStack() as held, terminal.progress(asked.title) as advance:
+        processes.by_first(lambda: held.enter_context(locked(out / stem)))
         rows = on_pool(
-            started(), workers, lambda pool: run_points(asked, out / stem, pool, advance)
+            processes, workers, lambda pool: run_points(asked, out / stem, pool, advance)
         )
     if rows is not None:
         show_study(asked, rows, write_table(out, stem, asked, rows), as_json)
@@ -274,7 +275,7 @@ def report(out: OutOption = Path("report"), as_json: JsonOption = False) -> None
     from compare import terminal, views
     from compare.report import build
 
-    with terminal.progress("scenes") as advance:
+    with locked(out, out / "figures", out / "studies"), terminal.progress("scenes") as advance:
         found = build(out, advance)
     views.show_report(found, as_json)
 
