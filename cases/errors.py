@@ -34,10 +34,11 @@ class UnstableError(RuntimeError):
 class StoppedError(UnstableError):
     """A run that could not go on; its message says why and when.
 
-    result : what was computed until then, an xarray.Dataset like that of a whole run; None where
-        nothing was.
+    samples : how many had been taken before. result : what was computed until then, like that of a
+        whole run; None where nothing was.
     """
 
+    samples: int = 0
     result: Any = None
 
 

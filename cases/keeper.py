@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Protocol
 
+from cases.errors import InterruptedRun
+
 if TYPE_CHECKING:
     from cases.snapshots import Film
 
@@ -35,3 +37,12 @@ def begin(keeper: Keeper | None, film: Film | None, parts: Any) -> int:
         film.expect(keeper.done)
     keeper.restore(parts)
     return keeper.done
+
+
+def show(keeper: Keeper, samples: int, parts: Any) -> None:
+    """Let a keeper see a run, and say how far it had got where the keeper stops it."""
+    try:
+        keeper.look(samples, parts)
+    except InterruptedRun as error:
+        error.samples = samples
+        raise

@@ -53,13 +53,6 @@ def scene_hash(scene: Scene) -> str:
     return digest.hexdigest()[:16]
 
 
-def size_of(*parts: Any) -> int:
-    """Return the bytes of all arrays in nested tuples: what a run holds, None for absent parts."""
-    return sum(
-        size_of(*part) if isinstance(part, tuple) else getattr(part, "nbytes", 0) for part in parts
-    )
-
-
 def dataset(*arguments: Any, **attributes: Any) -> xr.Dataset:
     """Return a result as xarray.Dataset; takes what `fields` takes."""
     import xarray as xr

@@ -76,7 +76,7 @@ def _along_axis(scene: Scene) -> tuple[Callable[[], None], int]:
     scheme = scheme_of(scene)
     model, state, time, _ = scheme.build(scene)
     count = _samples(time, state.u.size)
-    march = scheme.marcher(scene, model, state, room(model, state, count), time)
+    march = scheme.marcher(scene, model, state, room(model, state, count), time, None)
     return lambda: march(0, count), count * time.stride * state.u.size
 
 

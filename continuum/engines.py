@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cases.sampling import Clock
 from cases.scene import Scene
 from continuum.body import Body
 from continuum.build import Discrete
 from continuum.model import Model, Samples, State
+from continuum.watch import Watch
 
 
 class Engine(NamedTuple):
@@ -20,22 +20,18 @@ class Engine(NamedTuple):
     compile : compiles its kernels and changes nothing.
     march : function of (first, last) that takes the steps up to that of step last - 1.
     ahead : s, how far displacements are beyond the last of these when `march` returns.
-    attributes : what a result says of the steps. reached : the last whole step that was done.
+    attributes : what a result says of the steps. parts : arrays that change beside the state.
     """
 
     compile: Callable[[], None]
     march: Callable[[int, int], None]
     ahead: float
     attributes: Callable[[], dict[str, Any]]
-    reached: Callable[[], int]
-
-    def samples_done(self, time: Clock) -> int:
-        """Return how many samples have been taken when a run stops on its way."""
-        return self.reached() // time.stride + 1
+    parts: Any = ()
 
 
 def explicit_engine(
-    scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, time: Clock
+    scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, watch: Watch
 ) -> Engine:
     """Return leapfrog."""
     team, held = discrete.body.team, model.ends.held
@@ -44,13 +40,13 @@ def explicit_engine(
     run = team.stepping(np.zeros(0, dtype=np.int64) if held is None else held.freedom)
 
     def march(first: int, last: int) -> None:
-        run(model, state, samples, time.stride, first, last)
+        run(model, state, samples, watch.time.stride, first, last, watch.guard)
 
     def compile() -> None:
         with team.in_turn():
             march(0, 0)
 
-    return Engine(compile, march, time.dt, dict, lambda: time.steps)
+    return Engine(compile, march, watch.time.dt, dict)
 
 
 def let_go(model: Model, state: State, body: Body) -> None:
@@ -67,7 +63,7 @@ def let_go(model: Model, state: State, body: Body) -> None:
 
 
 def implicit_engine(
-    scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, time: Clock
+    scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, watch: Watch
 ) -> Engine:
     """Return the generalised-alpha method of the scene's spectral radius."""
     from continuum.implicit import Implicit
@@ -79,15 +75,15 @@ def implicit_engine(
     def attributes() -> dict[str, Any]:
         return {
             "spectral_radius": rho,
-            "newton_iterations": run.stepper.iterations,
-            "factorisations": run.stepper.factorisations,
+            "newton_iterations": int(run.stepper.counts[0]),
+            "factorisations": int(run.stepper.counts[1]),
             "halved_steps": run.halvings,
         }
 
     return Engine(
         lambda: run.compile(samples),
-        lambda first, last: run.run(samples, time.stride, first, last),
+        lambda first, last: run.run(samples, watch.time.stride, first, last, watch),
         0.0,
         attributes,
-        lambda: run.reached,
+        run.parts,
     )

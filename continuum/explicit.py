@@ -13,20 +13,37 @@ from continuum.operator import multiply
 from continuum.record import book, record
 from continuum.tractions import load_joints, push
 from joints.borrowed import borrowed
+from joints.guard import creates_energy, runs_away
 from joints.jit import inlined, jitted
 from joints.tiny import flush_tiny, restore_tiny
 
 
 @jitted
-def run(model, state, samples, stride, first, last):
-    """Take steps first .. last - 1 and a sample at every step that `stride` divides."""
+def run(model, state, samples, stride, first, last, guard=None):
+    """Take steps first .. last - 1 and a sample at every step that `stride` divides.
+
+    guard : `joints.guard.Guard` that ends it where it runs out of bounds; None without.
+    """
     old = flush_tiny()
     model, state, samples = borrowed(model), borrowed(state), borrowed(samples)
     for n in range(first, last):
         forces(model, state, n)
         accelerate(model.rock, model.rock.keep, state)
         advance(model, state, samples, stride, n)
+        if is_lost(guard, state, samples, stride, n):
+            break
     restore_tiny(old)
+
+
+@inlined
+def is_lost(guard, state, samples, stride, n):
+    """Return whether a guard finds the run out of bounds at step n."""
+    if guard is None:
+        return False
+    lost = runs_away(guard, state.v, n + 1)
+    if n % stride == 0:
+        lost = creates_energy(guard, samples.energy, n // stride, n) or lost
+    return lost
 
 
 @inlined

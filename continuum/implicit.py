@@ -6,12 +6,14 @@ longer ones again, so that whole steps end on the clock.
 
 import numpy as np
 
+from cases.arrays import changed, copied, fill
 from cases.errors import StoppedError
 from continuum.balance import record_balanced, stiffen
 from continuum.implicit_step import Matrices, Moment, Stepper, joint_room
 from continuum.model import Model, Samples, State
 from continuum.newton import Outcome
 from continuum.substeps import motion_at, pressure_at
+from continuum.watch import Watch
 
 HALVINGS = 10
 WHOLE = 1 << HALVINGS
@@ -29,37 +31,49 @@ class Implicit:
 
     Attributes
     ----------
-    stepper : counts iterations and factorisations. halvings : how many steps were halved.
-    outcome : of the last step or part of one. reached : the last whole step that was done, -1 none.
+    stepper : counts iterations and factorisations. outcome : of the last step or part of one.
+    counts : int array [2], how many steps were halved, and the last whole step that was done, -1
+        none. parts : all arrays that change beside the state.
     """
 
     def __init__(self, model: Model, state: State, matrices: Matrices, rho: float) -> None:
         self.model, self.state = model, state
         self.stepper = Stepper(model, matrices, rho)
         self.now, self.trial = (
-            Moment(s, np.zeros_like(state.u), np.zeros(1)) for s in (state, like(state))
+            Moment(s, np.zeros_like(state.u), np.zeros(1)) for s in (state, copied(state))
         )
         self.team, mass = matrices.team, matrices.team.total(model.rock.mass)
         self.mass = np.where(mass > 0, mass, np.inf)  # what no rock is part of does not move
-        self.halvings, self.reached = 0, -1
+        self.counts = np.array([0, -1])
         self.outcome: Outcome | None = None
+        self.parts = self.now[1:], self.trial, self.counts, self.stepper.counts
 
-    def run(self, samples: Samples, stride: int, first: int, last: int) -> None:
+    @property
+    def halvings(self) -> int:
+        """How many steps were halved."""
+        return int(self.counts[0])
+
+    def run(
+        self, samples: Samples, stride: int, first: int, last: int, watch: Watch | None = None
+    ) -> None:
         """Go from step first - 1 to each of first .. last - 1, and take a sample at every step that
-        `stride` divides. Raises StoppedError where a step does not converge."""
+        `stride` divides. Raises StoppedError where a step does not converge; ends where what
+        watches finds the run out of bounds."""
         for n in range(first, last):
             if n == 0:
                 self._begin()
             else:
-                self._reach(n)
-            self.reached = n
+                self._reach(n, stride)
+            self.counts[1] = n
             if n % stride == 0:
                 self._record(samples, n // stride)
+            if watch is not None and watch.finds(n):
+                break
 
     def compile(self, samples: Samples) -> None:
         """Compile every kernel of the run, and change nothing."""
-        spare, state = Moment(like(self.state), np.zeros(1), np.zeros(1)), self.state
-        one = _each(samples, lambda wave: np.zeros((len(wave), 1)))
+        spare, state = Moment(copied(self.state), np.zeros(1), np.zeros(1)), self.state
+        one = changed(samples, lambda wave: np.zeros((len(wave), 1)))
         with self.team.in_turn():
             self.stepper.settle(self.model, self.now, spare, 0, 0.0)
             stiffen(self.model, state, spare.state, 1.0, joint_room(self.model))
@@ -71,14 +85,14 @@ class Implicit:
         held = motion_at(stepper.wall, 0, 0.0)
         for values, given in zip((now.state.u, now.state.v, now.acceleration), held, strict=True):
             values[stepper.wall.freedom] = given
-        copy_arrays(now.state, trial.state)
+        fill(trial.state, now.state)
         stepper.settle(self.model, now, trial, 0, 0.0)
         trial.acceleration[:] = now.acceleration
         stepper.balance(trial)
         self._accept(0, 0.0, 0.0)
 
-    def _reach(self, n: int) -> None:
-        """Go from step n - 1 to step n, whole or in parts of it."""
+    def _reach(self, n: int, stride: int) -> None:
+        """Go from step n - 1 to step n, whole or in parts of it; samples are `stride` apart."""
         halvings, done = 0, 0
         while done < WHOLE:
             part = WHOLE >> halvings
@@ -91,9 +105,11 @@ class Implicit:
                     halvings -= 1
             elif halvings < HALVINGS:
                 halvings += 1
-                self.halvings += 1
+                self.counts[0] += 1
             else:
-                raise StoppedError(self._why(n - 1 + done / WHOLE))
+                error = StoppedError(self._why(n - 1 + done / WHOLE))
+                error.samples = (n - 1) // stride + 1
+                raise error
 
     def _why(self, step: float) -> str:
         assert self.outcome is not None
@@ -112,7 +128,7 @@ class Implicit:
             pressures = (pressure_at(self.model, n, at) for at in (before, share))
             self._book(trial.state.ledger, sum(pressures) / 2)
         trial.state.v_before[:] = trial.state.v
-        copy_arrays(trial.state, now.state)
+        fill(now.state, trial.state)
         now.acceleration[:] = trial.acceleration
         now.size[:] = trial.size
 
@@ -143,27 +159,3 @@ class Implicit:
         record_balanced(self.model, state, balancing, samples, s)
         if samples.energy is not None:  # of a mass that may be consistent
             samples.energy[0, s] = state.v @ (self.stepper.mass @ state.v) / 2
-
-
-def like(state: State) -> State:
-    """Return a state with arrays of its own, as those of another."""
-    return _each(state, lambda values: values.copy())
-
-
-def copy_arrays(source: State, target: State) -> None:
-    """Copy all arrays of a state into those of another."""
-    pairs = iter(_arrays(target))
-    for values in _arrays(source):
-        next(pairs)[...] = values
-
-
-def _arrays(parts) -> list[np.ndarray]:
-    if isinstance(parts, tuple):
-        return [array for part in parts for array in _arrays(part)]
-    return [] if parts is None else [parts]
-
-
-def _each(parts, change):
-    if isinstance(parts, tuple):
-        return type(parts)(*(_each(part, change) for part in parts))
-    return None if parts is None else change(parts)

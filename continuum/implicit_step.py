@@ -91,7 +91,7 @@ class Stepper:
 
     Attributes
     ----------
-    iterations, factorisations : how many there have been.
+    counts : int array [2], how many corrections and factorisations there have been.
     """
 
     def __init__(self, model: Model, matrices: Matrices, rho: float) -> None:
@@ -111,7 +111,7 @@ class Stepper:
         self._factored: tuple[Length, np.ndarray] | None = None
         self._weight = np.zeros(self.free.size)
         self._lengths: dict[int, Length] = {}
-        self.iterations = self.factorisations = 0
+        self.counts = np.zeros(2, dtype=np.int64)
 
     def step(self, now: Moment, trial: Moment, n: int, share: float, halvings: int) -> Outcome:
         """Try a step of dt / 2**halvings to a share of the way from step n to n + 1; the end is
@@ -136,7 +136,7 @@ class Stepper:
 
         def correction(rest: np.ndarray) -> np.ndarray:
             self._factorise(length, now, trial)
-            self.iterations += 1
+            self.counts[0] += 1
             return self._factors.solve(rest)
 
         start = (drift + beta * dt**2 * now.acceleration)[free]
@@ -193,7 +193,7 @@ class Stepper:
         of_joints = self._pattern.joints @ self._joints.ravel()
         values = length.fixed + (1 - self.scheme.alpha_f) * of_joints
         self._factors.factorise(values)
-        self.factorisations += 1
+        self.counts[1] += 1
         diagonal = np.zeros(self.mass.shape[0])
         diagonal[self.free] = (values - length.inertia)[self._pattern.diagonal]
         self._weight = np.abs(self.team.total(diagonal)[self.free])

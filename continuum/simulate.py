@@ -11,8 +11,10 @@ import numba
 import numpy as np
 import xarray as xr
 
+from cases.arrays import size_of
 from cases.errors import SceneError, StoppedError
-from cases.result import Fields, fields, size_of
+from cases.keeper import Keeper
+from cases.result import Fields, fields
 from cases.scene import Scene
 from continuum import compat
 from continuum.build import (
@@ -25,10 +27,11 @@ from continuum.build import (
 )
 from continuum.engines import explicit_engine, implicit_engine
 from continuum.kinematics import refuse
-from continuum.looks import march_with_looks, runaway_check
+from continuum.looks import march_with_looks
 from continuum.model import Model, Samples, State
 from continuum.reach import applies
 from continuum.scheme import Choice, choose
+from continuum.watch import Watch
 from continuum.waveforms import energy_terms, waveforms
 
 if TYPE_CHECKING:
@@ -41,6 +44,7 @@ def simulate(
     dim: int | None = None,
     progress: Callable[[float], None] | None = None,
     comm=None,
+    keeper: Keeper | None = None,
 ) -> xr.Dataset:
     """Simulate a scene as deformable rock.
 
@@ -52,9 +56,10 @@ def simulate(
     progress : called with the finished fraction.
     comm : mpi4py's communicator of processes that share the run: all call this alike, each steps
         its part of the rock, and all get the whole result. None: this one alone.
+    keeper : watches over the run, `cases.keeper`; each process has its own.
 
-    Raises SceneError for what this model cannot simulate, UnstableError when the motion runs away,
-    StoppedError, with the result so far, when implicit steps do not converge.
+    Raises SceneError for what this model cannot simulate; StoppedError, an UnstableError with the
+    result so far, when the motion leaves its bounds or implicit steps do not converge.
     """
     refuse(scene, model, dim)
     reason = applies(scene, model, dim)
@@ -70,7 +75,8 @@ def simulate(
     rest = _at_rest(scene, built, state, discrete)
     samples = room(built, state, time.samples)
     start = explicit_engine if choice.scheme == "explicit" else implicit_engine
-    engine = start(scene, discrete, built, state, samples, time)
+    watch = Watch(scene, discrete, built, state, samples, choice, critical)
+    engine = start(scene, discrete, built, state, samples, watch)
     film = _film(scene, discrete, state, engine.ahead)
     ready = perf_counter()
     engine.compile()
@@ -90,11 +96,11 @@ def simulate(
         found = _recorded(scene, discrete, built, samples, time.times[:count], about | seconds)
         return xr.Dataset(*(found if film is None else film.developed(found)))
 
-    check = runaway_check(built, state, time.dt, critical, team)
+    parts, size = (state, samples, watch.parts, engine.parts), int(team.largest(state.u.size))
     try:
-        march_with_looks(time, int(team.largest(state.u.size)), engine.march, check, progress, film)
+        march_with_looks(time, size, engine.march, watch.check, parts, progress, film, keeper)
     except StoppedError as error:
-        error.result = result(engine.samples_done(time))
+        error.result = result(error.samples)
         raise
     return result(time.samples)
 

@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from cases.arrays import copied, fill
 from cases.errors import SceneError
 from cases.scene import Scene
 from continuum.balance import NN, XX, ZZ, settle, stiffen
 from continuum.body import Body
-from continuum.implicit import copy_arrays, like
 from continuum.implicit_step import joint_room, rock_matrices
 from continuum.model import Model, State
 from continuum.newton import Outcome, factors_of, newton
@@ -50,7 +50,7 @@ def settle_static(scene: Scene, model: Model, state: State, body: Body) -> Rest:
             part /= 2
         else:
             _refuse(scene, done)
-    copy_arrays(system.state, state)
+    fill(state, system.state)
     return Rest(steps, outcome.errors[-1] / body.team.largest(system.size))
 
 
@@ -73,7 +73,7 @@ class _Static:
     def __init__(self, model: Model, state: State, body: Body) -> None:
         matrices = rock_matrices(body)
         self.model = model._replace(ends=model.ends._replace(quiet=None, loaded=None))
-        self.state, self.trial, self.size = like(state), like(state), 0.0
+        self.state, self.trial, self.size = copied(state), copied(state), 0.0
         moves = matrices.moves.copy()
         if model.ends.held is not None:
             moves[model.ends.held.freedom] = False
@@ -104,7 +104,7 @@ class _Static:
         outcome = newton(residual, correction, self.state.u[self.free], self.team)
         if outcome.converged:
             self.trial.v_before[:] = 0.0
-            copy_arrays(self.trial, self.state)
+            fill(self.state, self.trial)
         return outcome
 
     def _hold_joints(self) -> None:

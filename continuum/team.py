@@ -49,6 +49,10 @@ class Alone:
         """Return the largest of one number of every process."""
         return value
 
+    def of_largest(self, value: float, about: T) -> T:
+        """Return what the process with the largest number says of it."""
+        return about
+
     def all(self, holds: bool) -> bool:
         """Return whether something holds on every process."""
         return holds

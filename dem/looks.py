@@ -5,13 +5,17 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numba
 import numpy as np
 
-from cases.errors import UnstableError
+from cases.errors import StoppedError
+from cases.keeper import Keeper, begin, show
+from cases.result import Fields
+from cases.runaway import Sighting
 from cases.sampling import Clock
+from joints.guard import ENERGY, Guard
 
 if TYPE_CHECKING:
     from cases.snapshots import Film
@@ -20,46 +24,74 @@ BLOCK_STEPS_BETWEEN_LOOKS = 20_000_000  # some 10 ms to 1 s: often enough for a 
 STEPS_BETWEEN_LOOKS = 64  # at least: threads that follow one another need some to share
 
 
-class Stretch(NamedTuple):
-    """What has just been run: up to which time, with which step and critical step, s."""
+class Run(NamedTuple):
+    """A run: its clock, how many blocks it has, and what takes its samples.
 
-    until: float
-    dt: float
-    critical: float
+    march : of (first, last), takes samples first .. last - 1. check : of how many samples are
+    taken, raises an error where the run is not sound. parts : all that changes in it.
+    """
 
-    def refuse_unless(self, finite: bool) -> None:
-        """Raise UnstableError for a motion that is no longer finite."""
-        if not finite:
-            raise UnstableError(
-                f"the rigid blocks are no longer finite at t = {self.until:.4g} s "
-                f"(step {self.dt:.4g} s, critical {self.critical:.4g} s)"
-            )
+    time: Clock
+    blocks: int
+    march: Callable[[int, int], None]
+    check: Callable[[int], None]
+    parts: Any
 
 
 def march_with_looks(
-    time: Clock,
-    critical: float,
-    blocks: int,
-    march: Callable[[int, int], None],
-    check: Callable[[Stretch], None],
-    progress: Callable[[float], None] | None,
+    run: Run,
+    progress: Callable[[float], None] | None = None,
     film: Film | None = None,
+    keeper: Keeper | None = None,
 ) -> None:
-    """Run all samples: `march(first, last)` takes samples first .. last - 1, then `check` looks.
+    """Take all samples of a run, and look at it after every stretch of them.
 
-    film : stops the run where it keeps a sample; None where it keeps none.
+    film : stops the run where it keeps a sample. keeper : sees all that changes.
     """
-    steps = max(STEPS_BETWEEN_LOOKS, BLOCK_STEPS_BETWEEN_LOOKS // blocks)
+    time, parts = run.time, run.parts
+    steps = max(STEPS_BETWEEN_LOOKS, BLOCK_STEPS_BETWEEN_LOOKS // run.blocks)
     stops = {time.samples, *range(0, time.samples, max(1, steps // time.stride))}
     if film is not None:
         stops.update(range(0, time.samples, film.every))
-    for first, last in pairwise(sorted(stops)):
+        parts = (parts, film.shots)
+    done = begin(keeper, film, parts)
+    for first, last in pairwise(sorted({done, *(stop for stop in stops if stop > done)})):
         if film is not None:
             film.look(first)
-        march(first, last)
-        check(Stretch(last * time.stride * time.dt, time.dt, critical))
+        run.march(first, last)
+        run.check(last)
+        if keeper is not None:
+            show(keeper, last, parts)
         if progress:
             progress(last / time.samples)
+
+
+def followed(
+    run: Run,
+    result: Callable[[int], Fields],
+    progress: Callable[[float], None] | None,
+    film: Film | None,
+    keeper: Keeper | None,
+) -> Fields:
+    """Return the result of a run to its end; where it stops on its way, the error has the part
+    that is sound. result : of how many samples are."""
+    try:
+        march_with_looks(run, progress, film, keeper)
+    except StoppedError as error:
+        error.result = result(error.samples)
+        raise
+    return result(run.time.samples)
+
+
+def sighting(guard: Guard, speed: np.ndarray, spacing: float) -> Sighting | None:
+    """Return what a guard has found, None where nothing; speed : of each block, m/s."""
+    step, what, sound = guard.found.tolist()
+    if step < 0:
+        return None
+    fastest = int(np.nan_to_num(speed, nan=np.inf).argmax())
+    y = (fastest + 0.5) * spacing
+    key = "numerics.dem.step_fraction"
+    return Sighting("the rigid blocks", key, step, sound, what == ENERGY, y)
 
 
 def versions() -> str:

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from cases.effects import is_spatial
+from cases.errors import StoppedError
+from cases.keeper import Keeper
 from cases.result import Fields
 from cases.scene import Scene
 
@@ -13,24 +15,34 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def simulate(scene: Scene, progress: Callable[[float], None] | None = None) -> xr.Dataset:
+def simulate(
+    scene: Scene, progress: Callable[[float], None] | None = None, keeper: Keeper | None = None
+) -> xr.Dataset:
     """Simulate a scene with rigid blocks.
 
-    `progress` is called with the finished fraction. Raises SceneError for a step that cannot be
-    taken, a static state that does not exist and rotations too large for their kinematics, and
-    UnstableError when the motion is no longer finite.
+    progress : called with the finished fraction. keeper : watches over the run, `cases.keeper`.
+
+    Raises SceneError for a step that cannot be taken, a static state that does not exist and
+    rotations too large for their kinematics; StoppedError, an UnstableError with the result so far,
+    when the motion leaves its bounds.
     """
     import xarray as xr
 
-    return xr.Dataset(*simulate_fields(scene, progress))
+    try:
+        return xr.Dataset(*simulate_fields(scene, progress, keeper))
+    except StoppedError as error:
+        error.result = xr.Dataset(*error.result)
+        raise
 
 
-def simulate_fields(scene: Scene, progress: Callable[[float], None] | None = None) -> Fields:
+def simulate_fields(
+    scene: Scene, progress: Callable[[float], None] | None = None, keeper: Keeper | None = None
+) -> Fields:
     """Simulate a scene as `simulate` does, and return the result as plain arrays."""
     if is_spatial(scene):
         from dem.spatial.simulate import simulate_fields as in_space
 
-        return in_space(scene, progress)
+        return in_space(scene, progress, keeper)
     from dem.axial.simulate import simulate_fields as along_axis
 
-    return along_axis(scene, progress)
+    return along_axis(scene, progress, keeper)

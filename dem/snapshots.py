@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -37,13 +37,6 @@ class Shot(NamedTuple):
     velocity: np.ndarray
 
 
-def copied(state: Any) -> Any:
-    """Return a copy of a state: of every array in a tuple of arrays, tuples and Nones."""
-    if isinstance(state, tuple):
-        return type(state)(*map(copied, state))
-    return None if state is None else state.copy()
-
-
 class BlockFilm(Film):
     """The blocks at every snapshot that a scene asks for; raises SceneError for too many."""
 
@@ -57,7 +50,8 @@ class BlockFilm(Film):
         time, count = result.coords["time"][1][:: self.every], self.p.block_count
         corners, centres = corners_of(self.p), np.zeros((count, 1, 3))
         centres[:, 0, 1] = self.p.spacing * (np.arange(count) + 0.5)
-        motion = [corner_motion(shot, corners, self.p) for shot in self.shots]
+        shots = self.shots[: len(time)]
+        motion = [corner_motion(shot, corners, self.p) for shot in shots]
         u, v = (np.stack(x).reshape(len(time), -1, 3) for x in zip(*motion, strict=True))
         found = snapshots(
             time,
@@ -67,7 +61,7 @@ class BlockFilm(Film):
             np.arange(count),
             u,
             v,
-            np.stack([(shot.stress[:-1] + shot.stress[1:]) / 2 for shot in self.shots]),
+            np.stack([(shot.stress[:-1] + shot.stress[1:]) / 2 for shot in shots]),
         )
         return with_snapshots(result, found)
 

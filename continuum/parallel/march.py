@@ -7,14 +7,16 @@ once more when the shares are there.
 from continuum.explicit import accelerate, advance, forces
 from continuum.parallel.exchange import receive, send
 from joints.borrowed import borrowed
+from joints.guard import runs_away
 from joints.jit import inlined, jitted
 from joints.tiny import flush_tiny, restore_tiny
 
 
 @jitted
-def run_together(link, model, state, samples, stride, first, last):
+def run_together(link, model, state, samples, stride, first, last, guard=None):
     """Take steps first .. last - 1 and a sample at every step that `stride` divides.
 
+    guard : notes a motion out of bounds, and lets it go on: the others wait for this process.
     Returns MPI's error code, 0 without.
     """
     failed = 0
@@ -27,6 +29,7 @@ def run_together(link, model, state, samples, stride, first, last):
         failed = failed or receive(link, state.force)
         accelerate_again(link.freedom, model.rock, model.rock.keep, state)
         advance(model, state, samples, stride, n)
+        runs_away(guard, state.v, n + 1)
     restore_tiny(old)
     return failed
 

@@ -14,6 +14,7 @@ from continuum.parallel.exchange import add_shares
 from continuum.parallel.identity import Border, joined
 from continuum.parallel.march import run_together
 from continuum.team import Alone, Pieces, T
+from joints.guard import EVERY
 
 
 class Team(Alone):
@@ -65,6 +66,10 @@ class Team(Alone):
         """Return the largest of one number of every process."""
         return self.comm.allreduce(value, MPI.MAX)
 
+    def of_largest(self, value: float, about: T) -> T:
+        """Return what the process with the largest number says of it."""
+        return max(self.comm.allgather((value, -self.rank, about)))[2]
+
     def all(self, holds: bool) -> bool:
         """Return whether something holds on every process."""
         return self.comm.allreduce(bool(holds), MPI.LAND)
@@ -114,8 +119,12 @@ class Team(Alone):
         connection = connect(self.comm, [f[~np.isin(f, held)] for f in self._common])
         weakref.finalize(self, release, connection)
 
-        def run(*arguments) -> None:
-            _check(run_together(connection.link, *arguments))
+        def run(model, state, samples, stride, first, last, guard=None) -> None:
+            constant = connection.link, model, state, samples, stride
+            for n in range(first, max(last, first + 1), EVERY):
+                _check(run_together(*constant, n, min(n + EVERY, last), guard))
+                if guard is not None and self.any(bool(guard.found[0] >= 0)):
+                    return
 
         return run
 

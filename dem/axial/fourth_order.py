@@ -29,6 +29,7 @@ from dem.axial.stability import critical_chain_step
 from dem.axial.state import State, state_at_rest
 from dem.axial.step import step
 from joints.borrowed import borrowed
+from joints.guard import EVERY, Guard, creates_energy, runs_away
 from joints.jit import inlined, jitted
 from joints.tiny import flush_tiny, restore_tiny
 
@@ -80,13 +81,13 @@ def compose(scene: Scene, time: Clock, stored: float = 0.0) -> Composition:
 
 
 def marcher(
-    scene: Scene, model: Model, state: State, samples: Samples, time: Clock
+    scene: Scene, model: Model, state: State, samples: Samples, time: Clock, guard: Guard | None
 ) -> Callable[[int, int], None]:
     """Return a function of (first, last) that takes samples first .. last - 1."""
     composition = compose(scene, time, held(model.chain, state))
 
     def march(first: int, last: int) -> None:
-        run(composition, model, state, samples, time.stride, first, last)
+        run(composition, model, state, samples, time.stride, first, last, guard)
 
     return march
 
@@ -108,8 +109,11 @@ def _acting(values: np.ndarray) -> np.ndarray:
 
 
 @jitted
-def run(composition, model, state, samples, stride, first, last):
-    """Take samples first .. last - 1, `stride` steps apart, the steps after each included."""
+def run(composition, model, state, samples, stride, first, last, guard=None):
+    """Take samples first .. last - 1, `stride` steps apart, the steps after each included.
+
+    guard : `joints.guard.Guard` that ends it where it runs out of bounds; None without.
+    """
     tiny = flush_tiny()
     composition, model, state, samples = borrowed((composition, model, state, samples))
     for s in range(first, last):
@@ -117,8 +121,25 @@ def run(composition, model, state, samples, stride, first, last):
         book_ends(state.ledger, held(model.chain, state) - composition.stored)
         sample_before(model, state, samples, s)
         sample_after(model, state, samples, s, n)
-        march(composition, state, n, n + stride)
+        if creates_energy(guard, samples.energy, s, n):
+            break
+        if march_guarded(composition, state, n, n + stride, guard):
+            break
     restore_tiny(tiny)
+
+
+@inlined
+def march_guarded(composition, state, n, end, guard):
+    """Take steps n .. end - 1, and return whether a look between them finds the run lost."""
+    if guard is None:
+        march(composition, state, n, end)
+        return False
+    lost = False
+    while n < end and not lost:
+        stop = min(end, n + EVERY - n % EVERY)
+        march(composition, state, n, stop)
+        n, lost = stop, runs_away(guard, state.v, stop)
+    return lost
 
 
 @jitted

@@ -11,6 +11,7 @@ from dem.axial.state import State
 from dem.axial.step import joint_stress, load_at, march, opened
 from joints.borrowed import borrowed
 from joints.energy import elastic_energy, fracture_energy_spent
+from joints.guard import EVERY, creates_energy, runs_away
 from joints.jit import inlined, jitted
 from joints.laws import law_of
 from joints.tiny import flush_tiny, restore_tiny
@@ -51,17 +52,37 @@ def room(model: Model, state: State, samples: int) -> Samples:
 
 
 @jitted
-def run(model, state, samples, stride, first, last):
-    """Take samples first .. last - 1, `stride` steps apart, the steps after each included."""
+def run(model, state, samples, stride, first, last, guard=None):
+    """Take samples first .. last - 1, `stride` steps apart, the steps after each included.
+
+    guard : `joints.guard.Guard` that ends it where it runs out of bounds; None without.
+    """
     tiny = flush_tiny()
     model, state, samples = borrowed((model, state, samples))
     for s in range(first, last):
         n = s * stride
         sample_before(model, state, samples, s)
-        march(model, state, n, n + 1)
+        lost = march_guarded(model, state, n, n + 1, guard)
         sample_after(model, state, samples, s, n)
-        march(model, state, n + 1, n + stride)
+        if lost or creates_energy(guard, samples.energy, s, n):
+            break
+        if march_guarded(model, state, n + 1, n + stride, guard):
+            break
     restore_tiny(tiny)
+
+
+@inlined
+def march_guarded(model, state, n, end, guard):
+    """Take steps n .. end - 1, and return whether a look between them finds the run lost."""
+    if guard is None:
+        march(model, state, n, end)
+        return False
+    lost = False
+    while n < end and not lost:
+        stop = min(end, n + EVERY - n % EVERY)
+        march(model, state, n, stop)
+        n, lost = stop, runs_away(guard, state.v, stop)
+    return lost
 
 
 @inlined

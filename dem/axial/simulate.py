@@ -8,40 +8,49 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from cases.arrays import size_of
 from cases.calibrate import calibrate
-from cases.result import Fields, fields, size_of
+from cases.keeper import Keeper
+from cases.result import Fields, fields
+from cases.runaway import stopped
 from cases.sampling import Clock
 from cases.scene import Scene
+from dem.axial.bound import highest_speed
 from dem.axial.model import Model, build
 from dem.axial.record import Samples, room, run, terms
 from dem.axial.start import start
 from dem.axial.state import State
 from dem.fragments import break_times, with_fragments
-from dem.looks import Stretch, march_with_looks, versions
+from dem.looks import Run, followed, sighting, versions
+from joints.guard import Guard, guard, look
 
 if TYPE_CHECKING:
     from dem.snapshots import BlockFilm
 
 
 March = Callable[[int, int], None]
+Marcher = Callable[[Scene, Model, State, Samples, Clock, Guard | None], March]
 
 
 class Scheme(NamedTuple):
     """How the chain is stepped.
 
     build : of (scene), to the model that is recorded, the state, the clock and the critical step.
-    marcher : of (scene, model, state, samples, clock), to what takes samples first .. last - 1.
+    marcher : of (scene, model, state, samples, clock, guard), to what takes samples first ..
+        last - 1.
     forces : how often a step computes the force of every joint.
     """
 
     build: Callable[[Scene], tuple[Model, State, Clock, float]]
-    marcher: Callable[[Scene, Model, State, Samples, Clock], March]
+    marcher: Marcher
     forces: int
 
 
-def _leapfrog(scene: Scene, model: Model, state: State, samples: Samples, time: Clock) -> March:
+def _leapfrog(
+    scene: Scene, model: Model, state: State, samples: Samples, time: Clock, guard: Guard | None
+) -> March:
     def march(first: int, last: int) -> None:
-        run(model, state, samples, time.stride, first, last)
+        run(model, state, samples, time.stride, first, last, guard)
 
     return march
 
@@ -56,50 +65,62 @@ def scheme_of(scene: Scene) -> Scheme:
     return Scheme(fourth_order.build, fourth_order.marcher, len(KICKS))
 
 
-def simulate_fields(scene: Scene, progress: Callable[[float], None] | None = None) -> Fields:
+def simulate_fields(
+    scene: Scene, progress: Callable[[float], None] | None = None, keeper: Keeper | None = None
+) -> Fields:
     """Simulate a scene of axial motion, one freedom a block."""
     began = perf_counter()
     scheme = scheme_of(scene)
     model, state, time, critical = scheme.build(scene)
     rest = start(scene, model, state)
     samples = room(model, state, time.samples)
-    march = scheme.marcher(scene, model, state, samples, time)
+    held = guard(highest_speed(model, state, time))
+    march = scheme.marcher(scene, model, state, samples, time, held)
     built = perf_counter()
     march(0, 0)
     film = _film(scene, model, state, time.stride)
     compiled = perf_counter()
 
-    def check(stretch: Stretch) -> None:
-        stretch.refuse_unless(bool(np.isfinite(state.u).all()))
+    def result(count: int) -> Fields:
+        found = fields(
+            scene,
+            "dem",
+            time.times[:count],
+            samples.stress[:, :count],
+            samples.velocity[:, :count],
+            samples.displacement[:, :count],
+            None if samples.energy is None else samples.energy[:, :count],
+            terms=terms(model),
+            model="rigid blocks",
+            scheme=scene.numerics.dem.scheme,
+            dt=time.dt,
+            critical_dt=critical,
+            steps=time.steps,
+            force_evaluations=scheme.forces * time.steps,
+            degrees_of_freedom=state.u.size,
+            threads=1,
+            bytes=size_of(model, state),
+            **({} if rest is None else rest.attributes),
+            seconds_setup=built - began,
+            seconds_compile=compiled - built,
+            seconds_stepping=perf_counter() - compiled,
+            versions=versions(),
+        )
+        return _with_breaks(found if film is None else film.developed(found), scene, state, time)
 
-    march_with_looks(time, critical, state.u.size, march, check, progress, film)
-    result = fields(
-        scene,
-        "dem",
-        time.times,
-        samples.stress,
-        samples.velocity,
-        samples.displacement,
-        samples.energy,
-        terms=terms(model),
-        model="rigid blocks",
-        scheme=scene.numerics.dem.scheme,
-        dt=time.dt,
-        critical_dt=critical,
-        steps=time.steps,
-        force_evaluations=scheme.forces * time.steps,
-        degrees_of_freedom=state.u.size,
-        threads=1,
-        bytes=size_of(model, state),
-        **({} if rest is None else rest.attributes),
-        seconds_setup=built - began,
-        seconds_compile=compiled - built,
-        seconds_stepping=perf_counter() - compiled,
-        versions=versions(),
-    )
-    if film is not None:
-        result = film.developed(result)
-    if state.broke is None:
+    def check(samples: int) -> None:
+        speed = np.abs(state.v)
+        look(held, speed.max(), samples * time.stride)
+        seen = sighting(held, speed, calibrate(scene).spacing)
+        if seen is not None:
+            raise stopped(scene, time, critical, seen)
+
+    run = Run(time, state.u.size, march, check, (state, samples, held))
+    return followed(run, result, progress, film, keeper)
+
+
+def _with_breaks(result: Fields, scene: Scene, state: State, time: Clock) -> Fields:
+    if state.broke is None or result.coords["time"][1].size < time.samples:
         return result
     times = break_times(state.broke, time.dt, time.steps)
     return with_fragments(result, calibrate(scene), ~np.isnan(times), state.v, times)

@@ -4,13 +4,14 @@ from collections.abc import Callable
 
 import numpy as np
 
+from cases.arrays import copied
 from cases.calibrate import Properties
 from cases.sampling import interpolation
 from dem.axial.model import Model, Receivers
 from dem.axial.record import room, sample_after, sample_before
 from dem.axial.state import State
 from dem.axial.step import march
-from dem.snapshots import Shot, copied
+from dem.snapshots import Shot
 from joints.borrowed import borrowed
 from joints.jit import jitted
 from joints.tiny import flush_tiny, restore_tiny

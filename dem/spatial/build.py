@@ -18,6 +18,7 @@ from dem.spatial.layout import LANES, STRIDE, Layout, layout, packed, tile_count
 from dem.spatial.model import Load, Model, Receivers, Room, Samples, State
 from dem.spatial.motion import Motion
 from dem.spatial.section import contact_points, face_of, section
+from joints.guard import Guard
 from joints.laws import Law
 from joints.uniform import law
 
@@ -246,11 +247,12 @@ def fill_cohesion(contact: Contact, history: np.ndarray) -> None:
     history.reshape(len(history), -1, LANES)[:, first : first + points] = whole
 
 
-def room_for(model: Model, threads: int) -> Room:
-    """Return the room that so many threads work in."""
+def room_for(model: Model, threads: int, guard: Guard | None = None) -> Room:
+    """Return the room that so many threads work in, watched by a guard."""
     slots = threads * DEPTH
     books = None if model.accounts is None else np.zeros((slots, ACCOUNTS * STRIDE))
-    return Room(np.zeros((threads, scratch.ROWS * STRIDE)), np.zeros((slots, 12)), books, DEPTH)
+    work, carry = np.zeros((threads, scratch.ROWS * STRIDE)), np.zeros((slots, 12))
+    return Room(work, carry, books, DEPTH, guard)
 
 
 def samples_for(model: Model, samples: int) -> Samples:

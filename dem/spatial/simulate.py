@@ -8,12 +8,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from cases.arrays import changed, size_of
 from cases.calibrate import Properties, calibrate
 from cases.errors import SceneError
-from cases.result import Fields, fields, size_of
+from cases.keeper import Keeper
+from cases.result import Fields, fields
+from cases.runaway import stopped
 from cases.sampling import Clock, Interpolation, clock
 from cases.scene import Scene
-from dem.looks import Stretch, march_with_looks, versions
+from dem.looks import Run, followed, sighting, versions
+from dem.spatial.bound import highest_speeds
 from dem.spatial.breaks import with_breaks
 from dem.spatial.build import (
     build_model,
@@ -23,12 +27,13 @@ from dem.spatial.build import (
     samples_for,
     state_at_rest,
 )
-from dem.spatial.layout import LANES, STRIDE
+from dem.spatial.layout import LANES, STRIDE, freedoms, unpacked
 from dem.spatial.model import Model, Samples, State
 from dem.spatial.section import contact_points, face_of, section
 from dem.spatial.stability import critical_spatial_step
 from dem.spatial.start import start
 from dem.spatial.threads import marcher, thread_count
+from joints.guard import guard, look
 
 if TYPE_CHECKING:
     from dem.snapshots import BlockFilm
@@ -59,52 +64,61 @@ def critical_step_of(scene: Scene, p: Properties) -> float:
     return critical_spatial_step(p, face, (ends.start, ends.end), scene.motion.rotation != "none")
 
 
-def simulate_fields(scene: Scene, progress: Callable[[float], None] | None = None) -> Fields:
+def simulate_fields(
+    scene: Scene, progress: Callable[[float], None] | None = None, keeper: Keeper | None = None
+) -> Fields:
     """Simulate a scene of motion in space, three or six freedoms a block."""
     began = perf_counter()
     p, model, time, critical = prepare(scene)
     state, samples = state_at_rest(model, p.block_count), samples_for(model, time.samples)
     rest = start(scene, p, model, state)
     threads = thread_count(scene.numerics.dem.threads, p.block_count)
-    march = marcher(model, state, room_for(model, threads), samples)
+    held = guard(highest_speeds(scene, p, model, state, time))
+    march = marcher(model, state, room_for(model, threads, held), samples)
     built = perf_counter()
     march(0, 0)
     film = _film(scene, p, model, state, threads)
     compiled = perf_counter()
-    march_with_looks(
-        time,
-        critical,
-        p.block_count,
-        lambda first, last: march(first * time.stride, last * time.stride),
-        lambda stretch: check(scene, model, state, stretch),
-        progress,
-        film,
-    )
-    stepped = perf_counter()
-    result = fields(
-        scene,
-        "dem",
-        time.times,
-        **waveforms(samples, *receivers(scene, p), p.area),
-        energy=samples.energy,
-        terms=energy_terms(scene, p),
-        model="rigid blocks in space",
-        scheme=scene.numerics.dem.scheme,
-        dt=time.dt,
-        critical_dt=critical,
-        steps=time.steps,
-        degrees_of_freedom=len(model.contact.rows.motion) // 2 * p.block_count,
-        threads=threads,
-        bytes=size_of(model, state),
-        **({} if rest is None else rest.attributes),
-        seconds_setup=built - began,
-        seconds_compile=compiled - built,
-        seconds_stepping=stepped - compiled,
-        versions=versions(),
-    )
-    if film is not None:
-        result = film.developed(result)
-    return with_breaks(result, p, model, state)
+
+    def result(count: int) -> Fields:
+        taken = changed(samples, lambda wave: wave[..., :count])
+        found = fields(
+            scene,
+            "dem",
+            time.times[:count],
+            **waveforms(taken, *receivers(scene, p), p.area),
+            energy=taken.energy,
+            terms=energy_terms(scene, p),
+            model="rigid blocks in space",
+            scheme=scene.numerics.dem.scheme,
+            dt=time.dt,
+            critical_dt=critical,
+            steps=time.steps,
+            degrees_of_freedom=len(model.contact.rows.motion) // 2 * p.block_count,
+            threads=threads,
+            bytes=size_of(model, state),
+            **({} if rest is None else rest.attributes),
+            seconds_setup=built - began,
+            seconds_compile=compiled - built,
+            seconds_stepping=perf_counter() - compiled,
+            versions=versions(),
+        )
+        found = found if film is None else film.developed(found)
+        return with_breaks(found, p, model, state) if count == time.samples else found
+
+    def check(samples: int) -> None:
+        speed = speeds(model, state, p.block_count)
+        look(held, speed.max(axis=1), samples * time.stride)
+        seen = sighting(held, speed[:3].max(axis=0), p.spacing)
+        if seen is not None:
+            raise stopped(scene, time, critical, seen)
+        refuse_large_turns(scene, model, state, samples * time.stride * time.dt)
+
+    def march_samples(first: int, last: int) -> None:
+        march(first * time.stride, last * time.stride)
+
+    run = Run(time, p.block_count, march_samples, check, (state, samples, held))
+    return followed(run, result, progress, film, keeper)
 
 
 def _film(
@@ -154,10 +168,14 @@ def between(values: np.ndarray, at: Interpolation) -> np.ndarray:
     return (1 - weight) * left + weight * right
 
 
-def check(scene: Scene, model: Model, state: State, stretch: Stretch) -> None:
-    """Raise UnstableError where the motion is lost, SceneError where blocks turn too far."""
-    with np.errstate(all="ignore"):  # a sum is not finite where a part is not, and needs no room
-        stretch.refuse_unless(bool(np.isfinite(state.motion.sum())))
+def speeds(model: Model, state: State, blocks: int) -> np.ndarray:
+    """Return the magnitude of every component of every block's velocity [freedoms, N]."""
+    half = freedoms(model.contact.rows)
+    return np.abs(unpacked(state.motion, STRIDE, blocks)[half : 2 * half])
+
+
+def refuse_large_turns(scene: Scene, model: Model, state: State, t: float) -> None:
+    """Raise SceneError where blocks have turned too far for small rotations at t (s)."""
     if model.motion.arm is None or model.motion.finite is not None:
         return
     rows = state.motion[:, 3 * STRIDE : 6 * STRIDE].reshape(-1, 3, STRIDE)[:, :, :LANES]
@@ -169,6 +187,6 @@ def check(scene: Scene, model: Model, state: State, stretch: Stretch) -> None:
             "motion.rotation",
             scene.motion.rotation,
             f"block {tile * LANES + lane + 1} has turned by {turn.max():.3g} rad at "
-            f"t = {stretch.until:.4g} s, beyond the {MOST_TURN:g} rad of small rotations: "
+            f"t = {t:.4g} s, beyond the {MOST_TURN:g} rad of small rotations: "
             "set motion.rotation = 'finite'",
         )

@@ -4,9 +4,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from cases.arrays import copied
 from cases.calibrate import Properties
 from cases.sampling import Interpolation
-from dem.snapshots import Shot, copied
+from dem.snapshots import Shot
 from dem.spatial.build import build_receivers, room_for, samples_for
 from dem.spatial.model import Model, State
 from dem.spatial.threads import marcher

@@ -19,6 +19,7 @@ from dem.spatial.scratch import DRAG, LEFT
 from dem.spatial.stored import book_states
 from joints.atomic import give_way, peek, post
 from joints.borrowed import borrowed
+from joints.guard import EVERY, SPEED, creates_energy, highest, note
 from joints.jit import inlined, jitted
 from joints.laws import pick
 from joints.optional import either, given
@@ -34,8 +35,10 @@ def march(model, state, room, samples, first, last):
     model, state, room, samples = borrowed((model, state, room, samples))
     for n in range(first, last, room.depth):
         depth = min(room.depth, last - n)
+        if is_lost(room.guard):
+            break
         run_diagonals(model, state, room, samples, n, depth, 0, 0, len(state.motion) + depth - 1)
-        close_books(model, state, room.books, samples, n, depth, 0)
+        close_books(model, state, room, samples, n, depth, 0)
     restore_tiny(tiny)
 
 
@@ -68,10 +71,11 @@ def march_in_turn(model, state, room, samples, first, last, thread, progress):
             if band > 0:
                 await_count(progress, (band - 1) % threads, (band - 1) * runs + min(run + 2, runs))
             begin, end = run * RUN, (run + 1) * RUN
-            run_diagonals(model, state, room, samples, n, steps, thread, begin, end)
+            if not is_lost(room.guard):
+                run_diagonals(model, state, room, samples, n, steps, thread, begin, end)
             post(progress, thread, band * runs + run + 1)
         await_count(progress, threads, band)
-        close_books(model, state, room.books, samples, n, steps, thread * depth)
+        close_books(model, state, room, samples, n, steps, thread * depth)
         post(progress, threads, band + 1)
     restore_tiny(tiny)
 
@@ -84,11 +88,22 @@ def await_count(progress, k, count):
 
 
 @inlined
-def close_books(model, state, books, samples, n, depth, slot):
+def is_lost(guard):
+    """Return whether a run has been found out of bounds."""
+    if guard is None:
+        return False
+    return guard.found[0] >= 0
+
+
+@inlined
+def close_books(model, state, room, samples, n, depth, slot):
     """Sum up the accounts of steps n .. n + depth - 1, in their order."""
+    books = room.books
     if books is not None:
         for j in range(depth):
             close(books[slot + j], state.sums, samples.energy, model.accounts, n + j, model.stride)
+            if (n + j) % model.stride == 0:
+                creates_energy(room.guard, samples.energy, (n + j) // model.stride, n + j)
 
 
 @inlined
@@ -124,6 +139,7 @@ def step(model, state, room, samples, t, n, thread, slot):
     keep_velocities(book, motion, half, s, q, blocks)
 
     advance(motion, contact.rows, s, q, blocks)
+    watch(room.guard, s, half, n + 1)
 
     if t == 0:
         settle(model.start, state.start, motion, s, 0, way(model.load.base, n + 1))
@@ -133,6 +149,15 @@ def step(model, state, room, samples, t, n, thread, slot):
         sample_after(model.receivers, samples, half, s, t, n // model.stride)
     book_motion(model, state, book, drag, s, q, blocks, t, n, sampled)
     pass_on(carry, q, drag, half)
+
+
+@inlined
+def watch(guard, s, half, n):
+    """Look at the velocities of a tile after n steps, now and then."""
+    if guard is not None and n % EVERY == 0:
+        for k in range(half):
+            if highest(s[(half + k) * R : (half + k) * R + LANES]) > guard.limit[k]:
+                note(guard.found, n, SPEED, n - EVERY - 1)
 
 
 @inlined

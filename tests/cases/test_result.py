@@ -7,7 +7,8 @@ import pytest
 import xarray as xr
 
 from cases import Scene, load
-from cases.result import ALL_TERMS, TERMS, dataset, energy_residual, imbalance, scene_hash, size_of
+from cases.arrays import size_of
+from cases.result import ALL_TERMS, TERMS, dataset, energy_residual, imbalance, scene_hash
 from cases.sampling import sample_times
 
 POINTS = {"record.velocity": [19.75, 20.25]}

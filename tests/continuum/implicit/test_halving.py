@@ -42,7 +42,7 @@ def test_halves_end_on_the_clock_and_make_way_again(short, implicit):
         (3, 1.0, 0),
     ]
     assert run.implicit.halvings == 2
-    assert run.implicit.reached == 4
+    assert run.implicit.counts[1] == 4
 
 
 DAMPED = {"joints__damping_ratio": 0.05}
@@ -125,7 +125,7 @@ def test_what_was_computed_outlives_a_step_that_is_given_up(short, implicit):
         run.go()
     assert "\n" not in str(caught.value)
     assert f"t = {40 * run.clock.dt:.6g} s" in str(caught.value)
-    assert run.implicit.reached == 40 and run.implicit.halvings == HALVINGS
+    assert run.implicit.counts[1] == 40 and run.implicit.halvings == HALVINGS
     assert (run.samples.velocity[:, :11] == undisturbed.samples.velocity[:, :11]).all()
     assert not run.samples.velocity[:, 11:].any()
     assert isinstance(caught.value, UnstableError) and caught.value.result is None
