@@ -128,13 +128,11 @@ class Checkpoints:
 
 
 def _write(place: Path, held: dict[str, np.ndarray]) -> None:
-    with place.open("w+b") as file:
-        np.savez(file, **held)
-        file.flush()
-        file.seek(0)
-        digest = hashlib.file_digest(file, "sha256").hexdigest()
-        file.seek(0, io.SEEK_END)
-        file.write(digest.encode())
+    whole = io.BytesIO()  # numpy complains of its own file when the disk is full
+    np.savez(whole, **held)
+    with place.open("wb") as file:
+        file.write(whole.getbuffer())
+        file.write(hashlib.sha256(whole.getbuffer()).hexdigest().encode())
 
 
 def _read(path: Path) -> dict[str, np.ndarray]:

@@ -12,6 +12,8 @@ import xarray as xr
 SCENE = ("guo-li-2002/fig-03", "--variant", "", "--set", "pillar.length=10.0")
 AT = ("--set", "record.stress=[5.0]", "--set", "record.velocity=[4.75, 5.25]")
 ROCK = ("--engine", "continuum", "--model", "jointed", "--set", "numerics.continuum.scheme=")
+DAMPED = ("joints.damping_ratio=0.02",)
+SHOT = ("record.fields=2e-3",)  # s; a run is looked at wherever it keeps a snapshot
 PATIENCE = 120  # s, for what takes seconds: other tests run at the same time
 
 
@@ -27,22 +29,20 @@ def rock(scheme, *changes):
 
 #: Options, name of the result and number of processes of runs that step for a second or two.
 RUNS = {
-    "axial": (keys("numerics.dem.step_fraction=2e-4", "joints.damping_ratio=0.02"), "dem.nc", 1),
+    "axial": (keys("numerics.dem.step_fraction=5e-5", *DAMPED, *SHOT), "dem.nc", 1),
     "spatial": (
-        keys(
-            "numerics.dem.step_fraction=4e-3", "load.direction=[1, 0, 0]", "record.fields=0.02"
-        ),
+        keys("numerics.dem.step_fraction=4e-3", "load.direction=[1, 0, 0]", *SHOT),
         "dem.nc",
         1,
     ),
     "explicit": (
-        rock("explicit", "numerics.continuum.step_fraction=2e-3", "record.fields=0.02"),
+        rock("explicit", "numerics.continuum.step_fraction=2e-3", *SHOT),
         "continuum-jointed.nc",
         1,
     ),
     "implicit": (rock("implicit"), "continuum-jointed.nc", 1),
     "shared": (
-        rock("explicit", "numerics.continuum.step_fraction=1e-2"),
+        rock("explicit", "time.duration=0.02", "record.fields=1e-3"),
         "continuum-jointed.nc",
         2,
     ),
@@ -58,7 +58,7 @@ def start(request):
     """
     begun = []
 
-    def started(*arguments, ranks=1):
+    def started(*arguments, ranks=1, out=subprocess.PIPE):
         command = [sys.executable, "-m", "compare", *map(str, arguments)]
         environment = None
         if ranks > 1:
@@ -67,7 +67,7 @@ def start(request):
         begun.append(
             subprocess.Popen(
                 command,
-                stdout=subprocess.PIPE,
+                stdout=out,
                 stderr=subprocess.PIPE,
                 text=True,
                 env=environment,

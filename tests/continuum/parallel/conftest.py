@@ -5,6 +5,7 @@ import sys
 
 import pytest
 
+
 @pytest.fixture
 def under_mpi(mpiexec):
     """Return a function that runs Python with these arguments in `count` processes.
