@@ -40,41 +40,56 @@ def kill(process, ranks, rng):
     process.communicate()
 
 
+@pytest.fixture
+def struck(until):
+    """Return a function that kills a run at a random moment; returns whether it came in time.
+
+    One in four kills comes within the first seconds, the others soon after a new checkpoint: so
+    every run gets on, however slow the machine is.
+    """
+
+    def strike(run, out, ranks, rng):
+        before, early = checkpoints(out), rng.random() < 0.25
+        delay = rng.uniform(0, 2.0 if early else 0.2)
+        if not early and not until(run, lambda: checkpoints(out) - before):
+            return False
+        time.sleep(delay)
+        if run.poll() is not None:
+            return False
+        kill(run, ranks, rng)
+        return True
+
+    return strike
+
+
 @pytest.mark.parametrize(("kind", "kills"), list(kinds()))
 def test_killed_run_goes_on_to_the_same_bits(
-    kind, kills, tmp_path, start, finish, until, arguments, runs, refuse_difference
+    kind, kills, tmp_path, start, finish, struck, arguments, runs, refuse_difference
 ):
     """Kills at random moments, of starting up, of stepping, and of writing checkpoints.
 
-    One in four comes within the first seconds, the others soon after a new checkpoint: so every
-    run gets on, however slow the machine is. Where a checkpoint is due at every look, the run is
-    writing one most of the time. What stood there before stays until the new result is whole.
+    Where a checkpoint is due at every look, the run is writing one most of the time. What stood
+    there before stays until the new result is whole. Runs that end before they have been killed
+    often enough are followed by others.
     """
-    rng, done, ended = random.Random(f"{kind} {kills}"), 0, 0
-    file, ranks = runs[kind]
-    whole = tmp_path / "whole"
+    rng, done = random.Random(f"{kind} {kills}"), 0
+    (file, ranks), whole = runs[kind], tmp_path / "whole"
     code, said = finish(start(*arguments(kind, whole, "--checkpoint-every", "0"), ranks=ranks))
     assert code == 0, said
     while done < kills:
-        out = tmp_path / f"killed {ended}"
+        out = tmp_path / f"after {done}"
         out.mkdir()
         (out / file).write_bytes(OLD)
-        while True:
-            every, before = rng.choice(["0.001", "0.05"]), checkpoints(out)
+        ended = False
+        while not ended:
+            every = rng.choice(["0.001", "0.05"])
             again = arguments(kind, out, "--resume", "--checkpoint-every", every)
-            run, early = start(*again, ranks=ranks), rng.random() < 0.25
-            delay = rng.uniform(0, 2.0 if early else 0.2)
-            if done < kills and (early or until(run, lambda b=before: checkpoints(out) - b)):
-                time.sleep(delay)
-                if run.poll() is None:
-                    kill(run, ranks, rng)
-                    done += 1
-                    if (out / file).read_bytes() != OLD:
-                        refuse_difference(out / file, whole / file)
-                    continue
-            code, said = finish(run)
-            assert code == 0, said
-            break
+            run = start(*again, ranks=ranks)
+            ended = done == kills or not struck(run, out, ranks, rng)
+            done += not ended
+            if (out / file).read_bytes() != OLD:
+                refuse_difference(out / file, whole / file)
+        code, said = finish(run)
+        assert code == 0, said
         refuse_difference(out / file, whole / file)
         assert {p.name for p in out.iterdir()} == {p.name for p in whole.iterdir()}
-        ended += 1

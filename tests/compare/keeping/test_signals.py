@@ -65,6 +65,23 @@ def test_run_that_is_stopped_keeps_what_is_there_and_goes_on(
     assert {p.name for p in out.iterdir()} == {p.name for p in whole.iterdir()}
 
 
+def test_processes_that_share_a_run_stop_together(
+    tmp_path, start, finish, until, arguments, refuse_difference
+):
+    """A signal that reaches one of two stops both, at the same sample."""
+    out, whole = tmp_path / "out", tmp_path / "whole"
+    run = start(*arguments("shared", out, *EVERY), ranks=2)
+    assert until(run, lambda: len(list(out.glob(".*.checkpoint-*-[01].npz"))) > 1)
+    children = ["pgrep", "-P", str(run.pid), "-f", "compare"]
+    one = subprocess.run(children, capture_output=True, text=True, check=True).stdout.split()[-1]
+    os.kill(int(one), signal.SIGTERM)
+    code, (line,) = finish(run)
+    assert code == 143 and "terminated at t = 0." in line and "--resume" in line
+    assert finish(start(*arguments("shared", whole), ranks=2))[0] == 0
+    assert finish(start(*arguments("shared", out, "--resume"), ranks=2))[0] == 0
+    refuse_difference(out / "continuum-jointed.nc", whole / "continuum-jointed.nc")
+
+
 def test_results_that_are_whole_are_not_made_again(tmp_path, start, finish, arguments):
     """--resume keeps a result of the same scene, and makes that of another anew."""
     result = tmp_path / "dem.nc"
