@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from math import inf
 from pathlib import Path
 from time import perf_counter
 
@@ -64,31 +65,38 @@ def _seconds(march: Callable[[], None]) -> float:
     return spent / calls
 
 
-def stretch(scene: Scene, threads: int = 1) -> tuple[Callable[[], None], int]:
-    """Return a function that takes some samples of a scene, and its number of block-steps."""
-    return _in_space(scene, threads) if is_spatial(scene) else _along_axis(scene)
+def stretch(
+    scene: Scene, threads: int = 1, guarded: bool = False
+) -> tuple[Callable[[], None], int]:
+    """Return a function that takes some samples of a scene, and its number of block-steps.
+
+    guarded : under a guard that looks and never finds anything.
+    """
+    return _in_space(scene, threads, guarded) if is_spatial(scene) else _along_axis(scene, guarded)
 
 
-def _along_axis(scene: Scene) -> tuple[Callable[[], None], int]:
+def _along_axis(scene: Scene, guarded: bool) -> tuple[Callable[[], None], int]:
     from dem.axial.record import room
     from dem.axial.simulate import scheme_of
+    from joints.guard import guard
 
     scheme = scheme_of(scene)
     model, state, time, _ = scheme.build(scene)
-    count = _samples(time, state.u.size)
-    march = scheme.marcher(scene, model, state, room(model, state, count), time, None)
+    count, held = _samples(time, state.u.size), guard(inf) if guarded else None
+    march = scheme.marcher(scene, model, state, room(model, state, count), time, held)
     return lambda: march(0, count), count * time.stride * state.u.size
 
 
-def _in_space(scene: Scene, threads: int) -> tuple[Callable[[], None], int]:
+def _in_space(scene: Scene, threads: int, guarded: bool) -> tuple[Callable[[], None], int]:
     from dem.spatial.build import room_for, samples_for, state_at_rest
     from dem.spatial.simulate import prepare
     from dem.spatial.threads import marcher
+    from joints.guard import guard
 
     p, model, time, _ = prepare(scene)
-    count = _samples(time, p.block_count)
+    count, held = _samples(time, p.block_count), guard([inf] * 6) if guarded else None
     state, samples = state_at_rest(model, p.block_count), samples_for(model, count)
-    march = marcher(model, state, room_for(model, threads), samples)
+    march = marcher(model, state, room_for(model, threads, held), samples)
     march(0, 0)
     return lambda: march(0, count * time.stride), count * time.stride * p.block_count
 

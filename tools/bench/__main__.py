@@ -1,12 +1,13 @@
 """All benchmarks, as ratios and costs of one run on this machine.
 
-usage: python tools/bench [startup] [kernels] [continuum] [effects] [memory]
+usage: python tools/bench [startup] [kernels] [guards] [continuum] [effects] [memory]
 """
 
 import sys
 
 import deformable
 import effects
+import guards
 import kernels
 import memory
 import startup
@@ -14,6 +15,7 @@ import startup
 PARTS = {
     "startup": startup.main,
     "kernels": kernels.main,
+    "guards": guards.main,
     "continuum": deformable.main,
     "memory": memory.main,
     "effects": effects.main,

@@ -1,0 +1,81 @@
+"""What a guard finds, and what it lets pass."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from joints.guard import CREATED, ENERGY, EVERY, RUNAWAY, SPEED, audit, guard, highest, look
+from joints.jit import jitted
+
+KINETIC, ELASTIC, VISCOUS, WORK = range(4)
+
+
+@jitted
+def bits(v):
+    """Return what `highest` does, for Python."""
+    return highest(v)
+
+
+@given(arrays(float, st.integers(1, 70), elements=st.floats(allow_nan=False)))
+def test_magnitudes_are_compared_as_whole_numbers(v):
+    """The bits of the largest magnitude are those of the largest, infinity included."""
+    assert np.int64(bits(v)).view(float) == np.abs(v).max()
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_what_is_no_number_is_above_every_number(sign):
+    v = np.array([1e308, np.copysign(np.nan, sign), -np.inf])
+    assert bits(v) > np.array([np.inf]).view(np.int64)[0]
+
+
+def test_a_look_finds_what_is_beyond_the_limit_and_keeps_the_first():
+    """A speed is let pass up to RUNAWAY times what forces can cause."""
+    held = guard(2.0)
+    look(held, 2.0 * RUNAWAY, 640)
+    assert held.found[0] == -1
+    look(held, np.nextafter(2.0 * RUNAWAY, np.inf), 704)
+    look(held, np.nan, 768)
+    assert held.found.tolist() == [704, SPEED, 704 - EVERY - 1]
+
+
+@pytest.mark.parametrize("speed", [np.nan, np.inf])
+def test_a_look_finds_what_is_no_number(speed):
+    """Even where no bound is known."""
+    held = guard(np.inf)
+    look(held, speed, 64)
+    assert held.found[0] == 64
+
+
+def ledger(created, samples=10):
+    """Return the energies of a pillar that is struck in the first sample and loses half, with so
+    much of the work more in its last sample than was put in."""
+    energy = np.zeros((4, samples))
+    energy[WORK, 1:], energy[KINETIC, 1:], energy[VISCOUS, 1:] = 1.0, 0.5, 0.5
+    energy[ELASTIC, -1] = created
+    return energy
+
+
+@pytest.mark.parametrize(("share", "found"), [(0.99, -1), (1.01, 9 * 20)])
+def test_energy_from_nowhere_is_found_in_the_sample_that_has_it(share, found):
+    held = guard(1.0)
+    audit(held, ledger(share * CREATED), 0, 10, 20)
+    assert held.found[0] == found
+    if found > 0:
+        assert held.found[1:].tolist() == [ENERGY, found - 1]
+
+
+def test_energy_that_is_lost_is_no_fault():
+    """Implicit schemes may take energy out of what they do not resolve."""
+    held = guard(1.0)
+    audit(held, ledger(-0.5), 0, 10, 20)
+    assert held.found[0] == -1
+
+
+def test_digits_of_energies_at_rest_are_no_energy():
+    """A pillar at rest under gravity: terms of 1e6 J that change in their last digits alone."""
+    energy = 1e6 + 1e-9 * np.random.default_rng(3).standard_normal((4, 50))
+    held = guard(1.0)
+    audit(held, energy, 0, 50, 1)
+    assert held.found[0] == -1

@@ -1,0 +1,119 @@
+"""Every engine stops a run that leaves its bounds, says so in one line, and keeps what is sound."""
+
+import numpy as np
+import pytest
+
+import continuum
+import dem
+from cases.calibrate import calibrate
+from cases.errors import StoppedError
+from continuum.simulate import steps_of
+from dem.axial.bound import highest_speed
+from dem.axial.model import build
+from dem.axial.record import room, run
+from dem.axial.simulate import scheme_of
+from dem.spatial.simulate import critical_step_of
+from joints.guard import ENERGY, EVERY, RUNAWAY, SPEED, guard
+
+ABOVE = 1.001  # of the critical step: (x + sqrt(x^2 - 1))^2 = 1.09 times as large in every step
+ACROSS = {"load__direction": [0.6, 0.8, 0.0], "joints__friction_angle": 30.0}
+SMALL = {"pillar__length": 10.0, "record__stress": [5.0], "record__velocity": [5.0]}
+
+KINDS = {
+    "chain": ({}, "dem"),
+    "fourth order": ({"numerics__dem__scheme": "fourth-order"}, "dem"),
+    "space": (ACROSS, "dem"),
+    "threads": ({**ACROSS, "numerics__dem__threads": 2}, "dem"),
+    "rock": ({"numerics__continuum__scheme": "explicit"}, "continuum"),
+}
+
+
+@pytest.fixture(params=KINDS)
+def forced(request, pillar):
+    """Return a function of a duration in steps that simulates with steps above the critical one,
+    each of them a sample."""
+    changes, engine = KINDS[request.param]
+    changes = {**SMALL, **changes}
+    critical = critical_of(pillar(**changes), engine)
+    numerics = {"step_fraction": ABOVE, "allow_unstable": True}
+    changes |= {f"numerics__{engine}__{key}": value for key, value in numerics.items()}
+    solve = dem.simulate if engine == "dem" else continuum.simulate
+
+    def simulate(steps):
+        step = ABOVE * critical
+        return solve(pillar(**changes, record__interval=step, time__duration=step * steps))
+
+    return simulate
+
+
+def critical_of(scene, engine):
+    if engine == "continuum":
+        return steps_of(scene, "jointed")[1]
+    if scene.load.direction[0]:
+        return critical_step_of(scene, calibrate(scene))
+    return scheme_of(scene).build(scene)[3]
+
+
+def test_what_is_sound_is_kept_and_nothing_else(forced):
+    """The kept samples are, bit for bit, those of a run that ends there, which nothing stops."""
+    with pytest.raises(
+        StoppedError, match=r"toml: .* (ran away|created energy) at t = .* s, step \d+ of .* s"
+    ) as e:
+        forced(1000)
+    kept = e.value.result
+    assert "take numerics." in str(e.value) and "\n" not in str(e.value)
+    samples = kept.sizes["time"]
+    whole = forced(samples - 1)
+    for name in ("stress", "velocity", "displacement", "energy"):
+        assert kept[name].identical(whole[name]), name
+    stopped = int(str(e.value).split("step ")[1].split()[0])
+    assert stopped - EVERY - 1 <= samples - 1 < stopped
+
+
+def test_it_stops_within_so_many_steps_of_leaving_its_bounds(pillar):
+    """Found by a guard at a multiple of 64 steps; the first speed beyond the limit is found here by
+    looking after every step."""
+    step = ABOVE * critical_of(pillar(**SMALL), "dem")
+    numerics = {"step_fraction": ABOVE, "allow_unstable": True}
+    scene = pillar(
+        **SMALL, numerics__dem=numerics, record__interval=step, time__duration=1000 * step
+    )
+    model, state, time, _ = build(scene)
+    speed = highest_speed(model, state, time)
+    samples, left = room(model, state, time.samples), None
+    for n in range(time.steps):
+        run(model, state, samples, 1, n, n + 1)
+        if left is None and np.abs(state.v).max() > RUNAWAY * speed:
+            left = n + 1
+    model, state, time, _ = build(scene)
+    held = guard(speed)
+    run(model, state, room(model, state, time.samples), 1, 0, time.samples, held)
+    assert left is not None and left <= held.found[0] < left + EVERY
+    assert held.found[1] == SPEED
+
+
+def test_a_chain_that_gains_energy_is_stopped_by_its_ledger(pillar):
+    """Joints that become stiffer while they are compressed: their energy grows, and nothing has
+    done the work. The first sample after it is where the run ends."""
+    scene = pillar(**SMALL)
+    model, state, time, _ = build(scene)
+    samples, held = room(model, state, time.samples), guard(np.inf)
+    half = int(0.008 / scene.interval)  # the pulse is within the pillar
+    run(model, state, samples, time.stride, 0, half, held)
+    assert held.found[0] == -1
+    law = model.chain.law
+    stiffer = law._replace(normal_stiffness=1.5 * law.normal_stiffness)
+    model = model._replace(chain=model.chain._replace(law=stiffer))
+    run(model, state, samples, time.stride, half, time.samples, held)
+    assert held.found[:2].tolist() == [half * time.stride, ENERGY]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_bound_holds_below_the_critical_step(kind, pillar):
+    """At 0.999 of it leapfrog swings 1 / sqrt(1 - 0.999^2) = 22 times as wide, within RUNAWAY."""
+    changes, engine = KINDS[kind]
+    changes = {**SMALL, **changes, f"numerics__{engine}__step_fraction": 0.999}
+    critical = critical_of(pillar(**changes), engine)
+    solve = dem.simulate if engine == "dem" else continuum.simulate
+    scene = pillar(**changes, record__interval=0.999 * critical, time__duration=500 * critical)
+    assert np.isfinite(solve(scene)["velocity"]).all()
