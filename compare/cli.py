@@ -121,18 +121,17 @@ def run(
     A run that is killed goes on from its last checkpoint with --resume, to the same bits as if it
     had not been; results that are whole already are kept. Ctrl-C keeps what is there.
     """
-    from compare import runs, terminal, views
+    from compare import jobs, runs, terminal, views
     from compare.keeping.watch import Keeping
 
     scenes = _load(scene, changes, variant)
-    wanted = runs.wanted([e.value for e in engine], model or [])
-    jobs = runs.plan(scenes, wanted, out)
+    asked = jobs.plan(scenes, jobs.wanted([e.value for e in engine], model or []), out)
     _warn(scenes)
     processes = started()
-    folders, keeping = {job.path.parent for job in jobs}, Keeping(every, resume, watched())
-    with ExitStack() as held, terminal.progress(f"{len(jobs)} runs") as advance:
+    folders, keeping = {job.path.parent for job in asked}, Keeping(every, resume, watched())
+    with ExitStack() as held, terminal.progress(f"{len(asked)} runs") as advance:
         processes.by_first(lambda: held.enter_context(locked(out, *folders)))
-        done = runs.execute(jobs, advance, vtx, processes, keeping)
+        done = runs.execute(asked, advance, vtx, processes, keeping)
     processes.by_first(lambda: views.show_runs(done, as_json))
 
 
