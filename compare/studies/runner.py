@@ -34,7 +34,7 @@ def run(
     places = [folder / f"{key(point)}.json" for point in points]
     missing = [i for i, place in enumerate(places) if not place.is_file()]
     done = len(points) - len(missing)
-    with _alone() if study.timed else nullcontext():
+    with alone() if study.timed else nullcontext():
         for i, row in _measured(points, missing, None if study.timed else pool):
             write_text(places[i], json.dumps(row._asdict(), indent=1))
             done += 1
@@ -64,7 +64,7 @@ def key(point: Point) -> str:
 
 
 @contextmanager
-def _alone() -> Iterator[None]:
+def alone() -> Iterator[None]:
     """Wait until no other timed study is running on this machine."""
     with Path(gettempdir(), "jointwave-timing.lock").open("a") as file:
         fcntl.flock(file, fcntl.LOCK_EX)

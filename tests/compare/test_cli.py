@@ -136,7 +136,7 @@ def test_mistake_is_one_line_and_exit_2(arguments, words, tmp_path):
 
 
 def test_instability_is_caught_with_exit_3_and_old_results_stay(tmp_path):
-    """A forced step that blows up leaves the earlier file as it was, and what is sound beside it."""
+    """A forced step that blows up leaves the earlier file as it was, beside what is sound."""
     old = tmp_path / "dem.nc"
     jointwave("run", SCENE, "--variant", "", *SHORT, "--out", tmp_path)
     before = old.read_bytes()
