@@ -40,7 +40,7 @@ RUNS = {
         "continuum-jointed.nc",
         1,
     ),
-    "implicit": (rock("implicit"), "continuum-jointed.nc", 1),
+    "implicit": (rock("implicit", *SHOT), "continuum-jointed.nc", 1),
     "shared": (
         rock("explicit", "time.duration=0.02", "record.fields=1e-3"),
         "continuum-jointed.nc",
