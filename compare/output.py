@@ -29,7 +29,7 @@ def write(path: Path, save: Callable[[Path], object]) -> Path:
     """
     with _names(path):
         path.parent.mkdir(parents=True, exist_ok=True)
-        prefix = f".{path.stem}{UNFINISHED}"
+        prefix = f".{path.stem.lstrip('.')}{UNFINISHED}"
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=prefix, suffix=path.suffix)
         os.close(handle)
         temporary = Path(name)
@@ -77,7 +77,7 @@ def write_folder(path: Path, save: Callable[[Path], object]) -> Path:
     """
     with _names(path):
         path.parent.mkdir(parents=True, exist_ok=True)
-        prefix = f".{path.stem}{UNFINISHED}"
+        prefix = f".{path.stem.lstrip('.')}{UNFINISHED}"
         with tempfile.TemporaryDirectory(dir=path.parent, prefix=prefix) as place:
             new, old = Path(place, path.name), Path(place, "old")
             save(new)
