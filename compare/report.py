@@ -1,9 +1,8 @@
 """The report: the figures of Guo & Li (2002) by everything that can solve them, as one page."""
 
 from collections.abc import Iterable
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import Future, as_completed
 from dataclasses import dataclass, replace
-from multiprocessing import get_context
 from pathlib import Path
 from time import perf_counter
 
@@ -18,6 +17,7 @@ from compare.output import write, write_text
 from compare.page import Motion, Section, make_motion, make_section, render, write_figure
 from compare.pairs import Comparison, compare
 from compare.studies.section import REPORTED, make_sections, measured_on
+from compare.workers import Workers
 
 SCENES = Path(cases.__file__).parent / "guo-li-2002"
 
@@ -126,26 +126,22 @@ def _compute(
             if progress:
                 progress(done / jobs)
 
-    with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
-        try:
-            weighing = worth_study.submit(pool, weighed, kept)
-            jobs += len(weighing)
-            order = _longest_first(unique)
-            solved = {key: pool.submit(compare, unique[key], None, True) for key in order}
-            moving = pool.submit(make_motion, out)
-            finish([*solved.values(), moving, *weighing])
-            figures = {
-                file: [replace(solved[_key(scene)].result(), scene=scene) for scene in variants]
-                for file, variants in loaded.items()
-            }
-            drawn = [
-                pool.submit(make_section, out / "figures", file, comparisons)
-                for file, comparisons in figures.items()
-            ]
-            finish(drawn)
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
+    with Workers(workers) as pool:
+        weighing = worth_study.submit(pool, weighed, kept)
+        jobs += len(weighing)
+        order = _longest_first(unique)
+        solved = {key: pool.submit(compare, unique[key], None, True) for key in order}
+        moving = pool.submit(make_motion, out)
+        finish([*solved.values(), moving, *weighing])
+        figures = {
+            file: [replace(solved[_key(scene)].result(), scene=scene) for scene in variants]
+            for file, variants in loaded.items()
+        }
+        drawn = [
+            pool.submit(make_section, out / "figures", file, comparisons)
+            for file, comparisons in figures.items()
+        ]
+        finish(drawn)
     sections = [future.result() for future in drawn]
     return sections, {f.stem: c for f, c in figures.items()}, moving.result()
 

@@ -1,11 +1,13 @@
 """Commands that weigh accuracy against cost over many runs: effects, plan, study, report."""
 
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from cases.errors import SceneError
+from compare.keeping.lock import locked
 from compare.options import (
     CORES,
     JsonOption,
@@ -44,7 +46,7 @@ def effects(
     from compare.worth_section import write_section
 
     wanted = _cases(scene, changes, variant)
-    with terminal.progress(f"{len(wanted)} variants") as advance:
+    with locked(out), terminal.progress(f"{len(wanted)} variants") as advance:
         found = on_pool(
             started(), workers, lambda pool: worth_study.run(wanted, out, pool, advance)
         )
@@ -99,10 +101,11 @@ def study(
     from compare.studies.study import load
     from compare.studies.table import write_table
 
-    asked, stem = load(name), Path(name).stem
-    with terminal.progress(asked.title) as advance:
+    asked, stem, processes = load(name), Path(name).stem, started()
+    with ExitStack() as held, terminal.progress(asked.title) as advance:
+        processes.by_first(lambda: held.enter_context(locked(out / stem)))
         rows = on_pool(
-            started(), workers, lambda pool: run_points(asked, out / stem, pool, advance)
+            processes, workers, lambda pool: run_points(asked, out / stem, pool, advance)
         )
     if rows is not None:
         files = (*write_table(out, stem, asked, rows), *write_diagram(out, stem, asked, rows))
@@ -134,7 +137,7 @@ def report(
     from compare import terminal, views
     from compare.report import build
 
-    with terminal.progress("scenes") as advance:
+    with locked(out, out / "figures", out / "studies"), terminal.progress("scenes") as advance:
         found = build(out, advance, peers_table=peers)
     views.show_report(found, as_json)
 
