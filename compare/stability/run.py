@@ -6,12 +6,16 @@ import hashlib
 import json
 from collections.abc import Callable
 from concurrent.futures import Executor, as_completed
+from contextlib import nullcontext
 from pathlib import Path
+
+import numpy as np
 
 from compare.engines import Progress
 from compare.output import write_text
 from compare.stability.battery import CASES
 from compare.stability.case import SOLVERS
+from compare.stability.map import ENGINES, StabilityMap, make_map
 from compare.stability.row import Row, row_of
 from compare.studies.runner import program
 
@@ -76,4 +80,24 @@ def _file(place: tuple[int, int], folder: Path) -> Path:
     """Return the file of a row, named by all that decides it, this program included."""
     case, solver = CASES[place[0]], SOLVERS[place[1]]
     about = [program(), case.name, case.scene, case.changes, solver.name]
-    return folder / f"{hashlib.sha256(json.dumps(about).encode()).hexdigest()[:16]}.json"
+    return folder / f"{_digest(about)}.json"
+
+
+def run_maps(pool: Pool | None, folder: Path) -> list[StabilityMap]:
+    """Return the maps of all engines, kept in `folder` as rows are."""
+    files = {engine: folder / f"{_digest([program(), engine])}.json" for engine in ENGINES}
+    missing = [engine for engine, file in files.items() if not file.is_file()]
+    if missing:
+        with nullcontext() if pool is None else pool() as executor:
+            made = (map if executor is None else executor.map)(make_map, missing)
+            for found in made:
+                lists = {k: v.tolist() for k, v in found._asdict().items() if k != "engine"}
+                write_text(files[found.engine], json.dumps(lists))
+    return [
+        StabilityMap(engine, **{k: np.array(v) for k, v in json.loads(file.read_text()).items()})
+        for engine, file in files.items()
+    ]
+
+
+def _digest(about: list) -> str:
+    return hashlib.sha256(json.dumps(about).encode()).hexdigest()[:16]

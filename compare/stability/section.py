@@ -11,9 +11,9 @@ from compare.stability.case import EQUIVALENT, JOINTED, LEAPFROG, Trial
 from compare.stability.diagram import draw
 from compare.stability.energies import Drift, drift
 from compare.stability.linear import MILLION
-from compare.stability.map import ENGINES, StabilityMap, make_map
+from compare.stability.map import StabilityMap
 from compare.stability.row import Row
-from compare.stability.run import Pool, run
+from compare.stability.run import Pool, run, run_maps
 from compare.stability.table import (
     failures,
     map_sentences,
@@ -47,11 +47,11 @@ def make_study(
 ) -> Found:
     """Run the battery, the maps and the long runs; write their tables and figure into `out`.
 
-    Rows that are done are kept in OUT/stability/ and not run again.
+    Rows and maps that are done are kept in OUT/stability/ and not run again.
     pool : makes the standard Executor that maps the rows; slow : also the rows that take long.
     """
     rows = run(pool, slow, progress, out / NAME)
-    maps = [make_map(engine) for engine in ENGINES]
+    maps = run_maps(pool, out / NAME)
     svg = save(draw(maps, drifts()), out, NAME, TITLE)
     files = [write_rows(out / f"{NAME}.csv", rows), write_maps(out / f"{NAME}-map.csv", maps)]
     return Found(rows, maps, svg, [*files, out / f"{NAME}.svg"])
