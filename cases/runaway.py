@@ -37,10 +37,10 @@ def stopped(scene: Scene, time: Clock, critical: float, seen: Sighting) -> Stopp
 
 
 def _cause(scene: Scene, time: Clock, critical: float, seen: Sighting) -> str:
-    if time.dt > critical * (1 + 1e-12):
+    if time.dt > 0.9999 * critical:
         return (
             f"the step is {time.dt / critical:.4g} times the critical step {critical:.4g} s; "
-            f"take {seen.key} of at most 1"
+            f"take {seen.key} of at most 0.9"
         )
     if abs(scene.load.amplitude or 0.0) > HUGE:
         return "numbers grow beyond 1e308; take a smaller load.amplitude"

@@ -48,10 +48,10 @@ class Watch:
         return self.team.any(bool(self.guard.found[0] >= 0))
 
     def finds(self, n: int) -> bool:
-        """Look after step n, which Python has taken, and return whether the run is lost."""
-        sample, between = divmod(n, self.time.stride)
-        if not between:
-            self.audit(sample, sample + 1)
+        """Look now and then at implicit steps, after step n, and return whether the run is lost.
+
+        Their ledger is not exact, and what it is out by is no fault.
+        """
         return self.look(n) if n % EVERY == 0 else False
 
     def audit(self, first: int, last: int) -> None:

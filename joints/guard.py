@@ -2,7 +2,7 @@
 
 No speed can be more than all forces together can cause, and no energy come from nowhere. Kernels
 look at the speeds every 64 steps, which costs a look at every velocity in the time of 64 steps, and
-at the ledger wherever they sample it.
+leapfrog, whose ledger is exact, at the ledger wherever it is sampled.
 """
 
 from typing import Any, NamedTuple

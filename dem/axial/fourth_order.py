@@ -29,7 +29,7 @@ from dem.axial.stability import critical_chain_step
 from dem.axial.state import State, state_at_rest
 from dem.axial.step import step
 from joints.borrowed import borrowed
-from joints.guard import EVERY, Guard, creates_energy, runs_away
+from joints.guard import EVERY, Guard, runs_away
 from joints.jit import inlined, jitted
 from joints.tiny import flush_tiny, restore_tiny
 
@@ -121,8 +121,6 @@ def run(composition, model, state, samples, stride, first, last, guard=None):
         book_ends(state.ledger, held(model.chain, state) - composition.stored)
         sample_before(model, state, samples, s)
         sample_after(model, state, samples, s, n)
-        if creates_energy(guard, samples.energy, s, n):
-            break
         if march_guarded(composition, state, n, n + stride, guard):
             break
     restore_tiny(tiny)
