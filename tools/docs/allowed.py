@@ -38,7 +38,7 @@ def _words(kind: Any, constraints: list) -> str:
     if model := model_in(kind):
         return "tables" if origin is list else f"table `{model.__name__}`"
     if origin is dict:
-        return f"`\"a ~ b\" = {_words(parts[1], [])}`, a and b of: {', '.join(SOLUTIONS)}"
+        return f'`"a ~ b" = {_words(parts[1], [])}`, a and b of: {", ".join(SOLUTIONS)}'
     if origin is list:
         return f"list of {_count(constraints)}{_plural(_words(parts[0], []))}{_checks(constraints)}"
     return WORDS[kind] + _bounds(constraints) + _checks(constraints)
@@ -57,7 +57,7 @@ def _flat(constraints: list) -> list:
 def _bounds(constraints: list) -> str:
     flat = _flat(constraints)
     found = [(sign, getattr(c, k)) for c in flat for k, sign in BOUNDS.items() if hasattr(c, k)]
-    return "".join(f" {sign} {value:g}" for sign, value in found)
+    return " and".join(f" {sign} {value:g}" for sign, value in found)
 
 
 def _count(constraints: list) -> str:

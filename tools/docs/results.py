@@ -15,7 +15,7 @@ class Outcome(NamedTuple):
 
 
 class Measured(NamedTuple):
-    """One pair of a scene: its misfit, None where it could not be measured, and whether it holds."""
+    """One pair of a scene: its misfit, None where nothing was measured, and whether it holds."""
 
     misfit: float | None
     holds: bool

@@ -51,9 +51,7 @@ def _section(path: str, model: type[BaseModel], many: bool) -> str:
     shown = f"`{heading}`" if path else heading
     comments = field_comments(model)
     rows = [_row(path, name, f, comments[name]) for name, f in _own_keys(path, model)]
-    return "\n".join(
-        [f"### {shown} {{ #{_anchor(path)} }}", "", _purpose(model), "", HEAD, *rows]
-    )
+    return "\n".join([f"### {shown} {{ #{_anchor(path)} }}", "", _purpose(model), "", HEAD, *rows])
 
 
 def _purpose(model: type[BaseModel]) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from datetime import datetime
 from pathlib import Path
 
-from results import Outcome, Results, read
+from results import Measured, Outcome, Results, read
 
 import cases
 from compare.scenes import SHIPPED, shipped
@@ -53,7 +53,7 @@ def _newest(root: Path) -> float:
 
 
 def _scenes(found: Results | None) -> str:
-    head = "| scene | variant | pair | bound | misfit | |\n| --- | --- | --- | --- | --- | --- |"
+    head = "| scene | pair | bound | misfit |\n| --- | --- | --- | --- |"
     return "\n".join([head, *_pairs(found)])
 
 
@@ -67,15 +67,16 @@ def _pairs(found: Results | None) -> Iterator[str]:
                 one = measured.get((file, f"{scene.name}: {pair}" if scene.name else pair))
                 if ran and one is None:
                     continue  # it does not apply to this variant
-                start = f"| {path.parent.name}/{path.stem} | {scene.name} | {pair} | {bound:g} |"
-                yield f"{start} {_misfit(one)} |"
+                variant = f", {scene.name}" if scene.name else ""
+                name = f"{path.parent.name}/{path.stem}{variant}"
+                yield f"| {name} | {pair} | {bound:g} | {_misfit(one)} |"
 
 
-def _misfit(one) -> str:
+def _misfit(one: Measured | None) -> str:
     if one is None:
-        return f"| {NOT_RUN}"
+        return NOT_RUN
     value = "" if one.misfit is None else f"{one.misfit:.2g}"
-    return f"{value} | {'holds' if one.holds else '**fails**'}"
+    return value if one.holds else f"**{value} fails**"
 
 
 def _folder(tests: Path, folder: str, found: Results | None) -> str:
