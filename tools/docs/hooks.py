@@ -32,6 +32,8 @@ FORMULA = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>
 
 #: Functions, which MathML sets without any space around them.
 FUNCTION = re.compile(r"<mi>(sin|cos|tan|cosh|arcsin|log|tanh)</mi>(?!<mo)")
+#: Bars on both sides of something, which MathML would set and stretch like operators.
+BAR = re.compile(r"<mo[^>]*>(&#x0007C;|&#x02016;)</mo>")
 
 
 def generated(markdown: str) -> str:
@@ -46,7 +48,8 @@ def mathml(html: str) -> str:
     def formula(found: re.Match) -> str:
         shown = "inline" if found[2] == "(" else "block"
         converted = convert(unescape(found[3]).strip(), display=shown)
-        return FUNCTION.sub(r'<mi>\1</mi><mspace width="0.17em"/>', converted)
+        spaced = FUNCTION.sub(r'<mi>\1</mi><mspace width="0.17em"/>', converted)
+        return BAR.sub(r'<mo lspace="0" rspace="0" stretchy="false">\1</mo>', spaced)
 
     return FORMULA.sub(formula, html)
 
