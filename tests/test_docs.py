@@ -211,6 +211,17 @@ def test_formulas_become_mathml(tools):
     assert html.startswith("<math") and "arithmatex" not in html and "&#x0003C;" in html
 
 
+def test_what_theory_cites_is_among_the_sources():
+    """Author and year of every citation stand in one row of the sources."""
+    cited = re.compile(r"([A-Z][\w-]+)(?:'s)?(?: et al\.)?,?\s+\(?((?:18|19|20)\d\d)\b")
+    rows = (DOCS / "theory" / "sources.md").read_text(encoding="utf-8").splitlines()
+    texts = [p.read_text(encoding="utf-8") for p in PAGES if p.parent.name == "theory"]
+    texts.append((DOCS / "extend.md").read_text(encoding="utf-8"))
+    found = {c for text in texts for c in cited.findall(text)}
+    assert len(found) > 30
+    assert not [c for c in found if not any(c[0] in row and c[1] in row for row in rows)]
+
+
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_braces_of_formulas_match(page):
     """A brace too few is no error to the converter, which then sets something else."""
