@@ -3,7 +3,7 @@ MAKEFLAGS += --no-print-directory
 RUN := tools/run.sh
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test docs check bench bench-peers bench-plan test-debian13 clean distclean
+.PHONY: help setup demo test test-all docs check bench bench-peers bench-plan test-debian13 clean distclean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -17,6 +17,10 @@ demo: setup  ## the paper's figures and all studies as one page, report/index.ht
 test:  ## all tests, and every shipped scene held to its own bounds
 	@tools/setup.sh browser
 	@$(RUN) python -m pytest -n auto --maxprocesses 8 --junitxml out/tests.xml tests cases
+
+test-all:  ## make test with the slow tests too: the longest of the hard cases
+	@tools/setup.sh browser
+	@$(RUN) python -m pytest -n auto --maxprocesses 8 --junitxml out/tests.xml -m "slow or not slow" tests cases
 
 docs:  ## the documentation as pages, site/index.html, with the outcomes of the last make test
 	@tools/setup.sh docs

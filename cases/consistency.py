@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import ceil, floor, log10
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ from cases.errors import SceneError
 from cases.joint import JointLaw
 from cases.scheme import check_scheme
 from cases.stiffness import equivalent_constants
-from cases.values import contradiction
+from cases.values import contradiction, is_extreme
 
 if TYPE_CHECKING:
     from cases.scene import Scene
@@ -31,6 +32,7 @@ def check(scene: Scene) -> None:
     _check_time(scene)
     _check_fields(scene)
     _check_lever(scene)
+    _check_extreme(scene)
     _check_ends(scene)
     _check_damping(scene)
     _check_strength("joints", scene.joints)
@@ -132,6 +134,36 @@ def _check_lever(scene: Scene) -> None:
         raise contradiction(
             f"load.{key}", value, "turns the blocks, which motion.rotation = 'none' forbids"
         )
+
+
+def _check_extreme(scene: Scene) -> None:
+    """An extreme load is scaled, and so must be all that it does."""
+    if not is_extreme(scene.load.amplitude):
+        return
+    for key, value, wrong in _beyond_scaling(scene):
+        if wrong:
+            allowed = "needs a load.amplitude between 1e-30 and 1e30 in size: it does not scale"
+            raise contradiction(key, value, allowed)
+    if scene.record.energy and not 1e-150 <= abs(scene.load.amplitude) <= 1e150:
+        allowed = "must be false: energies of such a load.amplitude are no numbers"
+        raise contradiction("record.energy", True, allowed)
+
+
+def _beyond_scaling(scene: Scene) -> Iterator[tuple[str, object, bool]]:
+    """Yield what a load beyond all sizes must not meet: key, value, and whether it is there."""
+    load, record = scene.load, scene.record
+    yield "gravity", None, scene.gravity is not None
+    yield "prestress", None, scene.prestress is not None
+    yield "record.fields", record.fields, record.fields is not None
+    yield "load.direction", load.direction, load.is_across
+    yield "load.at", load.at, load.is_eccentric
+    yield "load.arm", load.arm, load.arm is not None
+    yield "load.file", load.file, load.file is not None
+    laws: dict[str, JointLaw] = {"joints": scene.joints}
+    laws |= {f"soft_layers[{i}]": layer for i, layer in enumerate(scene.soft_layers)}
+    for table, law in laws.items():
+        for key in ("tensile_strength", "cohesion"):
+            yield f"{table}.{key}", getattr(law, key), getattr(law, key) is not None
 
 
 def _check_ends(scene: Scene) -> None:

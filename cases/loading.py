@@ -1,11 +1,20 @@
 """The load of a scene: an end stress, or the motion of its base."""
 
+from math import frexp
 from typing import Annotated, Literal
 
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from cases.history import History
-from cases.values import Direction, Number, Offset, Positive, Table, contradiction
+from cases.values import (
+    Amplitude,
+    Direction,
+    Offset,
+    Positive,
+    Table,
+    contradiction,
+    is_extreme,
+)
 
 
 class Load(Table):
@@ -17,7 +26,7 @@ class Load(Table):
 
     #: ricker: its peak at 1.5 periods; table: straight lines between the samples of a file
     shape: Literal["sine", "ricker", "step", "table"]
-    amplitude: Number  #: Pa, m/s or m/s2 by `quantity`; a factor on the history for "table"
+    amplitude: Amplitude  #: Pa, m/s or m/s2 by `quantity`; a factor on the history for "table"
     #: velocity, acceleration: of the base that a fixed start stands on
     quantity: Literal["stress", "velocity", "acceleration"] = "stress"
     period: Positive | None = None  #: s; for sine and ricker
@@ -67,6 +76,15 @@ class Load(Table):
             except ValueError as error:
                 raise contradiction("load.file", self.file, str(error)) from None
         return self
+
+    @property
+    def scale(self) -> float:
+        """A power of two that an extreme load is divided by and its result multiplied; else 1.
+
+        The motion of such a load would be below or above all numbers; scaled by a power of two it
+        is that of a load near 1, digit by digit.
+        """
+        return 2.0 ** frexp(self.amplitude)[1] if is_extreme(self.amplitude) else 1.0
 
     @property
     def history(self) -> History | None:

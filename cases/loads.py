@@ -128,18 +128,19 @@ LoadHistory = Sine | Ricker | Step | Recorded
 def load_history(scene: Scene) -> LoadHistory:
     """Return the scene's load as a function of time: its end stress or the motion of its base.
 
-    Stress is positive in compression. Without a load the stress is zero.
+    Stress is positive in compression. Without a load the stress is zero. Of an extreme load it is
+    that over `scene.load.scale`, which a result is multiplied by when it is put together.
     """
-    load = scene.load
+    load, amplitude = scene.load, scene.load.amplitude / scene.load.scale
     if load.shape == "step":
-        return Step(load.amplitude)
+        return Step(amplitude)
     if load.shape == "table":
         assert load.history is not None
-        return Recorded(load.history.time, load.amplitude * load.history.stress)
+        return Recorded(load.history.time, amplitude * load.history.stress)
     assert load.period is not None
     if load.shape == "ricker":
-        return Ricker(load.amplitude, load.period)
-    return Sine(load.amplitude, load.period, load.cycles or 1)
+        return Ricker(amplitude, load.period)
+    return Sine(amplitude, load.period, load.cycles or 1)
 
 
 def step_means(load: LoadHistory, dt: float, count: int) -> np.ndarray:

@@ -89,9 +89,15 @@ def fields(
     rotation : float array [len(record.velocity), n, 3], about x, y, z, rad; likewise.
     terms : what the rows of `energy` are, from ALL_TERMS.
     attributes : numbers and texts about the run (dt, steps, seconds, ...).
+
+    All are those of `cases.loads.load_history`; the result has the scale of the scene's own load.
     """
     points = ("velocity_y", "time", "axis")
-    record, spatial = scene.record, velocity.ndim == 3
+    record, spatial, scale = scene.record, velocity.ndim == 3, scene.load.scale
+    if scale != 1:
+        stress, velocity = scale * stress, scale * velocity
+        displacement = None if displacement is None else scale * displacement
+        energy = None if energy is None else scale * (scale * energy)
     coords: dict[str, Variable] = {
         "time": (("time",), time, {"units": "s"}),
         "stress_y": (("stress_y",), np.array(record.stress, dtype=float), {"units": "m"}),

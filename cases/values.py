@@ -31,6 +31,18 @@ def _magnitude(value: float) -> float:
     return value
 
 
+def _amplitude(value: float) -> float:
+    """Refuse what leaves no room between itself and the end of all numbers."""
+    if value and not 1e-300 <= abs(value) <= 1e300:
+        raise PydanticCustomError("magnitude", "must lie between 1e-300 and 1e300 in size")
+    return value
+
+
+def is_extreme(amplitude: float) -> bool:
+    """Return whether a load is so small or large that squares or sums of it are no numbers."""
+    return bool(amplitude) and not 1e-30 <= abs(amplitude) <= 1e30
+
+
 def _pair(text: str) -> str:
     """Check one key of [expect]."""
     one, _, other = text.partition(" ~ ")
@@ -49,6 +61,7 @@ def _unit(vector: list[float]) -> list[float]:
 
 
 Number = Annotated[float, AfterValidator(_magnitude)]
+Amplitude = Annotated[float, AfterValidator(_amplitude)]  #: of a load
 Positive = Annotated[float, Field(gt=0), AfterValidator(_magnitude)]
 NonNegative = Annotated[float, Field(ge=0), AfterValidator(_magnitude)]
 Poisson = Annotated[float, Field(gt=-1, lt=0.5)]

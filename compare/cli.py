@@ -7,8 +7,9 @@ from typing import Any
 
 import typer
 
-from cases.errors import SceneError, UnstableError
+from cases.errors import InterruptedRun, SceneError, UnstableError
 from compare import commands, surveys
+from compare.keeping.signals import Ended, exit_code, watched
 from compare.options import app
 from compare.processes import Processes, started
 
@@ -28,21 +29,28 @@ def main() -> None:
         sys.argv.append("--help")
     processes = Processes()
     try:
+        signals = watched()
         processes = started()
         processes.mute_others()
+        signals.patient = not processes.is_first  # the first decides for all
         code = app(standalone_mode=False)
+        sys.stdout.flush()
     except SceneError as error:
         _fail(processes, str(error), 2)
+    except InterruptedRun as error:
+        _fail(processes, str(error), getattr(error, "code", 1))
     except UnstableError as error:
         _fail(processes, str(error), 3)
     except UsageError as error:
         _fail(processes, _usage(error), 2)
-    except (typer.Abort, KeyboardInterrupt):
-        _fail(processes, "interrupted", 130)
-    except BrokenPipeError:  # the reader has seen enough; flushing at exit must not complain
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except Ended as end:
+        _fail(processes, str(end), exit_code(end.number))
+    except BrokenPipeError:  # the reader has seen enough
+        _drop_output()
         sys.exit(1)
     except OSError as error:
+        if error.filename is None:
+            _drop_output()
         _fail(processes, f"{error.filename or 'output'}: {error.strerror or error}", 2)
     except MemoryError as error:
         _fail(processes, f"not enough memory: {error}", 2)
@@ -52,6 +60,11 @@ def main() -> None:
         processes.crash()
     else:
         sys.exit(code if isinstance(code, int) else 0)
+
+
+def _drop_output() -> None:
+    """Let what cannot be written to standard output go: flushing at exit must not complain."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _usage(error: Any) -> str:

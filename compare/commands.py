@@ -5,6 +5,7 @@ without dolfinx and matplotlib.
 """
 
 import sys
+from contextlib import ExitStack
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
@@ -13,6 +14,8 @@ import typer
 
 import cases
 from cases.errors import SceneError
+from compare.keeping.lock import locked
+from compare.keeping.signals import watched
 from compare.options import (
     JsonOption,
     OutOption,
@@ -60,22 +63,36 @@ def run(
     vtx: Annotated[
         bool, typer.Option("--vtx", help="Also write the snapshots of record.fields as VTX (.bp).")
     ] = False,
+    every: Annotated[
+        float,
+        typer.Option(
+            "--checkpoint-every", metavar="SECONDS", min=0.0, help="Of wall time; 0: none are kept."
+        ),
+    ] = 60.0,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on where an earlier run of the same has stopped.")
+    ] = False,
     as_json: JsonOption = False,
 ) -> None:
     """Simulate a scene and write each result as DIR/[variant/]ENGINE[-MODEL].nc.
 
     With record.fields also its snapshots, as a .pvd file for ParaView. Under mpiexec the processes
     share each run of the continuum; everything else is done by the first of them.
+
+    A run that is killed goes on from its last checkpoint with --resume, to the same bits as if it
+    had not been; results that are whole already are kept. Ctrl-C keeps what is there.
     """
-    from compare import runs, terminal, views
+    from compare import jobs, runs, terminal, views
+    from compare.keeping.watch import Keeping
 
     scenes = load(scene, changes, variant)
-    wanted = runs.wanted([e.value for e in engine], model or [])
-    jobs = runs.plan(scenes, wanted, out)
+    asked = jobs.plan(scenes, jobs.wanted([e.value for e in engine], model or []), out)
     warn(scenes)
     processes = started()
-    with terminal.progress(f"{len(jobs)} runs") as advance:
-        done = runs.execute(jobs, advance, vtx, processes)
+    folders, keeping = {job.path.parent for job in asked}, Keeping(every, resume, watched())
+    with ExitStack() as held, terminal.progress(f"{len(asked)} runs") as advance:
+        processes.by_first(lambda: held.enter_context(locked(out, *folders)))
+        done = runs.execute(asked, advance, vtx, processes, keeping)
     processes.by_first(lambda: views.show_runs(done, as_json))
 
 

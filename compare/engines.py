@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from cases.errors import SceneError
+from cases.keeper import Keeper
 from cases.scene import Scene
 from compare.exact.answer import YES, Answer, no
 
@@ -43,10 +44,17 @@ def applies(name: str, scene: Scene) -> Answer:
     return _exact(name).applies(scene)
 
 
-def solve(name: str, scene: Scene, progress: Progress | None = None, comm=None) -> xr.Dataset:
+def solve(
+    name: str,
+    scene: Scene,
+    progress: Progress | None = None,
+    comm=None,
+    keeper: Keeper | None = None,
+) -> xr.Dataset:
     """Return the result of one engine or exact solution.
 
     comm : mpi4py's communicator of processes that share a run of the continuum, None without.
+    keeper : watches over a run of an engine; None: nobody.
     Raises SceneError where it does not apply or the name is unknown, UnstableError where a run
     goes unstable.
     """
@@ -56,12 +64,12 @@ def solve(name: str, scene: Scene, progress: Progress | None = None, comm=None) 
     if name == "dem":
         from dem import simulate
 
-        return simulate(scene, progress)
+        return simulate(scene, progress, keeper=keeper)
     if name.startswith("continuum-"):
         from continuum import simulate as simulate_continuum
 
         model = name.removeprefix("continuum-")
-        return simulate_continuum(scene, model=model, progress=progress, comm=comm)
+        return simulate_continuum(scene, model=model, progress=progress, comm=comm, keeper=keeper)
     return _exact(name).solve(scene)
 
 

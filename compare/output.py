@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import shutil
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,22 +18,56 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+UNFINISHED = ".unfinished-"  # in the names of files that are being written, which begin with a dot
+
+
 def write(path: Path, save: Callable[[Path], object]) -> Path:
-    """Let `save` write a file and put it at `path` only when it is whole.
+    """Let `save` write a file and put it at `path` only when it is whole, and safe on the disk.
 
     What stood at `path` before stays untouched until then, and for good when `save` fails.
+    Raises OSError, which names `path`, where it cannot be written.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
-    os.close(handle)
-    temporary = Path(name)
-    try:
-        save(temporary)
-        temporary.chmod(0o644)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    with _names(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        prefix = f".{path.stem.lstrip('.')}{UNFINISHED}"
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=prefix, suffix=path.suffix)
+        os.close(handle)
+        temporary = Path(name)
+        try:
+            save(temporary)
+            temporary.chmod(0o644)
+            _to_disk(temporary)
+            temporary.replace(path)
+        finally:
+            temporary.unlink(missing_ok=True)
     return path
+
+
+def _to_disk(path: Path) -> None:
+    """Wait until a file has got through all buffers: a full disk may show only now."""
+    with path.open("rb") as file:
+        os.fsync(file.fileno())
+
+
+@contextmanager
+def _names(path: Path) -> Iterator[None]:
+    """Let an OSError name a file, not the temporary one in its place."""
+    try:
+        yield
+    except OSError as error:
+        named = str(error.filename or UNFINISHED)
+        if error.errno is None or UNFINISHED not in named:
+            raise
+        raise OSError(error.errno, error.strerror, str(path)) from None
+
+
+def sweep(folder: Path) -> None:
+    """Remove what a process that was killed has left unfinished in a folder."""
+    for left in folder.glob(f".*{UNFINISHED}*"):
+        if left.is_dir():
+            shutil.rmtree(left, ignore_errors=True)
+        else:
+            left.unlink(missing_ok=True)
 
 
 def write_folder(path: Path, save: Callable[[Path], object]) -> Path:
@@ -39,13 +75,15 @@ def write_folder(path: Path, save: Callable[[Path], object]) -> Path:
 
     A folder that stood at `path` before is replaced by it, and stays as it is when `save` fails.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as place:
-        new, old = Path(place, path.name), Path(place, "old")
-        save(new)
-        if path.exists():
-            path.replace(old)
-        new.replace(path)
+    with _names(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        prefix = f".{path.stem.lstrip('.')}{UNFINISHED}"
+        with tempfile.TemporaryDirectory(dir=path.parent, prefix=prefix) as place:
+            new, old = Path(place, path.name), Path(place, "old")
+            save(new)
+            if path.exists():
+                path.replace(old)
+            new.replace(path)
     return path
 
 

@@ -56,6 +56,38 @@ class Processes:
             self._muted = sys.stderr
             sys.stdout = sys.stderr = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115
 
+    @property
+    def rank(self) -> int:
+        """Which of the processes this is."""
+        return 0 if self.comm is None else self.comm.rank
+
+    @property
+    def size(self) -> int:
+        """How many processes there are."""
+        return 1 if self.comm is None else self.comm.size
+
+    def largest(self, value: T) -> T:
+        """Return the largest value of all processes, in the order that Python gives them."""
+        return value if self._own is None else max(self._own.allgather(value))
+
+    def together(self, work: Callable[[], object]) -> None:
+        """Work on every process; what any of them raises is raised on all, once all are done."""
+        error = None
+        try:
+            work()
+        except Exception as raised:
+            error = raised
+        raised_by = [error] if self._own is None else self._own.allgather(error)
+        for found in raised_by:
+            if found is not None:
+                raise found
+
+    def told_by_first(self, work: Callable[[], T]) -> T:
+        """Return on all processes what `work` returns on the first; what it raises likewise."""
+        if self._own is None:
+            return work()
+        return self._own.bcast(self.by_first(work))
+
     def by_first(self, work: Callable[[], T]) -> T | None:
         """Return what `work` returns on the first process, None on the others, which sleep.
 

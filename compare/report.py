@@ -1,9 +1,8 @@
 """The report: the figures of Guo & Li (2002) by everything that can solve them, as one page."""
 
 from collections.abc import Iterable
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import Future, as_completed
 from dataclasses import dataclass, replace
-from multiprocessing import get_context
 from pathlib import Path
 from time import perf_counter
 
@@ -17,7 +16,9 @@ from compare.findings.overview import mostly_dispersion
 from compare.output import write, write_text
 from compare.page import Motion, Section, make_motion, make_section, render, write_figure
 from compare.pairs import Comparison, compare
+from compare.stability.section import make_section as make_hard_section
 from compare.studies.section import REPORTED, make_sections, measured_on
+from compare.workers import Workers
 
 SCENES = Path(cases.__file__).parent / "guo-li-2002"
 
@@ -57,12 +58,14 @@ def build(
     scenes: Path = SCENES,
     studies: tuple[str, ...] = REPORTED,
     peers_table: Path | None = None,
+    hard: bool = True,
 ) -> Report:
     """Solve the scene of every figure, run the studies, and write figures, CSV tables and
     `out`/index.html.
 
     `progress` is called with the finished fraction; `scenes` is a folder of fig-NN.toml.
     `peers_table` is what `make bench-peers` wrote; None: where it writes, if it did.
+    `hard` : also put both engines to the hard cases, except those that take long.
     Raises SceneError and UnstableError, as `compare` does; the page is then not written.
     """
     began = perf_counter()
@@ -74,6 +77,9 @@ def build(
         overview = mostly_dispersion(figures[FREE_PILLAR][0])
         free = tables.misfit_table(figures[FREE_PILLAR])
     summary = tables.summary_table({f"fig. {s.number}": figures[s.name] for s in sections})
+    stability = None
+    if hard:
+        stability = make_hard_section(Path(out), lambda: Workers(workers))
     # Seconds count: after everything else, and alone.
     measured = make_sections(Path(out), studies)
     balances = worth_study.complete(worth_study.reported(), Path(out) / "effects")
@@ -85,6 +91,7 @@ def build(
         summary=summary,
         motion=motion,
         studies=measured,
+        stability=stability,
         effects=worth_section.write_section(Path(out) / "effects", balances),
         peers=None if others is None else peers.write_section(Path(out) / "studies", others),
         peers_file=peers.PLACE,
@@ -126,26 +133,22 @@ def _compute(
             if progress:
                 progress(done / jobs)
 
-    with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
-        try:
-            weighing = worth_study.submit(pool, weighed, kept)
-            jobs += len(weighing)
-            order = _longest_first(unique)
-            solved = {key: pool.submit(compare, unique[key], None, True) for key in order}
-            moving = pool.submit(make_motion, out)
-            finish([*solved.values(), moving, *weighing])
-            figures = {
-                file: [replace(solved[_key(scene)].result(), scene=scene) for scene in variants]
-                for file, variants in loaded.items()
-            }
-            drawn = [
-                pool.submit(make_section, out / "figures", file, comparisons)
-                for file, comparisons in figures.items()
-            ]
-            finish(drawn)
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
+    with Workers(workers) as pool:
+        weighing = worth_study.submit(pool, weighed, kept)
+        jobs += len(weighing)
+        order = _longest_first(unique)
+        solved = {key: pool.submit(compare, unique[key], None, True) for key in order}
+        moving = pool.submit(make_motion, out)
+        finish([*solved.values(), moving, *weighing])
+        figures = {
+            file: [replace(solved[_key(scene)].result(), scene=scene) for scene in variants]
+            for file, variants in loaded.items()
+        }
+        drawn = [
+            pool.submit(make_section, out / "figures", file, comparisons)
+            for file, comparisons in figures.items()
+        ]
+        finish(drawn)
     sections = [future.result() for future in drawn]
     return sections, {f.stem: c for f, c in figures.items()}, moving.result()
 

@@ -1,26 +1,19 @@
-"""The runs that `jointwave run` was asked for: checked first, then executed, each file whole."""
+"""The jobs of `jointwave run`: watched over, executed, each file whole."""
 
 import json
+import os
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 from cases.errors import SceneError, StoppedError
 from cases.result import Fields, imbalance
-from cases.scene import Scene
-from compare.engines import Progress, applies, exact_names, solve
+from compare.engines import Progress, solve
+from compare.jobs import Job
+from compare.keeping.keeper import RunKeeper
+from compare.keeping.watch import Keeping, Watch, result_of, watch
 from compare.output import fields_of, write_fields
 from compare.processes import ALONE, Processes
-
-CONTINUUM_MODELS = ("jointed", "equivalent")
-
-
-class Job(NamedTuple):
-    """One result to be made: the scene, what solves it, and its file."""
-
-    scene: Scene
-    name: str
-    path: Path
 
 
 class Done(NamedTuple):
@@ -40,83 +33,118 @@ class Done(NamedTuple):
     fields: list[Path]
 
 
-def wanted(engines: list[str], models: list[str]) -> list[tuple[str, str | None]]:
-    """Return (engine, model) for each run asked for; the model None stands for all that apply."""
-    known = {"dem": (), "continuum": CONTINUUM_MODELS}
-    found: list[tuple[str, str | None]] = []
-    left = list(models)
-    for engine in engines:
-        allowed = known[engine] if engine in known else exact_names()
-        mine = [m for m in models if m in allowed]
-        left = [m for m in left if m not in mine]
-        found += [(engine, m) for m in mine] or [(engine, None)]
-    if left:
-        options = [*CONTINUUM_MODELS, *exact_names()]
-        allowed_text = f"must be a model of a chosen --engine: {', '.join(options)}"
-        raise SceneError("--model", left[0], None, allowed_text)
-    return found
-
-
-def plan(scenes: list[Scene], runs: list[tuple[str, str | None]], out: Path) -> list[Job]:
-    """Return the jobs, all of which apply; raises SceneError before anything is run."""
-    jobs = []
-    for scene in scenes:
-        folder = out / scene.name if scene.name else out
-        for engine, model in runs:
-            for name in _names(engine, model, scene):
-                file = name if engine != "exact" else f"exact-{name}"
-                jobs.append(Job(scene, name, folder / f"{file}.nc"))
-    return jobs
-
-
 def execute(
-    jobs: list[Job], progress: Progress, vtx: bool = False, processes: Processes = ALONE
+    jobs: list[Job],
+    progress: Progress,
+    vtx: bool = False,
+    processes: Processes = ALONE,
+    keeping: Keeping | None = None,
 ) -> list[Done]:
     """Run the jobs one after the other and write each result; `vtx`: snapshots as VTX too.
 
     processes : share the runs of the continuum. The first of them makes the others, writes all
     files, and alone returns what was done.
-    Raises SceneError where a run cannot be made, or no VTX file be written.
+    keeping : how the runs are kept on their way; None: they are not.
+    Raises SceneError where a run cannot be made, its file or a VTX file not be written, or it
+    cannot go on from its checkpoint; Interrupted where a signal has stopped one.
     """
     done: list[Done] = []
     if vtx:
         _refuse_vtx(jobs)
+    watches = [_watch(job, keeping, processes) for job in jobs]
 
     def part_of(i: int) -> Progress:
         return lambda fraction: progress((i + fraction) / len(jobs))
 
-    for i, job in enumerate(jobs):
-        done += _made(job, part_of(i), vtx, processes)
+    for i, (job, watched) in enumerate(zip(jobs, watches, strict=True)):
+        done += _made(job, watched, part_of(i), vtx, processes)
         progress((i + 1) / len(jobs))
+        if keeping is not None and processes.is_first:
+            keeping.signals.act()
     return done
 
 
-def _made(job: Job, progress: Progress, vtx: bool, processes: Processes) -> list[Done]:
+def _watch(job: Job, keeping: Keeping | None, processes: Processes) -> Watch | None:
+    """Return a job watched over by those who share it; None on processes that have no part in it.
+
+    Raises SceneError where its result could not be written in the end.
+    """
+
+    def by(who: Processes) -> Watch:
+        if job.path.is_dir():
+            raise SceneError(str(job.path), "", None, "is a folder, must be a file")
+        if job.path.exists() and not os.access(job.path, os.W_OK):
+            raise SceneError(str(job.path), "", None, "is protected from being written")
+        return watch(job.scene, job.name, job.path, keeping, who)
+
+    return by(processes) if _is_shared(job) else processes.by_first(lambda: by(ALONE))
+
+
+def _is_shared(job: Job) -> bool:
+    """Return whether several processes run a job together."""
+    return job.name.startswith("continuum-")
+
+
+def _made(
+    job: Job, watched: Watch | None, progress: Progress, vtx: bool, processes: Processes
+) -> list[Done]:
     """Run a job and write its result; return what was done, nothing but on the first process."""
-    if job.name.startswith("continuum-"):
-        try:
-            result = _solve(job, progress, processes.comm)
-        except StoppedError as error:
-            processes.by_first(partial(_keep, job, error))
-            raise
-        done = processes.by_first(lambda: _written(job, result, vtx))
+    if watched is None:  # the first process alone runs it
+        done = processes.by_first(lambda: None)
+    elif watched.is_made:
+        done = processes.by_first(lambda: _finished(job, watched, vtx))
+    elif _is_shared(job):
+        result = _run(job, watched, progress, processes)
+        done = processes.by_first(lambda: _written(job, watched, result, vtx))
     else:
-        done = processes.by_first(lambda: _written(job, _solve(job, progress), vtx))
+        done = processes.by_first(
+            lambda: _written(job, watched, _run(job, watched, progress, ALONE), vtx)
+        )
     return [] if done is None else [done]
+
+
+def _run(job: Job, watched: Watch, progress: Progress, processes: Processes) -> Fields:
+    try:
+        return _solve(job, progress, processes.comm, watched.keeper)
+    except StoppedError as error:
+        processes.by_first(partial(_keep, job, error))
+        raise
 
 
 def _keep(job: Job, error: StoppedError) -> None:
     """Write what a run had computed when it stopped, beside where its result would be."""
-    if error.result is not None:
-        path = job.path.with_suffix(".stopped.nc")
-        write_fields(path, fields_of(error.result))
+    result, error.result = error.result, None
+    if result is None:
+        return
+    path = _stopped(job)
+    try:
+        write_fields(path, result if isinstance(result, Fields) else fields_of(result))
+    except OSError as problem:
+        error.args = (f"{error}; {path} cannot be written: {problem.strerror}",)
+    else:
         error.args = (f"{error}; what was computed is in {path}",)
 
 
-def _written(job: Job, result: Fields, vtx: bool) -> Done:
-    """Write a result with its snapshots."""
-    write_fields(job.path, result)
-    return Done(
+def _stopped(job: Job) -> Path:
+    return job.path.with_suffix(".stopped.nc")
+
+
+def _written(job: Job, watched: Watch, result: Fields, vtx: bool) -> Done:
+    """Write a result with its snapshots; what was kept of the run on its way is needed no more."""
+    signed = watched.signed(result)
+    write_fields(job.path, signed)
+    if watched.keeper is not None and watched.keeper.done:
+        _stopped(job).unlink(missing_ok=True)
+    return _finished(job, watched, vtx, signed)
+
+
+def _finished(job: Job, watched: Watch, vtx: bool, result: Fields | None = None) -> Done:
+    """Write the snapshots of a result, that of an earlier command if none is given."""
+    if result is None:
+        result = result_of(job.path, watched.signature)
+        if result is None:
+            raise SceneError(str(job.path), "", None, "has changed since this command began")
+    done = Done(
         job,
         int(result.attributes.get("steps", 0)),
         float(result.attributes.get("seconds_stepping", 0.0)),
@@ -125,6 +153,8 @@ def _written(job: Job, result: Fields, vtx: bool) -> Done:
         result.attributes.get("static_out_of_balance"),
         _write_snapshots(job, result, vtx),
     )
+    watched.checkpoints.remove()
+    return done
 
 
 def _refuse_vtx(jobs: list[Job]) -> None:
@@ -162,25 +192,9 @@ def _residual(result: Fields) -> float | None:
     return imbalance(result.variables["energy"][1], terms.tolist())
 
 
-def _solve(job: Job, progress: Progress, comm=None) -> Fields:
+def _solve(job: Job, progress: Progress, comm, keeper: RunKeeper | None) -> Fields:
     if job.name == "dem":
         from dem import simulate_fields
 
-        return simulate_fields(job.scene, progress)
-    return fields_of(solve(job.name, job.scene, progress, comm))
-
-
-def _names(engine: str, model: str | None, scene: Scene) -> list[str]:
-    if engine == "dem":
-        return ["dem"]
-    every = (
-        [f"continuum-{m}" for m in CONTINUUM_MODELS]
-        if engine == "continuum"
-        else list(exact_names())
-    )
-    if model is not None:
-        return [f"continuum-{model}" if engine == "continuum" else model]
-    found = [name for name in every if applies(name, scene)]
-    if not found:
-        raise SceneError(scene.title, "", None, f"no {engine}: {applies(every[0], scene).reason}")
-    return found
+        return simulate_fields(job.scene, progress, keeper=keeper)
+    return fields_of(solve(job.name, job.scene, progress, comm, keeper))

@@ -1,11 +1,13 @@
 """Commands that weigh accuracy against cost over many runs: effects, plan, study, report."""
 
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from cases.errors import SceneError
+from compare.keeping.lock import locked
 from compare.options import (
     CORES,
     JsonOption,
@@ -44,7 +46,7 @@ def effects(
     from compare.worth_section import write_section
 
     wanted = _cases(scene, changes, variant)
-    with terminal.progress(f"{len(wanted)} variants") as advance:
+    with locked(out), terminal.progress(f"{len(wanted)} variants") as advance:
         found = on_pool(
             started(), workers, lambda pool: worth_study.run(wanted, out, pool, advance)
         )
@@ -81,25 +83,45 @@ def study(
     workers: WorkersOption = CORES,
     as_json: JsonOption = False,
 ) -> None:
-    """Run a study: a scene solved in many ways, each with its error and its cost, as one table.
+    """Run a study: a scene solved in many ways, each with its error and its cost, as one table
+    and its diagram.
 
     Points that are done are kept in DIR/NAME/ and not run again. Under mpiexec the processes share
-    the points; those of a timed study are run one at a time.
+    the points; those of a timed study are run one at a time. The study `stability` puts both
+    engines to hard cases, each with a criterion from theory.
     """
+    if name == "stability":
+        _study_stability(out, workers, as_json)
+        return
     from compare import terminal
+    from compare.studies.diagram import write_diagram
     from compare.studies.pool import on_pool
     from compare.studies.runner import run as run_points
     from compare.studies.show import show_study
     from compare.studies.study import load
     from compare.studies.table import write_table
 
-    asked, stem = load(name), Path(name).stem
-    with terminal.progress(asked.title) as advance:
+    asked, stem, processes = load(name), Path(name).stem, started()
+    with ExitStack() as held, terminal.progress(asked.title) as advance:
+        processes.by_first(lambda: held.enter_context(locked(out / stem)))
         rows = on_pool(
-            started(), workers, lambda pool: run_points(asked, out / stem, pool, advance)
+            processes, workers, lambda pool: run_points(asked, out / stem, pool, advance)
         )
     if rows is not None:
-        show_study(asked, rows, write_table(out, stem, asked, rows), as_json)
+        files = (*write_table(out, stem, asked, rows), *write_diagram(out, stem, asked, rows))
+        show_study(asked, rows, files, as_json)
+
+
+def _study_stability(out: Path, workers: int, as_json: bool) -> None:
+    from compare import terminal
+    from compare.stability.section import TITLE, make_study
+    from compare.stability.show import show
+    from compare.studies.pool import on_pool
+
+    with terminal.progress(TITLE) as advance:
+        found = on_pool(started(), workers, lambda pool: make_study(out, pool, progress=advance))
+    if found is not None:
+        show(found, as_json)
 
 
 @app.command()
@@ -115,7 +137,7 @@ def report(
     from compare import terminal, views
     from compare.report import build
 
-    with terminal.progress("scenes") as advance:
+    with locked(out, out / "figures", out / "studies"), terminal.progress("scenes") as advance:
         found = build(out, advance, peers_table=peers)
     views.show_report(found, as_json)
 

@@ -13,10 +13,11 @@ from cases.result import scene_hash
 from cases.scene import Scene
 from compare.effort import EVERYTHING, changed, stretch
 from compare.engines import Progress
+from compare.keeping.signature import program
 from compare.output import write_text
 from compare.scenes import find, shipped
 from compare.studies.pool import Pool
-from compare.studies.runner import alone, program
+from compare.studies.runner import alone
 from compare.worth import Balance, Dropped, Worth, balance, prepare
 
 PREPARING = 0.8  # of the time, where nothing is compiled yet

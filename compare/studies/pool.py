@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures import Executor
 from functools import partial
-from multiprocessing import get_context
 from typing import TypeVar
 
 from compare.processes import Processes
+from compare.workers import Workers
 
 T = TypeVar("T")
 Pool = Callable[[], Executor]
@@ -21,8 +21,7 @@ def on_pool(processes: Processes, workers: int, work: Callable[[Pool | None], T]
     workers : processes of this machine where MPI has started none; 1: none but this one.
     """
     if processes.comm is None:
-        pool = partial(ProcessPoolExecutor, workers, get_context("spawn"))
-        return work(pool if workers > 1 else None)
+        return work(partial(Workers, workers) if workers > 1 else None)
     from mpi4py.futures import MPICommExecutor
 
     with MPICommExecutor(processes.comm, root=0) as executor:

@@ -6,12 +6,11 @@ import json
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, as_completed
 from contextlib import contextmanager, nullcontext
-from functools import cache
 from pathlib import Path
 from tempfile import gettempdir
 
-import cases
 from compare.engines import Progress
+from compare.keeping.signature import program
 from compare.output import write_text
 from compare.studies.measure import Row, measure
 from compare.studies.study import Point, Study
@@ -62,16 +61,6 @@ def key(point: Point) -> str:
     about = [study.model_dump(mode="json", exclude={"curves"}), point.curve.model_dump(mode="json")]
     text = json.dumps([*about, point.settings, program()], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
-
-
-@cache
-def program() -> str:
-    """Return a hash of all that computes."""
-    digest, root = hashlib.sha256(), Path(cases.__file__).parent.parent
-    for package in ("cases", "joints", "dem", "continuum", "compare"):
-        for source in sorted((root / package).rglob("*.py")):
-            digest.update(source.read_bytes())
-    return digest.hexdigest()
 
 
 @contextmanager

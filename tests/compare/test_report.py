@@ -55,7 +55,8 @@ def report(tmp_path_factory, fractions):
     """Build the whole report once, with a small table of other codes."""
     table = tmp_path_factory.mktemp("peers") / "points.csv"
     table.write_text(PEERS, encoding="utf-8")
-    return build(tmp_path_factory.mktemp("report"), fractions.append, peers_table=table)
+    out = tmp_path_factory.mktemp("report")
+    return build(out, fractions.append, peers_table=table, hard=False)
 
 
 @pytest.fixture(scope="module")
@@ -293,6 +294,18 @@ def test_without_a_table_of_other_codes_one_line_says_how_to_get_it():
     )
     assert "run <code>make bench-peers</code>, then <code>jointwave report" in html
     assert "--peers a.csv</code>" in html
+
+
+def test_hard_cases_stand_with_their_margins_and_what_failed():
+    cases_table = Table(["engine", "value", "bound", "margin", ""], {"step": [["dem", "1", "2"]]})
+    about = "stability", "Hard cases", "A note.", "", False, "<svg></svg>", ["3 of 4 rows hold."]
+    found = StudySection(*about, cases_table, ["step, dem: 3 above 2"])
+    html = render(
+        [], {}, overview=None, free=None, summary=Table([], {}), studies=[], stability=found
+    )
+    assert '<a href="#stability">' in html and "<li>3 of 4 rows hold.</li>" in html
+    assert 'class="fails">Rows that do not hold: step, dem: 3 above 2.' in html
+    assert "<td" in html.split('id="stability"')[1]
 
 
 def section(findings: list[Finding]) -> Section:

@@ -4,7 +4,7 @@ import pytest
 import xarray as xr
 
 from cases.errors import StoppedError
-from compare import runs
+from compare import jobs, runs
 
 KEYS = {"numerics__continuum__scheme": "implicit", "time__duration": 2e-3}
 
@@ -13,7 +13,7 @@ def test_what_a_stopped_run_computed_is_written_beside_its_result(pillar, tmp_pa
     """Without an iteration no step converges: the first sample is all there is."""
     scene, result = pillar(**KEYS), tmp_path / "continuum-jointed.nc"
     result.write_text("of an earlier run")
-    (job,) = runs.plan([scene], [("continuum", "jointed")], tmp_path)
+    (job,) = jobs.plan([scene], [("continuum", "jointed")], tmp_path)
     monkeypatch.setattr("continuum.newton.MOST_ITERATIONS", 0)
     with pytest.raises(StoppedError, match=r"do not converge .*; what was computed is in .*\.nc$"):
         runs.execute([job], lambda fraction: None)

@@ -11,8 +11,8 @@ from cases.values import SOLUTIONS
 WORDS = {float: "number", int: "whole number", str: "text", bool: "`true` or `false`"}
 BOUNDS = {"gt": ">", "ge": "≥", "lt": "<", "le": "≤"}
 LENGTHS = {"min_length": "at least", "max_length": "at most"}
-#: What the functions that check a value ask for; _magnitude only refuses what no unit explains.
-CHECKS = {"_magnitude": "", "_unit": "of length 1"}
+#: What the functions that check a value ask for; some only refuse what no unit explains.
+CHECKS = {"_magnitude": "", "_amplitude": "", "_unit": "of length 1"}
 
 
 def in_words(field: FieldInfo) -> str:

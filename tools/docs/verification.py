@@ -17,6 +17,7 @@ FOLDERS = {
     "joints": "The joint law",
     "dem": "Rigid blocks",
     "continuum": "The continuum",
+    "stability": "Hard cases",
 }
 NOT_RUN = "not run"
 

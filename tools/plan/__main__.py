@@ -20,9 +20,9 @@ from table import show, write
 import cases
 from cases.result import scene_hash
 from cases.scene import Scene
+from compare.keeping.signature import program
 from compare.output import write_text
 from compare.scenes import shipped
-from compare.studies.runner import program
 
 
 def kept(path: Path, scene: Scene, misfits: list[float], rounds: int, folder: Path) -> list[dict]:

@@ -76,8 +76,8 @@ def test_timed_points_are_run_one_at_a_time_whatever_the_pool(study, tmp_path):
 
 def test_two_timed_studies_do_not_run_at_once(study, tmp_path):
     """The second waits for what the first has locked."""
-    program = "from compare.studies.runner import _alone\nwith _alone(): print('in')"
-    with runner._alone():
+    program = "from compare.studies.runner import alone\nwith alone(): print('in')"
+    with runner.alone():
         waiting = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE)
         with pytest.raises(subprocess.TimeoutExpired):
             waiting.communicate(timeout=3)

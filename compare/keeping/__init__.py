@@ -1,0 +1,1 @@
+"""Runs that lose nothing: checkpoints, signals, and one run at a time in a folder."""

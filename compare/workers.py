@@ -1,0 +1,47 @@
+"""Worker processes of this machine that end when, and only when, whoever started them does."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from contextlib import contextmanager
+from multiprocessing import active_children, get_context
+from types import TracebackType
+from typing import Any
+
+
+class Workers(ProcessPoolExecutor):
+    """The standard pool, of spawned processes.
+
+    Ctrl-C reaches all processes of a terminal: the workers do not see it. When the program ends on
+    its way they are ended too, whatever they do.
+    """
+
+    def __init__(self, count: int) -> None:
+        super().__init__(count, get_context("spawn"))
+
+    def submit(self, work: Callable[..., Any], /, *arguments: Any, **more: Any) -> Future:
+        """Hand work to a worker, starting one where none is free."""
+        with _held_back(signal.SIGINT):  # by those who are started now as well, and for good
+            return super().submit(work, *arguments, **more)
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if kind is not None and not issubclass(kind, Exception):
+            for worker in active_children():
+                worker.terminate()
+        self.shutdown(cancel_futures=kind is not None)
+
+
+@contextmanager
+def _held_back(number: signal.Signals) -> Iterator[None]:
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {number})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -1,0 +1,98 @@
+"""A run that is killed at any moment goes on to the very bits of one that is not."""
+
+import contextlib
+import os
+import random
+import signal
+import subprocess
+import time
+
+import pytest
+
+OLD = b"of an earlier run"
+QUICK = {"axial": 2, "spatial": 2, "explicit": 1, "implicit": 2, "shared": 1}
+ALL = dict.fromkeys(QUICK, 10)
+
+
+def kinds():
+    """Yield each kind of run with the number of kills that it has to survive."""
+    for kind, kills in QUICK.items():
+        yield pytest.param(kind, kills, id=f"{kind}-{kills}")
+    for kind, kills in ALL.items():
+        yield pytest.param(kind, kills, id=f"{kind}-{kills}", marks=pytest.mark.slow)
+
+
+def checkpoints(folder):
+    """Return the names of the checkpoints in a folder."""
+    return {path.name for path in folder.glob(".*.checkpoint-*-[01].npz")}
+
+
+def kill(process, ranks, rng):
+    """Kill the only process of a run, or one of those that share it, which ends them all."""
+    victim = process.pid
+    if ranks > 1:
+        children = subprocess.run(
+            ["pgrep", "-P", str(victim), "-f", "compare"], capture_output=True, text=True
+        )
+        victim = int(rng.choice(children.stdout.split() or [victim]))
+    with contextlib.suppress(ProcessLookupError):
+        os.kill(victim, signal.SIGKILL)
+    process.communicate()
+
+
+@pytest.fixture
+def struck(until):
+    """Return a function that kills a run at a random moment; returns whether it came in time.
+
+    One in four kills comes within the first seconds, the others soon after a new checkpoint: so
+    every run gets on, however slow the machine is.
+    """
+
+    def strike(run, out, ranks, rng):
+        before, early = checkpoints(out), rng.random() < 0.25
+        delay = rng.uniform(0, 2.0 if early else 0.2)
+        if not early and not until(run, lambda: checkpoints(out) - before):
+            return False
+        time.sleep(delay)
+        if run.poll() is not None:
+            return False
+        kill(run, ranks, rng)
+        return True
+
+    return strike
+
+
+@pytest.mark.parametrize(("kind", "kills"), list(kinds()))
+def test_killed_run_goes_on_to_the_same_bits(
+    kind, kills, tmp_path, start, finish, struck, arguments, runs, refuse_difference
+):
+    """Kills at random moments, of starting up, of stepping, and of writing checkpoints.
+
+    Where a checkpoint is due at every look, the run is writing one most of the time. What stood
+    there before stays until the new result is whole. Runs that end before they have been killed
+    often enough are followed by others.
+    """
+    rng, done = random.Random(f"{kind} {kills}"), 0
+    (file, ranks), whole = runs[kind], tmp_path / "whole"
+    code, said = finish(start(*arguments(kind, whole, "--checkpoint-every", "0"), ranks=ranks))
+    assert code == 0, said
+    for attempt in range(10 * kills):
+        if done == kills:
+            break
+        out = tmp_path / f"killed {attempt}"
+        out.mkdir()
+        (out / file).write_bytes(OLD)
+        ended = False
+        while not ended:
+            every = rng.choice(["0.001", "0.05"])
+            again = arguments(kind, out, "--resume", "--checkpoint-every", every)
+            run = start(*again, ranks=ranks)
+            ended = done == kills or not struck(run, out, ranks, rng)
+            done += not ended
+            if (out / file).read_bytes() != OLD:
+                refuse_difference(out / file, whole / file)
+        code, said = finish(run)
+        assert code == 0, said
+        refuse_difference(out / file, whole / file)
+        assert {p.name for p in out.iterdir()} == {p.name for p in whole.iterdir()}
+    assert done == kills

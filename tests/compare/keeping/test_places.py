@@ -1,0 +1,136 @@
+"""Folders and files that cannot be written, or are in use: one line, and nothing is lost."""
+
+import subprocess
+import time
+
+import pytest
+
+SHORT = ("--set", "time.duration=4e-3")
+
+
+@pytest.fixture
+def disk(tmp_path):
+    """Return a small disk of its own."""
+    place = tmp_path / "disk"
+    place.mkdir()
+    mount = ("mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", str(place))
+    done = subprocess.run(mount, capture_output=True, text=True)
+    if done.returncode:
+        pytest.skip(f"no disk can be mounted here: {done.stderr.strip()}")
+    yield place
+    subprocess.run(("umount", str(place)), check=True)
+
+
+def fill(place):
+    """Fill a disk to its last byte; returns the file that does."""
+    filler = place / "filler"
+    with filler.open("wb", buffering=0) as file:
+        while True:
+            try:
+                file.write(bytes(4096))
+            except OSError:
+                return filler
+
+
+def test_full_disk_leaves_the_old_result(disk, start, finish, arguments):
+    """The new one has no room."""
+    run = arguments("axial", disk, *SHORT)
+    assert finish(start(*run)) == (0, [])
+    filler, before = fill(disk), (disk / "dem.nc").read_bytes()
+    there = {path.name for path in disk.iterdir()}
+    code, (line,) = finish(start(*run))
+    assert code == 2 and line == f"jointwave: {disk / 'dem.nc'}: No space left on device"
+    assert (disk / "dem.nc").read_bytes() == before
+    assert {path.name for path in disk.iterdir()} == there
+    filler.unlink()
+    assert finish(start(*run)) == (0, [])
+
+
+def test_full_disk_costs_a_checkpoint_but_not_the_run(
+    disk, tmp_path, start, finish, until, arguments, refuse_difference
+):
+    """It is said once; when there is room again, checkpoints are there again."""
+    filler = fill(disk)
+    run = start(*arguments("axial", disk, "--checkpoint-every", "0.001"))
+    assert until(run, (disk / ".jointwave.lock").exists)
+    time.sleep(2.0)
+    filler.unlink()
+    assert until(run, lambda: list(disk.glob(".*.checkpoint-*-0.npz")))
+    code, (line,) = finish(run)
+    assert code == 0 and "no checkpoint" in line and "No space left on device" in line
+    whole = tmp_path / "whole"
+    assert finish(start(*arguments("axial", whole)))[0] == 0
+    refuse_difference(disk / "dem.nc", whole / "dem.nc")
+
+
+def test_read_only_folder_is_one_line(disk, start, finish, arguments):
+    """It is said before anything is run."""
+    run = arguments("axial", disk, *SHORT)
+    assert finish(start(*run)) == (0, [])
+    before = (disk / "dem.nc").read_bytes()
+    subprocess.run(("mount", "-o", "remount,ro", str(disk)), check=True)
+    code, (line,) = finish(start(*run))
+    assert code == 2 and str(disk) in line and "Read-only file system" in line
+    assert (disk / "dem.nc").read_bytes() == before
+
+
+def test_protected_result_is_refused_before_the_run(tmp_path, start, finish, arguments):
+    """Not when hours have passed."""
+    result = tmp_path / "dem.nc"
+    result.write_text("old")
+    done = subprocess.run(("chattr", "+i", str(result)), capture_output=True, text=True)
+    if done.returncode:
+        pytest.skip(f"no file can be protected here: {done.stderr.strip()}")
+    try:
+        code, (line,) = finish(start(*arguments("axial", tmp_path, *SHORT)))
+        assert code == 2 and str(result) in line and "protected" in line
+        assert result.read_text() == "old"
+    finally:
+        subprocess.run(("chattr", "-i", str(result)), check=True)
+
+
+def test_folder_in_place_of_a_result_is_refused_before_the_run(tmp_path, start, finish, arguments):
+    """A file cannot take its place."""
+    (tmp_path / "dem.nc").mkdir()
+    code, (line,) = finish(start(*arguments("axial", tmp_path, *SHORT)))
+    assert code == 2 and f"{tmp_path / 'dem.nc'}: is a folder" in line
+
+
+def test_full_standard_output_is_one_line(start, finish):
+    """The table has nowhere to go."""
+    with open("/dev/full", "w") as full:
+        process = start("list", out=full)
+        code, (line,) = finish(process)
+    assert code == 2 and "No space left on device" in line
+
+
+def test_second_run_into_a_folder_is_refused_and_the_first_goes_on(
+    tmp_path, start, finish, until, arguments
+):
+    """Results of two runs do not mix; those who only read are let in."""
+    lock = tmp_path / "out" / ".jointwave.lock"
+    first = start(*arguments("axial", lock.parent, "--checkpoint-every", "0"))
+    assert until(first, lock.exists)
+    code, (line,) = finish(start(*arguments("axial", lock.parent, *SHORT)))
+    assert code == 2 and f"{lock.parent}: another jointwave is writing here" in line
+    assert first.poll() is None
+    assert finish(first) == (0, []) and not lock.exists()
+
+
+def test_lock_of_a_killed_run_is_nobodys(tmp_path, start, finish, until, arguments):
+    """The file is still there, and the next run takes it over."""
+    first, lock = start(*arguments("axial", tmp_path)), tmp_path / ".jointwave.lock"
+    assert until(first, lock.exists)
+    first.kill()
+    first.communicate()
+    assert lock.exists()
+    assert finish(start(*arguments("axial", tmp_path, *SHORT))) == (0, [])
+    assert not lock.exists()
+
+
+def test_folder_of_a_refused_run_is_not_made(tmp_path, start, finish, arguments):
+    """A step above the critical one is found when the folder is held already."""
+    out = tmp_path / "new" / "folder"
+    refused = arguments("axial", out, "--set", "numerics.dem.step_fraction=1.5")
+    code, (line,) = finish(start(*refused))
+    assert code == 2 and "critical" in line and not list(tmp_path.iterdir())
