@@ -3,7 +3,7 @@ MAKEFLAGS += --no-print-directory
 RUN := tools/run.sh
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-all check bench bench-peers bench-plan test-debian13 clean distclean
+.PHONY: help setup demo test test-all docs check bench bench-peers bench-plan test-debian13 clean distclean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -16,11 +16,15 @@ demo: setup  ## the paper's figures and all studies as one page, report/index.ht
 
 test:  ## all tests, and every shipped scene held to its own bounds
 	@tools/setup.sh browser
-	@$(RUN) python -m pytest -n auto --maxprocesses 8 tests cases
+	@$(RUN) python -m pytest -n auto --maxprocesses 8 --junitxml out/tests.xml tests cases
 
 test-all:  ## make test with the slow tests too: the longest of the hard cases
 	@tools/setup.sh browser
-	@$(RUN) python -m pytest -n auto --maxprocesses 8 -m "slow or not slow" tests cases
+	@$(RUN) python -m pytest -n auto --maxprocesses 8 --junitxml out/tests.xml -m "slow or not slow" tests cases
+
+docs:  ## the documentation as pages, site/index.html, with the outcomes of the last make test
+	@tools/setup.sh docs
+	@NO_MKDOCS_2_WARNING=1 $(RUN) python -m mkdocs build --strict
 
 check: setup  ## lint, formatting, types, and the direction of imports
 	@$(RUN) ruff check
@@ -41,7 +45,7 @@ test-debian13:  ## make test in a fresh Debian 13, with newer dolfinx, numpy and
 	@tools/debian13.sh
 
 clean:  ## remove reports and caches
-	rm -rf report build *.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache
+	rm -rf report site build *.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache
 	find cases joints dem continuum compare tests -name __pycache__ -prune -exec rm -rf {} +
 
 distclean: clean  ## remove .venv and the other codes too

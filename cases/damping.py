@@ -12,7 +12,7 @@ class Rayleigh(Table):
     """Damping ratios at two frequencies, with zeta = alpha / (2 omega) + beta omega / 2."""
 
     frequencies: Annotated[list[Positive], Field(min_length=2, max_length=2)]  #: Hz
-    ratios: Annotated[list[NonNegative], Field(min_length=2, max_length=2)]
+    ratios: Annotated[list[NonNegative], Field(min_length=2, max_length=2)]  #: zeta at them
 
     @model_validator(mode="after")
     def _both_damp(self) -> "Rayleigh":

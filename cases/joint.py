@@ -27,6 +27,7 @@ class Joints(JointLaw):
     """The law of every joint, and how forces are spread over its face."""
 
     contact_points: Annotated[int, Field(ge=1, le=8)] = 2  #: n x n a face, written out
+    #: midpoint: centres of equal cells, 1 - 1/n^2 of the face's bending stiffness; gauss: all of it
     point_rule: Literal["midpoint", "gauss"] = "midpoint"
 
 

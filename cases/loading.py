@@ -24,15 +24,17 @@ class Load(Table):
     is a pure couple A p arm about `direction` instead.
     """
 
+    #: ricker: its peak at 1.5 periods; table: straight lines between the samples of a file
     shape: Literal["sine", "ricker", "step", "table"]
     amplitude: Amplitude  #: Pa, m/s or m/s2 by `quantity`; a factor on the history for "table"
+    #: velocity, acceleration: of the base that a fixed start stands on
     quantity: Literal["stress", "velocity", "acceleration"] = "stress"
     period: Positive | None = None  #: s; for sine and ricker
     cycles: Annotated[int, Field(ge=1, le=1_000_000)] | None = None  #: of the sine, default 1
     file: str | None = None  #: two-column CSV, s and Pa (or m/s, m/s2); for "table"
-    direction: Direction = Field(default=[0, 1, 0])
-    at: Offset = Field(default=[0.0, 0.0])  #: m
-    arm: Positive | None = None  #: m
+    direction: Direction = Field(default=[0, 1, 0])  #: x, y, z
+    at: Offset = Field(default=[0.0, 0.0])  #: m, x and z from the centre
+    arm: Positive | None = None  #: m, of a couple
 
     _history: History | None = PrivateAttr(default=None)
 

@@ -51,8 +51,8 @@ __all__ = [
 class Scene(Table):
     """A whole scene: one pillar, its joints, its load, and what is recorded."""
 
-    title: str
-    source: str | None = None
+    title: str  #: what tables and figures call it
+    source: str | None = None  #: where it is from
     pillar: Pillar
     rock: Rock
     motion: Motion = Motion()

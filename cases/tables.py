@@ -58,9 +58,9 @@ class Rock(Table):
     p_speed: Positive | None = None  #: m/s, unbounded rock mass
     s_speed: Positive | None = None  #: m/s
     equivalent_modulus: Positive | None = None  #: Pa, E_eq of the rock mass
-    equivalent_poisson: Poisson | None = None
+    equivalent_poisson: Poisson | None = None  #: of the rock mass
     intact_modulus: Positive | None = None  #: Pa, E of the blocks; needed for the jointed continuum
-    intact_poisson: Poisson = 0.25
+    intact_poisson: Poisson = 0.25  #: of the blocks
 
     @model_validator(mode="after")
     def _one_pair(self) -> "Rock":
@@ -94,14 +94,14 @@ class Ends(Table):
     """What holds the two ends: quiet is (9) on the end block, matched the same dashpot behind the
     end block's half-block spring, fixed that spring to a wall."""
 
-    start: Literal["free", "quiet", "matched", "fixed"] = "free"
-    end: Literal["free", "quiet", "matched", "fixed"] = "free"
+    start: Literal["free", "quiet", "matched", "fixed"] = "free"  #: at y = 0
+    end: Literal["free", "quiet", "matched", "fixed"] = "free"  #: at y = length
 
 
 class Gravity(Table):
     """A body force."""
 
-    direction: Direction
+    direction: Direction  #: x, y, z
     acceleration: NonNegative = 9.81  #: m/s2
     static: bool = True  #: the scene starts in equilibrium; False: gravity acts suddenly at t = 0
 
@@ -151,11 +151,11 @@ class ContinuumNumerics(Table):
     elements_per_block: Annotated[int, Field(ge=1, le=1000)] | None = None
     elements_across: Annotated[int, Field(ge=1, le=100)] = 1  #: in each direction of the section
     mesh: str | None = None  #: a gmsh file (.msh) of the pillar, with its rock and joints tagged
-    scheme: Literal["auto", "explicit", "implicit"] = "auto"
+    scheme: Literal["auto", "explicit", "implicit"] = "auto"  #: auto: whichever costs less
     step_fraction: Positive = 0.2  #: of the critical step, explicit
     steps_per_period: Positive = 200  #: implicit; of the load, or of a tenth of the duration
     spectral_radius: Annotated[float, Field(ge=0, le=1)] = 0.9  #: implicit, of infinite frequency
-    allow_unstable: bool = False
+    allow_unstable: bool = False  #: go on with an explicit step above the critical one
 
     _mesh_path: Path | None = PrivateAttr(default=None)
 

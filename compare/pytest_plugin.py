@@ -91,6 +91,7 @@ class PairItem(pytest.Item):
         except (SceneError, UnstableError) as error:
             raise Misfit(f"{self.pair}: {error}") from None
         found = misfit(one, other)
+        self.user_properties.append(("misfit", float(found)))
         if not found <= self.bound:
             far = f"{self.pair}: misfit {found:.3g} exceeds the bound {self.bound:g}"
             raise Misfit(f"{far}\n{self._command()}")

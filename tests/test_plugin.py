@@ -1,5 +1,6 @@
 """The pytest plugin, run on scene files as a user's own tests would be."""
 
+import re
 import subprocess
 import sys
 
@@ -89,6 +90,14 @@ def test_bound_that_is_not_met_prints_pair_misfit_bound_and_command_alone(run, p
     assert result.outlines[first - 1].strip("_ ") == "dem ~ lattice"
     assert result.outlines[first + 1] == command
     assert result.outlines[first + 2].startswith("===")
+
+
+def test_misfit_is_kept_with_the_results(run, pytester):
+    """The documentation's table of verification reads it there."""
+    run("--junitxml", "tests.xml", scene=scene(bound=0.01)).assert_outcomes(passed=1)
+    found = (pytester.path / "tests.xml").read_text(encoding="utf-8")
+    assert 'classname="scene.toml" name="dem ~ lattice"' in found
+    assert 0 < float(re.search(r'name="misfit" value="([^"]+)"', found)[1]) <= 0.01
 
 
 def test_each_variant_is_held_to_the_pairs_that_apply_to_it(run):

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Makes .venv, a Python that imports dolfinx and this project; does nothing when that is done already.
-#   usage: tools/setup.sh [browser]    ("browser": also the headless Chromium that the report's page test drives)
+#   usage: tools/setup.sh [browser | docs]    ("browser": also the headless Chromium that the report's page test drives;
+#                                              "docs": also mkdocs, which builds the documentation)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -69,22 +70,26 @@ make_conda() {
     esac
 }
 
-install_project() {
+install_project() {  # with these extras
     # A string, not an array: macOS's bash 3.2 takes an empty array for an unset variable.
     local constraints=
     # dolfinx and petsc4py are compiled against one numpy major version, and must keep it.
     if .venv/bin/python -c 'import numpy, sys; sys.exit(numpy.__version__.split(".")[0] != "1")'; then
         constraints='-c constraints-numpy1.txt'
     fi
-    say "pip install -e .[test,check] $constraints (about a minute)"
+    say "pip install -e .[$1] $constraints (about a minute)"
     # shellcheck disable=SC2086
-    .venv/bin/python -m pip --disable-pip-version-check install -q $constraints -e '.[test,check]'
+    .venv/bin/python -m pip --disable-pip-version-check install -q $constraints -e ".[$1]"
 }
 
 install_browser() {
     command -v chromium >/dev/null && command -v chromedriver >/dev/null && return
     if grep -qs '^ID=debian' /etc/os-release && apt_install chromium chromium-driver; then return; fi
     say "no chromium with chromedriver here: the page test will not run"
+}
+
+install_docs() {
+    .venv/bin/python -c 'import latex2mathml, material, mkdocs' 2>/dev/null || install_project docs
 }
 
 # The folder is part of both keys because a venv does not survive being moved or copied.
@@ -111,9 +116,12 @@ else
         fi
         echo "$base_key" >.venv/.setup-base
     fi
-    install_project
+    install_project test,check
     .venv/bin/python -c 'import dolfinx, numba, compare' || fail ".venv does not import dolfinx, numba and compare"
     echo "$key" >.venv/.setup-done
     say "done: .venv/bin/jointwave, or activate it by: . .venv/bin/activate"
 fi
-if [ "${1:-}" = browser ]; then install_browser; fi
+case "${1:-}" in
+    browser) install_browser ;;
+    docs) install_docs ;;
+esac

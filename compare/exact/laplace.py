@@ -15,8 +15,8 @@ The end stress f enters as a = f / (z(1 + R) + Z_start(1 - R)); then sigma = z a
 v = a (1 - R). These are the impedance recursions of Brekhovskikh (Waves in Layered Media, 1980)
 with the joint of Schoenberg (JASA 68, 1980).
 
-Inversion by FFT with an exponential window (Wilcox, J. Engng Math. 12, 1978; Kausel & Roesset,
-JEM 118, 1992). Its three errors and the rules that bound them:
+Inversion by FFT with an exponential window (Wilcox, Int. J. Elect. Eng. Educ. 15, 1978; Kausel &
+Roesset, JEM 118, 1992). Its three errors and the rules that bound them:
 - A window of TAIL durations wraps what comes later, reduced to WRAPPED of itself.
 - The load enters as its exact mean over each fine step: (omega dt)^2 / 24, 6e-7 at the period.
 - Frequencies end at pi/dt, rounded off by exp(-36 (omega dt/pi)^8) so that no ringing grows under

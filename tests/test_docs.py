@@ -1,0 +1,291 @@
+"""The documentation: complete where it is generated, its links lead somewhere, its Python runs."""
+
+import importlib
+import re
+import shlex
+import sys
+from pathlib import Path
+
+import pytest
+
+from cases.scene import Scene
+
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+TOOLS = ROOT / "tools" / "docs"
+PACKAGES = ("cases", "joints", "dem", "continuum", "compare")
+PAGES = sorted(DOCS.rglob("*.md"))
+BLOCK = re.compile(r"^```(\w+)(?: title=\"([^\"]+)\")?\n(.*?)^```", re.MULTILINE | re.DOTALL)
+#: Places that mean something on one machine alone, and words that a reader cannot act upon.
+FORBIDDEN = ("/work/", "/tmp/", "/home/", "TODO", "FIXME", "TBD", "lorem ipsum")
+
+
+def name_of(page):
+    return page.relative_to(DOCS).as_posix()
+
+
+def blocks(page):
+    """Return (language, title, text) of a page's fenced blocks."""
+    return BLOCK.findall(page.read_text(encoding="utf-8"))
+
+
+def is_in(module, folder):
+    return str(getattr(module, "__file__", None) or "").startswith(str(folder))
+
+
+@pytest.fixture
+def tools(monkeypatch):
+    """Return a function that imports one module of tools/docs."""
+    monkeypatch.syspath_prepend(str(TOOLS))
+    yield importlib.import_module
+    for name in [n for n, m in sys.modules.items() if is_in(m, TOOLS)]:
+        del sys.modules[name]
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """Return an empty folder, the current one, whose modules can be imported."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    yield tmp_path
+    for name in [n for n, m in sys.modules.items() if is_in(m, tmp_path)]:
+        del sys.modules[name]
+
+
+@pytest.mark.parametrize("page", [p for p in PAGES if "```python" in p.read_text()], ids=name_of)
+def test_python_of_a_page_runs(page, folder):
+    """Block after block, beside the files that the page shows; they assert what they say."""
+    space: dict = {}
+    text = page.read_text(encoding="utf-8")
+    for found in BLOCK.finditer(text):
+        language, title, code = found.groups()
+        if title:
+            (folder / title).write_text(code, encoding="utf-8")
+        elif language == "python":
+            line = text.count("\n", 0, found.start()) + 1
+            exec(compile("\n" * line + code, str(page), "exec"), space)
+    assert any("assert " in text for language, _, text in blocks(page) if language == "python")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_scenes_of_a_page_are_scenes(page, folder):
+    """Every TOML file that a page shows is one that can be simulated, with the files beside it."""
+    import cases
+
+    for _, title, text in blocks(page):
+        if title:
+            (folder / title).write_text(text, encoding="utf-8")
+    for path in folder.glob("*.toml"):
+        assert cases.load(path)
+
+
+def test_reference_has_every_key(tools):
+    """Each key of every model is in the page, with what it allows and what it means."""
+    page, scene = tools("hooks").generated, tools("scene_reference")
+    text = page((DOCS / "reference" / "scene.md").read_text(encoding="utf-8"))
+    keys = list(scene.keys())
+    assert len(keys) == len(set(keys)) > 60
+    missing = [key for key in keys if f'id="key-{key}"' not in text]
+    assert not missing
+    assert not re.findall(r'^.*id="key.*\|  \|$', text, re.MULTILINE)
+    assert {"pillar.length", "soft_layers.y", "numerics.continuum.mesh"} <= set(keys)
+
+
+def test_reference_follows_the_models(tools):
+    """Default, constraint and comment of a key stand in its row as the model has them."""
+    rows = tools("scene_reference").page().splitlines()
+    row = next(r for r in rows if 'id="key-numerics.continuum.spectral_radius"' in r)
+    assert row.endswith("| number ≥ 0 and ≤ 1 | `0.9` | implicit, of infinite frequency |")
+    law = tools("comments").field_comments(type(Scene.model_fields["joints"].default))
+    assert "c_n = 2 zeta sqrt(m k_n)" in law["damping_ratio"]  # of the model that it extends
+    motion = tools("comments").field_comments(Scene.model_fields["motion"].annotation)
+    assert motion["rotation"].endswith("vectors; finite: quaternions")  # a comment of two lines
+
+
+def test_a_check_without_words_is_refused(tools):
+    """A validator that the reference cannot put into words stops it."""
+    from typing import Annotated
+
+    from pydantic import AfterValidator, BaseModel
+
+    class Model(BaseModel):
+        key: Annotated[float, AfterValidator(abs)]
+
+    with pytest.raises((KeyError, AttributeError)):
+        tools("allowed").in_words(Model.model_fields["key"])
+
+
+def test_every_exact_solution_is_explained():
+    """Theory has a heading for each solution of the catalogue, by the name that users type."""
+    from compare.exact.catalogue import CATALOGUE
+
+    headings = re.findall(r"^#+ .*", (DOCS / "theory" / "exact.md").read_text(), re.MULTILINE)
+    assert not [name for name in CATALOGUE if not any(f"`{name}`" in h for h in headings)]
+
+
+def test_every_term_and_quantity_of_a_result_is_explained():
+    """The page on results names all terms of the ledger."""
+    from cases.result import ALL_TERMS
+
+    page = (DOCS / "reference" / "result.md").read_text(encoding="utf-8")
+    assert not [term for term in ALL_TERMS if f"`{term}`" not in page]
+
+
+RUN = """<testsuites><testsuite timestamp="2001-02-03T04:05:06.7+00:00">
+<testcase classname="tests.exact.test_images" name="test_one[a]" time="0.5"/>
+<testcase classname="tests.exact.test_images" name="test_one[b.c]" time="0.25"><failure/></testcase>
+<testcase classname="cases.guo-li-2002.fig-03.toml" name="dem ~ lattice" time="1">
+<properties><property name="misfit" value="0.0013"/></properties></testcase>
+<testcase classname="cases.guo-li-2002.fig-03.toml" name="zeta 0.02: dem ~ lattice" time="1">
+<failure/></testcase>
+</testsuite></testsuites>"""
+
+
+def test_results_are_read_by_test_and_by_pair(tools, tmp_path):
+    """Cases of one test are counted together; a pair has its misfit, or none where it failed so."""
+    (tmp_path / "tests.xml").write_text(RUN)
+    found = tools("results").read(tmp_path / "tests.xml")
+    one = found.tests["tests/exact/test_images.py", "test_one"]
+    assert dict(one.counts) == {"passed": 1, "failed": 1} and one.seconds == 0.75
+    file = "cases/guo-li-2002/fig-03.toml"
+    assert found.pairs[file, "dem ~ lattice"] == (0.0013, True)
+    assert found.pairs[file, "zeta 0.02: dem ~ lattice"] == (None, False)
+
+
+def test_verification_says_what_ran_and_what_did_not(tools, tmp_path):
+    """Outcomes where there are results, and plainly none where there are not."""
+    verification = tools("verification")
+    without = verification.page(ROOT / "tests", tmp_path / "tests.xml")
+    assert "No results of a test run" in without and "passed" not in without
+    (tmp_path / "tests.xml").write_text(RUN)
+    page = verification.page(ROOT / "tests", tmp_path / "tests.xml")
+    assert "2 passed" in page and "2 failed" in page and "changed since" in page
+    assert "| guo-li-2002/fig-03 | dem ~ lattice | 0.002 | 0.0013 |" in page
+    assert "fails**" in page and "not run" in page
+
+
+def test_a_new_parameter_passes_through_the_files_that_are_listed():
+    """The list to copy names every file that knows the parameter which it is copied from."""
+    page = (DOCS / "extend.md").read_text(encoding="utf-8").partition("### A new parameter")[2]
+    listed = set(re.findall(r"^\| `([\w/]+\.py)`", page, re.MULTILINE))
+    files = [f for name in PACKAGES for f in (ROOT / name).rglob("*.py")]
+    naming = [f for f in files if "residual_cohesion" in f.read_text(encoding="utf-8")]
+    assert listed == {f.relative_to(ROOT).as_posix() for f in naming}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_files_that_a_page_names_are_there(page):
+    """Paths into the packages, and names of modules in the sections that begin with Files."""
+    text = page.read_text(encoding="utf-8")
+    named = re.findall(r"`((?:cases|joints|dem|continuum|compare|tests)/[\w/.-]*)`", text)
+    assert not [path for path in named if not (ROOT / path).exists()]
+    if page.name == "exact.md":
+        solutions = re.findall(r"`(\w+\.py)`", text)
+        assert not [name for name in solutions if not (ROOT / "compare/exact" / name).exists()]
+
+
+def test_generated_parts_are_known(tools):
+    """Every mark of every page names something that can be made, and makes it."""
+    hooks = tools("hooks")
+    for page in PAGES:
+        text = page.read_text(encoding="utf-8")
+        assert text.count("<!-- generated") == len(hooks.MARK.findall(text)), page
+        assert "<!-- generated" not in hooks.generated(text)
+
+
+def test_api_reads_signatures_and_docstrings(tools):
+    """A documented function stands with its arguments; entries of a docstring become a list."""
+    api = tools("api")
+    page = api.page(ROOT, "cases.read load")
+    assert "path: str | Path" in page and "`overrides` maps dotted keys" in page
+    renamed = api.page(ROOT, "cases.read as cases load")
+    assert "### `cases.load`" in renamed and "overrides: dict[str, Any] | None = None" in renamed
+    assert api.as_markdown("a : m. b, c : s.") == "- `a`: m.\n- `b, c`: s."
+    assert api.as_markdown("Parameters\n----------\nx : m.") == "**Parameters**\n\n- `x`: m."
+
+
+def test_formulas_become_mathml(tools):
+    """Whatever theory says in LaTeX, as blocks and in lines, is converted whole."""
+    pytest.importorskip("latex2mathml")
+    html = tools("hooks").mathml(r'<span class="arithmatex">\(a &lt; b_1\)</span>')
+    assert html.startswith("<math") and "arithmatex" not in html and "&#x0003C;" in html
+
+
+def test_what_theory_cites_is_among_the_sources():
+    """Author and year of every citation stand in one row of the sources."""
+    cited = re.compile(r"([A-Z][\w-]+)(?:'s)?(?: et al\.)?,?\s+\(?((?:18|19|20)\d\d)\b")
+    rows = (DOCS / "theory" / "sources.md").read_text(encoding="utf-8").splitlines()
+    texts = [p.read_text(encoding="utf-8") for p in PAGES if p.parent.name == "theory"]
+    texts.append((DOCS / "extend.md").read_text(encoding="utf-8"))
+    found = {c for text in texts for c in cited.findall(text)}
+    assert len(found) > 30
+    assert not [c for c in found if not any(c[0] in row and c[1] in row for row in rows)]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_braces_of_formulas_match(page):
+    """A brace too few is no error to the converter, which then sets something else."""
+    text = BLOCK.sub("", page.read_text(encoding="utf-8"))
+    for shown, inline in re.findall(r"\$\$(.+?)\$\$|\$([^$\n]+)\$", text, re.DOTALL):
+        formula = re.sub(r"\\[{}]", "", shown or inline)
+        assert formula.count("{") == formula.count("}"), formula
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_links_lead_somewhere(page):
+    """Relative links of a page are files of the documentation."""
+    for link in re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8")):
+        if not link.startswith(("http", "#", "mailto:")):
+            assert (page.parent / link.partition("#")[0]).exists(), link
+
+
+def test_every_page_is_in_the_navigation():
+    """A page that no menu leads to is not found."""
+    nav = (ROOT / "mkdocs.yml").read_text(encoding="utf-8").partition("nav:")[2]
+    assert not [name_of(page) for page in PAGES if f": {name_of(page)}\n" not in nav]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_commands_of_a_page_exist(page, tools):
+    """Commands and options that a page shows are the program's own."""
+    commands = tools("commands")
+    known = commands.all_commands()
+    text = page.read_text(encoding="utf-8")
+    for line in re.findall(r"^ {4}(?:mpiexec -n \d+ )?jointwave (\S.*)$", text, re.MULTILINE):
+        name, *rest = shlex.split(line, comments=True)
+        options = [word for word in rest if word.startswith("--")]
+        assert name in known, line
+        assert set(options) <= set(commands.options(known[name])), line
+
+
+def test_targets_of_make_exist():
+    """What a page asks make for is in the Makefile."""
+    targets = set(re.findall(r"^([a-z0-9-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
+    named = {t for page in PAGES for t in re.findall(r"`make ([a-z0-9-]+)`", page.read_text())}
+    assert named and named <= targets
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_no_forbidden_words(page):
+    """No place of one machine, nothing unfinished."""
+    text = page.read_text(encoding="utf-8")
+    assert not [word for word in FORBIDDEN if word in text]
+
+
+def test_it_builds_without_warnings(folder):
+    """As `make docs` builds it; every formula is MathML, and nothing is fetched to read a page."""
+    pytest.importorskip("material")
+    pytest.importorskip("latex2mathml")
+    from mkdocs.commands.build import build
+    from mkdocs.config import load_config
+
+    build(load_config(str(ROOT / "mkdocs.yml"), site_dir=str(folder / "site"), strict=True))
+    pages = list((folder / "site").rglob("*.html"))
+    assert len(pages) > len(PAGES)  # and that of errors
+    for page in pages:
+        html = page.read_text(encoding="utf-8")
+        assert "arithmatex" not in html
+        fetched = re.findall(r'<(?:script|img|iframe)[^>]+src="(http[^"]+)"', html)
+        fetched += re.findall(r'<link[^>]+rel="(?:stylesheet|preconnect)"[^>]+"(http[^"]+)"', html)
+        assert not fetched, page
+    assert "<math" in (folder / "site" / "theory" / "exact.html").read_text(encoding="utf-8")

@@ -1,0 +1,73 @@
+"""The Python interface as a page: signatures and docstrings, read without importing anything."""
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+Documented = ast.FunctionDef | ast.ClassDef
+#: A line of a docstring that describes a parameter or attribute: `name, other : what`.
+ENTRY = re.compile(r"^(\w[\w, *]*) : (.*)$")
+#: A further one in the same line.
+SECOND = re.compile(r"\. (\w+(?:, \w+)*) : ")
+UNDERLINE = re.compile(r"^-{3,}$")
+
+
+def page(root: Path, line: str) -> str:
+    """Return the public functions and classes of a module as Markdown.
+
+    line : the module's dotted name, `as` the name that users import from, then what is wanted;
+        all that is public where nothing is named.
+    """
+    module, *wanted = line.split()
+    tree = ast.parse((root / f"{module.replace('.', '/')}.py").read_text(encoding="utf-8"))
+    found = {n.name: n for n in tree.body if isinstance(n, Documented)}
+    if wanted[:1] == ["as"]:
+        module, wanted = wanted[1], wanted[2:]
+    names = wanted or [name for name in found if not name.startswith("_")]
+    return "\n\n".join(_entry(module, found[name]) for name in names)
+
+
+def _entry(module: str, node: Documented) -> str:
+    name = f"{module}.{node.name}"
+    parts = [f"### `{name}` {{ #{name} }}", _signature(node)]
+    parts.append(as_markdown(ast.get_docstring(node) or ""))
+    return "\n\n".join(part for part in parts if part)
+
+
+def _signature(node: Documented) -> str:
+    if isinstance(node, ast.ClassDef):
+        fields = [n for n in node.body if isinstance(n, ast.AnnAssign)]
+        lines = [f"class {node.name}", *(f"    {ast.unparse(field)}" for field in fields)]
+        return "\n".join(["```text", *lines, "```"])
+    returns = f" -> {ast.unparse(node.returns)}" if node.returns else ""
+    arguments = list(_arguments(node.args))
+    call = f"{node.name}({', '.join(arguments)}){returns}"
+    if len(call) > 75:
+        lines = "".join(f"    {argument},\n" for argument in arguments)
+        call = f"{node.name}(\n{lines}){returns}"
+    return f"```text\n{call}\n```"
+
+
+def _arguments(found: ast.arguments) -> Iterator[str]:
+    """Yield each argument with its type and default; those by name alone are not told apart."""
+    defaults = [None] * (len(found.args) - len(found.defaults)) + found.defaults
+    pairs = [*zip(found.args, defaults, strict=True)]
+    pairs += zip(found.kwonlyargs, found.kw_defaults, strict=True)
+    for argument, default in pairs:
+        yield ast.unparse(argument) + (f" = {ast.unparse(default)}" if default else "")
+
+
+def as_markdown(docstring: str) -> str:
+    """Return a docstring as Markdown: entries as a list, headings bold, formulas as code."""
+    lines: list[str] = []
+    for line in SECOND.sub(r".\n\1 : ", docstring).splitlines():
+        if UNDERLINE.match(line):
+            lines[-1:] = [f"**{lines[-1]}**", ""]
+        elif entry := ENTRY.match(line):
+            if lines and lines[-1] and not lines[-1].startswith(("- ", "    ")):
+                lines.append("")
+            lines.append(f"- `{entry[1]}`: {entry[2]}")
+        else:
+            lines.append(line)
+    return "\n".join(lines)

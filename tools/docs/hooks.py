@@ -1,0 +1,64 @@
+"""What mkdocs calls while it builds: generated parts of pages, and formulas as MathML.
+
+A line `<!-- generated: NAME -->` or `<!-- generated: NAME ARGUMENT -->` of a page is replaced by
+what `GENERATED[NAME]` returns. Browsers show MathML by themselves, so no script and no network is
+needed to read the formulas.
+"""
+
+import re
+from html import unescape
+from pathlib import Path
+
+import api
+import citation
+import commands
+import scene_reference
+import verification
+
+ROOT = Path(__file__).parents[2]
+RESULTS = ROOT / "out" / "tests.xml"
+
+#: What can stand in a page, by name; each is a function of the rest of the line.
+GENERATED = {
+    "scene-reference": lambda _: scene_reference.page(),
+    "verification": lambda _: verification.page(ROOT / "tests", RESULTS),
+    "api": lambda module: api.page(ROOT, module),
+    "commands": lambda _: commands.page(),
+    "citation": lambda _: citation.page(ROOT / "CITATION.cff"),
+}
+MARK = re.compile(r"^<!-- generated: (\S+) ?(.*?) -->$", re.MULTILINE)
+FORMULA = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
+
+
+#: Functions, which MathML sets without any space around them.
+FUNCTION = re.compile(r"<mi>(sin|cos|tan|cosh|arcsin|log|tanh)</mi>(?!<mo)")
+#: Bars on both sides of something, which MathML would set and stretch like operators.
+BAR = re.compile(r"<mo[^>]*>(&#x0007C;|&#x02016;)</mo>")
+
+
+def generated(markdown: str) -> str:
+    """Return a page with its generated parts in place; raises KeyError for an unknown one."""
+    return MARK.sub(lambda found: GENERATED[found[1]](found[2]), markdown)
+
+
+def mathml(html: str) -> str:
+    """Return a page with its formulas as MathML."""
+    from latex2mathml.converter import convert
+
+    def formula(found: re.Match) -> str:
+        shown = "inline" if found[2] == "(" else "block"
+        converted = convert(unescape(found[3]).strip(), display=shown)
+        spaced = FUNCTION.sub(r'<mi>\1</mi><mspace width="0.17em"/>', converted)
+        return BAR.sub(r'<mo lspace="0" rspace="0" stretchy="false">\1</mo>', spaced)
+
+    return FORMULA.sub(formula, html)
+
+
+def on_page_markdown(markdown: str, **_) -> str:
+    """Put the generated parts into a page before it is rendered."""
+    return generated(markdown)
+
+
+def on_page_content(html: str, **_) -> str:
+    """Turn the formulas of a rendered page into MathML."""
+    return mathml(html)
