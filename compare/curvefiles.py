@@ -11,6 +11,7 @@ import xarray as xr
 from cases.errors import SceneError
 from cases.files import is_number, read_text
 from cases.history import LARGEST, LARGEST_FILE
+from cases.size import require
 
 LEAST_SAMPLES = 3  # what a parabola through the peak of a correlation takes
 NETCDF = (".nc", ".nc3", ".nc4", ".netcdf", ".cdf")
@@ -128,8 +129,12 @@ def _numbers(where: str, header: list[str], cells: list[str]) -> list[float]:
 
 def _read_netcdf(path: Path) -> Columns:
     try:
+        if path.exists() and not path.is_file():
+            raise ValueError("it is not a regular file")
         # Undecoded, times keep the numbers and the unit that the file gives them.
-        found = xr.load_dataset(path, decode_times=False)
+        with xr.open_dataset(path, decode_times=False) as lazy:
+            require(lazy.nbytes, "its variables")
+            found = lazy.load()
     except FileNotFoundError as error:
         raise SceneError(str(path), "", None, f"cannot be read: {error.strerror}") from None
     except Exception as error:  # of whichever library xarray finds, on a file that is not whole

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from cases.errors import SceneError
 from cases.scene import Scene
+from cases.size import refuse_beyond_memory, waveform_bytes
 from compare.exact.answer import YES, Answer, no
 
 if TYPE_CHECKING:
@@ -62,7 +63,11 @@ def solve(name: str, scene: Scene, progress: Progress | None = None, comm=None) 
 
         model = name.removeprefix("continuum-")
         return simulate_continuum(scene, model=model, progress=progress, comm=comm)
-    return _exact(name).solve(scene)
+    try:
+        refuse_beyond_memory(scene, {"record.interval": waveform_bytes(scene)})
+        return _exact(name).solve(scene)
+    except MemoryError as error:
+        raise SceneError(scene.where, "", None, f"not enough memory: {name}: {error}") from None
 
 
 def _exact(name: str):

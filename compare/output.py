@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cases.errors import SceneError
 from cases.result import Fields
 
 if TYPE_CHECKING:
@@ -34,16 +35,48 @@ def write(path: Path, save: Callable[[Path], object]) -> Path:
     return path
 
 
+def refuse_foreign(path: Path) -> None:
+    """Raise SceneError where what stands at the place of a result is not one.
+
+    A link there is replaced, and what it leads to stays.
+    """
+    if path.is_symlink() or not path.exists():
+        return
+    found = "is a folder" if path.is_dir() else "is not a result"
+    if not path.is_file() or not _is_netcdf(path):
+        raise SceneError(
+            str(path), "", None, f"{found} and would be replaced: choose another --out"
+        )
+
+
+def _is_netcdf(path: Path) -> bool:
+    with path.open("rb") as file:
+        return file.read(4) in (b"", b"CDF\1", b"CDF\2", b"CDF\5", b"\x89HDF")
+
+
+def _refuse_foreign_folder(path: Path, new: Path) -> None:
+    """Raise SceneError where a folder holds any file of which the new one has not the like."""
+    kinds = {file.suffix for file in new.iterdir()} if new.is_dir() else set()
+    if path.is_symlink() or not path.exists():
+        return
+    foreign = [path] if path.is_file() else [f for f in path.iterdir() if f.suffix not in kinds]
+    if foreign:
+        allowed = "is not a result and would be replaced: choose another --out"
+        raise SceneError(str(min(foreign)), "", None, allowed)
+
+
 def write_folder(path: Path, save: Callable[[Path], object]) -> Path:
     """Let `save` make and fill a folder, and put it at `path` only when it is whole.
 
     A folder that stood at `path` before is replaced by it, and stays as it is when `save` fails.
+    Raises SceneError where it holds other files.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.stem}-") as place:
         new, old = Path(place, path.name), Path(place, "old")
         save(new)
-        if path.exists():
+        _refuse_foreign_folder(path, new)
+        if path.exists() or path.is_symlink():
             path.replace(old)
         new.replace(path)
     return path
