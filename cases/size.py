@@ -24,7 +24,7 @@ LARGEST_VARIABLE = 2**31 - 4  # bytes, of a NetCDF 3 file
 GROUPS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
 
 #: Bytes a step for the load's mean over it, and what that is made of; its history is table.
-LOAD_OF_STEP, TABLE_OF_STEP = 48, 64
+LOAD_OF_STEP, TABLE_OF_STEP = 24, 64
 #: How often a waveform is there at once: as it is sampled, and as it is written.
 COPIES = 2
 

@@ -91,14 +91,15 @@ def _read_csv(path: Path) -> Columns:
     def row(i: int) -> str:
         return f"{path}, line {numbers[i]}"
 
+    names = [split_unit(text)[0].lower() for text in header]
+    if names.count("time") != 1 or len(names) < 2:
+        allowed = "must name one column time, and one or more as stress@20"
+        raise SceneError(str(path), "header", ", ".join(header), allowed)
     data = np.array([_numbers(row(i), header, cells) for i, (_, cells) in enumerate(rows)])
     data = data.reshape(-1, len(header))
     columns = [Column(*split_unit(text), data[:, i]) for i, text in enumerate(header)]
-    times = [c for c in columns if c.name.lower() == "time"]
-    if len(times) != 1 or len(columns) < 2:
-        allowed = "must name one column time, and one or more as stress@20"
-        raise SceneError(str(path), "header", ", ".join(header), allowed)
-    return Columns(times[0], [c for c in columns if c is not times[0]], row)
+    time = columns[names.index("time")]
+    return Columns(time, [c for c in columns if c is not time], row)
 
 
 def _rows(lines: list[str]) -> Iterator[tuple[int, list[str]]]:

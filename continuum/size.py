@@ -6,7 +6,7 @@ from cases.size import load_bytes, refuse_beyond_memory, snapshot_bytes, wavefor
 from continuum.kinematics import Kinematics
 
 #: Bytes a freedom, and for each entry of its row of the stiffness: the operators as they are made.
-FREEDOM, ENTRY = 300, 30
+FREEDOM, ENTRY = 500, 40
 #: Bytes of a mesh that is read for each byte of its file.
 FILE = 10
 
@@ -16,7 +16,7 @@ def refuse_large_mesh(scene: Scene, motion: Kinematics, elements: int) -> None:
     numerics, count = scene.numerics.continuum, float(scene.pillar.block_count)
     order, across, components = numerics.order, motion.dim - 1, motion.section.components
     nodes = count * (elements * order + 1) * (numerics.elements_across * order + 1) ** across
-    entries = components * (order + 2) ** motion.dim
+    entries = components * (order + 1) ** motion.dim
     own = numerics.elements_per_block is not None or elements > 1
     key = "numerics.continuum.elements_per_block" if own else "pillar.block"
     size = nodes * components * (FREEDOM + ENTRY * entries)

@@ -5,16 +5,16 @@ from cases.scene import Scene
 from cases.size import load_bytes, refuse_beyond_memory, snapshot_bytes, waveform_bytes
 
 #: Bytes a block, with all that makes the model and all that can be remembered of its joint.
-AXIAL, SPATIAL = 300, 600
+AXIAL, SPATIAL = 90, 200
 #: Bytes a block for each contact point of joints that open or slide.
-POINT = 100
+POINT = 60
 CORNERS = 8  # of a block, in snapshots
 
 
 def refuse_large(scene: Scene, time: Clock, points: int | None = None, stages: int = 1) -> None:
     """Raise SceneError where a run would not fit the memory.
 
-    points : contact points of a joint of blocks that move in space; None for axial motion.
+    points : contact points that each joint of blocks in space looks after; None for axial motion.
     stages : of a step, at each of which the load acts.
     """
     spatial, blocks = points is not None, scene.pillar.block_count
