@@ -3,7 +3,7 @@ MAKEFLAGS += --no-print-directory
 RUN := tools/run.sh
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test check bench bench-peers test-debian13 clean distclean
+.PHONY: help setup demo test test-all check fuzz bench bench-peers test-debian13 clean distclean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -17,6 +17,13 @@ demo: setup  ## the paper's figures and all studies as one page, report/index.ht
 test:  ## all tests, and every shipped scene held to its own bounds
 	@tools/setup.sh browser
 	@$(RUN) python -m pytest -n auto --maxprocesses 8 tests cases
+
+test-all:  ## as test, with the tests that take minutes
+	@tools/setup.sh browser
+	@$(RUN) python -m pytest -n auto --maxprocesses 8 -m "slow or not slow" tests cases
+
+fuzz: setup  ## 10,000 bad scenes, loads, curves, studies, meshes and commands, made by atheris (installed apart in .fuzz)
+	@$(RUN) python tools/fuzz
 
 check: setup  ## lint, formatting, types, and the direction of imports
 	@$(RUN) ruff check
@@ -37,5 +44,5 @@ clean:  ## remove reports and caches
 	rm -rf report build *.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache
 	find cases joints dem continuum compare tests -name __pycache__ -prune -exec rm -rf {} +
 
-distclean: clean  ## remove .venv and the other codes too
-	rm -rf .venv .peers
+distclean: clean  ## remove .venv, the other codes and the fuzzer too
+	rm -rf .venv .peers .fuzz

@@ -25,6 +25,7 @@ GROUPS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_by
 
 #: Bytes a step for the load's mean over it, and what that is made of; its history is table.
 LOAD_OF_STEP, TABLE_OF_STEP = 24, 64
+LEDGER = 5  # terms of an energy ledger, at least
 #: How often a waveform is there at once: as it is sampled, and as it is written.
 COPIES = 2
 
@@ -113,7 +114,9 @@ def waveform_bytes(scene: Scene, spatial: bool = False) -> float:
             f"with {samples:,.0f} samples gives a waveform of {spoken(largest)}; "
             f"at most {spoken(LARGEST_VARIABLE)} fit a file",
         )
-    rows = axes * sections + axes * (3 if spatial else 2) * points + (9 if record.energy else 0)
+    rows = (
+        axes * sections + axes * (3 if spatial else 2) * points + (LEDGER if record.energy else 0)
+    )
     return COPIES * 8 * samples * rows
 
 

@@ -172,9 +172,11 @@ class ContinuumNumerics(Table):
                     raise ValueError(
                         "must be a gmsh file" if found else "cannot be read: no such file"
                     )
-            except (OSError, ValueError) as error:
-                fault = getattr(error, "strerror", None) or str(error)
+            except OSError as error:
+                fault = f"cannot be read: {error.strerror}"
                 raise contradiction(key, self.mesh, fault) from None
+            except ValueError as error:
+                raise contradiction(key, self.mesh, str(error)) from None
             self._mesh_path = path
         return self
 

@@ -17,8 +17,9 @@ def refuse_large_mesh(scene: Scene, motion: Kinematics, elements: int) -> None:
     order, across, components = numerics.order, motion.dim - 1, motion.section.components
     nodes = count * (elements * order + 1) * (numerics.elements_across * order + 1) ** across
     entries = components * (order + 1) ** motion.dim
-    own = numerics.elements_per_block is not None or elements > 1
-    key = "numerics.continuum.elements_per_block" if own else "pillar.block"
+    many = {"elements_per_block": elements, "elements_across": numerics.elements_across**across}
+    most = max(many, key=lambda name: many[name])
+    key = f"numerics.continuum.{most}" if many[most] > 1 else "pillar.block"
     size = nodes * components * (FREEDOM + ENTRY * entries)
     refuse_beyond_memory(scene, {key: size, "record.fields": snapshot_bytes(scene, nodes)})
 

@@ -72,6 +72,8 @@ def fuzz(name: str, inputs: int, keep: Path) -> Found:
             f"-rss_limit_mb={MEGABYTES}",
             f"-max_len={LONGEST}",
             f"-artifact_prefix={keep}/{name}-",
+            "-len_control=0",
+            "-mutate_depth=2",
             "-print_final_stats=1",
             "-seed=1",
         ]

@@ -22,6 +22,7 @@ def main() -> None:
     name, corpus, options = sys.argv[1], Path(sys.argv[2]), sys.argv[3:]
     with atheris.instrument_imports(include=READERS):
         import targets
+    from mutate import changed
     from seeds import seeds
 
     os.environ["JOINTWAVE_MEMORY"] = targets.MEMORY
@@ -31,7 +32,8 @@ def main() -> None:
         place = Path(folder)
         for load in ROOT.glob("cases/*/*.csv"):
             (place / load.name).write_bytes(load.read_bytes())
-        for i, seed in enumerate(seeds(name)):
+        shipped = seeds(name)
+        for i, seed in enumerate(shipped):
             (corpus / f"{i:03d}").write_bytes(seed)
             targets.TARGETS[name](seed, place)  # what is imported and compiled once has no limit
 
@@ -40,7 +42,13 @@ def main() -> None:
             if outcomes.total() % 50 == 0:  # the fuzzer ends the process without a word
                 print("outcomes:", dict(outcomes), file=sys.stderr, flush=True)
 
-        atheris.Setup([sys.argv[0], *options, str(corpus)], meet)
+        def mutate(data: bytes, largest: int, seed: int) -> bytes:
+            if seed % 4 == 0:
+                return atheris.Mutate(data, largest)
+            # Bytes that are no text are soon refused, and so is what has been changed often.
+            return changed(shipped[seed % len(shipped)] if seed % 2 else data, seed)[:largest]
+
+        atheris.Setup([sys.argv[0], *options, str(corpus)], meet, custom_mutator=mutate)
         atheris.Fuzz()
 
 

@@ -173,13 +173,11 @@ SOLVERS = (
 )
 
 
-class _Solves(SceneError):
-    def __init__(self, *_: object, **__: object) -> None:
-        super().__init__("here", "", None, "a command would solve something")
+SOLVES = "a command would solve something"
 
 
 def _stop(*_: object, **__: object) -> None:
-    raise _Solves
+    raise SceneError("here", "", None, SOLVES)
 
 
 def command(data: bytes, folder: Path) -> str:
@@ -194,7 +192,7 @@ def command(data: bytes, folder: Path) -> str:
     _check(lines[-1] if lines else "")
     if code != 2 or not lines[-1].startswith("jointwave: "):
         raise Unreadable(f"exit {code}: {said.getvalue()[:LONGEST]}")
-    return "refused"
+    return "read" if SOLVES in lines[-1] else "refused"
 
 
 def _status(arguments: list[str]) -> int:
