@@ -7,11 +7,14 @@ import sys
 import tracemalloc
 from pathlib import Path
 
+import numpy as np
 import pytest
+import xarray as xr
 
 import cases
 from cases.errors import SceneError
 from cases.size import LIMIT, memory, refuse_beyond_memory, waveform_bytes
+from compare.curvefiles import read_columns
 from compare.engines import solve
 from compare.exact import images
 
@@ -168,6 +171,17 @@ def test_the_estimate_is_near_what_a_run_takes(pillar, limit, tmp_path, blocks, 
     estimate = float(number) * {"GB": 1e9, "MB": 1e6}[unit]
     assert error.value.key == key
     assert float(done.stdout) / 3 <= estimate <= float(done.stdout)
+
+
+def test_a_large_file_of_curves_is_refused(tmp_path, limit):
+    """By what its header says, before its numbers are read."""
+    path = tmp_path / "run.nc"
+    time = np.arange(20_000.0)
+    xr.Dataset({"stress": ("time", time)}, {"time": time}).to_netcdf(path, engine="scipy")
+    assert read_columns(path).time.values.size == 20_000
+    limit(1e-4)
+    with pytest.raises(SceneError, match="cannot be read as NetCDF: its variables would take"):
+        read_columns(path)
 
 
 def test_the_bound_is_the_users_or_the_machines(monkeypatch, limit):

@@ -28,7 +28,7 @@ def meet(targets, tmp_path_factory):
         (folder / load.name).write_bytes(load.read_bytes())
     before = os.environ.get("JOINTWAVE_MEMORY")
     os.environ["JOINTWAVE_MEMORY"] = targets.MEMORY
-    yield lambda name, data: targets.TARGETS[name](data, folder)
+    yield lambda name, data: targets.met(name, data, folder)
     del os.environ["JOINTWAVE_MEMORY"]
     if before is not None:
         os.environ["JOINTWAVE_MEMORY"] = before

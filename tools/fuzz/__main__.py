@@ -19,7 +19,8 @@ from typing import NamedTuple
 ROOT = Path(__file__).parents[2]
 PLACE = ROOT / ".fuzz"  # where atheris is: beside the project's own environment
 VERSION = "atheris==3.0.*"
-SECONDS, MEGABYTES = 5, 2048  # what one input and a process may take
+SECONDS, MEGABYTES = 5, 2048  # what one input, of the processor, and a process may take
+HANGS = 60  # s that an input may take on a busy machine
 LONGEST = 20_000  # bytes of an input
 #: What part of the inputs each target gets.
 SHARES = {"scene": 0.4, "load": 0.1, "curve": 0.1, "study": 0.15, "mesh": 0.1, "command": 0.15}
@@ -68,7 +69,7 @@ def fuzz(name: str, inputs: int, keep: Path) -> Found:
         driver, corpus = Path(__file__).with_name("driver.py"), Path(folder, "corpus")
         options = [
             f"-runs={inputs}",
-            f"-timeout={SECONDS}",
+            f"-timeout={HANGS}",
             f"-rss_limit_mb={MEGABYTES}",
             f"-max_len={LONGEST}",
             f"-artifact_prefix={keep}/{name}-",

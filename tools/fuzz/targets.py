@@ -14,6 +14,7 @@ import sys
 from collections.abc import Callable
 from contextlib import chdir, redirect_stderr, redirect_stdout
 from pathlib import Path
+from time import process_time
 from unittest.mock import patch
 
 import numpy as np
@@ -32,6 +33,7 @@ from compare.engines import applies, names
 from compare.studies.runner import key
 from compare.studies.study import load as load_study
 
+SECONDS = 5  # of the processor, for one input
 MEMORY = "0.2"  # GB that a run may take here
 LONGEST = 2000  # characters of a message
 TINY = 20_000  # block steps of a run
@@ -212,3 +214,12 @@ def _status(arguments: list[str]) -> int:
 TARGETS: dict[str, Callable[[bytes, Path], str]] = {
     target.__name__: target for target in (scene, load, curve, study, mesh, command)
 }
+
+
+def met(name: str, data: bytes, folder: Path) -> str:
+    """Return what a target makes of an input; raises TimeoutError where it is long about it."""
+    began = process_time()  # other work on the machine does not count
+    outcome = TARGETS[name](data, folder)
+    if process_time() - began > SECONDS:
+        raise TimeoutError(f"{process_time() - began:.3g} s for one input")
+    return outcome
