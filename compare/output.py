@@ -35,23 +35,28 @@ def write(path: Path, save: Callable[[Path], object]) -> Path:
     return path
 
 
-def refuse_foreign(path: Path) -> None:
-    """Raise SceneError where what stands at the place of a result is not one.
+#: How a result begins: in NetCDF 3, or 4 by others' hands, or is empty.
+NETCDF = (b"CDF", b"\x89HDF")
+
+
+def refuse_foreign(path: Path, begins: tuple[bytes, ...] = NETCDF) -> None:
+    """Raise SceneError where what stands at the place of a file of ours does not begin like one.
 
     A link there is replaced, and what it leads to stays.
     """
     if path.is_symlink() or not path.exists():
         return
     found = "is a folder" if path.is_dir() else "is not a result"
-    if not path.is_file() or not _is_netcdf(path):
+    if not path.is_file() or not _begins(path, begins):
         raise SceneError(
             str(path), "", None, f"{found} and would be replaced: choose another --out"
         )
 
 
-def _is_netcdf(path: Path) -> bool:
+def _begins(path: Path, begins: tuple[bytes, ...]) -> bool:
     with path.open("rb") as file:
-        return file.read(4) in (b"", b"CDF\1", b"CDF\2", b"CDF\5", b"\x89HDF")
+        head = file.read(8)
+    return not head or head.startswith(begins)
 
 
 def _refuse_foreign_folder(path: Path, new: Path) -> None:
@@ -99,6 +104,8 @@ def fields_of(result: xr.Dataset) -> Fields:
 def write_fields(path: Path, fields: Fields) -> Path:
     """Write a result as NetCDF 3 by scipy, just as xarray would but without importing it."""
     from scipy.io import netcdf_file
+
+    refuse_foreign(path)
 
     def save(temporary: Path) -> None:
         with netcdf_file(str(temporary), "w", version=2) as file:

@@ -1,6 +1,6 @@
 """`make fuzz`: inputs made by a coverage-guided fuzzer, atheris, meet what reads them.
 
-    usage: python tools/fuzz [--inputs 10000] [--only TARGET] [--keep FOLDER]
+    usage: python tools/fuzz [--inputs 10000] [--only TARGET] [--seed 1] [--keep FOLDER]
 
 Each target of `targets` gets a share of the inputs, in a process of its own that starts from the
 shipped files. An input may take 5 s and the process 2 GB; the first that takes more, or ends in
@@ -38,6 +38,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="tools/fuzz")
     parser.add_argument("--inputs", type=int, default=10_000)
     parser.add_argument("--only", choices=SHARES)
+    parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", type=Path, default=ROOT / "build" / "fuzz")
     asked = parser.parse_args()
     if reason := install():
@@ -45,7 +46,8 @@ def main() -> int:
         return 1
     names = [asked.only] if asked.only else list(SHARES)
     whole = sum(SHARES[name] for name in names)
-    found = {n: fuzz(n, round(asked.inputs * SHARES[n] / whole), asked.keep) for n in names}
+    share = {n: round(asked.inputs * SHARES[n] / whole) for n in names}
+    found = {n: fuzz(n, share[n], asked.keep, asked.seed) for n in names}
     faults = sum(bool(one.fault) for one in found.values())
     inputs = sum(one.inputs for one in found.values())
     print(f"{inputs} inputs, {faults} faults; at most {SECONDS} s and {MEGABYTES} MB each")
@@ -62,7 +64,7 @@ def install() -> str:
     return "" if done.returncode == 0 else f"no atheris: {done.stderr.strip().splitlines()[-1]}"
 
 
-def fuzz(name: str, inputs: int, keep: Path) -> Found:
+def fuzz(name: str, inputs: int, keep: Path, seed: int = 1) -> Found:
     """Let a target meet so many inputs in a process of its own, and say what came of it."""
     keep.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
@@ -76,7 +78,7 @@ def fuzz(name: str, inputs: int, keep: Path) -> Found:
             "-len_control=0",
             "-mutate_depth=2",
             "-print_final_stats=1",
-            "-seed=1",
+            f"-seed={seed}",
         ]
         command = [sys.executable, str(driver), name, str(corpus), *options]
         done = subprocess.run(command, capture_output=True, text=True, errors="replace")
