@@ -3,7 +3,7 @@ MAKEFLAGS += --no-print-directory
 RUN := tools/run.sh
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-all check fuzz bench bench-peers test-debian13 clean distclean
+.PHONY: help setup demo test test-all check fuzz bench bench-peers bench-plan test-debian13 clean distclean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -36,6 +36,9 @@ bench: setup  ## both engines: start-up, kernels against bare loops and other so
 
 bench-peers: setup  ## the same pillar in LAMMPS, Akantu and Yade, installed apart in .peers, beside ours
 	@$(RUN) python tools/peers
+
+bench-plan: setup  ## what is planned for every shipped scene, held against all configurations of it (10 min)
+	@$(RUN) python tools/plan
 
 test-debian13:  ## make test in a fresh Debian 13, with newer dolfinx, numpy and Python (needs root or sudo)
 	@tools/debian13.sh

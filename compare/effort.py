@@ -1,4 +1,4 @@
-"""What a block-step of the rigid blocks costs here, with the effects that a scene calls for."""
+"""What a step costs here, with the effects that a scene calls for: of one block, of one freedom."""
 
 from __future__ import annotations
 
@@ -14,11 +14,13 @@ import cases
 from cases.effects import is_spatial
 from cases.sampling import Clock
 from cases.scene import Scene
+from compare.engines import solve
 from compare.output import write_text
 
 PILLAR = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
 REPEATS = 5
 SHORTEST = 0.02  # s, of what a clock is read for
+LONGEST = 1.0  # s: of stepping: continuum runs that took as long are not repeated
 BLOCK_STEPS = 5_000_000  # of one call, at most, but for one sample
 BLOCKS = 1000  # of the pillar that effects are compared on
 
@@ -50,9 +52,33 @@ def changed(changes: dict, blocks: int = BLOCKS) -> Scene:
 
 def nanoseconds(scene: Scene, threads: int = 1) -> float:
     """Return what one step of one block of a scene costs, ns: the least of some stretches."""
-    march, block_steps = stretch(scene, threads)
-    march()  # compiles, and sets the blocks in motion
-    return 1e9 * min(_seconds(march) for _ in range(REPEATS)) / block_steps
+    return in_turns([scene], threads)[0]
+
+
+def in_turns(scenes: list[Scene], threads: int = 1) -> list[float]:
+    """Return the same of several scenes, their stretches in turns: what slows the machine for a
+    while slows all of them."""
+    stretches = [stretch(scene, threads) for scene in scenes]
+    for march, _ in stretches:
+        march()  # compiles, and sets the blocks in motion
+    rounds = [[_seconds(march) for march, _ in stretches] for _ in range(REPEATS)]
+    least = map(min, zip(*rounds, strict=True))
+    return [1e9 * s / block_steps for s, (_, block_steps) in zip(least, stretches, strict=True)]
+
+
+def freedoms_in_turns(engine: str, scenes: list[Scene]) -> list[float]:
+    """Return what one step of one freedom of a continuum engine costs, ns: the least of some runs,
+    those of the scenes in turns.
+
+    Raises SceneError where the engine does not apply, UnstableError where it goes unstable.
+    """
+    rounds: list[list[float]] = []
+    while len(rounds) < REPEATS and sum(map(sum, rounds)) < LONGEST * len(scenes):
+        runs = [solve(engine, scene).attrs for scene in scenes]
+        rounds.append([run["seconds_stepping"] for run in runs])
+    counts = [run["steps"] * run["degrees_of_freedom"] for run in runs]
+    least = map(min, zip(*rounds, strict=True))
+    return [1e9 * s / count for s, count in zip(least, counts, strict=True)]
 
 
 def _seconds(march: Callable[[], None]) -> float:

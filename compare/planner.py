@@ -1,78 +1,119 @@
 """The cheapest way to solve a scene within a misfit: predicted from a few cheap runs, then run.
 
-Every family of configurations (an engine, a scheme, elements) is run at two steps, n0 and 2 n0
-steps per sample. Its error falls with the order q of its scheme, so that its waveforms at n steps
-per sample are w + c n^-q (Richardson): their misfit from the reference is known for every n, and
-their seconds are in proportion to n.
+Families of configurations are tried from coarse elements to fine ones, each from its coarsest step
+on until finer steps can be predicted (see `plan_trials`). What by its freedom-steps would cost more
+than what is known to meet the misfit is not tried at all.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from math import ceil, inf
-from typing import Any, NamedTuple
+from math import inf
+from time import perf_counter
+from typing import NamedTuple
 
-from cases.consistency import checked
-from cases.errors import SceneError, UnstableError
-from cases.scene import Numerics, Scene
-from compare.engines import Progress, applies, solve
+from cases.errors import SceneError, StoppedError, UnstableError
+from cases.scene import Scene
+from compare.engines import Progress
 from compare.metrics import recorded, relative_l2
-
-COARSEST = 0.9  # of the critical step
-FINEST = 64  # times the steps of the coarsest
-#: Whatever knows the physics of a scene best, the first that applies.
-REFERENCES = ("jointed-bar", "slip-joint", "no-tension-chain", "spatial-lattice", "lattice")
-
-
-class Family(NamedTuple):
-    """Configurations that differ in their step alone.
-
-    name : of the engine. engine : whose numerics `changes` are of. order : of the scheme.
-    """
-
-    name: str
-    engine: str
-    changes: dict[str, Any]
-    order: int
-
-
-def _rock(model: str, **changes: Any) -> Family:
-    return Family(f"continuum-{model}", "continuum", {"scheme": "explicit", **changes}, 2)
-
-
-FAMILIES = (
-    Family("dem", "dem", {"scheme": "leapfrog"}, 2),
-    Family("dem", "dem", {"scheme": "fourth-order"}, 4),
-    *(_rock("jointed", order=p, elements_per_block=1) for p in (1, 2, 3, 4)),
-    *(_rock("jointed", order=p, elements_per_block=n) for p, n in ((1, 2), (1, 4), (2, 2), (4, 2))),
-    *(_rock("equivalent", order=p, elements_per_block=1) for p in (1, 2, 4)),
+from compare.plan_families import FAMILIES, Effort, Family, configured, effort, is_finer
+from compare.plan_reference import Reference, reference_of
+from compare.plan_trials import (
+    FINEST,
+    LONGEST,
+    Choice,
+    Trial,
+    first_trial,
+    is_trusted,
+    measured,
+    predicted,
+    timed,
+    trial_at,
 )
 
-
-class Choice(NamedTuple):
-    """One configuration, and what it is predicted to give: relative L2 misfit and s of stepping."""
-
-    family: Family
-    settings: dict[str, Any]
-    misfit: float
-    seconds: float
+#: A family is not tried where it would be too dear at this share of the least seconds that a
+#: freedom-step has taken so far.
+SAFETY = 0.5
+#: What is only predicted must be below this part of the misfit: two steps leave the next term of
+#: the error.
+MARGIN = 0.95
+DEAR = "would cost more than what is known to do"
+FAILURES = (SceneError, UnstableError, StoppedError)
 
 
 class Plan(NamedTuple):
     """What was chosen, and what came of it.
 
-    reference : what the misfit is from. trials : runs that were made to predict. chosen : None
-    where nothing is predicted to do. misfit, seconds : obtained; inf and 0 without.
-    skipped : families that could not be run, with their reason.
+    reference : what the misfit is from. trials : runs that were made to predict; planning : s that
+    all of the planning took, the reference and compiling included.
+    chosen : None where nothing is predicted to do. misfit, seconds : obtained; inf and 0 without.
+    skipped : families that could not or need not be run, with their reason.
     """
 
     scene: Scene
-    reference: str
+    reference: Reference
     trials: int
+    planning: float
     chosen: Choice | None
     misfit: float
     seconds: float
     skipped: dict[str, str]
+
+
+class Search:
+    """Trials so far of one scene, and the choices that they leave."""
+
+    def __init__(
+        self, scene: Scene, reference: Reference, misfit: float, seconds: float | None
+    ) -> None:
+        self.scene, self.reference = scene, reference
+        self.misfit, self.seconds = misfit, seconds
+        self.choices: list[Choice] = []
+        self.dear: list[Family] = []
+        self.rates: dict[str, float] = {}
+        self.trials = 0
+
+    @property
+    def limit(self) -> float:
+        """Seconds from which a run is of no use."""
+        best = cheapest(self.choices, self.misfit, None)
+        known = inf if best is None else best.seconds
+        return known if self.seconds is None else min(known, self.seconds)
+
+    def try_family(self, family: Family) -> None:
+        """Run a family until it meets the misfit, is predicted, or costs too much."""
+        if any(is_finer(family, other) for other in self.dear):
+            raise SceneError(self.scene.where, "", None, DEAR)
+        asked = effort(self.scene, family)
+        if SAFETY * self._rate(family) * asked.work > self.limit:
+            self.dear.append(family)
+            raise SceneError(self.scene.where, "", None, DEAR)
+        trials = self._run(family, asked)
+        self.choices += [measured(self.scene, family, trial) for trial in trials]
+        if len(trials) > 1:
+            self.choices += predicted(self.scene, family, trials)
+
+    def _run(self, family: Family, asked: Effort) -> list[Trial]:
+        trials = [first_trial(self.scene, family, self.reference.result)]
+        while not self._is_enough(family, trials):
+            finer = 2 * trials[-1].per_sample
+            trials.append(trial_at(self.scene, family, finer, trials[0], self.reference.result))
+        self.trials += len(trials)
+        rates = [t.seconds / (asked.work * t.per_sample / asked.least) for t in trials]
+        self.rates[family.name] = min(*rates, self.rates.get(family.name, inf))
+        return trials
+
+    def _rate(self, family: Family) -> float:
+        """Return the least seconds of a freedom-step so far, of this engine where it has run."""
+        return self.rates.get(family.name, min(self.rates.values(), default=0.0))
+
+    def _is_enough(self, family: Family, trials: list[Trial]) -> bool:
+        last = trials[-1]
+        return (
+            last.misfit <= self.misfit
+            or last.seconds >= min(self.limit, LONGEST)
+            or last.per_sample >= FINEST * trials[0].per_sample
+            or is_trusted(trials, family.order, self.misfit)
+        )
 
 
 def plan(
@@ -81,87 +122,47 @@ def plan(
     """Return the cheapest configuration predicted to meet a misfit, run.
 
     seconds : instead the best misfit within so many s of stepping, where `misfit` costs more.
-    Raises SceneError where nothing exact is known of the scene.
+    Raises SceneError where nothing exact is known of the scene, and no run converges in reach.
     """
-    name = reference_of(scene)
-    exact, choices, skipped = solve(name, plain(scene)), [], {}
+    began = perf_counter()
+    reference = reference_of(scene, misfit)
+    search = Search(scene, reference, misfit, seconds)
+    skipped = _tried(search, progress)
+    chosen, spent = cheapest(search.choices, misfit, seconds), perf_counter() - began
+    about = scene, reference, search.trials, spent
+    if chosen is None:
+        return Plan(*about, None, inf, 0.0, skipped)
+    result, took = timed(chosen.family.name, configured(scene, chosen.family, chosen.settings))
+    obtained = relative_l2(*recorded(result, reference.result))
+    return Plan(*about, chosen, obtained, took, skipped)
+
+
+def _tried(search: Search, progress: Progress | None) -> dict[str, str]:
+    """Try all families; return the reasons of those that were not run."""
+    skipped = {}
     for i, family in enumerate(FAMILIES):
         try:
-            choices += list(_predicted(scene, family, exact))
-        except (SceneError, UnstableError) as error:
-            skipped[_label(family)] = getattr(error, "allowed", str(error))
+            search.try_family(family)
+        except FAILURES as error:
+            skipped[family.label] = reason_of(error)
         if progress:
             progress((i + 1) / (len(FAMILIES) + 1))
-    trials = 2 * (len(FAMILIES) - len(skipped))
-    chosen = _cheapest(choices, misfit, seconds)
-    if chosen is None:
-        return Plan(scene, name, trials, None, inf, 0.0, skipped)
-    result = solve(chosen.family.name, configured(scene, chosen.family, chosen.settings))
-    obtained = relative_l2(*recorded(result, exact))
-    spent = float(result.attrs["seconds_stepping"])
-    return Plan(scene, name, trials, chosen, obtained, spent, skipped)
+    return skipped
 
 
-def reference_of(scene: Scene) -> str:
-    """Return the name of the solution that knows a scene best."""
-    for name in REFERENCES:
-        if applies(name, scene):
-            return name
-    reason = applies(REFERENCES[0], scene).reason
-    raise SceneError(scene.where, "", None, f"no exact solution to plan by: {reason}")
+def reason_of(error: Exception) -> str:
+    """Return why something could not be run, without where."""
+    return getattr(error, "allowed", str(error))
 
 
-def plain(scene: Scene) -> Scene:
-    """Return a scene with default numerics, without ledger and snapshots."""
-    record = scene.record.model_copy(
-        update={"interval": scene.interval, "energy": False, "fields": None}
-    )
-    return scene.model_copy(update={"numerics": Numerics(), "record": record, "expect": {}})
-
-
-def configured(scene: Scene, family: Family, settings: dict[str, Any]) -> Scene:
-    """Return a scene with a family's numerics, its own where the family has none; raises SceneError
-    where it cannot have them."""
-    table = getattr(scene.numerics, family.engine).model_copy(update=family.changes | settings)
-    numerics = scene.numerics.model_copy(update={family.engine: table})
-    return checked(plain(scene).model_copy(update={"numerics": numerics}))
-
-
-def _predicted(scene: Scene, family: Family, exact) -> Iterator[Choice]:
-    """Yield the configurations of a family with what they are predicted to give."""
-    answer = applies(family.name, scene)
-    if not answer:
-        raise SceneError(scene.where, "", None, answer.reason)
-    first = solve(family.name, configured(scene, family, {"step_fraction": COARSEST}))
-    critical = float(first.attrs["critical_dt"])
-    least = max(1, round(scene.interval / float(first.attrs["dt"])))
-    second = solve(family.name, configured(scene, family, _steps(scene, 2 * least, critical)))
-    (coarse, goal), (fine, _) = recorded(first, exact), recorded(second, exact)
-    part = (coarse - fine) / (1 - 0.5**family.order)
-    limit, each = coarse - part, float(second.attrs["seconds_stepping"]) / (2 * least)
-    for n in dict.fromkeys(ceil(least * 2 ** (k / 4)) for k in range(1 + 4 * FINEST.bit_length())):
-        there = limit + part * (least / n) ** family.order
-        settings = _steps(scene, n, critical)
-        yield Choice(family, settings, relative_l2(there, goal), each * n)
-
-
-def _steps(scene: Scene, per_sample: int, critical: float) -> dict[str, Any]:
-    """Return the settings that take so many steps per sample."""
-    return {"step_fraction": float(f"{scene.interval / per_sample / critical * (1 + 1e-6):.7g}")}
-
-
-def _cheapest(choices: list[Choice], misfit: float, seconds: float | None) -> Choice | None:
+def cheapest(choices: list[Choice], misfit: float, seconds: float | None) -> Choice | None:
     """Return the cheapest that meets the misfit; else, or where it costs more, the best in time."""
-    meets = [c for c in choices if c.misfit <= misfit]
+    meets = [c for c in choices if c.misfit <= (misfit if c.measured else MARGIN * misfit)]
     best = min(meets, key=lambda c: c.seconds, default=None)
     if seconds is None or (best is not None and best.seconds <= seconds):
         return best
     in_time = [c for c in choices if c.seconds <= seconds]
     return min(in_time, key=lambda c: c.misfit, default=None)
-
-
-def _label(family: Family) -> str:
-    return f"{family.name} ({', '.join(f'{k} {v}' for k, v in family.changes.items())})"
 
 
 def options_of(choice: Choice) -> list[str]:

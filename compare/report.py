@@ -10,7 +10,7 @@ from time import perf_counter
 import cases
 from cases.result import scene_hash
 from cases.scene import Scene
-from compare import tables
+from compare import peers, tables, worth_section, worth_study
 from compare.engines import Progress
 from compare.findings import Finding
 from compare.findings.overview import mostly_dispersion
@@ -56,14 +56,17 @@ def build(
     workers: int = 2,
     scenes: Path = SCENES,
     studies: tuple[str, ...] = REPORTED,
+    peers_table: Path | None = None,
 ) -> Report:
     """Solve the scene of every figure, run the studies, and write figures, CSV tables and
     `out`/index.html.
 
     `progress` is called with the finished fraction; `scenes` is a folder of fig-NN.toml.
+    `peers_table` is what `make bench-peers` wrote; None: where it writes, if it did.
     Raises SceneError and UnstableError, as `compare` does; the page is then not written.
     """
     began = perf_counter()
+    others = peers.read(peers_table)
     files = sorted(scenes.glob("fig-*.toml"))
     sections, figures, motion = _compute(Path(out), files, progress, workers)
     overview, free = None, None
@@ -73,6 +76,7 @@ def build(
     summary = tables.summary_table({f"fig. {s.number}": figures[s.name] for s in sections})
     # Seconds count: after everything else, and alone.
     measured = make_sections(Path(out), studies)
+    balances = worth_study.complete(worth_study.reported(), Path(out) / "effects")
     html = render(
         sections,
         figures,
@@ -81,6 +85,9 @@ def build(
         summary=summary,
         motion=motion,
         studies=measured,
+        effects=worth_section.write_section(Path(out) / "effects", balances),
+        peers=None if others is None else peers.write_section(Path(out) / "studies", others),
+        peers_file=peers.PLACE,
         machine=measured_on(),
     )
     page = write_text(Path(out) / "index.html", html)
@@ -107,6 +114,8 @@ def _compute(
     moves."""
     loaded = {file: cases.load(file) for file in files}
     unique = {_key(scene): scene for variants in loaded.values() for scene in variants}
+    kept = out / "effects"
+    weighed = worth_study.unprepared(worth_study.reported(), kept)
     jobs, done = len(unique) + len(files) + 1, 0
 
     def finish(futures: Iterable[Future]) -> None:
@@ -119,10 +128,12 @@ def _compute(
 
     with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
         try:
+            weighing = worth_study.submit(pool, weighed, kept)
+            jobs += len(weighing)
             order = _longest_first(unique)
             solved = {key: pool.submit(compare, unique[key], None, True) for key in order}
             moving = pool.submit(make_motion, out)
-            finish([*solved.values(), moving])
+            finish([*solved.values(), moving, *weighing])
             figures = {
                 file: [replace(solved[_key(scene)].result(), scene=scene) for scene in variants]
                 for file, variants in loaded.items()

@@ -1,7 +1,8 @@
 """What every effect of a scene costs, and what it is worth: how far the answer is without it.
 
-Cost is that of a step of one rigid block; worth is the relative L2 misfit of the rigid blocks with
-the effect left out, against those of the scene as it stands.
+Cost is that of a step of one rigid block, and of one freedom of the jointed rock where that
+applies; worth is the relative L2 misfit of the rigid blocks with the effect left out, against those
+of the scene as it stands.
 """
 
 from __future__ import annotations
@@ -11,111 +12,145 @@ from math import nan
 from typing import Any, NamedTuple
 
 import dem
-from cases.consistency import checked
-from cases.effects import effects
+from cases.effects import active_effects
 from cases.errors import SceneError, UnstableError
 from cases.scene import Scene
-from compare.effort import nanoseconds, whole
-from compare.engines import Progress
+from compare.effort import EVERYTHING, changed, freedoms_in_turns, in_turns, stretch
+from compare.engines import applies, solve
 from compare.metrics import misfit
+from compare.without import left_out, only
+
+FAILURES = (SceneError, UnstableError)  # of a scene that cannot be so
+ROCK = "continuum-jointed"
+OWN = "own"  # the scene as it stands, among those without one of its effects
 
 
-class Worth(NamedTuple):
-    """One effect of a scene.
+class Dropped(NamedTuple):
+    """The answer without an effect.
 
-    cost : ns of a block-step that it adds. share : of the scene's own step. misfit : of the answer
-    without it. reason : why it cannot be left out; empty where it can.
+    misfit : from the answer with it. steps : of the scene over those without it, where the effect
+    shortens the step. alone : whether the scene can have it without the others. rock : whether the
+    jointed rock can be without it. reason : why it cannot be left out; empty where it can.
     """
 
     effect: str
+    misfit: float
+    steps: float
+    alone: bool
+    rock: bool
+    reason: str
+
+
+class Worth(NamedTuple):
+    """One effect of a scene; numbers that there are not are nan.
+
+    alone : ns of a block-step that it adds to the scene without any other. cost : ns that it adds
+    to the scene's own set. share : of the scene's own step. steps, misfit, reason : as in
+    `Dropped`. rock : ns that it adds to a step of one freedom of the jointed rock.
+    """
+
+    effect: str
+    alone: float
     cost: float
     share: float
+    steps: float
+    rock: float
     misfit: float
     reason: str
 
 
 class Balance(NamedTuple):
-    """All effects of a scene; own, everything : ns of a block-step with its own and with all."""
+    """All effects of a scene.
 
-    scene: Scene
+    scene, title, variant : its names. bare, own, everything : ns of a block-step with what the
+    scene cannot be without, with its own set, and with every effect. rock : ns of a freedom-step of
+    the jointed rock with the scene's own set, nan where that does not apply.
+    """
+
+    scene: str
+    title: str
+    variant: str
+    bare: float
     own: float
     everything: float
+    rock: float
     effects: list[Worth]
 
-
-def balance(scene: Scene, progress: Progress | None = None) -> Balance:
-    """Return what every effect that a scene calls for costs and is worth."""
-    called = [effect.name for effect in effects(scene) if effect.active]
-    own, answer, found = nanoseconds(scene), dem.simulate(scene), []
-    for i, name in enumerate(called):
-        found.append(_worth(scene, name, own, answer))
-        if progress:
-            progress((i + 1) / len(called))
-    return Balance(scene, own, whole(), found)
+    @property
+    def label(self) -> str:
+        """The scene's name and its variant's."""
+        return f"{self.scene}, {self.variant}" if self.variant else self.scene
 
 
-def _worth(scene: Scene, name: str, own: float, answer: Any) -> Worth:
+def prepare(scene: Scene) -> list[Dropped]:
+    """Return what leaving out each effect does to the answer, and compile all that is timed."""
+    answer = dem.simulate(scene)
+    dropped = [_drop(scene, name, answer) for name in active_effects(scene)]
+    _step(only(scene, None))
+    _runs(lambda: solve(ROCK, scene))
+    return dropped
+
+
+def _drop(scene: Scene, name: str, answer: Any) -> Dropped:
     try:
-        without = left_out(scene, name)
-        cost = own - nanoseconds(without)
-        return Worth(name, cost, cost / own, misfit(dem.simulate(without), answer), "")
-    except (SceneError, UnstableError) as error:
-        return Worth(name, nan, nan, nan, getattr(error, "allowed", str(error)))
+        one = left_out(scene, name)
+        without = dem.simulate(one)
+    except FAILURES as error:
+        return Dropped(name, nan, nan, False, False, getattr(error, "allowed", str(error)))
+    steps = answer.attrs["steps"] / without.attrs["steps"]
+    alone, rock = _runs(lambda: _step(only(scene, name))), _runs(lambda: solve(ROCK, one))
+    return Dropped(name, misfit(without, answer), float(steps), alone, rock, "")
 
 
-def left_out(scene: Scene, name: str) -> Scene:
-    """Return a scene without one of its effects; raises SceneError where there is none."""
-    if name not in WITHOUT:
-        raise SceneError(scene.where, name, None, "is what the scene is about")
-    return checked(WITHOUT[name](scene))
+def _step(scene: Scene) -> None:
+    stretch(scene)[0]()
 
 
-def _joints(**values: Any) -> Callable[[Scene], Scene]:
-    """Return a function that changes the law of all joints, those of soft layers included."""
-
-    def change(scene: Scene) -> Scene:
-        layers = [layer.model_copy(update=values) for layer in scene.soft_layers]
-        joints = scene.joints.model_copy(update=values)
-        return scene.model_copy(update={"joints": joints, "soft_layers": layers})
-
-    return change
+def _runs(work: Callable[[], object]) -> bool:
+    try:
+        work()
+    except FAILURES:
+        return False
+    return True
 
 
-def _table(name: str, **values: Any) -> Callable[[Scene], Scene]:
-    def change(scene: Scene) -> Scene:
-        table = getattr(scene, name).model_copy(update=values)
-        return scene.model_copy(update={name: table})
+def balance(name: str, scene: Scene, dropped: list[Dropped]) -> Balance:
+    """Return what every effect that a scene calls for costs and is worth.
 
-    return change
+    name : of the scene, as its user knows it. dropped : what `prepare` returned.
+    """
+    alone = {one.effect: only(scene, one.effect) for one in dropped if one.alone}
+    without = _without(scene, dropped)
+    first = [changed(EVERYTHING), only(scene, None), scene]
+    everything, bare, own, *rest = in_turns([*first, *alone.values(), *without.values()])
+    ns_alone = dict(zip(alone, rest, strict=False))
+    ns_without = dict(zip(without, rest[len(alone) :], strict=True))
+    in_rock = _in_rock(scene, dropped)
+    rock = dict(zip(in_rock, freedoms_in_turns(ROCK, list(in_rock.values())), strict=True))
+    found = [
+        Worth(
+            one.effect,
+            ns_alone.get(one.effect, nan) - bare,
+            (cost := own - ns_without.get(one.effect, nan)),
+            cost / own,
+            one.steps,
+            rock.get(OWN, nan) - rock.get(one.effect, nan),
+            one.misfit,
+            one.reason,
+        )
+        for one in dropped
+    ]
+    return Balance(name, scene.title, scene.name, bare, own, everything, rock.get(OWN, nan), found)
 
 
-def _free(kind: str) -> Callable[[Scene], Scene]:
-    """Return a function that frees the ends of a kind."""
-
-    def change(scene: Scene) -> Scene:
-        ends = {k: "free" for k in ("start", "end") if getattr(scene.ends, k) == kind}
-        return scene.model_copy(update={"ends": scene.ends.model_copy(update=ends)})
-
-    return change
+def _without(scene: Scene, dropped: list[Dropped]) -> dict[str, Scene]:
+    """Return the scene without each effect that can be left out."""
+    return {one.effect: left_out(scene, one.effect) for one in dropped if not one.reason}
 
 
-def _undamped(scene: Scene) -> Scene:
-    return _table("damping", rayleigh=None)(_joints(damping_ratio=None)(scene))
-
-
-#: By effect, what leaves it out of a scene.
-WITHOUT: dict[str, Callable[[Scene], Scene]] = {
-    "dashpots": _undamped,
-    "no tension": _joints(tension=True),
-    "joints that differ": lambda scene: scene.model_copy(update={"soft_layers": []}),
-    **{f"{kind} ends": _free(kind) for kind in ("quiet", "matched", "fixed")},
-    "energy ledger": _table("record", energy=False),
-    "field output": _table("record", fields=None),
-    "finite rotation": _table("motion", rotation="small"),
-    "slip": _joints(friction_angle=None, cohesion=None, residual_cohesion=None),
-    "softening": _joints(tensile_strength=None, fracture_energy=None),
-    "mass damping": _table("damping", mass_proportional=None, rayleigh=None),
-    "local damping": _table("damping", local=None),
-    "gravity": lambda scene: scene.model_copy(update={"gravity": None}),
-    "prestress": lambda scene: scene.model_copy(update={"prestress": None}),
-}
+def _in_rock(scene: Scene, dropped: list[Dropped]) -> dict[str, Scene]:
+    """Return the scenes that are timed in jointed rock: as it stands, and without each effect."""
+    if not applies(ROCK, scene):
+        return {}
+    others = _without(scene, dropped)
+    return {OWN: scene} | {one.effect: others[one.effect] for one in dropped if one.rock}

@@ -11,14 +11,22 @@ import xarray as xr
 from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
+from compare.exact.answer import YES, Answer, no
 from compare.exact.chain import chain, rates, receivers
+from compare.exact.conditions import beyond
 from compare.exact.drive import drive
-from compare.exact.lattice import at_rest
+from compare.exact.lattice import HELD, at_rest
 
 NAME = "solve-ivp"
 
 
-def solve_chain(scene: Scene, rtol: float = 1e-6, method: str = "DOP853") -> xr.Dataset:
+def applies(scene: Scene) -> Answer:
+    """Return whether the scene is a chain of rigid blocks that moves along the axis."""
+    reason = beyond(scene, *HELD)
+    return no(reason) if reason else YES
+
+
+def solve(scene: Scene, rtol: float = 1e-6, method: str = "DOP853") -> xr.Dataset:
     """Return what `scipy.integrate.solve_ivp` makes of a scene's chain of rigid blocks.
 
     rtol : relative tolerance; the absolute one is that of the speed that the load can cause. The

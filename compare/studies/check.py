@@ -11,7 +11,7 @@ from compare.engines import names
 from compare.studies.methods import METHODS
 
 if TYPE_CHECKING:
-    from compare.studies.study import Curve, Study
+    from compare.studies.study import Curve, Reference, Study
 
 MOST_POINTS = 10_000
 #: Settings that are no keys of a scene, and the methods that take them.
@@ -40,16 +40,21 @@ def refuse_senseless(path: Path, study: Study) -> None:
             str(path), "curves", None, f"give {count:.6g} points, at most {MOST_POINTS}"
         )
     solvers = names()
-    allowed = f"must be one of {', '.join((*solvers, *METHODS))}"
-    if study.finest is not None and study.finest not in solvers:
-        raise SceneError(str(path), "finest", study.finest, allowed)
+    _refuse_unknown(path, "finest", study.finest, solvers)
     for i, curve in enumerate(study.curves):
         key = f"curves[{i}]"
-        if curve.method not in (*solvers, *METHODS):
-            raise SceneError(str(path), f"{key}.method", curve.method, allowed)
-        if curve.own is not None and curve.own not in solvers:
-            raise SceneError(str(path), f"{key}.own", curve.own, allowed)
+        _refuse_unknown(path, f"{key}.method", curve.method, (*solvers, *METHODS))
+        _refuse_unknown(path, f"{key}.own", curve.own, (*solvers, "finest"))
         _refuse_arguments(path, key, curve)
+
+
+def _refuse_unknown(
+    path: Path, key: str, named: str | Reference | None, known: tuple[str, ...]
+) -> None:
+    """Raise SceneError for what solves nothing: a name, or the method of a fine run."""
+    method = named if named is None or isinstance(named, str) else named.method
+    if method is not None and method not in known:
+        raise SceneError(str(path), key, method, f"must be one of {', '.join(known)}")
 
 
 def _refuse_arguments(path: Path, key: str, curve: Curve) -> None:

@@ -1,23 +1,36 @@
-"""Work-precision diagrams: error over seconds and over counted work, both axes logarithmic."""
+"""Work-precision diagrams: error over seconds and over counted work, both axes logarithmic.
+
+Colours are those of models; a marker is the order of the elements, open where steps are implicit;
+dashes tell dimensions. Over seconds, thin dotted lines join equal digits a second.
+"""
+
+from pathlib import Path
+from typing import Any
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
+from compare.figures import save
 from compare.studies.measure import Row
-from compare.studies.pareto import front, measured
+from compare.studies.pareto import floor, front, is_known, measured
 from compare.studies.study import Study
 from compare.style import RC, STYLES, WIDTH, style
 
 ERRORS = {
-    "numerical": "misfit from each curve's exact solution",
+    "numerical": "misfit from each curve's own model",
     "total": "misfit from the finest physics",
 }
 COSTS = {"seconds": "seconds of stepping", "work": "freedoms x evaluations of the forces"}
-MARKERS = "osD^vP*X<>hp"
+MARKERS = "DPX*<>hpd8H"
+OF_ORDER = {1: "o", 2: "s", 3: "^", 4: "v"}  # of elements
+OF_DIM: dict[Any, Any] = {2: (0, (1, 1)), 3: (0, (5, 1, 1, 1))}  # dashes; a bar has none
+IMPLICIT = (0, (5, 2))
 LONG = 45  # characters of a legend's entry, of which three stand in a row
+SMALL: dict[str, Any] = {"fontsize": 6.5, "color": "#8a9299", "va": "bottom", "zorder": 1}
 #: Colours of methods that have none elsewhere, apart from those that have (Okabe & Ito 2008).
 OTHERS = ("#6b6b6b", "#cc79a7", "#8a6d00", "#7a4fbf", "#000000")
 
@@ -53,8 +66,18 @@ def draw(name: str, study: Study, rows: list[Row], costs: dict[str, str] | None 
     return figure
 
 
+def write_diagram(folder: Path, name: str, study: Study, rows: list[Row]) -> tuple[Path, ...]:
+    """Write NAME.svg and NAME.png into a folder; return both, none where no error is known."""
+    if not any(measured(rows, error, "work") for error in ERRORS):
+        return ()
+    save(draw(name, study, rows), folder, name, study.title)
+    return folder / f"{name}.svg", folder / f"{name}.png"
+
+
 def _draw_panel(ax: Axes, study: Study, rows: list[Row], error: str, cost: str, name: str) -> None:
-    best = front(rows, error, cost) if len(study.curves) > 1 else []
+    least = floor(rows, error)
+    best = [r for r in front(rows, error, cost) if is_known(r, error)]
+    best = best if study.timed and len(study.curves) > 1 else []
     if best:
         ax.plot(
             [getattr(r, cost) for r in best],
@@ -66,24 +89,50 @@ def _draw_panel(ax: Axes, study: Study, rows: list[Row], error: str, cost: str, 
         )
     for k, curve in enumerate(study.curves):
         found = measured([r for r in rows if r.curve == curve.label], error, cost)
-        found.sort(key=lambda row: getattr(row, cost))
-        (line,) = ax.loglog(
-            [getattr(r, cost) for r in found],
-            [getattr(r, error) for r in found],
-            color=colour(study, k),
-            marker=MARKERS[k % len(MARKERS)],
-            markersize=4.5,
-            linewidth=1.2,
-            label=curve.label,
-            zorder=2,
-        )
+        x, y = ([getattr(r, name) for r in found] for name in (cost, error))
+        (line,) = ax.loglog(x, y, label=curve.label, zorder=2, **look(study, k))
         line.set_gid(f"{name}-{k}")
     ax.xaxis.set_minor_formatter(NullFormatter())
-    ax.grid(which="major", color="#e4e7ea", linewidth=0.6)
+    ax.grid(which="major", axis="both" if cost == "work" else "y", color="#e4e7ea", linewidth=0.6)
+    if least:
+        ax.axhspan(0, least, color="#f2f2f2", zorder=0)
+        ax.text(0.01, least, "fine runs differ", transform=ax.get_yaxis_transform(), **SMALL)
+    if cost != "work":
+        _draw_digits_per_second(ax)
+
+
+def _draw_digits_per_second(ax: Axes) -> None:
+    """Draw where -log10(error) / seconds is a power of ten, within what is drawn already."""
+    (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
+    errors = np.geomspace(low, min(high, 0.9), 60)
+    digits = -np.log10(errors)
+    for power in range(-6, 9):
+        seconds = digits / 10.0**power
+        ax.plot(seconds, errors, color="#aab2b9", linewidth=0.7, linestyle=":", zorder=0)
+        if 1.5 * left < seconds[0] < right:
+            words = f"$10^{{{power}}}$" + (" digits/s" if seconds[0] * 10 > right else "")
+            ax.text(seconds[0], low, words, ha="right", rotation=0, **SMALL)
+    ax.set_xlim(left, right)
+    ax.set_ylim(low, high)
+
+
+def look(study: Study, k: int) -> dict[str, Any]:
+    """Return how matplotlib draws a curve."""
+    changes = study.curves[k].changes
+    order, dim = (changes.get(f"numerics.continuum.{key}") for key in ("order", "dim"))
+    implicit = changes.get("numerics.continuum.scheme") == "implicit"
+    return {
+        "color": colour(study, k),
+        "marker": OF_ORDER[order] if order else MARKERS[k % len(MARKERS)],
+        "markersize": 4.5,
+        "linewidth": 1.2,
+        "linestyle": OF_DIM.get(dim, IMPLICIT if implicit else "-"),
+        "markerfacecolor": "white" if implicit else None,
+    }
 
 
 def colour(study: Study, k: int) -> str:
-    """Return the colour of a curve: its model's, as in all figures; the marker tells it apart."""
+    """Return the colour of a curve: its model's, as in all figures."""
     method = study.curves[k].method
     if method in STYLES:
         return style(method).colour

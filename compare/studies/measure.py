@@ -9,15 +9,14 @@ from typing import Any, NamedTuple
 import xarray as xr
 
 from cases.errors import SceneError, StoppedError, UnstableError
-from cases.result import scene_hash
 from cases.scene import Scene
-from cases.tables import Numerics
-from compare.engines import solve
-from compare.metrics import misfit, relative_l2
+from compare.engines import applies, solve
+from compare.exact.answer import Answer
 from compare.studies.methods import METHODS
+from compare.studies.reference import error
 from compare.studies.study import Point
 
-LONG = 2.0  # s: a run that takes as long is timed once more at most
+LONG = 1.0  # s: a run that takes as long, its set-up included, is timed once more at most
 
 
 class Row(NamedTuple):
@@ -25,7 +24,8 @@ class Row(NamedTuple):
 
     state : "done" or "failed", with the reason in `message`.
     numerical : misfit against the exact solution of the method's own model; total : against the
-        finest physics. steps : of time. work : freedoms times evaluations of all forces, which are
+        finest physics; their floors : below which they are not known, 0 of exact solutions.
+    steps : of time. work : freedoms times evaluations of all forces, which are
         degree-of-freedom-steps where a step takes one. bytes : of the model and its state.
     seconds, spread : stepping, median and half the range of the repeats; setup, compile : of the
         first run.
@@ -38,6 +38,8 @@ class Row(NamedTuple):
     message: str
     numerical: float
     total: float
+    numerical_floor: float
+    total_floor: float
     dt: float
     steps: float
     freedoms: float
@@ -68,13 +70,18 @@ def _measured(point: Point) -> Row:
     seconds = [float(first.get("seconds_stepping", math.nan))]
     if study.timed:
         seconds = _repeated(run, study.repeats)
+    own = study.finest if point.curve.own == "finest" else point.curve.own
+    numerical = error(result, own, study, point.physics)
+    total = error(result, study.finest, study, {})
     steps, freedoms = first.get("steps", math.nan), first.get("degrees_of_freedom", math.nan)
     return _row(
         point,
         "done",
         "",
-        numerical=_error(result, point.curve.own, scene, study.quantity),
-        total=_error(result, study.finest, study.base, study.quantity),
+        numerical=numerical.misfit,
+        total=total.misfit,
+        numerical_floor=numerical.floor,
+        total_floor=total.floor,
         dt=float(first.get("dt", math.nan)),
         steps=float(steps),
         freedoms=float(freedoms),
@@ -96,13 +103,21 @@ def _evaluations(attributes: dict[str, Any]) -> float:
 def runner(point: Point, scene: Scene) -> Callable[[], xr.Dataset]:
     """Return the function that solves a point once."""
     method, arguments = point.curve.method, point.arguments
+    if not (answer := method_applies(point, scene)):
+        raise SceneError(scene.title, "", None, f"{method} does not apply: {answer.reason}")
     if method in METHODS:
-        return lambda: METHODS[method](scene, **arguments)
+        return lambda: METHODS[method].solve(scene, **arguments)
     if arguments:
         from compare.exact.catalogue import CATALOGUE
 
         return lambda: _timed(lambda: CATALOGUE[method].solve(scene, **arguments))
     return lambda: _timed(lambda: solve(method, scene))
+
+
+def method_applies(point: Point, scene: Scene) -> Answer:
+    """Return whether a point's method holds for its scene, or the reason why not."""
+    method = point.curve.method
+    return METHODS[method].applies(scene) if method in METHODS else applies(method, scene)
 
 
 def _timed(run: Callable[[], xr.Dataset]) -> xr.Dataset:
@@ -116,31 +131,10 @@ def _timed(run: Callable[[], xr.Dataset]) -> xr.Dataset:
 def _repeated(run: Callable[[], xr.Dataset], repeats: int) -> list[float]:
     """Return the stepping seconds of repeats, now that everything is compiled."""
     found: list[float] = []
-    while len(found) < repeats and sum(found) < LONG:
+    began = perf_counter()
+    while len(found) < repeats and perf_counter() - began < LONG:
         found.append(float(run().attrs["seconds_stepping"]))
     return found
-
-
-def _error(result: xr.Dataset, name: str | None, scene: Scene, quantity: str | None) -> float:
-    """Return the misfit against an exact solution or engine; nan without one."""
-    if name is None:
-        return math.nan
-    exact = reference(name, scene)
-    if quantity is None:
-        return misfit(result, exact)
-    return relative_l2(result[quantity].values, exact[quantity].values)
-
-
-def reference(name: str, scene: Scene) -> xr.Dataset:
-    """Return what errors are measured against, at its default numerics; solved once a process."""
-    plain = scene.model_copy(update={"numerics": Numerics(), "expect": {}})
-    key = name, scene_hash(plain)
-    if key not in _references:
-        _references[key] = solve(name, plain)
-    return _references[key]
-
-
-_references: dict[tuple[str, str], xr.Dataset] = {}
 
 
 def _row(point: Point, state: str, message: str, **numbers: float) -> Row:

@@ -1,10 +1,8 @@
 """What a user would write instead, timed beside the engines."""
 
-from collections.abc import Callable
+from types import ModuleType
 
-import xarray as xr
+from compare.studies import adaptive, plain_dolfinx
 
-from compare.studies.adaptive import solve_chain
-
-#: Functions of a scene and the study's arguments that return a result.
-METHODS: dict[str, Callable[..., xr.Dataset]] = {"solve-ivp": solve_chain}
+#: Each module has NAME, applies(scene) -> Answer and solve(scene, **arguments) -> xarray.Dataset.
+METHODS: dict[str, ModuleType] = {module.NAME: module for module in (adaptive, plain_dolfinx)}

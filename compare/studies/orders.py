@@ -10,6 +10,7 @@ from compare.studies.measure import Row
 from compare.studies.study import Curve, Study
 
 ROUND_OFF = 1e-11  # below, an error no longer falls
+KNOWN = 10  # times its floor an error must be for its order to hold to some per cent
 
 
 class Order(NamedTuple):
@@ -31,7 +32,7 @@ def orders(study: Study, rows: list[Row]) -> list[Order]:
 
 def _order(curve: Curve, rows: list[Row]) -> Order | None:
     numeric = [k for k, v in curve.vary.items() if len(v) > 1 and np.isreal(v[0])]
-    done = [r for r in rows if r.state == "done" and r.numerical > ROUND_OFF]
+    done = [r for r in rows if r.state == "done" and r.numerical > _least(r)]
     if curve.order is None or len(numeric) != 1:
         return None
     (key,) = numeric
@@ -43,6 +44,11 @@ def _order(curve: Curve, rows: list[Row]) -> Order | None:
         for a, b in pairwise(done)
     ]
     return Order(curve.label, key, steps[-1], steps, curve.order) if steps else None
+
+
+def _least(row: Row) -> float:
+    floor = row.numerical_floor
+    return ROUND_OFF if math.isnan(floor) else max(ROUND_OFF, KNOWN * floor)
 
 
 def _size(row: Row, key: str) -> float:

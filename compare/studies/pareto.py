@@ -39,13 +39,33 @@ def front(rows: list[Row], error: str = "total", cost: str = "seconds") -> list[
 
 
 def cheapest(rows: list[Row], error: str = "total", cost: str = "seconds") -> list[Cheapest]:
-    """Return the cheapest point within each of `TARGETS`, as far as there are any."""
-    found = []
+    """Return the cheapest point within each of `TARGETS`, as far as there are any, and as errors
+    are known."""
+    found, least = [], floor(rows, error)
     for target in TARGETS:
+        if target < least:
+            break
         within = [r for r in front(rows, error, cost) if getattr(r, error) <= target]
         if within:
             found.append(Cheapest(target, within[0]))
     return found
+
+
+def floor(rows: list[Row], error: str) -> float:
+    """Return the error below which these are not known; 0 against exact solutions."""
+    floors = [getattr(row, f"{error}_floor", 0.0) for row in rows]
+    return max((value for value in floors if not math.isnan(value)), default=0.0)
+
+
+def is_known(row: Row, error: str) -> bool:
+    """Return whether a point's error is not below what it is measured against is known to."""
+    return getattr(row, error) >= floor([row], error)
+
+
+def most_digits_per_second(rows: list[Row]) -> Row | None:
+    """Return the point that gets the most digits of the finest physics a second, None without."""
+    known = measured(rows, "total", "seconds")
+    return max(known, key=digits_per_second, default=None)
 
 
 def digits_per_second(row: Row) -> float:

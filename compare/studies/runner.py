@@ -35,7 +35,7 @@ def run(
     places = [folder / f"{key(point)}.json" for point in points]
     missing = [i for i, place in enumerate(places) if not place.is_file()]
     done = len(points) - len(missing)
-    with _alone() if study.timed else nullcontext():
+    with alone() if study.timed else nullcontext():
         for i, row in _measured(points, missing, None if study.timed else pool):
             write_text(places[i], json.dumps(row._asdict(), indent=1))
             done += 1
@@ -60,12 +60,12 @@ def key(point: Point) -> str:
     """Return what tells points apart: everything that decides a row, this program included."""
     study = point.study.model_copy(update={"title": "", "curves": ()})
     about = [study.model_dump(mode="json", exclude={"curves"}), point.curve.model_dump(mode="json")]
-    text = json.dumps([*about, point.settings, _program()], sort_keys=True)
+    text = json.dumps([*about, point.settings, program()], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 @cache
-def _program() -> str:
+def program() -> str:
     """Return a hash of all that computes."""
     digest, root = hashlib.sha256(), Path(cases.__file__).parent.parent
     for package in ("cases", "joints", "dem", "continuum", "compare"):
@@ -75,7 +75,7 @@ def _program() -> str:
 
 
 @contextmanager
-def _alone() -> Iterator[None]:
+def alone() -> Iterator[None]:
     """Wait until no other timed study is running on this machine."""
     with Path(gettempdir(), "jointwave-timing.lock").open("a") as file:
         fcntl.flock(file, fcntl.LOCK_EX)

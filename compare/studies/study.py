@@ -28,12 +28,25 @@ class Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
+class Reference(Table):
+    """What errors are measured against where there is no exact solution: an engine's fine run.
+
+    changes : of the scene, its numerics above all. coarser : changes on top of these; how far that
+        run is from this one is the floor below which errors are not known.
+    """
+
+    method: str
+    changes: dict[str, Value] = Field(default_factory=dict)
+    coarser: dict[str, Value]
+
+
 class Curve(Table):
     """One way to solve the scene, with what of it is varied.
 
     method : an engine, an exact solution, or a method of `compare.studies.methods`.
     vary : dotted keys and their values, all combinations; `terms` is an exact series' own.
-    own : the exact solution of the curve's own model, for its numerical error; absent: none.
+    own : the exact solution of the curve's own model, or a fine run of it, for its numerical
+        error; "finest" that of the study; absent: none.
     order : in theory, of the numerical error, with the first varied key or, where that falls as
         its value grows (elements, steps per period), with its inverse.
     """
@@ -42,7 +55,7 @@ class Curve(Table):
     method: str
     changes: dict[str, Value] = Field(default_factory=dict)
     vary: dict[str, Values] = Field(default_factory=dict)
-    own: str | None = None
+    own: str | Reference | None = None
     order: float | None = None
 
     def settings(self) -> Iterator[dict[str, Any]]:
@@ -54,7 +67,7 @@ class Curve(Table):
 class Study(Table):
     """A scene, the finest physics that it is known by, and curves.
 
-    finest : the exact solution or engine that total errors are measured against; absent: none.
+    finest : what total errors are measured against: an exact solution or a fine run; absent: none.
     quantity : what misfits are taken over; absent: `compare.metrics.misfit` decides.
     note : what to know when reading it.
     timed : whether seconds count: points are then run one at a time, `repeats` times each.
@@ -64,7 +77,7 @@ class Study(Table):
     scene: str
     variant: str = ""
     changes: dict[str, Value] = Field(default_factory=dict)
-    finest: str | None = None
+    finest: str | Reference | None = None
     quantity: Literal["stress", "velocity", "displacement"] | None = None
     note: str = ""
     timed: bool = False
@@ -102,6 +115,16 @@ class Point(Table):
         """The scene that is solved; raises SceneError where there is none."""
         changes = self.curve.changes | self.settings
         return self.study.changed({k: v for k, v in changes.items() if k not in ARGUMENTS})
+
+    @property
+    def physics(self) -> dict[str, Any]:
+        """What the point changes of the scene besides its numerics."""
+        changes = self.curve.changes | self.settings
+        return {
+            key: value
+            for key, value in changes.items()
+            if key not in ARGUMENTS and not key.startswith("numerics.")
+        }
 
     @property
     def arguments(self) -> dict[str, Any]:

@@ -123,7 +123,8 @@ class Team(Alone):
             constant = connection.link, model, state, samples, stride
             for n in range(first, max(last, first + 1), EVERY):
                 _check(run_together(*constant, n, min(n + EVERY, last), guard))
-                if guard is not None and self.any(bool(guard.found[0] >= 0)):
+                # No step is taken to compile, where processes come one after the other.
+                if guard is not None and last > first and self.any(bool(guard.found[0] >= 0)):
                     return
 
         return run

@@ -38,7 +38,7 @@ def march(model, state, room, samples, first, last):
         if is_lost(room.guard):
             break
         run_diagonals(model, state, room, samples, n, depth, 0, 0, len(state.motion) + depth - 1)
-        close_books(model, state, room, samples, n, depth, 0)
+        close_books(model, state, room.books, room.guard, samples, n, depth, 0)
     restore_tiny(tiny)
 
 
@@ -75,7 +75,7 @@ def march_in_turn(model, state, room, samples, first, last, thread, progress):
                 run_diagonals(model, state, room, samples, n, steps, thread, begin, end)
             post(progress, thread, band * runs + run + 1)
         await_count(progress, threads, band)
-        close_books(model, state, room, samples, n, steps, thread * depth)
+        close_books(model, state, room.books, room.guard, samples, n, steps, thread * depth)
         post(progress, threads, band + 1)
     restore_tiny(tiny)
 
@@ -96,14 +96,13 @@ def is_lost(guard):
 
 
 @inlined
-def close_books(model, state, room, samples, n, depth, slot):
+def close_books(model, state, books, guard, samples, n, depth, slot):
     """Sum up the accounts of steps n .. n + depth - 1, in their order."""
-    books = room.books
     if books is not None:
         for j in range(depth):
             close(books[slot + j], state.sums, samples.energy, model.accounts, n + j, model.stride)
             if (n + j) % model.stride == 0:
-                creates_energy(room.guard, samples.energy, (n + j) // model.stride, n + j)
+                creates_energy(guard, samples.energy, (n + j) // model.stride, n + j)
 
 
 @inlined

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from compare import effort
-from compare.effort import changed, nanoseconds, stretch, whole
+from compare.effort import changed, in_turns, nanoseconds, stretch, whole
 
 
 def test_stretch_counts_its_block_steps():
@@ -21,6 +21,14 @@ def test_a_plain_scene_costs_less_than_one_in_space():
     """One freedom and a spring against six and a face: a factor far beyond any noise."""
     plain = {"record.energy": False}
     assert nanoseconds(changed(plain)) < nanoseconds(changed({**plain, **effort.ACROSS}))
+
+
+def test_scenes_in_turns_cost_what_they_cost_one_by_one():
+    """In the order that they are given, whatever their lengths."""
+    plain = changed({"record.energy": False}, 100)
+    space = changed({"record.energy": False, **effort.ACROSS}, 100)
+    cheap, dear = in_turns([plain, space])
+    assert 0 < 2 * cheap < dear
 
 
 def test_everything_is_measured_once(tmp_path, monkeypatch):

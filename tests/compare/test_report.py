@@ -16,16 +16,18 @@ from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 
 import cases
+from cases.effects import active_effects
 from compare.fieldfiles import read_pvd
 from compare.findings import Finding
 from compare.page import Section, render
 from compare.pairs import Comparison
 from compare.panels import curve_table, variant_names
 from compare.report import SCENES, _key, build
-from compare.studies.section import REPORTED
+from compare.studies.section import REPORTED, StudySection
 from compare.studies.study import load
 from compare.style import style
 from compare.tables import Table
+from compare.worth_study import reported
 
 FIGURES = [f"fig-{number:02d}" for number in range(2, 11)]
 SCALE = 2  # device pixels a CSS pixel: dashes get pixels of their pure colour
@@ -35,6 +37,13 @@ FLAGS = (
     f"--force-device-scale-factor={SCALE}"
 )
 
+PEERS = """\
+curve,settings,state,message,solves,misfit,total_misfit,seconds,whole,rate,work,beside,stepping_over_ours,whole_over_ours,machine
+jointwave blocks,{},done,,rigid blocks,0.01,0.04,0.001,0.8,1e9,1e6,,,,a quiet one
+LAMMPS bonds,{},done,,points,0.01,0.04,0.036,0.12,3e7,1e6,jointwave blocks,36,0.15,a quiet one
+Yade spheres,,missing,no apt here,cohesive spheres,,,,,,,,,,a quiet one
+"""
+
 
 @pytest.fixture(scope="module")
 def fractions():
@@ -43,8 +52,10 @@ def fractions():
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory, fractions):
-    """Build the whole report once."""
-    return build(tmp_path_factory.mktemp("report"), fractions.append)
+    """Build the whole report once, with a small table of other codes."""
+    table = tmp_path_factory.mktemp("peers") / "points.csv"
+    table.write_text(PEERS, encoding="utf-8")
+    return build(tmp_path_factory.mktemp("report"), fractions.append, peers_table=table)
 
 
 @pytest.fixture(scope="module")
@@ -217,8 +228,10 @@ def test_report_leaves_no_half_written_files(report):
     motion = ["snapshots.svg", "snapshots.png", "dem.pvd", *(f"{i:04d}.vtu" for i in range(8))]
     points = [len(load(name).points()) for name in REPORTED]
     studies = [f"{name}.{kind}" for name in REPORTED for kind in ("svg", "png", "csv", "nc")]
-    assert len(files) == 1 + 4 * len(FIGURES) + len(motion) + len(studies) + sum(points)
-    assert set(motion) | set(studies) <= set(files)
+    drawn = [f"{name}.{kind}" for name in ("peers", "effects") for kind in ("svg", "png", "csv")]
+    written = [*motion, *studies, *drawn]
+    assert len(files) == 1 + 4 * len(FIGURES) + len(written) + sum(points) + len(reported())
+    assert set(written) <= set(files)
     assert not [name for name in files if name.startswith(".")]
 
 
@@ -230,6 +243,29 @@ def test_page_shows_what_each_study_found(name, report):
     part = part[: part.index("</section>")]
     assert "<svg" in part and "Failed points" not in part
     assert all(part.count(curve.label) >= 2 for curve in load(name).curves)
+
+
+def test_page_shows_other_codes_beside_the_free_pillar(report, page):
+    """Ratios, what each solves, the machine, and who is missing and why."""
+    part = page.find_element(By.ID, "peers")
+    assert "36 (LAMMPS bonds)" in part.text and "a quiet one" in part.text
+    assert "Yade spheres (cohesive spheres): missing, no apt here" in part.text
+    image = pixels(page.find_element(By.ID, "peers-figure").screenshot_as_png)
+    assert 0.005 < ink(image) < 0.5 and shows(image, style("dem").colour)
+    text = report.page.read_text()
+    order = [text.index(f'<section id="{name}">') for name in ("free-pillar", "peers")]
+    assert order == sorted(order) and text.count("<section", *order) == 1
+
+
+def test_page_shows_what_every_effect_costs_and_is_worth(page):
+    """Every scene and effect of the section, in the table and in the diagram."""
+    part = page.find_element(By.ID, "effects")
+    for case in reported():
+        assert case.name in part.text
+        assert all(effect in part.text for effect in active_effects(case.scene))
+    groups = part.find_elements(By.CSS_SELECTOR, "[id^=effects-points-]")
+    assert len(groups) == len({e for case in reported() for e in active_effects(case.scene)})
+    assert "jointwave effects" in part.text and "with everything on" in part.text
 
 
 def test_progress_ends_whole(report, fractions):
@@ -248,6 +284,15 @@ def test_summary_has_a_column_a_figure_and_a_row_a_pair(report):
 def test_every_figure_has_findings(report):
     assert sorted(report.findings) == list(range(2, 11))
     assert all(report.findings.values())
+
+
+def test_without_a_table_of_other_codes_one_line_says_how_to_get_it():
+    study = StudySection("s", "S", "", "stress", True, "<svg></svg>", [], Table([], {}), [])
+    html = render(
+        [], {}, overview=None, free=None, summary=Table([], {}), studies=[study], peers_file="a.csv"
+    )
+    assert "run <code>make bench-peers</code>, then <code>jointwave report" in html
+    assert "--peers a.csv</code>" in html
 
 
 def section(findings: list[Finding]) -> Section:

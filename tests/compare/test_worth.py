@@ -8,7 +8,8 @@ from cases.effects import active_effects
 from cases.errors import SceneError
 from compare import worth
 from compare.metrics import relative_l2
-from compare.worth import WITHOUT, balance, left_out
+from compare.without import WITHOUT, left_out, only
+from compare.worth import balance, prepare
 
 LAYER = [{"y": 20.0, "spacing_stiffness": 4e8, "damping_ratio": 0.05, "tension": False}]
 ACROSS = {"load__direction": [0.6, 0.8, 0.0]}
@@ -58,14 +59,54 @@ def test_an_end_that_the_load_needs_stays(pillar):
         left_out(pillar(ends__start="fixed", load=load), "fixed ends")
 
 
-def test_worth_is_the_misfit_of_the_answer_without(pillar, monkeypatch):
-    """The ledger is worth nothing, dashpots are worth what they change."""
-    monkeypatch.setattr(worth, "whole", lambda: 40.0)
+@pytest.mark.parametrize("effect", CALLS)
+def test_an_effect_alone_is_the_only_one(effect, pillar):
+    """Of all that can be left out; finite rotation and slip need the space that the scene is in."""
+    changes = {"record__energy": True} | CALLS[effect]
+    scene = pillar(**{"joints__damping_ratio": 0.02} | changes)
+    assert set(active_effects(only(scene, None))) <= {"spatial motion"}
+    assert set(active_effects(only(scene, effect))) - {"spatial motion"} == {effect}
+
+
+def test_what_needs_others_is_not_alone(pillar):
+    """Slip does not act on a pillar that is not struck across."""
+    with pytest.raises(SceneError, match="does not act without the others"):
+        only(pillar(joints__friction_angle=30.0), "slip")
+
+
+@pytest.fixture
+def cheap(monkeypatch):
+    """The cost of everything, by a step that is quickly compiled; one round of everything."""
+    monkeypatch.setattr(worth, "EVERYTHING", {})
+    monkeypatch.setattr("compare.effort.REPEATS", 1)
+
+
+def test_worth_is_the_misfit_of_the_answer_without(pillar, cheap):
+    """The ledger is worth nothing, dashpots are worth what they change and shorten the step."""
     scene = pillar(joints__damping_ratio=0.05, time__duration=0.03)
-    found = {w.effect: w for w in balance(scene).effects}
+    one = balance("a/b", scene, prepare(scene))
+    found = {w.effect: w for w in one.effects}
     assert set(found) == {"dashpots", "energy ledger"}
-    assert found["energy ledger"].misfit == 0
+    assert found["energy ledger"].misfit == 0 and found["energy ledger"].steps == 1
     plain = dem.simulate(left_out(scene, "dashpots"))["stress"].values
     expected = relative_l2(plain, dem.simulate(scene)["stress"].values)
     assert found["dashpots"].misfit == pytest.approx(expected) and expected > 0.01
-    assert all(np.isfinite(w.cost) and w.share < 1 for w in found.values())
+    assert found["dashpots"].steps > 1
+    for w in one.effects:
+        assert np.isfinite([w.cost, w.alone]).all() and w.share == w.cost / one.own < 1
+    # Two effects: the scene without one is the scene with the other alone, measured in turns.
+    costs = [w.cost + o.alone for w, o in zip(one.effects, reversed(one.effects), strict=True)]
+    assert costs == pytest.approx([one.own - one.bare] * 2, rel=0.5)
+
+
+def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, cheap):
+    """The wall that the load shakes; the ledger beside it is measured."""
+    load = {"shape": "sine", "amplitude": 0.1, "period": 0.01, "quantity": "velocity"}
+    stays = worth._drop(pillar(ends__start="fixed", load=load), "fixed ends", None)
+    assert "moves the wall" in stays.reason
+    scene = pillar(time__duration=0.01)
+    there = worth.Dropped("energy ledger", 0.0, 1.0, True, False, "")
+    fixed, ledger = balance("a/b", scene, [stays, there]).effects
+    assert fixed.reason == stays.reason
+    assert np.isnan([fixed.alone, fixed.cost, fixed.share, fixed.rock, fixed.misfit]).all()
+    assert ledger.reason == "" and np.isfinite([ledger.alone, ledger.cost]).all()

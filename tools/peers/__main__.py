@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 import akantu_bar
-import diagram
 import environment
 import lammps_bonds
 import measure
@@ -19,6 +18,8 @@ from job import Job
 import cases
 from cases.scene import Scene
 from compare.effort import PILLAR
+from compare.figures import save
+from compare.peers_diagram import draw
 
 
 class Peer(NamedTuple):
@@ -101,8 +102,9 @@ def main() -> None:
     rows += missing
     print(f"{scene.title}; {options.rounds} rounds; {about}")
     table.show(rows)
-    files = table.write(root / "points.csv", rows), diagram.write(root, scene.title, rows)
-    print(f"written: {', '.join(map(str, files))}")
+    written_to = table.write(root / "points.csv", [row | {"machine": about} for row in rows])
+    save(draw("peers", scene.title, rows), root, "points", scene.title)
+    print(f"written: {written_to}, {written_to.with_suffix('.svg')}")
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ import platform
 from pathlib import Path
 
 from compare.output import write_text
+from compare.studies.table import processor
 
 #: The columns that all studies share, then those of the peers.
 COLUMNS = (
@@ -15,7 +16,7 @@ COLUMNS = (
     *("seconds", "spread", "setup", "compile", "whole"),
     *("solves", "reference", "total_misfit", "freedoms", "rate", "whole_spread", "beside"),
     *("stepping_over_ours", "stepping_over_ours_least", "stepping_over_ours_most"),
-    *("whole_over_ours", "whole_over_ours_least", "whole_over_ours_most"),
+    *("whole_over_ours", "whole_over_ours_least", "whole_over_ours_most", "machine"),
 )
 
 
@@ -54,7 +55,7 @@ def show(rows: list[dict]) -> None:
 def machine() -> str:
     """Return what the seconds were taken on."""
     load = f", load {os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else ""
-    return f"{platform.machine()}, {os.cpu_count()} cores, one used{load}, {platform.platform()}"
+    return f"{processor()}, {os.cpu_count()} cores, one used{load}, {platform.platform()}"
 
 
 def _line(row: dict) -> str:

@@ -2,11 +2,12 @@
 
 import pytest
 
-from compare.studies.measure import Row
+from compare.engines import applies
+from compare.studies.measure import Row, method_applies
 from compare.studies.orders import orders
 from compare.studies.pareto import cheapest, digits_per_second, front
 from compare.studies.runner import run
-from compare.studies.study import load, shipped
+from compare.studies.study import Reference, load, shipped
 
 
 def row(**numbers):
@@ -51,13 +52,31 @@ def test_the_front_is_what_no_other_point_beats():
     assert digits_per_second(rows[4]) == pytest.approx(2 / 5)
 
 
-def test_shipped_convergence_is_within_a_tenth_of_theory(tmp_path):
-    """Every order that the study claims, blocks in size and step, rock in elements and step."""
-    study = load("convergence")
+#: The studies that claim an order; the others have corners in their motion.
+CLAIMING = [name for name in shipped() if any(curve.order for curve in load(name).curves)]
+
+
+@pytest.mark.parametrize("name", CLAIMING)
+def test_shipped_orders_are_within_a_tenth_of_theory(name, tmp_path):
+    """Every order that a study claims, by counts and errors alone: blocks in size and step, rock in
+    elements and step, explicit and implicit."""
+    study = load(name)
+    curves = tuple(curve for curve in study.curves if curve.order is not None)
+    study = study.model_copy(update={"curves": curves, "timed": False, "finest": None})
     found = orders(study, run(study, tmp_path))
-    assert len(found) == sum(curve.order is not None for curve in study.curves) >= 4
+    assert [order.curve for order in found] == [curve.label for curve in curves]
     for order in found:
         assert order.measured == pytest.approx(order.theory, abs=0.1), order.curve
+
+
+def test_orders_are_those_of_rock_in_both_models_and_of_blocks():
+    """What the study of convergence claims: nothing of it is left out unnoticed."""
+    claims = {curve.label: curve.order for curve in load("convergence").curves}
+    for p in (1, 2, 3, 4):
+        for model in ("jointed rock", "homogenised bar"):
+            assert claims[f"{model}, elements of order {p}"] == p + 1
+            assert claims[f"{model}, explicit step"] == claims[f"{model}, implicit step"] == 2
+    assert [order for label, order in claims.items() if "rigid" in label] == [2, 4, 2]
 
 
 def test_a_smaller_step_is_worse_on_the_uniform_chain(tmp_path):
@@ -69,5 +88,32 @@ def test_a_smaller_step_is_worse_on_the_uniform_chain(tmp_path):
 
 
 @pytest.mark.parametrize("name", shipped())
-def test_every_point_of_shipped_studies_is_a_scene(name):
-    assert all(point.scene.record.interval for point in load(name).points())
+def test_every_point_of_shipped_studies_can_be_run(name):
+    """Its scene holds together, and its method and all that errors are measured against apply."""
+    study = load(name)
+    for point in study.points():
+        assert (answer := method_applies(point, point.scene)), (point.settings, answer.reason)
+        for against, physics in ((point.curve.own, point.physics), (study.finest, {})):
+            against = study.finest if against == "finest" else against
+            if isinstance(against, Reference):
+                for changes in (against.changes, against.changes | against.coarser):
+                    assert applies(against.method, study.changed(physics | changes))
+            elif against is not None:
+                assert applies(against, study.changed(physics))
+
+
+def test_an_order_is_not_read_off_errors_that_are_not_known(study):
+    """Errors h^2 down to half a percent of the floor's tenfold: those below are left out."""
+    curve = {"label": "a", "method": "dem", "order": 2, "vary": {"pillar.block": [4, 2, 1, 0.5]}}
+    rows = [
+        row(settings={"pillar.block": d}, numerical=1e-3 * d**2, numerical_floor=5e-5)
+        for d in (4, 2, 1, 0.5)
+    ]
+    (order,) = orders(study([curve]), rows)
+    assert order.steps == pytest.approx([2, 2])
+
+
+def test_no_point_is_the_cheapest_within_a_misfit_that_is_not_known():
+    rows = [row(total=e, total_floor=3e-3, seconds=1.0) for e in (0.05, 1e-4)]
+    assert [c.misfit for c in cheapest(rows)] == [0.1, 0.01]
+    assert [c.misfit for c in cheapest([r._replace(total_floor=0.0) for r in rows])][-1] == 1e-4

@@ -11,8 +11,8 @@ import xarray as xr
 
 from cases.errors import SceneError
 from compare.metrics import misfit
-from compare.studies.adaptive import solve_chain
-from compare.studies.measure import reference
+from compare.studies import adaptive
+from compare.studies.reference import reference
 from compare.studies.study import load
 
 GOOD = """
@@ -77,7 +77,7 @@ def test_a_mistake_in_a_study_is_one_line(tmp_path, old, new, words):
 
 def test_a_study_that_is_not_there_names_those_that_are(tmp_path):
     done = command("no-such", "--out", tmp_path, code=2)
-    assert done.stderr.startswith("jointwave: no-such: is no file, nor one of convergence")
+    assert done.stderr.startswith("jointwave: no-such: is no file, nor one of column-3d")
 
 
 def test_command_writes_what_it_prints(tmp_path):
@@ -111,5 +111,5 @@ def test_adaptive_steps_reach_the_exact_chain_as_their_tolerance_shrinks(pillar,
     load = {"shape": "ricker", "amplitude": 1e6, "period": 0.01}
     scene = pillar(load=load, time__duration=0.03, **damping)
     exact = reference("lattice", scene)
-    coarse, fine = (misfit(solve_chain(scene, rtol), exact) for rtol in (1e-4, 1e-8))
+    coarse, fine = (misfit(adaptive.solve(scene, rtol), exact) for rtol in (1e-4, 1e-8))
     assert coarse < 1e-2 and fine < 1e-5 and fine < 1e-2 * coarse

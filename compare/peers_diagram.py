@@ -1,10 +1,10 @@
 """The work-precision diagram of all codes: their errors over stepping and over whole processes."""
 
-from pathlib import Path
 from typing import Any, NamedTuple
 
-from compare.figures import save
-from compare.studies.diagram import draw
+from matplotlib.figure import Figure
+
+from compare.studies.diagram import draw as draw_study
 from compare.studies.study import Curve, Study
 
 COSTS = {"seconds": "seconds of stepping", "whole": "seconds of the whole process"}
@@ -30,9 +30,8 @@ class Point(NamedTuple):
     work: float
 
 
-def write(folder: Path, title: str, rows: list[dict[str, Any]]) -> Path:
-    """Draw the rows that were done into FOLDER/points.svg and .png, each curve with what it solves;
-    return the SVG."""
+def draw(name: str, title: str, rows: list[dict[str, Any]]) -> Figure:
+    """Return the diagram of the rows that were done, each curve with what it solves."""
     done = [row for row in rows if row["state"] == "done"]
     solves = {row["curve"]: row["solves"] for row in done}
     curves = [
@@ -41,8 +40,7 @@ def write(folder: Path, title: str, rows: list[dict[str, Any]]) -> Path:
     ]
     study = Study(title=title, scene="", timed=True, curves=curves)
     points: Any = [_point(row) for row in done]
-    save(draw("peers", study, points, COSTS), folder, "points", title)
-    return folder / "points.svg"
+    return draw_study(name, study, points, COSTS)
 
 
 def _label(curve: str, solves: str) -> str:

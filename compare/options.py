@@ -1,0 +1,77 @@
+"""The program `jointwave`, what its commands take, and how they read scenes."""
+
+import os
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import cases
+from cases.errors import SceneError
+from compare.processes import started
+from compare.scenes import find
+
+app = typer.Typer(
+    epilog="Start with: jointwave list, jointwave compare guo-li-2002/fig-03, jointwave report",
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+SceneArgument = Annotated[
+    str, typer.Argument(help="A scene file, or a shipped scene such as guo-li-2002/fig-03.")
+]
+SetOption = Annotated[
+    list[str],
+    typer.Option("--set", metavar="KEY=VALUE", help="Change one key, for every variant."),
+]
+VariantOption = Annotated[
+    str | None, typer.Option(help="Only this variant; '' is the scene as it stands.")
+]
+OutOption = Annotated[Path, typer.Option(help="Folder for the results.")]
+WorkersOption = Annotated[int, typer.Option(min=1, help="Processes, where nothing is timed.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON for a machine to read.")]
+
+CORES = os.cpu_count() or 1
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        print(f"jointwave {version('jointwave')}")
+        raise typer.Exit
+
+
+@app.callback()
+def root(
+    context: typer.Context,
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version."),
+    ] = False,
+) -> None:
+    """Stress waves in jointed rock: rigid blocks and continuum, refereed by exact solutions."""
+    command = context.invoked_subcommand
+    if command not in ("run", "study") and started().comm is not None:
+        allowed = f"jointwave {command} works in one process; only run and study share their work"
+        raise SceneError("mpiexec", "", None, allowed)
+
+
+def load(scene: str, changes: list[str], variant: str | None) -> list[cases.Scene]:
+    """Return a file's variants, or the one that is named, with `--set` applied."""
+    from cases.read import parse_override
+
+    overrides = dict(parse_override(text) for text in changes)
+    path = find(scene)
+    if variant is None:
+        return cases.load(path, overrides)
+    return [cases.load_variant(path, variant, overrides)]
+
+
+def warn(scenes: list[cases.Scene]) -> None:
+    """Print what scenes say but should not."""
+    from cases.effects import warnings
+
+    for warning in dict.fromkeys(w for scene in scenes for w in warnings(scene)):
+        print(f"jointwave: {warning}", file=sys.stderr)

@@ -1,0 +1,137 @@
+"""Commands that weigh accuracy against cost over many runs: effects, plan, study, report."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from cases.errors import SceneError
+from compare.options import (
+    CORES,
+    JsonOption,
+    OutOption,
+    SceneArgument,
+    SetOption,
+    VariantOption,
+    WorkersOption,
+    app,
+    load,
+)
+from compare.processes import started
+
+
+@app.command()
+def effects(
+    scene: Annotated[
+        str | None,
+        typer.Argument(help="A scene file or a shipped scene; absent: all that are shipped."),
+    ] = None,
+    changes: SetOption = [],  # noqa: B006
+    variant: VariantOption = None,
+    out: Annotated[Path, typer.Option(help="Folder for table, diagram and points.")] = Path(
+        "effects"
+    ),
+    workers: WorkersOption = CORES,
+    as_json: JsonOption = False,
+) -> None:
+    """Say what every effect of a scene costs, and how far the answer is without it.
+
+    Without a scene: of every variant of every shipped scene. That takes a while; what is done is
+    kept in DIR and not run again.
+    """
+    from compare import terminal, worth_study, worth_view
+    from compare.studies.pool import on_pool
+    from compare.worth_section import write_section
+
+    wanted = _cases(scene, changes, variant)
+    with terminal.progress(f"{len(wanted)} variants") as advance:
+        found = on_pool(
+            started(), workers, lambda pool: worth_study.run(wanted, out, pool, advance)
+        )
+    assert found is not None  # one process only: see root
+    section = write_section(out, found)
+    worth_view.show_balances(found, section, as_json)
+
+
+@app.command()
+def plan(
+    scene: SceneArgument,
+    misfit: Annotated[float, typer.Option(min=0.0, help="Relative L2, from the finest physics.")],
+    seconds: Annotated[
+        float | None, typer.Option(min=0.0, help="At most so long a run, the best within it.")
+    ] = None,
+    changes: SetOption = [],  # noqa: B006
+    variant: VariantOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Find the cheapest engine, elements and step that meet a misfit, by a few cheap runs."""
+    from compare import plan_view, planner, terminal
+
+    found = []
+    for one in load(scene, changes, variant if variant is not None else ""):
+        with terminal.progress(one.name or one.title) as advance:
+            found.append(planner.plan(one, misfit, seconds, advance))
+    plan_view.show_plans(found, misfit, as_json)
+
+
+@app.command()
+def study(
+    name: Annotated[str, typer.Argument(help="A shipped study or a study's TOML file.")],
+    out: Annotated[Path, typer.Option(help="Folder for tables and points.")] = Path("studies"),
+    workers: WorkersOption = CORES,
+    as_json: JsonOption = False,
+) -> None:
+    """Run a study: a scene solved in many ways, each with its error and its cost, as one table
+    and its diagram.
+
+    Points that are done are kept in DIR/NAME/ and not run again. Under mpiexec the processes share
+    the points; those of a timed study are run one at a time.
+    """
+    from compare import terminal
+    from compare.studies.diagram import write_diagram
+    from compare.studies.pool import on_pool
+    from compare.studies.runner import run as run_points
+    from compare.studies.show import show_study
+    from compare.studies.study import load
+    from compare.studies.table import write_table
+
+    asked, stem = load(name), Path(name).stem
+    with terminal.progress(asked.title) as advance:
+        rows = on_pool(
+            started(), workers, lambda pool: run_points(asked, out / stem, pool, advance)
+        )
+    if rows is not None:
+        files = (*write_table(out, stem, asked, rows), *write_diagram(out, stem, asked, rows))
+        show_study(asked, rows, files, as_json)
+
+
+@app.command()
+def report(
+    out: OutOption = Path("report"),
+    peers: Annotated[
+        Path | None,
+        typer.Option(help="Table of make bench-peers; absent: out/peers/points.csv if there."),
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Write the figures of Guo & Li (2002) with every misfit and finding, as one HTML page."""
+    from compare import terminal, views
+    from compare.report import build
+
+    with terminal.progress("scenes") as advance:
+        found = build(out, advance, peers_table=peers)
+    views.show_report(found, as_json)
+
+
+def _cases(scene: str | None, changes: list[str], variant: str | None) -> list[Any]:
+    """Return the variants whose effects are asked for; without a scene all that are shipped."""
+    from compare.worth_study import Case, all_shipped
+
+    if scene is not None:
+        return [
+            Case(scene, one) for one in load(scene, changes, variant if variant is not None else "")
+        ]
+    if changes or variant is not None:
+        key = "--set" if changes else "--variant"
+        raise SceneError(key, "", None, "needs a scene: without one every shipped scene is taken")
+    return all_shipped()

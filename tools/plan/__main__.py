@@ -1,0 +1,58 @@
+"""What is planned for every shipped scene, held against a full study of it.
+
+The study runs every family of the planner at two steps to a doubling. A family ends where it meets
+the misfits, where a run takes over three times the seconds of the cheapest that does (finer steps
+cost more) or over 2 s, and where no finer step could come within a misfit even if the error fell
+with the square root of the step alone. It is not begun where its freedom-steps would be too dear
+at half of the least that one has taken. The configurations that are compared are timed in turns.
+Rows that are done are kept, and not run again.
+"""
+
+import argparse
+import hashlib
+import json
+from pathlib import Path
+from time import perf_counter
+
+from held import rows_of
+from table import show, write
+
+import cases
+from cases.result import scene_hash
+from cases.scene import Scene
+from compare.output import write_text
+from compare.scenes import shipped
+from compare.studies.runner import program
+
+
+def kept(path: Path, scene: Scene, misfits: list[float], rounds: int, folder: Path) -> list[dict]:
+    """Return the rows of a scene, from the folder if they are there."""
+    about = json.dumps([scene_hash(scene), misfits, rounds, program()])
+    place = folder / f"{hashlib.sha256(about.encode()).hexdigest()[:16]}.json"
+    if not place.is_file():
+        write_text(place, json.dumps(rows_of(scene, misfits, rounds), indent=1))
+    name = f"{path.parent.name}/{path.stem}"
+    return [{"scene": name, **row} for row in json.loads(place.read_text(encoding="utf-8"))]
+
+
+def main() -> None:
+    """Hold the plans of the shipped scenes whose names contain a word, or of all."""
+    parser = argparse.ArgumentParser(prog="python tools/plan", description=__doc__)
+    parser.add_argument("word", nargs="?", default="", help="part of the names of scenes; all")
+    parser.add_argument("--misfit", type=float, nargs="+", default=[0.01, 0.001])
+    parser.add_argument("--rounds", type=int, default=9, help="of timing, for runs below 50 ms")
+    parser.add_argument("--out", type=Path, default=Path("out/plan"), help="table and points")
+    options = parser.parse_args()
+    began, rows = perf_counter(), []
+    for path in shipped():
+        for scene in cases.load(path) if options.word in str(path) else ():
+            rows += kept(path, scene, options.misfit, options.rounds, options.out / "points")
+            print(f"{perf_counter() - began:6.0f} s  {rows[-1]['scene']} {scene.name}", flush=True)
+    for misfit in options.misfit:
+        show(rows, misfit)
+    write(options.out / "plans.csv", rows)
+    print(f"written: {options.out / 'plans.csv'}; {perf_counter() - began:.0f} s")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,76 @@
+"""Every family of a scene on a grid of steps: the cheapest configuration that really does."""
+
+from collections.abc import Iterator
+from math import inf
+
+from cases.errors import SceneError
+from cases.scene import Scene
+from compare.plan_families import FAMILIES, Family, effort
+from compare.plan_reference import Reference
+from compare.plan_trials import (
+    FINEST,
+    Choice,
+    Trial,
+    first_trial,
+    is_hopeless,
+    measured,
+    steps,
+    trial_at,
+)
+from compare.planner import FAILURES, reason_of
+
+#: A family ends where a run takes so many times the seconds of the cheapest that does, as finer
+#: steps cost more. It is not begun where it would even at half the seconds that a freedom-step has
+#: taken at least.
+DEARER = 3.0
+LONGEST = 2.0  # s: a run that takes as long is the last of its family
+
+
+class Study:
+    """All points of a scene, and why the families that are not among them are not."""
+
+    def __init__(self, scene: Scene, reference: Reference, misfits: list[float]) -> None:
+        """Run every family at two steps to a doubling until it meets all misfits or cannot win."""
+        self.scene, self.reference, self.misfits = scene, reference, misfits
+        self.points: list[Choice] = []
+        self.skipped: dict[str, str] = {}
+        self._rates: dict[str, float] = {}
+        for family in FAMILIES:
+            try:
+                self._add(family)
+            except FAILURES as error:
+                self.skipped[family.label] = reason_of(error)
+
+    def best(self, misfit: float) -> list[Choice]:
+        """Return the points that meet a misfit, the cheapest first."""
+        return sorted((p for p in self.points if p.misfit <= misfit), key=lambda p: p.seconds)
+
+    def _add(self, family: Family) -> None:
+        work, rates = effort(self.scene, family).work, self._rates
+        rate = rates.get(family.name, min(rates.values(), default=0.0))
+        if 0.5 * rate * work > self._dear(self.misfits):
+            raise SceneError(self.scene.where, "", None, f"over {DEARER:g} times the cheapest")
+        first = None
+        for trial in self._trials(family):
+            first = first or trial
+            each = trial.seconds / (work * trial.per_sample / first.per_sample)
+            rates[family.name] = min(rates.get(family.name, inf), each)
+            self.points.append(measured(self.scene, family, trial))
+
+    def _trials(self, family: Family) -> Iterator[Trial]:
+        """Yield runs of a family from the coarsest on, until no finer one can be of use."""
+        first = last = first_trial(self.scene, family, self.reference.result)
+        yield first
+        for n in steps(first.per_sample, FINEST * first.per_sample, 2)[1:]:
+            wanted = [m for m in self.misfits if last.misfit > m]
+            if last.seconds > min(LONGEST, self._dear(wanted)):
+                return
+            before, last = last, trial_at(self.scene, family, n, first, self.reference.result)
+            yield last
+            if all(is_hopeless([before, last], m) for m in wanted):
+                return
+
+    def _dear(self, misfits: list[float]) -> float:
+        """Return the seconds above which no run can be the cheapest for any of these misfits."""
+        known = [best[0].seconds if (best := self.best(m)) else inf for m in misfits]
+        return DEARER * max(known, default=-inf)
