@@ -3,7 +3,7 @@ MAKEFLAGS += --no-print-directory
 RUN := tools/run.sh
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-all docs check bench bench-peers bench-plan test-debian13 clean distclean
+.PHONY: help setup demo test test-all docs check fuzz bench bench-peers bench-plan test-debian13 clean distclean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -25,6 +25,9 @@ test-all:  ## make test with the slow tests too: the longest of the hard cases
 docs:  ## the documentation as pages, site/index.html, with the outcomes of the last make test
 	@tools/setup.sh docs
 	@NO_MKDOCS_2_WARNING=1 $(RUN) python -m mkdocs build --strict
+
+fuzz: setup  ## 10,000 bad scenes, loads, curves, studies, meshes and commands, made by atheris (installed apart in .fuzz)
+	@$(RUN) python tools/fuzz
 
 check: setup  ## lint, formatting, types, and the direction of imports
 	@$(RUN) ruff check
@@ -48,5 +51,5 @@ clean:  ## remove reports and caches
 	rm -rf report site build *.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache
 	find cases joints dem continuum compare tests -name __pycache__ -prune -exec rm -rf {} +
 
-distclean: clean  ## remove .venv and the other codes too
-	rm -rf .venv .peers
+distclean: clean  ## remove .venv, the other codes and the fuzzer too
+	rm -rf .venv .peers .fuzz

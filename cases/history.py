@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from cases.files import is_number, read_text
+from cases.files import beside, is_number, read_text
 
 LARGEST_FILE = 200_000_000  # bytes; some ten million samples
 LARGEST = 1e30  # s, Pa; what lies beyond is a mistake, and its squares overflow
@@ -27,12 +27,13 @@ class History:
     stress: np.ndarray
 
     @classmethod
-    def from_csv(cls, folder: str | Path, file: str) -> "History":
+    def from_csv(cls, folder: str | Path, file: str, anywhere: bool = False) -> "History":
         """Read `file`, relative to `folder`; text before the numbers is a header, # a comment.
 
-        Raises ValueError, in one line, when there is nothing to read or it is not a history.
+        anywhere : whether it may lie outside `folder`. Raises ValueError, in one line, when there
+        is nothing to read or it is not a history.
         """
-        lines = read_text(Path(folder) / file, LARGEST_FILE).splitlines()
+        lines = read_text(beside(folder, file, anywhere), LARGEST_FILE).splitlines()
         numbers, rows = _rows(lines)
         if len(rows) < 2:
             raise ValueError("must hold at least two rows of time and load")

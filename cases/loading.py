@@ -70,9 +70,10 @@ class Load(Table):
     @model_validator(mode="after")
     def _read_history(self, info: ValidationInfo) -> "Load":
         if self.file is not None:
-            folder = (info.context or {}).get("folder", ".")
+            context = info.context or {}
+            anywhere = "load.file" in context.get("asked", ())
             try:
-                self._history = History.from_csv(folder, self.file)
+                self._history = History.from_csv(context.get("folder", "."), self.file, anywhere)
             except ValueError as error:
                 raise contradiction("load.file", self.file, str(error)) from None
         return self

@@ -1,18 +1,25 @@
 """From a TOML file to validated scenes: overrides, variants, and errors in one line."""
 
 import re
-import tomllib
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
 from cases.errors import SceneError
-from cases.files import read_text
+from cases.files import parse_toml, read_toml
 from cases.scene import Scene
 
 LARGEST_FILE = 10_000_000  # bytes; a scene is a page of text
-VARIANT_NAME = re.compile(r"[^/\\.\s\x00-\x1f][^/\\\x00-\x1f]{0,79}")  # it names a folder
+#: It names a folder, beside what the scene's own results are called.
+VARIANT_NAME = re.compile(
+    r"(?!.*(\.nc|\.pvd|\.bp|-fields)$)[^/\\.\s\x00-\x1f][^/\\\x00-\x1f]{0,79}", re.IGNORECASE
+)
+
+MOST_VARIANTS = 1000
+
+#: Keys that name a file, which lies below the scene's folder unless an override names it.
+FILE_KEYS = ("load.file", "numerics.continuum.mesh")
 
 #: What is allowed, by pydantic's type of error.
 ALLOWED = {
@@ -47,9 +54,11 @@ def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[Scen
     """
     path = Path(path)
     table, variants = _read(path, overrides or {})
-    scenes = [_validate(table, path)]
+    given = frozenset(overrides or {})
+    scenes = [_validate(table, path, given)]
     for i, variant in enumerate(variants):
-        scenes.append(_variant(table, variant, path, i, overrides or {}))
+        merged = _variant(table, variant, path, i, overrides or {})
+        scenes.append(_validate(merged, path, given))
     names = [scene.name for scene in scenes]
     for i, name in enumerate(names[1:]):
         if name in names[: i + 1]:
@@ -58,20 +67,26 @@ def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[Scen
 
 
 def load_variant(
-    path: str | Path, name: str = "", overrides: dict[str, Any] | None = None
+    path: str | Path,
+    name: str = "",
+    overrides: dict[str, Any] | None = None,
+    asked: bool = True,
 ) -> Scene:
     """Read one variant of a scene file, whatever the others are; the empty name is the scene as it
-    stands."""
-    path = Path(path)
+    stands.
+
+    asked : whether the user gave the overrides, which may then name files anywhere.
+    """
+    path, given = Path(path), frozenset(overrides or {}) if asked else frozenset()
     table, variants = _read(path, overrides or {})
     if not name:
-        return _validate(table, path)
+        return _validate(table, path, given)
     names = [variant.get("name") for variant in variants]
     if name not in names:
         known = sorted(str(n) for n in ["", *names])
         raise SceneError(str(path), "variants.name", name, f"must be one of {known}")
     which = names.index(name)
-    return _variant(table, variants[which], path, which, overrides or {})
+    return _validate(_variant(table, variants[which], path, which, overrides or {}), path, given)
 
 
 def _read(path: Path, overrides: dict[str, Any]) -> tuple[dict[str, Any], list[dict[str, Any]]]:
@@ -84,6 +99,9 @@ def _read(path: Path, overrides: dict[str, Any]) -> tuple[dict[str, Any], list[d
     variants = table.pop("variants", [])
     if not isinstance(variants, list) or not all(isinstance(v, dict) for v in variants):
         raise SceneError(str(path), "variants", variants, "must be [[variants]] tables")
+    if len(variants) > MOST_VARIANTS:
+        allowed = f"{len(variants):,} are given; at most {MOST_VARIANTS:,}"
+        raise SceneError(str(path), "variants", None, allowed)
     return table, variants
 
 
@@ -93,39 +111,41 @@ def parse_override(text: str) -> tuple[str, Any]:
     if not equals or not key.strip():
         raise SceneError("--set", text, None, "must be key=value, e.g. joints.damping_ratio=0.05")
     try:
-        return key.strip(), tomllib.loads(f"value = {value}")["value"]
-    except tomllib.TOMLDecodeError:
+        return key.strip(), parse_toml(f"value = {value}")["value"]
+    except (ValueError, RecursionError):
         return key.strip(), value
 
 
 def _read_toml(path: Path) -> dict[str, Any]:
     try:
-        text = read_text(path, LARGEST_FILE)
+        return read_toml(path, LARGEST_FILE)
     except ValueError as error:
         raise SceneError(str(path), "", None, str(error)) from None
-    try:
-        return tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise SceneError(str(path), "", None, f"is not valid TOML: {error}") from None
 
 
 def _variant(
     base: dict[str, Any], changes: dict[str, Any], path: Path, index: int, overrides: dict[str, Any]
-) -> Scene:
+) -> dict[str, Any]:
+    """Return the table of a variant, changed."""
     name = changes.get("name")
     if not isinstance(name, str) or not VARIANT_NAME.fullmatch(name):
-        allowed = "must be a text of up to 80 characters without '/', not starting with '.' or ' '"
+        allowed = (
+            "must be a text of up to 80 characters without '/', not starting with '.' or ' ', nor "
+            "ending as results do: .nc, .pvd, .bp, -fields"
+        )
         raise SceneError(str(path), f"variants[{index}].name", name, allowed)
     table = _merge(base, changes)
     for key, value in overrides.items():
         _assign(table, key, value, str(path))
-    return _validate(table, path)
+    return table
 
 
-def _validate(table: dict[str, Any], path: Path) -> Scene:
+def _validate(table: dict[str, Any], path: Path, given: frozenset[str]) -> Scene:
+    """Return a table as a scene; given : the keys, of tables too, that the user gave himself."""
+    asked = {key for key in FILE_KEYS if any(f"{key}.".startswith(f"{g}.") for g in given)}
     where = f"{path} [{table['name']}]" if table.get("name") else str(path)
     try:
-        scene = Scene.model_validate(table, context={"folder": path.parent})
+        scene = Scene.model_validate(table, context={"folder": path.parent, "asked": asked})
     except ValidationError as error:
         raise _scene_error(where, error) from None
     scene._where = where

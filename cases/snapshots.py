@@ -11,12 +11,12 @@ from cases.arrays import copied
 from cases.errors import SceneError
 from cases.result import Fields, Variable
 from cases.scene import Scene
+from cases.size import LARGEST_VARIABLE
 
 if TYPE_CHECKING:
     import xarray as xr
 
 AXES = {1: [1], 2: [0, 1], 3: [0, 1, 2]}  # which of x, y, z so many components are
-LARGEST_VARIABLE = 2**31 - 4  # bytes, of a NetCDF 3 file
 DIMENSIONS = {
     "points": ("node", "component"),
     "cells": ("cell", "corner"),

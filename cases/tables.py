@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
+from cases.files import beside
 from cases.values import (
     Direction,
     NonNegative,
@@ -162,10 +163,20 @@ class ContinuumNumerics(Table):
     @model_validator(mode="after")
     def _find_mesh(self, info: ValidationInfo) -> "ContinuumNumerics":
         if self.mesh is not None:
-            path = Path((info.context or {}).get("folder", "."), self.mesh).absolute()
-            if not path.is_file():
-                fault = "must be a gmsh file" if path.exists() else "cannot be read: no such file"
-                raise contradiction("numerics.continuum.mesh", self.mesh, fault)
+            key, context = "numerics.continuum.mesh", info.context or {}
+            anywhere = key in context.get("asked", ())
+            try:
+                path = beside(context.get("folder", "."), self.mesh, anywhere)
+                if not path.is_file():
+                    found = path.exists()
+                    raise ValueError(
+                        "must be a gmsh file" if found else "cannot be read: no such file"
+                    )
+            except OSError as error:
+                fault = f"cannot be read: {error.strerror}"
+                raise contradiction(key, self.mesh, fault) from None
+            except ValueError as error:
+                raise contradiction(key, self.mesh, str(error)) from None
             self._mesh_path = path
         return self
 

@@ -20,6 +20,8 @@ UsageError: type[Exception] = next(
     c for c in typer.BadParameter.__mro__ if c.__name__ == "ClickException"
 )
 
+LONGEST = 1500  # characters of a message; an argument or a path in it may be of any length
+
 
 def main() -> None:
     """Run the command line; every mistake is one line on standard error and a non-zero exit."""
@@ -72,4 +74,7 @@ def _usage(error: Any) -> str:
 
 
 def _fail(processes: Processes, message: str, code: int) -> None:
-    processes.fail(f"jointwave: {' '.join(message.split())}", code)
+    line = " ".join(message.split())
+    if len(line) > LONGEST:
+        line = f"{line[: LONGEST // 2]} ... {line[-LONGEST // 2 :]}"
+    processes.fail(f"jointwave: {line}", code)

@@ -11,6 +11,7 @@ import xarray as xr
 from cases.errors import SceneError
 from cases.files import is_number, read_text
 from cases.history import LARGEST, LARGEST_FILE
+from cases.size import require
 
 LEAST_SAMPLES = 3  # what a parabola through the peak of a correlation takes
 NETCDF = (".nc", ".nc3", ".nc4", ".netcdf", ".cdf")
@@ -90,14 +91,15 @@ def _read_csv(path: Path) -> Columns:
     def row(i: int) -> str:
         return f"{path}, line {numbers[i]}"
 
+    names = [split_unit(text)[0].lower() for text in header]
+    if names.count("time") != 1 or len(names) < 2:
+        allowed = "must name one column time, and one or more as stress@20"
+        raise SceneError(str(path), "header", ", ".join(header), allowed)
     data = np.array([_numbers(row(i), header, cells) for i, (_, cells) in enumerate(rows)])
     data = data.reshape(-1, len(header))
     columns = [Column(*split_unit(text), data[:, i]) for i, text in enumerate(header)]
-    times = [c for c in columns if c.name.lower() == "time"]
-    if len(times) != 1 or len(columns) < 2:
-        allowed = "must name one column time, and one or more as stress@20"
-        raise SceneError(str(path), "header", ", ".join(header), allowed)
-    return Columns(times[0], [c for c in columns if c is not times[0]], row)
+    time = columns[names.index("time")]
+    return Columns(time, [c for c in columns if c is not time], row)
 
 
 def _rows(lines: list[str]) -> Iterator[tuple[int, list[str]]]:
@@ -128,8 +130,12 @@ def _numbers(where: str, header: list[str], cells: list[str]) -> list[float]:
 
 def _read_netcdf(path: Path) -> Columns:
     try:
+        if path.exists() and not path.is_file():
+            raise ValueError("it is not a regular file")
         # Undecoded, times keep the numbers and the unit that the file gives them.
-        found = xr.load_dataset(path, decode_times=False)
+        with xr.open_dataset(path, decode_times=False) as lazy:
+            require(lazy.nbytes, "its variables")
+            found = lazy.load()
     except FileNotFoundError as error:
         raise SceneError(str(path), "", None, f"cannot be read: {error.strerror}") from None
     except Exception as error:  # of whichever library xarray finds, on a file that is not whole

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from cases.errors import SceneError
 from cases.keeper import Keeper
 from cases.scene import Scene
+from cases.size import refuse_beyond_memory, waveform_bytes
 from compare.exact.answer import YES, Answer, no
 
 if TYPE_CHECKING:
@@ -70,7 +71,11 @@ def solve(
 
         model = name.removeprefix("continuum-")
         return simulate_continuum(scene, model=model, progress=progress, comm=comm, keeper=keeper)
-    return _exact(name).solve(scene)
+    try:
+        refuse_beyond_memory(scene, {"record.interval": waveform_bytes(scene)})
+        return _exact(name).solve(scene)
+    except MemoryError as error:
+        raise SceneError(scene.where, "", None, f"not enough memory: {name}: {error}") from None
 
 
 def _exact(name: str):

@@ -12,7 +12,7 @@ import numpy as np
 
 from cases.errors import SceneError
 from cases.snapshots import Snapshots
-from compare.output import write, write_folder
+from compare.output import refuse_foreign, write, write_folder
 
 #: From VTK's order of corners to dolfinx's, which counts along one axis after the other.
 TENSOR_ORDER = {"quad": [0, 1, 3, 2], "hexahedron": [0, 1, 3, 2, 4, 5, 7, 6]}
@@ -24,6 +24,7 @@ def write_pvd(path: Path, s: Snapshots) -> Path:
 
     Point data: displacement (m), velocity (m/s). Cell data: block, stress (Pa) where known.
     """
+    refuse_foreign(path, (b"<?xml",))
     folder = path.with_name(f"{path.stem}-fields")
     names = [f"{i:04d}.vtu" for i in range(len(s.time))]
 

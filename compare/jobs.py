@@ -6,6 +6,7 @@ from typing import NamedTuple
 from cases.errors import SceneError
 from cases.scene import Scene
 from compare.engines import applies, exact_names
+from compare.output import refuse_foreign
 
 CONTINUUM_MODELS = ("jointed", "equivalent")
 
@@ -36,13 +37,15 @@ def wanted(engines: list[str], models: list[str]) -> list[tuple[str, str | None]
 
 
 def plan(scenes: list[Scene], runs: list[tuple[str, str | None]], out: Path) -> list[Job]:
-    """Return the jobs, all of which apply; raises SceneError before anything is run."""
+    """Return the jobs, all of which apply; raises SceneError before anything is run, also where a
+    file that is no result stands in the place of one."""
     jobs = []
     for scene in scenes:
         folder = out / scene.name if scene.name else out
         for engine, model in runs:
             for name in _names(engine, model, scene):
                 file = name if engine != "exact" else f"exact-{name}"
+                refuse_foreign(folder / f"{file}.nc")
                 jobs.append(Job(scene, name, folder / f"{file}.nc"))
     return jobs
 

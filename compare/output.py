@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cases.errors import SceneError
 from cases.result import Fields
 
 if TYPE_CHECKING:
@@ -70,10 +71,46 @@ def sweep(folder: Path) -> None:
             left.unlink(missing_ok=True)
 
 
+#: How a result begins: in NetCDF 3, or 4 by others' hands, or is empty.
+NETCDF = (b"CDF", b"\x89HDF")
+
+
+def refuse_foreign(path: Path, begins: tuple[bytes, ...] = NETCDF) -> None:
+    """Raise SceneError where what stands at the place of a file of ours does not begin like one.
+
+    A link there is replaced, and what it leads to stays.
+    """
+    if path.is_symlink() or not path.exists():
+        return
+    found = "is a folder" if path.is_dir() else "is not a result"
+    if not path.is_file() or not _begins(path, begins):
+        raise SceneError(
+            str(path), "", None, f"{found} and would be replaced: choose another --out"
+        )
+
+
+def _begins(path: Path, begins: tuple[bytes, ...]) -> bool:
+    with path.open("rb") as file:
+        head = file.read(8)
+    return not head or head.startswith(begins)
+
+
+def _refuse_foreign_folder(path: Path, new: Path) -> None:
+    """Raise SceneError where a folder holds any file of which the new one has not the like."""
+    kinds = {file.suffix for file in new.iterdir()} if new.is_dir() else set()
+    if path.is_symlink() or not path.exists():
+        return
+    foreign = [path] if path.is_file() else [f for f in path.iterdir() if f.suffix not in kinds]
+    if foreign:
+        allowed = "is not a result and would be replaced: choose another --out"
+        raise SceneError(str(min(foreign)), "", None, allowed)
+
+
 def write_folder(path: Path, save: Callable[[Path], object]) -> Path:
     """Let `save` make and fill a folder, and put it at `path` only when it is whole.
 
     A folder that stood at `path` before is replaced by it, and stays as it is when `save` fails.
+    Raises SceneError where it holds other files.
     """
     with _names(path):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -81,7 +118,8 @@ def write_folder(path: Path, save: Callable[[Path], object]) -> Path:
         with tempfile.TemporaryDirectory(dir=path.parent, prefix=prefix) as place:
             new, old = Path(place, path.name), Path(place, "old")
             save(new)
-            if path.exists():
+            _refuse_foreign_folder(path, new)
+            if path.exists() or path.is_symlink():
                 path.replace(old)
             new.replace(path)
     return path
@@ -104,6 +142,8 @@ def fields_of(result: xr.Dataset) -> Fields:
 def write_fields(path: Path, fields: Fields) -> Path:
     """Write a result as NetCDF 3 by scipy, just as xarray would but without importing it."""
     from scipy.io import netcdf_file
+
+    refuse_foreign(path)
 
     def save(temporary: Path) -> None:
         with netcdf_file(str(temporary), "w", version=2) as file:

@@ -23,6 +23,7 @@ from continuum.model import Interfaces, Model, Receivers, Rock, Samples, State
 from continuum.operator import zeros
 from continuum.receivers import points, sections
 from continuum.record import TERMS
+from continuum.size import refuse_large_file, refuse_large_mesh
 from continuum.sparse import Rows, rows, sparse
 
 
@@ -72,10 +73,12 @@ def mesh_of(scene: Scene, p: Properties, model: str, motion: Kinematics) -> Mesh
     if numerics.mesh_path is not None:
         from continuum.meshing.given import given_mesh
 
+        refuse_large_file(scene)
         return given_mesh(numerics.mesh_path, scene, p, motion.dim)
     layers = layer_thickness(scene, p)
     cut = resolved_joints(p, model, motion.shears, tuple(layers)).number
     elements = numerics.elements_per_block or elements_for(scene, p, model)
+    refuse_large_mesh(scene, motion, elements)
     try:
         return pillar_mesh(
             p, motion.dim, numerics.cell, elements, numerics.elements_across, cut, layers

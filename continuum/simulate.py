@@ -31,6 +31,7 @@ from continuum.looks import march_with_looks
 from continuum.model import Model, Samples, State
 from continuum.reach import applies
 from continuum.scheme import Choice, choose
+from continuum.size import refuse_large_run
 from continuum.watch import Watch
 from continuum.waveforms import energy_terms, waveforms
 
@@ -70,6 +71,7 @@ def simulate(
     team = discrete.body.team
     choice, critical = _steps(scene, discrete, model)
     time = choice.time
+    refuse_large_run(scene, discrete.kinematics, time)
     built = build_model(scene, discrete, model, time)
     state = state_at_rest(built, scene.record.energy)
     rest = _at_rest(scene, built, state, discrete)

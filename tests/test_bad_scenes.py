@@ -396,6 +396,12 @@ MISTAKES = {
     "not TOML": ("[pillar]", "[pillar", ["not valid TOML", "line 3"]),
     "the same key twice": ("side = 0.5", "side = 0.5\nside = 0.5", ["not valid TOML", "line 6"]),
     "an integer of 5000 digits": ("side = 0.5", "side = 1" + "0" * 5000, ["not valid TOML"]),
+    "a key of many parts": (
+        "side = 0.5",
+        "a." * 40_000 + "b = 1",
+        ["a key has more than 64 parts"],
+    ),
+    "a quoted key of many parts": ("side = 0.5", '"a" . ' * 70 + "b = 1", ["more than 64 parts"]),
     "nested too deep": ("side = 0.5", "side = " + "[" * 5000 + "]" * 5000, ["not valid TOML"]),
 }
 
@@ -418,6 +424,8 @@ OVERRIDES = {
     "--set below a number": ("pillar.side.half=1", ["pillar.side.half = 1", "not a table"]),
     "--set without a value": ("pillar.side", ["pillar.side", "must be key=value"]),
     "--set without a key": ("=1", ["=1", "must be key=value"]),
+    "--set of a nest": ("pillar.side=" + "[" * 5000, ["pillar.side = '[[[", "a number"]),
+    "--set of 5000 digits": ("pillar.side=" + "1" * 5000, ["pillar.side = '1111", "a number"]),
     "a step above the critical one": (
         "numerics.dem.step_fraction=1.5",
         ["numerics.dem.step_fraction = 1.5", "critical step", "allow_unstable"],
@@ -486,6 +494,20 @@ def test_bad_history_is_one_line(name, tmp_path):
     message = line_of(table_scene(tmp_path, "blast.csv"))
     for word in ["load.file = 'blast.csv'", *words]:
         assert word in message
+
+
+def test_more_variants_than_a_scene_may_have(tmp_path):
+    many = "".join(f'[[variants]]\nname = "{i}"\n' for i in range(1001))
+    scene = write(tmp_path / "scene.toml", f"{GOOD}{many}")
+    assert "variants: 1,002 are given; at most 1,000" in line_of(scene)
+
+
+def test_dots_in_a_text_or_a_list_make_no_key(tmp_path):
+    """Only a key of many parts is refused, whatever else a line holds."""
+    places = ", ".join(f"{0.5 * i}" for i in range(1, 100))
+    text = GOOD.replace('title = "good"', f'title = "{"..." * 100} {"a b. " * 100}"')
+    scene = write(tmp_path / "scene.toml", text.replace("[20.0]", f"[{places}]"))
+    assert len(load(scene)[0].record.stress) == 99
 
 
 def table_scene(folder: Path, file: str) -> Path:

@@ -1,11 +1,22 @@
 #!/usr/bin/env bash
-# Runs `make test` in a fresh Debian 13, whose dolfinx, numpy and Python are newer than Debian 12's.
-#   usage: tools/debian13.sh [COMMAND]    (default: make test)
+# Runs `make test` in a fresh Debian 13, whose dolfinx, numpy and Python are newer than Debian 12's, and compares
+# waveforms with those of this machine's .venv, to 1e-9.
+#   usage: tools/debian13.sh [COMMAND]    (default: make test, then tools/waveforms.py)
 # The root is made once and kept under the user's cache directory; every run copies the working tree into it anew.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 say() { printf 'debian13: %s\n' "$*"; }
+
+waveforms=build/waveforms.npz
+if [ -z "${IN_NAMESPACE:-}" ] && [ $# -eq 0 ]; then
+    rm -f "$waveforms"
+    if [ -e .venv/.setup-done ]; then
+        tools/run.sh python tools/waveforms.py "$waveforms"
+    else
+        say "no .venv here (make setup): no waveforms to compare with"
+    fi
+fi
 
 cache=${JOINTWAVE_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/jointwave}
 # Mounts below live in a mount namespace of their own, so the kernel undoes them however this script ends.
@@ -70,6 +81,7 @@ copy_sources() {
             # A file deleted but not committed is still listed.
             if [ -e "$file" ] || [ -L "$file" ]; then printf '%s\0' "$file"; fi
         done | tar --create --file=- --no-recursion --null --files-from=- | tar --extract --no-same-owner --directory="$root/src"
+    if [ -f "$waveforms" ]; then install -D "$waveforms" "$root/src/$waveforms"; fi
 }
 
 mount_kernel() {
@@ -92,6 +104,7 @@ for name in http_proxy https_proxy no_proxy HTTP_PROXY HTTPS_PROXY NO_PROXY \
     if [ -n "${!name:-}" ]; then environment+=("$name=${!name}"); fi
 done
 
-[ $# -gt 0 ] || set -- make test
+compare="! [ -f $waveforms ] || tools/run.sh python tools/waveforms.py $waveforms"
+[ $# -gt 0 ] || set -- sh -c "make test && { $compare; }"
 say "$* (in $root)"
 chroot "$root" env -i "${environment[@]}" sh -c 'cd /src && exec "$@"' sh "$@"

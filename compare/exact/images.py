@@ -27,6 +27,7 @@ from compare.exact.answer import YES, Answer, no
 from compare.exact.conditions import bars_tension, beyond, has_interfaces, joints_are_damped
 
 NAME = "images"
+MOST_TRIPS = 1_000_000  # through the bar and back
 
 #: Reflection coefficient of stress at an end of the bar.
 REFLECTION = {"free": -1.0, "fixed": 1.0, "quiet": 0.0, "matched": 0.0}
@@ -47,6 +48,8 @@ def applies(scene: Scene) -> Answer:
         return no("a soft layer reflects within the bar")
     if scene.ends.start not in ENTERS:
         return no("the loaded end is fixed")
+    if p.bar_speed * scene.time.duration > 2 * scene.pillar.length * MOST_TRIPS:
+        return no(f"the wave runs through the bar more than {MOST_TRIPS:,} times")
     return YES
 
 

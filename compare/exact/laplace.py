@@ -36,6 +36,7 @@ from cases.loads import LoadHistory, load_history
 from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
+from cases.size import require
 
 TAIL = 1.5
 WRAPPED = 1e-10
@@ -111,12 +112,13 @@ def response(
     velocity on an interface is the mean of both sides.
     """
     dt, stride, count = _fine_step(times, period)
+    places = np.array([*stress_y, *velocity_y])
+    require(8.0 * count * (10 + 4 * len(places)), f"{count:,} instants of the load")
     decay = -log(WRAPPED) / (count * dt)
     t = dt * np.arange(count)
     mean = np.diff(load.impulse(dt * (np.arange(count + 1) - 0.5))) / dt
     s = decay + 2j * np.pi * np.fft.rfftfreq(count, dt)
     load_transform = np.fft.rfft(mean * np.exp(-decay * t)) * _rounding(s.imag * dt / np.pi)
-    places = np.array([*stress_y, *velocity_y])
     sigma, v = (x * load_transform for x in transfer(bar, s, places))
     transforms = [sigma[: len(stress_y)], v[len(stress_y) :], v[len(stress_y) :] / s]
     keep = slice(0, stride * len(times), stride)

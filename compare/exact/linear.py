@@ -12,6 +12,7 @@ from math import ceil
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 
+from cases.size import require
 from compare.exact.drive import Signal
 
 NEGLIGIBLE = 1e-18  # of a propagator whose largest entries are about 1: below round-off
@@ -37,9 +38,13 @@ def response(
     from scipy.sparse.linalg import expm_multiply
 
     h = float(times[1] - times[0])
+    count = 12 + ceil(h * np.abs(matrix).sum(axis=0).max())
+    size = float(len(vector))
+    room = 3 * size**2 + size * count + 3 * float(count) ** 2 + 3.0 * len(times) * count
+    require(8 * room, f"{count:,} points of integration in each sampling interval")
     A, P = csr_array(matrix), expm_multiply(csr_array(matrix) * h, np.eye(len(vector)))
     P = csr_array(np.where(np.abs(P) > NEGLIGIBLE, P, 0.0))
-    nodes, weights = _gauss(h, 12 + ceil(h * np.abs(matrix).sum(axis=0).max()))
+    nodes, weights = _gauss(h, count)
     G = np.stack([expm_multiply(A * (h - s), vector) for s in nodes], axis=1)
     x, out = np.zeros(len(vector)), np.zeros((len(times), len(output)))
     for n, share in enumerate(_load_on_nodes(load, times[:-1], h, nodes, weights), 1):

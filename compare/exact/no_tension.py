@@ -26,6 +26,7 @@ from cases.loads import LoadHistory
 from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
+from cases.size import require
 from compare.exact.answer import YES, Answer, no
 from compare.exact.chain import Chain, chain, contact_forces, rates, receivers
 from compare.exact.conditions import bars_tension, beyond
@@ -76,6 +77,7 @@ def integrate(
 
     It starts from the state `rest` [size], absent: zero; the tolerances are on what it moves since.
     """
+    require(3 * 8.0 * len(times) * chain.size, f"{len(times):,} states of {chain.size:,} numbers")
     rest = np.zeros(chain.size) if rest is None else rest
     scale = _speed(chain, load, times)
     breaks = [t for t in load.breaks if times[0] < t < times[-1]]

@@ -1,21 +1,25 @@
 """What a study is: a scene, curves of what is varied, and what errors are measured against."""
 
-import tomllib
 from collections.abc import Iterator
 from itertools import product
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 import cases
 from cases.errors import SceneError
-from cases.files import read_text
+from cases.files import read_toml
 from cases.scene import Scene
 from compare.scenes import find
+from compare.studies.check import ARGUMENTS, plain, refuse_senseless
 
 LARGEST_FILE = 1_000_000  # bytes
 SHIPPED = Path(__file__).parent
+
+
+Value = Annotated[Any, AfterValidator(plain)]
+Values = Annotated[list[Value], Field(min_length=1)]
 
 
 class Table(BaseModel):
@@ -32,8 +36,8 @@ class Reference(Table):
     """
 
     method: str
-    changes: dict[str, Any] = Field(default_factory=dict)
-    coarser: dict[str, Any]
+    changes: dict[str, Value] = Field(default_factory=dict)
+    coarser: dict[str, Value]
 
 
 class Curve(Table):
@@ -49,8 +53,8 @@ class Curve(Table):
 
     label: str
     method: str
-    changes: dict[str, Any] = Field(default_factory=dict)
-    vary: dict[str, Annotated[list[Any], Field(min_length=1)]] = Field(default_factory=dict)
+    changes: dict[str, Value] = Field(default_factory=dict)
+    vary: dict[str, Values] = Field(default_factory=dict)
     own: str | Reference | None = None
     order: float | None = None
 
@@ -72,7 +76,7 @@ class Study(Table):
     title: str
     scene: str
     variant: str = ""
-    changes: dict[str, Any] = Field(default_factory=dict)
+    changes: dict[str, Value] = Field(default_factory=dict)
     finest: str | Reference | None = None
     quantity: Literal["stress", "velocity", "displacement"] | None = None
     note: str = ""
@@ -88,7 +92,7 @@ class Study(Table):
     def changed(self, changes: dict[str, Any]) -> Scene:
         """Return the scene with changes; raises SceneError where there is none."""
         changes = self.changes | changes | {"expect": {}}
-        return cases.load_variant(find(self.scene), self.variant, changes)
+        return cases.load_variant(find(self.scene), self.variant, changes, asked=False)
 
     def points(self) -> list["Point"]:
         """Return all points, curve by curve."""
@@ -129,10 +133,6 @@ class Point(Table):
         return {key: value for key, value in everything.items() if key in ARGUMENTS}
 
 
-#: Settings that are no keys of a scene.
-ARGUMENTS = ("n_terms", "rtol")
-
-
 def shipped() -> dict[str, Path]:
     """Return the shipped studies by name."""
     return {path.stem: path for path in sorted(SHIPPED.glob("*.toml"))}
@@ -147,13 +147,14 @@ def load(name: str) -> Study:
     if not path.is_file():
         raise SceneError(name, "", None, f"is no file, nor one of {', '.join(shipped())}")
     try:
-        table = tomllib.loads(read_text(path, LARGEST_FILE))
+        table = read_toml(path, LARGEST_FILE)
     except ValueError as error:
-        raise SceneError(str(path), "", None, f"is not valid TOML: {error}") from None
+        raise SceneError(str(path), "", None, str(error)) from None
     try:
         study = Study.model_validate(table)
     except ValidationError as error:
         raise _study_error(path, error) from None
+    refuse_senseless(path, study)
     beside = path.parent / study.scene
     return study.model_copy(update={"scene": str(beside)}) if beside.is_file() else study
 

@@ -1,6 +1,8 @@
 """A gmsh file as it stands: vertices, rock cells, and the facets of its named groups."""
 
-from contextlib import redirect_stderr
+import resource
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stderr
 from io import StringIO
 from pathlib import Path
 from typing import NamedTuple
@@ -24,6 +26,10 @@ FACET_NAMES = {
     "tetrahedron": "triangle",
     "hexahedron": "quad",
 }
+
+#: Bytes that reading may take beside what the process has: in all, and for each byte of the file.
+#: The reader makes an array as long as the largest number of a vertex, whatever the file holds.
+ROOM, ROOM_OF_BYTE = 300_000_000, 100
 
 SAVE_GROUPS = "save it with Mesh.SaveAll = 0"
 
@@ -73,7 +79,8 @@ def _read(path: Path):
     if not path.is_file():
         raise MeshError("is no file" if path.exists() else "does not exist")
     try:
-        with redirect_stderr(StringIO()), catch_warnings():
+        room = ROOM + ROOM_OF_BYTE * path.stat().st_size
+        with redirect_stderr(StringIO()), catch_warnings(), within(room):
             simplefilter("ignore")
             return meshio.gmsh.read(path)
     # A broken file makes the reader fail in any way.
@@ -82,6 +89,23 @@ def _read(path: Path):
         if "gmsh:physical" in reason:
             raise MeshError(f"holds cells of no group, {SAVE_GROUPS}") from None
         raise MeshError(f"cannot be read as a gmsh mesh, version 2.2 or 4.1: {reason}") from None
+
+
+@contextmanager
+def within(room: int) -> Iterator[None]:
+    """Let allocations of more than so many bytes raise MemoryError, where the system can tell."""
+    try:
+        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
+    except OSError:
+        yield
+        return
+    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+    limits = [pages * resource.getpagesize() + room, *(x for x in (soft, hard) if x >= 0)]
+    resource.setrlimit(resource.RLIMIT_AS, (min(limits), hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
 
 
 def _rock(mesh, names: list[str]) -> tuple[str, np.ndarray]:

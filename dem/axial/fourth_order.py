@@ -28,6 +28,7 @@ from dem.axial.record import Samples, sample_after, sample_before
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State, state_at_rest
 from dem.axial.step import step
+from dem.size import refuse_large
 from joints.borrowed import borrowed
 from joints.guard import EVERY, Guard, runs_away
 from joints.jit import inlined, jitted
@@ -58,6 +59,7 @@ def build(scene: Scene) -> tuple[Model, State, Clock, float]:
     p, ends, numerics = calibrate(scene), scene.ends, scene.numerics.dem
     critical = stability_limit() / 2 * critical_chain_step(p, ends.start, ends.end)
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
+    refuse_large(scene, time, stages=1 + len(EDGES))
     at_steps = time.dt * np.arange(time.steps + time.stride)
     load = np.trim_zeros(_force(scene, p) * load_history(scene).value(at_steps), "b")
     model = Model(_stage(scene, p, 0.0, 0.0), load, None, receivers(scene, p))

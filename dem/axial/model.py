@@ -11,6 +11,7 @@ from cases.scene import Scene
 from dem.axial.ends import build_end
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State, state_at_rest
+from dem.size import refuse_large
 from joints.laws import Law
 from joints.uniform import law
 
@@ -67,6 +68,7 @@ def build(scene: Scene) -> tuple[Model, State, Clock, float]:
     critical = critical_chain_step(p, scene.ends.start, scene.ends.end)
     numerics = scene.numerics.dem
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
+    refuse_large(scene, time)
     model = build_model(scene, p, time)
     return model, state_at_rest(model.chain, p.block_count, scene.record.energy), time, critical
 

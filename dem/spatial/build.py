@@ -69,6 +69,13 @@ def _is_nonlinear(p: Properties) -> bool:
     return not p.tension.all() or any(limit is not None for limit in limits)
 
 
+def points_looked_after(scene: Scene, p: Properties) -> int:
+    """Return how many points of a joint are looked after one by one; 0 where their sum will do."""
+    if _is_nonlinear(p) or scene.motion.rotation == "finite":
+        return len(contact_points(scene).x)
+    return 0
+
+
 def build_motion(scene: Scene, p: Properties, dt: float, turns: bool) -> Motion:
     """Return the constants of a block's motion."""
     drag = 0.5 * dt * (p.mass_damping or 0.0)
@@ -111,7 +118,7 @@ def build_contact(scene: Scene, p: Properties, motion: Motion) -> Contact:
         critical_opening=p.critical_opening,
     )
     points, damped = contact_points(scene), p.joint_time_constant is not None
-    by_points = _is_nonlinear(p) or motion.finite is not None
+    by_points = points_looked_after(scene, p) > 0
     return Contact(
         law=_numbers(joints),
         table=_table(joints, p.block_count),

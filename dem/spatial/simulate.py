@@ -17,11 +17,13 @@ from cases.runaway import stopped
 from cases.sampling import Clock, Interpolation, clock
 from cases.scene import Scene
 from dem.looks import Run, followed, sighting, versions
+from dem.size import refuse_large
 from dem.spatial.bound import highest_speeds
 from dem.spatial.breaks import with_breaks
 from dem.spatial.build import (
     build_model,
     energy_terms,
+    points_looked_after,
     receivers,
     room_for,
     samples_for,
@@ -55,6 +57,7 @@ def prepare(scene: Scene) -> Prepared:
     p, numerics = calibrate(scene), scene.numerics.dem
     critical = critical_step_of(scene, p)
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
+    refuse_large(scene, time, points=points_looked_after(scene, p))
     return Prepared(p, build_model(scene, p, time), time, critical)
 
 

@@ -135,6 +135,13 @@ def test_mistake_is_one_line_and_exit_2(arguments, words, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+def test_a_message_about_a_long_argument_is_short(tmp_path):
+    """Its beginning and its end are there, whatever stands between."""
+    done = jointwave("run" + "x" * 50_000, SCENE, code=2, cwd=tmp_path)
+    assert done.stderr.startswith("jointwave: No such command 'runxxx")
+    assert done.stderr.count("\n") == 1 and len(done.stderr) < 1600 and " ... " in done.stderr
+
+
 def test_instability_is_caught_with_exit_3_and_old_results_stay(tmp_path):
     """A forced step that blows up leaves the earlier file as it was, beside what is sound."""
     old = tmp_path / "dem.nc"

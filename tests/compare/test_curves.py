@@ -273,6 +273,7 @@ FAULTS = {
     "short": ("time,stress@20\n0,0\n1e-3,1\n", "curve.csv", "at least 3 samples"),
     "empty": ("", "curve.csv", "at least 3 samples"),
     "no time": ("t,stress@20\n0,0\n1,1\n2,2\n", "header = 't, stress@20'", "time"),
+    "one column named": ("t\n0,0\n1,1\n2,2\n", "header = 't'", "must name one column time"),
     "no place": ("time,stress\n0,0\n1,1\n2,2\n", "curve.csv: stress", "stress@20"),
     "no header": ("0,0\n1,1\n2,2\n", "second column", "stress@20"),
     "no unit": ("time [h],stress@20\n0,0\n1,1\n2,2\n", "unit of time = 'h'", "ms"),

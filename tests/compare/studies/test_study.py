@@ -49,6 +49,23 @@ def command(*arguments, code=0, before=()):
         ("order = 2", "oder = 2", "curves.0.oder"),
         ("[0.1, 0.05]", "[]", "step_fraction = []"),
         ("title", "title = ", "not valid TOML"),
+        ("[0.1, 0.05]", "[" * 3000, "not valid TOML"),
+        ('method = "dem"', 'method = "den"', "curves[0].method = 'den'"),
+        ('own = "lattice"', 'own = "truth"', "curves[0].own = 'truth'"),
+        ('finest = "lattice"', 'finest = "truth"', "finest = 'truth'"),
+        ("[0.1, 0.05]", "[2026-01-01]", "a number, a text, or true or false"),
+        ("[0.1, 0.05]", "[0x" + "f" * 99 + "]", "at most 64 bits"),
+        ("vary = {", "vary = { n_terms = [9],", "is an argument of series, kelvin-voigt"),
+        (
+            '"dem"\nown',
+            '"series"\nchanges = { n_terms = 1.5 }\nown',
+            "n_terms = 1.5: must be a whole",
+        ),
+        (
+            "vary = {",
+            f"vary = {{ 'load.period' = {[*range(1, 200)]}, 'pillar.side' = {[*range(1, 200)]},",
+            "give 79202 points, at most 10000",
+        ),
     ],
 )
 def test_a_mistake_in_a_study_is_one_line(tmp_path, old, new, words):

@@ -116,6 +116,11 @@ FILES = {
     "empty": ("", "", "cannot be read as a gmsh mesh"),
     "no mesh": (GOOD, "a,b\n1,2\n", "cannot be read as a gmsh mesh"),
     "cut short": (GOOD[GOOD.index("4 0.2 0.5") :], "", "cannot be read as a gmsh mesh"),
+    "a vertex of a number without end": (
+        "6 0.2 1.5 0",
+        "6000000000 0.2 1.5 0",
+        "cannot be read as a gmsh mesh, version 2.2 or 4.1: Unable to allocate",
+    ),
     "no rock": ('"rock"', '"stone"', "no group whose name starts with 'rock'"),
     "a rock of lines": ('2 1 "rock"', '1 2 "rock"', "line cells"),
     "no cell in the rock": ('2 1 "rock"', '2 7 "rock"', "no cells are in its group"),

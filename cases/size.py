@@ -1,0 +1,132 @@
+"""What a run would take of memory, told before any of it is made.
+
+Each engine estimates what its arrays take, from the numbers of blocks, samples and steps alone, by
+the key of the scene that decides it. A run is refused where the sum is beyond `memory()`.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from functools import cache
+from math import isfinite
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cases.errors import SceneError
+
+if TYPE_CHECKING:
+    from cases.scene import Scene
+
+LIMIT = "JOINTWAVE_MEMORY"  # GB, in the environment: a bound of the user's own
+LARGEST_VARIABLE = 2**31 - 4  # bytes, of a NetCDF 3 file
+#: Of what a control group may take, version 2 and 1.
+GROUPS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
+
+#: Bytes a step for the load's mean over it, and what that is made of; its history is table.
+LOAD_OF_STEP, TABLE_OF_STEP = 24, 64
+LEDGER = 5  # terms of an energy ledger, at least
+#: How often a waveform is there at once: as it is sampled, and as it is written.
+COPIES = 2
+
+
+def memory() -> float:
+    """Return the bytes that a run may take: JOINTWAVE_MEMORY, else what the machine has."""
+    asked = os.environ.get(LIMIT)
+    if asked is None:
+        return _of_machine()
+    try:
+        limit = float(asked)
+    except ValueError:
+        limit = 0.0
+    if not (limit > 0 and isfinite(limit)):
+        raise SceneError(LIMIT, "", None, f"is {asked!r}, must be a number of GB")
+    return 1e9 * limit
+
+
+@cache
+def _of_machine() -> float:
+    found = [float(os.sysconf("SC_PAGE_SIZE")) * os.sysconf("SC_PHYS_PAGES")]
+    for group in GROUPS:
+        try:
+            found.append(float(Path(group).read_text(encoding="ascii")))
+        except (OSError, ValueError):  # there is none, or it is "max"
+            continue
+    return min(found)
+
+
+def refuse_beyond_memory(scene: Scene, parts: Mapping[str, float]) -> None:
+    """Raise SceneError where a run's parts, bytes by the key that decides them, are too large."""
+    total, limit = sum(parts.values()), memory()
+    if total <= limit:
+        return
+    key = max(parts, key=lambda k: parts[k])
+    raise SceneError(
+        scene.where,
+        key,
+        value_of(scene, key),
+        f"the run would take about {spoken(total)} of memory, {spoken(parts[key])} of it by this; "
+        f"here are {spoken(limit)} (the environment's {LIMIT}, in GB, else the machine's)",
+    )
+
+
+def require(size: float, what: str) -> None:
+    """Raise MemoryError where so many bytes are more than a run may take."""
+    if size > memory():
+        raise MemoryError(f"{what} would take about {spoken(size)}; here are {spoken(memory())}")
+
+
+def value_of(scene: Scene, key: str) -> object:
+    """Return what a scene has at a dotted key."""
+    found: object = scene
+    for part in key.split("."):
+        found = getattr(found, part)
+    if isinstance(found, list):
+        return f"{len(found):,} places"
+    return found
+
+
+def spoken(size: float) -> str:
+    """Return bytes in words."""
+    return f"{size / 1e9:.3g} GB" if size >= 1e9 else f"{size / 1e6:.3g} MB"
+
+
+def samples_of(scene: Scene) -> float:
+    """Return how many samples a scene asks for."""
+    return scene.time.duration / scene.interval + 1
+
+
+def waveform_bytes(scene: Scene, spatial: bool = False) -> float:
+    """Return what the waveforms and the ledger take (bytes), written ones included.
+
+    Raises SceneError where one of them would not fit a file.
+    """
+    record, samples = scene.record, samples_of(scene)
+    sections, points = len(record.stress), len(record.velocity)
+    axes = 3 if spatial else 1
+    largest = 8 * samples * max(sections * max(axes - 1, 1), points * axes)
+    if largest > LARGEST_VARIABLE:
+        key = "record.velocity" if points * axes >= sections * max(axes - 1, 1) else "record.stress"
+        raise SceneError(
+            scene.where,
+            key,
+            value_of(scene, key),
+            f"with {samples:,.0f} samples gives a waveform of {spoken(largest)}; "
+            f"at most {spoken(LARGEST_VARIABLE)} fit a file",
+        )
+    rows = (
+        axes * sections + axes * (3 if spatial else 2) * points + (LEDGER if record.energy else 0)
+    )
+    return COPIES * 8 * samples * rows
+
+
+def load_bytes(scene: Scene, steps: float) -> float:
+    """Return what the load of so many steps takes (bytes) while it is made."""
+    table = scene.load.history is not None
+    return steps * (TABLE_OF_STEP if table else LOAD_OF_STEP)
+
+
+def snapshot_bytes(scene: Scene, nodes: float) -> float:
+    """Return what the snapshots of so many nodes take (bytes)."""
+    fields = scene.record.fields
+    return 0.0 if fields is None else (scene.time.duration / fields + 1) * nodes * 7 * 8 * COPIES

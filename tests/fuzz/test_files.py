@@ -1,0 +1,205 @@
+"""Loads, curves, meshes and command lines wrong in any way: read or refused in one line."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import cases
+from continuum.meshing.session import gmsh_session
+
+LOADS = [p.read_bytes() for p in sorted(Path(cases.__file__).parent.glob("*/*.csv"))]
+
+
+def often(count):
+    """Return the settings for so many examples."""
+    every = list(HealthCheck)
+    return settings(
+        max_examples=count, deadline=None, suppress_health_check=every, derandomize=True
+    )
+
+
+CELLS = st.one_of(
+    st.floats().map(repr),
+    st.integers().map(str),
+    st.sampled_from(
+        ["", "nan", "inf", "1e400", "-0", "1_0", "0x10", '"', '"1"', " 1 ", "١", "\0", "#"]
+    ),
+    st.text(max_size=5),
+)
+HEADERS = st.sampled_from(
+    [
+        "",
+        "time,stress@20\n",
+        "time [ms], -stress@20 [MPa], velocity_x@1 [m]\n",
+        "t\n",
+        "time,time\n",
+    ]
+)
+
+
+@st.composite
+def numbers(draw):
+    """Draw a CSV file, right, nearly right or wrong."""
+    separator = draw(st.sampled_from([",", ", ", ";", "\t", " "]))
+    if draw(st.booleans()):
+        times = sorted(draw(st.lists(st.floats(0, 1e30), max_size=6)))
+        rows = [[repr(t), repr(draw(st.floats(-1e30, 1e30)))] for t in times]
+    else:
+        rows = draw(st.lists(st.lists(CELLS, max_size=4), max_size=8))
+    ending = draw(st.sampled_from(["\n", "\r\n", "\r"]))
+    text = draw(HEADERS) + ending.join(separator.join(row) for row in rows)
+    return text.encode(draw(st.sampled_from(["utf-8", "utf-8", "utf-8-sig", "utf-16"])), "replace")
+
+
+@st.composite
+def cut(draw, files):
+    """Draw a file with a part left out, doubled or replaced, up to three times."""
+    data = draw(st.sampled_from(files))
+    for _ in range(draw(st.integers(0, 3))):
+        i = draw(st.integers(0, len(data)))
+        j = min(len(data), i + draw(st.sampled_from([0, 1, 1, 4, 8, 100, len(data)])))
+        new = st.one_of(
+            st.binary(max_size=8), st.sampled_from([b"", b"-1", b"9" * 12, b"1e400", data[i:j] * 2])
+        )
+        data = data[:i] + draw(new) + data[j:]
+    return data
+
+
+@pytest.fixture(scope="module")
+def meshes(tmp_path_factory):
+    """Return gmsh files of a pillar of three blocks, versions 2.2 and 4.1, text and binary."""
+    folder, found = tmp_path_factory.mktemp("meshes"), []
+    for dim in (2, 3):
+        with gmsh_session() as gmsh:
+            _pillar(gmsh, dim)
+            for version, binary in ((2.2, 0), (2.2, 1), (4.1, 0), (4.1, 1)):
+                gmsh.option.setNumber("Mesh.MshFileVersion", version)
+                gmsh.option.setNumber("Mesh.Binary", binary)
+                path = folder / "pillar.msh"
+                gmsh.write(str(path))
+                found.append(path.read_bytes())
+    return found
+
+
+def _pillar(gmsh, dim):
+    """Make a coarse pillar of three blocks with its rock, joints and ends as groups."""
+    occ, rock, joints = gmsh.model.occ, [], []
+    for i in range(3):
+        if dim == 2:
+            rock.append(occ.addRectangle(-0.2, 0.5 * i, 0.0, 0.4, 0.5))
+        else:
+            rock.append(occ.addBox(-0.2, 0.5 * i, -0.2, 0.4, 0.5, 0.4))
+    occ.fragment([(dim, rock[0])], [(dim, tag) for tag in rock[1:]])
+    occ.synchronize()
+    for _, tag in gmsh.model.getEntities(dim - 1):
+        x0, y0, _, x1, y1, _ = gmsh.model.getBoundingBox(dim - 1, tag)
+        if abs(y1 - y0) < 1e-6 and min(abs(y0 - 0.5), abs(y0 - 1.0)) < 1e-6 and x1 > x0:
+            joints.append(tag)
+    rock = [tag for _, tag in gmsh.model.getEntities(dim)]
+    for size, tags, name in ((dim, rock, "rock"), (dim - 1, joints, "joint")):
+        gmsh.model.setPhysicalName(size, gmsh.model.addPhysicalGroup(size, tags), name)
+    gmsh.option.setNumber("Mesh.MeshSizeMin", 0.5)
+    gmsh.model.mesh.generate(dim)
+
+
+def found(meet, target, inputs, count, wanted=frozenset({"read", "refused"})):
+    """Let a target meet so many inputs; assert that the outcomes are those wanted."""
+    outcomes = set()
+
+    @often(count)
+    @given(inputs)
+    def check(data):
+        outcomes.add(meet(target, data))
+
+    check()
+    assert outcomes == wanted
+
+
+@pytest.mark.parametrize("target", ["load", "curve"])
+def test_a_table_of_numbers_is_read_or_refused(meet, target):
+    found(meet, target, st.one_of(numbers(), cut(LOADS)), 200)
+
+
+def test_a_spoilt_mesh_is_read_or_refused(meet, meshes):
+    found(meet, "mesh", cut(meshes), 60)
+
+
+SCENES = [
+    "guo-li-2002/fig-03",
+    "beyond/spall",
+    "gone.toml",
+    ".",
+    "/dev/zero",
+    "\udce9",
+    "a" * 300,
+    "",
+]
+COMMANDS = [
+    "run",
+    "list",
+    "explain",
+    "compare",
+    "effects",
+    "plan",
+    "study",
+    "report",
+    "rum",
+    "--help",
+]
+OPTIONS = [
+    *("--set", "--variant", "--out", "--engine", "--model", "--with", "--align", "--json", "--vtx"),
+    *("--misfit", "--seconds", "--workers", "--version", "--no-spectral", "-h", "--", "--set="),
+]
+SETS = [
+    *(
+        "pillar.length=1e9",
+        "pillar.block=1e-9",
+        "a=[" * 2000,
+        "a" * 500 + "=1",
+        ".=1",
+        "..=",
+        "=",
+        "x",
+    ),
+    *("a.b.c=1", "load.file=/dev/zero", "load.shape=table", "record.stress=[1,2]", "x=1\ny=2"),
+    *(
+        "pillar.length=" + "9" * 5000,
+        "title=\x00",
+        "joints={tension=false}",
+        "variants=[]",
+        "load=3",
+    ),
+]
+WORDS = st.one_of(
+    st.sampled_from([*COMMANDS, *OPTIONS, *SETS, *SCENES]),
+    st.sampled_from(
+        ["dem", "continuum", "exact", "jointed", "lattice", "0.01", "-1", "nan", "1e999"]
+    ),
+    st.text(max_size=8),
+)
+
+
+@st.composite
+def lines(draw):
+    """Draw a command line, one argument a line."""
+    words = [draw(st.sampled_from(COMMANDS)), draw(st.sampled_from(SCENES))]
+    for _ in range(draw(st.integers(0, 4))):
+        option = draw(st.sampled_from(OPTIONS))
+        values = {"--set": st.sampled_from(SETS), "--out": st.just("out")}.get(option, WORDS)
+        words += [option, draw(values)]
+    words = draw(st.one_of(st.just(words), st.permutations(words), st.lists(WORDS, max_size=6)))
+    return "\n".join(words).encode("utf-8", "surrogatepass")
+
+
+def test_a_command_line_is_obeyed_or_refused(meet):
+    found(meet, "command", lines(), 150)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("target", ["load", "curve", "mesh", "command"])
+def test_thousands_of_inputs_are_read_or_refused(meet, meshes, target):
+    tables = st.one_of(numbers(), cut(LOADS))
+    inputs = {"mesh": cut(meshes), "command": lines()}.get(target, tables)
+    found(meet, target, inputs, 1500)

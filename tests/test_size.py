@@ -1,0 +1,212 @@
+"""Runs that would not fit the memory are refused before anything of theirs is made."""
+
+import os
+import re
+import subprocess
+import sys
+import tracemalloc
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import cases
+from cases.errors import SceneError
+from cases.size import LIMIT, memory, refuse_beyond_memory, waveform_bytes
+from compare.curvefiles import read_columns
+from compare.engines import solve
+from compare.exact import images
+
+AT_ONCE = 200e6  # bytes: what reading a scene of ten million blocks takes, not one run refused here
+
+
+@pytest.fixture
+def limit(monkeypatch):
+    """Set the memory that runs may take, GB."""
+    return lambda size: monkeypatch.setenv(LIMIT, str(size))
+
+
+SHORT = {"record__interval": 1e-7, "time__duration": 1e-5}
+LONG = {"record__interval": 1e-6, "time__duration": 1.0, "load__period": 0.01}
+SPACE = {"load__direction": [0.6, 0.8, 0.0]}
+
+#: What is too large for 0.1 GB, the solver, and the key that decides it.
+LARGE = {
+    "blocks": (dict(pillar__block=2e-5, **SHORT), "dem", "pillar.block"),
+    "blocks in space": (dict(pillar__block=5e-5, **SHORT, **SPACE), "dem", "pillar.block"),
+    "samples": (LONG, "dem", "record.interval"),
+    "samples in space": (LONG | SPACE, "dem", "record.interval"),
+    "steps": (dict(numerics__dem__step_fraction=1e-7), "dem", "numerics.dem.step_fraction"),
+    "steps of fourth order": (
+        dict(numerics__dem__step_fraction=3e-7, numerics__dem__scheme="fourth-order"),
+        "dem",
+        "numerics.dem.step_fraction",
+    ),
+    "snapshots": (
+        dict(pillar__block=0.025, record__fields=1e-5, time__duration=1e-2, record__interval=1e-5),
+        "dem",
+        "record.fields",
+    ),
+    "elements": (
+        dict(numerics__continuum__elements_per_block=1000, pillar__block=0.05),
+        "continuum-jointed",
+        "numerics.continuum.elements_per_block",
+    ),
+    "elements that a short period asks for": (
+        dict(load__period=1e-12, record__interval=1e-5),
+        "continuum-equivalent",
+        "numerics.continuum.elements_per_block",
+    ),
+    "cells of a column": (
+        dict(numerics__continuum__dim=3, numerics__continuum__elements_across=50),
+        "continuum-jointed",
+        "numerics.continuum.elements_across",
+    ),
+    "samples of an exact solution": (LONG | {"time__duration": 3.0}, "lattice", "record.interval"),
+}
+
+
+@pytest.mark.parametrize("name", LARGE)
+def test_a_large_run_is_refused_with_its_estimate(pillar, limit, name):
+    """In one line that names the key and both sizes, before the arrays are made."""
+    changes, solver, key = LARGE[name]
+    scene = pillar(**changes)
+    limit(0.1)
+    tracemalloc.start()
+    with pytest.raises(SceneError, match=rf"{key}.*would take about .* (GB|MB) of memory") as error:
+        solve(solver, scene)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert "here are 100 MB" in str(error.value) and len(str(error.value).splitlines()) == 1
+    assert most < AT_ONCE
+
+
+@pytest.mark.parametrize(
+    "solver, changes, words",
+    [
+        ("jointed-bar", dict(load__period=1e-9, record__interval=1e-4), "instants of the load"),
+        ("lattice", dict(record__interval=1.0, time__duration=9.0), "points of integration"),
+        ("no-tension-chain", dict(joints__tension=False, record__interval=1e-6), "states of"),
+    ],
+)
+def test_a_large_exact_solution_is_refused(pillar, limit, solver, changes, words):
+    limit(0.1)
+    with pytest.raises(
+        SceneError, match=f"not enough memory: {solver}: .*{words}.* here are 100 MB"
+    ):
+        solve(solver, pillar(**changes))
+
+
+def test_a_bar_that_is_run_through_without_end_has_no_images(pillar):
+    scene = pillar(time__duration=5e4, record__interval=1.0, load__period=1.0)
+    assert images.applies(scene)
+    longer = pillar(time__duration=1e5, record__interval=1.0, load__period=1.0)
+    assert "1,000,000 times" in images.applies(longer).reason
+
+
+@pytest.mark.parametrize(
+    "solver, changes, size",
+    [
+        ("dem", {}, 5.0),
+        ("dem", SPACE, 5.0),
+        ("continuum-jointed", dict(numerics__continuum__elements_per_block=1), 5.0),
+    ],
+)
+def test_a_run_within_the_memory_is_made(pillar, limit, solver, changes, size):
+    """The estimate of a short run of a hundred blocks is some MB, far below what it is given."""
+    limit(size / 1e3)
+    short = dict(time__duration=2e-3, record__interval=1e-4)
+    assert solve(solver, pillar(**short, **changes)).sizes["time"] == 21
+
+
+CHILD = """
+import sys
+from pathlib import Path
+import cases
+from compare.output import write_fields
+from dem import simulate_fields
+
+
+def highest():
+    lines = open("/proc/self/status").read().splitlines()
+    return 1024 * int(next(x for x in lines if x.startswith("VmHWM")).split()[1])
+
+
+def run(blocks, samples):
+    changes = {"variants": [], "pillar.length": 0.5 * blocks, "record.stress": [1.0],
+               "record.velocity": [1.0], "record.interval": 1e-6, "time.duration": 1e-6 * samples}
+    found = simulate_fields(cases.load_variant(sys.argv[1], "", changes))
+    write_fields(Path(sys.argv[4]), found)
+
+
+run(10, 10)
+before = highest()
+run(int(sys.argv[2]), int(sys.argv[3]))
+print(highest() - before)
+"""
+
+
+@pytest.mark.parametrize(
+    "blocks, samples, key", [(1_000_000, 3, "pillar.block"), (10, 2_000_000, "record.interval")]
+)
+def test_the_estimate_is_near_what_a_run_takes(pillar, limit, tmp_path, blocks, samples, key):
+    """No more, or a run that fits would be refused; no less than a third, or it bounds nothing."""
+    file = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
+    command = [
+        sys.executable,
+        "-c",
+        CHILD,
+        str(file),
+        str(blocks),
+        str(samples),
+        str(tmp_path / "x.nc"),
+    ]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    changes = dict(pillar__length=0.5 * blocks, record__stress=[1.0], record__velocity=[1.0])
+    limit(1e-9)
+    with pytest.raises(SceneError) as error:
+        solve("dem", pillar(record__interval=1e-6, time__duration=1e-6 * samples, **changes))
+    number, unit = re.search(r"about ([\d.e+]+) (GB|MB) of memory", str(error.value)).groups()
+    estimate = float(number) * {"GB": 1e9, "MB": 1e6}[unit]
+    assert error.value.key == key
+    assert float(done.stdout) / 3 <= estimate <= float(done.stdout)
+
+
+def test_a_large_file_of_curves_is_refused(tmp_path, limit):
+    """By what its header says, before its numbers are read."""
+    path = tmp_path / "run.nc"
+    time = np.arange(20_000.0)
+    xr.Dataset({"stress": ("time", time)}, {"time": time}).to_netcdf(path, engine="scipy")
+    assert read_columns(path).time.values.size == 20_000
+    limit(1e-4)
+    with pytest.raises(SceneError, match="cannot be read as NetCDF: its variables would take"):
+        read_columns(path)
+
+
+def test_the_bound_is_the_users_or_the_machines(monkeypatch, limit):
+    limit(3)
+    assert memory() == 3e9
+    monkeypatch.delenv(LIMIT)
+    assert 1e8 < memory() <= os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    for wrong in ("", "much", "-1", "nan", "inf", "0"):
+        limit(wrong)
+        with pytest.raises(SceneError, match=f"{LIMIT}: is .*must be a number of GB"):
+            memory()
+
+
+def test_a_run_at_the_bound_is_not_refused(pillar, limit):
+    limit(1.0)
+    refuse_beyond_memory(pillar(), {"pillar.block": 0.4e9, "record.interval": 0.6e9})
+    with pytest.raises(SceneError, match=r"record\.interval"):
+        refuse_beyond_memory(pillar(), {"pillar.block": 0.4e9, "record.interval": 0.61e9})
+
+
+def test_a_waveform_beyond_what_a_file_holds_is_refused(pillar):
+    """Thirty sections of ten million samples: 2.4 GB, and the format ends at 2 GB a variable."""
+    places = [0.5 * i for i in range(30)]
+    scene = pillar(record__stress=places, record__interval=1e-7, time__duration=1.0)
+    with pytest.raises(
+        SceneError, match=r"record\.stress = '30 places'.*2\.4 GB; at most 2\.15 GB"
+    ):
+        waveform_bytes(scene)

@@ -1,0 +1,225 @@
+"""What meets any input: each target takes bytes as one kind of file or command and reads it.
+
+A target returns "read" or "refused", and raises whatever no user should see: any error but
+SceneError and UnstableError, a message of several lines, or a message that is too long to read. It
+makes every check that a command makes before it solves something, and solves only tiny scenes of
+the paper's kind, whose kernels are compiled already.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+from collections.abc import Callable
+from contextlib import chdir, redirect_stderr, redirect_stdout
+from pathlib import Path
+from time import process_time
+from unittest.mock import patch
+
+import numpy as np
+
+import cases
+from cases.calibrate import calibrate
+from cases.effects import active_effects, is_spatial, warnings
+from cases.errors import SceneError, UnstableError
+from cases.history import History
+from cases.loads import Recorded, load_history, step_means
+from cases.result import scene_hash
+from cases.scene import Scene
+from compare import cli
+from compare.curvefiles import read_columns
+from compare.engines import applies, names
+from compare.studies.runner import key
+from compare.studies.study import load as load_study
+
+SECONDS = 5  # of the processor, for one input
+MEMORY = "0.2"  # GB that a run may take here
+LONGEST = 2000  # characters of a message
+TINY = 20_000  # block steps of a run
+FREE = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
+#: What the paper's own pillar calls for: nothing else is compiled here.
+PLAIN = ["energy ledger"]
+
+
+class Unreadable(AssertionError):
+    """A message that is not one line."""
+
+
+def _asked(work: Callable[[], object]) -> str:
+    """Return what came of reading something."""
+    try:
+        work()
+    except (SceneError, UnstableError) as error:
+        _check(str(error))
+        return "refused"
+    return "read"
+
+
+def _check(message: str) -> None:
+    if not message.strip() or len(message.splitlines()) > 1 or len(message) > LONGEST:
+        raise Unreadable(message[:LONGEST])
+
+
+def _written(folder: Path, name: str, data: bytes) -> Path:
+    path = folder / name
+    path.write_bytes(data)
+    return path
+
+
+def scene(data: bytes, folder: Path) -> str:
+    """A scene file and all that `explain` says of it."""
+    path = _written(folder, "scene.toml", data)
+
+    def work() -> None:
+        for one in cases.load(path)[:3]:
+            _examine(one)
+
+    return _asked(work)
+
+
+def _examine(one: Scene) -> None:
+    calibrate(one)
+    warnings(one)
+    scene_hash(one)
+    step_means(load_history(one), one.interval, 4)
+    answers = {name: applies(name, one) for name in names()}
+    _refuse_large_rock(one, [n for n in answers if n.startswith("continuum") and answers[n]])
+    steps = _steps(one)
+    if steps * one.pillar.block_count <= TINY and _is_plain(one):
+        from dem import simulate_fields
+
+        simulate_fields(one)
+
+
+def _steps(one: Scene) -> int:
+    """Return how many steps the rigid blocks would take, after every check before the first."""
+    if is_spatial(one):
+        from dem.spatial.simulate import prepare
+
+        return prepare(one).time.steps
+    from dem.axial.simulate import scheme_of
+
+    return scheme_of(one).build(one)[2].steps
+
+
+def _refuse_large_rock(one: Scene, models: list[str]) -> None:
+    from continuum.build import elements_for
+    from continuum.kinematics import kinematics
+    from continuum.size import refuse_large_mesh
+
+    p, numerics = calibrate(one), one.numerics.continuum
+    for name in models:
+        elements = elements_for(one, p, name.removeprefix("continuum-"))
+        refuse_large_mesh(one, kinematics(one), numerics.elements_per_block or elements)
+
+
+def _is_plain(one: Scene) -> bool:
+    return (
+        active_effects(one) == PLAIN and one.numerics.dem.scheme == "leapfrog" and one.record.energy
+    )
+
+
+def load(data: bytes, folder: Path) -> str:
+    """A load's CSV file."""
+    _written(folder, "load.csv", data)
+    try:
+        history = History.from_csv(folder, "load.csv")
+    except ValueError as error:
+        _check(str(error))
+        return "refused"
+    with np.errstate(over="raise", invalid="raise"):
+        Recorded(history.time, history.stress).value(np.linspace(0.0, 1.0, 10))
+    return "read"
+
+
+def curve(data: bytes, folder: Path) -> str:
+    """A file that `compare --with` names: NetCDF where it begins like that, else CSV."""
+    is_netcdf = data[:3] == b"CDF" or data[1:4] == b"HDF"
+    path = _written(folder, "curve.nc" if is_netcdf else "curve.csv", data)
+    return _asked(lambda: read_columns(path))
+
+
+def study(data: bytes, folder: Path) -> str:
+    """A study's file, and the scenes of its first points."""
+    path = _written(folder, "study.toml", data)
+
+    def work() -> None:
+        for point in load_study(str(path)).points()[:3]:
+            key(point)
+            calibrate(point.scene)
+
+    return _asked(work)
+
+
+def mesh(data: bytes, folder: Path) -> str:
+    """A gmsh file of a pillar of three blocks."""
+    from continuum.meshing.given import given_mesh
+
+    shape = {"pillar.length": 1.5, "pillar.side": 0.4, "pillar.block": 0.5, "soft_layers": []}
+    places = {"record.stress": [0.5], "record.velocity": [0.25], "variants": []}
+    one = cases.load_variant(FREE, "", shape | places)
+    path = _written(folder, "pillar.msh", data)
+    return _asked(lambda: given_mesh(path, one, calibrate(one)))
+
+
+#: What would solve something: a command that gets so far has read all that it was given.
+SOLVERS = (
+    "compare.runs.execute",
+    "compare.pairs.compare",
+    "compare.worth.balance",
+    "compare.planner.plan",
+    "compare.studies.runner.run",
+    "compare.report.build",
+    "compare.explain.explanation",
+)
+
+
+SOLVES = "a command would solve something"
+
+
+def _stop(*_: object, **__: object) -> None:
+    raise SceneError("here", "", None, SOLVES)
+
+
+def command(data: bytes, folder: Path) -> str:
+    """A command line, one argument a line, up to where it would solve something."""
+    arguments = [os.fsdecode(part) for part in data.replace(b"\0", b"").split(b"\n")]
+    said, shown = io.StringIO(), io.TextIOWrapper(io.BytesIO(), "utf-8")
+    with chdir(folder), redirect_stderr(said), redirect_stdout(shown):
+        code = _status(["jointwave", *arguments])
+    if code == 0:
+        return "read"
+    lines = [x for x in said.getvalue().splitlines() if not x.startswith("jointwave: warning")]
+    _check(lines[-1] if lines else "")
+    if code != 2 or not lines[-1].startswith("jointwave: "):
+        raise Unreadable(f"exit {code}: {said.getvalue()[:LONGEST]}")
+    return "read" if SOLVES in lines[-1] else "refused"
+
+
+def _status(arguments: list[str]) -> int:
+    from contextlib import ExitStack
+
+    with ExitStack() as stack:
+        stack.enter_context(patch.object(sys, "argv", arguments))
+        for name in SOLVERS:
+            stack.enter_context(patch(name, _stop))
+        try:
+            cli.main()
+        except SystemExit as end:
+            return end.code if isinstance(end.code, int) else 0
+    return 0
+
+
+TARGETS: dict[str, Callable[[bytes, Path], str]] = {
+    target.__name__: target for target in (scene, load, curve, study, mesh, command)
+}
+
+
+def met(name: str, data: bytes, folder: Path) -> str:
+    """Return what a target makes of an input; raises TimeoutError where it is long about it."""
+    began = process_time()  # other work on the machine does not count
+    outcome = TARGETS[name](data, folder)
+    if process_time() - began > SECONDS:
+        raise TimeoutError(f"{process_time() - began:.3g} s for one input")
+    return outcome
