@@ -77,14 +77,14 @@ def test_read_only_folder_is_one_line(disk, start, finish, arguments):
 def test_protected_result_is_refused_before_the_run(tmp_path, start, finish, arguments):
     """Not when hours have passed."""
     result = tmp_path / "dem.nc"
-    result.write_text("old")
+    result.write_bytes(b"CDF of an earlier run")
     done = subprocess.run(("chattr", "+i", str(result)), capture_output=True, text=True)
     if done.returncode:
         pytest.skip(f"no file can be protected here: {done.stderr.strip()}")
     try:
         code, (line,) = finish(start(*arguments("axial", tmp_path, *SHORT)))
         assert code == 2 and str(result) in line and "protected" in line
-        assert result.read_text() == "old"
+        assert result.read_bytes() == b"CDF of an earlier run"
     finally:
         subprocess.run(("chattr", "-i", str(result)), check=True)
 
