@@ -13,12 +13,13 @@ zero. That is at omega_d t = pi - 2 asin(zeta), and there the speed is, over tha
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import asin, log, pi, sqrt
+from math import asin, isfinite, log, pi, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from cases.calibrate import calibrate
+from cases.errors import UnstableError
 from cases.sampling import Clock
 from cases.scene import Scene
 from compare.stability.case import STEP, Finding, Trial
@@ -48,7 +49,8 @@ def restitution(trial: Trial) -> Finding:
     p, (layer, _) = calibrate(scene), scene.soft_layers
     omega = sqrt(p.stiffness[p.soft[0]] * p.area / p.block_mass)
     dt = float(trial.case.changes[STEP]) * trial.critical
-    loose = (_blocks if trial.solver.engine == "dem" else _rock)(scene, dt)
+    kind = trial.solver.engine.removeprefix("continuum-")
+    loose = _blocks(scene, dt) if kind == "dem" else _rock(scene, dt, kind)
     peaks = _peaks(loose, max(1, round(pi / omega / dt / SAMPLES)))
     zeta = layer.damping_ratio or 0.0
     e = -zeta * (pi - 2 * asin(zeta)) / sqrt(1 - zeta**2)
@@ -75,6 +77,10 @@ def _peaks(loose: Loose, stride: int) -> np.ndarray:
     while len(peaks) <= IMPACTS:
         loose.advance(stride)
         v = loose.speed()
+        if not isfinite(v):
+            raise UnstableError(
+                f"the loose block's speed is no number after {len(peaks):,} impacts"
+            )
         if v * sign < 0:
             peaks.append(largest)
             largest, sign = 0.0, -sign
@@ -97,13 +103,13 @@ def _blocks(scene: Scene, dt: float) -> Loose:
     return Loose(lambda steps: march(model, state, 0, steps), lambda: float(state.v[1]))
 
 
-def _rock(scene: Scene, dt: float) -> Loose:
+def _rock(scene: Scene, dt: float, kind: str) -> Loose:
     """Return the middle one of three deformable blocks, at 1 m/s; its speed is that of its mass."""
     from continuum.build import build_model, discretise, room, state_at_rest
     from continuum.explicit import run
 
-    discrete = discretise(scene, "jointed")
-    model = build_model(scene, discrete, "jointed", Clock(dt, 1, 2))
+    discrete = discretise(scene, kind)
+    model = build_model(scene, discrete, kind, Clock(dt, 1, 2))
     state = state_at_rest(model, False)
     body, d = discrete.body, scene.pillar.block
     freedom = body.freedom(_middle(body, d), 0)

@@ -118,7 +118,9 @@ def _chatter() -> list[Case]:
     }
     words = "logarithm of the last speed over the first, off that of ten thousand dashpots' impacts"
     hours = {"implicit": "forty million implicit steps would take hours"}
-    rock = {"continuum-jointed": "see the loose block of rock"}
+    rock = dict.fromkeys(
+        ("continuum-jointed", "continuum-equivalent"), "see the loose block of rock"
+    )
     blocks = {"dem": "see the loose rigid block"}
     judge = chatter.restitution
     return [
