@@ -13,6 +13,8 @@ from continuum.build import Discrete
 from continuum.model import Model, Samples, State
 from continuum.watch import Watch
 
+IMPLICIT_WORK = 100  # some corrections, each a triangular solve and often a factorisation
+
 
 class Engine(NamedTuple):
     """One way to step a model.
@@ -21,6 +23,7 @@ class Engine(NamedTuple):
     march : function of (first, last) that takes the steps up to that of step last - 1.
     ahead : s, how far displacements are beyond the last of these when `march` returns.
     attributes : what a result says of the steps. parts : arrays that change beside the state.
+    work : of a step, over one of leapfrog.
     """
 
     compile: Callable[[], None]
@@ -28,6 +31,7 @@ class Engine(NamedTuple):
     ahead: float
     attributes: Callable[[], dict[str, Any]]
     parts: Any = ()
+    work: int = 1
 
 
 def explicit_engine(
@@ -86,4 +90,5 @@ def implicit_engine(
         0.0,
         attributes,
         run.parts,
+        IMPLICIT_WORK,
     )

@@ -13,11 +13,12 @@ if TYPE_CHECKING:
     from cases.snapshots import Film
 
 FREEDOM_STEPS_BETWEEN_LOOKS = 10_000_000  # some 0.1 s: often enough for a progress bar
+LEAST_LOOKS = 20  # however short the run
 
 
 def march_with_looks(
     time: Clock,
-    freedoms: int,
+    work: int,
     march: Callable[[int, int], None],
     check: Callable[[int, int], None],
     parts: Any,
@@ -28,11 +29,13 @@ def march_with_looks(
     """Run all samples: `march(first, last)` takes steps first .. last - 1, and after it
     `check(first, last)` looks at samples first .. last - 1.
 
+    work : of a step, in freedoms that leapfrog steps in that time.
     Every stretch ends with the step of a sample: what follows it belongs to the next one.
     parts : all that changes in the run. film : sees it at every sample that it keeps; keeper : sees
     its parts after every stretch; None without.
     """
-    chunk = max(1, FREEDOM_STEPS_BETWEEN_LOOKS // (freedoms * time.stride))
+    chunk = FREEDOM_STEPS_BETWEEN_LOOKS // (work * time.stride)
+    chunk = max(1, min(chunk, time.samples // LEAST_LOOKS))
     stops = {time.samples, *range(0, time.samples, chunk)}
     if film is not None:
         stops.update(range(1, time.samples, film.every))

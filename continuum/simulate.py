@@ -98,9 +98,10 @@ def simulate(
         found = _recorded(scene, discrete, built, samples, time.times[:count], about | seconds)
         return xr.Dataset(*(found if film is None else film.developed(found)))
 
-    parts, size = (state, samples, watch.parts, engine.parts), int(team.largest(state.u.size))
+    parts = state, samples, watch.parts, engine.parts
+    work = engine.work * int(team.largest(state.u.size))
     try:
-        march_with_looks(time, size, engine.march, watch.check, parts, progress, film, keeper)
+        march_with_looks(time, work, engine.march, watch.check, parts, progress, film, keeper)
     except StoppedError as error:
         error.result = result(error.samples)
         raise

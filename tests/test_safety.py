@@ -9,8 +9,8 @@ import pytest
 import cases
 from cases.errors import SceneError
 from cases.read import load, load_variant
+from compare.jobs import plan
 from compare.output import refuse_foreign, write_folder
-from compare.runs import plan
 from compare.studies.study import load as load_study
 
 ROOT = Path(cases.__file__).parents[1]

@@ -195,7 +195,9 @@ def test_threads_change_no_snapshot(pillar):
         np.testing.assert_array_equal(getattr(one, name), getattr(two, name))
 
 
-def test_too_many_snapshots_of_too_many_blocks_are_refused(pillar):
+def test_too_many_snapshots_of_too_many_blocks_are_refused(pillar, monkeypatch):
+    """Whatever memory there is: no file holds them."""
+    monkeypatch.setenv("JOINTWAVE_MEMORY", "1e6")
     long = {"pillar__length": 1e6, "record__fields": 1e-3}
     with pytest.raises(SceneError, match=r"record\.fields = .*121 snapshots of 16,000,000 nodes"):
         dem.simulate(pillar(**long))

@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-OLD = b"of an earlier run"
+OLD = b"CDF of an earlier run"
 QUICK = {"axial": 2, "spatial": 2, "explicit": 1, "implicit": 2, "shared": 1}
 ALL = dict.fromkeys(QUICK, 10)
 
