@@ -66,4 +66,12 @@ def mpiexec():
     launcher = shutil.which("mpiexec")
     if launcher is None:
         pytest.skip("no mpiexec here")
-    return launcher, {**os.environ, **OPEN_MPI}
+    return launcher, {**_outside_mpi(dict(os.environ)), **OPEN_MPI}
+
+
+def _outside_mpi(environment):
+    """Return an environment without what MPI left there, if it was started before the workers were:
+    mpiexec would take itself for a part of it."""
+    if "PMIX_RANK" not in environment:
+        return environment
+    return {k: v for k, v in environment.items() if not k.startswith(("OMPI_", "PMIX_"))}
