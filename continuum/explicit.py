@@ -13,7 +13,7 @@ from continuum.operator import multiply
 from continuum.record import book, record
 from continuum.tractions import load_joints, push
 from joints.borrowed import borrowed
-from joints.guard import creates_energy, runs_away
+from joints.guard import EVERY, creates_energy, runs_away
 from joints.jit import inlined, jitted
 from joints.tiny import flush_tiny, restore_tiny
 
@@ -40,7 +40,7 @@ def is_lost(guard, state, samples, stride, n):
     """Return whether a guard finds the run out of bounds at step n."""
     if guard is None:
         return False
-    lost = runs_away(guard, state.v, n + 1)
+    lost = (n + 1) % EVERY == 0 and runs_away(guard, state.v, n + 1)
     if n % stride == 0:
         lost = creates_energy(guard, samples.energy, n // stride, n) or lost
     return lost

@@ -92,7 +92,7 @@ def test_it_stops_within_so_many_steps_of_leaving_its_bounds(pillar):
 
 def test_a_chain_that_gains_energy_is_stopped_by_its_ledger(pillar):
     """Joints that become stiffer while they are compressed: their energy grows, and nothing has
-    done the work. The first sample after it is where the run ends."""
+    done the work. The run ends at the next look."""
     scene = pillar(**SMALL)
     model, state, time, _ = build(scene)
     samples, held = room(model, state, time.samples), guard(np.inf)
@@ -103,7 +103,8 @@ def test_a_chain_that_gains_energy_is_stopped_by_its_ledger(pillar):
     stiffer = law._replace(normal_stiffness=1.5 * law.normal_stiffness)
     model = model._replace(chain=model.chain._replace(law=stiffer))
     run(model, state, samples, time.stride, half, time.samples, held)
-    assert held.found[:2].tolist() == [half * time.stride, ENERGY]
+    assert half * time.stride <= held.found[0] < half * time.stride + EVERY
+    assert held.found[1] == ENERGY
 
 
 @pytest.mark.parametrize("kind", KINDS)

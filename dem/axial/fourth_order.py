@@ -30,7 +30,7 @@ from dem.axial.state import State, state_at_rest
 from dem.axial.step import step
 from dem.size import refuse_large
 from joints.borrowed import borrowed
-from joints.guard import EVERY, Guard, runs_away
+from joints.guard import EVERY, Guard, march_on, runs_away
 from joints.jit import inlined, jitted
 from joints.tiny import flush_tiny, restore_tiny
 
@@ -118,28 +118,20 @@ def run(composition, model, state, samples, stride, first, last, guard=None):
     """
     tiny = flush_tiny()
     composition, model, state, samples = borrowed((composition, model, state, samples))
+    unseen = 0  # steps
     for s in range(first, last):
         n = s * stride
         book_ends(state.ledger, held(model.chain, state) - composition.stored)
         sample_before(model, state, samples, s)
         sample_after(model, state, samples, s, n)
-        if march_guarded(composition, state, n, n + stride, guard):
+        if march_on(march, composition, state, n, n + stride, guard):
             break
+        unseen += stride
+        if unseen + stride > EVERY:
+            if runs_away(guard, state.v, n + stride):
+                break
+            unseen = 0
     restore_tiny(tiny)
-
-
-@inlined
-def march_guarded(composition, state, n, end, guard):
-    """Take steps n .. end - 1, and return whether a look between them finds the run lost."""
-    if guard is None:
-        march(composition, state, n, end)
-        return False
-    lost = False
-    while n < end and not lost:
-        stop = min(end, n + EVERY - n % EVERY)
-        march(composition, state, n, stop)
-        n, lost = stop, runs_away(guard, state.v, stop)
-    return lost
 
 
 @jitted

@@ -11,7 +11,7 @@ from dem.axial.state import State
 from dem.axial.step import joint_stress, load_at, march, opened
 from joints.borrowed import borrowed
 from joints.energy import elastic_energy, fracture_energy_spent
-from joints.guard import EVERY, creates_energy, runs_away
+from joints.guard import EVERY, creates_energy, march_on, runs_away
 from joints.jit import inlined, jitted
 from joints.laws import law_of
 from joints.tiny import flush_tiny, restore_tiny
@@ -59,30 +59,21 @@ def run(model, state, samples, stride, first, last, guard=None):
     """
     tiny = flush_tiny()
     model, state, samples = borrowed((model, state, samples))
+    unseen = 0  # steps
     for s in range(first, last):
         n = s * stride
         sample_before(model, state, samples, s)
-        lost = march_guarded(model, state, n, n + 1, guard)
+        march(model, state, n, n + 1)
         sample_after(model, state, samples, s, n)
-        if lost or creates_energy(guard, samples.energy, s, n):
+        if march_on(march, model, state, n + 1, n + stride, guard):
             break
-        if march_guarded(model, state, n + 1, n + stride, guard):
-            break
+        unseen += stride
+        if unseen + stride > EVERY:
+            lost = runs_away(guard, state.v, n + stride)
+            if lost or creates_energy(guard, samples.energy, s, n):
+                break
+            unseen = 0
     restore_tiny(tiny)
-
-
-@inlined
-def march_guarded(model, state, n, end, guard):
-    """Take steps n .. end - 1, and return whether a look between them finds the run lost."""
-    if guard is None:
-        march(model, state, n, end)
-        return False
-    lost = False
-    while n < end and not lost:
-        stop = min(end, n + EVERY - n % EVERY)
-        march(model, state, n, stop)
-        n, lost = stop, runs_away(guard, state.v, stop)
-    return lost
 
 
 @inlined

@@ -63,7 +63,7 @@ def test_energy_from_nowhere_is_found_in_the_sample_that_has_it(share, found):
     audit(held, ledger(share * CREATED), 0, 10, 20)
     assert held.found[0] == found
     if found > 0:
-        assert held.found[1:].tolist() == [ENERGY, found - 1]
+        assert held.found[1:].tolist() == [ENERGY, found - EVERY - 1]
 
 
 def test_energy_that_is_lost_is_no_fault():
