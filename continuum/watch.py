@@ -38,9 +38,10 @@ class Watch:
         speed = highest_speed(scene, discrete.properties, model, state, self.time, self.team)
         self.guard = guard(speed)
         self.energy = samples.energy
+        self.parts: tuple = (self.guard,)
         if samples.energy is not None and self.team.size > 1:
             self.energy = np.zeros_like(samples.energy)
-        self.parts = self.guard, self.energy
+            self.parts = self.guard, self.energy
 
     def look(self, n: int) -> bool:
         """Look at the speeds after n steps, and return whether the run is lost."""

@@ -12,9 +12,7 @@ import numpy as np
 from joints.jit import inlined, jitted
 
 EVERY = 64  # steps between two looks at the speeds
-RUNAWAY = (
-    100.0  # times the speed that forces can cause: near the critical step leapfrog swings wide
-)
+RUNAWAY = 100.0  # times the speed that forces can cause: at the critical step leapfrog swings wide
 CREATED = 0.1  # of the largest term of the ledger: more than any scheme here makes of a bounded run
 LAST_DIGITS = 1e-9  # of what a ledger holds at rest, of which small changes are differences
 MAGNITUDE = 0x7FFF_FFFF_FFFF_FFFF  # all bits of a number but its sign

@@ -10,7 +10,7 @@ from compare.figures import save
 from compare.stability.case import EQUIVALENT, JOINTED, LEAPFROG, Trial
 from compare.stability.diagram import draw
 from compare.stability.energies import Drift, drift
-from compare.stability.linear import MILLION
+from compare.stability.linear_cases import MILLION
 from compare.stability.map import StabilityMap
 from compare.stability.row import Row
 from compare.stability.run import Pool, run, run_maps

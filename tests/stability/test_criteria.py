@@ -6,7 +6,7 @@ import pytest
 from compare.engines import solve
 from compare.stability import accuracy, energies, steps
 from compare.stability.case import ALLOW, FOURTH, LEAPFROG, STEP, Case, Finding, Trial
-from compare.stability.linear import BLOW, JOINT, SHORT, TINY
+from compare.stability.linear_cases import BLOW, JOINT, SHORT, TINY
 from compare.stability.row import FAILED, HELD, NONE, row_of
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from compare.stability import chatter, contact, energies, extremes, layers
 from compare.stability.case import STEP, Case
-from compare.stability.linear import SHORT
+from compare.stability.linear_cases import SHORT
 
 BARRED: dict[str, Any] = {"joints.tension": False, "time.duration": 0.03}
 #: Whose least fracture energy is s_t^2 / (2 K'_n) = 14.29 J/m2.

@@ -6,7 +6,7 @@ from typing import Any
 
 from compare.stability import accuracy, extremes, layers
 from compare.stability.case import STEP, Case
-from compare.stability.linear import SECOND_ORDER, SHORT
+from compare.stability.linear_cases import SECOND_ORDER, SHORT
 
 CUT_OFF = 1.1636e-3  # s, pi d / c of the short pillar: the blocks pass no shorter period
 RESONANCE = 0.0148146  # s, 2 L / c of the short pillar
