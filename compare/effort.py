@@ -18,6 +18,9 @@ from compare.engines import solve
 from compare.output import write_text
 
 PILLAR = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
+#: A function that takes some samples, and its number of block-steps.
+Stretch = tuple[Callable[[], None], int]
+
 REPEATS = 5
 SHORTEST = 0.02  # s, of what a clock is read for
 LONGEST = 1.0  # s: of stepping: continuum runs that took as long are not repeated
@@ -58,12 +61,12 @@ def nanoseconds(scene: Scene, threads: int = 1) -> float:
 def in_turns(scenes: list[Scene], threads: int = 1) -> list[float]:
     """Return the same of several scenes, their stretches in turns: what slows the machine for a
     while slows all of them."""
-    stretches = [stretch(scene, threads) for scene in scenes]
-    for march, _ in stretches:
+    timed = [stretch(scene, threads) for scene in scenes]
+    for march, _ in timed:
         march()  # compiles, and sets the blocks in motion
-    rounds = [[_seconds(march) for march, _ in stretches] for _ in range(REPEATS)]
+    rounds = [[_seconds(march) for march, _ in timed] for _ in range(REPEATS)]
     least = map(min, zip(*rounds, strict=True))
-    return [1e9 * s / block_steps for s, (_, block_steps) in zip(least, stretches, strict=True)]
+    return [1e9 * s / block_steps for s, (_, block_steps) in zip(least, timed, strict=True)]
 
 
 def freedoms_in_turns(engine: str, scenes: list[Scene]) -> list[float]:
@@ -91,40 +94,54 @@ def _seconds(march: Callable[[], None]) -> float:
     return spent / calls
 
 
-def stretch(
-    scene: Scene, threads: int = 1, guarded: bool = False
-) -> tuple[Callable[[], None], int]:
-    """Return a function that takes some samples of a scene, and its number of block-steps.
-
-    guarded : under a guard that looks and never finds anything.
-    """
-    return _in_space(scene, threads, guarded) if is_spatial(scene) else _along_axis(scene, guarded)
+def stretch(scene: Scene, threads: int = 1) -> Stretch:
+    """Return a function that takes some samples of a scene, and its number of block-steps."""
+    return stretches(scene, (False,), threads)[0]
 
 
-def _along_axis(scene: Scene, guarded: bool) -> tuple[Callable[[], None], int]:
+def stretches(scene: Scene, guarded: tuple[bool, ...], threads: int = 1) -> list[Stretch]:
+    """Return the same with the very same arrays, once for each: `guarded`, under a guard that looks
+    and never finds anything, or not."""
+    if is_spatial(scene):
+        return _in_space(scene, guarded, threads)
+    return _along_axis(scene, guarded)
+
+
+def _along_axis(scene: Scene, guarded: tuple[bool, ...]) -> list[Stretch]:
     from dem.axial.record import room
     from dem.axial.simulate import scheme_of
     from joints.guard import guard
 
     scheme = scheme_of(scene)
     model, state, time, _ = scheme.build(scene)
-    count, held = _samples(time, state.u.size), guard(inf) if guarded else None
-    march = scheme.marcher(scene, model, state, room(model, state, count), time, held)
-    return lambda: march(0, count), count * time.stride * state.u.size
+    count = _samples(time, state.u.size)
+    samples, block_steps = room(model, state, count), count * time.stride * state.u.size
+
+    def timed(held: bool) -> Stretch:
+        march = scheme.marcher(scene, model, state, samples, time, guard(inf) if held else None)
+        return lambda: march(0, count), block_steps
+
+    return [timed(held) for held in guarded]
 
 
-def _in_space(scene: Scene, threads: int, guarded: bool) -> tuple[Callable[[], None], int]:
+def _in_space(scene: Scene, guarded: tuple[bool, ...], threads: int) -> list[Stretch]:
     from dem.spatial.build import room_for, samples_for, state_at_rest
     from dem.spatial.simulate import prepare
     from dem.spatial.threads import marcher
     from joints.guard import guard
 
     p, model, time, _ = prepare(scene)
-    count, held = _samples(time, p.block_count), guard([inf] * 6) if guarded else None
+    count = _samples(time, p.block_count)
     state, samples = state_at_rest(model, p.block_count), samples_for(model, count)
-    march = marcher(model, state, room_for(model, threads, held), samples)
-    march(0, 0)
-    return lambda: march(0, count * time.stride), count * time.stride * p.block_count
+    steps = count * time.stride
+
+    def timed(held: bool) -> Stretch:
+        room = room_for(model, threads, guard([inf] * 6) if held else None)
+        march = marcher(model, state, room, samples)
+        march(0, 0)
+        return lambda: march(0, steps), steps * p.block_count
+
+    return [timed(held) for held in guarded]
 
 
 def _samples(time: Clock, blocks: int) -> int:

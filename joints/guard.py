@@ -1,7 +1,7 @@
 """What looks at a run from within its kernel, and stops it where its motion has lost its bound.
 
 No speed can be more than all forces together can cause, and no energy come from nowhere. Kernels
-look at the speeds every 64 steps, which costs a look at every velocity in the time of 64 steps, and
+look at the speeds every 96 steps, which costs a look at every velocity in the time of 96 steps, and
 leapfrog, whose ledger is exact, at its last sample.
 """
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from joints.jit import inlined, jitted
 
-EVERY = 64  # steps between two looks at the speeds
+EVERY = 96  # steps, at most, between two looks at the speeds
 RUNAWAY = 100.0  # times the speed that forces can cause: at the critical step leapfrog swings wide
 CREATED = 0.1  # of the largest term of the ledger: more than any scheme here makes of a bounded run
 LAST_DIGITS = 1e-9  # of what a ledger holds at rest, of which small changes are differences
@@ -65,17 +65,23 @@ def speed_that(*motions: float) -> float:
 
 
 @inlined
-def march_on(march, constants, state, n, end, guard):
-    """Take steps n .. end - 1 by march(constants, state, first, last), and look between them where
-    they are many; return whether the run is lost."""
-    if guard is not None:
-        while end - n > EVERY:
-            march(constants, state, n, n + EVERY)
-            n += EVERY
-            if runs_away(guard, state.v, n):
-                return True
-    march(constants, state, n, end)
-    return False
+def in_stretches(take, constants, state, samples, stride, first, last, guard, energy):
+    """Take samples first .. last - 1, `stride` steps apart, and the steps after each.
+
+    take(constants, state, samples, stride, s, n, end) takes steps n .. end - 1 and the samples from
+    s on that fall on them, and returns the next. Under a guard it does so in stretches, with a
+    look at the speeds and at the last sample of a ledger after each.
+    """
+    s, n, end = first, first * stride, last * stride
+    if guard is None:
+        take(constants, state, samples, stride, s, n, end)
+        return
+    while n < end:
+        stop = min(n + EVERY, end)
+        s = take(constants, state, samples, stride, s, n, stop)
+        n = stop
+        if runs_away(guard, state.v, n) or creates_energy(guard, energy, s - 1, (s - 1) * stride):
+            return
 
 
 @inlined

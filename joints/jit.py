@@ -54,6 +54,14 @@ def jitted(function: Callable) -> Callable:
     return _compiled(function)
 
 
+def apart(function: Callable) -> Callable:
+    """Compile a kernel, as `jitted` does, that stays a function of its own in all its callers.
+
+    So its machine code, and its speed, is the same whatever they do besides.
+    """
+    return _compiled(function, forceinline=False)
+
+
 def inlined(function: Callable) -> Callable:
     """Compile a part of kernels, as `jitted` does, that only kernels call.
 
@@ -64,15 +72,10 @@ def inlined(function: Callable) -> Callable:
 
 
 def _compiled(function: Callable, **options: bool) -> Callable:
-    kernel = numba.njit(
-        cache=True,
-        fastmath=False,
-        error_model="numpy",
-        forceinline=True,
-        nogil=True,
-        no_cfunc_wrapper=True,
-        **options,
-    )(function)
+    common = {"forceinline": True, "nogil": True, "no_cfunc_wrapper": True}
+    kernel = numba.njit(cache=True, fastmath=False, error_model="numpy", **(common | options))(
+        function
+    )
     kernel._cache.save_overload = _one_at_a_time(kernel._cache.save_overload)
     return kernel
 

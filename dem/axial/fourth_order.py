@@ -30,8 +30,8 @@ from dem.axial.state import State, state_at_rest
 from dem.axial.step import step
 from dem.size import refuse_large
 from joints.borrowed import borrowed
-from joints.guard import EVERY, Guard, march_on, runs_away
-from joints.jit import inlined, jitted
+from joints.guard import Guard, in_stretches
+from joints.jit import apart, inlined, jitted
 from joints.tiny import flush_tiny, restore_tiny
 
 
@@ -117,21 +117,26 @@ def run(composition, model, state, samples, stride, first, last, guard=None):
     guard : `joints.guard.Guard` that ends it where it runs out of bounds; None without.
     """
     tiny = flush_tiny()
-    composition, model, state, samples = borrowed((composition, model, state, samples))
-    unseen = 0  # steps
-    for s in range(first, last):
-        n = s * stride
-        book_ends(state.ledger, held(model.chain, state) - composition.stored)
-        sample_before(model, state, samples, s)
-        sample_after(model, state, samples, s, n)
-        if march_on(march, composition, state, n, n + stride, guard):
-            break
-        unseen += stride
-        if unseen + stride > EVERY:
-            if runs_away(guard, state.v, n + stride):
-                break
-            unseen = 0
+    constants = composition, model
+    in_stretches(take, constants, state, samples, stride, first, last, guard, None)
     restore_tiny(tiny)
+
+
+@apart
+def take(constants, state, samples, stride, s, n, last):
+    """Take steps n .. last - 1 and the samples from s on that fall on them; return the next."""
+    composition, model = borrowed(constants)
+    state, samples = borrowed((state, samples))
+    while n < last:
+        if n == s * stride:
+            book_ends(state.ledger, held(model.chain, state) - composition.stored)
+            sample_before(model, state, samples, s)
+            sample_after(model, state, samples, s, n)
+            s += 1
+        end = min(s * stride, last)
+        march(composition, state, n, end)
+        n = end
+    return s
 
 
 @jitted

@@ -11,8 +11,8 @@ from dem.axial.state import State
 from dem.axial.step import joint_stress, load_at, march, opened
 from joints.borrowed import borrowed
 from joints.energy import elastic_energy, fracture_energy_spent
-from joints.guard import EVERY, creates_energy, march_on, runs_away
-from joints.jit import inlined, jitted
+from joints.guard import in_stretches
+from joints.jit import apart, inlined, jitted
 from joints.laws import law_of
 from joints.tiny import flush_tiny, restore_tiny
 
@@ -58,22 +58,24 @@ def run(model, state, samples, stride, first, last, guard=None):
     guard : `joints.guard.Guard` that ends it where it runs out of bounds; None without.
     """
     tiny = flush_tiny()
-    model, state, samples = borrowed((model, state, samples))
-    unseen = 0  # steps
-    for s in range(first, last):
-        n = s * stride
-        sample_before(model, state, samples, s)
-        march(model, state, n, n + 1)
-        sample_after(model, state, samples, s, n)
-        if march_on(march, model, state, n + 1, n + stride, guard):
-            break
-        unseen += stride
-        if unseen + stride > EVERY:
-            lost = runs_away(guard, state.v, n + stride)
-            if lost or creates_energy(guard, samples.energy, s, n):
-                break
-            unseen = 0
+    in_stretches(take, model, state, samples, stride, first, last, guard, samples.energy)
     restore_tiny(tiny)
+
+
+@apart
+def take(model, state, samples, stride, s, n, last):
+    """Take steps n .. last - 1 and the samples from s on that fall on them; return the next."""
+    model, state, samples = borrowed((model, state, samples))
+    while n < last:
+        if n == s * stride:
+            sample_before(model, state, samples, s)
+            march(model, state, n, n + 1)
+            sample_after(model, state, samples, s, n)
+            n, s = n + 1, s + 1
+        end = min(s * stride, last)
+        march(model, state, n, end)
+        n = end
+    return s
 
 
 @inlined

@@ -26,6 +26,7 @@ from joints.optional import either, given
 from joints.tiny import flush_tiny, restore_tiny
 
 RUN = 16  # tiles between two looks at the others' progress; more than the steps of a pass
+LOOK = 64  # steps between two looks at a tile's speeds: others run ahead of it by some more
 
 
 @jitted
@@ -153,7 +154,7 @@ def step(model, state, room, samples, t, n, thread, slot):
 @inlined
 def watch(guard, s, half, n):
     """Look at the velocities of a tile after n steps, now and then."""
-    if guard is not None and n % EVERY == 0:
+    if guard is not None and n % LOOK == 0:
         for k in range(half):
             if highest(s[(half + k) * R : (half + k) * R + LANES]) > guard.limit[k]:
                 note(guard.found, n, SPEED, n - EVERY - 1)
