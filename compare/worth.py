@@ -125,8 +125,7 @@ def balance(name: str, scene: Scene, dropped: list[Dropped]) -> Balance:
     everything, bare, own, *rest = in_turns([*first, *alone.values(), *without.values()])
     ns_alone = dict(zip(alone, rest, strict=False))
     ns_without = dict(zip(without, rest[len(alone) :], strict=True))
-    in_rock = _in_rock(scene, dropped)
-    rock = dict(zip(in_rock, freedoms_in_turns(ROCK, list(in_rock.values())), strict=True))
+    rock = _ns_in_rock(scene, dropped)
     found = [
         Worth(
             one.effect,
@@ -148,9 +147,11 @@ def _without(scene: Scene, dropped: list[Dropped]) -> dict[str, Scene]:
     return {one.effect: left_out(scene, one.effect) for one in dropped if not one.reason}
 
 
-def _in_rock(scene: Scene, dropped: list[Dropped]) -> dict[str, Scene]:
-    """Return the scenes that are timed in jointed rock: as it stands, and without each effect."""
+def _ns_in_rock(scene: Scene, dropped: list[Dropped]) -> dict[str, float]:
+    """Return the ns of a freedom-step of jointed rock, as the scene stands and without each effect;
+    empty where that rock does not apply."""
     if not applies(ROCK, scene):
         return {}
     others = _without(scene, dropped)
-    return {OWN: scene} | {one.effect: others[one.effect] for one in dropped if one.rock}
+    timed = {OWN: scene} | {one.effect: others[one.effect] for one in dropped if one.rock}
+    return dict(zip(timed, freedoms_in_turns(ROCK, list(timed.values())), strict=True))

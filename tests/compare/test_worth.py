@@ -92,11 +92,28 @@ def test_worth_is_the_misfit_of_the_answer_without(pillar, cheap):
     expected = relative_l2(plain, dem.simulate(scene)["stress"].values)
     assert found["dashpots"].misfit == pytest.approx(expected) and expected > 0.01
     assert found["dashpots"].steps > 1
-    for w in one.effects:
-        assert np.isfinite([w.cost, w.alone]).all() and w.share == w.cost / one.own < 1
-    # Two effects: the scene without one is the scene with the other alone, measured in turns.
-    costs = [w.cost + o.alone for w, o in zip(one.effects, reversed(one.effects), strict=True)]
-    assert costs == pytest.approx([one.own - one.bare] * 2, rel=0.5)
+
+
+#: ns of a block-step with (dashpots, energy ledger).
+KNOWN = {(False, False): 1.0, (False, True): 3.0, (True, False): 4.0, (True, True): 7.0}
+
+
+def test_costs_are_differences_of_what_was_timed(pillar, monkeypatch):
+    """Of steps of known cost, 20 ns with everything: alone over the bare one, otherwise of the
+    scene's own over the one without."""
+
+    def known(scenes):
+        effects = [active_effects(one) for one in scenes[1:]]
+        return [20.0, *(KNOWN["dashpots" in e, "energy ledger" in e] for e in effects)]
+
+    monkeypatch.setattr(worth, "in_turns", known)
+    scene = pillar(joints__damping_ratio=0.05, time__duration=0.01)
+    names = "dashpots", "energy ledger"
+    one = balance("a/b", scene, [worth.Dropped(name, 0.0, 1.0, True, False, "") for name in names])
+    assert (one.bare, one.own, one.everything) == (1.0, 7.0, 20.0)
+    dashpots, ledger = one.effects
+    assert (dashpots.alone, dashpots.cost, dashpots.share) == (3.0, 4.0, 4 / 7)
+    assert (ledger.alone, ledger.cost, ledger.share) == (2.0, 3.0, 3 / 7)
 
 
 def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, cheap):
@@ -110,3 +127,12 @@ def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, cheap):
     assert fixed.reason == stays.reason
     assert np.isnan([fixed.alone, fixed.cost, fixed.share, fixed.rock, fixed.misfit]).all()
     assert ledger.reason == "" and np.isfinite([ledger.alone, ledger.cost]).all()
+
+
+def test_rock_that_cannot_take_the_scene_has_no_number(pillar, cheap):
+    """Local damping is the rigid blocks' alone; their own costs are there all the same."""
+    scene = pillar(damping={"local": 0.1}, time__duration=0.01)
+    there = worth.Dropped("local damping", 0.1, 1.0, False, False, "")
+    found = balance("a/b", scene, [there])
+    assert np.isnan(found.rock) and np.isnan(found.effects[0].rock)
+    assert np.isfinite(found.effects[0].cost)
