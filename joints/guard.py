@@ -65,23 +65,18 @@ def speed_that(*motions: float) -> float:
 
 
 @inlined
-def in_stretches(take, constants, state, samples, stride, first, last, guard, energy):
-    """Take samples first .. last - 1, `stride` steps apart, and the steps after each.
-
-    take(constants, state, samples, stride, s, n, end) takes steps n .. end - 1 and the samples from
-    s on that fall on them, and returns the next. Under a guard it does so in stretches, with a
-    look at the speeds and at the last sample of a ledger after each.
-    """
-    s, n, end = first, first * stride, last * stride
+def next_look(guard, n, end):
+    """Return after which step, `end` at most, to look next."""
     if guard is None:
-        take(constants, state, samples, stride, s, n, end)
-        return
-    while n < end:
-        stop = min(n + EVERY, end)
-        s = take(constants, state, samples, stride, s, n, stop)
-        n = stop
-        if runs_away(guard, state.v, n) or creates_energy(guard, energy, s - 1, (s - 1) * stride):
-            return
+        return end
+    return min(n + EVERY, end)
+
+
+@inlined
+def is_lost(guard, v, n, energy, s, stride):
+    """Return whether, after n steps, the speeds are out of bounds, or the last sample of a ledger,
+    s, of every stride-th step."""
+    return runs_away(guard, v, n) or creates_energy(guard, energy, s, s * stride)
 
 
 @inlined

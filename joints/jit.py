@@ -48,6 +48,7 @@ numba.config.CACHE_DIR = str(cache_directory(Path(__file__).resolve().parent.par
 def jitted(function: Callable) -> Callable:
     """Compile a kernel: cached on disk, IEEE arithmetic (fastmath would break bit-identity).
 
+    It must not take a kernel as an argument: numba's index of a cache cannot hold that.
     Kernels become part of their callers, so that absent parts fall away and loops over many
     blocks are vectorised; they hold no lock of Python's, so that threads run side by side.
     """

@@ -69,8 +69,8 @@ def test_what_is_sound_is_kept_and_nothing_else(forced):
 
 
 def test_it_stops_within_so_many_steps_of_leaving_its_bounds(pillar):
-    """Found by a guard at a multiple of EVERY steps; the first speed beyond the limit is found here by
-    looking after every step."""
+    """Found by a guard at a multiple of EVERY steps; the first speed beyond the limit is found here
+    by looking after every step."""
     step = ABOVE * critical_of(pillar(**SMALL), "dem")
     numerics = {"step_fraction": ABOVE, "allow_unstable": True}
     scene = pillar(

@@ -30,7 +30,7 @@ from dem.axial.state import State, state_at_rest
 from dem.axial.step import step
 from dem.size import refuse_large
 from joints.borrowed import borrowed
-from joints.guard import Guard, in_stretches
+from joints.guard import Guard, is_lost, next_look
 from joints.jit import apart, inlined, jitted
 from joints.tiny import flush_tiny, restore_tiny
 
@@ -117,16 +117,20 @@ def run(composition, model, state, samples, stride, first, last, guard=None):
     guard : `joints.guard.Guard` that ends it where it runs out of bounds; None without.
     """
     tiny = flush_tiny()
-    constants = composition, model
-    in_stretches(take, constants, state, samples, stride, first, last, guard, None)
+    s, n, end = first, first * stride, last * stride
+    while n < end:
+        stop = next_look(guard, n, end)
+        s = take(composition, model, state, samples, stride, s, n, stop)
+        n = stop
+        if is_lost(guard, state.v, n, None, s - 1, stride):
+            break
     restore_tiny(tiny)
 
 
 @apart
-def take(constants, state, samples, stride, s, n, last):
+def take(composition, model, state, samples, stride, s, n, last):
     """Take steps n .. last - 1 and the samples from s on that fall on them; return the next."""
-    composition, model = borrowed(constants)
-    state, samples = borrowed((state, samples))
+    composition, model, state, samples = borrowed((composition, model, state, samples))
     while n < last:
         if n == s * stride:
             book_ends(state.ledger, held(model.chain, state) - composition.stored)

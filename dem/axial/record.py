@@ -11,7 +11,7 @@ from dem.axial.state import State
 from dem.axial.step import joint_stress, load_at, march, opened
 from joints.borrowed import borrowed
 from joints.energy import elastic_energy, fracture_energy_spent
-from joints.guard import in_stretches
+from joints.guard import is_lost, next_look
 from joints.jit import apart, inlined, jitted
 from joints.laws import law_of
 from joints.tiny import flush_tiny, restore_tiny
@@ -58,7 +58,13 @@ def run(model, state, samples, stride, first, last, guard=None):
     guard : `joints.guard.Guard` that ends it where it runs out of bounds; None without.
     """
     tiny = flush_tiny()
-    in_stretches(take, model, state, samples, stride, first, last, guard, samples.energy)
+    s, n, end = first, first * stride, last * stride
+    while n < end:
+        stop = next_look(guard, n, end)
+        s = take(model, state, samples, stride, s, n, stop)
+        n = stop
+        if is_lost(guard, state.v, n, samples.energy, s - 1, stride):
+            break
     restore_tiny(tiny)
 
 

@@ -1,7 +1,10 @@
 """The compiled kernels are kept on disk, and never outlive the sources they came from."""
 
 import fcntl
+import os
 import shutil
+import subprocess
+import sys
 import threading
 from pathlib import Path
 
@@ -46,3 +49,24 @@ def test_one_process_at_a_time_enters_the_cache(tmp_path, monkeypatch):
         assert not list(tmp_path.rglob("*.nb?"))
     worker.join()
     assert {path.suffix for path in tmp_path.rglob("*.nb?")} == {".nbi", ".nbc"}
+
+
+RUN = "import cases, dem; dem.simulate(cases.load_variant({scene!r}, '', {changes}))"
+
+
+@pytest.mark.parametrize("scheme", ["leapfrog", "fourth-order"])
+def test_a_process_adds_to_what_another_has_cached(scheme, tmp_path):
+    """A kernel that takes a kernel as an argument could not: numba reads what it has kept of it
+    back without that kernel, and cannot write it again."""
+    scene = str(ROOT / "cases" / "guo-li-2002" / "fig-03.toml")
+    place = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
+    for ledger in (False, True):
+        changes = {
+            "time.duration": 1e-3,
+            "numerics.dem.scheme": scheme,
+            "record.energy": ledger,
+        }
+        command = [sys.executable, "-c", RUN.format(scene=scene, changes=changes)]
+        subprocess.run(command, check=True, env=place, cwd=ROOT)
+    (index,) = tmp_path.rglob("record.run-*.nbi" if scheme == "leapfrog" else "fourth_order.run*i")
+    assert len(list(index.parent.glob(f"{index.stem}.*.nbc"))) == 2
