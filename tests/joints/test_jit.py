@@ -2,6 +2,7 @@
 
 import fcntl
 import os
+import pickle
 import shutil
 import subprocess
 import sys
@@ -55,18 +56,24 @@ RUN = "import cases, dem; dem.simulate(cases.load_variant({scene!r}, '', {change
 
 
 @pytest.mark.parametrize("scheme", ["leapfrog", "fourth-order"])
-def test_a_process_adds_to_what_another_has_cached(scheme, tmp_path):
-    """A kernel that takes a kernel as an argument could not: numba reads what it has kept of it
-    back without that kernel, and cannot write it again."""
+def test_no_kernel_takes_a_kernel_as_an_argument(scheme, tmp_path):
+    """What numba keeps of such a one it cannot write again in a process that has let the other go:
+    so none that was compiled for a run is kept for the type of a kernel."""
     scene = str(ROOT / "cases" / "guo-li-2002" / "fig-03.toml")
+    changes = {"time.duration": 1e-3, "numerics.dem.scheme": scheme, "record.energy": False}
+    command = [sys.executable, "-c", RUN.format(scene=scene, changes=changes)]
     place = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
-    for ledger in (False, True):
-        changes = {
-            "time.duration": 1e-3,
-            "numerics.dem.scheme": scheme,
-            "record.energy": ledger,
-        }
-        command = [sys.executable, "-c", RUN.format(scene=scene, changes=changes)]
-        subprocess.run(command, check=True, env=place, cwd=ROOT)
-    (index,) = tmp_path.rglob("record.run-*.nbi" if scheme == "leapfrog" else "fourth_order.run*i")
-    assert len(list(index.parent.glob(f"{index.stem}.*.nbc"))) == 2
+    subprocess.run(command, check=True, env=place, cwd=ROOT)
+    kept = {path.name: signatures(path) for path in tmp_path.rglob("*.nbi")}
+    assert any("run-" in name for name in kept) and any("take-" in name for name in kept)
+    for name, found in kept.items():
+        for types in found:
+            assert not any(isinstance(one, numba.types.Dispatcher) for one in types), name
+
+
+def signatures(index):
+    """Return the types of the arguments that a kernel has been compiled for."""
+    with index.open("rb") as file:
+        pickle.load(file)  # of numba's version
+        _stamp, overloads = pickle.loads(file.read())
+    return [key[0] for key in overloads]
