@@ -2,13 +2,13 @@
 
 from matplotlib.axes import Axes
 
-from cases.scene import Scene
+from cases.scene import Gravity, Scene
 from compare.pictures import symbols
 from compare.pictures.frame import HEIGHT, WIDTH, Frame
 from compare.pictures.symbols import ROCK, SOFT
 from compare.pictures.units import unit_for
 
-LENGTH = 0.42  # inches of an arrow
+LENGTH, GRAVITY = 0.42, 0.3  # inches of arrows
 
 
 def draw_load(ax: Axes, scene: Scene, place: Frame) -> None:
@@ -44,37 +44,34 @@ def draw_load(ax: Axes, scene: Scene, place: Frame) -> None:
 def draw_forces(ax: Axes, scene: Scene, place: Frame) -> None:
     """Draw gravity beside the pillar, and a prestress within it."""
     if scene.gravity is not None and scene.gravity.acceleration:
-        across, along, depth = scene.gravity.direction
-        tail = (min(place.x(scene.pillar.length) + 1.5, WIDTH - 0.5), HEIGHT - 0.35)
-        symbols.along_or_across(
-            ax, (tail[0] + 0.3 * along, tail[1] + 0.3 * across), (along, across), -depth, 0.3
-        )
-        ax.text(
-            tail[0] - 0.08,
-            tail[1],
-            f"{scene.gravity.acceleration:g} m/s²",
-            ha="right",
-            va="center",
-            fontsize=8,
-        )
+        _draw_gravity(ax, scene.gravity, place.x(scene.pillar.length))
     if scene.prestress is not None and scene.prestress.normal:
-        normal, middle = scene.prestress.normal, place.x(scene.pillar.length / 2)
-        unit = unit_for("Pa", abs(normal))
-        ax.text(
-            middle,
-            place.middle,
-            f"prestress {normal / unit.size:g} {unit.name}",
-            ha="center",
-            va="center",
-            fontsize=8,
-            zorder=7,
-            bbox={"facecolor": ROCK, "edgecolor": "none", "pad": 1.5},
-        )
-        for side in (-1, 1):
-            far, near = middle + side * 1.25, middle + side * 0.85
-            symbols.arrow(
-                ax,
-                (far, place.middle),
-                (near, place.middle) if normal > 0 else (far, place.middle),
-                SOFT,
-            )
+        _draw_prestress(ax, scene.prestress.normal, place.x(scene.pillar.length / 2), place.middle)
+
+
+def _draw_gravity(ax: Axes, gravity: Gravity, end: float) -> None:
+    across, along, depth = gravity.direction
+    x, level = min(end + 1.5, WIDTH - 0.5), HEIGHT - 0.35
+    tip = (x + GRAVITY * along, level + GRAVITY * across)
+    symbols.along_or_across(ax, tip, (along, across), -depth, GRAVITY)
+    words = f"{gravity.acceleration:g} m/s²"
+    ax.text(x - 0.08, level, words, ha="right", va="center", fontsize=8)
+
+
+def _draw_prestress(ax: Axes, normal: float, x: float, level: float) -> None:
+    """Draw two arrows, towards each other in compression."""
+    unit = unit_for("Pa", abs(normal))
+    ax.text(
+        x,
+        level,
+        f"prestress {normal / unit.size:g} {unit.name}",
+        ha="center",
+        va="center",
+        fontsize=8,
+        zorder=7,
+        bbox={"facecolor": ROCK, "edgecolor": "none", "pad": 1.5},
+    )
+    for side in (-1, 1):
+        far, near = (x + side * 1.25, level), (x + side * 0.85, level)
+        tail, tip = (far, near) if normal > 0 else (near, far)
+        symbols.arrow(ax, tail, tip, SOFT)

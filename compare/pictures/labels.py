@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from cases.scene import Scene
+from cases.scene import Scene, SoftLayer
 from compare.pictures.frame import WIDTH, Frame
 from compare.pictures.symbols import INK, LAYER, RECEIVER, SOFT
 from compare.pictures.units import unit_for
@@ -46,19 +46,30 @@ def draw_receivers(ax: Axes, scene: Scene, place: Frame) -> None:
         mark.set_gid(f"velocity-{i}")
         labels.append(Label(place.x(y), f"v {y:g} m", RECEIVER))
     labels += [
-        Label(place.x(layer.y), _of_layer(scene, i), LAYER)
-        for i, layer in enumerate(scene.soft_layers)
+        Label(place.x(layer.y), _of_layer(layer, scene.pillar.block), LAYER)
+        for layer in scene.soft_layers
     ]
     _write(ax, sorted(labels), place)
 
 
-def _of_layer(scene: Scene, i: int) -> str:
-    layer = scene.soft_layers[i]
-    stiffness = layer.own_stiffness(scene.pillar.block)
-    if stiffness is None:
-        return "joint of its own law"
-    unit = unit_for("Pa/m", stiffness)
-    return f"layer, {stiffness / unit.size:.3g} {unit.name}"
+def _of_layer(layer: SoftLayer, spacing: float) -> str:
+    """Return what makes a joint differ: its stiffness, else the strength that is its own."""
+    stiffness = layer.own_stiffness(spacing)
+    if stiffness is not None:
+        return f"layer, {_number(stiffness, 'Pa/m')}"
+    own = [
+        f"{words} {_number(getattr(layer, key), 'Pa')}"
+        for key, words in (("cohesion", "cohesion"), ("tensile_strength", "strength"))
+        if getattr(layer, key) is not None
+    ]
+    if layer.friction_angle is not None:
+        own.append(f"friction {layer.friction_angle:g}°")
+    return ", ".join(own) or "joint of its own law"
+
+
+def _number(value: float, si: str) -> str:
+    unit = unit_for(si, value)
+    return f"{value / unit.size:.3g} {unit.name}"
 
 
 def _write(ax: Axes, labels: list[Label], place: Frame) -> None:
@@ -95,7 +106,7 @@ def draw_scale(ax: Axes, scene: Scene, place: Frame) -> None:
     end = place.x(pillar.length)
     ax.plot([place.start, end], [level, level], color=INK, linewidth=0.8)
     steps = max(2, round((end - place.start) / 0.55))
-    ticks = MaxNLocator(steps, steps=[1, 2, 2.5, 5, 10]).tick_values(0, pillar.length)
+    ticks = np.array(MaxNLocator(steps, steps=[1, 2, 2.5, 5, 10]).tick_values(0, pillar.length))
     for y in ticks[(ticks >= 0) & (ticks <= pillar.length * (1 + 1e-9))]:
         ax.plot([place.x(y)] * 2, [level, level - 0.05], color=INK, linewidth=0.8)
         ax.text(place.x(y), level - 0.07, f"{y:g}", ha="center", va="top", fontsize=8)

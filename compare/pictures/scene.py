@@ -104,11 +104,14 @@ def _draw_row(figure: Figure, scene: Scene, above: Scene | None, bottom: float) 
     strip.draw_strip(axes(0, WIDTH), scene)
     if above is None or section.look(scene) != section.look(above):
         section.draw_section(axes(WIDTH, section.WIDTH), scene)
-    if scene.load.amplitude and (
-        above is None or scene.load.model_dump() != above.load.model_dump()
-    ):
+    if scene.load.amplitude and (above is None or _history(scene) != _history(above)):
         left = WIDTH + section.WIDTH + GAP
-        _draw_history(axes(left, LOAD_WIDTH - 0.1, 0.45, 1.4), scene)
+        _draw_history(axes(left, LOAD_WIDTH - 0.18, 0.45, 1.4), scene)
+
+
+def _history(scene: Scene) -> dict[str, object]:
+    """Return what decides the load over time."""
+    return scene.load.model_dump(exclude={"direction", "at", "arm"})
 
 
 def _draw_history(ax: Axes, scene: Scene) -> None:
@@ -136,7 +139,7 @@ def load_curve(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 def _table(scene: Scene, variant: str) -> pd.DataFrame:
     """Return every part that is drawn, from y to y."""
     pillar = scene.pillar
-    edges = np.linspace(0, pillar.length, strip.drawn_blocks(scene) + 1)
+    edges = strip.block_edges(scene)
     rows = [("block", a, b, "") for a, b in pairwise(edges)]
     rows += [("joint", y, y, "") for y in edges[1:-1]]
     rows += [

@@ -69,9 +69,8 @@ def _draw_contacts(ax: Axes, scene: Scene) -> None:
     joints, side = scene.joints, scene.pillar.side
     x, z, area = face_points(side, joints.contact_points, joints.point_rule)
     places = [_at(scene, a, b) for a, b in zip(x.tolist(), z.tolist(), strict=True)]
-    points = ax.scatter(
-        *zip(*places, strict=True), s=120 * area / side**2 + 4, color=EDGE, zorder=3
-    )
+    across, up = zip(*places, strict=True)
+    points = ax.scatter(across, up, s=120 * area / side**2 + 4, color=EDGE, zorder=3)
     points.set_gid("contacts")
 
 

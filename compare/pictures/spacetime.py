@@ -16,7 +16,7 @@ from compare.pictures.picture import Picture
 from compare.style import RC, WIDTH
 
 STOPS = 17  # of a colour scale on the page
-LAYER = {"color": "#333333", "linewidth": 0.8, "linestyle": (0, (4, 3))}
+LAYER: dict[str, Any] = {"color": "#333333", "linewidth": 0.8, "linestyle": (0, (4, 3))}
 
 
 def space_time(name: str, scene: Scene, shown: Diagrams) -> Picture:

@@ -40,14 +40,14 @@ def draw_strip(ax: Axes, scene: Scene) -> None:
     draw_scale(ax, scene, place)
 
 
-def drawn_blocks(scene: Scene) -> int:
-    """Return the number of blocks that are drawn: all, or one for a pillar of too many."""
-    count = scene.pillar.block_count
-    return count if count <= MOST else 1
+def block_edges(scene: Scene) -> list[float]:
+    """Return y of the edges of the blocks that are drawn, m: all, or one for a pillar of many."""
+    count, length = scene.pillar.block_count, scene.pillar.length
+    return np.linspace(0, length, (count if count <= MOST else 1) + 1).tolist()
 
 
 def _draw_rock(ax: Axes, scene: Scene, place: Frame) -> None:
-    edges = place.x(np.linspace(0, scene.pillar.length, drawn_blocks(scene) + 1))
+    edges = [place.x(y) for y in block_edges(scene)]
     corners = [
         [(a, place.bottom), (b, place.bottom), (b, place.top), (a, place.top)]
         for a, b in pairwise(edges)
@@ -91,7 +91,7 @@ def _draw_end(ax: Axes, end: str, place: Frame, x: float, outward: int) -> None:
         symbols.wall(ax, far, place.middle, 0.3, outward)
     ax.text(
         x + outward * (0.17 if end == "fixed" else 0.1),
-        place.bottom - 0.12,
+        place.bottom - 0.16,
         f"{end} {'start' if outward < 0 else 'end'}",
         ha="right" if outward < 0 else "left",
         va="top",
