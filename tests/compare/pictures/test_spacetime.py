@@ -99,6 +99,21 @@ def test_few_blocks_show_no_wave(pillar):
     assert along_pillar(scene) == {}
 
 
+def test_every_engine_stands_beside_its_own_model_and_the_others(pillar):
+    fields = along_pillar(pillar(pillar__length=10.0, record__stress=[5.0], time__duration=0.02))
+    found = {shown.engine: [d.name for d in shown.diagrams] for shown in diagrams_of(fields)}
+    assert {engine: names[1] for engine, names in found.items() if engine} == {
+        "dem": "lattice",
+        "continuum-jointed": "jointed-bar",
+        "continuum-equivalent": "equivalent-bar",
+    }
+    assert found[""] == [
+        "dem − continuum-jointed",
+        "dem − continuum-equivalent",
+        "continuum-equivalent − continuum-jointed",
+    ]
+
+
 def spatial(stress, shear, rotation):
     """Return a result in space with these peaks, each of its own shape."""
     time, y = np.linspace(0, 1, 5), np.arange(9.0)
