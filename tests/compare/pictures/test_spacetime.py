@@ -192,6 +192,10 @@ def test_static_diagrams_hold_the_same_numbers_in_the_same_colours(picture, ink)
         rows = image.get_array()[::FINER]
         np.testing.assert_allclose(rows, unpacked(trace["z"]), rtol=1e-6, atol=1e-9)
         assert image.norm.vmax == trace["zmax"] and image.norm.vmin == trace["zmin"]
-        assert image.get_extent() == pytest.approx([0.0, 30.0, 0.0, 50.0])
+        assert (*ax.get_xlim(), *ax.get_ylim()) == pytest.approx((0.0, 30.0, 0.0, 50.0))
+        edges = np.array(image.get_extent()).reshape(2, 2)
+        pixel = np.ptp(edges, axis=1) / image.get_array().shape[::-1]
+        outermost = edges + np.outer(pixel, [0.5, -0.5])  # where the outermost points are
+        np.testing.assert_allclose(outermost, [[0.0, 30.0], [0.0, 50.0]], atol=1e-9)
         assert image.origin == "lower"
     assert ink(picture.static) > 0.05
