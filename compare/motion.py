@@ -80,3 +80,73 @@ def _show(
     say(f"{path}: {' and '.join(engines)}, displacements × {scale:,g}")
     for name, reason in reasons.items():
         say(f"{name} is not shown: {reason}")
+
+
+@app.command()
+def view(
+    scene: SceneArgument,
+    changes: SetOption = [],  # noqa: B006
+    variant: OneVariantOption = "",
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write this .png; open no window.")
+    ] = None,
+    time: Annotated[
+        float | None, typer.Option(metavar="T", help="s; without it the middle of the scene.")
+    ] = None,
+    scale: ScaleOption = None,
+) -> None:
+    """Show the pillars of both engines in three dimensions, displaced and coloured by the wave.
+
+    Opens a window with a slider over time; with --out, or where there is no display, writes a
+    picture instead, of the time T. Needs PyVista.
+    """
+    _require_positive("--scale", scale)
+    _require_pyvista()
+    from compare.moving.offscreen import has_display
+
+    (one,) = load(scene, changes, variant)
+    at = one.time.duration / 2 if time is None else time
+    if not 0 < at <= one.time.duration:
+        allowed = f"must be greater than 0 and at most time.duration = {one.time.duration:g} s"
+        raise SceneError("--time", "", None, f"{allowed}, not {at:g}")
+    warn([one])
+    if out is None and has_display():
+        _open(one, at, scale)
+    else:
+        _write_picture(out or Path(f"{_name(scene, one)}.png"), one, at, scale)
+
+
+def _require_pyvista() -> None:
+    from importlib.util import find_spec
+
+    if find_spec("pyvista") is None:
+        raise SceneError("view", "", None, "needs PyVista: pip install 'jointwave[view]'")
+
+
+def _open(scene: Scene, time: float, scale: float | None) -> None:
+    from compare import terminal
+    from compare.moving.look import look_at
+    from compare.moving.shots import take
+    from compare.moving.stage import Stage
+
+    with terminal.progress("both engines") as advance:
+        shots = take(scene, FRAMES, advance)
+    look = look_at(shots.scene, shots.found, scale)
+    Stage(shots, look, window=True).open(round(time / scene.time.duration * (FRAMES - 1)))
+
+
+def _write_picture(path: Path, scene: Scene, time: float, scale: float | None) -> None:
+    from compare import terminal
+    from compare.moving.look import look_at
+    from compare.moving.offscreen import draw
+    from compare.moving.shots import take, until
+    from compare.output import refuse_foreign, write
+
+    if path.suffix != ".png":
+        raise SceneError("--out", "", None, f"must end in .png, not {path}")
+    refuse_foreign(path, (b"\x89PNG",))
+    with terminal.progress("both engines") as advance:
+        shots = take(until(scene, time), 2, advance)
+    look = look_at(shots.scene, shots.found, scale)
+    write(path, lambda new: draw(new, shots, look, 1))
+    _show(path, list(shots.found), shots.reasons, look.scale, False)

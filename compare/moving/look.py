@@ -27,7 +27,7 @@ class Quantity(NamedTuple):
     @property
     def label(self) -> str:
         """The title of the colours."""
-        sign = ", compression positive" if self is STRESS else ", upwards positive"
+        sign = ", compression positive" if self == STRESS else ", upwards positive"
         return f"{self.name} ({self.unit}){sign}"
 
 

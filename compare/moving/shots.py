@@ -9,6 +9,7 @@ from cases.consistency import checked
 from cases.errors import SceneError
 from cases.scene import Scene
 from cases.snapshots import Snapshots, snapshots_of
+from cases.tables import Time
 from compare.engines import ENGINES, Progress, applies, solve
 
 
@@ -33,6 +34,11 @@ def at_instants(scene: Scene, count: int) -> Scene:
     interval = between / max(1, ceil(between / scene.interval - 1e-9))
     changes = {"fields": between, "interval": interval}
     return checked(scene.model_copy(update={"record": scene.record.model_copy(update=changes)}))
+
+
+def until(scene: Scene, time: float) -> Scene:
+    """Return the scene as far as `time`, s."""
+    return checked(scene.model_copy(update={"time": Time(duration=time)}))
 
 
 def take(scene: Scene, count: int, progress: Progress | None = None) -> Shots:

@@ -37,7 +37,7 @@ class Wave:
 
     def _values(self) -> np.ndarray:
         s, surface = self.s, self.surface
-        if self.look.quantity is STRESS:
+        if self.look.quantity == STRESS:
             assert s.stress is not None
             return s.stress[:, surface.cells]
         return (s.velocity @ self.look.up)[:, surface.faces].mean(axis=2)
