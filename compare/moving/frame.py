@@ -52,9 +52,9 @@ class Frame:
         for name, wave in self.waves.items():
             polygons, faces, edges = wave.drawn(i)
             values = self.look.quantity.factor * wave.values[i, faces]
-            self.faces[name].set_verts(polygons)
-            self.faces[name].set_facecolor(self.colour.to_rgba(values))
-            self.edges[name].set_segments(edges)
+            self.faces[name].set_verts(list(polygons))
+            self.faces[name].set_array(values)
+            self.edges[name].set_segments(list(edges))
             self.profiles[name].set_ydata(self.look.quantity.factor * wave.profile[i])
         self.cursor.set_xdata([1e3 * self.time[i]] * 2)
         self.clock.set_text(f"t = {1e3 * self.time[i]:.{self.decimals}f} ms")
@@ -116,8 +116,17 @@ class Frame:
         ax.set_title(name, color=style(name).colour, fontweight="bold", pad=2)
         spacing = self.shots.scene.pillar.block * points_per_metre
         width = 0.5 if spacing > DENSE else 0.0
-        self.faces[name] = PolyCollection([], edgecolors="face", linewidths=0.3, animated=True)
-        self.edges[name] = LineCollection([], colors=EDGE, linewidths=width, animated=True, snap=False)
+        self.faces[name] = PolyCollection(
+            [],
+            edgecolors="face",
+            linewidths=0.3,
+            cmap=COLOURS,
+            norm=self.colour.norm,
+            animated=True,
+        )
+        self.edges[name] = LineCollection(
+            [], colors=EDGE, linewidths=width, animated=True, snap=False
+        )
         ax.add_collection(self.faces[name], autolim=False)
         ax.add_collection(self.edges[name], autolim=False)
 
@@ -163,4 +172,3 @@ class Frame:
         bar = self._axes(across - RIGHT - 3.2, 3.2, up - 0.68, 0.13)
         self.figure.colorbar(self.colour, cax=bar, orientation="horizontal")
         self._say(across - RIGHT - 3.35, up - 0.68, self.look.quantity.label, ha="right")
-

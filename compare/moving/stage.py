@@ -157,7 +157,9 @@ class Stage:
             *(f"{name} does not apply: {why}" for name, why in self.shots.reasons.items()),
         ]
         text = "\n".join(lines)
-        self.plotter.add_text(text, position=(20, 660), font_size=11, color="black", name="about")
+        self.plotter.add_text(
+            text, position="upper_left", font_size=11, color="black", name="about"
+        )
 
 
 def grid_of(s: Snapshots) -> pyvista.UnstructuredGrid:
