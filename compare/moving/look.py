@@ -57,7 +57,7 @@ def look_at(scene: Scene, found: dict[str, Snapshots], scale: float | None = Non
     thin = THIN_IN_SPACE if is_spatial(scene) else THIN
     ratio = scene.pillar.side / scene.pillar.length
     wanted = max(1.0, thin / ratio)
-    stretch = next(f * d for d in 10.0 ** np.arange(12) for f in (1, 2, 5) if f * d >= wanted * 0.9)
+    stretch = next(f * d for d in 10.0 ** np.arange(12) for f in (1, 2, 5) if f * d >= wanted)
     if scale is None:
         scale = max((1.0, round_down(min(_largest_scale(scene, s) for s in found.values()))))
     return Look(_upwards(scene), scale, float(stretch), _quantity(scene, found))
