@@ -132,7 +132,9 @@ def _open(scene: Scene, time: float, scale: float | None) -> None:
     with terminal.progress("both engines") as advance:
         shots = take(scene, FRAMES, advance)
     look = look_at(shots.scene, shots.found, scale)
-    Stage(shots, look, window=True).open(round(time / scene.time.duration * (FRAMES - 1)))
+    stage = Stage(shots, look, window=True)
+    stage.add_slider(round(time / scene.time.duration * (FRAMES - 1)))
+    stage.open()
 
 
 def _write_picture(path: Path, scene: Scene, time: float, scale: float | None) -> None:
@@ -143,7 +145,7 @@ def _write_picture(path: Path, scene: Scene, time: float, scale: float | None) -
     from compare.output import refuse_foreign, write
 
     if path.suffix != ".png":
-        raise SceneError("--out", "", None, f"must end in .png, not {path}")
+        raise SceneError("--out", str(path), None, "must end in .png")
     refuse_foreign(path, (b"\x89PNG",))
     with terminal.progress("both engines") as advance:
         shots = take(until(scene, time), 2, advance)

@@ -65,8 +65,8 @@ class Stage:
         self.plotter.screenshot(path)
         self.plotter.close()
 
-    def open(self, i: int) -> None:
-        """Open a window at instant i, with a slider over time, until it is closed."""
+    def add_slider(self, i: int) -> None:
+        """Put a slider over time below the pillars, at instant i."""
         self.show(i)
         self.plotter.add_slider_widget(
             lambda ms: self.show(int(np.abs(1e3 * self.time - ms).argmin())),
@@ -77,6 +77,9 @@ class Stage:
             pointa=(0.05, 0.1),
             pointb=(0.45, 0.1),
         )
+
+    def open(self) -> None:
+        """Open the window until it is closed."""
         self.plotter.show()
 
     @property

@@ -41,13 +41,13 @@ def _thick(s: Snapshots, axis: int, side: float, kind: str) -> Snapshots:
     """Return cells stretched by half a side to both sides along an axis; all of it moves alike."""
     half, nodes = np.zeros(3), len(s.points)
     half[axis] = side / 2
-    opposite = s.cells + nodes
-    if kind == "quad":  # its corners go around
-        opposite = opposite[:, ::-1]
+    cells = s.cells, s.cells + nodes
+    if kind == "quad":  # its corners go around, anticlockwise as seen from z
+        cells = cells[1], cells[0][:, ::-1]
     return s._replace(
         kind=kind,
         points=np.concatenate([s.points - half, s.points + half]),
-        cells=np.concatenate([s.cells, opposite], axis=1),
+        cells=np.concatenate(cells, axis=1),
         displacement=np.concatenate([s.displacement, s.displacement], axis=1),
         velocity=np.concatenate([s.velocity, s.velocity], axis=1),
     )
