@@ -127,11 +127,12 @@ def fields(
         "engine": engine,
         "title": scene.title,
         "variant": scene.name,
-        "scene": scene.model_dump_json(),
         "scene_hash": scene_hash(scene),
         "effects": json.dumps(active_effects(scene)),
     }
-    return Fields(variables, coords, {**common, **attributes})
+    # The longest last, where it hides no other.
+    about = {**common, **attributes, "scene": scene.model_dump_json()}
+    return Fields(variables, coords, about)
 
 
 def energy_residual(result: xr.Dataset) -> float:

@@ -94,7 +94,8 @@ install_extras() {
 }
 
 install_docs() {
-    .venv/bin/python -c 'import latex2mathml, material, mkdocs' 2>/dev/null || install_project docs
+    .venv/bin/python -c 'import ipykernel, jupytext, latex2mathml, material, mkdocs, nbclient' 2>/dev/null ||
+        install_project docs,examples
 }
 
 # The folder is part of both keys because a venv does not survive being moved or copied.
