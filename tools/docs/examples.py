@@ -47,7 +47,7 @@ def page(name: str, kept: Path = KEPT) -> str:
     for cell in found:
         parts.append(cell.source if cell.is_text else f"```python\n{cell.source}\n```")
         if not cell.is_text:
-            parts += [_shown(output) for output in next(code, [])]
+            parts += [_shown(output) for output in _joined(next(code, []))]
     title = parts.index(found[0].source)  # what it is before what it is called
     parts.insert(0, parts.pop(title))
     return "\n\n".join(part for part in parts if part) + "\n"
@@ -65,13 +65,25 @@ def _outputs(name: str, kept: Path) -> list[list[dict[str, Any]]] | None:
     return [c["outputs"] for c in code] if is_same else None
 
 
+def _joined(outputs: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return outputs with what was printed in several goes as one."""
+    found: list[dict[str, Any]] = []
+    for output in outputs:
+        text = "".join(output.get("text", ""))
+        if text and found and "text" in found[-1]:
+            found[-1]["text"] += text
+        else:
+            found.append({**output, "text": text} if text else output)
+    return found
+
+
 def _shown(output: dict[str, Any]) -> str:
     """Return an output as Markdown: a picture, or the text that it is."""
     data = output.get("data", {})
     if "image/png" in data:
         picture = "".join(data["image/png"]).replace("\n", "")
         return f'<img alt="What the cell draws" src="data:image/png;base64,{picture}">'
-    lines = "".join(output.get("text", data.get("text/plain", ""))).rstrip().splitlines()
+    lines = "".join(output.get("text") or data.get("text/plain", "")).rstrip().splitlines()
     if len(lines) > LONGEST:
         lines = [*lines[:LONGEST], "..."]
     return "```text\n{}\n```".format("\n".join(lines)) if lines else ""
