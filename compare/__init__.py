@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from compare import curves, engines, exact, metrics, pairs, planner, scenes
+    from compare import curves, engines, metrics, pairs, planner, scenes
     from compare.curves import read_curves
     from compare.engines import applies, names, solve
     from compare.metrics import distance, misfit
@@ -23,7 +23,6 @@ __all__ = [
     "curves",
     "distance",
     "engines",
-    "exact",
     "find",
     "measure",
     "metrics",

@@ -65,7 +65,7 @@ class Frame:
         self.canvas.restore_region(self.still)
         for artist in self.moving:
             (artist.axes or self.figure).draw_artist(artist)
-        return np.asarray(self.canvas.buffer_rgba())
+        return np.array(self.canvas.buffer_rgba())
 
     @property
     def moving(self) -> list[Artist]:

@@ -62,7 +62,7 @@ def _save_mp4(path: Path, picture: Picture, count: int, seconds: float) -> None:
     film.send(None)
     try:
         for i in range(count):
-            film.send(np.ascontiguousarray(picture(i)))
+            film.send(picture(i))
     finally:
         film.close()
 
