@@ -13,6 +13,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
+from matplotlib.ticker import MaxNLocator
 
 from compare.moving.look import Look
 from compare.moving.shots import Shots
@@ -170,5 +171,6 @@ class Frame:
         place = {"ha": "right", "fontsize": 14, "fontweight": "bold", "animated": True}
         self.clock = self._say(across - RIGHT, up - 0.36, "", **place)
         bar = self._axes(across - RIGHT - 3.2, 3.2, up - 0.68, 0.13)
-        self.figure.colorbar(self.colour, cax=bar, orientation="horizontal")
+        few = MaxNLocator(5)
+        self.figure.colorbar(self.colour, cax=bar, orientation="horizontal", ticks=few)
         self._say(across - RIGHT - 3.35, up - 0.68, self.look.quantity.label, ha="right")

@@ -10,9 +10,9 @@ from cases.effects import is_spatial
 from cases.scene import Scene
 from cases.snapshots import Snapshots
 
-#: The largest that is drawn: of a block's thickness two neighbours may come closer, of the pillar's
-#: length a node may move, and of half a block's largest side a corner may move from its centre.
-CLOSER, FARTHER, TURNED = 0.8, 0.1, 0.35
+#: The largest that is drawn: of a block's thickness two neighbours may come closer; of the pillar's
+#: length a node may move along, and aside; of half a block's largest side a corner may turn away.
+CLOSER, FARTHER, ASIDE, TURNED = 0.8, 0.1, 0.04, 0.35
 THIN, THIN_IN_SPACE = 0.045, 0.03  # height of the picture over its length that can be seen well
 SILENT = 0.1  # axial stress over what the motion would give in a plane wave, that is no wave
 
@@ -59,7 +59,8 @@ def look_at(scene: Scene, found: dict[str, Snapshots], scale: float | None = Non
     wanted = max(1.0, thin / ratio)
     stretch = next(f * d for d in 10.0 ** np.arange(12) for f in (1, 2, 5) if f * d >= wanted)
     if scale is None:
-        scale = max((1.0, round_down(min(_largest_scale(scene, s) for s in found.values()))))
+        largest = min(_largest_scale(scene, s, float(stretch)) for s in found.values())
+        scale = max(1.0, round_down(largest))
     return Look(_upwards(scene), scale, float(stretch), _quantity(scene, found))
 
 
@@ -86,13 +87,14 @@ def round_down(value: float) -> float:
     return power * max(k for k in (1, 2, 5) if k * power <= value * (1 + 1e-12))
 
 
-def _largest_scale(scene: Scene, s: Snapshots) -> float:
+def _largest_scale(scene: Scene, s: Snapshots, stretch: float) -> float:
     """Return by what displacements can be multiplied before the picture is no pillar any more."""
-    p = calibrate(scene)
+    p, length = calibrate(scene), scene.pillar.length
     centres, spread = _by_block(s)
     limits = [
         (-np.diff(centres[..., 1], axis=1), CLOSER * p.spacing),
-        (np.abs(s.displacement), FARTHER * scene.pillar.length),
+        (np.abs(s.displacement[..., 1]), FARTHER * length),
+        (np.abs(s.displacement[..., [0, 2]]), ASIDE * length / stretch),
         (spread, TURNED * max(p.spacing, p.side) / 2),
     ]
     return min((bound / x.max() for x, bound in limits if x.size and x.max() > 0), default=np.inf)

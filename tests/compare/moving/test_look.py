@@ -52,6 +52,14 @@ def _step(size):
     return moved
 
 
+@pytest.mark.parametrize(("side", "scale"), [(1.0, 200), (0.25, 100), (0.1, 20)])
+def test_what_moves_aside_stays_in_its_strip(scene, row, side, scale):
+    """By at most 0.04 of 10 m as drawn, over 0.002 m; thin pillars are drawn thicker."""
+    aside = row(10, displacement=lambda x: np.full((len(x), 3), [0.002, 0.0, 0.0]))
+    found = look_at(scene(pillar__side=side, **IN_SPACE), {"dem": aside})
+    assert found.scale == scale and found.scale * found.stretch * 0.002 <= 0.4
+
+
 def test_a_turn_is_drawn_so_that_a_block_is_still_a_block(scene, row):
     """Corners stay within 0.35 of half a side from where they would be."""
     turn = 1e-3  # rad
