@@ -42,7 +42,7 @@ def animate(
 
     (one,) = load(scene, changes, variant)
     path = out or Path(f"{_name(scene, one)}.mp4")
-    video.refuse(path)
+    video.refuse(path, frames)
     warn([one])
     with terminal.progress("both engines") as advance:
         from compare.moving.shots import take

@@ -1,7 +1,8 @@
-"""Pictures one after the other as a file: MP4 by ffmpeg, which imageio-ffmpeg brings, or GIF."""
+"""Pictures one after the other as a file, MP4 or GIF, by ffmpeg, which imageio-ffmpeg brings."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -16,13 +17,36 @@ BEGINS = {
 }
 DOTS = {".mp4": 100, ".gif": 75}  # pixels an inch; every size is even, as H.264 with 4:2:0 needs
 
+#: What ffmpeg is asked for. H.264 in 4:2:0 is what every player shows, its index first, so that it
+#: begins before all of it is there; a GIF has one palette, made from all of its pictures.
+ENCODING: dict[str, dict[str, Any]] = {
+    ".mp4": {
+        "codec": "libx264",
+        "pix_fmt_out": "yuv420p",
+        "output_params": ["-crf", "20", "-movflags", "+faststart"],
+    },
+    ".gif": {
+        "codec": "gif",
+        "pix_fmt_out": "pal8",
+        "output_params": [
+            "-filter_complex",
+            "split[a][b];[a]palettegen=reserve_transparent=0[p];[b][p]paletteuse=dither=none",
+        ],
+    },
+}
+
+MOST_OF_A_GIF = 400  # pictures, 2.3 MB each
+
 Picture = Callable[[int], np.ndarray]
 
 
-def refuse(path: Path) -> None:
-    """Raise SceneError where `path` can be no animation of ours."""
+def refuse(path: Path, count: int = 0) -> None:
+    """Raise SceneError where `path` can be no animation of ours of so many pictures."""
     if path.suffix not in BEGINS:
         raise SceneError("--out", str(path), None, f"must end in {' or '.join(BEGINS)}")
+    if path.suffix == ".gif" and count > MOST_OF_A_GIF:
+        allowed = f"at most {MOST_OF_A_GIF} for a GIF, whose pictures must all fit the memory"
+        raise SceneError("--frames", "", None, f"{allowed}, not {count:,}; .mp4 takes more")
     refuse_foreign(path, BEGINS[path.suffix])
 
 
@@ -31,48 +55,37 @@ def write_video(
 ) -> Path:
     """Write `count` pictures, uint8 arrays [height, width, 4], that last so many seconds.
 
-    The ending says how: .mp4 is H.264, 8 bits, 4:2:0, which every player shows; .gif goes round.
+    The ending says how: .mp4 is H.264, of even sizes; .gif goes round and round.
     """
-    refuse(path)
+    refuse(path, count)
 
-    def shown(i: int) -> np.ndarray:
-        if progress is not None:
-            progress(i / count)
-        return picture(i)
+    def save(new: Path) -> None:
+        film = _film(new, picture(0).shape, count / seconds)
+        try:
+            for i in range(count):
+                film.send(picture(i))
+                if progress is not None:
+                    progress((i + 1) / count)
+        finally:
+            film.close()
 
-    save = _save_gif if path.suffix == ".gif" else _save_mp4
-    return write(path, lambda new: save(new, shown, count, seconds))
+    return write(path, save)
 
 
-def _save_mp4(path: Path, picture: Picture, count: int, seconds: float) -> None:
+def _film(path: Path, shape: tuple[int, ...], rate: float) -> Generator[None, np.ndarray, None]:
+    """Return what writes each picture that it is sent; `rate` of them a second."""
     from imageio_ffmpeg import write_frames
 
-    height, width, _ = picture(0).shape
+    height, width, _ = shape
     film = write_frames(
         str(path),
         (width, height),
+        fps=rate,
         pix_fmt_in="rgba",
-        pix_fmt_out="yuv420p",
-        fps=count / seconds,
-        codec="libx264",
         quality=None,
         macro_block_size=2,
-        output_params=["-crf", "20", "-movflags", "+faststart"],
+        ffmpeg_log_level="error",
+        **ENCODING[path.suffix],
     )
     film.send(None)
-    try:
-        for i in range(count):
-            film.send(picture(i))
-    finally:
-        film.close()
-
-
-def _save_gif(path: Path, picture: Picture, count: int, seconds: float) -> None:
-    from PIL import Image
-
-    pictures = [Image.fromarray(picture(i)[..., :3]) for i in range(count)]
-    palette = pictures[count // 2].quantize(256)
-    few = [p.quantize(palette=palette, dither=Image.Dither.NONE) for p in pictures]
-    ends = np.round(100 * seconds * np.arange(count + 1) / count)  # its clock has hundredths
-    durations = (10 * np.diff(ends)).astype(int).tolist()
-    few[0].save(path, save_all=True, append_images=few[1:], duration=durations, loop=0)
+    return film

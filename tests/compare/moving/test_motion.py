@@ -55,6 +55,7 @@ BAD = [
     (("animate", SCENE, "--scale", "nan"), "--scale: must be a positive number, not nan"),
     (("animate", SCENE, "--seconds", "-1"), "--seconds: must be a positive number, not -1"),
     (("animate", SCENE, "--frames", "1"), "'--frames'"),
+    (("animate", SCENE, "--frames", "401", "--out", "wave.gif"), "--frames: at most 400 for a GIF"),
     (("animate", "no-such-scene"), "cannot be read"),
     (("animate", SCENE, "--variant", "none"), "variants.name"),
     (("view", SCENE, "--out", "wave.jpg"), "--out: wave.jpg: must end in .png"),

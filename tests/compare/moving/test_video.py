@@ -54,7 +54,7 @@ def test_gif_has_every_picture_and_the_whole_time(tmp_path):
 def test_progress_reaches_each_picture(tmp_path):
     seen = []
     write_video(tmp_path / "bar.gif", bar, COUNT, 1.0, seen.append)
-    assert seen == [i / COUNT for i in range(COUNT)]
+    assert seen == [(i + 1) / COUNT for i in range(COUNT)]
 
 
 @pytest.mark.parametrize("name", ["bar.avi", "bar", "bar.mp4.txt"])
