@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from cases.effects import active_effects
+from cases.labels import label
 from cases.scene import Scene
 
 if TYPE_CHECKING:
@@ -99,34 +100,39 @@ def fields(
         displacement = None if displacement is None else scale * displacement
         energy = None if energy is None else scale * (scale * energy)
     coords: dict[str, Variable] = {
-        "time": (("time",), time, {"units": "s"}),
-        "stress_y": (("stress_y",), np.array(record.stress, dtype=float), {"units": "m"}),
-        "velocity_y": (("velocity_y",), np.array(record.velocity, dtype=float), {"units": "m"}),
-        "axis": (("axis",), np.array(list("xyz") if spatial else ["y"]), {}),
+        "time": (("time",), time, label("time")),
+        "stress_y": (("stress_y",), np.array(record.stress, dtype=float), label("stress_y")),
+        "velocity_y": (
+            ("velocity_y",),
+            np.array(record.velocity, dtype=float),
+            label("velocity_y"),
+        ),
+        "axis": (("axis",), np.array(list("xyz") if spatial else ["y"]), label("axis")),
     }
     variables: dict[str, Variable] = {
-        "stress": (("stress_y", "time"), stress, {"units": "Pa"}),
-        "velocity": (points, _with_axis(velocity), {"units": "m/s"}),
+        "stress": (("stress_y", "time"), stress, label("stress")),
+        "velocity": (points, _with_axis(velocity), label("velocity")),
     }
     if displacement is not None:
-        variables["displacement"] = (points, _with_axis(displacement), {"units": "m"})
+        variables["displacement"] = (points, _with_axis(displacement), label("displacement"))
     if shear is not None:
-        variables["shear"] = (("stress_y", "time", "across"), shear, {"units": "Pa"})
-        coords["across"] = (("across",), np.array(["x", "z"]), {})
+        variables["shear"] = (("stress_y", "time", "across"), shear, label("shear"))
+        coords["across"] = (("across",), np.array(["x", "z"]), label("across"))
     if rotation is not None:
-        variables["rotation"] = (points, rotation, {"units": "rad"})
+        variables["rotation"] = (points, rotation, label("rotation"))
     if energy is not None:
-        variables["energy"] = (("term", "time"), energy, {"units": "J"})
-        coords["term"] = (("term",), np.array(list(terms)), {})
+        variables["energy"] = (("term", "time"), energy, label("energy"))
+        coords["term"] = (("term",), np.array(list(terms)), label("term"))
     common = {
         "engine": engine,
         "title": scene.title,
         "variant": scene.name,
-        "scene": scene.model_dump_json(),
         "scene_hash": scene_hash(scene),
         "effects": json.dumps(active_effects(scene)),
     }
-    return Fields(variables, coords, {**common, **attributes})
+    # The longest last, where it hides no other.
+    about = {**common, **attributes, "scene": scene.model_dump_json()}
+    return Fields(variables, coords, about)
 
 
 def energy_residual(result: xr.Dataset) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 
 from cases.arrays import copied
 from cases.errors import SceneError
+from cases.labels import label
 from cases.result import Fields, Variable
 from cases.scene import Scene
 from cases.size import LARGEST_VARIABLE
@@ -25,7 +26,6 @@ DIMENSIONS = {
     "velocity": ("field_time", "node", "component"),
     "stress": ("field_time", "cell"),
 }
-UNITS = {"points": "m", "displacement": "m", "velocity": "m/s", "stress": "Pa"}
 
 
 class Snapshots(NamedTuple):
@@ -132,13 +132,12 @@ def with_snapshots(result: Fields, s: Snapshots) -> Fields:
     for name, dimensions in DIMENSIONS.items():
         values = getattr(s, name)
         if values is not None:
-            unit = {"units": UNITS[name]} if name in UNITS else {}
-            variables[f"field_{name}"] = (dimensions, values, unit)
+            variables[f"field_{name}"] = (dimensions, values, label(f"field_{name}"))
     variables["field_cells"][2]["kind"] = s.kind
     coords = {
         **result.coords,
-        "field_time": (("field_time",), s.time, {"units": "s"}),
-        "component": (("component",), np.array(list("xyz")), {}),
+        "field_time": (("field_time",), s.time, label("field_time")),
+        "component": (("component",), np.array(list("xyz")), label("component")),
     }
     return Fields(variables, coords, result.attributes)
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Makes .venv, a Python that imports dolfinx and this project; does nothing when that is done already.
-#   usage: tools/setup.sh [browser | docs]    ("browser": also the headless Chromium that the report's page test drives;
+#   usage: tools/setup.sh [browser | docs]    ("browser": also the headless Chromium that the report's page test drives,
+#                                              and what the tests of `view` and of the examples need;
 #                                              "docs": also mkdocs, which builds the documentation)
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -88,8 +89,13 @@ install_browser() {
     say "no chromium with chromedriver here: the page test will not run"
 }
 
+install_extras() {
+    .venv/bin/python -c 'import ipykernel, jupytext, nbclient, pyvista' 2>/dev/null || install_project view,examples
+}
+
 install_docs() {
-    .venv/bin/python -c 'import latex2mathml, material, mkdocs' 2>/dev/null || install_project docs
+    .venv/bin/python -c 'import ipykernel, jupytext, latex2mathml, material, mkdocs, nbclient' 2>/dev/null ||
+        install_project docs,examples
 }
 
 # The folder is part of both keys because a venv does not survive being moved or copied.
@@ -122,6 +128,6 @@ else
     say "done: .venv/bin/jointwave, or activate it by: . .venv/bin/activate"
 fi
 case "${1:-}" in
-    browser) install_browser ;;
+    browser) install_browser; install_extras ;;
     docs) install_docs ;;
 esac

@@ -8,6 +8,7 @@ import xarray as xr
 
 from cases import Scene, load
 from cases.arrays import size_of
+from cases.labels import LABELS
 from cases.result import ALL_TERMS, TERMS, dataset, energy_residual, imbalance, scene_hash
 from cases.sampling import sample_times
 
@@ -41,6 +42,19 @@ def test_netcdf_round_trip(result, tmp_path):
 def test_every_variable_has_a_unit(result):
     units = {name: result[name].attrs["units"] for name in result.data_vars}
     assert units == {"stress": "Pa", "velocity": "m/s", "displacement": "m", "energy": "J"}
+
+
+def test_every_variable_and_coordinate_has_a_long_name(result):
+    """And a unit, if it is a quantity: what xarray's plots write on their axes."""
+    for name, variable in {**result.coords, **result.data_vars}.items():
+        long_name, unit = LABELS[name]
+        assert variable.attrs == {"long_name": long_name} | ({"units": unit} if unit else {})
+        assert bool(unit) == (variable.dtype.kind == "f")
+
+
+def test_the_longest_attribute_comes_last(result):
+    assert max(result.attrs, key=lambda name: len(str(result.attrs[name]))) == "scene"
+    assert list(result.attrs)[-1] == "scene"
 
 
 def test_a_result_holds_its_scene(result, scene_with):

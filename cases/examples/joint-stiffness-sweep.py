@@ -1,0 +1,114 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # Joint stiffness against the transmission formula
+#
+# A joint of stiffness $K$ between half-spaces of impedance $Z$ passes, of a harmonic wave
+# (Schoenberg 1980; Pyrak-Nolte, Myer & Cook 1990),
+#
+# $$ |T| = \frac{1}{\sqrt{1 + (\omega Z / 2K)^2}} . $$
+#
+# One pulse holds many frequencies: the spectrum behind the joint over that without the joint is
+# $T$ at all of them. A sweep over four stiffnesses, by both engines, then lies on one curve over
+# $K / \omega Z$.
+
+# %%
+import matplotlib.pyplot as plt
+import numpy as np
+
+import cases
+import compare
+from cases.calibrate import calibrate
+from compare.exact.one_joint import coefficients
+
+PERIOD = 0.02  # s, of the pulse's peak frequency
+tables = {
+    "title": "One joint between half-spaces",
+    "pillar": {"length": 40.0, "side": 0.5, "block": 0.5},
+    "rock": {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0},
+    "load": {"shape": "ricker", "amplitude": 2.0e6, "period": PERIOD},
+    "ends": {"start": "matched", "end": "matched"},
+    "time": {"duration": 0.2},
+    "record": {"stress": [30.0]},
+}
+plain = cases.Scene.model_validate(tables)
+rock = calibrate(plain)
+print(f"impedance Z              {rock.impedance:.4g} Pa s/m")
+print(f"K'_n of an ordinary joint {rock.regular_stiffness:.4g} Pa/m")
+
+# %% [markdown]
+# ## The sweep
+#
+# The homogenised rock holds an ordinary joint already where the soft one is. What counts is the
+# compliance that the soft joint adds, $1/K = 1/K'_n(\text{soft}) - 1/K'_n$: the layer is chosen to
+# add just $1/K$.
+
+
+# %%
+def with_joint(stiffness):
+    """Return the scene with a joint at 20 m that adds the compliance 1/stiffness (m/Pa)."""
+    softer = 1 / (1 / stiffness + 1 / rock.regular_stiffness)
+    layer = {"y": 20.0, "spacing_stiffness": plain.pillar.block * softer}
+    return cases.Scene.model_validate(tables | {"soft_layers": [layer]})
+
+
+def spectrum(engine, scene):
+    """Return angular frequencies (rad/s) and the spectrum of the stress behind the joint."""
+    stress = compare.solve(engine, scene).stress[0]
+    step = float(stress.time[1] - stress.time[0])
+    return 2 * np.pi * np.fft.rfftfreq(stress.size, step), np.fft.rfft(stress.values)
+
+
+peak = 2 * np.pi / PERIOD * rock.impedance
+stiffnesses = peak * np.array([0.2, 0.5, 1.0, 2.0])  # Pa/m
+measured = {}
+for engine in ("dem", "continuum-equivalent"):
+    omega, incident = spectrum(engine, plain)
+    heard = abs(incident) > 0.1 * abs(incident).max()
+    for stiffness in stiffnesses:
+        passed = spectrum(engine, with_joint(stiffness))[1]
+        measured[engine, stiffness] = omega[heard], abs(passed / incident)[heard]
+
+# %% [markdown]
+# ## Beside the formula
+
+# %%
+figure, ax = plt.subplots(layout="constrained")
+kappa = np.geomspace(0.05, 10, 200)
+ax.semilogx(kappa, 1 / np.sqrt(1 + 1 / (2 * kappa) ** 2), color="black", label="formula")
+looks = {"dem": ("o", "#56b4e9"), "continuum-equivalent": ("x", "#009e73")}
+for engine, (marker, colour) in looks.items():
+    for stiffness in stiffnesses:
+        omega, found = measured[engine, stiffness]
+        label = engine if stiffness == stiffnesses[0] else None
+        at = stiffness / (omega * rock.impedance)
+        ax.plot(at, found, marker, color=colour, fillstyle="none", markersize=5, label=label)
+ax.set(xlabel=r"$K / \omega Z$", ylabel="|T|")
+ax.legend()
+plt.show()
+
+# %% [markdown]
+# The largest distance of any frequency from the formula, by stiffness:
+
+# %%
+print("K (Pa/m)     dem     continuum-equivalent")
+worst = 0.0
+for stiffness in stiffnesses:
+    row = []
+    for engine in looks:
+        omega, found = measured[engine, stiffness]
+        formula = abs(coefficients(omega, stiffness, rock.impedance)[0])
+        row.append(abs(found - formula).max())
+    worst = max(worst, *row)
+    print(f"{stiffness:.3e}   {row[0]:.4f}   {row[1]:.4f}")
+assert worst < 0.02

@@ -1,0 +1,110 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # A scene of your own
+#
+# A scene is a few tables: as a TOML file, which the command `jointwave` takes, or as a dictionary.
+
+# %%
+import cases
+import compare
+import dem
+
+tables = {
+    "title": "A weak layer in a short pillar",
+    "pillar": {"length": 20.0, "side": 0.5, "block": 0.5},  # m
+    "rock": {
+        "density": 2400.0,  # kg/m3
+        "p_speed": 2200.0,  # m/s
+        "s_speed": 800.0,  # m/s
+        "intact_modulus": 8.64e10,  # Pa; without it there is no rock between the joints
+    },
+    "soft_layers": [{"y": 8.0, "spacing_stiffness": 4.375e8}],  # m, Pa
+    "load": {"shape": "ricker", "amplitude": 1.0e6, "period": 0.01},  # Pa, s
+    "ends": {"start": "matched", "end": "matched"},
+    "time": {"duration": 0.05},  # s
+    "record": {"stress": [4.0, 12.0], "fields": 2.5e-4},  # m, s
+}
+scene = cases.Scene.model_validate(tables)
+
+# %% [markdown]
+# A scene that contradicts itself is refused, with what would be allowed:
+
+# %%
+try:
+    cases.Scene.model_validate(tables | {"pillar": {"length": 20.0, "side": 0.5, "block": 0.3}})
+except ValueError as error:
+    print(error)
+else:
+    raise AssertionError("a block that does not divide the pillar was taken")
+
+# %% [markdown]
+# ## What applies to it
+#
+# Everything that can solve the scene, and why the rest cannot:
+
+# %%
+for name in compare.names():
+    print(f"{name:22} {compare.applies(name, scene).reason or 'holds'}")
+
+# %% [markdown]
+# ## The wave in space and time
+#
+# `record.fields` keeps snapshots of the whole pillar. Every block of the rigid-block engine is one
+# cell, so that its stress over time and y is an array as it is:
+
+# %%
+import matplotlib.pyplot as plt
+import numpy as np
+
+result = dem.simulate(scene)
+centres = scene.pillar.block * (np.arange(scene.pillar.block_count) + 0.5)
+wave = result.field_stress.assign_coords(cell=("cell", centres, {"long_name": "y", "units": "m"}))
+wave.plot(x="cell", y="field_time", cmap="RdBu_r", robust=True)
+plt.axvline(8.0, color="black", linewidth=0.8, linestyle=":")
+plt.show()
+
+# %% [markdown]
+# The layer at 8 m reflects part of the pulse, and passes the slow part of it. What it sends back
+# is what stands in front of it beyond the pulse itself; between the two no energy is lost:
+
+# %%
+without = dem.simulate(cases.Scene.model_validate(tables | {"soft_layers": []}))
+reflected = (result.stress - without.stress).sel(stress_y=4.0)
+passed, incident = result.stress.sel(stress_y=12.0), without.stress.sel(stress_y=12.0)
+for label, wave in {"incident": incident, "passed": passed, "reflected": reflected}.items():
+    plt.plot(1e3 * wave.time, 1e-6 * wave, label=label)
+plt.xlabel("time (ms)")
+plt.ylabel("axial stress (MPa)")
+plt.legend()
+plt.show()
+
+
+def energy(wave):
+    """Return the energy of a wave that runs one way, but for a factor."""
+    return float((wave**2).sum())
+
+
+shares = energy(reflected) / energy(incident), energy(passed) / energy(incident)
+print(f"reflected {shares[0]:.1%}, passed {shares[1]:.1%}")
+assert abs(sum(shares) - 1) < 0.01
+
+# %% [markdown]
+# ## Hold it to a bound
+#
+# An `[expect]` table in the file makes it a test of its own: `pytest my-scenes/`. From Python:
+
+# %%
+distance = compare.misfit(result, compare.solve("lattice", scene))
+print(f"rigid blocks from their exact motion: {distance:.1e}")
+assert distance < 0.005

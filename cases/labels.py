@@ -1,0 +1,33 @@
+"""What every variable and coordinate of a result is called and measured in, as plots label it."""
+
+#: By name: (long name, unit; "" where it is no quantity).
+LABELS = {
+    "time": ("time", "s"),
+    "stress_y": ("y of the section", "m"),
+    "velocity_y": ("y of the point", "m"),
+    "joint_y": ("y of the joint", "m"),
+    "axis": ("direction of the motion", ""),
+    "across": ("direction of the shear stress", ""),
+    "term": ("term of the energy ledger", ""),
+    "stress": ("axial stress, compression positive", "Pa"),
+    "shear": ("shear stress on the far side", "Pa"),
+    "velocity": ("velocity", "m/s"),
+    "displacement": ("displacement", "m"),
+    "rotation": ("rotation", "rad"),
+    "energy": ("energy", "J"),
+    "break_time": ("time at which the joint broke", "s"),
+    "field_time": ("time of the snapshot", "s"),
+    "component": ("direction", ""),
+    "field_points": ("place in the unloaded pillar", "m"),
+    "field_cells": ("nodes of the cell, in VTK's order", ""),
+    "field_block": ("block of the cell, 0 at the loaded end", ""),
+    "field_displacement": ("displacement of the node", "m"),
+    "field_velocity": ("velocity of the node", "m/s"),
+    "field_stress": ("axial stress of the cell, compression positive", "Pa"),
+}
+
+
+def label(name: str) -> dict[str, str]:
+    """Return the attributes `long_name` and, of a quantity, `units` of a variable."""
+    long_name, unit = LABELS[name]
+    return {"long_name": long_name} | ({"units": unit} if unit else {})

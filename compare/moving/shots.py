@@ -1,0 +1,72 @@
+"""Both engines' snapshots of one scene, at the instants that a picture or an animation shows."""
+
+from __future__ import annotations
+
+from math import ceil
+from typing import NamedTuple
+
+from cases.consistency import checked
+from cases.errors import SceneError
+from cases.scene import Scene
+from cases.snapshots import Snapshots, snapshots_of
+from cases.tables import Time
+from compare.engines import ENGINES, Progress, applies, solve
+
+
+class Shots(NamedTuple):
+    """One scene as each engine sees it.
+
+    scene : with the instants in its record. found : by engine, all at the same instants.
+    reasons : by engine, why one has none.
+    """
+
+    scene: Scene
+    found: dict[str, Snapshots]
+    reasons: dict[str, str]
+
+
+def at_instants(scene: Scene, count: int) -> Scene:
+    """Return the scene with `count` snapshots, the first at t = 0 and the last at its end.
+
+    The waveforms are sampled at least as often as before.
+    """
+    between = scene.time.duration / (count - 1)
+    interval = between / max(1, ceil(between / scene.interval - 1e-9))
+    changes = {"fields": between, "interval": interval}
+    return checked(scene.model_copy(update={"record": scene.record.model_copy(update=changes)}))
+
+
+def until(scene: Scene, time: float) -> Scene:
+    """Return the scene as far as `time`, s."""
+    return checked(scene.model_copy(update={"time": Time(duration=time)}))
+
+
+def take(scene: Scene, count: int, progress: Progress | None = None) -> Shots:
+    """Simulate a scene with both engines and return `count` snapshots of each.
+
+    The rock is jointed where that applies, else homogenised. Raises SceneError and UnstableError as
+    the engines do.
+    """
+    if count < 2:
+        raise SceneError("snapshots", "", count, "must be at least 2")
+    asked, chosen, reasons = at_instants(scene, count), ["dem"], {}
+    for name in ENGINES[1:]:
+        answer = applies(name, asked)
+        if answer:
+            chosen.append(name)
+            break
+        reasons[name] = answer.reason
+    found = {}
+    for i, name in enumerate(chosen):
+        result = solve(name, asked, _part(progress, i, len(chosen)))
+        taken = snapshots_of(result)
+        assert taken is not None
+        found[name] = taken
+    return Shots(asked, found, {} if len(found) > 1 else reasons)
+
+
+def _part(progress: Progress | None, i: int, count: int) -> Progress | None:
+    """Return what is told the progress of the i-th of so many runs."""
+    if progress is None:
+        return None
+    return lambda fraction: progress((i + fraction) / count)

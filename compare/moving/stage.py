@@ -1,0 +1,179 @@
+"""The pillars of both engines in three dimensions, by PyVista."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyvista
+
+from compare.moving.look import STRESS, Look
+from compare.moving.surface import Y, solid, surface_of
+from compare.snapshot_picture import COLOURS
+from compare.style import in_order, style
+
+if TYPE_CHECKING:
+    from cases.snapshots import Snapshots
+    from compare.moving.shots import Shots
+
+SIZE = 1280, 720  # pixels
+APART = 3.0  # from one pillar's axis to the next, in thicknesses as drawn, at least
+TILT = 0.35, 0.3  # how far the viewer stands to the right and above, of the distance
+SHOWN = 1.1  # of the pillar's length, that the picture is wide
+CELLS = {
+    "triangle": pyvista.CellType.TRIANGLE,
+    "tetra": pyvista.CellType.TETRA,
+    "hexahedron": pyvista.CellType.HEXAHEDRON,
+}
+
+
+class Stage:
+    """The pillars, one above the other, at any instant.
+
+    grids : by engine, with the points where the nodes are drawn (m), `displacement` (m) of points,
+    and what the colours show, SI, under its name: `axial stress` of cells, `velocity across` of
+    points. Where the pillars stand and how thick they look is their actors' affair.
+    """
+
+    def __init__(self, shots: Shots, look: Look, window: bool = False) -> None:
+        self.look, self.shots = look, shots
+        side = shots.scene.pillar.side
+        self.found = {n: solid(shots.found[n], side) for n in in_order(set(shots.found))}
+        self.time = next(iter(self.found.values())).time
+        self.plotter = pyvista.Plotter(off_screen=not window, window_size=list(SIZE))
+        self.plotter.set_background("white")
+        self.plotter.enable_anti_aliasing("ssaa")
+        self.grids, self.edges = {}, {}
+        for i, (name, s) in enumerate(self.found.items()):
+            self.grids[name], self.edges[name] = grid_of(s), edges_of(s)
+            self._add(name, -i * self._apart * look.up)
+        self._aim()
+        self.show(0)
+
+    def show(self, i: int) -> None:
+        """Move everything to instant i."""
+        for name, s in self.found.items():
+            grid, edges = self.grids[name], self.edges[name]
+            grid.points = edges.points = s.points + self.look.scale * s.displacement[i]
+            grid["displacement"] = s.displacement[i]
+            grid[self.look.quantity.name] = self._values(s, i)
+        self._write(i)
+
+    def picture(self, path: str, i: int) -> None:
+        """Write what is seen of instant i as PNG."""
+        self.show(i)
+        self.plotter.screenshot(path)
+        self.plotter.close()
+
+    def add_slider(self, i: int) -> None:
+        """Put a slider over time below the pillars, at instant i."""
+        self.show(i)
+        self.plotter.add_slider_widget(
+            lambda ms: self.show(int(np.abs(1e3 * self.time - ms).argmin())),
+            [float(1e3 * t) for t in self.time[[0, -1]]],
+            value=float(1e3 * self.time[i]),
+            title="time (ms)",
+            color="black",
+            pointa=(0.05, 0.1),
+            pointb=(0.45, 0.1),
+        )
+
+    def open(self) -> None:
+        """Open the window until it is closed."""
+        self.plotter.show()
+
+    @property
+    def _apart(self) -> float:
+        """From one pillar's axis to the next, m as drawn."""
+        drawn = [s.points + self.look.scale * s.displacement for s in self.found.values()]
+        reach = max(float(np.ptp(x @ self.look.up)) for x in drawn)
+        side = self.shots.scene.pillar.side
+        return self.look.stretch * max(APART * side, reach + side)
+
+    def _values(self, s: Snapshots, i: int | slice) -> np.ndarray:
+        """Return what the colours show, of cells or points, SI."""
+        if self.look.quantity == STRESS:
+            assert s.stress is not None
+            return s.stress[i]
+        return s.velocity[i] @ self.look.up
+
+    def _add(self, name: str, place: np.ndarray) -> None:
+        every = [self._values(s, slice(None)) for s in self.found.values()]
+        peak = max(float(np.abs(x).max()) for x in every) or 1.0
+        quantity, grid = self.look.quantity, self.grids[name]
+        grid[quantity.name] = self._values(self.found[name], 0)
+        bar = {
+            "title": quantity.label.replace(quantity.unit, "Pa" if quantity == STRESS else "m/s"),
+            "color": "black",
+            "fmt": "%.2g",
+            "title_font_size": 16,
+            "label_font_size": 14,
+            "position_x": 0.5,
+            "position_y": 0.03,
+            "width": 0.45,
+        }
+        pillar = self.plotter.add_mesh(
+            grid,
+            scalars=quantity.name,
+            cmap=COLOURS,
+            clim=(-peak, peak),
+            scalar_bar_args=bar,
+            ambient=0.7,  # a little shade shows the form and leaves the colours as in the bar
+            diffuse=0.35,
+        )
+        pillar.mapper.SetResolveCoincidentTopologyToPolygonOffset()  # or the edges flicker
+        lines = self.plotter.add_mesh(self.edges[name], color="#333333", line_width=1)
+        for actor in (pillar, lines):
+            actor.position = place
+            actor.scale = self.look.stretch, 1.0, self.look.stretch
+        above = 0.8 * self.look.stretch * self.shots.scene.pillar.side * self.look.up
+        self.plotter.add_point_labels(
+            [place + above],
+            [name],
+            text_color=style(name).colour,
+            font_size=18,
+            shape=None,
+            show_points=False,
+            always_visible=True,
+        )
+
+    def _aim(self) -> None:
+        """Look at the middle from the side, a little from the right and from above."""
+        length, camera = self.shots.scene.pillar.length, self.plotter.camera
+        middle = Y * length / 2 - self.look.up * self._apart * (len(self.found) - 1) / 2
+        right, above = TILT
+        towards = np.cross(Y, self.look.up) + right * Y + above * self.look.up
+        camera.focal_point = middle
+        camera.position = middle + 2 * length * towards / np.linalg.norm(towards)
+        camera.up = self.look.up
+        camera.enable_parallel_projection()
+        tall = max(length * SIZE[1] / SIZE[0], self._apart * len(self.found))
+        camera.parallel_scale = SHOWN * tall / 2
+        self.plotter.renderer.ResetCameraClippingRange()
+
+    def _write(self, i: int) -> None:
+        scene, look = self.shots.scene, self.look
+        stretched = f", thickness × {look.stretch:g}" if look.stretch != 1 else ""
+        lines = [
+            ", ".join(text for text in (scene.title, scene.name) if text),
+            f"t = {1e3 * self.time[i]:.4g} ms, displacements × {look.scale:,g}{stretched}",
+            *(f"{name} does not apply: {why}" for name, why in self.shots.reasons.items()),
+        ]
+        text = "\n".join(lines)
+        self.plotter.add_text(
+            text, position="upper_left", font_size=11, color="black", name="about"
+        )
+
+
+def grid_of(s: Snapshots) -> pyvista.UnstructuredGrid:
+    """Return the cells of snapshots with the points of the unloaded pillar and `block` of cells."""
+    grid = pyvista.UnstructuredGrid({CELLS[s.kind]: s.cells}, s.points.copy())
+    grid["block"] = s.block
+    return grid
+
+
+def edges_of(s: Snapshots) -> pyvista.PolyData:
+    """Return the edges of the blocks."""
+    edges = surface_of(s).edges
+    lines = np.insert(edges, 0, 2, axis=1)
+    return pyvista.PolyData(s.points.copy(), lines=lines.ravel())
