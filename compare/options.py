@@ -25,11 +25,24 @@ SetOption = Annotated[
     list[str],
     typer.Option("--set", metavar="KEY=VALUE", help="Change one key, for every variant."),
 ]
+SweepOption = Annotated[
+    list[str],
+    typer.Option(
+        "--sweep",
+        metavar="KEY=VALUES",
+        help="Every value of a key: FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C; more than once: "
+        "all combinations. A folder for each, and a table, sweep.csv and sweep.nc.",
+    ),
+]
 VariantOption = Annotated[
     str | None, typer.Option(help="Only this variant; '' is the scene as it stands.")
 ]
 OutOption = Annotated[Path, typer.Option(help="Folder for the results.")]
 WorkersOption = Annotated[int, typer.Option(min=1, help="Processes, where nothing is timed.")]
+DryOption = Annotated[
+    bool,
+    typer.Option("--dry-run", help="Only say what would run, how long, and how much memory."),
+]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON for a machine to read.")]
 
 CORES = os.cpu_count() or 1
