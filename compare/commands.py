@@ -13,6 +13,7 @@ from typing import Annotated
 import typer
 
 import cases
+from compare import completion
 from compare.keeping.lock import locked
 from compare.keeping.signals import watched
 from compare.options import (
@@ -58,7 +59,10 @@ def run(
     ],
     model: Annotated[
         list[str] | None,
-        typer.Option(help="Of the continuum (jointed, equivalent) or an exact solution's name."),
+        typer.Option(
+            help="Of the continuum (jointed, equivalent) or an exact solution's name.",
+            autocompletion=completion.models,
+        ),
     ] = None,
     changes: SetOption = [],  # noqa: B006
     variant: VariantOption = None,

@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from compare import completion
 from compare.options import JsonOption, app
 
 
@@ -12,7 +13,12 @@ def new(
     name: Annotated[str, typer.Argument(help="Of the file, with or without .toml.")],
     source: Annotated[
         str | None,
-        typer.Option("--from", metavar="SCENE", help="Copy this scene, its comments and files."),
+        typer.Option(
+            "--from",
+            metavar="SCENE",
+            help="Copy this scene, its comments and files.",
+            autocompletion=completion.scenes,
+        ),
     ] = None,
 ) -> None:
     """Write a scene to begin with: NAME.toml, every key explained, ready to run.

@@ -59,7 +59,7 @@ def show_forecasts(
 
 
 def together(seconds: float, unknown: int) -> str:
-    """Return in words the seconds of some runs one after the other, of which so many were never timed."""
+    """Return in words the seconds of runs one after the other, of which some were never timed."""
     if not unknown:
         return f"about {in_words(seconds)} of computing"
     if not seconds:

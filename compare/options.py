@@ -9,6 +9,7 @@ import typer
 
 import cases
 from cases.errors import SceneError
+from compare import completion
 from compare.processes import started
 from compare.scenes import find
 
@@ -19,11 +20,20 @@ app = typer.Typer(
 )
 
 SceneArgument = Annotated[
-    str, typer.Argument(help="A scene file, or a shipped scene such as guo-li-2002/fig-03.")
+    str,
+    typer.Argument(
+        help="A scene file, or a shipped scene such as guo-li-2002/fig-03.",
+        autocompletion=completion.scenes,
+    ),
 ]
 SetOption = Annotated[
     list[str],
-    typer.Option("--set", metavar="KEY=VALUE", help="Change one key, for every variant."),
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change one key, for every variant.",
+        autocompletion=completion.settings,
+    ),
 ]
 SweepOption = Annotated[
     list[str],
@@ -32,10 +42,14 @@ SweepOption = Annotated[
         metavar="KEY=VALUES",
         help="Every value of a key: FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C; more than once: "
         "all combinations. A folder for each, and a table, sweep.csv and sweep.nc.",
+        autocompletion=completion.settings,
     ),
 ]
 VariantOption = Annotated[
-    str | None, typer.Option(help="Only this variant; '' is the scene as it stands.")
+    str | None,
+    typer.Option(
+        help="Only this variant; '' is the scene as it stands.", autocompletion=completion.variants
+    ),
 ]
 OutOption = Annotated[Path, typer.Option(help="Folder for the results.")]
 WorkersOption = Annotated[int, typer.Option(min=1, help="Processes, where nothing is timed.")]

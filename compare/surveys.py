@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from cases.errors import SceneError
+from compare import completion
 from compare.keeping.lock import locked
 from compare.options import (
     CORES,
@@ -27,7 +28,10 @@ from compare.processes import started
 def effects(
     scene: Annotated[
         str | None,
-        typer.Argument(help="A scene file or a shipped scene; absent: all that are shipped."),
+        typer.Argument(
+            help="A scene file or a shipped scene; absent: all that are shipped.",
+            autocompletion=completion.scenes,
+        ),
     ] = None,
     changes: SetOption = [],  # noqa: B006
     variant: VariantOption = None,
@@ -85,7 +89,12 @@ def plan(
 
 @app.command()
 def study(
-    name: Annotated[str, typer.Argument(help="A shipped study or a study's TOML file.")],
+    name: Annotated[
+        str,
+        typer.Argument(
+            help="A shipped study or a study's TOML file.", autocompletion=completion.studies
+        ),
+    ],
     out: Annotated[Path, typer.Option(help="Folder for tables and points.")] = Path("studies"),
     workers: WorkersOption = CORES,
     dry: DryOption = False,
