@@ -42,9 +42,9 @@ def show_forecasts(
     """
     seconds, unknown = seconds_of(one for _, one in found)
     if as_json:
-        rows = [{"point": point, **one._asdict()} for point, one in found]
+        runs = [{"point": point, **one._asdict()} for point, one in found]
         failed = [{"point": point, "message": message} for point, message in failing]
-        print_json({"runs": rows, "seconds": seconds, "untimed": unknown, "failing": failed})
+        print_json({"runs": runs, "seconds": seconds, "untimed": unknown, "failing": failed})
         return
     first = 0 if any(point for point, _ in found) else 1
     rows = [_cells(point, one)[first:] for point, one in found]

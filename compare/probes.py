@@ -99,9 +99,7 @@ def _adios() -> str:
 def _ffmpeg() -> str:
     found = shutil.which("ffmpeg")
     if found is None and _is_there("imageio_ffmpeg"):
-        from imageio_ffmpeg import get_ffmpeg_exe
-
-        found = get_ffmpeg_exe()
+        found = import_module("imageio_ffmpeg").get_ffmpeg_exe()
     if found is None:
         raise Missing("is not on the PATH")
     return found

@@ -36,7 +36,6 @@ def show_sweep(axes: list[Axis], table: pd.DataFrame, files: list[Path], as_json
         return
     done = table[table.state == "done"]
     columns = OF_PAIRS if "one" in table else OF_RUNS
-    columns = tuple(column for column in columns if column[0] in table)
     groups: dict[str, list[list[str]]] = {}
     for row in done.to_dict("records"):
         numbers = [_number(row[name], form) for name, _, form in columns]
