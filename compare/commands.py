@@ -6,20 +6,21 @@ without dolfinx and matplotlib.
 
 import sys
 from contextlib import ExitStack
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 import cases
-from compare import completion
 from compare.keeping.lock import locked
 from compare.keeping.signals import watched
 from compare.options import (
     CORES,
     DryOption,
+    Engine,
+    EngineOption,
     JsonOption,
+    ModelOption,
     OutOption,
     SceneArgument,
     SetOption,
@@ -34,14 +35,6 @@ from compare.processes import started
 from compare.scenes import shipped
 
 
-class Engine(StrEnum):
-    """What can simulate or solve a scene."""
-
-    dem = "dem"
-    continuum = "continuum"
-    exact = "exact"
-
-
 @app.command("list")
 def list_scenes(as_json: JsonOption = False) -> None:
     """List the shipped scenes and their variants."""
@@ -54,16 +47,8 @@ def list_scenes(as_json: JsonOption = False) -> None:
 @app.command()
 def run(
     scene: SceneArgument,
-    engine: Annotated[list[Engine], typer.Option(help="May be given more than once.")] = [  # noqa: B006
-        Engine.dem
-    ],
-    model: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Of the continuum (jointed, equivalent) or an exact solution's name.",
-            autocompletion=completion.models,
-        ),
-    ] = None,
+    engine: EngineOption = [Engine.dem],  # noqa: B006
+    model: ModelOption = None,
     changes: SetOption = [],  # noqa: B006
     variant: VariantOption = None,
     swept: SweepOption = [],  # noqa: B006

@@ -50,6 +50,16 @@ def _look_again() -> None:
             font_manager.fontManager.addfont(path)
 
 
+def file_of(family: str) -> str:
+    """Return the file of a family's regular face, which is installed."""
+    return str(font_manager.findfont(family, fallback_to_default=False))
+
+
+def number_of(family: str) -> int:
+    """Return which face of its file a family is: matplotlib itself may know but the first."""
+    return int(getattr(font_manager.findfont(family, fallback_to_default=False), "face_index", 0))
+
+
 def missing(file: str, text: str) -> set[str]:
     """Return the characters of a text that a font file has no glyph for."""
     glyphs = FT2Font(file).get_charmap()

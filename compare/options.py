@@ -2,6 +2,7 @@
 
 import os
 import sys
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -24,6 +25,24 @@ SceneArgument = Annotated[
     typer.Argument(
         help="A scene file, or a shipped scene such as guo-li-2002/fig-03.",
         autocompletion=completion.scenes,
+    ),
+]
+
+
+class Engine(StrEnum):
+    """What can simulate or solve a scene."""
+
+    dem = "dem"
+    continuum = "continuum"
+    exact = "exact"
+
+
+EngineOption = Annotated[list[Engine], typer.Option(help="May be given more than once.")]
+ModelOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="Of the continuum (jointed, equivalent) or an exact solution's name.",
+        autocompletion=completion.models,
     ),
 ]
 SetOption = Annotated[

@@ -1,5 +1,6 @@
 """Commands that put the solutions of a scene side by side: as distances, or drawn."""
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,7 +11,9 @@ from cases.errors import SceneError
 from compare.options import (
     CORES,
     DryOption,
+    EngineOption,
     JsonOption,
+    ModelOption,
     SceneArgument,
     SetOption,
     SweepOption,
@@ -19,6 +22,11 @@ from compare.options import (
     app,
     load,
 )
+
+WithOption = Annotated[
+    list[str],
+    typer.Option("--with", metavar="FILE[:LABEL]", help="Curves of others; more than once."),
+]
 
 
 @app.command()
@@ -30,10 +38,7 @@ def compare(
     spectral: Annotated[
         bool, typer.Option(help="Add envelope and phase misfit (Kristekova et al. 2006).")
     ] = True,
-    given: Annotated[
-        list[str],
-        typer.Option("--with", metavar="FILE[:LABEL]", help="Curves of others; more than once."),
-    ] = [],  # noqa: B006
+    given: WithOption = [],  # noqa: B006
     align: Annotated[
         bool, typer.Option("--align", help="Move the clock of each --with by cross-correlation.")
     ] = False,
@@ -82,6 +87,66 @@ def compare(
 
         write_comparisons(found, out)
     views.show_comparisons(found, as_json)
+
+
+class Style(StrEnum):
+    """Where a figure will stand."""
+
+    journal = "journal"
+    screen = "screen"
+
+
+class Format(StrEnum):
+    """What a figure can be written as."""
+
+    pdf = "pdf"
+    svg = "svg"
+    png = "png"
+
+
+class Language(StrEnum):
+    """What a figure can be labelled in."""
+
+    en = "en"
+    zh = "zh"
+
+
+@app.command()
+def figure(
+    scene: SceneArgument,
+    out: Annotated[Path, typer.Option(help="The file: .pdf, .svg or .png.")],
+    engine: EngineOption = [],  # noqa: B006
+    model: ModelOption = None,
+    changes: SetOption = [],  # noqa: B006
+    variant: VariantOption = None,
+    given: WithOption = [],  # noqa: B006
+    style: Annotated[Style, typer.Option(help="For print, or for slides.")] = Style.journal,
+    columns: Annotated[
+        int, typer.Option(min=1, max=2, help="Of the page: 90 or 190 mm in print.")
+    ] = 1,
+    kind: Annotated[
+        Format | None, typer.Option("--format", help="Absent: what the file's name says.")
+    ] = None,
+    language: Annotated[
+        Language, typer.Option(help="Of the labels; zh needs a font that has it.")
+    ] = Language.en,
+) -> None:
+    """Draw the waveforms of a scene as a figure for a paper.
+
+    A panel for each variant and receiver, 90 or 190 mm wide, in letters of 7.5 and 8 points. PDF
+    and SVG hold their fonts. Each solution has the colour that it has everywhere, and dashes that
+    tell it from others without colour. Without --engine, all that apply are drawn.
+    """
+    from compare import jobs, terminal
+    from compare.papers.make import Asked, make
+
+    scenes = load(scene, changes, variant)
+    runs = jobs.wanted([e.value for e in engine], model or []) if engine or model else []
+    curves = _read_curves(given, scenes, False)
+    asked = Asked(style.value, columns, kind.value if kind else None, language.value, out)
+    with terminal.progress(scenes[0].title) as advance:
+        path = make(scenes, runs, curves, asked, advance)
+    terminal.say(f"wrote {path}")
 
 
 def _read_curves(given: list[str], scenes: list[cases.Scene], align: bool) -> list[Any]:
