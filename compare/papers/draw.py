@@ -51,8 +51,8 @@ def draw(comparisons: list[Comparison], look: Look, columns: int, language: str)
             ax.set_xlabel(words.time)
         for ax in axes[len(found) :]:
             ax.set_visible(False)
-        depth = _add_legend(figure, comparisons, look, words)
-        _arrange(figure, look, rows, depth, comparisons[0])
+        legend = _add_legend(figure, comparisons, look, words)
+        _arrange(figure, look, rows, legend, comparisons[0])
     _refuse_unknown_letters(figure, families)
     return figure
 
@@ -85,46 +85,44 @@ def _set_title(ax: Axes, title: str, look: Look, width: float) -> None:
     ax.set_title("\n".join(wrap(title.replace("$", r"\$"), letters)), pad=3)
 
 
-def _add_legend(figure: Figure, found: list[Comparison], look: Look, words: Words) -> int:
-    """Put the legend above the panels; return how many lines it has."""
+def _add_legend(figure: Figure, found: list[Comparison], look: Look, words: Words) -> float:
+    """Put the legend above the panels, as wide as fits; return its height, mm."""
     names = in_order({name for comparison in found for name in comparison.results})
     entries = [Line2D([], [], label=words.solution(n), **look.of_line(n)) for n in names]
     for k, beside in enumerate(found[0].besides):
         label = beside.curves.name.replace("$", r"\$")
         entries.append(Line2D([], [], label=label, **look.of_given(k)))
-    longest = max(len(entry.get_label()) for entry in entries)
-    # A Chinese letter is as wide as two others.
-    wide = 1.0 if any(ord(c) > 0x2E80 for c in entries[0].get_label()) else 0.62
-    room = figure.get_figwidth() / MM - 4
-    columns = max(1, int(room / ((wide * longest + 4.6) * look.small * POINT)))
-    columns = min(columns, len(entries))
-    figure.legend(
-        handles=entries,
-        ncols=columns,
-        loc="upper center",
-        bbox_to_anchor=(0.5, 1.0),
-        frameon=False,
-        handlelength=3.2,
-        handletextpad=0.6,
-        columnspacing=1.0,
-        labelspacing=0.3,
-        borderpad=0.2,
-    )
-    return -(-len(entries) // columns)
+    for columns in range(len(entries), 0, -1):
+        legend = figure.legend(
+            handles=entries,
+            ncols=columns,
+            loc="upper center",
+            bbox_to_anchor=(0.5, 1.0),
+            frameon=False,
+            handlelength=look.handle,
+            handletextpad=0.5,
+            columnspacing=1.2,
+            labelspacing=0.3,
+            borderpad=0.1,
+            borderaxespad=0.2,
+        )
+        box = legend.get_window_extent().transformed(figure.dpi_scale_trans.inverted())
+        if box.width <= figure.get_figwidth() or columns == 1:
+            break
+        legend.remove()
+    return box.height / MM
 
 
-def _arrange(figure: Figure, look: Look, rows: int, depth: int, first: Comparison) -> None:
-    """Give the figure its height and the panels their places below the legend."""
-    legend = (1.35 * depth + 0.8) * look.small * POINT  # mm
+def _arrange(figure: Figure, look: Look, rows: int, legend: float, first: Comparison) -> None:
+    """Give the figure its height and the panels their places below the legend of so many mm."""
+    legend += look.small * POINT / 2
     panel = min(look.panel, (look.tallest - legend) / rows)
     if panel < look.least:
-        raise SceneError(
-            first.scene.where,
-            "",
-            None,
+        allowed = (
             f"{rows} rows of panels do not fit {look.tallest:g} mm: choose a --variant, or fewer "
-            "places by --set record.stress=...",
+            "places by --set record.stress=..."
         )
+        raise SceneError(first.scene.where, "", None, allowed)
     height = rows * panel + legend
     figure.set_figheight(height * MM)
     figure.tight_layout(rect=(0, 0, 1, 1 - legend / height), pad=0.3, h_pad=0.6, w_pad=0.8)

@@ -16,8 +16,8 @@ MM = 1 / 25.4  # inches
 class Look(NamedTuple):
     """widths : mm, of one and of two columns. tallest : mm. panel, least : mm, height of a panel as
     it should be and at least. text, small : points, of titles and labels, and of ticks and legend.
-    line : factor on the widths of lines. prints : whether dashes tell curves apart without colour.
-    dpi : of a PNG."""
+    handle : length of a line in the legend, in letters. prints : whether dashes tell curves apart
+    without colour. dpi : of a PNG."""
 
     widths: tuple[float, float]
     tallest: float
@@ -25,7 +25,7 @@ class Look(NamedTuple):
     least: float
     text: float
     small: float
-    line: float
+    handle: float
     prints: bool
     dpi: int
 
@@ -54,12 +54,11 @@ class Look(NamedTuple):
         if self.prints:
             wide = ENGINE_WIDTH.get(name, 1.2) if is_engine(name) else EXACT_WIDTH
             line |= {"linewidth": wide, "linestyle": DASHES.get(name, "-")}
-        return line | {"linewidth": self.line * line["linewidth"]}
+        return line
 
     def of_given(self, k: int) -> dict[str, Any]:
         """Return how the curve of the k-th file of others is drawn."""
-        line = GIVEN[k % len(GIVEN)].of_line()
-        return line | {"linewidth": self.line * line["linewidth"]}
+        return GIVEN[k % len(GIVEN)].of_line()
 
 
 #: On paper, points: engines wide and light, exact solutions thin and dark over them.
@@ -85,6 +84,6 @@ DASHES: dict[str, Any] = {
 }
 
 LOOKS = {
-    "journal": Look((90.0, 190.0), 240.0, 42.0, 26.0, 8.0, 7.5, 1.0, True, 600),
-    "screen": Look((160.0, 280.0), 900.0, 58.0, 40.0, 10.0, 9.0, 1.0, False, 160),
+    "journal": Look((90.0, 190.0), 240.0, 42.0, 26.0, 8.0, 7.5, 2.8, True, 600),
+    "screen": Look((160.0, 280.0), 900.0, 58.0, 40.0, 10.0, 9.0, 4.5, False, 160),
 }

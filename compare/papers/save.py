@@ -47,10 +47,9 @@ def _svg(figure: Figure, about: dict[str, str]) -> str:
     figure.savefig(buffer, format="svg", metadata={**about, "Date": None})
     svg = buffer.getvalue()
     letters = unescape("".join(TEXT.findall(svg)))
-    used = {
-        family for found in re.findall(r"font: [^;\"]*", svg) for family in FAMILY.findall(found)
-    }
-    faces = "".join(_face(family, letters) for family in sorted(used))
+    styles = " ".join(re.findall(r"font: [^;\"]*", svg))
+    used = sorted(set(FAMILY.findall(styles)))
+    faces = "".join(_face(family, letters) for family in used)
     return svg.replace("<defs>", f'<defs>\n  <style type="text/css">{faces}</style>', 1)
 
 
