@@ -40,7 +40,7 @@ HINTS = {
     "mpiexec": "apt install openmpi-bin; or conda install -c conda-forge mpich",
     "pyvista": "pip install pyvista",
     "ffmpeg": "apt install ffmpeg; or pip install imageio-ffmpeg",
-    "Chinese font": "apt install fonts-wqy-microhei (or fonts-noto-cjk)",
+    "Chinese font": "apt install fonts-wqy-microhei (or fonts-noto-cjk, for SVG and PNG)",
     "chromium": "apt install chromium; only tests of the page need it",
 }
 

@@ -26,7 +26,7 @@ CHINESE = (
     "Heiti SC",
     "Droid Sans Fallback",
 )
-HINT = "apt install fonts-wqy-microhei (or fonts-noto-cjk)"
+HINT = "apt install fonts-wqy-microhei (or fonts-noto-cjk, for SVG and PNG)"
 NEEDED = "应力时间刚性块体"  # characters that a font for Chinese has
 
 
@@ -58,6 +58,14 @@ def file_of(family: str) -> str:
 def number_of(family: str) -> int:
     """Return which face of its file a family is: matplotlib itself may know but the first."""
     return int(getattr(font_manager.findfont(family, fallback_to_default=False), "face_index", 0))
+
+
+def is_true_type(family: str) -> bool:
+    """Return whether a family's outlines are TrueType's, not PostScript's."""
+    from fontTools.ttLib import TTFont
+
+    with TTFont(file_of(family), fontNumber=number_of(family), lazy=True) as font:
+        return "glyf" in font
 
 
 def missing(file: str, text: str) -> set[str]:
