@@ -7,6 +7,7 @@ import inspect
 import json
 from collections.abc import Iterator
 from pathlib import Path
+from shlex import quote
 from textwrap import wrap
 
 import cases
@@ -61,7 +62,7 @@ OFFERED = {
     "load.at": "",
     "gravity.direction": "[0, 1, 0]",
     "gravity.acceleration": "",
-    "gravity.static": "",
+    "gravity.static": "false",
     "prestress.normal": "1.0e5",
     "record.interval": "5.0e-5",
     "record.fields": "1.0e-3",
@@ -76,8 +77,8 @@ OFFERED = {
 HEAD = """\
 A scene of jointwave: what is there, what acts on it, how long, and what is recorded.
 SI units. y runs along the pillar from the loaded end, x and z across; compression is positive.
-A line such as "# cycles = 2" is a choice: take its "# " away, and that of the line that begins its
-table. What is left out is not computed. Numbers such as (10) are equations of Guo & Li (2002).
+A line such as "# cycles = 2" is a choice: take its "# " away, and that of its table's heading.
+What is left out is not computed. Numbers such as (10) are equations of Guo & Li (2002).
 There are more keys: see the scene reference.
 """
 
@@ -121,17 +122,17 @@ def _files(scene: Path) -> list[str]:
 
 def starter(path: Path) -> str:
     """Return a scene that runs as it stands, to be written at a path."""
-    shown = str(path)
+    shown, folder = quote(path.name), quote(path.stem)
     begin = [
         f"Look:  jointwave explain {shown}",
-        f"Run:   jointwave compare {shown} --out {path.with_suffix('')}",
+        f"Run:   jointwave compare {shown} --out {folder}",
     ]
     title = _key("title", json.dumps(path.stem), *_about(TableOf("", Scene, False), "title"))
     parts = [*(f"# {line}".rstrip() for line in [*HEAD.splitlines(), *begin]), "", title, ""]
     for table in tables():
         if any(key.rpartition(".")[0] == table.path for key in (*SET, *OFFERED)):
             parts += [*_table(table), ""]
-    return "\n".join([*parts, TAIL.format(file=path.name)])
+    return "\n".join([*parts, TAIL.format(file=shown)])
 
 
 def _table(table: TableOf) -> Iterator[str]:
