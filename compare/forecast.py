@@ -18,7 +18,8 @@ class Forecast(NamedTuple):
 
     steps : of time, exactly; 0 of exact solutions. size : blocks or freedoms of the rock, in words.
     seconds : of stepping, at the rate last measured here; None where none was. bytes : of memory,
-        as the run itself would estimate it before it begins.
+        as the run itself would estimate it before it begins; of exact solutions their waveforms,
+        which is the least that they take.
     """
 
     variant: str

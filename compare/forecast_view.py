@@ -84,7 +84,7 @@ def _cells(point: str, one: Forecast) -> list[str]:
         f"{one.steps:,}" if one.steps else "-",
         one.size,
         UNKNOWN if one.seconds is None else in_words(one.seconds),
-        spoken(one.bytes),
+        spoken(one.bytes) if one.steps else f"over {spoken(one.bytes)}",
     ]
 
 
