@@ -54,7 +54,9 @@ def settings(incomplete: str) -> list[str]:
     known = {key: field for key, field in keys() if not key.startswith("soft_layers.")}
     key, equals, _ = incomplete.partition("=")
     if not equals:
-        return _begun([f"{key}=" for key in known], incomplete)
+        found = _begun([f"{key}=" for key in known], incomplete)
+        # After the only word that fits bash puts a space; it does not between two.
+        return [*found, f"{found[0]}VALUE"] if _is_bash() and len(found) == 1 else found
     values = _values(known[key].annotation) if key in known else []
     return _begun([f"{key}={value}" for value in values], incomplete)
 
@@ -85,8 +87,11 @@ def _values(kind: Any) -> list[str]:
 
 def _quoted(found: list[str]) -> list[str]:
     """Return names as a shell takes them for one word; all but bash see to that themselves."""
-    bash = os.environ.get("_JOINTWAVE_COMPLETE") == "complete_bash"
-    return [one.replace(" ", "\\ ") for one in found] if bash else found
+    return [one.replace(" ", "\\ ") for one in found] if _is_bash() else found
+
+
+def _is_bash() -> bool:
+    return os.environ.get("_JOINTWAVE_COMPLETE") == "complete_bash"
 
 
 def _begun(known: list[str], incomplete: str) -> list[str]:

@@ -9,7 +9,6 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.text import Text
 
 from cases.errors import SceneError
 from compare import fonts
@@ -29,15 +28,13 @@ def draw(comparisons: list[Comparison], look: Look, columns: int, language: str)
     """Return the figure.
 
     columns : 1 or 2, of the page. language : "en" or "zh".
-    Raises SceneError where nothing is recorded, where it would be taller than a page, and where no
-    font here has its letters.
+    Raises SceneError where it would be taller than a page, and where no font here has its letters.
     """
     words, families = WORDS[language], _families(language)
     grid = panels(comparisons)
     found = [panel for row in grid for panel in row]
-    if not found:
-        allowed = "records nothing: record.stress or record.velocity must name a place"
-        raise SceneError(comparisons[0].scene.where, "record", None, allowed)
+    _refuse_unknown_letters([words.title(panel) for panel in found], families)
+    _refuse_unknown_letters([b.curves.name for b in comparisons[0].besides], families)
     across = min(len(grid[0]), MOST_ACROSS) if columns == 2 else 1
     with matplotlib.rc_context(look.rc(families)):
         figure = Figure(figsize=(look.widths[columns - 1] * MM, 1.0))
@@ -53,7 +50,6 @@ def draw(comparisons: list[Comparison], look: Look, columns: int, language: str)
             ax.set_visible(False)
         legend = _add_legend(figure, comparisons, look, words)
         _arrange(figure, look, rows, legend, comparisons[0])
-    _refuse_unknown_letters(figure, families)
     return figure
 
 
@@ -128,9 +124,9 @@ def _arrange(figure: Figure, look: Look, rows: int, legend: float, first: Compar
     figure.tight_layout(rect=(0, 0, 1, 1 - legend / height), pad=0.3, h_pad=0.6, w_pad=0.8)
 
 
-def _refuse_unknown_letters(figure: Figure, families: list[str]) -> None:
-    """Raise SceneError where a letter of the figure is in none of its fonts."""
-    text = "".join(part.get_text() for part in figure.findobj(Text)).replace(r"\$", "$")
+def _refuse_unknown_letters(given: list[str], families: list[str]) -> None:
+    """Raise SceneError where a letter of what users have named is in no font."""
+    text = "".join(given)
     for file in (fonts.file_of(family) for family in families):
         text = "".join(fonts.missing(file, text))
     if text:

@@ -77,7 +77,7 @@ def _face(family: str, letters: str) -> str:
     """Return the rule that embeds the letters of a font, as WOFF in base64."""
     logging.getLogger("fontTools").setLevel(logging.ERROR)  # it tells of tables that it leaves out
     options = subset.Options(flavor="woff", layout_features=["*"], notdef_outline=True)
-    font = TTFont(fonts.file_of(family), fontNumber=fonts.number_of(family))
+    font = TTFont(fonts.file_of(family), fontNumber=fonts.number_of(family), recalcTimestamp=False)
     subsetter = subset.Subsetter(options)
     subsetter.populate(text=letters)
     subsetter.subset(font)
