@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import pickle
 from math import nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -55,6 +54,11 @@ class Running(NamedTuple):
     runs: list[tuple[str, str | None]]
     vtx: bool
 
+    @property
+    def about(self) -> list[Any]:
+        """What decides a row beside the scene."""
+        return [self.runs, self.vtx]
+
     def solvers(self, case: Case) -> list[str]:
         """Return the names of what would solve a case."""
         from compare import jobs
@@ -78,6 +82,12 @@ class Comparing(NamedTuple):
     curves: list[Curves]
     align: bool
     writes: bool
+
+    @property
+    def about(self) -> list[Any]:
+        """What decides a row beside the scene and the samples of the curves."""
+        named = [[c.file, list(map(str, c.waveforms))] for c in self.curves]
+        return [self.spectral, self.align, self.writes, named]
 
     def solvers(self, case: Case) -> list[str]:
         """Return the names of what would solve a case."""
@@ -121,8 +131,11 @@ def outcome(case: Case, work: Work) -> Outcome:
 def key(case: Case, work: Work) -> str:
     """Return what tells cases apart: everything that decides a row, this program included."""
     assert case.scene is not None
-    about = [str(case.folder), scene_hash(case.scene), type(work).__name__, program()]
-    digest = hashlib.sha256(json.dumps(about).encode() + pickle.dumps(tuple(work)))
+    about = [str(case.folder), scene_hash(case.scene), type(work).__name__, program(), work.about]
+    digest = hashlib.sha256(json.dumps(about).encode())
+    for curve in work.curves if isinstance(work, Comparing) else []:
+        for values in (curve.time, *curve.waveforms.values()):
+            digest.update(np.ascontiguousarray(values).tobytes())
     return digest.hexdigest()[:16]
 
 

@@ -101,6 +101,20 @@ def test_a_comparison_is_swept(tmp_path):
     assert (tmp_path / "out" / "ends.start=quiet" / "comparison.svg").is_file()
 
 
+def test_curves_of_others_are_swept_too(tmp_path):
+    """A file that has changed since is compared anew."""
+    sweep = (*SHORT, "--no-spectral", "--variant", "", "--out", tmp_path / "out", "--workers", 1)
+    sweep = (*sweep, "--sweep", "ends.start=free", "--with", "curve.csv", "--json")
+    found = []
+    for peak in (0.1, 0.2, 0.2):
+        text = f"time [ms], stress@20 [MPa]\n0, 0\n10, {peak}\n19, 0\n"
+        (tmp_path / "curve.csv").write_text(text)
+        rows = json.loads(jointwave("compare", SCENE, *sweep, cwd=tmp_path).stdout)["rows"]
+        found.append([row["misfit"] for row in rows if row["one"] == "curve.csv"])
+    assert found[0] and found[0] != found[1] == found[2]
+    assert len(list((tmp_path / "out" / "points").iterdir())) == 2
+
+
 def test_a_comparison_without_a_folder_writes_nothing(tmp_path):
     options = (*SHORT, "--no-spectral", "--variant", "", "--json", "--workers", 1)
     done = jointwave("compare", SCENE, "--sweep", "ends.start=free", *options, cwd=tmp_path)
