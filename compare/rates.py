@@ -21,6 +21,7 @@ from cases.scene import Scene
 from compare.engines import ENGINES
 from compare.output import write_text
 
+SHORTEST = 0.01  # s: what is over sooner tells too little to replace what is known
 CHANGED = 2.0  # a rate that has changed by this factor is written anew
 
 
@@ -30,9 +31,10 @@ def note(name: str, scene: Scene, about: Mapping[str, Any], seconds: float | Non
     about : its attributes. seconds : that it took in all, which is what exact solutions cost.
     """
     if name in ENGINES:
-        count = about["steps"] * units(name, scene, about)
-        if count:
-            _keep(_key(name, scene, about), float(about["seconds_stepping"]) / count)
+        count, spent = about["steps"] * units(name, scene, about), float(about["seconds_stepping"])
+        key = _key(name, scene, about)
+        if count and (spent > SHORTEST or key not in _known()):
+            _keep(key, spent / count)
     elif seconds is not None:
         _keep(f"{name} {scene_hash(scene)}", seconds)
 

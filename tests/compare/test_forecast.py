@@ -101,6 +101,8 @@ def test_time_is_that_of_the_last_run_of_the_kind(pillar, engine):
     longer = pillar(**SHORT | {"time__duration": 0.02})
     assert forecast(longer, engine).seconds == pytest.approx(4.0, rel=0.01)
     assert forecast(pillar(**SHORT, joints__damping_ratio=0.1), engine).seconds is None
+    rates.note(engine, scene, about | {"seconds_stepping": 1e-3})  # too short to tell
+    assert forecast(scene, engine).seconds == pytest.approx(2.0)
     rates.note(engine, scene, about | {"seconds_stepping": 8.0})
     assert forecast(scene, engine).seconds == pytest.approx(8.0)
 
