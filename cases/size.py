@@ -7,7 +7,9 @@ the key of the scene that decides it. A run is refused where the sum is beyond `
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import cache
 from math import isfinite
 from pathlib import Path
@@ -28,6 +30,22 @@ LOAD_OF_STEP, TABLE_OF_STEP = 24, 64
 LEDGER = 5  # terms of an energy ledger, at least
 #: How often a waveform is there at once: as it is sampled, and as it is written.
 COPIES = 2
+
+
+#: Where estimates go meanwhile, for those who only want to know them.
+_asked: ContextVar[dict[str, float] | None] = ContextVar("_asked", default=None)
+
+
+@contextmanager
+def estimates() -> Iterator[dict[str, float]]:
+    """Collect what the parts of a run would take (bytes, by the key that decides them), as they are
+    looked at before it is made."""
+    parts: dict[str, float] = {}
+    token = _asked.set(parts)
+    try:
+        yield parts
+    finally:
+        _asked.reset(token)
 
 
 def memory() -> float:
@@ -57,6 +75,8 @@ def _of_machine() -> float:
 
 def refuse_beyond_memory(scene: Scene, parts: Mapping[str, float]) -> None:
     """Raise SceneError where a run's parts, bytes by the key that decides them, are too large."""
+    if (asked := _asked.get()) is not None:
+        asked.update(parts)
     total, limit = sum(parts.values()), memory()
     if total <= limit:
         return

@@ -8,12 +8,12 @@ from typing import Any
 import typer
 
 from cases.errors import InterruptedRun, SceneError, UnstableError
-from compare import commands, motion, surveys
+from compare import commands, desk, motion, solutions, surveys
 from compare.keeping.signals import Ended, exit_code, watched
 from compare.options import app
 from compare.processes import Processes, started
 
-COMMANDS = (commands, surveys, motion)  # their import puts them into the app
+COMMANDS = (commands, solutions, surveys, motion, desk)  # their import puts them into the app
 
 # Older typer raises click's own errors and newer typer its copy of them: ask the class itself.
 UsageError: type[Exception] = next(

@@ -6,36 +6,33 @@ without dolfinx and matplotlib.
 
 import sys
 from contextlib import ExitStack
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 import cases
-from cases.errors import SceneError
 from compare.keeping.lock import locked
 from compare.keeping.signals import watched
 from compare.options import (
+    CORES,
+    DryOption,
+    Engine,
+    EngineOption,
     JsonOption,
+    ModelOption,
     OutOption,
     SceneArgument,
     SetOption,
+    SweepOption,
     VariantOption,
+    WorkersOption,
     app,
     load,
     warn,
 )
 from compare.processes import started
 from compare.scenes import shipped
-
-
-class Engine(StrEnum):
-    """What can simulate or solve a scene."""
-
-    dem = "dem"
-    continuum = "continuum"
-    exact = "exact"
 
 
 @app.command("list")
@@ -50,15 +47,11 @@ def list_scenes(as_json: JsonOption = False) -> None:
 @app.command()
 def run(
     scene: SceneArgument,
-    engine: Annotated[list[Engine], typer.Option(help="May be given more than once.")] = [  # noqa: B006
-        Engine.dem
-    ],
-    model: Annotated[
-        list[str] | None,
-        typer.Option(help="Of the continuum (jointed, equivalent) or an exact solution's name."),
-    ] = None,
+    engine: EngineOption = [Engine.dem],  # noqa: B006
+    model: ModelOption = None,
     changes: SetOption = [],  # noqa: B006
     variant: VariantOption = None,
+    swept: SweepOption = [],  # noqa: B006
     out: OutOption = Path("results"),
     vtx: Annotated[
         bool, typer.Option("--vtx", help="Also write the snapshots of record.fields as VTX (.bp).")
@@ -72,6 +65,8 @@ def run(
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on where an earlier run of the same has stopped.")
     ] = False,
+    workers: WorkersOption = CORES,
+    dry: DryOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Simulate a scene and write each result as DIR/[variant/]ENGINE[-MODEL].nc.
@@ -81,13 +76,29 @@ def run(
 
     A run that is killed goes on from its last checkpoint with --resume, to the same bits as if it
     had not been; results that are whole already are kept. Ctrl-C keeps what is there.
+
+    --sweep runs every value of a key, DIR/KEY=VALUE/... each, in several processes; points that are
+    done are not run again, those that fail are listed.
     """
     from compare import jobs, runs, terminal, views
     from compare.keeping.watch import Keeping
 
+    wanted = jobs.wanted([e.value for e in engine], model or [])
+    if swept:
+        from compare.sweeps import command
+        from compare.sweeps.case import Running
+
+        asked_for = command.ask(scene, changes, variant, swept, out)
+        command.sweep(asked_for, Running(wanted, vtx), workers, dry, as_json)
+        return
     scenes = load(scene, changes, variant)
-    asked = jobs.plan(scenes, jobs.wanted([e.value for e in engine], model or []), out)
+    asked = jobs.plan(scenes, wanted, out)
     warn(scenes)
+    if dry:
+        from compare import forecast_view
+
+        forecast_view.show_runs([(job.scene, job.name) for job in asked], as_json)
+        return
     processes = started()
     folders, keeping = {job.path.parent for job in asked}, Keeping(every, resume, watched())
     with ExitStack() as held, terminal.progress(f"{len(asked)} runs") as advance:
@@ -114,64 +125,3 @@ def explain(
         print("jointwave: measuring once what every effect costs, about a minute", file=sys.stderr)
     for one in scenes:
         views.show_explanation(explanation(one), as_json)
-
-
-@app.command()
-def compare(
-    scene: SceneArgument,
-    changes: SetOption = [],  # noqa: B006
-    variant: VariantOption = None,
-    out: Annotated[Path | None, typer.Option(help="Also write tables, curves and figure.")] = None,
-    spectral: Annotated[
-        bool, typer.Option(help="Add envelope and phase misfit (Kristekova et al. 2006).")
-    ] = True,
-    given: Annotated[
-        list[str],
-        typer.Option("--with", metavar="FILE[:LABEL]", help="Curves of others; more than once."),
-    ] = [],  # noqa: B006
-    align: Annotated[
-        bool, typer.Option("--align", help="Move the clock of each --with by cross-correlation.")
-    ] = False,
-    as_json: JsonOption = False,
-) -> None:
-    """Solve a scene by all that applies, and print how far apart the solutions are.
-
-    --with puts a waveform of another code, figure or experiment beside them: a CSV file with a
-    header such as "time [ms], stress@20 [MPa]" (# starts a comment; commas, semicolons or tabs),
-    or a NetCDF file of jointwave run or with time and stress(time). A label names the only curve
-    of a file without names, or takes one out of several: curve.csv:stress@20,
-    "run.nc:-velocity@20.25 [mm/s]". Without a unit, SI. Stress is positive in compression; a minus
-    sign says that the file has the negative. Only the overlap in time is compared, at the times of
-    whichever has fewer samples there, the other interpolated linearly; amplitudes are never scaled,
-    and clocks never moved without --align.
-    """
-    from compare import pairs, terminal, views
-
-    scenes = load(scene, changes, variant)
-    curves = _read_curves(given, scenes, align)
-    found = []
-    for one in scenes:
-        with terminal.progress(one.name or one.title) as advance:
-            found.append(pairs.compare(one, advance, spectral, curves, align))
-    if out is not None:
-        from compare.report import write_comparisons
-
-        write_comparisons(found, out)
-    views.show_comparisons(found, as_json)
-
-
-def _read_curves(given: list[str], scenes: list[cases.Scene], align: bool) -> list[Any]:
-    """Read what `--with` names; what is wrong with it is said before anything is solved."""
-    if not given:
-        if align:
-            raise SceneError("--align", "", None, "needs --with: there is no clock to move")
-        return []
-    from compare.aligned import common_times
-    from compare.curves import read_curves
-
-    curves = read_curves(given, scenes)
-    if not align:
-        for scene in scenes:
-            for one in curves:
-                common_times(one, scene)
-    return curves

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from cases.calibrate import Properties, calibrate
 from cases.effects import Effect, effects, is_spatial
 from cases.scene import Scene
+from compare import rates
 from compare.effort import nanoseconds, whole
 from compare.engines import ENGINES, applies, exact_names
 from compare.exact.answer import Answer
@@ -50,6 +51,7 @@ def explanation(scene: Scene) -> Explanation:
     answers = {name: applies(name, scene) for name in (*ENGINES, *exact_names())}
     steps = [_step(name, scene) for name in ENGINES if answers[name]]
     cost = Cost(nanoseconds(scene), whole())
+    rates.note_block_step(scene, cost.own)
     return Explanation(scene, calibrate(scene), effects(scene), steps, answers, cost)
 
 

@@ -43,14 +43,18 @@ def plan(scenes: list[Scene], runs: list[tuple[str, str | None]], out: Path) -> 
     for scene in scenes:
         folder = out / scene.name if scene.name else out
         for engine, model in runs:
-            for name in _names(engine, model, scene):
+            for name in names_of(engine, model, scene):
                 file = name if engine != "exact" else f"exact-{name}"
                 refuse_foreign(folder / f"{file}.nc")
                 jobs.append(Job(scene, name, folder / f"{file}.nc"))
     return jobs
 
 
-def _names(engine: str, model: str | None, scene: Scene) -> list[str]:
+def names_of(engine: str, model: str | None, scene: Scene) -> list[str]:
+    """Return what solves a scene for an engine and model; the model None: all that apply.
+
+    Raises SceneError where none does.
+    """
     if engine == "dem":
         return ["dem"]
     every = (

@@ -2,6 +2,7 @@
 
 import os
 import sys
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -9,6 +10,7 @@ import typer
 
 import cases
 from cases.errors import SceneError
+from compare import completion
 from compare.processes import started
 from compare.scenes import find
 
@@ -19,17 +21,61 @@ app = typer.Typer(
 )
 
 SceneArgument = Annotated[
-    str, typer.Argument(help="A scene file, or a shipped scene such as guo-li-2002/fig-03.")
+    str,
+    typer.Argument(
+        help="A scene file, or a shipped scene such as guo-li-2002/fig-03.",
+        autocompletion=completion.scenes,
+    ),
+]
+
+
+class Engine(StrEnum):
+    """What can simulate or solve a scene."""
+
+    dem = "dem"
+    continuum = "continuum"
+    exact = "exact"
+
+
+EngineOption = Annotated[list[Engine], typer.Option(help="May be given more than once.")]
+ModelOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="Of the continuum (jointed, equivalent) or an exact solution's name.",
+        autocompletion=completion.models,
+    ),
 ]
 SetOption = Annotated[
     list[str],
-    typer.Option("--set", metavar="KEY=VALUE", help="Change one key, for every variant."),
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change one key, for every variant.",
+        autocompletion=completion.settings,
+    ),
+]
+SweepOption = Annotated[
+    list[str],
+    typer.Option(
+        "--sweep",
+        metavar="KEY=VALUES",
+        help="Every value of a key: FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C; more than once: "
+        "all combinations. A folder for each, and a table, sweep.csv and sweep.nc.",
+        autocompletion=completion.settings,
+    ),
 ]
 VariantOption = Annotated[
-    str | None, typer.Option(help="Only this variant; '' is the scene as it stands.")
+    str | None,
+    typer.Option(
+        help="Only this variant; '' is the scene as it stands.", autocompletion=completion.variants
+    ),
 ]
 OutOption = Annotated[Path, typer.Option(help="Folder for the results.")]
 WorkersOption = Annotated[int, typer.Option(min=1, help="Processes, where nothing is timed.")]
+DryOption = Annotated[
+    bool,
+    typer.Option("--dry-run", help="Only say what would run, how long, and how much memory."),
+]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON for a machine to read.")]
 
 CORES = os.cpu_count() or 1

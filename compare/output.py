@@ -44,6 +44,19 @@ def write(path: Path, save: Callable[[Path], object]) -> Path:
     return path
 
 
+def create(path: Path, content: bytes) -> Path:
+    """Write a file where none is; raises SceneError where anything is, OSError as `write` does."""
+
+    def save(temporary: Path) -> None:
+        temporary.write_bytes(content)
+        try:
+            os.link(temporary, path)  # unlike renaming, this never replaces
+        except FileExistsError:
+            raise SceneError(str(path), "", None, "is there already, and is not replaced") from None
+
+    return write(path, save)
+
+
 def _to_disk(path: Path) -> None:
     """Wait until a file has got through all buffers: a full disk may show only now."""
     with path.open("rb") as file:

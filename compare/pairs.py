@@ -2,12 +2,14 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from time import perf_counter
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from cases.scene import Scene
+from compare import rates
 from compare.aligned import Beside, distances, lay_beside
 from compare.curves import Curves
 from compare.engines import Progress, applies, names, solve
@@ -93,7 +95,9 @@ def compare(
     for i, name in enumerate(everything):
         answer = applies(name, scene)
         if answer:
+            began = perf_counter()
             comparison.results[name] = solve(name, scene)
+            rates.note(name, scene, comparison.results[name].attrs, perf_counter() - began)
         else:
             comparison.reasons[name] = answer.reason
         if progress:

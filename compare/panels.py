@@ -33,12 +33,12 @@ class Panel(NamedTuple):
     @property
     def place(self) -> str:
         """Quantity, component and receiver, in words."""
-        return f"{self.quantity}{self._axis} at y = {self.y:g} m"
+        return f"{self.quantity} {self.axis}".rstrip() + f" at y = {self.y:g} m"
 
     @property
     def given(self) -> dict[str, pd.Series]:
         """The curves of others here: their own samples while the scene lasts, by their file."""
-        axis = self._axis.strip() or ("" if self.quantity in FORCES else "y")
+        axis = self.axis or ("" if self.quantity in FORCES else "y")
         place = Place(self.quantity, axis, self.y)
         return {
             beside.curves.name: beside.series(place)
@@ -47,10 +47,11 @@ class Panel(NamedTuple):
         }
 
     @property
-    def _axis(self) -> str:
+    def axis(self) -> str:
+        """The component that is shown: x, y or z; empty where the quantity has only one."""
         if self.component is None:
             return ""
-        return f" {'xz'[self.component] if self.quantity == 'shear' else 'xyz'[self.component]}"
+        return "xz"[self.component] if self.quantity == "shear" else "xyz"[self.component]
 
     @property
     def curves(self) -> dict[str, pd.Series]:

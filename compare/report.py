@@ -9,7 +9,7 @@ from time import perf_counter
 import cases
 from cases.result import scene_hash
 from cases.scene import Scene
-from compare import peers, tables, worth_section, worth_study
+from compare import peers, rates, tables, worth_section, worth_study
 from compare.engines import Progress
 from compare.findings import Finding
 from compare.findings.overview import mostly_dispersion
@@ -22,6 +22,7 @@ from compare.workers import Workers
 
 SCENES = Path(cases.__file__).parent / "guo-li-2002"
 
+RATE = "figure of the report"  # what the seconds of figures are remembered by
 FREE_PILLAR = "fig-03"  # the scene that the overview is about
 
 
@@ -71,7 +72,8 @@ def build(
     began = perf_counter()
     others = peers.read(peers_table)
     files = sorted(scenes.glob("fig-*.toml"))
-    sections, figures, motion = _compute(Path(out), files, progress, workers)
+    with rates.timing(RATE, len(files)):
+        sections, figures, motion = _compute(Path(out), files, progress, workers)
     overview, free = None, None
     if FREE_PILLAR in figures:
         overview = mostly_dispersion(figures[FREE_PILLAR][0])

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from cases.errors import SceneError, StoppedError
 from cases.result import Fields, imbalance
+from compare import rates
 from compare.engines import Progress, solve
 from compare.jobs import Job
 from compare.keeping.keeper import RunKeeper
@@ -135,6 +136,8 @@ def _written(job: Job, watched: Watch, result: Fields, vtx: bool) -> Done:
     write_fields(job.path, signed)
     if watched.keeper is not None and watched.keeper.done:
         _stopped(job).unlink(missing_ok=True)
+    else:
+        rates.note(job.name, job.scene, result.attributes)
     return _finished(job, watched, vtx, signed)
 
 
@@ -149,7 +152,7 @@ def _finished(job: Job, watched: Watch, vtx: bool, result: Fields | None = None)
         int(result.attributes.get("steps", 0)),
         float(result.attributes.get("seconds_stepping", 0.0)),
         _residual(result),
-        _fragments(result),
+        json.loads(result.attributes.get("fragments", "null")),
         result.attributes.get("static_out_of_balance"),
         _write_snapshots(job, result, vtx),
     )
@@ -178,11 +181,6 @@ def _write_snapshots(job: Job, result: Fields, vtx: bool) -> list[Path]:
         return []
     files = [write_pvd(job.path.with_suffix(".pvd"), found)]
     return [*files, write_vtx(job.path.with_suffix(".bp"), found)] if vtx else files
-
-
-def _fragments(result: Fields) -> list[dict] | None:
-    text = result.attributes.get("fragments")
-    return None if text is None else json.loads(text)
 
 
 def _residual(result: Fields) -> float | None:

@@ -7,9 +7,11 @@ from typing import Annotated, Any
 import typer
 
 from cases.errors import SceneError
+from compare import completion
 from compare.keeping.lock import locked
 from compare.options import (
     CORES,
+    DryOption,
     JsonOption,
     OutOption,
     SceneArgument,
@@ -26,7 +28,10 @@ from compare.processes import started
 def effects(
     scene: Annotated[
         str | None,
-        typer.Argument(help="A scene file or a shipped scene; absent: all that are shipped."),
+        typer.Argument(
+            help="A scene file or a shipped scene; absent: all that are shipped.",
+            autocompletion=completion.scenes,
+        ),
     ] = None,
     changes: SetOption = [],  # noqa: B006
     variant: VariantOption = None,
@@ -34,6 +39,7 @@ def effects(
         "effects"
     ),
     workers: WorkersOption = CORES,
+    dry: DryOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Say what every effect of a scene costs, and how far the answer is without it.
@@ -46,6 +52,11 @@ def effects(
     from compare.worth_section import write_section
 
     wanted = _cases(scene, changes, variant)
+    if dry:
+        from compare import forecast_view
+
+        forecast_view.show_effects(wanted, out, as_json)
+        return
     with locked(out), terminal.progress(f"{len(wanted)} variants") as advance:
         found = on_pool(
             started(), workers, lambda pool: worth_study.run(wanted, out, pool, advance)
@@ -78,9 +89,15 @@ def plan(
 
 @app.command()
 def study(
-    name: Annotated[str, typer.Argument(help="A shipped study or a study's TOML file.")],
+    name: Annotated[
+        str,
+        typer.Argument(
+            help="A shipped study or a study's TOML file.", autocompletion=completion.studies
+        ),
+    ],
     out: Annotated[Path, typer.Option(help="Folder for tables and points.")] = Path("studies"),
     workers: WorkersOption = CORES,
+    dry: DryOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Run a study: a scene solved in many ways, each with its error and its cost, as one table
@@ -90,6 +107,11 @@ def study(
     the points; those of a timed study are run one at a time. The study `stability` puts both
     engines to hard cases, each with a criterion from theory.
     """
+    if dry:
+        from compare import forecast_view
+
+        forecast_view.show_study(name, out, as_json)
+        return
     if name == "stability":
         _study_stability(out, workers, as_json)
         return
@@ -131,12 +153,18 @@ def report(
         Path | None,
         typer.Option(help="Table of make bench-peers; absent: out/peers/points.csv if there."),
     ] = None,
+    dry: DryOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Write the figures of Guo & Li (2002) with every misfit and finding, as one HTML page."""
     from compare import terminal, views
     from compare.report import build
 
+    if dry:
+        from compare import forecast_view
+
+        forecast_view.show_report(out, as_json)
+        return
     with locked(out, out / "figures", out / "studies"), terminal.progress("scenes") as advance:
         found = build(out, advance, peers_table=peers)
     views.show_report(found, as_json)

@@ -1,12 +1,20 @@
 """The terminal: progress, tables that stay readable, or JSON."""
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from itertools import zip_longest
 from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import (
+    BarColumn,
+    Progress,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 from rich.table import Table
 from rich.text import Text
 
@@ -15,8 +23,18 @@ WIDEST = 220  # a pipe has no width to respect: a machine or a log gets whole li
 
 @contextmanager
 def progress(label: str) -> Iterator[Callable[[float], None]]:
-    """Show a bar on standard error while something runs, and clear it at the end."""
-    columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
+    """Show a bar on standard error while something runs, and clear it at the end.
+
+    With what is done, the time that it took and the time that is left; on a terminal only.
+    """
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        TaskProgressColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+    )
     console = Console(stderr=True)
     with Progress(
         *columns, console=console, transient=True, disable=not console.is_terminal
@@ -30,13 +48,13 @@ def say(text: str, style: str = "") -> None:
     _console().print(text, style=style)
 
 
-def show_table(columns: list[str], rows: list[list[str]]) -> None:
-    """Print a table of text, folded to the terminal's width."""
+def show_table(columns: list[str], rows: list[list[str]], styles: Sequence[str] = ()) -> None:
+    """Print a table of text, folded to the terminal's width; `styles` are those of the rows."""
     table = Table(box=None, pad_edge=False)
     for column in columns:
         table.add_column(column, overflow="fold")
-    for row in rows:
-        table.add_row(*row)
+    for row, style in zip_longest(rows, styles, fillvalue=""):
+        table.add_row(*row, style=style or None)
     _console().print(table)
 
 

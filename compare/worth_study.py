@@ -11,6 +11,7 @@ from typing import NamedTuple
 import cases
 from cases.result import scene_hash
 from cases.scene import Scene
+from compare import rates
 from compare.effort import EVERYTHING, changed, stretch
 from compare.engines import Progress
 from compare.keeping.signature import program
@@ -20,6 +21,7 @@ from compare.studies.pool import Pool
 from compare.studies.runner import alone
 from compare.worth import Balance, Dropped, Worth, balance, prepare
 
+RATE = "effects of a variant"  # what the seconds of cases are remembered by
 PREPARING = 0.8  # of the time, where nothing is compiled yet
 
 #: Scenes of the report's page, each with the variants that it takes: what is compiled there anyhow.
@@ -69,8 +71,13 @@ def run(
 
     pool : makes the executor that solves and compiles; timings are taken here and one at a time.
     """
+    incomplete = [case for case in wanted if not is_complete(case, folder)]
+    with rates.timing(RATE, len(incomplete)):
+        return _run(wanted, folder, pool, progress or (lambda fraction: None))
+
+
+def _run(wanted: list[Case], folder: Path, pool: Pool | None, tell: Progress) -> list[Balance]:
     new = unprepared(wanted, folder)
-    tell = progress or (lambda fraction: None)
     if pool is None or not new:
         for i, case in enumerate(new):
             prepare_case(case, folder)
@@ -91,6 +98,11 @@ def unprepared(wanted: list[Case], folder: Path) -> list[Case]:
         for case in wanted
         if not (_answers(case, folder).is_file() or _file(case, folder).is_file())
     ]
+
+
+def is_complete(case: Case, folder: Path) -> bool:
+    """Return whether the effects of a case are weighed already."""
+    return _file(case, folder).is_file()
 
 
 def submit(executor: Executor, new: list[Case], folder: Path) -> list[Future]:

@@ -8,6 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from cases.allowed import in_words
+from cases.keys import keys as all_keys
+from cases.meaning import field_comments
 from cases.scene import Scene
 
 ROOT = Path(__file__).parents[1]
@@ -81,9 +84,9 @@ def test_scenes_of_a_page_are_scenes(page, folder):
 
 def test_reference_has_every_key(tools):
     """Each key of every model is in the page, with what it allows and what it means."""
-    page, scene = tools("hooks").generated, tools("scene_reference")
+    page = tools("hooks").generated
     text = page((DOCS / "reference" / "scene.md").read_text(encoding="utf-8"))
-    keys = list(scene.keys())
+    keys = [key for key, _ in all_keys()]
     assert len(keys) == len(set(keys)) > 60
     missing = [key for key in keys if f'id="key-{key}"' not in text]
     assert not missing
@@ -96,13 +99,13 @@ def test_reference_follows_the_models(tools):
     rows = tools("scene_reference").page().splitlines()
     row = next(r for r in rows if 'id="key-numerics.continuum.spectral_radius"' in r)
     assert row.endswith("| number ≥ 0 and ≤ 1 | `0.9` | implicit, of infinite frequency |")
-    law = tools("comments").field_comments(type(Scene.model_fields["joints"].default))
+    law = field_comments(type(Scene.model_fields["joints"].default))
     assert "c_n = 2 zeta sqrt(m k_n)" in law["damping_ratio"]  # of the model that it extends
-    motion = tools("comments").field_comments(Scene.model_fields["motion"].annotation)
+    motion = field_comments(Scene.model_fields["motion"].annotation)
     assert motion["rotation"].endswith("vectors; finite: quaternions")  # a comment of two lines
 
 
-def test_a_check_without_words_is_refused(tools):
+def test_a_check_without_words_is_refused():
     """A validator that the reference cannot put into words stops it."""
     from typing import Annotated
 
@@ -112,7 +115,7 @@ def test_a_check_without_words_is_refused(tools):
         key: Annotated[float, AfterValidator(abs)]
 
     with pytest.raises((KeyError, AttributeError)):
-        tools("allowed").in_words(Model.model_fields["key"])
+        in_words(Model.model_fields["key"])
 
 
 def test_every_exact_solution_is_explained():

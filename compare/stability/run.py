@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from compare import rates
 from compare.engines import Progress
 from compare.output import write_text
 from compare.stability.battery import CASES
@@ -20,6 +21,8 @@ from compare.stability.row import Row, row_of
 from compare.studies.runner import program
 
 Pool = Callable[[], Executor]
+
+RATE = "hard case"  # what the seconds of rows are remembered by
 
 
 def places(slow: bool = True) -> list[tuple[int, int]]:
@@ -59,15 +62,21 @@ def run(
             progress(len(found) / len(asked))
 
     missing = [place for place in asked if place not in found]
-    if pool is None:
-        for place in missing:
-            note(place, row_at(place))
-    elif missing:
-        with pool() as executor:
-            futures = {executor.submit(row_at, place): place for place in missing}
-            for future in as_completed(futures):
-                note(futures[future], future.result())
+    with rates.timing(RATE, len(missing)):
+        if pool is None:
+            for place in missing:
+                note(place, row_at(place))
+        elif missing:
+            with pool() as executor:
+                futures = {executor.submit(row_at, place): place for place in missing}
+                for future in as_completed(futures):
+                    note(futures[future], future.result())
     return [found[place] for place in asked]
+
+
+def is_kept(place: tuple[int, int], folder: Path) -> bool:
+    """Return whether a row is done."""
+    return _file(place, folder).is_file()
 
 
 def _kept(place: tuple[int, int], folder: Path | None) -> Row | None:

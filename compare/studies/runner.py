@@ -9,6 +9,7 @@ from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from tempfile import gettempdir
 
+from compare import rates
 from compare.engines import Progress
 from compare.keeping.signature import program
 from compare.output import write_text
@@ -31,16 +32,31 @@ def run(
         mpi4py.futures.MPIPoolExecutor of a cluster. None: one after the other.
     """
     points = study.points()
-    places = [folder / f"{key(point)}.json" for point in points]
+    places = [_place(point, folder) for point in points]
     missing = [i for i, place in enumerate(places) if not place.is_file()]
     done = len(points) - len(missing)
-    with alone() if study.timed else nullcontext():
+    waits = alone() if study.timed else nullcontext()
+    with waits, rates.timing(rate(study), len(missing)):
         for i, row in _measured(points, missing, None if study.timed else pool):
             write_text(places[i], json.dumps(row._asdict(), indent=1))
             done += 1
             if progress:
                 progress(done / len(points))
     return [Row(**json.loads(place.read_text(encoding="utf-8"))) for place in places]
+
+
+def rate(study: Study) -> str:
+    """Return what the seconds of a study's points are remembered by."""
+    return f"point of {study.title}"
+
+
+def is_kept(point: Point, folder: Path) -> bool:
+    """Return whether a point is done."""
+    return _place(point, folder).is_file()
+
+
+def _place(point: Point, folder: Path) -> Path:
+    return folder / f"{key(point)}.json"
 
 
 def _measured(points: list[Point], wanted: list[int], pool: Pool | None) -> Iterator:

@@ -16,11 +16,17 @@ def field_comments(model: type) -> dict[str, str]:
 
 def _own(source: str) -> dict[str, str]:
     lines = source.splitlines()
-    fields = [node for node in ast.parse(source).body[0].body if isinstance(node, ast.AnnAssign)]
-    return {field.target.id: _above(lines, field) or _beside(lines, field) for field in fields}
+    (model,) = ast.parse(source).body
+    assert isinstance(model, ast.ClassDef)
+    return {
+        field.target.id: _above(lines, field) or _beside(lines, field)
+        for field in model.body
+        if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name)
+    }
 
 
 def _beside(lines: list[str], field: ast.AnnAssign) -> str:
+    assert field.end_lineno is not None
     return lines[field.end_lineno - 1][field.end_col_offset :].partition("#:")[2].strip()
 
 

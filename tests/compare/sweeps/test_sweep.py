@@ -1,0 +1,155 @@
+"""Sweeps as a user meets them: a folder for each point, one table, failures that stop nobody."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+import cases
+from compare.scenes import find
+from dem import simulate
+
+SCENE = "guo-li-2002/fig-03"
+SHORT = ("--set", "time.duration=0.02", "--set", "record.velocity=[20.25]")
+RATIO = "joints.damping_ratio"
+
+
+def jointwave(*arguments, code=0, cwd=None):
+    command = [sys.executable, "-m", "compare", *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=cwd)
+    assert done.returncode == code, done.stderr
+    assert "Traceback" not in done.stderr
+    return done
+
+
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory):
+    """Return the folder of a sweep of two keys, one point of which fails, and what was said."""
+    out = tmp_path_factory.mktemp("sweep")
+    keys = ("--sweep", f"{RATIO}=-1,0.02,0.1", "--sweep", "ends.end=free,quiet")
+    done = jointwave("run", SCENE, "--variant", "", *SHORT, *keys, "--out", out)
+    return out, done.stdout
+
+
+def test_every_point_is_the_run_of_its_scene(swept):
+    """The same numbers as of the scene with these keys set, in a folder that says them."""
+    out, _ = swept
+    for ratio in (0.02, 0.1):
+        for end in ("free", "quiet"):
+            changes = {RATIO: ratio, "ends.end": end, "time.duration": 0.02}
+            scene = cases.load_variant(find(SCENE), "", changes | {"record.velocity": [20.25]})
+            result = xr.load_dataset(out / f"{RATIO}={ratio},ends.end={end}" / "dem.nc")
+            np.testing.assert_array_equal(result.stress, simulate(scene).stress)
+
+
+def test_the_table_is_tidy_and_on_a_grid(swept):
+    """One row a receiver with its peak; the swept keys are the first dimensions."""
+    out, _ = swept
+    rows = pd.read_csv(out / "sweep.csv")
+    done = rows[rows.state == "done"]
+    assert len(done) == 2 * 2 * 2 and set(done.quantity) == {"stress", "velocity"}
+    data = xr.load_dataset(out / "sweep.nc")
+    assert data.peak.dims == (RATIO, "ends.end", "variant", "engine", "quantity", "y")
+    assert data.steps.dims == (RATIO, "ends.end", "variant", "engine")
+    assert data[RATIO].values.tolist() == [-1.0, 0.02, 0.1]
+    one = {RATIO: 0.1, "ends.end": "free", "variant": "", "engine": "dem"}
+    result = xr.load_dataset(out / f"{RATIO}=0.1,ends.end=free" / "dem.nc")
+    wave = result.stress.sel(stress_y=20.0)
+    peak = data.peak.sel(one | {"quantity": "stress", "y": 20.0})
+    assert abs(float(peak)) == float(np.abs(wave).max())
+    at = data.time_of_peak.sel(one | {"quantity": "stress", "y": 20.0})
+    assert float(wave.sel(time=float(at), method="nearest")) == float(peak)
+    assert int(data.steps.sel(one)) == result.attrs["steps"]
+
+
+def test_a_point_that_fails_is_listed_and_stops_nobody(swept):
+    out, said = swept
+    rows = pd.read_csv(out / "sweep.csv")
+    failed = rows[rows.state == "failed"]
+    assert len(failed) == 2 and failed.message.str.contains("must be at least 0").all()
+    assert said.count("failed: -1") == 2
+    assert np.isnan(xr.load_dataset(out / "sweep.nc").peak.sel({RATIO: -1.0})).all()
+
+
+def test_what_is_done_is_not_run_again(swept):
+    """Nor is it when its result was removed: then it is made anew."""
+    out, _ = swept
+    file = out / f"{RATIO}=0.02,ends.end=free" / "dem.nc"
+    other = out / f"{RATIO}=0.1,ends.end=free" / "dem.nc"
+    before, kept = xr.load_dataset(file), other.stat().st_mtime_ns
+    file.unlink()
+    keys = ("--sweep", f"{RATIO}=-1,0.02,0.1", "--sweep", "ends.end=free,quiet")
+    options = ("--workers", 1, "--json", "--out", out)
+    done = jointwave("run", SCENE, "--variant", "", *SHORT, *keys, *options)
+    assert len(json.loads(done.stdout)["rows"]) == 10
+    assert xr.load_dataset(file).equals(before) and other.stat().st_mtime_ns == kept
+
+
+def test_a_comparison_is_swept(tmp_path):
+    """Misfits of every pair over the key, and the figure of each point."""
+    options = (*SHORT, "--no-spectral", "--variant", "", "--out", tmp_path / "out")
+    done = jointwave("compare", SCENE, "--sweep", "ends.start=free,quiet", *options)
+    assert "dem ~ lattice, stress at y = 20 m" in done.stdout
+    data = xr.load_dataset(tmp_path / "out" / "sweep.nc")
+    assert data.misfit.dims == ("ends.start", "variant", "pair", "quantity", "y")
+    found = data.misfit.sel(pair="dem ~ lattice", quantity="stress", y=20.0, variant="")
+    assert ((found > 0) & (found < 5e-3)).all() and float(np.ptp(found.values)) > 0
+    assert (tmp_path / "out" / "ends.start=quiet" / "comparison.svg").is_file()
+
+
+def test_curves_of_others_are_swept_too(tmp_path):
+    """A file that has changed since is compared anew."""
+    sweep = (*SHORT, "--no-spectral", "--variant", "", "--out", tmp_path / "out", "--workers", 1)
+    sweep = (*sweep, "--sweep", "ends.start=free", "--with", "curve.csv", "--json")
+    found = []
+    for peak in (0.1, 0.2, 0.2):
+        text = f"time [ms], stress@20 [MPa]\n0, 0\n10, {peak}\n19, 0\n"
+        (tmp_path / "curve.csv").write_text(text)
+        rows = json.loads(jointwave("compare", SCENE, *sweep, cwd=tmp_path).stdout)["rows"]
+        found.append([row["misfit"] for row in rows if row["one"] == "curve.csv"])
+    assert found[0] and found[0] != found[1] == found[2]
+    assert len(list((tmp_path / "out" / "points").iterdir())) == 2
+
+
+def test_a_comparison_without_a_folder_writes_nothing(tmp_path):
+    options = (*SHORT, "--no-spectral", "--variant", "", "--json", "--workers", 1)
+    done = jointwave("compare", SCENE, "--sweep", "ends.start=free", *options, cwd=tmp_path)
+    facts = json.loads(done.stdout)
+    assert facts["files"] == [] and facts["rows"] and not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "spec, words",
+    [
+        ("joints.dampng=0,1", "unknown key"),
+        (f"{RATIO}=-1,-2", "must be at least 0"),
+        (f"{RATIO}=1:2", "must be KEY=FROM"),
+        ("time.duration=1,2", "is given already"),
+    ],
+)
+def test_a_sweep_of_nothing_is_one_line(tmp_path, spec, words):
+    """And nothing is written."""
+    done = jointwave("run", SCENE, *SHORT, "--sweep", spec, code=2, cwd=tmp_path)
+    assert done.stderr.count("\n") == 1 and words in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_points_that_all_fail_as_they_run_are_one_line(tmp_path):
+    """A step above the critical one is found out when the run is made."""
+    spec = "numerics.dem.step_fraction=1.5,2.0"
+    done = jointwave("run", SCENE, *SHORT, "--variant", "", "--sweep", spec, code=2, cwd=tmp_path)
+    assert done.stderr.count("\n") == 1
+    assert "all 2 points fail" in done.stderr and "critical step" in done.stderr
+
+
+def test_a_value_that_makes_no_name_has_a_number(tmp_path):
+    """A list, of which a folder's name would be unreadable."""
+    spec = "record.stress=[10.0],[20.0]"
+    jointwave("run", SCENE, "--variant", "", *SHORT, "--sweep", spec, "--out", tmp_path)
+    assert {"point-00001", "point-00002"} < {path.name for path in tmp_path.iterdir()}
+    data = xr.load_dataset(tmp_path / "sweep.nc")
+    assert data["record.stress"].values.tolist() == ["[10.0]", "[20.0]"]
