@@ -6,7 +6,7 @@ from matplotlib.collections import PolyCollection
 
 from cases.snapshots import snapshots
 from cases.subcells import CORNERS
-from compare.figures import save
+from compare.drawn import save
 from compare.snapshot_picture import draw_snapshots, exaggeration, visible_faces
 
 TURN = 0.1  # rad

@@ -18,7 +18,7 @@ from job import Job
 import cases
 from cases.scene import Scene
 from compare.effort import PILLAR
-from compare.figures import save
+from compare.drawn import save
 from compare.peers_diagram import draw
 
 

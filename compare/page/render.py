@@ -1,0 +1,94 @@
+"""The page's HTML: one file that holds its figures, their downloads and the script of its charts."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from jinja2 import Environment, PackageLoader
+from markupsafe import Markup
+
+from compare.findings import Finding
+from compare.page.motion import Motion
+from compare.page.overview import Overview
+from compare.page.section import Section
+from compare.peers import PeersSection
+from compare.studies.section import StudySection
+from compare.tables import Table
+from compare.worth_section import WorthSection
+
+
+@dataclass(frozen=True)
+class Page:
+    """All that stands on the page.
+
+    subtitle : what it is about. about : what the whole comes to, and whether that holds. summary :
+    largest misfits by pair. machine : that seconds were measured on. peers_file : where the table
+    of other codes is looked for, "" where the page is not about them. command : makes the page.
+    """
+
+    subtitle: str
+    overview: Overview
+    summary: Table
+    sections: list[Section]
+    command: str
+    machine: str
+    versions: dict[str, str]
+    about: Finding | None = None
+    studies: list[StudySection] = field(default_factory=list)
+    peers: PeersSection | None = None
+    peers_file: str = ""
+    effects: WorthSection | None = None
+    stability: StudySection | None = None
+    motion: Motion | None = None
+
+    @property
+    def failed(self) -> list[tuple[Section, Finding]]:
+        """The findings that do not hold, and where they stand."""
+        return [(s, f) for s in self.sections for f in s.findings if not f.holds]
+
+    @property
+    def claims(self) -> int:
+        """The number of findings of all scenes."""
+        return sum(len(s.findings) for s in self.sections)
+
+
+def render(page: Page, out: Path) -> str:
+    """Return the page, which is to stand in `out`; the files it hands out are read from there."""
+    environment = Environment(
+        loader=PackageLoader("compare"), autoescape=True, trim_blocks=True, lstrip_blocks=True
+    )
+    environment.globals |= {
+        "held": held,
+        "held_file": lambda file: held(file.read_bytes()),
+        "place": lambda file: file.relative_to(out).as_posix(),
+        "script": lambda name: Markup(_asset(environment, name)),
+        "charts": charts,
+    }
+    environment.filters["units"] = unbroken
+    return environment.get_template("report.html").render(page=page)
+
+
+def held(content: str | bytes) -> str:
+    """Return content as the page holds it: compressed, in base64."""
+    raw = content.encode() if isinstance(content, str) else content
+    return base64.b64encode(gzip.compress(raw, mtime=0)).decode("ascii")
+
+
+def charts() -> str:
+    """Return plotly.js, which draws the interactive figures, as the page holds it."""
+    from plotly.offline import get_plotlyjs
+
+    return held(get_plotlyjs())
+
+
+def unbroken(text: str) -> str:
+    """Return text whose percentages do not break before their sign."""
+    return text.replace(" %", "\u00a0%")
+
+
+def _asset(environment: Environment, name: str) -> str:
+    assert environment.loader
+    return environment.loader.get_source(environment, name)[0]
