@@ -16,14 +16,16 @@ from compare.figures import draw
 from compare.findings import Finding
 from compare.findings.overview import mostly_dispersion
 from compare.output import write_text
+from compare.page.cost import seconds
 from compare.page.motion import make_motion
-from compare.page.overview import Overview, overview
+from compare.page.overview import Overview, Ranked, overview
 from compare.page.render import Page, render
 from compare.page.scenes import Solved, asked_for, solve
 from compare.page.versions import versions
 from compare.pairs import Comparison
 from compare.panels import curve_table
 from compare.stability.section import make_section as make_hard_section
+from compare.studies.runner import alone
 from compare.studies.section import REPORTED, make_sections, measured_on
 from compare.workers import Workers
 
@@ -87,15 +89,16 @@ def build(
         page = _with_studies(page, Path(out), studies, others, workers if hard else 0)
     file = write_text(Path(out) / "index.html", render(page, Path(out)))
     found = {section.name: section.findings for section in page.sections}
-    seconds = perf_counter() - began
-    return Report(file, page.overview, page.summary, page.about, found, seconds)
+    taken = perf_counter() - began
+    return Report(file, page.overview, page.summary, page.about, found, taken)
 
 
 def _of_scenes(out: Path, scenes: Sequence[str], progress: Progress | None, workers: int) -> Page:
     """Return the page of some scenes alone."""
     solved = solve(out / "figures", asked_for(scenes), progress, workers)
-    titles = "; ".join(section.title for section in solved.sections)
-    return _page(solved, titles, shlex.join(["jointwave", "report", *scenes, "--out", "DIR"]))
+    count = len(solved.sections)
+    about = solved.sections[0].title if count == 1 else f"{count} scenes"
+    return _page(solved, about, shlex.join(["jointwave", "report", *scenes, "--out", "DIR"]))
 
 
 def _of_paper(out: Path, progress: Progress | None, workers: int) -> Page:
@@ -117,13 +120,22 @@ def _page(solved: Solved, subtitle: str, command: str) -> Page:
     sections = solved.sections
     return Page(
         subtitle,
-        overview([section.ranked for section in sections]),
+        overview(_ranked(solved)),
         tables.summary_table({s.label: solved.comparisons[s.name] for s in sections}),
         sections,
         command,
         measured_on(),
         versions(solved.comparisons.values()),
     )
+
+
+def _ranked(solved: Solved) -> list[Ranked]:
+    """Return where engines stand on each scene, and what a run of theirs takes, timed alone."""
+    with alone():
+        return [
+            Ranked(s.name, s.label, s.title, s.standings, seconds(solved.comparisons[s.name][0]))
+            for s in solved.sections
+        ]
 
 
 def _with_studies(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import isnan
 from typing import NamedTuple
 
@@ -12,9 +13,10 @@ from compare.tables import percent
 #: Engines as a sentence names them.
 WORDS = {
     "dem": "rigid blocks",
-    "continuum-jointed": "the continuum with every joint",
-    "continuum-equivalent": "the homogenised continuum",
+    "continuum-jointed": "continuum, every joint resolved",
+    "continuum-equivalent": "homogenised continuum",
 }
+ROOM = 30  # characters of a scene in the table
 LIMITS = "✓ agrees within 1 %, ≈ close within 5 %, △ differs within 20 %, ▲ far off beyond"
 
 
@@ -37,58 +39,65 @@ class Line(NamedTuple):
     title: str
     cells: list[Cell | None]
 
+    @property
+    def heading(self) -> str:
+        """Number or name, and the title as far as there is room."""
+        text = f"{self.label.removeprefix('fig. ')} {self.title}"
+        return text if len(text) <= ROOM else text[: ROOM - 1].rstrip() + "…"
+
 
 class Overview(NamedTuple):
     """The engines that ran, the lead in sentences, and a line a scene."""
 
     engines: list[str]
-    lead: list[str]
+    lead: list[tuple[str, str]]
     lines: list[Line]
     limits: str = LIMITS
 
 
 class Ranked(NamedTuple):
-    """A scene's name on the page, its label and title, and where its engines stand."""
+    """A scene's name on the page, its label and title, and where its engines stand.
+
+    seconds : of stepping the first variant, by engine.
+    """
 
     name: str
     label: str
     title: str
     standings: dict[str, Standing]
+    seconds: dict[str, float]
+
+    def ratio(self, engine: str) -> float:
+        """Return an engine's seconds over those of the cheapest engine of the scene."""
+        least = min(self.seconds.values())
+        return self.seconds[engine] / least if least > 0 else 1.0
 
 
 def overview(scenes: list[Ranked]) -> Overview:
     """Return the table of all scenes, and what it comes to."""
     engines = [engine for engine in ENGINES if any(engine in s.standings for s in scenes)]
-    lines = [Line(*s[:3], [_cell(s.standings, engine) for engine in engines]) for s in scenes]
+    lines = [Line(*s[:3], [_cell(s, engine) for engine in engines]) for s in scenes]
     return Overview(engines, _lead(engines, scenes), lines)
 
 
-def _cell(standings: dict[str, Standing], engine: str) -> Cell | None:
-    if engine not in standings:
+def _cell(scene: Ranked, engine: str) -> Cell | None:
+    if engine not in scene.standings:
         return None
-    one = standings[engine]
-    ratio = _ratio(standings, engine)
+    one = scene.standings[engine]
     return Cell(
         percent(one.own),
         percent(one.total),
-        f"{ratio:.0f}×" if ratio >= 10 else f"{ratio:.2g}×",
-        in_seconds(one.seconds),
+        _times(scene.ratio(engine)),
+        in_seconds(scene.seconds[engine]),
         one.verdict,
-        _explained(engine, one),
+        _explained(one),
     )
 
 
-def _ratio(standings: dict[str, Standing], engine: str) -> float:
-    """Return an engine's seconds over those of the cheapest engine of the scene."""
-    least = min(one.seconds for one in standings.values())
-    return standings[engine].seconds / least if least > 0 else 1.0
-
-
-def _explained(engine: str, one: Standing) -> str:
-    runs = "one run" if one.runs == 1 else f"mean of {one.runs} runs"
+def _explained(one: Standing) -> str:
     against = f"held against {' and '.join(one.finest)}" if one.finest else "the finest physics"
     broken = f"; beyond the scene's bound: {', '.join(one.broken)}" if one.broken else ""
-    return f"{engine}: {against}; {in_seconds(one.seconds)} of stepping, {runs}{broken}"
+    return against + broken
 
 
 def in_seconds(x: float) -> str:
@@ -98,27 +107,38 @@ def in_seconds(x: float) -> str:
     return f"{shown:.0f} {unit}" if shown >= 10 else f"{shown:.2g} {unit}"
 
 
-def _lead(engines: list[str], scenes: list[Ranked]) -> list[str]:
-    """Return one sentence an engine: how far it lies from the finest physics, at what cost."""
-    said = []
-    for engine in engines:
-        found = [s.standings for s in scenes if engine in s.standings]
-        totals = [f[engine].total for f in found if not isnan(f[engine].total)]
-        own = [f[engine].own for f in found if not isnan(f[engine].own)]
-        ratios = [_ratio(f, engine) for f in found]
-        far = f"{_span(totals)} from the finest physics" if totals else "the finest physics here"
-        error = f", {percent(max(own))} % of it at most their own numerical error" if own else ""
-        said.append(f"{WORDS[engine]}: {far}{error}; {_cost(ratios)}")
-    return said
+def _lead(engines: list[str], scenes: list[Ranked]) -> list[tuple[str, str]]:
+    """Return each engine and its sentence: how far it lies from the finest physics, at what cost."""
+    return [
+        (engine, _sentence(engine, [s for s in scenes if engine in s.standings]))
+        for engine in engines
+    ]
 
 
-def _span(values: list[float]) -> str:
-    low, high = percent(min(values)), percent(max(values))
-    return f"{low} %" if low == high else f"{low} to {high} %"
+def _sentence(engine: str, scenes: list[Ranked]) -> str:
+    totals = [x for s in scenes if not isnan(x := s.standings[engine].total)]
+    own = [x for s in scenes if not isnan(x := s.standings[engine].own)]
+    far = f"{_span(_short, totals)} % from the finest physics" if totals else "the finest here"
+    error = f", own numerical error at most {_short(max(own))} %" if own else ""
+    return f"({WORDS[engine]}): {far}{error}; {_cost(engine, scenes)}."
 
 
-def _cost(ratios: list[float]) -> str:
-    low, high = (f"{x:.0f}" if x >= 10 else f"{x:.2g}" for x in (min(ratios), max(ratios)))
-    if low == high == "1":
-        return "the cheapest"
-    return f"{low if low == high else f'{low} to {high}'} times the cheapest engine's time"
+def _cost(engine: str, scenes: list[Ranked]) -> str:
+    ratios = [s.ratio(engine) for s in scenes]
+    if max(ratios) == 1:
+        return f"cheapest, {_span(in_seconds, [s.seconds[engine] for s in scenes])} a run"
+    return f"{_span(_times, ratios)} the cheapest's time"
+
+
+def _span(write: Callable[[float], str], values: list[float]) -> str:
+    low, high = write(min(values)), write(max(values))
+    return low if low == high else f"{low} to {high}"
+
+
+def _short(x: float) -> str:
+    """Return a ratio in percent to two digits."""
+    return "< 0.001" if 0 < x < 1e-5 else f"{100 * x:.2g}"
+
+
+def _times(x: float) -> str:
+    return f"{x:.0f}×" if x >= 9.95 else f"{x:.1f}×"

@@ -16,6 +16,7 @@ from compare.page.overview import Overview
 from compare.page.section import Section
 from compare.peers import PeersSection
 from compare.studies.section import StudySection
+from compare.style import style
 from compare.tables import Table
 from compare.worth_section import WorthSection
 
@@ -45,6 +46,11 @@ class Page:
     motion: Motion | None = None
 
     @property
+    def is_interactive(self) -> bool:
+        """Whether any figure of the scenes can be zoomed."""
+        return any(drawn.plot for section in self.sections for drawn in section.figures)
+
+    @property
     def failed(self) -> list[tuple[Section, Finding]]:
         """The findings that do not hold, and where they stand."""
         return [(s, f) for s in self.sections for f in s.findings if not f.holds]
@@ -64,7 +70,8 @@ def render(page: Page, out: Path) -> str:
         "held": held,
         "held_file": lambda file: held(file.read_bytes()),
         "place": lambda file: file.relative_to(out).as_posix(),
-        "script": lambda name: Markup(_asset(environment, name)),
+        "source": lambda name: Markup(_asset(environment, name)),
+        "colour": lambda name: style(name).colour,
         "charts": charts,
     }
     environment.filters["units"] = unbroken

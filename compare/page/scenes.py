@@ -18,6 +18,7 @@ from compare.pictures import along_pillar
 from compare.scenes import find
 from compare.workers import Workers
 
+TAKEN = {"", "overview", "made", "said"}  # what the page calls its own parts
 Submit = Callable[[Workers], list[Future]]
 
 
@@ -36,9 +37,9 @@ def asked_for(scenes: Sequence[str]) -> list[Asked]:
     found: dict[str, Asked] = {}
     for one in called:
         file = find(one)
-        stem = re.sub(r"[^A-Za-z0-9_-]+", "-", file.stem).strip("-") or "scene"
-        names = [stem, *(f"{stem}-{k}" for k in range(2, len(called) + 1))]
-        name = next(n for n in names if n not in found)
+        stem = re.sub(r"[^A-Za-z0-9_-]+", "-", file.stem).strip("-")
+        names = [stem, *(f"{stem or 'scene'}-{k}" for k in range(2, len(called) + 3))]
+        name = next(n for n in names if n not in found and n not in TAKEN)
         found[name] = Asked(file, one, name)
     return list(found.values())
 

@@ -13,8 +13,7 @@ import cases
 from compare import tables
 from compare.drawn import Drawn, save, write_csv
 from compare.findings import Finding, findings
-from compare.page.overview import Ranked
-from compare.page.standing import standings
+from compare.page.standing import Standing, standings
 from compare.pairs import Comparison
 from compare.pictures import Picture, pictures_of
 
@@ -57,7 +56,7 @@ class Section(NamedTuple):
     distances: tables.Table
     runs: tables.Table
     reasons: tables.Table
-    ranked: Ranked
+    standings: dict[str, Standing]
 
     @property
     def heading(self) -> str:
@@ -90,7 +89,7 @@ def make_section(
         tables.distance_table(comparisons),
         tables.run_table(comparisons),
         tables.reason_table(comparisons),
-        Ranked(asked.name, asked.label, scene.title, standings(comparisons)),
+        standings(comparisons),
     )
 
 

@@ -41,14 +41,12 @@ class Standing(NamedTuple):
     """One engine on all variants of a scene, each misfit the largest of them.
 
     own : from the exact solution of the engine's own model. total : from the finest physics, whose
-    names are `finest`. seconds : of stepping, the mean run. broken : bounds of [expect] not met.
+    names are `finest`. broken : bounds of [expect] not met.
     """
 
     own: float
     total: float
     finest: tuple[str, ...]
-    seconds: float
-    runs: int
     broken: tuple[str, ...]
 
     @property
@@ -72,15 +70,12 @@ def standings(comparisons: list[Comparison]) -> dict[str, Standing]:
 
 
 def _standing(engine: str, comparisons: list[Comparison]) -> Standing:
-    seconds = [float(c.results[engine].attrs["seconds_stepping"]) for c in comparisons]
     finest = [finest_of(c) for c in comparisons]
     pairs = zip(comparisons, finest, strict=True)
     return Standing(
         _largest(_own(engine, c) for c in comparisons),
         _largest(_apart(c, engine, name) for c, name in pairs if name != engine),
         tuple(dict.fromkeys(name for name in finest if name != engine)),
-        sum(seconds) / len(seconds),
-        len(seconds),
         tuple(text for c in comparisons for text in _broken(engine, c)),
     )
 

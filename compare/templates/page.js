@@ -1,0 +1,150 @@
+/* Hands out the files that the page holds, and draws its interactive charts as they come into view.
+   Without it the page shows every figure as it is printed, and its links lead to files beside it. */
+"use strict";
+(() => {
+  const say = (text) => { document.getElementById("said").textContent = text; };
+  const all = (what, root = document) => [...root.querySelectorAll(what)];
+
+  /* What the page holds under an id: base64 of its gzipped bytes. */
+  function held(id) {
+    const packed = Uint8Array.from(atob(document.getElementById(id).textContent), (c) => c.charCodeAt(0));
+    return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")));
+  }
+
+  /* Downloads. */
+  const TYPES = { svg: "image/svg+xml", pdf: "application/pdf", csv: "text/csv;charset=utf-8" };
+
+  async function content(link) {
+    if ("held" in link.dataset) return (await held(link.dataset.held)).arrayBuffer();
+    return new XMLSerializer().serializeToString(link.closest("figure").querySelector(".static svg"));
+  }
+
+  async function handOut(event) {
+    const link = event.currentTarget;
+    event.preventDefault();
+    const name = link.getAttribute("download");
+    const type = TYPES[name.split(".").pop()] ?? "application/octet-stream";
+    const copy = document.createElement("a");
+    copy.href = URL.createObjectURL(new Blob([await content(link)], { type }));
+    copy.download = name;
+    copy.click();
+    setTimeout(() => URL.revokeObjectURL(copy.href), 60000);
+    say(`${name} saved`);
+  }
+
+  /* Charts. */
+  const CONFIG = { responsive: true, displaylogo: false, displayModeBar: true, scrollZoom: false,
+    modeBarButtonsToRemove: ["select2d", "lasso2d"],
+    toImageButtonOptions: { scale: 2 } };
+  let library;
+
+  function plotly() {
+    library ??= held("held-charts").text().then((code) => {
+      const script = document.createElement("script");
+      script.textContent = code;
+      document.head.append(script);
+      return window.Plotly;
+    });
+    return library;
+  }
+
+  async function draw(figure) {
+    const [Plotly, text] = [await plotly(), await held(figure.dataset.plot).text()];
+    const { data, layout } = JSON.parse(text);
+    const box = figure.querySelector(".chart");
+    figure.classList.add("live");
+    if (box.clientWidth < 600) makeRoom(layout);
+    try {
+      const config = { ...CONFIG, toImageButtonOptions: { ...CONFIG.toImageButtonOptions, filename: figure.id } };
+      await Plotly.newPlot(box, data, { ...layout, showlegend: false }, config);
+      addToggles(figure.querySelector(".toggles"), box, Plotly);
+    } catch (error) {
+      figure.classList.remove("live");
+      throw error;
+    }
+  }
+
+  /* On a narrow screen the buttons of a chart would lie on its heading. */
+  function makeRoom(layout) {
+    layout.margin.t += 26;
+    layout.height += 26;
+  }
+
+  /* One button a curve, for all panels; in place of the chart's own legend, which no key reaches. */
+  function addToggles(place, box, Plotly) {
+    const groups = new Map();
+    box.data.forEach((trace, i) => {
+      if (!trace.legendgroup) return;
+      const group = groups.get(trace.legendgroup) ?? { name: trace.name, rank: trace.legendrank ?? 1000, line: trace.line, traces: [] };
+      group.traces.push(i);
+      groups.set(trace.legendgroup, group);
+    });
+    if (groups.size < 2) return;
+    place.replaceChildren(...[...groups.values()].sort((a, b) => a.rank - b.rank).map((group) => toggle(group, box, Plotly)));
+  }
+
+  function toggle({ name, line, traces }, box, Plotly) {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.setAttribute("aria-pressed", "true");
+    button.innerHTML = '<svg width="34" height="10" aria-hidden="true"><line x1="0" x2="34" y1="5" y2="5"/></svg>';
+    const sample = button.querySelector("line").style;
+    Object.assign(sample, { stroke: line?.color ?? "#000", strokeWidth: line?.width ?? 2 });
+    if (line?.dash?.includes("px")) sample.strokeDasharray = line.dash;
+    button.append(name);
+    button.addEventListener("click", () => {
+      const shown = button.getAttribute("aria-pressed") === "false";
+      button.setAttribute("aria-pressed", shown);
+      Plotly.restyle(box, { visible: shown }, traces);
+    });
+    return button;
+  }
+
+  function watch() {
+    const seen = new IntersectionObserver((entries) => {
+      for (const { isIntersecting, target } of entries) {
+        if (!isIntersecting) continue;
+        seen.unobserve(target);
+        draw(target).catch((error) => console.error(target.id, error));
+      }
+    }, { rootMargin: "300px" });
+    all("figure[data-plot]").forEach((figure) => seen.observe(figure));
+  }
+
+  /* Commands to copy; boxes that scroll, for keys; all opened on paper. */
+  function addCopying() {
+    if (!navigator.clipboard) return;
+    for (const button of all(".copy")) {
+      button.hidden = false;
+      const text = button.previousElementSibling.textContent;
+      button.setAttribute("aria-label", `Copy ${text}`);
+      button.addEventListener("click", async () => {
+        await navigator.clipboard.writeText(text);
+        button.textContent = "Copied";
+        say("Copied");
+        setTimeout(() => { button.textContent = "Copy"; }, 2000);
+      });
+    }
+  }
+
+  function letKeysScroll() {
+    for (const box of all(".scroll, .static")) box.tabIndex = box.scrollWidth > box.clientWidth ? 0 : -1;
+  }
+
+  function openOnPaper() {
+    let opened = [];
+    addEventListener("beforeprint", () => {
+      opened = all("details:not([open])");
+      opened.forEach((part) => { part.open = true; });
+    });
+    addEventListener("afterprint", () => opened.forEach((part) => { part.open = false; }));
+  }
+
+  openOnPaper();
+  addCopying();
+  letKeysScroll();
+  addEventListener("resize", letKeysScroll);
+  if (!window.DecompressionStream) return;
+  all("a[data-held], a[data-drawn]").forEach((link) => link.addEventListener("click", handOut));
+  if (document.getElementById("held-charts")) watch();
+})();
