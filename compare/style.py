@@ -78,6 +78,19 @@ MARKERS = "oxs+"  # of the samples, where they are few enough to be told apart
 
 STYLES = {name: style for family in FAMILIES.values() for name, style in family.items()}
 
+#: Of the terms of an energy ledger: those of Tol (2021), "muted", and black.
+TERMS = {
+    "kinetic": "#332288",
+    "rotation": "#88ccee",
+    "elastic": "#cc6677",
+    "viscous": "#117733",
+    "friction": "#999933",
+    "fracture": "#882255",
+    "boundary": "#44aa99",
+    "gravity": "#ddcc77",
+    "work": "#000000",
+}
+
 RC: dict[Any, Any] = {
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans", "Helvetica", "Arial"],

@@ -13,8 +13,9 @@ from compare.style import Style
 
 FONT = {"family": "system-ui, 'Segoe UI', Helvetica, Arial, 'DejaVu Sans', sans-serif", "size": 13}
 INK, GRID = "#1c2126", "#e3e6e9"
-TOP, BOTTOM, LEFT, RIGHT = 28, 58, 66, 16  # px around the panels
-GAP = 36  # px between panels: the room of a panel's own heading
+LINE = 17  # px of a line of a heading
+TOP, BOTTOM, LEFT, RIGHT = 11, 58, 66, 16  # px around the panels
+GAP = 20  # px between panels, besides their headings
 ENTRY = 20  # px of a line of the legend
 ITEM = 40  # px of the sample of a curve in the legend
 
@@ -87,6 +88,11 @@ def axis_of(panel: int) -> str:
     return f"y{panel + 1}" if panel else "y"
 
 
+def axis_key(panel: int) -> str:
+    """Return what the layout calls it."""
+    return f"yaxis{panel + 1}" if panel else "yaxis"
+
+
 def thinned(samples: int, most: int) -> slice:
     """Return which of so many samples are drawn: every k-th, at most `most` and the first."""
     return slice(None, None, max(1, -(-(samples - 1) // most)))
@@ -96,23 +102,23 @@ def layout(panels: list[Panel], x: dict[str, Any], entries: int) -> dict[str, An
     """Return the layout of panels under each other on one x axis, `entries` in the legend."""
     # Two lines of the legend on a wide screen; on a narrow one it takes its room from the panels.
     legend = ENTRY * (1 + (entries > 5)) if entries else 0
-    inner = sum(p.height for p in panels) + GAP * (len(panels) - 1)
-    height = TOP + inner + BOTTOM + legend
+    rooms = [LINE * (1 + panel.heading.count("<br>")) for panel in panels]
+    inner = sum(p.height for p in panels) + sum(rooms[1:]) + GAP * (len(panels) - 1)
     axes: dict[str, Any] = {}
     notes, top = [], float(inner)
     for i, panel in enumerate(panels):
         domain = [max(0.0, (top - panel.height) / inner), top / inner]
         axis = _axis(panel.label) | {"domain": domain} | (panel.axis or {})
-        axes[f"yaxis{i + 1 if i else ''}"] = axis
+        axes[axis_key(i)] = axis
         notes.append(_heading(panel.heading, domain[1]))
-        top -= panel.height + GAP
+        top -= panel.height + GAP + (rooms[i + 1] if i + 1 < len(rooms) else 0)
     return {
         "template": {"layout": {}},
         "paper_bgcolor": "#ffffff",
         "plot_bgcolor": "#ffffff",
         "font": FONT | {"color": INK},
-        "height": height,
-        "margin": {"t": TOP, "b": BOTTOM + legend, "l": LEFT, "r": RIGHT},
+        "height": TOP + rooms[0] + inner + BOTTOM + legend,
+        "margin": {"t": TOP + rooms[0], "b": BOTTOM + legend, "l": LEFT, "r": RIGHT},
         "hovermode": "closest",
         "showlegend": bool(entries),
         "legend": _legend(inner),
@@ -144,6 +150,7 @@ def _heading(text: str, top: float) -> dict[str, Any]:
         "y": top,
         "xanchor": "left",
         "yanchor": "bottom",
+        "align": "left",
         "showarrow": False,
         "font": {"size": 13},
     }
@@ -154,7 +161,7 @@ def _legend(inner: int) -> dict[str, Any]:
         "orientation": "h",
         "x": 0,
         "xanchor": "left",
-        "y": -BOTTOM / inner,
+        "y": -(BOTTOM + 8) / inner,
         "yanchor": "top",
         "font": {"size": 12},
         "itemwidth": ITEM,

@@ -3,7 +3,10 @@
 import xarray as xr
 
 from compare.pairs import Comparison
+from compare.pictures.diagrams import diagrams_of
+from compare.pictures.energy import energy
 from compare.pictures.picture import Picture
+from compare.pictures.spacetime import space_time
 from compare.pictures.waveforms import waveforms
 
 
@@ -12,7 +15,18 @@ def pictures_of(
 ) -> list[Picture]:
     """Return the pictures of a scene's variants.
 
-    name : what file names begin with ("fig-03"). fields : what `along_pillar` returns for the first
-    variant; empty: no space-time diagrams.
+    name : what file names begin with ("fig-03"). fields : what `along_pillar` returns for one of
+    the variants; empty: no space-time diagrams.
     """
-    return [waveforms(name, comparisons)]
+    return [
+        waveforms(name, comparisons),
+        *_space_time(name, comparisons, fields),
+        *energy(name, comparisons),
+    ]
+
+
+def _space_time(
+    name: str, comparisons: list[Comparison], fields: dict[str, xr.Dataset]
+) -> list[Picture]:
+    scenes = {comparison.scene.name: comparison.scene for comparison in comparisons}
+    return [space_time(name, scenes[shown.variant], shown) for shown in diagrams_of(fields)]

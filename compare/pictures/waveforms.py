@@ -37,9 +37,11 @@ def _plot(comparisons: list[Comparison]) -> dict[str, Any]:
         for i, panel in enumerate(shown)
         for name, curve in {**panel.curves, **panel.given}.items()
     ]
+    labels = [f"{panel.quantity} ({UNITS[panel.quantity][1]})" for panel in shown]
+    alike = {"matches": "y"} if len(set(labels)) == 1 else None
     rows = [
-        interactive.Panel(f"{p.place}, {p.variant}", f"{p.quantity} ({UNITS[p.quantity][1]})")
-        for p in shown
+        interactive.Panel(f"{panel.place}, {panel.variant}", label, axis=alike if i else None)
+        for i, (panel, label) in enumerate(zip(shown, labels, strict=True))
     ]
     found = interactive.in_layers(traces, looks)
     return {

@@ -1,0 +1,149 @@
+"""Space-time diagrams: y along the pillar over time, the stress as colour."""
+
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+
+from cases.scene import Scene
+from compare.pictures import interactive
+from compare.pictures.diagrams import Diagram, Diagrams
+from compare.pictures.picture import Picture
+from compare.style import RC, WIDTH
+
+STOPS = 17  # of a colour scale on the page
+LAYER = {"color": "#333333", "linewidth": 0.8, "linestyle": (0, (4, 3))}
+
+
+def space_time(name: str, scene: Scene, shown: Diagrams) -> Picture:
+    """Return the picture of an engine's diagrams, or of the differences between engines."""
+    subject = f"{shown.engine}: " if shown.engine else "Between engines: "
+    return Picture(
+        f"{name}-space-time-{shown.engine or 'engines'}",
+        "space-time",
+        f"{subject}{shown.quantity.words} along the pillar over time",
+        _caption(scene, shown),
+        _figure(scene, shown),
+        shown.table(),
+        _plot(scene, shown),
+    )
+
+
+def _caption(scene: Scene, shown: Diagrams) -> str:
+    """Say what the colours are, and where and when they were computed."""
+    sign = "Compression is red, tension blue. " if shown.quantity.variable == "stress" else ""
+    variant = f" of the variant {scene.name!r}" if scene.name else ""
+    layers = " Dashed: the soft layer." if scene.soft_layers else ""
+    return (
+        f"{sign if shown.engine else ''}Drawn from {len(shown.y)} sections and {len(shown.time)} "
+        f"times of the run{variant}; a difference has colours of its own, whose ends are its "
+        f"largest value.{layers}"
+    )
+
+
+def _figure(scene: Scene, shown: Diagrams) -> Figure:
+    count = len(shown.diagrams)
+    with matplotlib.rc_context(RC):
+        figure = Figure(figsize=(WIDTH, 3.5), layout="constrained")
+        FigureCanvasAgg(figure)
+        axes = figure.subplots(1, max(count, 2), sharex=True, sharey=True, squeeze=False)[0]
+        for ax, diagram in zip(axes, shown.diagrams, strict=False):
+            _draw(ax, diagram, shown, scene)
+        for ax in axes[count:]:
+            ax.set_visible(False)
+        axes[0].set_ylabel("y (m)")
+    return figure
+
+
+def _draw(ax: Axes, diagram: Diagram, shown: Diagrams, scene: Scene) -> None:
+    mesh = ax.pcolormesh(
+        1e3 * shown.time,
+        shown.y,
+        diagram.values,
+        cmap=diagram.colours,
+        vmin=-diagram.limit,
+        vmax=diagram.limit,
+        shading="gouraud",
+        rasterized=True,
+    )
+    for layer in scene.soft_layers:
+        ax.axhline(layer.y, **LAYER)
+    ax.set_title(diagram.heading, pad=4)
+    ax.set_xlabel("time (ms)")
+    bar = ax.figure.colorbar(mesh, ax=ax, location="bottom", aspect=40, pad=0.03)
+    bar.outline.set_linewidth(0.5)
+
+
+def _plot(scene: Scene, shown: Diagrams) -> dict[str, Any]:
+    headings = [diagram.heading.replace("\n", "<br>") for diagram in shown.diagrams]
+    panels = [
+        interactive.Panel(heading, "y (m)", axis={"matches": "y"} if i else None)
+        for i, heading in enumerate(headings)
+    ]
+    layout = interactive.layout(panels, {"title": {"text": "time (ms)"}}, 0)
+    layout["margin"]["r"] = 62
+    layout["shapes"] = [
+        _layer(layer.y, i) for layer in scene.soft_layers for i in range(len(panels))
+    ]
+    domains = [layout[interactive.axis_key(i)]["domain"] for i in range(len(panels))]
+    traces = [
+        _trace(i, diagram, shown, domain)
+        for i, (diagram, domain) in enumerate(zip(shown.diagrams, domains, strict=True))
+    ]
+    return {"data": traces, "layout": layout}
+
+
+def _trace(i: int, diagram: Diagram, shown: Diagrams, domain: list[float]) -> dict[str, Any]:
+    place = f"{diagram.unit.name} at y = %{{y:.4~g}} m, %{{x:.2f}} ms"
+    return {
+        "type": "heatmap",
+        "name": diagram.name,
+        **interactive.places("x", 1e3 * shown.time),
+        **interactive.places("y", shown.y),
+        "z": interactive.packed(diagram.values, "i2" if diagram.unit.whole else "f4"),
+        "yaxis": interactive.axis_of(i),
+        "zsmooth": "best",
+        "zmin": -diagram.limit,
+        "zmax": diagram.limit,
+        "colorscale": _colourscale(diagram.colours),
+        "colorbar": _key(domain),
+        "hovertemplate": f"%{{z:.4~g}} {place}<extra>{diagram.name}</extra>",
+    }
+
+
+def _key(domain: list[float]) -> dict[str, Any]:
+    """Return the key of a diagram's colours, as high as the diagram, to its right."""
+    return {
+        "x": 1.01,
+        "xpad": 2,
+        "y": sum(domain) / 2,
+        "ypad": 0,
+        "len": domain[1] - domain[0],
+        "thickness": 10,
+        "outlinewidth": 0,
+        "nticks": 4,
+        "tickfont": {"size": 11},
+    }
+
+
+def _colourscale(name: str) -> list[list[Any]]:
+    at = np.linspace(0, 1, STOPS)
+    return [[float(x), to_hex(c)] for x, c in zip(at, matplotlib.colormaps[name](at), strict=True)]
+
+
+def _layer(y: float, panel: int) -> dict[str, Any]:
+    """Return the line of a soft layer through a diagram."""
+    return {
+        "type": "line",
+        "xref": "paper",
+        "yref": interactive.axis_of(panel),
+        "x0": 0,
+        "x1": 1,
+        "y0": y,
+        "y1": y,
+        "line": {"color": "#333333", "width": 1, "dash": "4px,3px"},
+    }
