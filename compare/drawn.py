@@ -2,7 +2,6 @@
 
 import io
 import json
-import re
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -12,9 +11,10 @@ from pandas import DataFrame
 
 from compare.output import write, write_text
 from compare.style import RC
+from compare.svg import compact
 
 DOTS = 160  # of the PNG, per inch
-FLOAT = "%.9g"  # of numbers in CSV files
+DIGITS = 6  # of the numbers behind a figure
 
 
 class Drawn(NamedTuple):
@@ -47,15 +47,15 @@ def save(
 ) -> Drawn:
     """Write a figure's files and return it as drawn; without a table its CSV is the caller's."""
     if table is not None:
-        write_csv(folder / f"{name}.csv", table)
+        write_csv(folder / f"{name}.csv", table, DIGITS)
     svg = _write_drawings(figure, folder, name, title)
     text = "" if plot is None else json.dumps(plot, separators=(",", ":"), allow_nan=False)
     return Drawn(name, title, folder, svg, caption, text)
 
 
-def write_csv(path: Path, table: DataFrame) -> Path:
+def write_csv(path: Path, table: DataFrame, digits: int = 9) -> Path:
     """Write a table without its index."""
-    return write(path, lambda file: table.to_csv(file, float_format=FLOAT, index=False))
+    return write(path, lambda file: table.to_csv(file, float_format=f"%.{digits}g", index=False))
 
 
 def _write_drawings(figure: Figure, folder: Path, name: str, title: str) -> str:
@@ -66,13 +66,6 @@ def _write_drawings(figure: Figure, folder: Path, name: str, title: str) -> str:
         about = {"Title": title, "CreationDate": None}
         write(folder / f"{name}.pdf", lambda path: figure.savefig(path, metadata=about))
         write(folder / f"{name}.png", lambda path: figure.savefig(path, dpi=DOTS))
-    svg = tidy(buffer.getvalue(), name)
+    svg = compact(buffer.getvalue(), name)
     write_text(folder / f"{name}.svg", svg)
     return svg[svg.index("<svg") :]
-
-
-def tidy(svg: str, name: str) -> str:
-    """Return an SVG with coordinates to a hundredth of a point, and ids that no other one has."""
-    svg = re.sub(r"(\d\.\d\d)\d+", r"\1", svg)
-    svg = re.sub(rf'\bid="(?!{name})', f'id="{name}-', svg)
-    return re.sub(rf'(url\(#|href="#)(?!{name})', rf"\g<1>{name}-", svg)

@@ -15,6 +15,7 @@ from compare.pictures.diagrams import Diagram, Diagrams
 from compare.pictures.picture import Picture
 from compare.style import RC, WIDTH
 
+COLOURS = 128  # of an image in print
 STOPS = 17  # of a colour scale on the page
 LAYER = {"color": "#333333", "linewidth": 0.8, "linestyle": (0, (4, 3))}
 
@@ -60,22 +61,34 @@ def _figure(scene: Scene, shown: Diagrams) -> Figure:
 
 
 def _draw(ax: Axes, diagram: Diagram, shown: Diagrams, scene: Scene) -> None:
-    mesh = ax.pcolormesh(
-        1e3 * shown.time,
-        shown.y,
-        diagram.values,
-        cmap=diagram.colours,
+    time, y, values = evenly(1e3 * shown.time, shown.y, diagram.values)
+    image = ax.imshow(
+        values,
+        # A palette, with which files take a tenth of the room: stress is smoothed, not colours.
+        cmap=matplotlib.colormaps[diagram.colours].resampled(COLOURS),
+        interpolation="bilinear",
+        interpolation_stage="data",
         vmin=-diagram.limit,
         vmax=diagram.limit,
-        shading="gouraud",
-        rasterized=True,
+        extent=(time[0], time[-1], y[0], y[-1]),
+        origin="lower",
+        aspect="auto",
     )
     for layer in scene.soft_layers:
         ax.axhline(layer.y, **LAYER)
     ax.set_title(diagram.heading, pad=4)
     ax.set_xlabel("time (ms)")
-    bar = ax.figure.colorbar(mesh, ax=ax, location="bottom", aspect=40, pad=0.03)
+    bar = ax.figure.colorbar(image, ax=ax, location="bottom", aspect=40, pad=0.03)
     bar.outline.set_linewidth(0.5)
+
+
+def evenly(
+    time: np.ndarray, y: np.ndarray, values: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return times, places and values [place, time] at even distances, as an image needs them."""
+    places = np.linspace(y[0], y[-1], len(y))
+    columns = [np.interp(places, y, column) for column in values.T]
+    return time, places, np.stack(columns, axis=1)
 
 
 def _plot(scene: Scene, shown: Diagrams) -> dict[str, Any]:
