@@ -49,7 +49,7 @@ def draw(name: str, comparisons: list[Comparison]) -> Figure:
                 )
         _label_axes(axes, grid, alike)
         names = {n for row in grid for panel in row for n in panel.curves}
-        _add_legend(figure, names, comparisons[0].besides)
+        add_legend(figure, names, comparisons[0].besides)
     return figure
 
 
@@ -83,7 +83,7 @@ def _of_given(k: int, beside: Beside) -> dict[str, Any]:
     return look | marker if len(beside.time) <= MOST_MARKS else look
 
 
-def _add_legend(figure: Figure, names: set[str], besides: list[Beside]) -> None:
+def add_legend(figure: Figure, names: set[str], besides: list[Beside]) -> None:
     """Put one column of entries per model above the panels, where it hides no curve."""
     columns = [
         [_heading(family), *(_entry(name) for name in styles if name in names)]

@@ -1,24 +1,21 @@
 """The energy ledger over time: what the load has put in, what became of it, and what is missing."""
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import matplotlib
 import numpy as np
-import pandas as pd
-import xarray as xr
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from compare.pairs import Comparison
-from compare.panels import variant_names
 from compare.pictures import interactive
+from compare.pictures.ledgers import Ledger, drawn_terms, ledgers_of, table
 from compare.pictures.picture import Picture
 from compare.pictures.units import Unit, unit_for
 from compare.style import RC, TERMS, WIDTH, Style, in_order, style
 
-MOST = 480  # samples of a curve
-LEAST = 1e-17  # of what is drawn of a residual: a hundredth of round-off
+#: Colours are those of terms; engines differ by their dashes.
 DASHES = {
     "dem": "-",
     "continuum-jointed": (0, (5, 2)),
@@ -26,28 +23,9 @@ DASHES = {
 }
 
 
-class Ledger(NamedTuple):
-    """The ledger of one engine's run of one variant, since its first sample.
-
-    time : [n], s. terms : [n] by name, J, work among them. residual : [n], the sum of all others
-    less the work, over the largest work; of the largest term, where no work is done.
-    """
-
-    variant: str
-    engine: str
-    time: np.ndarray
-    terms: dict[str, np.ndarray]
-    residual: np.ndarray
-
-
 def energy(name: str, comparisons: list[Comparison]) -> list[Picture]:
     """Return the picture of all ledgers, none where no engine has kept one."""
-    ledgers = [
-        _ledger(variant, engine, comparison.results[engine])
-        for comparison, variant in zip(comparisons, variant_names(comparisons), strict=True)
-        for engine in in_order(set(comparison.results))
-        if "energy" in comparison.results[engine]
-    ]
+    ledgers = ledgers_of(comparisons)
     if not any(x.any() for ledger in ledgers for x in ledger.terms.values()):
         return []
     unit = unit_for("J", max(np.abs(x).max() for ledger in ledgers for x in ledger.terms.values()))
@@ -58,21 +36,10 @@ def energy(name: str, comparisons: list[Comparison]) -> list[Picture]:
             "Energy over time",
             _caption(ledgers),
             _figure(ledgers, unit),
-            _table(ledgers),
+            table(ledgers),
             _plot(ledgers, unit),
         )
     ]
-
-
-def _ledger(variant: str, engine: str, result: xr.Dataset) -> Ledger:
-    since = result["energy"].values - result["energy"].values[:, :1]
-    names = [str(term) for term in result["term"].values]
-    work = since[names.index("work")]
-    scale = float(np.abs(work if work.any() else since).max()) or 1.0
-    kept = interactive.thinned(len(work), MOST)
-    residual = (since.sum(axis=0) - 2 * work) / scale
-    terms = {term: since[i, kept] for i, term in enumerate(names)}
-    return Ledger(variant, engine, result.time.values[kept], terms, residual[kept])
 
 
 def _caption(ledgers: list[Ledger]) -> str:
@@ -87,35 +54,12 @@ def _caption(ledgers: list[Ledger]) -> str:
     )
 
 
-def _table(ledgers: list[Ledger]) -> pd.DataFrame:
-    """Return a row a variant, engine and sample; a term that a run has not is empty."""
-    return pd.concat(
-        pd.DataFrame(
-            {
-                "variant": ledger.variant,
-                "engine": ledger.engine,
-                "time (s)": ledger.time,
-                **{f"{term} (J)": values for term, values in ledger.terms.items()},
-                "residual (of the largest work)": ledger.residual,
-            }
-        )
-        for ledger in ledgers
-    ).reset_index(drop=True)
-
-
-def _drawn_terms(ledgers: list[Ledger]) -> list[str]:
-    """Return the terms that are not zero throughout, in the order of the legend."""
-    return [t for t in TERMS if any(t in x.terms and x.terms[t].any() for x in ledgers)]
-
-
 def _look(engine: str, term: str) -> Style:
     return Style(TERMS[term], 2.0 if term == "work" else 1.4, DASHES[engine], 1)
 
 
-def _missing(ledger: Ledger) -> np.ndarray:
-    """Return the size of the residual, no number where it is zero: the axis is logarithmic."""
-    size = np.abs(ledger.residual)
-    return np.where(size > LEAST, size, np.nan)
+def _of_engine(engine: str) -> Style:
+    return style(engine)._replace(width=1.6, dashes=DASHES[engine])
 
 
 def _figure(ledgers: list[Ledger], unit: Unit) -> Figure:
@@ -143,33 +87,31 @@ def _figure(ledgers: list[Ledger], unit: Unit) -> Figure:
 def _draw(axes: np.ndarray, ledgers: list[Ledger], unit: Unit) -> None:
     upper, lower = axes
     for ledger in ledgers:
-        for term in _drawn_terms([ledger]):
+        for term in drawn_terms([ledger]):
             look = _look(ledger.engine, term).of_line()
             upper.plot(1e3 * ledger.time, ledger.terms[term] / unit.size, **look)
-        look = style(ledger.engine)._replace(width=1.2).of_line()
-        lower.plot(1e3 * ledger.time, _missing(ledger), **look)
+        look = _of_engine(ledger.engine).of_line()
+        lower.plot(1e3 * ledger.time, ledger.missing, **look)
     lower.set_yscale("log")
     lower.set_xlabel("time (ms)")
-    lower.margins(x=0)
+    for ax in axes:
+        ax.margins(x=0)
 
 
 def _add_legend(figure: Figure, ledgers: list[Ledger]) -> None:
     engines = in_order({ledger.engine for ledger in ledgers})
     entries = [
-        Line2D([], [], label=term, **_look("dem", term).of_line()) for term in _drawn_terms(ledgers)
+        Line2D([], [], label=term, **_look("dem", term).of_line()) for term in drawn_terms(ledgers)
     ]
-    entries += [
-        Line2D([], [], label=e, color=style(e).colour, linestyle=DASHES[e], linewidth=2)
-        for e in engines
-    ]
+    entries += [Line2D([], [], label=e, **_of_engine(e).of_line()) for e in engines]
     figure.legend(handles=entries, ncols=len(entries), loc="outside upper center", frameon=False)
 
 
 def _plot(ledgers: list[Ledger], unit: Unit) -> dict[str, Any]:
     """Return the interactive figure: of each variant its terms, and under them what is missing."""
     variants = list(dict.fromkeys(ledger.variant for ledger in ledgers))
-    looks = {t: _look("dem", t) for t in _drawn_terms(ledgers)}
-    looks |= {e: style(e) for e in in_order({x.engine for x in ledgers})}
+    looks = {t: _look("dem", t) for t in drawn_terms(ledgers)}
+    looks |= {e: _of_engine(e) for e in in_order({x.engine for x in ledgers})}
     traces, panels = [], []
     for j, variant in enumerate(variants):
         panels += [
@@ -200,7 +142,7 @@ def _traces(ledger: Ledger, unit: Unit, panel: int) -> list[dict[str, Any]]:
             "hovertemplate": f"{term} %{{y:.4~g}} {unit.name} at %{{x:.2f}} ms"
             f"<extra>{ledger.engine}</extra>",
         }
-        for term in _drawn_terms([ledger])
+        for term in drawn_terms([ledger])
     ]
     return [
         *found,
@@ -208,9 +150,9 @@ def _traces(ledger: Ledger, unit: Unit, panel: int) -> list[dict[str, Any]]:
         | {
             "name": ledger.engine,
             "legendgroup": ledger.engine,
-            "y": interactive.packed(_missing(ledger)),
+            "y": interactive.packed(ledger.missing),
             "yaxis": interactive.axis_of(panel + 1),
-            "line": interactive.line(style(ledger.engine)._replace(width=1.4)),
+            "line": interactive.line(_of_engine(ledger.engine)),
             "hovertemplate": f"%{{y:.2g}} missing at %{{x:.2f}} ms<extra>{ledger.engine}</extra>",
         },
     ]

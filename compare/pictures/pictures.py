@@ -7,6 +7,7 @@ from compare.pictures.diagrams import diagrams_of
 from compare.pictures.energy import energy
 from compare.pictures.picture import Picture
 from compare.pictures.spacetime import space_time
+from compare.pictures.spectra import spectra
 from compare.pictures.waveforms import waveforms
 
 
@@ -21,6 +22,7 @@ def pictures_of(
     return [
         waveforms(name, comparisons),
         *_space_time(name, comparisons, fields),
+        *spectra(name, comparisons),
         *energy(name, comparisons),
     ]
 

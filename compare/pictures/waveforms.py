@@ -50,10 +50,11 @@ def _plot(comparisons: list[Comparison]) -> dict[str, Any]:
     }
 
 
-def looks_of(comparisons: list[Comparison]) -> dict[str, Style]:
-    """Return how everything that the variants hold is drawn, in the order of the legend."""
+def looks_of(comparisons: list[Comparison], given: bool = True) -> dict[str, Style]:
+    """Return how the results of the variants and, with `given`, the curves of others are drawn, in
+    the order of the legend."""
     names = {name for comparison in comparisons for name in comparison.results}
-    files = [beside.curves.name for beside in comparisons[0].besides]
+    files = [beside.curves.name for beside in comparisons[0].besides] if given else []
     return {name: style(name) for name in in_order(names)} | {
         file: GIVEN[k % len(GIVEN)] for k, file in enumerate(files)
     }
