@@ -20,13 +20,27 @@ def compact(svg: str, name: str) -> str:
     name : what all ids begin with.
     """
     svg = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", svg, flags=re.DOTALL)
-    svg = UNNAMED.sub("", svg)
+    svg = _said_once(UNNAMED.sub("", svg))
     svg = re.sub(r'(?<= d=")[^"]+', lambda match: _relative(match[0]), svg)
     svg = re.sub(r"(\d\.\d\d)\d+", r"\1", svg)
     svg = re.sub(r">\s+<", ">\n<", svg)
     svg = re.sub(rf'\bid="(?!{name})', f'id="{name}-', svg)
     svg = re.sub(rf'(url\(#|href="#)(?!{name})', rf"\g<1>{name}-", svg)
     return re.sub(r'(?<=data:image/png;base64,)[^"]+', lambda match: _with_palette(match[0]), svg)
+
+
+def _said_once(svg: str) -> str:
+    """Return an SVG that names its font once, and does not repeat what its markers look like."""
+    family = re.search(r" font-family: ([^;\"]*,[^;\"]*)", svg)
+    if family:
+        svg = svg.replace(family[0] + ";", "").replace("<svg ", f'<svg font-family="{family[1]}" ', 1)
+    looks = dict(re.findall(r'<path id="([^"]+)"[^>]*?style="([^"]*)"', svg))
+    svg = re.sub(
+        r'(<use xlink:href="#([^"]+)"[^>]*?) style="([^"]*)"',
+        lambda use: use[1] if looks.get(use[2]) == use[3] else use[0],
+        svg,
+    )
+    return re.sub(r' transform="rotate\(-?0 [^)]*\)"', "", svg)
 
 
 def _relative(path: str) -> str:

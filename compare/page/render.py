@@ -7,18 +7,23 @@ import gzip
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import pandas as pd
 from jinja2 import Environment, PackageLoader
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from compare.findings import Finding
 from compare.page.motion import Motion
 from compare.page.overview import Overview
+from compare.page.packed import pack_plot, pack_table
 from compare.page.section import Section
 from compare.peers import PeersSection
 from compare.studies.section import StudySection
 from compare.style import style
 from compare.tables import Table
 from compare.worth_section import WorthSection
+
+
+LONG = 20_000  # bytes of a table
 
 
 @dataclass(frozen=True)
@@ -67,8 +72,8 @@ def render(page: Page, out: Path) -> str:
         loader=PackageLoader("compare"), autoescape=True, trim_blocks=True, lstrip_blocks=True
     )
     environment.globals |= {
-        "held": held,
-        "held_file": lambda file: held(file.read_bytes()),
+        "held_file": held_file,
+        "held_plot": lambda text: base64.b64encode(pack_plot(text)).decode("ascii"),
         "place": lambda file: file.relative_to(out).as_posix(),
         "source": lambda name: Markup(_asset(environment, name)),
         "colour": lambda name: style(name).colour,
@@ -79,9 +84,22 @@ def render(page: Page, out: Path) -> str:
 
 
 def held(content: str | bytes) -> str:
-    """Return content as the page holds it: compressed, in base64."""
+    """Return content as the page holds it: gzipped, in base64."""
     raw = content.encode() if isinstance(content, str) else content
     return base64.b64encode(gzip.compress(raw, mtime=0)).decode("ascii")
+
+
+def held_file(file: Path) -> Markup:
+    """Return the element that holds a file: of a long table the packed numbers, else its bytes."""
+    raw = file.read_bytes()
+    packed = None
+    if file.suffix == ".csv" and len(raw) > LONG:
+        packed = pack_table(pd.read_csv(file, keep_default_na=True))
+    text = held(raw) if packed is None else base64.b64encode(packed).decode("ascii")
+    kind = "bytes" if packed is None else "table"
+    return Markup(
+        f'<script type="text/plain" id="held-{escape(file.name)}" data-kind="{kind}">{text}</script>'
+    )
 
 
 def charts() -> str:

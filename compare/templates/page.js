@@ -11,11 +11,66 @@
     return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")));
   }
 
+  /* What is packed (compare/page/packed.py): its header, and a function that reads its numbers. */
+  async function unpacked(id) {
+    const buffer = await held(id).arrayBuffer();
+    const end = 4 + new DataView(buffer).getUint32(0, true);
+    const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, end - 4)));
+    return [header, (part) => numbers(new Uint8Array(buffer, end + part.at, 4 * part.n), part)];
+  }
+
+  function numbers(bytes, { n, order, step = 1 }) {
+    const found = new Float64Array(n);
+    for (let i = 0; i < n; i += 1) {
+      const code = (bytes[i] | bytes[n + i] << 8 | bytes[2 * n + i] << 16 | bytes[3 * n + i] << 24) >>> 0;
+      found[i] = code % 2 ? -(code + 1) / 2 : code / 2;
+    }
+    for (let k = 0; k < order; k += 1) for (let i = 1; i < n; i += 1) found[i] += found[i - 1];
+    return found.map((x) => x * step);
+  }
+
+  /* A packed table as the text of a CSV file. */
+  async function table(id) {
+    const [{ rows, columns }, read] = await unpacked(id);
+    const cells = columns.map((column) => cellsOf(column, rows, read));
+    const lines = Array.from({ length: rows }, (_, i) => cells.map((cell) => cell[i]).join(","));
+    return [columns.map((column) => column.name).join(","), ...lines, ""].join("\n");
+  }
+
+  function cellsOf(column, rows, read) {
+    if ("levels" in column) return Array.from(read(column), (code) => column.levels[code] ?? "");
+    if ("first" in column) {
+      const step = (column.last - column.first) / (rows - 1);
+      return Array.from({ length: rows }, (_, i) => +(column.first + i * step).toPrecision(9));
+    }
+    const found = Array.from(read(column), (x) => +x.toPrecision(7));
+    (column.gaps ?? []).forEach((i) => { found[i] = ""; });
+    return found;
+  }
+
+  /* A packed figure for plotly.js. */
+  async function plot(id) {
+    const [header, read] = await unpacked(id);
+    const whole = (part) => {
+      if (part === null || typeof part !== "object") return part;
+      if (part.packed) return matrix(read(part.packed), part.packed.width);
+      if (Array.isArray(part)) return part.map(whole);
+      return Object.fromEntries(Object.entries(part).map(([key, one]) => [key, whole(one)]));
+    };
+    return whole(header);
+  }
+
+  function matrix(values, width) {
+    if (!width) return values;
+    return Array.from({ length: values.length / width }, (_, i) => values.subarray(i * width, (i + 1) * width));
+  }
+
   /* Downloads. */
   const TYPES = { svg: "image/svg+xml", pdf: "application/pdf", csv: "text/csv;charset=utf-8" };
 
   async function content(link) {
-    if ("held" in link.dataset) return (await held(link.dataset.held)).arrayBuffer();
+    const id = link.dataset.held;
+    if (id) return document.getElementById(id).dataset.kind === "table" ? table(id) : held(id).arrayBuffer();
     return new XMLSerializer().serializeToString(link.closest("figure").querySelector(".static svg"));
   }
 
@@ -49,8 +104,7 @@
   }
 
   async function draw(figure) {
-    const [Plotly, text] = [await plotly(), await held(figure.dataset.plot).text()];
-    const { data, layout } = JSON.parse(text);
+    const [Plotly, { data, layout }] = [await plotly(), await plot(figure.dataset.plot)];
     const box = figure.querySelector(".chart");
     figure.classList.add("live");
     if (box.clientWidth < 600) makeRoom(layout);
