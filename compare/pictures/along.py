@@ -20,7 +20,7 @@ def along_pillar(scene: Scene) -> dict[str, xr.Dataset]:
     """
     if scene.pillar.block_count < FEWEST:
         return {}
-    wide = _recorded_along(scene)
+    wide = recorded_along(scene)
     names = [name for name in ENGINES if applies(name, wide)]
     names += [pair.other for name in names for pair in referees(name) if applies(pair.other, wide)]
     return {name: _thinned(solve(name, wide)) for name in dict.fromkeys(names)}
@@ -38,7 +38,7 @@ def sections(scene: Scene) -> list[float]:
     return [scene.pillar.block * i for i in places]
 
 
-def _recorded_along(scene: Scene) -> Scene:
+def recorded_along(scene: Scene) -> Scene:
     """Return the scene with receivers along the pillar; samples and steps stay as they are."""
     places = sections(scene)
     # A couple about the axis strains no section; what it turns is recorded with the velocity.

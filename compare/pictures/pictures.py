@@ -6,6 +6,7 @@ from compare.pairs import Comparison
 from compare.pictures.diagrams import diagrams_of
 from compare.pictures.energy import energy
 from compare.pictures.picture import Picture
+from compare.pictures.scene import scene_picture
 from compare.pictures.spacetime import space_time
 from compare.pictures.spectra import spectra
 from compare.pictures.waveforms import waveforms
@@ -20,6 +21,7 @@ def pictures_of(
     the variants; empty: no space-time diagrams.
     """
     return [
+        scene_picture(name, comparisons),
         waveforms(name, comparisons),
         *_space_time(name, comparisons, fields),
         *spectra(name, comparisons),

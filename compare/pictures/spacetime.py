@@ -18,7 +18,7 @@ from compare.style import RC, WIDTH
 COLOURS = 96  # of an image in print
 FINER = 2  # rows of it
 STOPS = 17  # of a colour scale on the page
-LAYER = {"color": "#333333", "linewidth": 0.8, "linestyle": (0, (4, 3))}
+LAYER: dict[str, Any] = {"color": "#333333", "linewidth": 0.8, "linestyle": (0, (4, 3))}
 
 
 def space_time(name: str, scene: Scene, shown: Diagrams) -> Picture:

@@ -21,12 +21,14 @@ class Unit(NamedTuple):
         return np.rint(scaled) + 0.0 if self.whole else scaled.astype(np.float32)
 
 
-def unit_for(si: str, largest: float) -> Unit:
-    """Return the multiple of a unit for numbers up to `largest`: whole ones where some multiple
-    has them fine enough, else between 1 and 1000."""
-    for whole in (True, False):
-        low, high = WHOLE if whole else (1.0, 1000.0)
+def unit_for(si: str, largest: float, whole: bool = False) -> Unit:
+    """Return the multiple of a unit that has numbers up to `largest` between 1 and 1000.
+
+    whole : rather the one, if any, whose whole numbers are fine enough.
+    """
+    for rounded in (True, False) if whole else (False,):
+        low, high = WHOLE if rounded else (1.0, 1000.0)
         for prefix, size in MULTIPLES.items():
             if low <= largest / size < high:
-                return Unit(prefix + si, size, whole)
+                return Unit(prefix + si, size, rounded)
     return Unit(si, 1.0, False)
