@@ -1,4 +1,4 @@
-"""A figure as files and as what the page shows of it: SVG, PDF, PNG, and its numbers beside them."""
+"""A figure as files, SVG, PDF, PNG and its numbers, and as what the page shows of it."""
 
 import io
 import json

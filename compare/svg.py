@@ -23,6 +23,9 @@ def compact(svg: str, name: str) -> str:
     svg = _said_once(UNNAMED.sub("", svg))
     svg = re.sub(r'(?<= d=")[^"]+', lambda match: _relative(match[0]), svg)
     svg = re.sub(r"(\d\.\d\d)\d+", r"\1", svg)
+    svg = re.sub(
+        r"image-rendering:[^;\"]*;?", "", svg
+    )  # viewers smooth an image unless told not to
     svg = re.sub(r">\s+<", ">\n<", svg)
     svg = re.sub(rf'\bid="(?!{name})', f'id="{name}-', svg)
     svg = re.sub(rf'(url\(#|href="#)(?!{name})', rf"\g<1>{name}-", svg)
@@ -33,7 +36,9 @@ def _said_once(svg: str) -> str:
     """Return an SVG that names its font once, and does not repeat what its markers look like."""
     family = re.search(r" font-family: ([^;\"]*,[^;\"]*)", svg)
     if family:
-        svg = svg.replace(family[0] + ";", "").replace("<svg ", f'<svg font-family="{family[1]}" ', 1)
+        svg = svg.replace(family[0] + ";", "").replace(
+            "<svg ", f'<svg font-family="{family[1]}" ', 1
+        )
     looks = dict(re.findall(r'<path id="([^"]+)"[^>]*?style="([^"]*)"', svg))
     svg = re.sub(
         r'(<use xlink:href="#([^"]+)"[^>]*?) style="([^"]*)"',
@@ -68,5 +73,7 @@ def _with_palette(png: str) -> str:
     if image.getcolors(256) is None:
         return png
     buffer = io.BytesIO()
-    image.convert("P", palette=Image.Palette.ADAPTIVE, colors=256).save(buffer, "PNG", optimize=True)
+    image.convert("P", palette=Image.Palette.ADAPTIVE, colors=256).save(
+        buffer, "PNG", optimize=True
+    )
     return base64.b64encode(buffer.getvalue()).decode("ascii")

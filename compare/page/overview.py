@@ -108,7 +108,7 @@ def in_seconds(x: float) -> str:
 
 
 def _lead(engines: list[str], scenes: list[Ranked]) -> list[tuple[str, str]]:
-    """Return each engine and its sentence: how far it lies from the finest physics, at what cost."""
+    """Return each engine with how far it lies from the finest physics, and at what cost."""
     return [
         (engine, _sentence(engine, [s for s in scenes if engine in s.standings]))
         for engine in engines

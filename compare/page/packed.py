@@ -44,7 +44,9 @@ class _Body:
         """Return everything, gzipped."""
         text = json.dumps(header, separators=(",", ":"), allow_nan=False).encode()
         text += b" " * (-len(text) % 4)
-        return gzip.compress(b"".join([len(text).to_bytes(4, "little"), text, *self.parts]), mtime=0)
+        return gzip.compress(
+            b"".join([len(text).to_bytes(4, "little"), text, *self.parts]), mtime=0
+        )
 
 
 def pack_table(table: pd.DataFrame) -> bytes | None:

@@ -22,7 +22,6 @@ from compare.style import style
 from compare.tables import Table
 from compare.worth_section import WorthSection
 
-
 LONG = 20_000  # bytes of a table
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from compare.engines import Progress
 from compare.drawn import Drawn, save
+from compare.engines import Progress
 from compare.stability.case import EQUIVALENT, JOINTED, LEAPFROG, Trial
 from compare.stability.diagram import draw
 from compare.stability.energies import Drift, drift

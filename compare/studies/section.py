@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from compare.engines import Progress
 from compare.drawn import Drawn, save
+from compare.engines import Progress
 from compare.studies.diagram import draw
 from compare.studies.findings import sentences
 from compare.studies.measure import Row

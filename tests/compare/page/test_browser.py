@@ -40,7 +40,9 @@ def opened(browser, alone):
     contexts, complaints = [], []
 
     def show(size=WIDE, path=alone, **options):
-        context = browser.new_context(viewport=dict(zip(("width", "height"), size, strict=True)), **options)
+        context = browser.new_context(
+            viewport=dict(zip(("width", "height"), size, strict=True)), **options
+        )
         contexts.append(context)
         context.route(re.compile("^(http|ws)"), lambda route: route.abort())
         page = context.new_page()
@@ -193,7 +195,11 @@ def test_no_figure_is_blank_on_screen_or_on_paper(opened):
     page.emulate_media(media="print")
     for figure in page.locator("figure").all():
         assert figure.locator(".static svg").is_visible()
-        assert not figure.locator(".chart").first.is_visible() if figure.locator(".chart").count() else True
+        assert (
+            not figure.locator(".chart").first.is_visible()
+            if figure.locator(".chart").count()
+            else True
+        )
         assert spread(figure.locator(".static").screenshot()) > 8
 
 
