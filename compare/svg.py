@@ -8,8 +8,8 @@ from PIL import Image
 
 #: What matplotlib calls groups that nothing refers to.
 UNNAMED = re.compile(
-    r' id="(?:figure|subfigures|axes|patch|text|line2d|legend|[xy]tick|matplotlib\.axis|FillBetween\w*'
-    r'|\w+Collection|QuadMesh)_\d+"'
+    r' id="(?:figure|subfigures|axes|patch|text|line2d|legend|[xy]tick|matplotlib\.axis'
+    r'|FillBetween\w*|\w+Collection|QuadMesh)_\d+"'
 )
 PLACE = re.compile(r"([ML]) (-?[\d.]+(?:e-?\d+)?) (-?[\d.]+(?:e-?\d+)?) ?\n?")
 

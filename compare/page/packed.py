@@ -7,7 +7,6 @@ difference of `order`, its sign in its last bit, in steps of `step`. The script 
 
 from __future__ import annotations
 
-import gzip
 import json
 from base64 import b64decode
 from typing import Any
@@ -44,9 +43,8 @@ class _Body:
         """Return everything, gzipped."""
         text = json.dumps(header, separators=(",", ":"), allow_nan=False).encode()
         text += b" " * (-len(text) % 4)
-        return gzip.compress(
-            b"".join([len(text).to_bytes(4, "little"), text, *self.parts]), mtime=0
-        )
+        whole = [len(text).to_bytes(4, "little"), text, *self.parts]
+        return gzip.compress(b"".join(whole), mtime=0)
 
 
 def pack_table(table: pd.DataFrame) -> bytes | None:

@@ -1,4 +1,4 @@
-"""The page's HTML: one file that holds its figures, their downloads and the script of its charts."""
+"""The page's HTML: one file that holds its figures, their files and the script of its charts."""
 
 from __future__ import annotations
 
@@ -95,10 +95,8 @@ def held_file(file: Path) -> Markup:
     if file.suffix == ".csv" and len(raw) > LONG:
         packed = pack_table(pd.read_csv(file, keep_default_na=True))
     text = held(raw) if packed is None else base64.b64encode(packed).decode("ascii")
-    kind = "bytes" if packed is None else "table"
-    return Markup(
-        f'<script type="text/plain" id="held-{escape(file.name)}" data-kind="{kind}">{text}</script>'
-    )
+    about = f'id="held-{escape(file.name)}" data-kind="{"bytes" if packed is None else "table"}"'
+    return Markup(f'<script type="text/plain" {about}>{text}</script>')
 
 
 def charts() -> str:
