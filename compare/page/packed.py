@@ -7,6 +7,7 @@ difference of `order`, its sign in its last bit, in steps of `step`. The script 
 
 from __future__ import annotations
 
+import gzip
 import json
 from base64 import b64decode
 from typing import Any
@@ -50,7 +51,7 @@ class _Body:
 def pack_table(table: pd.DataFrame) -> bytes | None:
     """Return a table, its numbers to a millionth of the largest of their column.
 
-    None where it has text that needs quotes.
+    None where it has text that needs quotes, or infinite numbers.
     """
     body, columns = _Body(), []
     for name in table:
@@ -66,6 +67,8 @@ def _column(values: pd.Series, body: _Body) -> dict[str, Any] | None:
     if not pd.api.types.is_numeric_dtype(values) or values.dtype == bool:
         texts = [str(level) for level in levels]
         return None if UNSAFE & set("".join(texts)) else {"levels": texts, **body.add(codes)}
+    if np.isinf(values).any():
+        return None
     if len(levels) <= min(LEVELS, len(values) // 4):
         return {"levels": [float(f"{x:.9g}") for x in levels], **body.add(codes)}
     numbers = values.to_numpy(dtype=float)
@@ -77,6 +80,8 @@ def _column(values: pd.Series, body: _Body) -> dict[str, Any] | None:
 
 
 def _is_even(numbers: np.ndarray) -> bool:
+    if len(numbers) < 3:
+        return False
     even = np.linspace(numbers[0], numbers[-1], len(numbers))
     return bool(np.abs(numbers - even).max() <= 1e-6 * abs(even[1] - even[0]))
 
