@@ -22,8 +22,9 @@ def along_pillar(scene: Scene) -> dict[str, xr.Dataset]:
         return {}
     wide = recorded_along(scene)
     names = [name for name in ENGINES if applies(name, wide)]
-    names += [pair.other for name in names for pair in referees(name) if applies(pair.other, wide)]
-    return {name: _thinned(solve(name, wide)) for name in dict.fromkeys(names)}
+    exact = [[p.other for p in referees(name) if applies(p.other, wide)][:1] for name in names]
+    every = dict.fromkeys([*names, *(name for found in exact for name in found)])
+    return {name: _thinned(solve(name, wide)) for name in every}
 
 
 def referees(engine: str) -> list[Pair]:

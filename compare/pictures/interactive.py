@@ -71,16 +71,16 @@ def line(look: Style) -> dict[str, Any]:
 def _begun(offset: float, lengths: tuple[float, ...]) -> list[float]:
     """Return dash lengths that begin `offset` into their pattern; SVG has no offset here.
 
-    A pattern that begins within a gap begins with a dash of no length.
+    An even number of them, as SVG repeats an odd one with dashes and gaps exchanged: a dash of no
+    length is put before a gap that comes first, a gap of none after a dash that comes last.
     """
     edges = np.cumsum(lengths)
     at = offset % edges[-1]
     first = int(np.searchsorted(edges, at, side="right"))
-    order = [*range(first, len(lengths)), *range(first)]
-    rest = [lengths[i] for i in order]
-    left = edges[first] - at
-    turned = [left, *rest[1:], lengths[first] - left]
-    return turned if first % 2 == 0 else [0.0, *turned]
+    rest = [*lengths[first + 1 :], *lengths[:first]]
+    left = float(edges[first] - at)
+    turned = [left, *rest, lengths[first] - left]
+    return [*turned, 0.0] if first % 2 == 0 else [0.0, *turned]
 
 
 def axis_of(panel: int) -> str:

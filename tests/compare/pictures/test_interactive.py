@@ -1,0 +1,90 @@
+"""Interactive figures' parts: numbers, dashes, axes."""
+
+import numpy as np
+import pytest
+
+from compare.pictures import interactive
+from compare.pictures.units import unit_for
+from compare.style import STYLES, Style
+
+
+@pytest.mark.parametrize("kind", ["f4", "i2"])
+def test_packed_numbers_come_back(kind):
+    values = np.arange(-6.0, 6.0).reshape(3, 4)
+    packed = interactive.packed(values, kind)
+    assert packed["shape"] == "3,4" and packed["dtype"] == kind
+    np.testing.assert_array_equal(interactive.unpacked(packed), values)
+
+
+def test_numbers_beyond_sixteen_bits_are_refused():
+    with pytest.raises(ValueError, match="beyond 16 bits"):
+        interactive.packed(np.array([40000.0]), "i2")
+
+
+def test_even_places_are_two_numbers_and_others_all():
+    assert interactive.places("x", np.array([1.0, 1.5, 2.0])) == {"x0": 1.0, "dx": 0.5}
+    uneven = interactive.places("y", np.array([0.0, 1.0, 3.0]))
+    np.testing.assert_array_equal(interactive.unpacked(uneven["y"]), [0, 1, 3])
+
+
+@pytest.mark.parametrize(("samples", "most"), [(241, 240), (242, 240), (2401, 240), (3, 240)])
+def test_thinned_keeps_the_first_and_at_most_so_many(samples, most):
+    kept = np.arange(samples)[interactive.thinned(samples, most)]
+    assert kept[0] == 0 and len(kept) <= most + 1
+    assert len(kept) > min(samples, most) / 2
+
+
+def painted(lengths, places):
+    """Return whether each place along a line is painted by dashes, as SVG defines them."""
+    edges = np.cumsum(lengths)
+    return np.searchsorted(edges, places % edges[-1], side="right") % 2 == 0
+
+
+@pytest.mark.parametrize("name", [n for n, s in STYLES.items() if s.dashes != "-"])
+def test_dashes_begin_where_they_begin_in_print(name):
+    """matplotlib begins `offset` into a pattern; SVG's own pattern must be turned by that."""
+    look = STYLES[name]
+    offset, lengths = look.dashes
+    turned = [float(x.removesuffix("px")) for x in interactive.line(look)["dash"].split(",")]
+    assert len(turned) % 2 == 0  # SVG repeats an odd pattern with dashes and gaps exchanged
+    places = look.width * (np.arange(0, 40, 0.25) + 0.1)
+    expected = painted(look.width * np.array(lengths), places + look.width * offset)
+    np.testing.assert_array_equal(painted(turned, places), expected)
+
+
+def test_a_solid_line_has_no_dashes():
+    assert "dash" not in interactive.line(Style("#000000", 1.0, "-", 1))
+
+
+def test_panels_stand_apart_under_each_other():
+    panels = [interactive.Panel("a", "m", 190), interactive.Panel("b<br>c", "m", 80)]
+    layout = interactive.layout(panels, {}, 0)
+    low, high = layout["yaxis"]["domain"], layout["yaxis2"]["domain"]
+    assert low[1] == 1 and low[0] > high[1] and high[0] == pytest.approx(0, abs=1e-12)
+    inner = layout["height"] - layout["margin"]["t"] - layout["margin"]["b"]
+    assert (low[1] - low[0]) * inner == pytest.approx(190)
+    assert (high[1] - high[0]) * inner == pytest.approx(80)
+    gap = (low[0] - high[1]) * inner
+    assert gap == pytest.approx(interactive.GAP + 2 * interactive.LINE)  # room for two lines
+    assert layout["xaxis"]["anchor"] == "y2"
+
+
+@pytest.mark.parametrize(
+    ("largest", "whole", "name"),
+    [
+        (2.1e6, True, "kPa"),
+        (2.1e6, False, "MPa"),
+        (999.0, False, "Pa"),
+        (1.7e5, True, "kPa"),
+        (1e-12, False, "Pa"),
+    ],
+)
+def test_units_suit_the_largest_number(largest, whole, name):
+    assert unit_for("Pa", largest, whole).name == name
+
+
+def test_whole_numbers_are_within_a_thousandth():
+    values = np.linspace(-1.234e6, 1.234e6, 1001)
+    unit = unit_for("Pa", 1.234e6, whole=True)
+    assert unit.whole
+    assert np.abs(unit.drawn(values) * unit.size - values).max() <= 1e-3 * 1.234e6
