@@ -119,7 +119,7 @@ def _sentence(engine: str, scenes: list[Ranked]) -> str:
     totals = [x for s in scenes if not isnan(x := s.standings[engine].total)]
     own = [x for s in scenes if not isnan(x := s.standings[engine].own)]
     far = f"{_span(_short, totals)} % from the finest physics" if totals else "the finest here"
-    error = f", own numerical error at most {_short(max(own))} %" if own else ""
+    error = f", own numerical error ≤ {_short(max(own))} %" if own else ""
     return f"({WORDS[engine]}): {far}{error}; {_cost(engine, scenes)}."
 
 

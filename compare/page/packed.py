@@ -2,7 +2,8 @@
 
 A packed thing is gzipped bytes: the length of a header in four bytes, little end first, the header
 as JSON, then numbers. `n` of them at `at` are four planes of bytes, the least first; each is a
-difference of `order`, its sign in its last bit, in steps of `step`. The script has the other half.
+difference of `order`, its sign in its last bit, in steps of `step`, or of the logarithm's where
+`log` stands. The script has the other half.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import pandas as pd
 
 RESOLUTION = 1e-6  # of the largest value of a column
 DRAWN = 1e-5  # of the largest value of a curve on the screen
+FLAT = 1e-3  # the least over the largest of numbers of few decades
 COLOURED = 2e-4  # of the largest value of an image
 LEVELS = 4000  # values that a column may repeat to be kept as a list of them
 UNSAFE = set(',"\n\r')  # would need quotes in a CSV file
@@ -72,11 +74,9 @@ def _column(values: pd.Series, body: _Body) -> dict[str, Any] | None:
     if len(levels) <= min(LEVELS, len(values) // 4):
         return {"levels": [float(f"{x:.9g}") for x in levels], **body.add(codes)}
     numbers = values.to_numpy(dtype=float)
-    known = np.isfinite(numbers)
-    if known.all() and _is_even(numbers):
+    if np.isfinite(numbers).all() and _is_even(numbers):
         return {"first": float(numbers[0]), "last": float(numbers[-1])}
-    gaps = {} if known.all() else {"gaps": np.flatnonzero(~known).tolist()}
-    return {**_quantised(np.where(known, numbers, 0.0), RESOLUTION, body), **gaps}
+    return _quantised(numbers, RESOLUTION, body)
 
 
 def _is_even(numbers: np.ndarray) -> bool:
@@ -87,9 +87,24 @@ def _is_even(numbers: np.ndarray) -> bool:
 
 
 def _quantised(numbers: np.ndarray, resolution: float, body: _Body) -> dict[str, Any]:
-    largest = float(np.abs(numbers).max(initial=0.0))
-    step = resolution * largest or 1.0
-    return {"step": step, **body.add(np.rint(numbers / step).astype(np.int64))}
+    """Return where numbers are, to a part of the largest of them.
+
+    Positive ones of many decades are kept to a part of each, by their logarithm. `gaps` are the
+    indices of what is no number, `zeros` those of zeros that have no logarithm.
+    """
+    known = np.isfinite(numbers)
+    sizes = np.abs(numbers[known])
+    largest, zeros = float(sizes.max(initial=0.0)), np.flatnonzero(numbers == 0)
+    found: dict[str, Any] = {} if known.all() else {"gaps": np.flatnonzero(~known).tolist()}
+    least = float(sizes[sizes > 0].min(initial=np.inf))
+    if (numbers[known] >= 0).all() and least < FLAT * largest and len(zeros) <= len(numbers) // 8:
+        found |= {"log": True, "zeros": zeros.tolist()}
+        numbers = np.log(np.where(known & (numbers > 0), numbers, least))
+        step = 10 * resolution
+    else:
+        numbers = np.where(known, numbers, 0.0)
+        step = resolution * largest or 1.0
+    return {"step": step, **found, **body.add(np.rint(numbers / step).astype(np.int64))}
 
 
 def pack_plot(text: str) -> bytes:
@@ -107,5 +122,5 @@ def _without_arrays(part: Any, body: _Body) -> Any:
         return {key: _without_arrays(one, body) for key, one in part.items()}
     numbers = np.frombuffer(b64decode(part["bdata"]), f"<{part['dtype']}").astype(float)
     _, *width = map(int, part.get("shape", "0").split(","))
-    packed = _quantised(np.nan_to_num(numbers), COLOURED if width else DRAWN, body)
+    packed = _quantised(numbers, COLOURED if width else DRAWN, body)
     return {"packed": packed | ({"width": width[0]} if width else {})}

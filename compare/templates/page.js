@@ -19,14 +19,17 @@
     return [header, (part) => numbers(new Uint8Array(buffer, end + part.at, 4 * part.n), part)];
   }
 
-  function numbers(bytes, { n, order, step = 1 }) {
+  function numbers(bytes, { n, order, step = 1, log, zeros = [], gaps = [] }) {
     const found = new Float64Array(n);
     for (let i = 0; i < n; i += 1) {
       const code = (bytes[i] | bytes[n + i] << 8 | bytes[2 * n + i] << 16 | bytes[3 * n + i] << 24) >>> 0;
       found[i] = code % 2 ? -(code + 1) / 2 : code / 2;
     }
     for (let k = 0; k < order; k += 1) for (let i = 1; i < n; i += 1) found[i] += found[i - 1];
-    return found.map((x) => x * step);
+    const values = found.map(log ? (x) => Math.exp(x * step) : (x) => x * step);
+    zeros.forEach((i) => { values[i] = 0; });
+    gaps.forEach((i) => { values[i] = NaN; });
+    return values;
   }
 
   /* A packed table as the text of a CSV file. */
@@ -43,9 +46,7 @@
       const step = (column.last - column.first) / (rows - 1);
       return Array.from({ length: rows }, (_, i) => +(column.first + i * step).toPrecision(9));
     }
-    const found = Array.from(read(column), (x) => +x.toPrecision(7));
-    (column.gaps ?? []).forEach((i) => { found[i] = ""; });
-    return found;
+    return Array.from(read(column), (x) => (Number.isNaN(x) ? "" : +x.toPrecision(7)));
   }
 
   /* A packed figure for plotly.js. */
@@ -89,7 +90,7 @@
 
   /* Charts. */
   const CONFIG = { responsive: true, displaylogo: false, displayModeBar: true, scrollZoom: false,
-    modeBarButtonsToRemove: ["select2d", "lasso2d"],
+    modeBarButtonsToRemove: ["select2d", "lasso2d"], showSendToCloud: false,
     toImageButtonOptions: { scale: 2 } };
   let library;
 
@@ -107,15 +108,26 @@
     const [Plotly, { data, layout }] = [await plotly(), await plot(figure.dataset.plot)];
     const box = figure.querySelector(".chart");
     figure.classList.add("live");
+    dropLegend(layout);
     if (box.clientWidth < 600) makeRoom(layout);
     try {
       const config = { ...CONFIG, toImageButtonOptions: { ...CONFIG.toImageButtonOptions, filename: figure.id } };
-      await Plotly.newPlot(box, data, { ...layout, showlegend: false }, config);
+      await Plotly.newPlot(box, data, layout, config);
       addToggles(figure.querySelector(".toggles"), box, Plotly);
     } catch (error) {
       figure.classList.remove("live");
       throw error;
     }
+  }
+
+  /* The page has buttons in its place; its room below the axis is not needed. */
+  function dropLegend(layout) {
+    if (!layout.showlegend) return;
+    const { margin, legend, height } = layout;
+    const room = margin.b + legend.y * (height - margin.t - margin.b);
+    layout.showlegend = false;
+    layout.height -= room;
+    margin.b -= room;
   }
 
   /* On a narrow screen the buttons of a chart would lie on its heading. */

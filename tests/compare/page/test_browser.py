@@ -110,6 +110,14 @@ def test_a_verdict_is_never_a_colour_alone(opened):
     assert all(re.fullmatch(r"[✓≈△▲✗?] [a-z ]+", text) for text in grades)
 
 
+def test_no_button_of_a_chart_sends_it_away(opened):
+    page = opened()
+    drawn(page)
+    names = set(page.locator(".modebar-btn").evaluate_all("all => all.map(b => b.ariaLabel)"))
+    assert {"Zoom in", "Zoom out", "Reset axes"} <= names
+    assert not [name for name in names if "hare" in name or "loud" in name]
+
+
 def test_dragging_zooms_all_panels_of_a_chart(opened):
     page = opened()
     chart = drawn(page)[0].locator(".chart")

@@ -23,7 +23,8 @@ def opened(packed):
         values = np.where(codes % 2, -(codes + 1) // 2, codes // 2)
         for _ in range(part["order"]):
             values = np.cumsum(values)
-        return values * part.get("step", 1)
+        values = values * part.get("step", 1)
+        return np.exp(values) if part.get("log") else values
 
     return json.loads(raw[4 : 4 + size]), read
 
@@ -63,6 +64,17 @@ def test_cells_without_a_number_are_told_apart():
     assert column["gaps"] == [3, 98]
     known = np.isfinite(values)
     np.testing.assert_allclose(read(column)[known], values[known], atol=1e-6)
+
+
+def test_positive_numbers_of_many_decades_keep_their_digits():
+    """A spectrum falls by ten decades: each number counts; zeros stay zeros."""
+    spectrum = 10.0 ** -np.linspace(0, 10, 400) * (1.5 + np.sin(np.arange(400)))
+    spectrum[[0, 7]] = 0
+    header, read = opened(pack_table(pd.DataFrame({"amplitude": spectrum})))
+    (column,) = header["columns"]
+    assert column["log"] and column["zeros"] == [0, 7]
+    known = spectrum > 0
+    np.testing.assert_allclose(read(column)[known], spectrum[known], rtol=10 * RESOLUTION)
 
 
 def test_what_has_no_packed_form_is_left_to_the_file_itself():

@@ -47,10 +47,8 @@ def section(tmp_path, figure):
     file.write_text("x")
 
     def make(findings, **changes):
-        one = Section(
-            "fig-05", "fig. 5", 5, "Ends", "source", "toml", "jointwave report five", [figure("ends")],
-            file, findings, *[empty] * 4, {},
-        )  # fmt: skip
+        about = "fig-05", "fig. 5", 5, "Ends", "source", "toml", "jointwave report five"
+        one = Section(*about, [figure("ends")], file, findings, *[empty] * 4, {})
         return one._replace(**changes)
 
     return make
