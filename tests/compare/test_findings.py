@@ -10,7 +10,7 @@ from compare.exact import lattice, no_tension
 from compare.findings import FINDINGS, ends, joints, pillar, travel
 from compare.findings.overview import mostly_dispersion
 from compare.pairs import Comparison
-from compare.report import SCENES
+from compare.page.section import PAPER as SCENES
 
 CLAIMS = [(figure, find) for figure, finds in FINDINGS.items() for find in finds]
 

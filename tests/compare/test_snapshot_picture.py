@@ -117,7 +117,7 @@ def test_everything_lies_inside_its_strip(row):
 
 
 def test_the_svg_holds_a_group_for_each_instant(row, tmp_path):
-    svg = save(draw_snapshots("row", {"dem": row}), tmp_path, "row", "A row")
+    svg = save(draw_snapshots("row", {"dem": row}), tmp_path, "row", "A row").svg
     assert 'id="row-0-dem"' in svg and 'id="row-1-dem"' in svg
     assert "compression positive" in svg
     assert "<image" not in svg
