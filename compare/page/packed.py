@@ -100,7 +100,7 @@ def _quantised(numbers: np.ndarray, resolution: float, body: _Body) -> dict[str,
     if (numbers[known] >= 0).all() and least < FLAT * largest and len(zeros) <= len(numbers) // 8:
         found |= {"log": True, "zeros": zeros.tolist()}
         numbers = np.log(np.where(known & (numbers > 0), numbers, least))
-        step = 2 * resolution
+        step = 5 * resolution
     else:
         numbers = np.where(known, numbers, 0.0)
         step = resolution * largest or 1.0
