@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -55,15 +56,21 @@ def parts_of_effects(wanted: list[Any], out: Path) -> list[Part]:
     return [_part(name, 1, int(is_done), each) for name, is_done in zip(names, done, strict=True)]
 
 
-def parts_of_report(out: Path) -> list[Part]:
-    """Return the parts of the report."""
-    from compare import report, worth_study
+def parts_of_report(scenes: Sequence[str], out: Path) -> list[Part]:
+    """Return the parts of the report of some scenes; without any, of the paper's and the studies.
+
+    Raises SceneError for a scene that there is not.
+    """
+    from compare import worth_study
+    from compare.page.scenes import RATE, asked_for
     from compare.studies.section import REPORTED
 
-    figures = len(list(report.SCENES.glob("fig-*.toml")))
+    first = _part("scenes", len(asked_for(scenes)), 0, rates.whole(RATE))
+    if scenes:
+        return [first]
     weighed = worth_study.reported()
     known = sum(worth_study.is_complete(case, out / "effects") for case in weighed)
-    parts = [_part("figures", figures, 0, rates.whole(report.RATE))]
+    parts = [first]
     for name in REPORTED:
         parts += parts_of_study(name, out / "studies")
     parts.append(_hard_cases(out / "studies", slow=False))

@@ -3,9 +3,6 @@
 Stress in MPa, compression positive, over time in ms, as in Guo & Li (2002).
 """
 
-import io
-import re
-from pathlib import Path
 from typing import Any
 
 import matplotlib
@@ -16,7 +13,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from compare.aligned import Beside
-from compare.output import write, write_text
 from compare.pairs import Comparison
 from compare.panels import Panel, panels
 from compare.style import FAMILIES, GIVEN, MARKERS, RC, WIDTH, in_order, is_engine, style
@@ -29,7 +25,6 @@ UNITS = {
     "rotation": (1e3, "mrad"),
 }
 
-DOTS = 160  # of the PNG, per inch
 MOST_MARKS = 150  # samples of a curve in a panel that are marked one by one
 
 
@@ -135,21 +130,3 @@ def _short(file: str) -> str:
 def _entry(name: str) -> Line2D:
     kind = "engine" if is_engine(name) else "exact"
     return Line2D([], [], label=f"{name} ({kind})", **style(name).of_line())
-
-
-def save(figure: Figure, folder: Path, name: str, title: str) -> str:
-    """Write NAME.svg and NAME.png and return the SVG element's text, ready to stand in a page."""
-    buffer = io.StringIO()
-    with matplotlib.rc_context(RC | {"svg.hashsalt": name}):
-        figure.savefig(buffer, format="svg", metadata={"Title": title, "Date": None})
-        write(folder / f"{name}.png", lambda path: figure.savefig(path, dpi=DOTS))
-    svg = tidy(buffer.getvalue(), name)
-    write_text(folder / f"{name}.svg", svg)
-    return svg[svg.index("<svg") :]
-
-
-def tidy(svg: str, name: str) -> str:
-    """Return an SVG with coordinates to a hundredth of a point, and ids that no other one has."""
-    svg = re.sub(r"(\d\.\d\d)\d+", r"\1", svg)
-    svg = re.sub(rf'\bid="(?!{name})', f'id="{name}-', svg)
-    return re.sub(rf'(url\(#|href="#)(?!{name})', rf"\g<1>{name}-", svg)

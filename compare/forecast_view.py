@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -98,9 +99,9 @@ def show_effects(wanted: list[Any], out: Path, as_json: bool) -> None:
     _show_parts(dry.parts_of_effects(wanted, out), as_json)
 
 
-def show_report(out: Path, as_json: bool) -> None:
-    """Print the parts of the report."""
-    _show_parts(dry.parts_of_report(out), as_json)
+def show_report(scenes: Sequence[str], out: Path, as_json: bool) -> None:
+    """Print the parts of the report of some scenes, or of the paper's."""
+    _show_parts(dry.parts_of_report(scenes, out), as_json)
 
 
 def _show_parts(found: list[dict[str, Any]], as_json: bool) -> None:

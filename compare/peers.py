@@ -14,7 +14,7 @@ from typing import NamedTuple
 import pandas as pd
 
 from cases.errors import SceneError
-from compare.figures import save
+from compare.drawn import Drawn, save
 from compare.output import write_text
 from compare.peers_diagram import draw
 from compare.tables import Table, percent
@@ -40,7 +40,7 @@ HEADER = [
 class PeersSection(NamedTuple):
     """The report's section: diagram, table, what it says, what is missing, and the machine."""
 
-    svg: str
+    figure: Drawn
     sentences: list[str]
     table: Table
     missing: list[str]
@@ -67,10 +67,10 @@ def read(file: Path | None) -> pd.DataFrame | None:
 
 
 def write_section(folder: Path, found: pd.DataFrame) -> PeersSection:
-    """Write peers.csv, peers.svg and peers.png into `folder`; return the section."""
+    """Write peers.csv and the diagram into `folder`; return the section."""
     write_text(folder / f"{NAME}.csv", found.to_csv(index=False))
     title = "The free pillar in other codes"
-    svg = save(draw(NAME, title, found.to_dict("records")), folder, NAME, title)
+    figure = save(draw(NAME, title, found.to_dict("records")), folder, NAME, title)
     missing = [
         f"{row['curve']} ({row['solves']}): {row['state']}, {row['message']}"
         for row in found.to_dict("records")
@@ -78,7 +78,7 @@ def write_section(folder: Path, found: pd.DataFrame) -> PeersSection:
     ]
     machines = found["machine"].dropna().unique() if "machine" in found else []
     machine = "; ".join(machines) or "a machine that the table does not name"
-    return PeersSection(svg, sentences(found), table(found), missing, machine)
+    return PeersSection(figure, sentences(found), table(found), missing, machine)
 
 
 def table(found: pd.DataFrame) -> Table:

@@ -1,49 +1,60 @@
-"""The report: the figures of Guo & Li (2002) by everything that can solve them, as one page."""
+"""The report: the figures of Guo & Li (2002), or scenes of one's own, as one page."""
 
-from collections.abc import Iterable
-from concurrent.futures import Future, as_completed
+import shlex
+from collections.abc import Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
 
-import cases
-from cases.result import scene_hash
-from cases.scene import Scene
-from compare import peers, rates, tables, worth_section, worth_study
+from pandas import DataFrame
+
+from compare import peers, tables, worth_section, worth_study
+from compare.drawn import save, write_csv
 from compare.engines import Progress
+from compare.figures import draw
 from compare.findings import Finding
 from compare.findings.overview import mostly_dispersion
-from compare.output import write, write_text
-from compare.page import Motion, Section, make_motion, make_section, render, write_figure
-from compare.pairs import Comparison, compare
+from compare.output import write_text
+from compare.page.cost import seconds
+from compare.page.motion import make_motion
+from compare.page.overview import Overview, Ranked, overview
+from compare.page.render import Page, render
+from compare.page.scenes import Solved, asked_for, solve
+from compare.page.versions import versions
+from compare.pairs import Comparison
+from compare.panels import curve_table
 from compare.stability.section import make_section as make_hard_section
+from compare.studies.runner import alone
 from compare.studies.section import REPORTED, make_sections, measured_on
 from compare.workers import Workers
 
-SCENES = Path(cases.__file__).parent / "guo-li-2002"
-
-RATE = "figure of the report"  # what the seconds of figures are remembered by
-FREE_PILLAR = "fig-03"  # the scene that the overview is about
+FREE_PILLAR = "fig-03"  # the scene that says what the paper's own comparison is made of
+PAPERS = (
+    "Figures 2 to 10 of Guo & Li (2002), Chin. J. Rock Mech. Eng. 21(8), 1124–1129, by rigid "
+    "blocks, by a deformable continuum and by exact solutions"
+)
 
 
 @dataclass(frozen=True)
 class Report:
     """What the report says in short.
 
-    page : the HTML file. summary : largest misfit in % by pair and figure. overview : what the
-    distance to the homogenised bar is made of; None without the free pillar's scene. findings : by
-    number of the figure. seconds : it took.
+    page : the HTML file. overview : where each engine stands on each scene. summary : largest
+    misfit in % by pair and scene. about : what the distance to the homogenised bar is made of;
+    None of scenes other than the paper's. findings : by name of the scene. seconds : it took.
     """
 
     page: Path
+    overview: Overview
     summary: tables.Table
-    overview: Finding | None
-    findings: dict[int, list[Finding]]
+    about: Finding | None
+    findings: dict[str, list[Finding]]
     seconds: float
 
     @property
     def columns(self) -> list[str]:
-        """The summary's columns: kind of distance, pair, then the figures."""
+        """The summary's columns: kind of distance, pair, then the scenes."""
         return ["what", *self.summary.header]
 
     @property
@@ -56,52 +67,92 @@ def build(
     out: Path,
     progress: Progress | None = None,
     workers: int = 2,
-    scenes: Path = SCENES,
+    scenes: Sequence[str] = (),
     studies: tuple[str, ...] = REPORTED,
     peers_table: Path | None = None,
     hard: bool = True,
 ) -> Report:
-    """Solve the scene of every figure, run the studies, and write figures, CSV tables and
-    `out`/index.html.
+    """Solve scenes by all that applies, and write their pictures, tables and `out`/index.html.
 
-    `progress` is called with the finished fraction; `scenes` is a folder of fig-NN.toml.
+    `scenes` are files or names of shipped ones; without any, the page has the paper's figures and
+    after them the studies. `progress` is called with the finished fraction.
     `peers_table` is what `make bench-peers` wrote; None: where it writes, if it did.
     `hard` : also put both engines to the hard cases, except those that take long.
     Raises SceneError and UnstableError, as `compare` does; the page is then not written.
     """
     began = perf_counter()
-    others = peers.read(peers_table)
-    files = sorted(scenes.glob("fig-*.toml"))
-    with rates.timing(RATE, len(files)):
-        sections, figures, motion = _compute(Path(out), files, progress, workers)
-    overview, free = None, None
-    if FREE_PILLAR in figures:
-        overview = mostly_dispersion(figures[FREE_PILLAR][0])
-        free = tables.misfit_table(figures[FREE_PILLAR])
-    summary = tables.summary_table({f"fig. {s.number}": figures[s.name] for s in sections})
-    stability = None
-    if hard:
-        stability = make_hard_section(Path(out), lambda: Workers(workers))
-    # Seconds count: after everything else, and alone.
-    measured = make_sections(Path(out), studies)
-    balances = worth_study.complete(worth_study.reported(), Path(out) / "effects")
-    html = render(
+    if scenes:
+        page = _of_scenes(Path(out), scenes, progress, workers)
+    else:
+        others = peers.read(peers_table)
+        page = _of_paper(Path(out), progress, workers)
+        page = _with_studies(page, Path(out), studies, others, workers if hard else 0)
+    file = write_text(Path(out) / "index.html", render(page, Path(out)))
+    found = {section.name: section.findings for section in page.sections}
+    taken = perf_counter() - began
+    return Report(file, page.overview, page.summary, page.about, found, taken)
+
+
+def _of_scenes(out: Path, scenes: Sequence[str], progress: Progress | None, workers: int) -> Page:
+    """Return the page of some scenes alone."""
+    solved = solve(out / "figures", asked_for(scenes), progress, workers)
+    count = len(solved.sections)
+    about = solved.sections[0].title if count == 1 else f"{count} scenes"
+    return _page(solved, about, shlex.join(["jointwave", "report", *scenes, "--out", "DIR"]))
+
+
+def _of_paper(out: Path, progress: Progress | None, workers: int) -> Page:
+    """Return the page of the paper's figures, and prepare the effects that it weighs."""
+    kept, moving = out / "effects", []
+    weighed = worth_study.unprepared(worth_study.reported(), kept)
+
+    def besides(pool: Workers) -> list[Future]:
+        moving.append(pool.submit(make_motion, out))
+        return [*moving, *worth_study.submit(pool, weighed, kept)]
+
+    solved = solve(out / "figures", asked_for(()), progress, workers, besides)
+    page = _page(solved, PAPERS, "jointwave report --out DIR")
+    about = mostly_dispersion(solved.comparisons[FREE_PILLAR][0])
+    return replace(page, about=about, motion=moving[0].result())
+
+
+def _page(solved: Solved, subtitle: str, command: str) -> Page:
+    sections = solved.sections
+    return Page(
+        subtitle,
+        overview(_ranked(solved)),
+        tables.summary_table({s.label: solved.comparisons[s.name] for s in sections}),
         sections,
-        figures,
-        overview=overview,
-        free=free,
-        summary=summary,
-        motion=motion,
-        studies=measured,
-        stability=stability,
-        effects=worth_section.write_section(Path(out) / "effects", balances),
-        peers=None if others is None else peers.write_section(Path(out) / "studies", others),
-        peers_file=peers.PLACE,
-        machine=measured_on(),
+        command,
+        measured_on(),
+        versions(solved.comparisons.values()),
     )
-    page = write_text(Path(out) / "index.html", html)
-    found = {section.number: section.findings for section in sections}
-    return Report(page, summary, overview, found, perf_counter() - began)
+
+
+def _ranked(solved: Solved) -> list[Ranked]:
+    """Return where engines stand on each scene, and what a run of theirs takes, timed alone."""
+    with alone():
+        return [
+            Ranked(s.name, s.label, s.title, s.standings, seconds(solved.comparisons[s.name][0]))
+            for s in solved.sections
+        ]
+
+
+def _with_studies(
+    page: Page, out: Path, studies: tuple[str, ...], others: DataFrame | None, hard_workers: int
+) -> Page:
+    """Return the page with what was measured: the seconds after everything else, and alone."""
+    hard = make_hard_section(out, lambda: Workers(hard_workers)) if hard_workers else None
+    measured = make_sections(out, studies)
+    balances = worth_study.complete(worth_study.reported(), out / "effects")
+    return replace(
+        page,
+        stability=hard,
+        studies=measured,
+        effects=worth_section.write_section(out / "effects", balances),
+        peers=None if others is None else peers.write_section(out / "studies", others),
+        peers_file=str(peers.PLACE),
+    )
 
 
 def write_comparisons(comparisons: list[Comparison], out: Path) -> None:
@@ -109,58 +160,9 @@ def write_comparisons(comparisons: list[Comparison], out: Path) -> None:
 
     With curves of others also how they were aligned, as comparison-alignment.csv.
     """
-    write_figure(Path(out), "comparison", comparisons)
+    folder, name = Path(out), "comparison"
+    curves = curve_table(comparisons).reset_index()
+    save(draw(name, comparisons), folder, name, comparisons[0].scene.title, curves)
+    write_csv(folder / f"{name}-misfits.csv", tables.distance_frame(comparisons))
     if any(comparison.besides for comparison in comparisons):
-        frame = tables.alignment_frame(comparisons)
-        file = Path(out) / "comparison-alignment.csv"
-        write(file, lambda path: frame.to_csv(path, float_format="%.9g", index=False))
-
-
-def _compute(
-    out: Path, files: list[Path], progress: Progress | None, workers: int
-) -> tuple[list[Section], dict[str, list[Comparison]], Motion]:
-    """Solve and draw in processes of their own; return sections, comparisons by file, and what
-    moves."""
-    loaded = {file: cases.load(file) for file in files}
-    unique = {_key(scene): scene for variants in loaded.values() for scene in variants}
-    kept = out / "effects"
-    weighed = worth_study.unprepared(worth_study.reported(), kept)
-    jobs, done = len(unique) + len(files) + 1, 0
-
-    def finish(futures: Iterable[Future]) -> None:
-        nonlocal done
-        for future in as_completed(futures):
-            future.result()
-            done += 1
-            if progress:
-                progress(done / jobs)
-
-    with Workers(workers) as pool:
-        weighing = worth_study.submit(pool, weighed, kept)
-        jobs += len(weighing)
-        order = _longest_first(unique)
-        solved = {key: pool.submit(compare, unique[key], None, True) for key in order}
-        moving = pool.submit(make_motion, out)
-        finish([*solved.values(), moving, *weighing])
-        figures = {
-            file: [replace(solved[_key(scene)].result(), scene=scene) for scene in variants]
-            for file, variants in loaded.items()
-        }
-        drawn = [
-            pool.submit(make_section, out / "figures", file, comparisons)
-            for file, comparisons in figures.items()
-        ]
-        finish(drawn)
-    sections = [future.result() for future in drawn]
-    return sections, {f.stem: c for f, c in figures.items()}, moving.result()
-
-
-def _key(scene: Scene) -> str:
-    """Return what decides a scene's results: its hash without names and bounds."""
-    unnamed = scene.model_copy(update={"title": "", "source": None, "name": "", "expect": {}})
-    return scene_hash(unnamed)
-
-
-def _longest_first(scenes: dict[str, Scene]) -> list[str]:
-    """Return the keys in order of cost, the most damped first: dashpots shorten the step."""
-    return sorted(scenes, key=lambda key: -(scenes[key].joints.damping_ratio or 0.0))
+        write_csv(folder / f"{name}-alignment.csv", tables.alignment_frame(comparisons))

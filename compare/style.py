@@ -103,8 +103,9 @@ RC: dict[Any, Any] = {
     "xtick.major.width": 0.7,
     "ytick.major.width": 0.7,
     "svg.fonttype": "none",
+    "pdf.fonttype": 42,  # TrueType, which editors of drawings can read
     "path.simplify": True,
-    "path.simplify_threshold": 0.1,
+    "path.simplify_threshold": 0.3,
 }
 
 

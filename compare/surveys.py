@@ -148,6 +148,14 @@ def _study_stability(out: Path, workers: int, as_json: bool) -> None:
 
 @app.command()
 def report(
+    scenes: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[SCENE]...",
+            help="Scene files or shipped scenes; absent: the figures of Guo & Li (2002).",
+            autocompletion=completion.scenes,
+        ),
+    ] = None,
     out: OutOption = Path("report"),
     peers: Annotated[
         Path | None,
@@ -156,17 +164,20 @@ def report(
     dry: DryOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Write the figures of Guo & Li (2002) with every misfit and finding, as one HTML page."""
+    """Write scenes with every picture, misfit and cost as one HTML page that needs no other file.
+
+    Without a scene: the figures of Guo & Li (2002), what they must show, and all studies.
+    """
     from compare import terminal, views
     from compare.report import build
 
     if dry:
         from compare import forecast_view
 
-        forecast_view.show_report(out, as_json)
+        forecast_view.show_report(scenes or (), out, as_json)
         return
     with locked(out, out / "figures", out / "studies"), terminal.progress("scenes") as advance:
-        found = build(out, advance, peers_table=peers)
+        found = build(out, advance, scenes=scenes or (), peers_table=peers)
     views.show_report(found, as_json)
 
 

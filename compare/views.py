@@ -237,15 +237,18 @@ def show_report(found: Any, as_json: bool) -> None:
     if as_json:
         print_json({"page": str(found.page), "columns": found.columns, "rows": found.rows})
         return
-    if found.overview:
-        say(f"{found.overview.sentence}\n")
-    say("Largest relative L2 misfit over the variants of each figure, in %:")
+    for engine, sentence in found.overview.lead:
+        say(f"{engine} {sentence}")
+    if found.about:
+        say(f"\n{found.about.sentence}")
+    say("\nLargest relative L2 misfit over the variants of each scene, in %:")
     groups = {
         kind: [[cell.replace("< ", "<") for cell in row] for row in rows]
         for kind, rows in found.summary.groups.items()
     }
     show_numbers(found.summary.header, groups)
     findings = [finding for group in found.findings.values() for finding in group]
-    holding = sum(finding.holds for finding in findings)
-    say(f"{holding} of {len(findings)} claims that the paper's figures make hold.")
+    if findings:
+        holding = sum(finding.holds for finding in findings)
+        say(f"{holding} of {len(findings)} claims that the paper's figures make hold.")
     say(f"report: {found.page}")

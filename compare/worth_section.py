@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import pandas as pd
 
-from compare.figures import save
+from compare.drawn import Drawn, save
 from compare.output import write
 from compare.tables import Table, percent
 from compare.worth import Balance, Worth
@@ -32,7 +32,7 @@ HEADER = [
 class WorthSection(NamedTuple):
     """The section: its diagram, its table, what it says, the scenes that it is about, its files."""
 
-    svg: str
+    figure: Drawn
     sentences: list[str]
     table: Table
     scenes: str
@@ -40,12 +40,12 @@ class WorthSection(NamedTuple):
 
 
 def write_section(folder: Path, found: list[Balance]) -> WorthSection:
-    """Write effects.csv, effects.svg and effects.png into `folder`; return the section."""
+    """Write effects.csv and the diagram into `folder`; return the section."""
     csv = write_table(folder, found)
-    svg = save(draw(found), folder, NAME, "What every effect costs and is worth")
+    figure = save(draw(found), folder, NAME, "What every effect costs and is worth")
     scenes = "; ".join(b.label for b in found)
-    files = csv, folder / f"{NAME}.svg", folder / f"{NAME}.png"
-    return WorthSection(svg, sentences(found), table(found), scenes, files)
+    files = csv, *(figure.file(kind) for kind in ("svg", "pdf", "png"))
+    return WorthSection(figure, sentences(found), table(found), scenes, files)
 
 
 def write_table(folder: Path, found: list[Balance]) -> Path:

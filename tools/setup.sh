@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes .venv, a Python that imports dolfinx and this project; does nothing when that is done already.
-#   usage: tools/setup.sh [browser | docs]    ("browser": also the headless Chromium that the report's page test drives,
+#   usage: tools/setup.sh [browser | docs]    ("browser": also the headless Chromium that the tests of the report's page drive,
 #                                              and what the tests of `view` and of the examples need;
 #                                              "docs": also mkdocs, which builds the documentation)
 set -euo pipefail
@@ -84,9 +84,9 @@ install_project() {  # with these extras
 }
 
 install_browser() {
-    command -v chromium >/dev/null && command -v chromedriver >/dev/null && return
-    if grep -qs '^ID=debian' /etc/os-release && apt_install chromium chromium-driver; then return; fi
-    say "no chromium with chromedriver here: the page test will not run"
+    command -v chromium >/dev/null && return
+    if grep -qs '^ID=debian' /etc/os-release && apt_install chromium; then return; fi
+    say "no chromium here: the page tests will not run"
 }
 
 install_extras() {

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
+from compare.drawn import Drawn, save
 from compare.engines import Progress
-from compare.figures import save
 from compare.stability.case import EQUIVALENT, JOINTED, LEAPFROG, Trial
 from compare.stability.diagram import draw
 from compare.stability.energies import Drift, drift
@@ -38,7 +38,7 @@ class Found(NamedTuple):
 
     rows: list[Row]
     maps: list[StabilityMap]
-    svg: str
+    figure: Drawn
     files: list[Path]
 
 
@@ -52,9 +52,9 @@ def make_study(
     """
     rows = run(pool, slow, progress, out / NAME)
     maps = run_maps(pool, out / NAME)
-    svg = save(draw(maps, drifts()), out, NAME, TITLE)
+    figure = save(draw(maps, drifts()), out, NAME, TITLE)
     files = [write_rows(out / f"{NAME}.csv", rows), write_maps(out / f"{NAME}-map.csv", maps)]
-    return Found(rows, maps, svg, [*files, out / f"{NAME}.svg"])
+    return Found(rows, maps, figure, [*files, out / f"{NAME}.svg"])
 
 
 def drifts() -> dict[str, Drift]:
@@ -70,5 +70,5 @@ def make_section(
     found = make_study(out / "studies", pool, slow, progress)
     said = summary(found.rows) + map_sentences(found.maps)
     return StudySection(
-        NAME, TITLE, NOTE, "", False, found.svg, said, table(found.rows), failures(found.rows)
+        NAME, TITLE, NOTE, "", False, found.figure, said, table(found.rows), failures(found.rows)
     )

@@ -14,7 +14,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from compare.figures import save
+from compare.drawn import save
 from compare.studies.measure import Row
 from compare.studies.pareto import floor, front, is_known, measured
 from compare.studies.study import Study
@@ -67,11 +67,11 @@ def draw(name: str, study: Study, rows: list[Row], costs: dict[str, str] | None 
 
 
 def write_diagram(folder: Path, name: str, study: Study, rows: list[Row]) -> tuple[Path, ...]:
-    """Write NAME.svg and NAME.png into a folder; return both, none where no error is known."""
+    """Write the diagram into a folder; return its files, none where no error is known."""
     if not any(measured(rows, error, "work") for error in ERRORS):
         return ()
-    save(draw(name, study, rows), folder, name, study.title)
-    return folder / f"{name}.svg", folder / f"{name}.png"
+    drawn = save(draw(name, study, rows), folder, name, study.title)
+    return tuple(drawn.file(kind) for kind in ("svg", "pdf", "png"))
 
 
 def _draw_panel(ax: Axes, study: Study, rows: list[Row], error: str, cost: str, name: str) -> None:

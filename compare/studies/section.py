@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import NamedTuple
 
+from compare.drawn import Drawn, save
 from compare.engines import Progress
-from compare.figures import save
 from compare.studies.diagram import draw
 from compare.studies.findings import sentences
 from compare.studies.measure import Row
@@ -27,7 +27,7 @@ class StudySection(NamedTuple):
     note: str
     quantity: str
     timed: bool
-    svg: str
+    figure: Drawn
     sentences: list[str]
     table: Table
     failed: list[str]
@@ -49,11 +49,11 @@ def _section(folder: Path, name: str) -> StudySection:
     study = load(name)
     rows = run(study, folder / name)
     write_table(folder, name, study, rows)
-    svg = save(draw(name, study, rows), folder, name, study.title)
+    figure = save(draw(name, study, rows), folder, name, study.title)
     said = sentences(study, rows) + [sentence(order) + "." for order in orders(study, rows)]
     failed = [f"{row.curve}: {row.message}" for row in rows if row.state == "failed"]
     about = study.title, study.note, study.quantity or "stress", study.timed
-    return StudySection(name, *about, svg, said, _table(rows), failed)
+    return StudySection(name, *about, figure, said, _table(rows), failed)
 
 
 def _table(rows: list[Row]) -> Table:

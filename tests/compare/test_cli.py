@@ -195,7 +195,7 @@ def test_compare_writes_figure_curves_and_distances(tmp_path):
     """What the plugin's failure message sends a user to: every curve, drawn and as numbers."""
     out = tmp_path / "out"
     jointwave("compare", SCENE, "--variant", "", *SHORT, "--no-spectral", "--out", out)
-    assert {path.suffix for path in out.iterdir()} == {".svg", ".png", ".csv"}
+    assert {path.suffix for path in out.iterdir()} == {".svg", ".pdf", ".png", ".csv"}
     assert all(path.stat().st_size > 1000 for path in out.iterdir())
 
 

@@ -9,8 +9,8 @@ import cases
 from compare.exact import lattice, no_tension
 from compare.findings import FINDINGS, ends, joints, pillar, travel
 from compare.findings.overview import mostly_dispersion
+from compare.page.section import PAPER as SCENES
 from compare.pairs import Comparison
-from compare.report import SCENES
 
 CLAIMS = [(figure, find) for figure, finds in FINDINGS.items() for find in finds]
 

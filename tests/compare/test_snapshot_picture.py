@@ -6,7 +6,7 @@ from matplotlib.collections import PolyCollection
 
 from cases.snapshots import snapshots
 from cases.subcells import CORNERS
-from compare.figures import save
+from compare.drawn import save
 from compare.snapshot_picture import draw_snapshots, exaggeration, visible_faces
 
 TURN = 0.1  # rad
@@ -117,7 +117,7 @@ def test_everything_lies_inside_its_strip(row):
 
 
 def test_the_svg_holds_a_group_for_each_instant(row, tmp_path):
-    svg = save(draw_snapshots("row", {"dem": row}), tmp_path, "row", "A row")
+    svg = save(draw_snapshots("row", {"dem": row}), tmp_path, "row", "A row").svg
     assert 'id="row-0-dem"' in svg and 'id="row-1-dem"' in svg
     assert "compression positive" in svg
     assert "<image" not in svg

@@ -112,7 +112,7 @@ def test_files_hold_every_number(tmp_path):
     frame = pd.read_csv(tmp_path / "effects.csv", keep_default_na=False)
     assert frame["effect"].tolist() == [w.effect for b in FOUND for w in b.effects]
     assert frame["ns_everything"].tolist() == [40, 40, 20, 20]
-    assert len(re.findall(r'id="effects-points-\d"', section.svg)) == 3
+    assert len(re.findall(r'id="effects-points-\d"', section.figure.svg)) == 3
     assert all(file.is_file() for file in section.files)
 
 

@@ -1,0 +1,71 @@
+"""A figure as files, SVG, PDF, PNG and its numbers, and as what the page shows of it."""
+
+import io
+import json
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import matplotlib
+from matplotlib.figure import Figure
+from pandas import DataFrame
+
+from compare.output import write, write_text
+from compare.style import RC
+from compare.svg import compact
+
+DOTS = 160  # of the PNG, per inch
+DIGITS = 6  # of the numbers behind a figure
+
+
+class Drawn(NamedTuple):
+    """A figure that is written: NAME.svg, NAME.pdf and NAME.png in a folder, its numbers NAME.csv.
+
+    svg : the element's text, ready to stand in a page; no other figure has its ids.
+    caption : what is seen. plot : the figure for plotly.js as JSON, "" without.
+    """
+
+    name: str
+    title: str
+    folder: Path
+    svg: str
+    caption: str = ""
+    plot: str = ""
+
+    def file(self, kind: str) -> Path:
+        """Return the figure's file of a kind, "pdf"."""
+        return self.folder / f"{self.name}.{kind}"
+
+
+def save(
+    figure: Figure,
+    folder: Path,
+    name: str,
+    title: str,
+    table: DataFrame | None = None,
+    caption: str = "",
+    plot: dict[str, Any] | None = None,
+) -> Drawn:
+    """Write a figure's files and return it as drawn; without a table its CSV is the caller's."""
+    if table is not None:
+        write_csv(folder / f"{name}.csv", table, DIGITS)
+    svg = _write_drawings(figure, folder, name, title)
+    text = "" if plot is None else json.dumps(plot, separators=(",", ":"), allow_nan=False)
+    return Drawn(name, title, folder, svg, caption, text)
+
+
+def write_csv(path: Path, table: DataFrame, digits: int = 9) -> Path:
+    """Write a table without its index."""
+    return write(path, lambda file: table.to_csv(file, float_format=f"%.{digits}g", index=False))
+
+
+def _write_drawings(figure: Figure, folder: Path, name: str, title: str) -> str:
+    """Write SVG, PDF and PNG; return the SVG's element."""
+    buffer = io.StringIO()
+    with matplotlib.rc_context(RC | {"svg.hashsalt": name}):
+        figure.savefig(buffer, format="svg", metadata={"Title": title, "Date": None})
+        about = {"Title": title, "CreationDate": None}
+        write(folder / f"{name}.pdf", lambda path: figure.savefig(path, metadata=about))
+        write(folder / f"{name}.png", lambda path: figure.savefig(path, dpi=DOTS))
+    svg = compact(buffer.getvalue(), name)
+    write_text(folder / f"{name}.svg", svg)
+    return svg[svg.index("<svg") :]

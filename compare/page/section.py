@@ -1,0 +1,99 @@
+"""One scene of the page: what is drawn of it, its distances, and what it shows."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from pathlib import Path
+from typing import NamedTuple
+
+import xarray as xr
+
+import cases
+from compare import tables
+from compare.drawn import Drawn, save, write_csv
+from compare.findings import Finding, findings
+from compare.page.standing import Standing, standings
+from compare.pairs import Comparison
+from compare.pictures import Picture, pictures_of
+
+PAPER = Path(cases.__file__).parent / "guo-li-2002"
+
+
+class Asked(NamedTuple):
+    """A scene of the report: its file, how its user calls it, and its name on the page."""
+
+    file: Path
+    called: str
+    name: str
+
+    @property
+    def number(self) -> int | None:
+        """Of the paper's figure that the scene is; None for any other scene."""
+        found = re.fullmatch(r"fig-(\d+)", self.file.stem)
+        return int(found[1]) if found and self.file.resolve().parent == PAPER.resolve() else None
+
+    @property
+    def label(self) -> str:
+        """What a column or a link calls it."""
+        return f"fig. {self.number}" if self.number else self.name
+
+
+class Section(NamedTuple):
+    """One scene of the page; `toml` is its file's text, `command` what makes the same again."""
+
+    name: str
+    label: str
+    number: int | None
+    title: str
+    source: str
+    toml: str
+    command: str
+    figures: list[Drawn]
+    distances_file: Path
+    findings: list[Finding]
+    misfits: tables.Table
+    distances: tables.Table
+    runs: tables.Table
+    reasons: tables.Table
+    standings: dict[str, Standing]
+
+    @property
+    def heading(self) -> str:
+        """What stands above it."""
+        return f"Figure {self.number}. {self.title}" if self.number else self.title
+
+
+def make_section(
+    folder: Path, asked: Asked, comparisons: list[Comparison], fields: dict[str, xr.Dataset]
+) -> Section:
+    """Draw all pictures of a scene's variants, write their files into `folder`, return its section.
+
+    fields : the first variant's results all along the pillar, for space-time diagrams.
+    """
+    scene = comparisons[0].scene
+    pictures = pictures_of(asked.name, comparisons, fields)
+    distances = folder / f"{asked.name}-misfits.csv"
+    return Section(
+        asked.name,
+        asked.label,
+        asked.number,
+        scene.title,
+        scene.source or "",
+        asked.file.read_text(encoding="utf-8-sig"),
+        shlex.join(["jointwave", "report", asked.called, "--out", asked.name]),
+        [draw(folder, picture) for picture in pictures],
+        write_csv(distances, tables.distance_frame(comparisons)),
+        findings(asked.number, comparisons) if asked.number else [],
+        tables.misfit_table(comparisons),
+        tables.distance_table(comparisons),
+        tables.run_table(comparisons),
+        tables.reason_table(comparisons),
+        standings(comparisons),
+    )
+
+
+def draw(folder: Path, picture: Picture) -> Drawn:
+    """Write a picture's files."""
+    p = picture
+    return save(p.static, folder, p.name, p.title, p.table, p.caption, p.plot)

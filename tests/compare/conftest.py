@@ -1,0 +1,19 @@
+"""A browser for the tests of pages."""
+
+import shutil
+
+import pytest
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """Start a headless Chromium once; `make test` installs it on Debian."""
+    path = shutil.which("chromium") or shutil.which("google-chrome")
+    if path is None:
+        pytest.skip("no chromium here: the page is not opened")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as player:
+        started = player.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        yield started
+        started.close()
