@@ -81,7 +81,7 @@ def at_point(x, z, area, p, contact, law, motion, h, drag, i, book, returns):
     t_n = normal_traction(law, gap, rate, opening)
     tau = shear_strength(law, t_n, gap, opening, cohesion)
     t_x, t_z, ex, ez, over, work = shear_at_point(
-        x, z, area, p, contact, slip_of, slip, law, motion, h, i, tau, cohesion, book, returns
+        x, z, p, contact, slip, law, motion, h, i, tau, cohesion, returns
     )
     force = either(contact.finite, force_at, finite.finite_force_at)
     f = force(x, z, gap, slip, area * t_x, area * t_n, area * t_z)
@@ -97,11 +97,10 @@ def whole_area(contact, area, x, z, gap, slip):
 
 
 @inlined
-def shear_at_point(
-    x, z, area, p, contact, slip_of, slip, law, motion, h, i, tau, cohesion, book, returns
-):
+def shear_at_point(x, z, p, contact, slip, law, motion, h, i, tau, cohesion, returns):
     """Return the shear traction of a point, its elastic slip, and 1 where it is beyond tau."""
     arm, dt, rows = contact.arm, contact.dt, contact.rows
+    slip_of = either(contact.finite, slip_at, finite.finite_slip_at)
     at = first_slide(rows) + 2 * p * L + i
     ex, ez = slip[0] - h[at], slip[1] - h[at + L]
     rate_x, rate_z = slip_of(arm, motion.g_mid, motion.phi_mid, x, z)
