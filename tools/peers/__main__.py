@@ -17,8 +17,8 @@ from job import Job
 
 import cases
 from cases.scene import Scene
-from compare.effort import PILLAR
 from compare.drawn import save
+from compare.effort import PILLAR
 from compare.peers_diagram import draw
 
 
