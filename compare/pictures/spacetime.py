@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from cases.scene import Scene
 from compare.pictures import interactive
@@ -55,6 +56,7 @@ def _figure(scene: Scene, shown: Diagrams) -> Figure:
         axes = figure.subplots(1, max(count, 2), sharex=True, sharey=True, squeeze=False)[0]
         for ax, diagram in zip(axes, shown.diagrams, strict=False):
             _draw(ax, diagram, shown, scene)
+            _settle(ax)
         for ax in axes[count:]:
             ax.set_visible(False)
         axes[0].set_ylabel("y (m)")
@@ -161,3 +163,16 @@ def _layer(y: float, panel: int) -> dict[str, Any]:
         "y1": y,
         "line": {"color": "#333333", "width": 1, "dash": "4px,3px"},
     }
+
+
+def _settle(ax: Axes) -> None:
+    """Put the points of an image where they are, as its extent counts to the edges of its pixels,
+    and few numbers on its key, so that long ones do not meet."""
+    (image,) = ax.images
+    rows, columns = np.asarray(image.get_array()).shape
+    left, right, bottom, top = image.get_extent()
+    x, y = (right - left) / (columns - 1) / 2, (top - bottom) / (rows - 1) / 2
+    image.set_extent((left - x, right + x, bottom - y, top + y))
+    ax.set(xlim=(left, right), ylim=(bottom, top))
+    assert image.colorbar is not None
+    image.colorbar.set_ticks(MaxNLocator(4, symmetric=True))

@@ -6,10 +6,14 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
+from compare.aligned import lay_beside
+from compare.curves import Curves, Place
 from compare.engines import solve
 from compare.pictures import KINDS, pictures_of
 from compare.pictures.along import recorded_along
 from compare.pictures.interactive import unpacked
+from compare.pictures.waveforms import waveforms
+from compare.style import GIVEN
 
 
 @pytest.fixture
@@ -86,3 +90,15 @@ def test_a_legend_entry_switches_a_solution_in_every_panel(pictures):
     for name in ("dem", "lattice"):
         traces = [t for t in picture.plot["data"] if t["legendgroup"] == name]
         assert len(traces) == 2 and [t["showlegend"] for t in traces].count(True) == 1
+
+
+def test_curves_of_others_stand_beside_at_their_own_times(pillar, compared):
+    (comparison,) = compared(pillar(time__duration=0.03))
+    time = np.array([0.0, 0.011, 0.017, 0.029])
+    place = Place("stress", "", 20.0)
+    given = Curves("lab.csv", "lab.csv", time, {place: np.array([0.0, 1e5, 8e5, -2e5])})
+    comparison.besides.append(lay_beside(given, comparison.scene, comparison.results, False))
+    (trace,) = [t for t in waveforms("fig", [comparison]).plot["data"] if t["name"] == "lab.csv"]
+    np.testing.assert_allclose(unpacked(trace["x"]), 1e3 * time, rtol=1e-6)
+    np.testing.assert_allclose(unpacked(trace["y"]), [0.0, 0.1, 0.8, -0.2], rtol=1e-6)
+    assert trace["line"]["color"] == GIVEN[0].colour and trace["showlegend"]

@@ -15,7 +15,7 @@ from compare.pictures import along
 from compare.pictures.along import along_pillar, recorded_along, sections
 from compare.pictures.diagrams import diagrams_of
 from compare.pictures.interactive import unpacked
-from compare.pictures.spacetime import space_time
+from compare.pictures.spacetime import FINER, space_time
 from dem.axial.model import build_model
 
 
@@ -99,6 +99,21 @@ def test_few_blocks_show_no_wave(pillar):
     assert along_pillar(scene) == {}
 
 
+def test_every_engine_stands_beside_its_own_model_and_the_others(pillar):
+    fields = along_pillar(pillar(pillar__length=10.0, record__stress=[5.0], time__duration=0.02))
+    found = {shown.engine: [d.name for d in shown.diagrams] for shown in diagrams_of(fields)}
+    assert {engine: names[1] for engine, names in found.items() if engine} == {
+        "dem": "lattice",
+        "continuum-jointed": "jointed-bar",
+        "continuum-equivalent": "equivalent-bar",
+    }
+    assert found[""] == [
+        "dem − continuum-jointed",
+        "dem − continuum-equivalent",
+        "continuum-equivalent − continuum-jointed",
+    ]
+
+
 def spatial(stress, shear, rotation):
     """Return a result in space with these peaks, each of its own shape."""
     time, y = np.linspace(0, 1, 5), np.arange(9.0)
@@ -164,7 +179,7 @@ def test_one_diagram_takes_little_of_the_page(picture):
 
 def test_soft_layer_is_drawn_through_every_diagram(picture):
     assert [shape["y0"] for shape in picture.plot["layout"]["shapes"]] == [20.0] * 3
-    drawn = [ax for ax in picture.static.axes if ax.collections and ax.get_title(loc="left")]
+    drawn = [ax for ax in picture.static.axes if ax.images and ax.get_title(loc="left")]
     for ax in drawn:
         assert any(set(line.get_ydata()) == {20.0} for line in ax.lines)
 
@@ -173,7 +188,14 @@ def test_static_diagrams_hold_the_same_numbers_in_the_same_colours(picture, ink)
     drawn = [ax for ax in picture.static.axes if ax.get_title(loc="left")]
     assert len(drawn) == 3
     for ax, trace in zip(drawn, picture.plot["data"], strict=True):
-        mesh = ax.collections[0]
-        np.testing.assert_array_equal(mesh.get_array().ravel(), unpacked(trace["z"]).ravel())
-        assert mesh.norm.vmax == trace["zmax"] and mesh.norm.vmin == trace["zmin"]
+        (image,) = ax.images
+        rows = image.get_array()[::FINER]
+        np.testing.assert_allclose(rows, unpacked(trace["z"]), rtol=1e-6, atol=1e-9)
+        assert image.norm.vmax == trace["zmax"] and image.norm.vmin == trace["zmin"]
+        assert (*ax.get_xlim(), *ax.get_ylim()) == pytest.approx((0.0, 30.0, 0.0, 50.0))
+        edges = np.array(image.get_extent()).reshape(2, 2)
+        pixel = np.ptp(edges, axis=1) / image.get_array().shape[::-1]
+        outermost = edges + np.outer(pixel, [0.5, -0.5])  # where the outermost points are
+        np.testing.assert_allclose(outermost, [[0.0, 30.0], [0.0, 50.0]], atol=1e-9)
+        assert image.origin == "lower"
     assert ink(picture.static) > 0.05
