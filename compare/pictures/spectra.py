@@ -118,7 +118,7 @@ def _placed(one: Spectra, limits: tuple[float, float]) -> list[tuple[Mark, bool,
     low = limits[0] ** 0.25 * limits[1] ** 0.75
     return [
         (mark, after < NEAR * mark.frequency, one.amplitude(mark.frequency) < low)
-        for mark, after in zip(one.marks, following, strict=True)
+        for mark, after in zip(one.marks, following, strict=False)
     ]
 
 
