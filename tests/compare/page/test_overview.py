@@ -49,6 +49,11 @@ def test_without_an_exact_solution_the_resolved_joints_are_the_finest(compared):
     assert found["continuum-jointed"].finest == () and np.isnan(found["continuum-jointed"].total)
 
 
+def test_of_a_reference_that_stands_still_nothing_is_known(compared):
+    found = standings([compared(dem=0.1, spatial_lattice=-1.0)])
+    assert np.isnan(found["dem"].total) and found["dem"].verdict.word == "not known"
+
+
 def test_a_bound_of_the_scene_that_is_not_met_outdoes_every_misfit(compared):
     expect = {"dem ~ jointed-bar": 1e-4, "dem ~ lattice": 1.0, "dem ~ images": 1e-9}
     found = standings([compared(expect, dem=0.002, jointed_bar=0.0, lattice=0.0)])
