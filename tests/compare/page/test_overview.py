@@ -93,6 +93,14 @@ def test_the_cheapest_everywhere_says_its_seconds():
     assert dict(found.lead)["dem"].endswith("cheapest, 2 ms to 3.1 s a run.")
 
 
+def test_an_engine_without_a_distance_is_not_given_one():
+    apart, finest = Standing(nan, nan, ("lattice",), ()), Standing(nan, nan, (), ())
+    standing = {"dem": apart, "continuum-jointed": finest}
+    said = dict(overview([Ranked("a", "a", "A", standing, dict.fromkeys(standing, 1.0))]).lead)
+    assert "not held against finer physics" in said["dem"]
+    assert "the finest physics here" in said["continuum-jointed"]
+
+
 @pytest.mark.parametrize(
     ("seconds", "text"), [(12.3, "12 s"), (1.234, "1.2 s"), (0.0123, "12 ms"), (4.5e-5, "45 µs")]
 )
