@@ -18,6 +18,7 @@ from compare.options import (
     WorkersOption,
     app,
     load,
+    warn,
 )
 from compare.processes import started
 
@@ -144,6 +145,8 @@ def report(
 
     Without a scene: the figures of Guo & Li (2002), what they must show, and all studies.
     """
+    for one in scenes or []:
+        warn(load(one, [], None))
     from compare import terminal, views
     from compare.report import build
 
