@@ -130,7 +130,7 @@ def report(
     scenes: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="[SCENE]...",
+            metavar="SCENE",
             help="Scene files or shipped scenes; absent: the figures of Guo & Li (2002).",
         ),
     ] = None,
