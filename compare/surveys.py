@@ -20,6 +20,7 @@ from compare.options import (
     WorkersOption,
     app,
     load,
+    warn,
 )
 from compare.processes import started
 
@@ -151,7 +152,7 @@ def report(
     scenes: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="[SCENE]...",
+            metavar="SCENE",
             help="Scene files or shipped scenes; absent: the figures of Guo & Li (2002).",
             autocompletion=completion.scenes,
         ),
@@ -168,6 +169,8 @@ def report(
 
     Without a scene: the figures of Guo & Li (2002), what they must show, and all studies.
     """
+    for one in scenes or []:
+        warn(load(one, [], None))
     from compare import terminal, views
     from compare.report import build
 

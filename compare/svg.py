@@ -28,8 +28,21 @@ def compact(svg: str, name: str) -> str:
     )  # viewers smooth an image unless told not to
     svg = re.sub(r">\s+<", ">\n<", svg)
     svg = re.sub(rf'\bid="(?!{name})', f'id="{name}-', svg)
+    svg = _named_once(svg)
     svg = re.sub(rf'(url\(#|href="#)(?!{name})', rf"\g<1>{name}-", svg)
     return re.sub(r'(?<=data:image/png;base64,)[^"]+', lambda match: _with_palette(match[0]), svg)
+
+
+def _named_once(svg: str) -> str:
+    """Return an SVG in which only the first of several equal ids is left."""
+    seen: set[str] = set()
+
+    def once(match: re.Match) -> str:
+        found = "" if match[1] in seen else match[0]
+        seen.add(match[1])
+        return found
+
+    return re.sub(r' id="([^"]+)"', once, svg)
 
 
 def _said_once(svg: str) -> str:

@@ -118,7 +118,9 @@ def _lead(engines: list[str], scenes: list[Ranked]) -> list[tuple[str, str]]:
 def _sentence(engine: str, scenes: list[Ranked]) -> str:
     totals = [x for s in scenes if not isnan(x := s.standings[engine].total)]
     own = [x for s in scenes if not isnan(x := s.standings[engine].own)]
-    far = f"{_span(_short, totals)} % from the finest physics" if totals else "the finest here"
+    held = any(s.standings[engine].finest for s in scenes)
+    alone = "not held against finer physics" if held else "the finest physics here"
+    far = f"{_span(_short, totals)} % from the finest physics" if totals else alone
     error = f", own numerical error ≤ {_short(max(own))} %" if own else ""
     return f"({WORDS[engine]}): {far}{error}; {_cost(engine, scenes)}."
 

@@ -107,8 +107,8 @@ def charts() -> str:
 
 
 def unbroken(text: str) -> str:
-    """Return text whose percentages do not break before their sign."""
-    return text.replace(" %", "\u00a0%")
+    """Return text whose numbers do not break from their signs."""
+    return text.replace(" %", "\u00a0%").replace("≤ ", "≤\u00a0")
 
 
 def _asset(environment: Environment, name: str) -> str:

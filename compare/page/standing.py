@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import isnan, nan
+from math import isfinite, isnan, nan
 from typing import NamedTuple
 
 from compare.engines import ENGINES
@@ -92,8 +92,10 @@ def _own(engine: str, comparison: Comparison) -> float:
 
 
 def _apart(comparison: Comparison, one: str, other: str) -> float:
+    """Return a misfit; nan where one of the two is not there, or the other stands still."""
     results = comparison.results
-    return misfit(results[one], results[other]) if other in results else nan
+    found = misfit(results[one], results[other]) if other in results else nan
+    return found if isfinite(found) else nan
 
 
 def _broken(engine: str, comparison: Comparison) -> list[str]:

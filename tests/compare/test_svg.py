@@ -43,6 +43,14 @@ def test_ids_are_scoped_and_their_uses_follow():
     assert 'id="fig-m1"' in small and 'href="#fig-m1"' in small and "xtick" not in small
 
 
+def test_no_id_is_there_twice():
+    """As those of an image that is drawn twice."""
+    twice = '<image id="image1" href="data:,"/><g id="part"/>' * 2
+    small = compact(f"{HEAD}{twice}</svg>", "fig")
+    assert re.findall(r'id="([^"]+)"', small) == ["fig-image1", "fig-part"]
+    assert small.count("<image") == 2
+
+
 def test_a_figure_of_matplotlib_stays_whole():
     figure = Figure()
     ax = figure.subplots()

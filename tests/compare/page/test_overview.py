@@ -49,6 +49,11 @@ def test_without_an_exact_solution_the_resolved_joints_are_the_finest(compared):
     assert found["continuum-jointed"].finest == () and np.isnan(found["continuum-jointed"].total)
 
 
+def test_of_a_reference_that_stands_still_nothing_is_known(compared):
+    found = standings([compared(dem=0.1, spatial_lattice=-1.0)])
+    assert np.isnan(found["dem"].total) and found["dem"].verdict.word == "not known"
+
+
 def test_a_bound_of_the_scene_that_is_not_met_outdoes_every_misfit(compared):
     expect = {"dem ~ jointed-bar": 1e-4, "dem ~ lattice": 1.0, "dem ~ images": 1e-9}
     found = standings([compared(expect, dem=0.002, jointed_bar=0.0, lattice=0.0)])
@@ -86,6 +91,14 @@ def test_costs_are_ratios_to_the_cheapest_of_each_scene():
 def test_the_cheapest_everywhere_says_its_seconds():
     found = overview([ranked("a", [2e-3], dem=0.04), ranked("b", [3.14], dem=0.04)])
     assert dict(found.lead)["dem"].endswith("cheapest, 2 ms to 3.1 s a run.")
+
+
+def test_an_engine_without_a_distance_is_not_given_one():
+    apart, finest = Standing(nan, nan, ("lattice",), ()), Standing(nan, nan, (), ())
+    standing = {"dem": apart, "continuum-jointed": finest}
+    said = dict(overview([Ranked("a", "a", "A", standing, dict.fromkeys(standing, 1.0))]).lead)
+    assert "not held against finer physics" in said["dem"]
+    assert "the finest physics here" in said["continuum-jointed"]
 
 
 @pytest.mark.parametrize(
