@@ -99,7 +99,9 @@ def test_no_launcher_and_one_that_starts_nothing(tmp_path, monkeypatch):
 
 
 def test_ranks_are_those_that_see_each_other(mpiexec, monkeypatch):
-    """As many as there are cores."""
+    """As many as there are cores; outside whatever MPI the tests have joined themselves."""
+    for name in os.environ.keys() - mpiexec[1].keys():
+        monkeypatch.delenv(name)
     for name, value in mpiexec[1].items():
         monkeypatch.setenv(name, value)
     part = doctor._mpiexec()

@@ -43,7 +43,7 @@ def test_every_row_is_in_the_table_and_the_missing_one_says_why(rows, tmp_path):
     assert section.missing == ["Gone (spheres): missing, no apt here"]
     assert "does not name" in section.machine
     assert peers.read(tmp_path / "peers.csv").shape == rows.shape
-    assert "Code: points" in section.figure.svg and "Gone" not in section.svg
+    assert "Code: points" in section.figure.svg and "Gone" not in section.figure.svg
 
 
 def test_machine_is_named(rows, tmp_path):
