@@ -167,10 +167,18 @@ def _check(pair: str) -> Check:
 
 
 def _run(command: list[str], seconds: float) -> subprocess.CompletedProcess[str]:
-    """Return a process that has ended, by itself or because its time was up."""
+    """Return a process that has ended, by itself or because its time was up.
+
+    What a library has put into this process's own environment, as MPI does, is not passed on.
+    """
     try:
         return subprocess.run(
-            command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=seconds
+            command,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=seconds,
+            env=dict(os.environ),
         )
     except subprocess.TimeoutExpired as error:
         said = error.stdout or b""
