@@ -22,6 +22,12 @@ from compare.selfcheck import PAIRS, Check, bound_of
 PATIENCE = 120.0  # s, for what only looks
 COMPILING = 1200.0  # s, for the self-check, which compiles where the cache is empty
 MOST_RANKS = 16  # that are tried
+COUNT_RANKS = """
+from mpi4py import MPI
+ranks = MPI.COMM_WORLD.allreduce(1)
+if MPI.COMM_WORLD.rank == 0:  # one speaks: lines of several ranks may run into each other
+    print(ranks)
+"""
 
 GROUPS = {
     "program": ("numpy", "numba", "scipy", "pydantic", "xarray", "matplotlib", "obspy"),
@@ -107,10 +113,9 @@ def _mpiexec() -> Part:
     launcher, cores = which("mpiexec"), min(_cores(), MOST_RANKS)
     if launcher is None:
         return Part("continuum", "mpiexec", "missing", "is not on the PATH", HINTS["mpiexec"])
-    code = "from mpi4py import MPI; print(MPI.COMM_WORLD.size, flush=True)"
     for ranks in sorted({cores, min(2, cores), 1}, reverse=True):
-        done = _run([launcher, "-n", str(ranks), sys.executable, "-c", code], PATIENCE)
-        if done.stdout.split() == [str(ranks)] * ranks:
+        done = _run([launcher, "-n", str(ranks), sys.executable, "-c", COUNT_RANKS], PATIENCE)
+        if done.stdout.strip() == str(ranks):
             most = " or more" if ranks == MOST_RANKS else ""
             found = f"{launcher}: {ranks}{most} ranks on {_cores()} cores"
             return Part("continuum", "mpiexec", "found", found)
