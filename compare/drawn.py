@@ -1,4 +1,4 @@
-"""A figure as files, SVG, PDF, PNG and its numbers, and as what the page shows of it."""
+"""A figure as files, its drawings and its numbers, and as what the page shows of it."""
 
 import io
 import json
@@ -18,7 +18,7 @@ DIGITS = 6  # of the numbers behind a figure
 
 
 class Drawn(NamedTuple):
-    """A figure that is written: NAME.svg, NAME.pdf and NAME.png in a folder, its numbers NAME.csv.
+    """A figure that is written: NAME.svg, NAME.pdf, NAME.png in a folder, its numbers NAME.csv.
 
     svg : the element's text, ready to stand in a page; no other figure has its ids.
     caption : what is seen. plot : the figure for plotly.js as JSON, "" without.
@@ -44,11 +44,15 @@ def save(
     table: DataFrame | None = None,
     caption: str = "",
     plot: dict[str, Any] | None = None,
+    png: bool = True,
 ) -> Drawn:
-    """Write a figure's files and return it as drawn; without a table its CSV is the caller's."""
+    """Write a figure's files and return it as drawn; without a table its CSV is the caller's.
+
+    png : also as pixels.
+    """
     if table is not None:
         write_csv(folder / f"{name}.csv", table, DIGITS)
-    svg = _write_drawings(figure, folder, name, title)
+    svg = _write_drawings(figure, folder, name, title, png)
     text = "" if plot is None else json.dumps(plot, separators=(",", ":"), allow_nan=False)
     return Drawn(name, title, folder, svg, caption, text)
 
@@ -58,14 +62,23 @@ def write_csv(path: Path, table: DataFrame, digits: int = 9) -> Path:
     return write(path, lambda file: table.to_csv(file, float_format=f"%.{digits}g", index=False))
 
 
-def _write_drawings(figure: Figure, folder: Path, name: str, title: str) -> str:
-    """Write SVG, PDF and PNG; return the SVG's element."""
+def _write_drawings(figure: Figure, folder: Path, name: str, title: str, png: bool) -> str:
+    """Write the drawings; return the SVG's element."""
     buffer = io.StringIO()
     with matplotlib.rc_context(RC | {"svg.hashsalt": name}):
+        _lay_out(figure)
         figure.savefig(buffer, format="svg", metadata={"Title": title, "Date": None})
         about = {"Title": title, "CreationDate": None}
         write(folder / f"{name}.pdf", lambda path: figure.savefig(path, metadata=about))
-        write(folder / f"{name}.png", lambda path: figure.savefig(path, dpi=DOTS))
+        if png:
+            write(folder / f"{name}.png", lambda path: figure.savefig(path, dpi=DOTS))
     svg = compact(buffer.getvalue(), name)
     write_text(folder / f"{name}.svg", svg)
     return svg[svg.index("<svg") :]
+
+
+def _lay_out(figure: Figure) -> None:
+    """Lay a figure out for good: its files need not do so again, each twice."""
+    if figure.get_layout_engine() is not None:
+        figure.draw_without_rendering()
+    figure.set_layout_engine(None)

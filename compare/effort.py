@@ -23,8 +23,9 @@ Stretch = tuple[Callable[[], None], int]
 
 REPEATS = 5
 SHORTEST = 0.02  # s, of what a clock is read for
-LONGEST = 1.0  # s: of stepping: continuum runs that took as long are not repeated
+LONGEST = 0.5  # s: of stepping: continuum runs that took as long are not repeated
 BLOCK_STEPS = 5_000_000  # of one call, at most, but for one sample
+BLOCK_STEPS_IN_SPACE = 500_000  # each of them takes ten times as long
 BLOCKS = 1000  # of the pillar that effects are compared on
 
 #: A blow that moves blocks in all their freedoms.
@@ -131,7 +132,7 @@ def _in_space(scene: Scene, guarded: tuple[bool, ...], threads: int) -> list[Str
     from joints.guard import guard
 
     p, model, time, _ = prepare(scene)
-    count = _samples(time, p.block_count)
+    count = _samples(time, p.block_count, BLOCK_STEPS_IN_SPACE)
     state, samples = state_at_rest(model, p.block_count), samples_for(model, count)
     steps = count * time.stride
 
@@ -144,8 +145,8 @@ def _in_space(scene: Scene, guarded: tuple[bool, ...], threads: int) -> list[Str
     return [timed(held) for held in guarded]
 
 
-def _samples(time: Clock, blocks: int) -> int:
-    return min(time.samples, max(64, BLOCK_STEPS // blocks) // time.stride + 1)
+def _samples(time: Clock, blocks: int, most: int = BLOCK_STEPS) -> int:
+    return min(time.samples, max(64, most // blocks) // time.stride + 1)
 
 
 def is_measured() -> bool:

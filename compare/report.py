@@ -2,7 +2,7 @@
 
 import shlex
 from collections.abc import Sequence
-from concurrent.futures import Future
+from concurrent.futures import Executor, Future
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
@@ -25,6 +25,7 @@ from compare.page.versions import versions
 from compare.pairs import Comparison
 from compare.panels import curve_table
 from compare.stability.section import make_section as make_hard_section
+from compare.studies.pool import Lent, Pool
 from compare.studies.runner import alone
 from compare.studies.section import REPORTED, make_sections, measured_on
 from compare.workers import Workers
@@ -81,36 +82,38 @@ def build(
     Raises SceneError and UnstableError, as `compare` does; the page is then not written.
     """
     began = perf_counter()
-    if scenes:
-        page = _of_scenes(Path(out), scenes, progress, workers)
-    else:
-        others = peers.read(peers_table)
-        page = _of_paper(Path(out), progress, workers)
-        page = _with_studies(page, Path(out), studies, others, workers if hard else 0)
+    with Workers(workers) as executor:
+        if scenes:
+            page = _of_scenes(Path(out), scenes, progress, lambda: Lent(executor))
+        else:
+            others = peers.read(peers_table)
+            page = _of_paper(Path(out), progress, lambda: Lent(executor))
+            page = _with_hard_cases(page, Path(out), lambda: Lent(executor)) if hard else page
+            page = _with_studies(page, Path(out), studies, others)
     file = write_text(Path(out) / "index.html", render(page, Path(out)))
     found = {section.name: section.findings for section in page.sections}
     taken = perf_counter() - began
     return Report(file, page.overview, page.summary, page.about, found, taken)
 
 
-def _of_scenes(out: Path, scenes: Sequence[str], progress: Progress | None, workers: int) -> Page:
+def _of_scenes(out: Path, scenes: Sequence[str], progress: Progress | None, pool: Pool) -> Page:
     """Return the page of some scenes alone."""
-    solved = solve(out / "figures", asked_for(scenes), progress, workers)
+    solved = solve(out / "figures", asked_for(scenes), progress, pool)
     count = len(solved.sections)
     about = solved.sections[0].title if count == 1 else f"{count} scenes"
     return _page(solved, about, shlex.join(["jointwave", "report", *scenes, "--out", "DIR"]))
 
 
-def _of_paper(out: Path, progress: Progress | None, workers: int) -> Page:
+def _of_paper(out: Path, progress: Progress | None, pool: Pool) -> Page:
     """Return the page of the paper's figures, and prepare the effects that it weighs."""
     kept, moving = out / "effects", []
     weighed = worth_study.unprepared(worth_study.reported(), kept)
 
-    def besides(pool: Workers) -> list[Future]:
-        moving.append(pool.submit(make_motion, out))
-        return [*moving, *worth_study.submit(pool, weighed, kept)]
+    def besides(executor: Executor) -> list[Future]:
+        moving.append(executor.submit(make_motion, out))
+        return [*moving, *worth_study.submit(executor, weighed, kept)]
 
-    solved = solve(out / "figures", asked_for(()), progress, workers, besides)
+    solved = solve(out / "figures", asked_for(()), progress, pool, besides)
     page = _page(solved, PAPERS, "jointwave report --out DIR")
     about = mostly_dispersion(solved.comparisons[FREE_PILLAR][0])
     return replace(page, about=about, motion=moving[0].result())
@@ -138,16 +141,18 @@ def _ranked(solved: Solved) -> list[Ranked]:
         ]
 
 
+def _with_hard_cases(page: Page, out: Path, pool: Pool) -> Page:
+    return replace(page, stability=make_hard_section(out, pool))
+
+
 def _with_studies(
-    page: Page, out: Path, studies: tuple[str, ...], others: DataFrame | None, hard_workers: int
+    page: Page, out: Path, studies: tuple[str, ...], others: DataFrame | None
 ) -> Page:
     """Return the page with what was measured: the seconds after everything else, and alone."""
-    hard = make_hard_section(out, lambda: Workers(hard_workers)) if hard_workers else None
     measured = make_sections(out, studies)
     balances = worth_study.complete(worth_study.reported(), out / "effects")
     return replace(
         page,
-        stability=hard,
         studies=measured,
         effects=worth_section.write_section(out / "effects", balances),
         peers=None if others is None else peers.write_section(out / "studies", others),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import Future, as_completed
+from concurrent.futures import Executor, Future, as_completed
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -17,11 +17,11 @@ from compare.page.section import PAPER, Asked, Section, make_section
 from compare.pairs import Comparison, compare
 from compare.pictures import along_pillar
 from compare.scenes import find
-from compare.workers import Workers
+from compare.studies.pool import Pool
 
 RATE = "scene of the report"  # what the seconds of scenes are remembered by
 TAKEN = {"", "overview", "made", "said"}  # what the page calls its own parts
-Submit = Callable[[Workers], list[Future]]
+Submit = Callable[[Executor], list[Future]]
 
 
 @dataclass
@@ -50,27 +50,29 @@ def solve(
     folder: Path,
     asked: list[Asked],
     progress: Progress | None,
-    workers: int,
-    besides: Submit = lambda pool: [],
+    pool: Pool,
+    besides: Submit = lambda executor: [],
 ) -> Solved:
-    """Solve and draw scenes in processes of their own; pictures and tables go to `folder`.
+    """Solve and draw scenes by the processes of a pool; pictures and tables go to `folder`.
 
     Each variant is solved once, however many scenes share it. `besides` submits what else is to be
     done at the same time.
     """
     loaded = {one.name: cases.load(one.file) for one in asked}
     unique = {_key(scene): scene for variants in loaded.values() for scene in variants}
-    with rates.timing(RATE, len(asked)), Workers(workers) as pool:
+    with rates.timing(RATE, len(asked)), pool() as executor:
         order = _longest_first(unique)
-        found = {key: pool.submit(compare, unique[key], None, True) for key in order}
-        along = {name: pool.submit(along_pillar, scenes[0]) for name, scenes in loaded.items()}
-        tell = _counted([*found.values(), *along.values(), *besides(pool)], len(asked), progress)
+        found = {key: executor.submit(compare, unique[key], None, True) for key in order}
+        along = {name: executor.submit(along_pillar, scenes[0]) for name, scenes in loaded.items()}
+        tell = _counted(
+            [*found.values(), *along.values(), *besides(executor)], len(asked), progress
+        )
         comparisons = {
             name: [replace(found[_key(scene)].result(), scene=scene) for scene in variants]
             for name, variants in loaded.items()
         }
         drawn = [
-            pool.submit(make_section, folder, a, comparisons[a.name], along[a.name].result())
+            executor.submit(make_section, folder, a, comparisons[a.name], along[a.name].result())
             for a in asked
         ]
         tell(drawn)

@@ -94,6 +94,6 @@ def make_section(
 
 
 def draw(folder: Path, picture: Picture) -> Drawn:
-    """Write a picture's files."""
+    """Write a picture's files: those that the page offers."""
     p = picture
-    return save(p.static, folder, p.name, p.title, p.table, p.caption, p.plot)
+    return save(p.static, folder, p.name, p.title, p.table, p.caption, p.plot, png=False)

@@ -16,7 +16,7 @@ from compare.studies.methods import METHODS
 from compare.studies.reference import error
 from compare.studies.study import Point
 
-LONG = 1.0  # s: a run that takes as long, its set-up included, is timed once more at most
+LONG = 0.5  # s: a run that takes as long, its set-up included, is timed once more at most
 
 
 class Row(NamedTuple):

@@ -25,10 +25,10 @@ def on_pool(processes: Processes, workers: int, work: Callable[[Pool | None], T]
     from mpi4py.futures import MPICommExecutor
 
     with MPICommExecutor(processes.comm, root=0) as executor:
-        return None if executor is None else work(lambda: _Lent(executor))
+        return None if executor is None else work(lambda: Lent(executor))
 
 
-class _Lent(Executor):
+class Lent(Executor):
     """An executor that outlives those who use it."""
 
     def __init__(self, executor: Executor) -> None:

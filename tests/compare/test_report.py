@@ -103,7 +103,7 @@ def test_every_scene_has_every_kind_of_picture(report, text, name):
     kinds = [kind for figure in found for kind in KINDS if figure.startswith(f"{name}-{kind}")]
     assert list(dict.fromkeys(kinds)) == list(KINDS)
     for figure in found:
-        for kind in ("svg", "pdf", "png", "csv"):
+        for kind in ("svg", "pdf", "csv"):
             assert (report.page.parent / "figures" / f"{figure}.{kind}").stat().st_size > 100
     assert {"dem", "continuum-jointed"} <= {i.split("-", 5)[5] for i in curve_ids(report, name)}
     assert f"jointwave report guo-li-2002/{name} --out {name}" in part(text, name)
