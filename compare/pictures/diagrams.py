@@ -119,7 +119,7 @@ def _of_engine(engine: str, values: dict[str, np.ndarray], quantity: Quantity) -
     exact = [pair.other for pair in referees(engine) if pair.other in values][:1]
     names = [engine, *exact]
     largest = max(float(np.abs(values[name]).max()) for name in names)
-    unit = unit_for(UNITS[quantity.variable], largest, whole=True)
+    unit = unit_for(UNITS[quantity.variable], largest)
     fields = [
         Diagram(name, unit.drawn(values[name]), unit, FIELD, largest / unit.size) for name in names
     ]
@@ -130,7 +130,7 @@ def _difference(one: str, other: str, values: dict[str, np.ndarray], quantity: Q
     difference = values[one] - values[other]
     largest = float(np.abs(difference).max())
     scale = float(np.abs(values[other]).max())
-    unit = unit_for(UNITS[quantity.variable], largest, whole=True)
+    unit = unit_for(UNITS[quantity.variable], largest)
     return Diagram(
         f"{one} − {other}",
         unit.drawn(difference),

@@ -5,7 +5,7 @@ a narrow screen; the legend is below them. Numbers are packed as base64 of their
 """
 
 from base64 import b64decode, b64encode
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,8 +19,6 @@ GAP = 20  # px between panels, besides their headings
 ENTRY = 20  # px of a line of the legend
 ITEM = 40  # px of the sample of a curve in the legend
 
-Packing = Literal["f4", "i2"]
-
 
 class Panel(NamedTuple):
     """One of the stacked panels: its heading, the label of its y axis, its height in px, and more
@@ -32,15 +30,12 @@ class Panel(NamedTuple):
     axis: dict[str, Any] | None = None
 
 
-def packed(values: np.ndarray, kind: Packing = "f4") -> dict[str, Any]:
-    """Return an array as plotly.js reads typed arrays; i2 takes whole numbers below 32768."""
-    values = np.asarray(values)
-    if kind == "i2" and values.size and np.abs(values).max() > np.iinfo("i2").max:
-        raise ValueError(f"{np.abs(values).max():g} is beyond 16 bits")
-    data = np.rint(values) if kind == "i2" else values
-    found = {"dtype": kind, "bdata": b64encode(data.astype(f"<{kind}").tobytes()).decode("ascii")}
-    if values.ndim > 1:
-        found["shape"] = ",".join(map(str, values.shape))
+def packed(values: np.ndarray) -> dict[str, Any]:
+    """Return an array as plotly.js reads typed arrays, in single precision."""
+    data = np.asarray(values).astype("<f4")
+    found = {"dtype": "f4", "bdata": b64encode(data.tobytes()).decode("ascii")}
+    if data.ndim > 1:
+        found["shape"] = ",".join(map(str, data.shape))
     return found
 
 

@@ -120,7 +120,7 @@ def _trace(i: int, diagram: Diagram, shown: Diagrams, domain: list[float]) -> di
         "name": diagram.name,
         **interactive.places("x", 1e3 * shown.time),
         **interactive.places("y", shown.y),
-        "z": interactive.packed(diagram.values, "i2" if diagram.unit.whole else "f4"),
+        "z": interactive.packed(diagram.values),
         "yaxis": interactive.axis_of(i),
         "zsmooth": "best",
         "zmin": -diagram.limit,
