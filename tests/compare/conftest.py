@@ -1,8 +1,16 @@
-"""A browser for the tests of pages."""
+"""What tests measure kept apart from the user's own; and a browser for the tests of pages."""
 
 import shutil
 
 import pytest
+
+from compare import rates
+
+
+@pytest.fixture(autouse=True)
+def own_rates(tmp_path, monkeypatch):
+    """Keep what is measured here apart: `--dry-run` foretells from what the machine has done."""
+    monkeypatch.setattr(rates, "_file", lambda: tmp_path / "rates.json")
 
 
 @pytest.fixture(scope="session")

@@ -30,12 +30,6 @@ RUNS = {
 }
 
 
-@pytest.fixture(autouse=True)
-def own_rates(tmp_path, monkeypatch):
-    """Keep what is measured here apart from what the user's machine has measured."""
-    monkeypatch.setattr(rates, "_file", lambda: tmp_path / "rates.json")
-
-
 @pytest.mark.parametrize("name", RUNS)
 def test_steps_and_size_are_those_of_the_run(pillar, name):
     engine, changes = RUNS[name]
