@@ -50,7 +50,7 @@ def explanation(scene: Scene) -> Explanation:
     """Return what a scene calls for, what is left out, and what can solve it."""
     answers = {name: applies(name, scene) for name in (*ENGINES, *exact_names())}
     steps = [_step(name, scene) for name in ENGINES if answers[name]]
-    cost = Cost(nanoseconds(scene), whole())
+    cost = Cost(nanoseconds(scene), whole(scene.pillar.block_count))
     rates.note_block_step(scene, cost.own)
     return Explanation(scene, calibrate(scene), effects(scene), steps, answers, cost)
 

@@ -15,7 +15,7 @@ import dem
 from cases.effects import active_effects
 from cases.errors import SceneError, UnstableError
 from cases.scene import Scene
-from compare.effort import EVERYTHING, changed, freedoms_in_turns, in_turns, stretch
+from compare.effort import everything, freedoms_in_turns, in_turns, stretch
 from compare.engines import applies, solve
 from compare.metrics import misfit
 from compare.without import left_out, only
@@ -63,8 +63,8 @@ class Balance(NamedTuple):
     """All effects of a scene.
 
     scene, title, variant : its names. bare, own, everything : ns of a block-step with what the
-    scene cannot be without, with its own set, and with every effect. rock : ns of a freedom-step of
-    the jointed rock with the scene's own set, nan where that does not apply.
+    scene cannot be without, with its own set, and with every effect in as many blocks. rock : ns of
+    a freedom-step of the jointed rock with the scene's own set, nan where that does not apply.
     """
 
     scene: str
@@ -121,8 +121,8 @@ def balance(name: str, scene: Scene, dropped: list[Dropped]) -> Balance:
     """
     alone = {one.effect: only(scene, one.effect) for one in dropped if one.alone}
     without = _without(scene, dropped)
-    first = [changed(EVERYTHING), only(scene, None), scene]
-    everything, bare, own, *rest = in_turns([*first, *alone.values(), *without.values()])
+    first = [everything(scene.pillar.block_count), only(scene, None), scene]
+    full, bare, own, *rest = in_turns([*first, *alone.values(), *without.values()])
     ns_alone = dict(zip(alone, rest, strict=False))
     ns_without = dict(zip(without, rest[len(alone) :], strict=True))
     rock = _ns_in_rock(scene, dropped)
@@ -139,7 +139,7 @@ def balance(name: str, scene: Scene, dropped: list[Dropped]) -> Balance:
         )
         for one in dropped
     ]
-    return Balance(name, scene.title, scene.name, bare, own, everything, rock.get(OWN, nan), found)
+    return Balance(name, scene.title, scene.name, bare, own, full, rock.get(OWN, nan), found)
 
 
 def _without(scene: Scene, dropped: list[Dropped]) -> dict[str, Scene]:

@@ -12,7 +12,7 @@ import cases
 from cases.result import scene_hash
 from cases.scene import Scene
 from compare import rates
-from compare.effort import EVERYTHING, changed, stretch
+from compare.effort import BLOCKS, everything, stretch
 from compare.engines import Progress
 from compare.keeping.signature import program
 from compare.output import write_text
@@ -113,7 +113,7 @@ def submit(executor: Executor, new: list[Case], folder: Path) -> list[Future]:
 
 def prepare_whole() -> None:
     """Compile the block-step with every effect."""
-    stretch(changed(EVERYTHING))[0]()
+    stretch(everything(BLOCKS))[0]()
 
 
 def prepare_case(case: Case, folder: Path) -> None:

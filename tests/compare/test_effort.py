@@ -36,12 +36,20 @@ def test_everything_is_measured_once(tmp_path, monkeypatch):
     monkeypatch.setattr(effort.numba.config, "CACHE_DIR", str(tmp_path))
     measured = []
     monkeypatch.setattr(effort, "nanoseconds", lambda scene: measured.append(scene) or 42.0)
-    assert whole() == whole() == 42.0
-    assert len(measured) == 1
+    assert whole(100) == whole(100) == 42.0
+    assert [scene.pillar.block_count for scene in measured] == [100]
     file = tmp_path / "effort.json"
-    assert json.loads(file.read_text()) == {"everything": 42.0}
-    file.write_text("broken")
-    assert whole() == 42.0 and len(measured) == 2
+    assert json.loads(file.read_text()) == {"100": 42.0}
+    for broken in ("broken", "[1]", '{"100": null}'):
+        file.write_text(broken)
+        assert whole(100) == 42.0
+    assert len(measured) == 4
+
+
+@pytest.mark.parametrize(("blocks", "measured"), [(1, 2), (2, 2), (100, 100), (10**6, 1000)])
+def test_everything_is_measured_in_as_many_blocks(blocks, measured):
+    """A step has a cost of its own, which few blocks share; a thousand hardly feel it."""
+    assert effort.everything(blocks).pillar.block_count == measured
 
 
 @pytest.mark.parametrize("name", ["finite rotation", "slip", "softening", "dashpots", "gravity"])

@@ -77,7 +77,7 @@ def test_what_needs_others_is_not_alone(pillar):
 @pytest.fixture
 def cheap(monkeypatch):
     """The cost of everything, by a step that is quickly compiled; one round of everything."""
-    monkeypatch.setattr(worth, "EVERYTHING", {})
+    monkeypatch.setattr("compare.effort.EVERYTHING", {})
     monkeypatch.setattr("compare.effort.REPEATS", 1)
 
 
