@@ -95,9 +95,11 @@ def test_nothing_heavy_is_imported_for_it():
 def test_bash_completes_by_the_script_that_is_installed(tmp_path):
     """--install-completion writes it where bash will read it, and bash asks it."""
     home = {**os.environ, "HOME": str(tmp_path)}
-    code = "import sys; sys.argv = ['jointwave', '--install-completion', 'bash']\n"
+    code = "import sys; sys.argv = ['jointwave', '--install-completion']\n"
     code += "from compare.start import main; main()"
-    subprocess.run((sys.executable, "-c", code), env=home, check=True, capture_output=True)
+    install = f'{sys.executable} -c "$CODE"; exit $?'
+    within = {**home, "CODE": code}  # the shell is known by the process that asks
+    subprocess.run(("bash", "-c", install), env=within, check=True, capture_output=True)
     script = tmp_path / ".bash_completions" / "jointwave.sh"
     assert str(script) in (tmp_path / ".bashrc").read_text()
     real = tmp_path / "real"
