@@ -98,13 +98,13 @@ install_docs() {
         install_project docs,examples
 }
 
-# The folder is part of both keys because a venv does not survive being moved or copied.
-interpreter=$(python3 -c 'import sys; print(sys.executable, sys.version)' 2>/dev/null || echo none)
-base_key="$PWD $interpreter"
-key="$base_key $(cat pyproject.toml constraints-numpy1.txt environment.yml tools/setup.sh | cksum)"
+# The folder is part of both keys because a venv does not survive being moved or copied. They are asked for anew each time:
+# a bare machine has no Python before Debian's is installed.
+base_key() { echo "$PWD $(python3 -c 'import sys; print(sys.executable, sys.version)' 2>/dev/null || echo none)"; }
+key() { echo "$(base_key) $(cat pyproject.toml constraints-numpy1.txt environment.yml tools/setup.sh | cksum)"; }
 
 ready() {
-    [ "$(cat .venv/.setup-done 2>/dev/null)" = "$key" ] &&
+    [ "$(cat .venv/.setup-done 2>/dev/null)" = "$(key)" ] &&
         .venv/bin/python -c 'from importlib.util import find_spec as f; assert f("dolfinx") and f("compare")' 2>/dev/null
 }
 
@@ -112,7 +112,7 @@ if ready; then
     say ".venv is up to date"
 else
     rm -f .venv/.setup-done
-    if [ "$(cat .venv/.setup-base 2>/dev/null)" != "$base_key" ] || ! imports_dolfinx .venv/bin/python; then
+    if [ "$(cat .venv/.setup-base 2>/dev/null)" != "$(base_key)" ] || ! imports_dolfinx .venv/bin/python; then
         rm -rf .venv
         if base=$(base_python); then
             say ".venv over $base, which has dolfinx $("$base" -c 'import dolfinx; print(dolfinx.__version__)')"
@@ -120,11 +120,11 @@ else
         else
             make_conda || fail "no dolfinx: activate an environment that has it, or install conda (or Debian/Ubuntu's python3-dolfinx python3-gmsh python3-venv), then run make again"
         fi
-        echo "$base_key" >.venv/.setup-base
+        base_key >.venv/.setup-base
     fi
     install_project test,check
     .venv/bin/python -c 'import dolfinx, numba, compare' || fail ".venv does not import dolfinx, numba and compare"
-    echo "$key" >.venv/.setup-done
+    key >.venv/.setup-done
     say "done: .venv/bin/jointwave, or activate it by: . .venv/bin/activate"
 fi
 case "${1:-}" in
