@@ -1,10 +1,13 @@
 """The way in to `jointwave`: what the program imports is interrupted in one line, too."""
 
+import os
 import sys
 
 
 def main() -> None:
     """Import the program and run it."""
+    # With colorama installed numba ends every output to a terminal, JSON too, by an escape sequence.
+    os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")
     try:
         from compare.cli import main as run
 

@@ -8,9 +8,10 @@ from compare import rates
 
 
 @pytest.fixture(autouse=True)
-def own_rates(tmp_path, monkeypatch):
+def own_rates(tmp_path_factory, monkeypatch):
     """Keep what is measured here apart: `--dry-run` foretells from what the machine has done."""
-    monkeypatch.setattr(rates, "_file", lambda: tmp_path / "rates.json")
+    file = tmp_path_factory.mktemp("rates") / "rates.json"
+    monkeypatch.setattr(rates, "_file", lambda: file)
 
 
 @pytest.fixture(scope="session")

@@ -117,7 +117,7 @@ def test_what_explain_measures_is_known(pillar):
 
 
 def test_a_broken_or_protected_file_of_rates_costs_nothing(pillar, tmp_path, monkeypatch):
-    (tmp_path / "rates.json").write_text("[1, 2")
+    rates._file().write_text("[1, 2")
     assert forecast(pillar(**SHORT), "dem").seconds is None
     (tmp_path / "no-folder").write_text("")
     monkeypatch.setattr(rates, "_file", lambda: tmp_path / "no-folder" / "rates.json")

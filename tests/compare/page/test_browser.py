@@ -157,6 +157,7 @@ def test_every_download_is_a_whole_file_of_its_kind(opened, report):
     figures = page.locator("figure").count()
     assert len(links) == 3 * figures > 3
     for link in links:
+        page.wait_for_timeout(150)  # Chromium holds back who saves twenty files in a row at once
         with page.expect_download() as waiting:
             link.click()
         name = link.get_attribute("download")
