@@ -6,7 +6,7 @@ import sys
 
 def main() -> None:
     """Import the program and run it."""
-    # With colorama installed numba ends every output to a terminal, JSON too, by an escape sequence.
+    # With colorama there numba ends all that goes to a terminal, JSON too, by an escape sequence.
     os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")
     try:
         from compare.cli import main as run
