@@ -147,6 +147,11 @@ COMMANDS = [
     "report",
     "rum",
     "--help",
+    "figure",
+    "animate",
+    "view",
+    "new",
+    "doctor",
 ]
 OPTIONS = [
     *("--set", "--variant", "--out", "--engine", "--model", "--with", "--align", "--json", "--vtx"),

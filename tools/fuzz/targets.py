@@ -167,11 +167,16 @@ def mesh(data: bytes, folder: Path) -> str:
 SOLVERS = (
     "compare.runs.execute",
     "compare.pairs.compare",
-    "compare.worth.balance",
+    "compare.sweeps.runner.run",
+    "compare.worth_study.run",
     "compare.planner.plan",
     "compare.studies.runner.run",
+    "compare.stability.section.make_study",
     "compare.report.build",
+    "compare.papers.make.make",
+    "compare.moving.shots.take",
     "compare.explain.explanation",
+    "compare.doctor.examine",
 )
 
 
