@@ -18,7 +18,7 @@ DIGITS = 6  # of the numbers behind a figure
 
 
 class Drawn(NamedTuple):
-    """A figure that is written: NAME.svg, NAME.pdf, NAME.png in a folder, its numbers NAME.csv.
+    """A figure that is written: NAME.svg, NAME.pdf and, if asked, NAME.png; its numbers NAME.csv.
 
     svg : the element's text, ready to stand in a page; no other figure has its ids.
     caption : what is seen. plot : the figure for plotly.js as JSON, "" without.
