@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from cases.calibrate import Properties
+from cases.labels import label
 from cases.result import Fields
 
 
@@ -51,8 +52,8 @@ def with_fragments(
     found = json.dumps(fragments(p, broken, velocity))
     variables, coords = dict(result.variables), dict(result.coords)
     if break_time is not None:
-        coords["joint_y"] = (("joint_y",), p.joint_y, {"units": "m"})
-        variables["break_time"] = (("joint_y",), break_time, {"units": "s"})
+        coords["joint_y"] = (("joint_y",), p.joint_y, label("joint_y"))
+        variables["break_time"] = (("joint_y",), break_time, label("break_time"))
     return Fields(variables, coords, {**result.attributes, "fragments": found})
 
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from joints.jit import inlined, jitted
+from joints.jit import apart, inlined, jitted
 
 EVERY = 96  # steps, at most, between two looks at the speeds
 RUNAWAY = 100.0  # times the speed that forces can cause: at the critical step leapfrog swings wide
@@ -76,29 +76,35 @@ def next_look(guard, n, end):
 def is_lost(guard, v, n, energy, s, stride):
     """Return whether, after n steps, the speeds are out of bounds, or the last sample of a ledger,
     s, of every stride-th step."""
+    return guard is not None and _is_lost(guard, v, n, energy, s, stride)
+
+
+@apart
+def _is_lost(guard, v, n, energy, s, stride):
+    # Apart, so that the steps are compiled as they are without a guard.
     return runs_away(guard, v, n) or creates_energy(guard, energy, s, s * stride)
 
 
 @inlined
 def runs_away(guard, v, n):
     """Return whether, after n steps, a velocity is out of bounds or no number."""
-    if guard is not None and highest(v) > guard.limit[0]:
+    if guard is not None and exceeds(v, guard.limit[0]):
         note(guard.found, n, SPEED, n - EVERY - 1)
         return True
     return False
 
 
 @inlined
-def highest(v):
-    """Return the bits of the largest magnitude.
+def exceeds(v, limit):
+    """Return whether a magnitude is above the limit, given by its bits, or no number.
 
-    As whole numbers they are in the order of the magnitudes, with infinity and what is no number
-    behind all others, and are compared without regard to the order of the comparisons.
+    As whole numbers the bits of magnitudes are in the order of the magnitudes, with infinity and
+    what is no number behind all others. A difference has its sign in one bit, which is collected.
     """
-    bits, top = v.view(np.int64), 0
+    bits, signs = v.view(np.int64), 0
     for i in range(bits.size):
-        top = max(top, bits[i] & MAGNITUDE)
-    return top
+        signs |= limit - (bits[i] & MAGNITUDE)
+    return signs < 0
 
 
 @inlined

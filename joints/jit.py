@@ -1,8 +1,6 @@
 """How every kernel is compiled: one set of options, one cache that follows the sources."""
 
 import fcntl
-import hashlib
-import os
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
@@ -11,23 +9,7 @@ from typing import Any
 import llvmlite.binding
 import numba
 
-PACKAGES = ("joints", "dem", "continuum")
-
-
-def cache_directory(root: Path) -> Path:
-    """Return a cache directory keyed by the sources of the kernels' packages below `root`.
-
-    A compiled caller does not notice that a function in another file has changed; a new
-    directory for each state of the sources does.
-    """
-    digest = hashlib.sha256(numba.__version__.encode())
-    for package in PACKAGES:
-        for source in sorted((root / package).rglob("*.py")):
-            digest.update(source.read_bytes())
-    base = os.environ.get("NUMBA_CACHE_DIR") or Path(
-        os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache", "jointwave", "numba"
-    )
-    return Path(base, digest.hexdigest()[:16])
+from joints.cache import cache_directory, make, mark_used
 
 
 def widest_vectors() -> None:
@@ -43,6 +25,7 @@ def widest_vectors() -> None:
 
 widest_vectors()
 numba.config.CACHE_DIR = str(cache_directory(Path(__file__).resolve().parent.parent))
+mark_used(Path(numba.config.CACHE_DIR))
 
 
 def jitted(function: Callable) -> Callable:
@@ -91,7 +74,7 @@ def _one_at_a_time(save: Callable) -> Callable:
     @wraps(save)
     def alone(*arguments: Any) -> None:
         directory = Path(numba.config.CACHE_DIR)
-        directory.mkdir(parents=True, exist_ok=True)
+        make(directory)
         with (directory / "lock").open("w") as file:
             fcntl.flock(file, fcntl.LOCK_EX)
             save(*arguments)

@@ -31,7 +31,7 @@ from dem.axial.step import step
 from dem.size import refuse_large
 from joints.borrowed import borrowed
 from joints.guard import Guard, is_lost, next_look
-from joints.jit import apart, inlined, jitted
+from joints.jit import inlined, jitted
 from joints.tiny import flush_tiny, restore_tiny
 
 
@@ -117,6 +117,7 @@ def run(composition, model, state, samples, stride, first, last, guard=None):
     guard : `joints.guard.Guard` that ends it where it runs out of bounds; None without.
     """
     tiny = flush_tiny()
+    composition, model, state, samples = borrowed((composition, model, state, samples))
     s, n, end = first, first * stride, last * stride
     while n < end:
         stop = next_look(guard, n, end)
@@ -127,10 +128,9 @@ def run(composition, model, state, samples, stride, first, last, guard=None):
     restore_tiny(tiny)
 
 
-@apart
+@inlined
 def take(composition, model, state, samples, stride, s, n, last):
     """Take steps n .. last - 1 and the samples from s on that fall on them; return the next."""
-    composition, model, state, samples = borrowed((composition, model, state, samples))
     while n < last:
         if n == s * stride:
             book_ends(state.ledger, held(model.chain, state) - composition.stored)

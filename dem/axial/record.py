@@ -12,7 +12,7 @@ from dem.axial.step import joint_stress, load_at, march, opened
 from joints.borrowed import borrowed
 from joints.energy import elastic_energy, fracture_energy_spent
 from joints.guard import is_lost, next_look
-from joints.jit import apart, inlined, jitted
+from joints.jit import inlined, jitted
 from joints.laws import law_of
 from joints.tiny import flush_tiny, restore_tiny
 
@@ -58,6 +58,7 @@ def run(model, state, samples, stride, first, last, guard=None):
     guard : `joints.guard.Guard` that ends it where it runs out of bounds; None without.
     """
     tiny = flush_tiny()
+    model, state, samples = borrowed((model, state, samples))
     s, n, end = first, first * stride, last * stride
     while n < end:
         stop = next_look(guard, n, end)
@@ -68,10 +69,9 @@ def run(model, state, samples, stride, first, last, guard=None):
     restore_tiny(tiny)
 
 
-@apart
+@inlined
 def take(model, state, samples, stride, s, n, last):
     """Take steps n .. last - 1 and the samples from s on that fall on them; return the next."""
-    model, state, samples = borrowed((model, state, samples))
     while n < last:
         if n == s * stride:
             sample_before(model, state, samples, s)

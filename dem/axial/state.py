@@ -11,6 +11,8 @@ from dem.axial.ends import end_state
 if TYPE_CHECKING:
     from dem.axial.model import Chain
 
+REGISTER = 8  # numbers in the widest vector register, which is as long as a cache line
+
 
 class Ledger(NamedTuple):
     """Running sums of the work of every force that no potential gives.
@@ -45,19 +47,28 @@ class State(NamedTuple):
     ledger: Any
 
 
+def _row(count: int) -> np.ndarray:
+    """Return zeros whose second starts a vector register: there the loop over inner blocks starts,
+    and no load or store of it straddles two cache lines."""
+    room = np.zeros(count + REGISTER)
+    past = room.ctypes.data // room.itemsize + 1
+    first = -past % REGISTER
+    return room[first : first + count]
+
+
 def state_at_rest(chain: Chain, block_count: int, keep_ledger: bool) -> State:
     """Return the state at rest, with no array for anything that the chain does not have."""
     damped = chain.law.normal_viscosity is not None
     softens = chain.law.tensile_strength is not None
     ledger = None
     if keep_ledger:
-        dashpots = np.zeros(block_count - 1) if damped else None
+        dashpots = _row(block_count - 1) if damped else None
         ledger = Ledger(np.zeros(4), np.zeros(3), dashpots)
     return State(
-        u=np.zeros(block_count),
-        v=np.zeros(block_count),
-        gap_rate=np.zeros(block_count - 1) if damped else None,
-        opening=np.zeros(block_count - 1) if softens else None,
+        u=_row(block_count),
+        v=_row(block_count),
+        gap_rate=_row(block_count - 1) if damped else None,
+        opening=_row(block_count - 1) if softens else None,
         broke=np.full(block_count - 1, -1) if softens else None,
         start=end_state(chain.start),
         end=end_state(chain.end),

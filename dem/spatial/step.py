@@ -19,7 +19,7 @@ from dem.spatial.scratch import DRAG, LEFT
 from dem.spatial.stored import book_states
 from joints.atomic import give_way, peek, post
 from joints.borrowed import borrowed
-from joints.guard import EVERY, SPEED, creates_energy, highest, note
+from joints.guard import EVERY, SPEED, creates_energy, exceeds, note
 from joints.jit import inlined, jitted
 from joints.laws import pick
 from joints.optional import either, given
@@ -156,7 +156,7 @@ def watch(guard, s, half, n):
     """Look at the velocities of a tile after n steps, now and then."""
     if guard is not None and n % LOOK == 0:
         for k in range(half):
-            if highest(s[(half + k) * R : (half + k) * R + LANES]) > guard.limit[k]:
+            if exceeds(s[(half + k) * R : (half + k) * R + LANES], guard.limit[k]):
                 note(guard.found, n, SPEED, n - EVERY - 1)
 
 

@@ -6,28 +6,43 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from joints.guard import CREATED, ENERGY, EVERY, RUNAWAY, SPEED, audit, guard, highest, look
+from joints.guard import CREATED, ENERGY, EVERY, RUNAWAY, SPEED, audit, exceeds, guard, look
 from joints.jit import jitted
 
 KINETIC, ELASTIC, VISCOUS, WORK = range(4)
 
 
 @jitted
-def bits(v):
-    """Return what `highest` does, for Python."""
-    return highest(v)
+def beyond(v, limit):
+    """Return what `exceeds` does, for Python."""
+    return exceeds(v, limit)
 
 
-@given(arrays(float, st.integers(1, 70), elements=st.floats(allow_nan=False)))
-def test_magnitudes_are_compared_as_whole_numbers(v):
-    """The bits of the largest magnitude are those of the largest, infinity included."""
-    assert np.int64(bits(v)).view(float) == np.abs(v).max()
+NUMBERS = st.floats(allow_nan=False)
 
 
+@given(arrays(float, st.integers(0, 70), elements=NUMBERS), st.floats(min_value=0, max_value=1e308))
+def test_magnitudes_are_compared_as_whole_numbers(v, limit):
+    """Their bits are in the order of the magnitudes, infinity included."""
+    assert beyond(v, np.float64(limit).view(np.int64)) == (np.abs(v) > limit).any()
+
+
+@given(arrays(float, st.integers(1, 70), elements=NUMBERS), st.data())
+def test_the_largest_magnitude_is_not_beyond_itself(v, data):
+    """And the next smaller number is below it, wherever it stands."""
+    v = np.array(data.draw(st.permutations(v)))
+    largest = np.abs(v).max()
+    assert not beyond(v, largest.view(np.int64))
+    if largest > 0:
+        assert beyond(v, np.nextafter(largest, 0).view(np.int64))
+
+
+@pytest.mark.parametrize("place", [0, 1, 40, 69])
 @pytest.mark.parametrize("sign", [1, -1])
-def test_what_is_no_number_is_above_every_number(sign):
-    v = np.array([1e308, np.copysign(np.nan, sign), -np.inf])
-    assert bits(v) > np.array([np.inf]).view(np.int64)[0]
+def test_what_is_no_number_is_above_every_number(sign, place):
+    v = np.zeros(70)
+    v[place] = np.copysign(np.nan, sign)
+    assert beyond(v, np.array([np.inf]).view(np.int64)[0])
 
 
 def test_a_look_finds_what_is_beyond_the_limit_and_keeps_the_first():

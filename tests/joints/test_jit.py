@@ -7,13 +7,15 @@ import shutil
 import subprocess
 import sys
 import threading
+import time
 from pathlib import Path
 
 import numba
 import pytest
 
 import joints
-from joints.jit import PACKAGES, cache_directory, jitted
+from joints.cache import PACKAGES, UNUSED, cache_directory, make, mark_used
+from joints.jit import jitted
 
 ROOT = Path(joints.__file__).resolve().parent.parent
 
@@ -29,6 +31,26 @@ def test_cache_follows_every_source(edited, tmp_path):
     with (tmp_path / edited).open("a") as file:
         file.write("#")
     assert cache_directory(tmp_path) != cache_directory(ROOT)
+
+
+def test_states_that_no_program_has_used_for_long_are_dropped(tmp_path):
+    """When a new one is made: the past is dropped, what is in use and what is not ours stays."""
+    past, used, other = (tmp_path / name for name in ("0" * 16, "1" * 16, "mine"))
+    for folder in (past, used, other):
+        (folder / "joints").mkdir(parents=True)
+        (folder / "joints" / "a.nbi").touch()
+        os.utime(folder, (0, time.time() - 1.01 * UNUSED))
+    mark_used(used)
+    make(used)
+    assert past.exists()
+    make(tmp_path / ("2" * 16))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["1" * 16, "2" * 16, "mine"]
+    assert (other / "joints" / "a.nbi").exists() and (used / "joints" / "a.nbi").exists()
+
+
+def test_a_cache_that_is_not_there_is_not_made_by_its_use(tmp_path):
+    mark_used(tmp_path / ("3" * 16))
+    assert not list(tmp_path.iterdir())
 
 
 def test_kernels_are_cached_there_with_ieee_arithmetic():
