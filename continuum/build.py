@@ -20,11 +20,11 @@ from continuum.laws import interfaces, joint_law, measured, memory, resolved_joi
 from continuum.meshing.description import Mesh
 from continuum.meshing.pillar import elements_in_block, pillar_mesh
 from continuum.model import Interfaces, Model, Receivers, Rock, Samples, State
-from continuum.operator import zeros
 from continuum.receivers import points, sections
 from continuum.record import TERMS
 from continuum.size import refuse_large_file, refuse_large_mesh
 from continuum.sparse import Rows, rows, sparse
+from joints.rows import zeros
 
 
 class Discrete(NamedTuple):

@@ -7,10 +7,10 @@ import numpy as np
 from cases.calibrate import Properties
 from continuum.interface import Jumps
 from continuum.model import Interfaces, Measured, Memory, Tractions
-from continuum.operator import zeros
 from continuum.runs import runs
 from continuum.sparse import rows
 from joints.laws import Law
+from joints.rows import zeros
 from joints.uniform import law
 
 #: Over an ordinary joint: the stiffness of one that differs from it in strength alone, where the

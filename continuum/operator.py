@@ -13,10 +13,10 @@ from scipy.sparse import block_diag, csr_matrix
 from continuum.lanes import WIDTH, add_scaled, load, store, zero
 from continuum.sparse import Rows
 from joints.jit import inlined, jitted
+from joints.rows import zeros
 
 TILE = 4  # registers wide; a part's blocks are dealt out evenly, so that tiles have 3 to 5
 ROUND_OFF = 1e-13  # of two diagonal entries: what quadrature leaves of entries that are zero
-CACHE_LINE = 64  # bytes
 
 
 class Layout(NamedTuple):
@@ -75,13 +75,6 @@ def tile_widths(count: int) -> np.ndarray:
     registers = -(-count // WIDTH)
     tiles = max(1, (registers + TILE // 2) // TILE)
     return WIDTH * (registers // tiles + (np.arange(tiles) < registers % tiles))
-
-
-def zeros(length: int) -> np.ndarray:
-    """Return a vector of zeros that starts on a cache line, so that no register straddles two."""
-    room = np.zeros(length + CACHE_LINE // 8)
-    start = (-room.ctypes.data % CACHE_LINE) // 8
-    return room[start : start + length]
 
 
 def spread(places: Layout, values) -> np.ndarray:

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from dem.axial.ends import end_state
+from joints.rows import zeros
 
 if TYPE_CHECKING:
     from dem.axial.model import Chain
 
-REGISTER = 8  # numbers in the widest vector register, which is as long as a cache line
+INNER = 1  # the first block, and joint, of the loop over all but the end blocks
 
 
 class Ledger(NamedTuple):
@@ -47,28 +48,19 @@ class State(NamedTuple):
     ledger: Any
 
 
-def _row(count: int) -> np.ndarray:
-    """Return zeros whose second starts a vector register: there the loop over inner blocks starts,
-    and no load or store of it straddles two cache lines."""
-    room = np.zeros(count + REGISTER)
-    past = room.ctypes.data // room.itemsize + 1
-    first = -past % REGISTER
-    return room[first : first + count]
-
-
 def state_at_rest(chain: Chain, block_count: int, keep_ledger: bool) -> State:
     """Return the state at rest, with no array for anything that the chain does not have."""
     damped = chain.law.normal_viscosity is not None
     softens = chain.law.tensile_strength is not None
     ledger = None
     if keep_ledger:
-        dashpots = _row(block_count - 1) if damped else None
+        dashpots = zeros(block_count - 1, INNER) if damped else None
         ledger = Ledger(np.zeros(4), np.zeros(3), dashpots)
     return State(
-        u=_row(block_count),
-        v=_row(block_count),
-        gap_rate=_row(block_count - 1) if damped else None,
-        opening=_row(block_count - 1) if softens else None,
+        u=zeros(block_count, INNER),
+        v=zeros(block_count, INNER),
+        gap_rate=zeros(block_count - 1, INNER) if damped else None,
+        opening=zeros(block_count - 1, INNER) if softens else None,
         broke=np.full(block_count - 1, -1) if softens else None,
         start=end_state(chain.start),
         end=end_state(chain.end),

@@ -20,6 +20,7 @@ from dem.spatial.motion import Motion
 from dem.spatial.section import contact_points, face_of, section
 from joints.guard import Guard
 from joints.laws import Law
+from joints.rows import zeros
 from joints.uniform import law
 
 DEPTH = 8  # steps a tile takes while it is in the cache
@@ -234,11 +235,11 @@ def state_at_rest(model: Model, block_count: int) -> State:
     """Return the state at rest, with no array for anything that the model does not have."""
     rows, tiles = model.contact.rows, tile_count(block_count)
     kept = sum(len(kind) for kind in rows[1:] if kind is not None)
-    history = np.zeros((tiles, kept * LANES)) if kept else None
+    history = zeros((tiles, kept * LANES)) if kept else None
     if history is not None and rows.cohesions is not None:
         fill_cohesion(model.contact, history)
-    sums = None if model.accounts is None else np.zeros(AFTER * STRIDE)
-    motion = np.zeros((tiles, len(rows.motion) * STRIDE))
+    sums = None if model.accounts is None else zeros(AFTER * STRIDE)
+    motion = zeros((tiles, len(rows.motion) * STRIDE))
     if model.motion.finite is not None:
         motion[:, SCALAR:] = 1.0  # no rotation
     slides = None if model.contact.points is None else np.zeros((tiles, 1), dtype=np.int64)
@@ -257,8 +258,8 @@ def fill_cohesion(contact: Contact, history: np.ndarray) -> None:
 def room_for(model: Model, threads: int, guard: Guard | None = None) -> Room:
     """Return the room that so many threads work in, watched by a guard."""
     slots = threads * DEPTH
-    books = None if model.accounts is None else np.zeros((slots, ACCOUNTS * STRIDE))
-    work, carry = np.zeros((threads, scratch.ROWS * STRIDE)), np.zeros((slots, 12))
+    books = None if model.accounts is None else zeros((slots, ACCOUNTS * STRIDE))
+    work, carry = zeros((threads, scratch.ROWS * STRIDE)), np.zeros((slots, 12))
     return Room(work, carry, books, DEPTH, guard)
 
 

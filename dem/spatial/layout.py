@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from joints.jit import inlined, jitted
+from joints.rows import zeros
 
 LANES = 64  # blocks in a tile
 STRIDE = 72  # lanes in a row of motion: the tile's own, the next one's first, whole cache lines
@@ -89,7 +90,7 @@ def packed(values: np.ndarray, stride: int) -> np.ndarray:
     rows, blocks = values.shape
     padded = np.zeros((rows, tile_count(blocks) * LANES))
     padded[:, :blocks] = values
-    tiles = np.zeros((tile_count(blocks), rows, stride))
+    tiles = zeros((tile_count(blocks), rows, stride))
     tiles[:, :, :LANES] = padded.reshape(rows, -1, LANES).transpose(1, 0, 2)
     return tiles.reshape(len(tiles), -1)
 

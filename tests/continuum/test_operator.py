@@ -8,15 +8,14 @@ from scipy.sparse import csr_matrix, random
 
 from continuum.lanes import WIDTH
 from continuum.operator import (
-    CACHE_LINE,
     layout,
     multiply,
     operator,
     spread,
     tile_widths,
     without_round_off,
-    zeros,
 )
+from joints.rows import zeros
 
 COUNTS = (1, 2, 7, 8, 9, 17, 25, 33, 40, 41, 48, 100)  # every width of a tile, full and not
 
@@ -130,14 +129,6 @@ def test_spread_fills_the_padding():
     vector = spread(where, [np.array([1.0, 2.0]), np.array([3.0, 4.0, 5.0])])
     assert vector[:16].tolist() == [1.0] * 8 + [2.0] * 8
     assert vector[16:19].tolist() == [3.0, 4.0, 5.0]
-
-
-@pytest.mark.parametrize("length", [1, 7, 100, 4097])
-def test_vectors_start_on_a_cache_line(length):
-    """No register then straddles two lines."""
-    vector = zeros(length)
-    assert vector.size == length and vector.ctypes.data % CACHE_LINE == 0
-    assert not vector.any()
 
 
 def test_round_off_is_told_from_small_entries():

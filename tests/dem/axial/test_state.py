@@ -5,7 +5,7 @@ import pytest
 from cases.arrays import arrays
 from cases.calibrate import calibrate
 from dem.axial.model import build
-from dem.axial.state import REGISTER
+from joints.rows import CACHE_LINE
 
 EFFECTS = {"joints__damping_ratio": 0.1, "joints__tensile_strength": 1e5}
 
@@ -21,4 +21,4 @@ def test_every_row_is_at_rest_and_its_second_number_starts_a_register(pillar, bl
     assert [row.size for row in rows] == [blocks, blocks, blocks - 1, blocks - 1, blocks - 1]
     for row in rows:
         assert not row.any() and row.flags.c_contiguous
-        assert (row.ctypes.data + row.itemsize) % (REGISTER * row.itemsize) == 0
+        assert (row.ctypes.data + row.itemsize) % CACHE_LINE == 0

@@ -6,6 +6,7 @@ import pytest
 import dem
 from dem.spatial.build import room_for
 from dem.spatial.step import march
+from joints.rows import CACHE_LINE
 
 FIELDS = ("stress", "shear", "velocity", "displacement", "rotation")
 SQRT = r"(?:tail )?call \S+ @llvm\.sqrt\S*"
@@ -65,6 +66,16 @@ def test_absent_effects_leave_no_array(row, at_rest):
     ) * 4
     assert room_for(model, 1).books is None and blocks.samples.energy is None
     assert len(model.contact.rows.motion) == 12
+
+
+def test_every_tile_starts_on_a_cache_line(row, at_rest):
+    """And so does every row of it: no register of lanes straddles two lines."""
+    damped = {"damping_ratio": 0.1, "friction_angle": 30.0, "cohesion": 1e5}
+    blocks = at_rest(row(joints=damped, soft_layers=[{"y": 1.0, "damping_ratio": 0.2}]))
+    room, table = room_for(blocks.model, 2), blocks.model.contact.table
+    state = blocks.state
+    for tiles in (state.motion, state.history, state.sums, table, room.scratch, room.books):
+        assert not any(tile.ctypes.data % CACHE_LINE for tile in np.atleast_2d(tiles))
 
 
 def test_blocks_that_do_not_turn_have_three_freedoms(row, at_rest):
