@@ -9,6 +9,7 @@ from joints.energy import elastic_energy, fracture_energy_spent
 from joints.jit import inlined
 from joints.laws import law_of
 from joints.optional import given
+from joints.sums import total
 
 #: The rows of a ledger, in the order of `book` and `record_energy`.
 TERMS = ("kinetic", "elastic", "fracture", "gravity", "viscous", "friction", "boundary", "work")
@@ -32,23 +33,19 @@ def book(ledger, half_step, model, state, n, way):
 @inlined
 def viscous_power(drag, way):
     """Return the power (W) that dashpots in rock and joints take."""
-    total = 0.0
-    if drag is not None:
-        for i in range(drag.size):
-            total -= drag[i] * way[i]
-    return total
+    if drag is None:
+        return 0.0
+    return -total(drag, way)
 
 
 @inlined
 def mass_damping_power(keep, model, state, way):
     """Return the power (W) that mass-proportional damping takes."""
-    total = 0.0
-    if keep is not None:
-        alpha = mass_damping(keep, model.dt)
-        for i in range(way.size):
-            mean = 0.5 * (state.v_before[i] + state.v[i])
-            total += alpha * model.rock.mass[i] * mean * way[i]
-    return total
+    if keep is None:
+        return 0.0
+    mass = model.rock.mass
+    twice = total(mass, state.v_before, way) + total(mass, state.v, way)
+    return 0.5 * mass_damping(keep, model.dt) * twice
 
 
 @inlined
@@ -60,31 +57,31 @@ def mass_damping(keep, dt):
 @inlined
 def boundary_power(quiet, reaction, way):
     """Return the power (W) that goes into what absorbs at the ends."""
-    total = 0.0
+    power = 0.0
     if reaction is not None:
         for k in range(reaction.size):
-            total += reaction[k] * way[quiet.freedom[k]]
-    return total
+            power += reaction[k] * way[quiet.freedom[k]]
+    return power
 
 
 @inlined
 def load_power(loaded, n, way):
     """Return the power (W) of the load."""
-    total = 0.0
+    power = 0.0
     if loaded is not None:
         for k in range(loaded.freedom.size):
-            total += loaded.share[k] * loaded.pressure[n] * way[loaded.freedom[k]]
-    return total
+            power += loaded.share[k] * loaded.pressure[n] * way[loaded.freedom[k]]
+    return power
 
 
 @inlined
 def wall_power(held, wall, way):
     """Return the power (W) of a base that is shaken."""
-    total = 0.0
+    power = 0.0
     if wall is not None:
         for k in range(wall.size):
-            total += wall[k] * way[held.freedom[k]]
-    return total
+            power += wall[k] * way[held.freedom[k]]
+    return power
 
 
 @inlined
@@ -175,8 +172,7 @@ def record_energy(energy, model, state, s):
     """Record every term (J), in the order of TERMS: their balance is exact."""
     if energy is not None:
         mass, u, v, v_before = model.rock.mass, state.u, state.v, state.v_before
-        for i in range(u.size):
-            energy[0, s] += 0.5 * mass[i] * v_before[i] * v[i]
+        energy[0, s] = 0.5 * total(mass, v_before, v)
         energy[1, s] = rock_energy(model.rock.stiffness, u)
         record_joints(model.interfaces, state.memory, u, energy, s)
         energy[3, s] = -weight_energy(model.weight, u)
@@ -187,21 +183,17 @@ def record_energy(energy, model, state, s):
 @inlined
 def rock_energy(stiffness, u):
     """Return the elastic energy (J) of the rock."""
-    force, total = np.zeros(u.size), 0.0
+    force = np.zeros(u.size)
     multiply(stiffness, u, force)
-    for i in range(u.size):
-        total += 0.5 * u[i] * force[i]
-    return total
+    return 0.5 * total(u, force)
 
 
 @inlined
 def weight_energy(weight, u):
     """Return what gravity has done (J)."""
-    total = 0.0
-    if weight is not None:
-        for i in range(u.size):
-            total += weight[i] * u[i]
-    return total
+    if weight is None:
+        return 0.0
+    return total(weight, u)
 
 
 @inlined

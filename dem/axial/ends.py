@@ -61,8 +61,8 @@ def end_state(end: End | None) -> np.ndarray | None:
 
 
 @inlined
-def advance_end(chain, ledger, end, state, v, push, before, after):
-    """Return the outward velocity of the end block after the step.
+def advance_end(chain, ledger, end, state, j, v, push, before, after):
+    """Return the outward velocity of block j, at an end, after the step.
 
     v : before it. push : the outward force of everything but the end, N. before, after : the
     outward way of a shaken wall in the step before and in this one, m; None where it stands.
@@ -70,12 +70,12 @@ def advance_end(chain, ledger, end, state, v, push, before, after):
     dashpot c answers the mean (v + v* - (dt / m) r) / 2, which is solved for the reaction r.
     """
     if end is None:
-        return advanced(chain, ledger, v, push)
+        return advanced(chain, ledger, j, v, push)
     x, c = chain.impulse_to_speed, end.viscosity
     pace = v + (kept(chain.keep, v) + x * push)
     drag = 0.5 * c * _less_wall(pace, before, after, chain.dt)
     state[1] = (_spring(end.stiffness, state[0]) + drag) / (1.0 + 0.5 * x * c)
-    v_new = advanced(chain, ledger, v, push - state[1])
+    v_new = advanced(chain, ledger, j, v, push - state[1])
     state[0] = _less(end.decay * state[0] + end.gain * v_new, after)
     return v_new
 

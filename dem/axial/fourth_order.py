@@ -186,7 +186,7 @@ def book_work(chain, ledger, v, impulse):
     """
     if ledger is not None:
         start = impulse + chain.dt * steady_at(chain.steady, 0)
-        ledger.sums[2] += start * v[0] - chain.dt * steady_at(chain.steady, 1) * v[-1]
+        ledger.sums[1] += start * v[0] - chain.dt * steady_at(chain.steady, 1) * v[-1]
 
 
 @jitted
@@ -207,4 +207,4 @@ def _held(end, state):
 def book_ends(ledger, work):
     """Set the work done on the ends since the start, J."""
     if ledger is not None:
-        ledger.sums[1] = work
+        ledger.sums[0] = work

@@ -12,50 +12,34 @@ from joints.laws import spring_traction
 def book_dashpot(ledger, j, area, t, law, gap, opening, half_way):
     """Add a dashpot's work over the last half steps."""
     if ledger is not None:
-        _book_dashpot(ledger.dashpots, ledger.sums, j, area, t, law, gap, opening, half_way)
+        _book_dashpot(ledger.dashpots, ledger.viscous, j, area, t, law, gap, opening, half_way)
 
 
 @inlined
-def _book_dashpot(dashpots, sums, j, area, t, law, gap, opening, half_way):
+def _book_dashpot(dashpots, viscous, j, area, t, law, gap, opening, half_way):
     if dashpots is not None:
         f = area * (t - spring_traction(law, gap, opening))
-        sums[0] -= (dashpots[j] + f) * half_way
+        viscous[j] -= (dashpots[j] + f) * half_way
         dashpots[j] = f
 
 
 @inlined
-def book_damping(chain, ledger, v, v_new, force):
-    """Add the work of what damps a block itself, by what is missing in its momentum.
+def book_damping(chain, ledger, j, v, v_new, force):
+    """Add the work of what damps block j itself, by what is missing in its momentum.
 
     Such a force is known only once the block has moved, so its half step behind the whole step is
     booked apart and added by the next step.
     """
     if ledger is not None:
-        _book_damping(chain.keep, chain.local, ledger.sums, chain, v, v_new, force)
+        _book_damping(ledger.behind, ledger.viscous, chain, j, v, v_new, force)
 
 
 @inlined
-def _book_damping(keep, local, sums, chain, v, v_new, force):
-    if keep is None and local is None:
-        return
-    half_impulse = 0.5 * (chain.mass * (v_new - v) - chain.dt * force)
-    sums[0] -= half_impulse * v
-    sums[3] -= half_impulse * v_new
-
-
-@inlined
-def carry_over(chain, ledger):
-    """Add what the damping of the blocks has done since the last whole step."""
-    if ledger is not None:
-        _carry_over(chain.keep, chain.local, ledger.sums)
-
-
-@inlined
-def _carry_over(keep, local, sums):
-    if keep is None and local is None:
-        return
-    sums[0] += sums[3]
-    sums[3] = 0.0
+def _book_damping(behind, viscous, chain, j, v, v_new, force):
+    if behind is not None:
+        half_impulse = 0.5 * (chain.mass * (v_new - v) - chain.dt * force)
+        viscous[j] -= behind[j] + half_impulse * v
+        behind[j] = half_impulse * v_new
 
 
 @inlined
@@ -67,8 +51,8 @@ def book_ends(chain, ledger, reactions, load, v_start, v_end, before):
     """
     if ledger is not None:
         f, sums, half = ledger.forces, ledger.sums, 0.5 * chain.dt
-        sums[1] += half * ((f[1] + reactions[1]) * v_end - (f[0] + reactions[0]) * v_start)
-        sums[2] += half * (f[2] + load) * v_start
+        sums[0] += half * ((f[1] + reactions[1]) * v_end - (f[0] + reactions[0]) * v_start)
+        sums[1] += half * (f[2] + load) * v_start
         _book_prestress(chain.steady, sums, chain.dt, v_start, v_end)
         _book_base(before, sums, f[0] + reactions[0])
         f[0], f[1], f[2] = reactions[0], reactions[1], load
@@ -77,12 +61,12 @@ def book_ends(chain, ledger, reactions, load, v_start, v_end, before):
 @inlined
 def _book_prestress(steady, sums, dt, v_start, v_end):
     if steady is not None:
-        sums[2] += dt * (steady[0] * v_start - steady[1] * v_end)
+        sums[1] += dt * (steady[0] * v_start - steady[1] * v_end)
 
 
 @inlined
 def _book_base(before, sums, twice_reaction):
     if before is not None:
         work = -0.5 * twice_reaction * before
+        sums[0] += work
         sums[1] += work
-        sums[2] += work

@@ -6,10 +6,10 @@ from joints.jit import inlined, jitted
 
 
 @jitted
-def advanced(chain, ledger, v, force):
-    """Return the velocity of a block after a step from that before it and the force on it (N)."""
+def advanced(chain, ledger, j, v, force):
+    """Return the velocity of block j after a step from that before it and the force on it (N)."""
     v_new = damped(chain.keep, chain.local, v, chain.impulse_to_speed * force)
-    book_damping(chain, ledger, v, v_new, force)
+    book_damping(chain, ledger, j, v, v_new, force)
     return v_new
 
 

@@ -7,13 +7,15 @@ import numpy as np
 from dem.axial.ends import reaction
 from dem.axial.model import Model
 from dem.axial.motion import steady_at
-from dem.axial.state import State
+from dem.axial.state import INNER, State
 from dem.axial.step import joint_stress, load_at, march, opened
 from joints.borrowed import borrowed
 from joints.energy import elastic_energy, fracture_energy_spent
 from joints.guard import is_lost, next_look
 from joints.jit import inlined, jitted
 from joints.laws import law_of
+from joints.rows import zeros
+from joints.sums import total
 from joints.tiny import flush_tiny, restore_tiny
 
 
@@ -21,7 +23,8 @@ class Samples(NamedTuple):
     """Room for what is recorded, [receiver, sample].
 
     energy : [term, sample], J, the terms those of `terms`; None when the ledger is not kept.
-    v_before : each block's velocity before the sampled step; None likewise.
+    v_before : each block's velocity before the sampled step, and before that the energies of all
+        joints; None likewise.
     """
 
     stress: np.ndarray
@@ -47,7 +50,7 @@ def room(model: Model, state: State, samples: int) -> Samples:
         velocity=np.zeros((points, samples)),
         displacement=np.zeros((points, samples)),
         energy=np.zeros((len(terms(model)), samples)) if keep else None,
-        v_before=np.zeros_like(state.v) if keep else None,
+        v_before=zeros(state.v.size, INNER) if keep else None,
     )
 
 
@@ -130,45 +133,49 @@ def between(values, at, i):
 def energy_before(energy, chain, u, v, opening, v_before, s):
     """Sample what depends on where the blocks are, and keep the velocities before the step."""
     if energy is not None:
-        elastic = 0.0
-        for j in range(u.size - 1):
+        joints = v_before[: u.size - 1]
+        for j in range(joints.size):
             gap = u[j + 1] - u[j]
-            k = opened(opening, j, gap)
-            elastic += chain.area * elastic_energy(law_of(chain.law, j), gap, k)
-        energy[1, s] = elastic
-        sample_fracture(energy, chain, u, opening, s)
+            joints[j] = elastic_energy(law_of(chain.law, j), gap, opened(opening, j, gap))
+        energy[1, s] = chain.area * total(joints)
+        sample_fracture(energy, joints, chain, u, opening, s)
         sample_weight(energy, chain.weight, u, s)
         v_before[:] = v
 
 
 @inlined
-def sample_fracture(energy, chain, u, opening, s):
+def sample_fracture(energy, joints, chain, u, opening, s):
     """Sample what opening has spent of the joints' fracture energy."""
     if opening is not None:
-        spent = 0.0
-        for j in range(u.size - 1):
+        for j in range(joints.size):
             k = opened(opening, j, u[j + 1] - u[j])
-            spent += chain.area * fracture_energy_spent(law_of(chain.law, j), k)
-        energy[3, s] = spent
+            joints[j] = fracture_energy_spent(law_of(chain.law, j), k)
+        energy[3, s] = chain.area * total(joints)
 
 
 @inlined
 def sample_weight(energy, weight, u, s):
     """Sample the potential energy in gravity, zero in the unloaded pillar."""
     if weight is not None:
-        energy[-2, s] = -weight * u.sum()
+        energy[-2, s] = -weight * total(u)
 
 
 @inlined
 def energy_after(energy, chain, state, v_before, s):
     """Sample the kinetic energy, in the form that leapfrog conserves, and the running sums."""
     if energy is not None:
-        kinetic = 0.0
-        for j in range(state.v.size):
-            kinetic += 0.5 * chain.mass * v_before[j] * state.v[j]
+        energy[0, s] = 0.5 * chain.mass * total(v_before, state.v)
+        energy[2, s] = spent(state.ledger.viscous)
         sums = state.ledger.sums
-        energy[0, s], energy[2, s], energy[-1, s] = kinetic, sums[0], sums[2]
-        energy[boundary_row(state.opening), s] = sums[1]
+        energy[boundary_row(state.opening), s], energy[-1, s] = sums[0], sums[1]
+
+
+@inlined
+def spent(viscous):
+    """Return the work against all damping, J."""
+    if viscous is None:
+        return 0.0
+    return total(viscous)
 
 
 @inlined

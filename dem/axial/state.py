@@ -16,16 +16,20 @@ INNER = 1  # the first block, and joint, of the loop over all but the end blocks
 
 
 class Ledger(NamedTuple):
-    """Running sums of the work of every force that no potential gives.
+    """Running sums of the work of every force that no potential gives, J.
 
-    sums : viscous, boundary, work, up to the last step, and the viscous work that the damping of
-        the blocks at that step still does behind it, J.
+    sums : boundary and work, up to the last step.
     forces : start, end and load force of the last step, N.
+    viscous : work against what damps each block and the joint behind it, up to the last step; None
+        without damping. A sum over all blocks would make each wait for the one before.
+    behind : what the damping of each block at the last step still does behind it; None without.
     dashpots : each joint's dashpot force at the last step, N; None without dashpots.
     """
 
     sums: np.ndarray
     forces: np.ndarray
+    viscous: Any
+    behind: Any
     dashpots: Any
 
 
@@ -52,10 +56,6 @@ def state_at_rest(chain: Chain, block_count: int, keep_ledger: bool) -> State:
     """Return the state at rest, with no array for anything that the chain does not have."""
     damped = chain.law.normal_viscosity is not None
     softens = chain.law.tensile_strength is not None
-    ledger = None
-    if keep_ledger:
-        dashpots = zeros(block_count - 1, INNER) if damped else None
-        ledger = Ledger(np.zeros(4), np.zeros(3), dashpots)
     return State(
         u=zeros(block_count, INNER),
         v=zeros(block_count, INNER),
@@ -64,5 +64,16 @@ def state_at_rest(chain: Chain, block_count: int, keep_ledger: bool) -> State:
         broke=np.full(block_count - 1, -1) if softens else None,
         start=end_state(chain.start),
         end=end_state(chain.end),
-        ledger=ledger,
+        ledger=_ledger(chain, block_count, damped) if keep_ledger else None,
+    )
+
+
+def _ledger(chain: Chain, block_count: int, dashpots: bool) -> Ledger:
+    blocks = chain.keep is not None or chain.local is not None
+    return Ledger(
+        sums=np.zeros(2),
+        forces=np.zeros(3),
+        viscous=zeros(block_count, INNER) if blocks or dashpots else None,
+        behind=zeros(block_count, INNER) if blocks else None,
+        dashpots=zeros(block_count - 1, INNER) if dashpots else None,
     )

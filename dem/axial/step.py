@@ -7,7 +7,7 @@ step, which keeps second order.
 """
 
 from dem.axial.ends import advance_end, reaction
-from dem.axial.ledger import book_dashpot, book_ends, carry_over
+from dem.axial.ledger import book_dashpot, book_ends
 from dem.axial.motion import advanced, steady_at, weighed
 from joints.jit import inlined, jitted
 from joints.laws import law_of, normal_traction, update_opening
@@ -30,19 +30,18 @@ def step(chain, u, v, gap_rate, opening, broke, start, end, ledger, n, load, bef
     """Advance every block by step n under its joints, its weight, the load and the ends."""
     dt, weight, tail = chain.dt, chain.weight, u.size - 1
     v_start, v_end = v[0], v[tail]
-    carry_over(chain, ledger)
 
     push = joint_force(chain, u, v, gap_rate, opening, broke, ledger, n, 0)
     outward = push - weighed(weight, load + steady_at(chain.steady, 0))
-    v[0] = -advance_end(chain, ledger, chain.start, start, -v[0], outward, before, after)
+    v[0] = -advance_end(chain, ledger, chain.start, start, 0, -v[0], outward, before, after)
     u[0] += dt * v[0]
     for j in range(1, tail):
         f = joint_force(chain, u, v, gap_rate, opening, broke, ledger, n, j)
-        v[j] = advanced(chain, ledger, v[j], weighed(weight, push - f))
+        v[j] = advanced(chain, ledger, j, v[j], weighed(weight, push - f))
         u[j] += dt * v[j]
         push = f
     outward = weighed(weight, push - steady_at(chain.steady, 1))
-    v[tail] = advance_end(chain, ledger, chain.end, end, v[tail], outward, None, None)
+    v[tail] = advance_end(chain, ledger, chain.end, end, tail, v[tail], outward, None, None)
     u[tail] += dt * v[tail]
 
     book_ends(chain, ledger, (reaction(start), reaction(end)), load, v_start, v_end, before)

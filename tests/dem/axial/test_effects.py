@@ -104,6 +104,22 @@ def test_absent_effects_leave_no_array(pillar):
     assert state[2:] == (None,) * 6
 
 
+@pytest.mark.parametrize(
+    ("damping", "kept"),
+    [
+        ({}, (None, None, None)),
+        ({"joints__damping_ratio": 0.02}, (100, None, 99)),
+        ({"damping__mass_proportional": 10.0}, (100, 100, None)),
+        ({"damping__local": 0.5}, (100, 100, None)),
+    ],
+)
+def test_the_ledger_keeps_what_damping_calls_for(pillar, damping, kept):
+    _, state, _, _ = build(pillar(**damping))
+    ledger = state.ledger
+    rows = ledger.viscous, ledger.behind, ledger.dashpots
+    assert tuple(None if row is None else row.size for row in rows) == kept
+
+
 SOFTENING = {"joints__tensile_strength": 1e6, "joints__fracture_energy": 500.0}
 
 
@@ -129,7 +145,7 @@ def test_absent_effects_leave_no_instruction_in_a_block(pillar, instructions):
 
     def count(kind, **changes):
         model, state, _, _ = build(pillar(**{"record__energy": False, **changes}))
-        return instructions(advanced, (model.chain, state.ledger, 1.0, 1.0), kind)
+        return instructions(advanced, (model.chain, state.ledger, 1, 1.0, 1.0), kind)
 
     plain = {kind: count(kind) for kind in ("fmul", "fadd")}
     assert count("fcmp") == count("fsub") == 0
