@@ -1,5 +1,6 @@
 """Folders and files that cannot be written, or are in use: one line, and nothing is lost."""
 
+import signal
 import subprocess
 
 import pytest
@@ -109,9 +110,10 @@ def test_second_run_into_a_folder_is_refused_and_the_first_goes_on(
     lock = tmp_path / "out" / ".jointwave.lock"
     first = start(*arguments("axial", lock.parent, "--checkpoint-every", "0"))
     assert until(first, lock.exists)
+    first.send_signal(signal.SIGSTOP)  # lest it ends before the second has started
     code, (line,) = finish(start(*arguments("axial", lock.parent, *SHORT)))
     assert code == 2 and f"{lock.parent}: another jointwave is writing here" in line
-    assert first.poll() is None
+    first.send_signal(signal.SIGCONT)
     assert finish(first) == (0, []) and not lock.exists()
 
 
