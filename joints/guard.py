@@ -75,14 +75,28 @@ def next_look(guard, n, end):
 @inlined
 def is_lost(guard, v, n, energy, s, stride):
     """Return whether, after n steps, the speeds are out of bounds, or the last sample of a ledger,
-    s, of every stride-th step."""
-    return guard is not None and _is_lost(guard, v, n, energy, s, stride)
+    s, of every stride-th step.
+
+    Both looks are functions of their own: the steps are compiled as they are without a guard.
+    """
+    if guard is None:
+        return False
+    if speeds_exceed(v, guard.limit[0]):
+        note(guard.found, n, SPEED, n - EVERY - 1)
+        return True
+    return ledger_creates(guard, energy, s, s * stride)
 
 
 @apart
-def _is_lost(guard, v, n, energy, s, stride):
-    # Apart, so that the steps are compiled as they are without a guard.
-    return runs_away(guard, v, n) or creates_energy(guard, energy, s, s * stride)
+def speeds_exceed(v, limit):
+    """Return what `exceeds` does."""
+    return exceeds(v, limit)
+
+
+@apart
+def ledger_creates(guard, energy, s, n):
+    """Return what `creates_energy` does."""
+    return creates_energy(guard, energy, s, n)
 
 
 @inlined

@@ -119,28 +119,21 @@ def run(composition, model, state, samples, stride, first, last, guard=None):
     tiny = flush_tiny()
     composition, model, state, samples = borrowed((composition, model, state, samples))
     s, n, end = first, first * stride, last * stride
+    due = next_look(guard, n, end)
     while n < end:
-        stop = next_look(guard, n, end)
-        s = take(composition, model, state, samples, stride, s, n, stop)
-        n = stop
-        if is_lost(guard, state.v, n, None, s - 1, stride):
-            break
-    restore_tiny(tiny)
-
-
-@inlined
-def take(composition, model, state, samples, stride, s, n, last):
-    """Take steps n .. last - 1 and the samples from s on that fall on them; return the next."""
-    while n < last:
         if n == s * stride:
             book_ends(state.ledger, held(model.chain, state) - composition.stored)
             sample_before(model, state, samples, s)
             sample_after(model, state, samples, s, n)
             s += 1
-        end = min(s * stride, last)
-        march(composition, state, n, end)
-        n = end
-    return s
+        stop = min(s * stride, due)
+        march(composition, state, n, stop)
+        n = stop
+        if n == due:
+            if is_lost(guard, state.v, n, None, s - 1, stride):
+                break
+            due = next_look(guard, n, end)
+    restore_tiny(tiny)
 
 
 @jitted

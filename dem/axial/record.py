@@ -63,28 +63,21 @@ def run(model, state, samples, stride, first, last, guard=None):
     tiny = flush_tiny()
     model, state, samples = borrowed((model, state, samples))
     s, n, end = first, first * stride, last * stride
+    due = next_look(guard, n, end)
     while n < end:
-        stop = next_look(guard, n, end)
-        s = take(model, state, samples, stride, s, n, stop)
-        n = stop
-        if is_lost(guard, state.v, n, samples.energy, s - 1, stride):
-            break
-    restore_tiny(tiny)
-
-
-@inlined
-def take(model, state, samples, stride, s, n, last):
-    """Take steps n .. last - 1 and the samples from s on that fall on them; return the next."""
-    while n < last:
         if n == s * stride:
             sample_before(model, state, samples, s)
             march(model, state, n, n + 1)
             sample_after(model, state, samples, s, n)
             n, s = n + 1, s + 1
-        end = min(s * stride, last)
-        march(model, state, n, end)
-        n = end
-    return s
+        stop = min(s * stride, due)
+        march(model, state, n, stop)
+        n = stop
+        if n == due:
+            if is_lost(guard, state.v, n, samples.energy, s - 1, stride):
+                break
+            due = next_look(guard, n, end)
+    restore_tiny(tiny)
 
 
 @inlined
