@@ -10,6 +10,7 @@ import time
 import pytest
 
 OLD = b"CDF of an earlier run"
+NOTICES = 30  # s, in which mpiexec has long seen that a process has died
 QUICK = {"axial": 2, "spatial": 2, "explicit": 1, "implicit": 2, "shared": 1}
 ALL = dict.fromkeys(QUICK, 10)
 
@@ -28,7 +29,10 @@ def checkpoints(folder):
 
 
 def kill(process, ranks, rng):
-    """Kill the only process of a run, or one of those that share it, which ends them all."""
+    """Kill the only process of a run, or one of those that share it, which ends them all.
+
+    mpiexec may wait for ever for one that dies while it is being started: then all are killed.
+    """
     victim = process.pid
     if ranks > 1:
         children = subprocess.run(
@@ -37,7 +41,11 @@ def kill(process, ranks, rng):
         victim = int(rng.choice(children.stdout.split() or [victim]))
     with contextlib.suppress(ProcessLookupError):
         os.kill(victim, signal.SIGKILL)
-    process.communicate()
+    try:
+        process.communicate(timeout=NOTICES)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
 
 
 @pytest.fixture
