@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -29,6 +29,15 @@ ALL_TERMS = (
     "work",
 )
 TERMS = ("kinetic", "elastic", "viscous", "boundary", "work")
+
+#: What a computed solution bounds its own error of, and the dimensions of the bound.
+ERRORS = {
+    "stress": ("stress_y",),
+    "shear": ("stress_y", "across"),
+    "velocity": ("velocity_y", "axis"),
+    "displacement": ("velocity_y", "axis"),
+    "rotation": ("velocity_y", "axis"),
+}
 
 Variable = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
 
@@ -72,6 +81,7 @@ def fields(
     shear: np.ndarray | None = None,
     rotation: np.ndarray | None = None,
     terms: Sequence[str] = TERMS,
+    errors: Mapping[str, np.ndarray] | None = None,
     **attributes: Any,
 ) -> Fields:
     """Return a result with the schema that all engines and exact solutions share.
@@ -89,6 +99,9 @@ def fields(
         area, Pa; of spatial motion alone.
     rotation : float array [len(record.velocity), n, 3], about x, y, z, rad; likewise.
     terms : what the rows of `energy` are, from ALL_TERMS.
+    errors : of a solution that is computed, an upper bound of the root-mean-square error over time
+        of each waveform, by its quantity (a key of ERRORS) and in its unit: float arrays of that
+        quantity's shape without time. A closed form has none.
     attributes : numbers and texts about the run (dt, steps, seconds, ...).
 
     All are those of `cases.loads.load_history`; the result has the scale of the scene's own load.
@@ -99,6 +112,7 @@ def fields(
         stress, velocity = scale * stress, scale * velocity
         displacement = None if displacement is None else scale * displacement
         energy = None if energy is None else scale * (scale * energy)
+        errors = {name: scale * np.asarray(bound) for name, bound in (errors or {}).items()}
     coords: dict[str, Variable] = {
         "time": (("time",), time, label("time")),
         "stress_y": (("stress_y",), np.array(record.stress, dtype=float), label("stress_y")),
@@ -123,6 +137,12 @@ def fields(
     if energy is not None:
         variables["energy"] = (("term", "time"), energy, label("energy"))
         coords["term"] = (("term",), np.array(list(terms)), label("term"))
+    for name, bound in (errors or {}).items():
+        variables[f"{name}_error"] = (
+            ERRORS[name],
+            _of_receivers(name, bound),
+            label(f"{name}_error"),
+        )
     common = {
         "engine": engine,
         "title": scene.title,
@@ -151,6 +171,12 @@ def imbalance(energy: np.ndarray, terms: Sequence[str] = TERMS) -> float:
     balance = since.sum(axis=0) - 2 * work
     scale = float(np.abs(work if work.any() else since).max())
     return float(np.abs(balance).max()) / scale if scale > 0 else 0.0
+
+
+def _of_receivers(name: str, bound: np.ndarray) -> np.ndarray:
+    """Return a bound with the dimensions that ERRORS gives it; axial motion has one axis."""
+    found = np.asarray(bound, dtype=float)
+    return found[:, None] if found.ndim < len(ERRORS[name]) else found
 
 
 def _with_axis(values: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ import xarray as xr
 from cases import Scene, load
 from cases.arrays import size_of
 from cases.labels import LABELS
-from cases.result import ALL_TERMS, TERMS, dataset, energy_residual, imbalance, scene_hash
+from cases.result import ALL_TERMS, ERRORS, TERMS, dataset, energy_residual, imbalance, scene_hash
 from cases.sampling import sample_times
 
 POINTS = {"record.velocity": [19.75, 20.25]}
@@ -70,6 +70,37 @@ def test_displacement_and_energy_are_absent_when_not_given(scene_with):
     bare = dataset(scene, "images", sample_times(scene), np.zeros((1, n)), np.zeros((0, n)))
     assert set(bare.data_vars) == {"stress", "velocity"}
     assert bare.velocity.dims == ("velocity_y", "time", "axis")
+
+
+def test_a_computed_result_holds_its_error_by_waveform(pillar, tmp_path):
+    """Scaled as the waveforms are, and of axial motion with its one axis."""
+    scene = pillar(
+        load__amplitude=1e300, record__energy=False, record__stress=[5.0], record__velocity=[1, 2]
+    )
+    n, scale = len(sample_times(scene)), scene.load.scale
+    errors = {"stress": np.array([2.0]), "velocity": np.array([3.0, 4.0])}
+    waves = np.zeros((1, n)), np.zeros((2, n))
+    found = dataset(scene, "lattice", sample_times(scene), *waves, errors=errors, known_until=0.01)
+    assert scale > 1e299 and found["stress_error"].values.tolist() == [2.0 * scale]
+    assert found["velocity_error"].dims == ("velocity_y", "axis")
+    assert found["velocity_error"].values[:, 0].tolist() == [3.0 * scale, 4.0 * scale]
+    assert found["velocity_error"].attrs["units"] == "m/s" and found.attrs["known_until"] == 0.01
+    assert "displacement_error" not in found
+    found.to_netcdf(tmp_path / "own.nc", engine="scipy")
+    with xr.open_dataset(tmp_path / "own.nc", engine="scipy") as back:
+        xr.testing.assert_identical(back.load(), found)
+
+
+def test_the_bounds_of_a_spatial_result_have_its_axes(scene_with):
+    scene = scene_with(**POINTS, **{"load.direction": [1.0, 0.0, 0.0]})
+    n = len(sample_times(scene))
+    waves = np.zeros((1, n)), np.zeros((2, n, 3))
+    sizes = {"stress": 1, "shear": (1, 2), "velocity": (2, 3), "displacement": (2, 3)}
+    errors = {name: np.ones(size) for name, size in (sizes | {"rotation": (2, 3)}).items()}
+    found = dataset(scene, "own", sample_times(scene), *waves, waves[1], errors=errors)
+    for name in errors:
+        assert found[f"{name}_error"].dims == tuple(d for d in ERRORS[name])
+        assert found[f"{name}_error"].shape == errors[name].shape
 
 
 def test_hash_follows_every_number(scene_with):
