@@ -148,11 +148,24 @@ def fields(
         "title": scene.title,
         "variant": scene.name,
         "scene_hash": scene_hash(scene),
+        **static_attributes(scene),
         "effects": json.dumps(active_effects(scene)),
     }
     # The longest last, where it hides no other.
     about = {**common, **attributes, "scene": scene.model_dump_json()}
     return Fields(variables, coords, about)
+
+
+def static_attributes(scene: Scene) -> dict[str, Any]:
+    """Return what a result says of the state that its motion starts from.
+
+    starts : "unloaded", "prestressed" or "at rest under gravity". prestress : of every section, Pa,
+    where there is one. Displacement counts from the prestressed state.
+    """
+    static = scene.gravity is not None and scene.gravity.static
+    pressed = {} if scene.prestress is None else {"prestress": scene.prestress.normal}
+    starts = "prestressed" if pressed else "unloaded"
+    return {"starts": "at rest under gravity" if static else starts, **pressed}
 
 
 def energy_residual(result: xr.Dataset) -> float:

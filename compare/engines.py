@@ -9,12 +9,17 @@ from cases.errors import SceneError
 from cases.keeper import Keeper
 from cases.scene import Scene
 from cases.size import refuse_beyond_memory, waveform_bytes
-from compare.exact.answer import YES, Answer, no
+from compare.exact.answer import YES, Answer, Form, Resolves, Rock, no
 
 if TYPE_CHECKING:
     import xarray as xr
 
-ENGINES = ("dem", "continuum-jointed", "continuum-equivalent")
+#: What each engine resolves.
+ENGINES = {
+    "dem": Resolves(Rock.RIGID_BLOCKS, Form.RUN, dimension=3),
+    "continuum-jointed": Resolves(Rock.JOINTED, Form.RUN, dimension=3),
+    "continuum-equivalent": Resolves(Rock.HOMOGENISED, Form.RUN, dimension=3),
+}
 
 Progress = Callable[[float], None]
 
@@ -28,7 +33,7 @@ def exact_names() -> tuple[str, ...]:
 
 def names() -> tuple[str, ...]:
     """Return the names of everything that can solve a scene."""
-    return ENGINES + exact_names()
+    return (*ENGINES, *exact_names())
 
 
 def applies(name: str, scene: Scene) -> Answer:

@@ -1,16 +1,29 @@
-"""How far one waveform is from another: one number for each way of being different.
+"""The distance of one waveform from another, and of one result from another.
 
-Every function takes the waveform first and its reference second, both [time], equally sampled.
+A waveform is one component of one quantity at one receiver, less its static state: what a scene
+holds before its load acts is not part of the motion. Nothing is pooled: the misfit of two results
+is that of the waveform which is furthest off. Every function takes a waveform or result first and
+its reference second, equally sampled.
 """
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from scipy.signal import correlate, correlation_lags
 
-#: What a misfit is taken over: the first group that is not zero throughout.
-MEASURED = (("stress", "shear"), ("velocity",), ("rotation",))
+from compare.curvefiles import DIMENSIONS
+from compare.curves import Place
+
+#: Quantities of one unit, loudest first judged beside each other.
+UNITS = (("stress", "shear"), ("velocity",), ("displacement",), ("rotation",))
+QUANTITIES = tuple(quantity for unit in UNITS for quantity in unit)
+#: A waveform whose root mean square stays below this part of the loudest one of its unit, in both
+#: results, is listed and does not decide a misfit.
+FAINT = 0.01
+ROUND_OFF = 1e-9  # of the loudest displacement (m): rotations (rad) below are none
+JUDGED = 10.0  # times its own error: the least misfit that a reference can tell
 
 
 class Distance(NamedTuple):
@@ -42,32 +55,166 @@ def distance(one: np.ndarray, other: np.ndarray, dt: float, spectral: bool = Fal
 
 
 def relative_l2(one: np.ndarray, other: np.ndarray) -> float:
-    """Return ||one - other|| / ||other||, over all samples of all receivers."""
+    """Return ||one - other|| / ||other|| over all samples."""
     difference = float(np.linalg.norm(np.ravel(one - other)))
     return 0.0 if difference == 0 else _ratio(difference, float(np.linalg.norm(np.ravel(other))))
 
 
-def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
-    """Return the relative L2 misfit of two results over what `recorded` returns of them."""
-    a, b = recorded(one, other)
-    return relative_l2(a, b) if a.size else 0.0
+class Pairing(NamedTuple):
+    """One waveform [n] of a result beside that of its reference, both less their static state.
 
-
-def recorded(one: xr.Dataset, other: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Return all recorded stresses of two results, shears included, as one array each.
-
-    Where both results have none or only zeros of these, all velocities, then all rotations; empty
-    where nothing moves. A quantity that only one of them has is left out.
+    error : bound of the reference's own root-mean-square error, 0 of a closed form.
+    faint : whether both are too weak to decide a misfit.
     """
-    for quantities in MEASURED:
-        shared = [q for q in quantities if q in one and q in other]
-        a, b = (
-            np.concatenate([np.zeros(0), *(r[q].values.ravel() for q in shared)])
-            for r in (one, other)
-        )
-        if a.any() or b.any():
-            return a, b
-    return np.zeros(0), np.zeros(0)
+
+    place: Place
+    one: np.ndarray
+    other: np.ndarray
+    error: float
+    faint: bool
+
+    @property
+    def misfit(self) -> float:
+        """Relative L2 distance."""
+        return relative_l2(self.one, self.other)
+
+    @property
+    def floor(self) -> float:
+        """Relative error of the reference itself."""
+        return 0.0 if self.error == 0 else _ratio(self.error, rms(self.other))
+
+
+class Worst(NamedTuple):
+    """The waveform of two results that is furthest off; `place` is None where nothing moves."""
+
+    misfit: float
+    place: Place | None = None
+    floor: float = 0.0
+
+    @property
+    def judged(self) -> float:
+        """What is certain: the misfit, but not less than ten times the reference's own error."""
+        return max(self.misfit, JUDGED * self.floor)
+
+    @property
+    def where(self) -> str:
+        """Quantity and receiver in words."""
+        return in_words(self.place) if self.place else "nowhere"
+
+
+def in_words(place: Place) -> str:
+    """Return a place as "shear x at 15 m"."""
+    return f"{place.quantity} {place.axis}".rstrip() + f" at {place.y:g} m"
+
+
+def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
+    """Return the relative L2 misfit of the waveform of two results that is furthest off."""
+    return worst(one, other).misfit
+
+
+def worst(one: xr.Dataset, other: xr.Dataset) -> Worst:
+    """Return the waveform of two results that is furthest off, faint ones left out."""
+    found = [Worst(p.misfit, p.place, p.floor) for p in pairings(one, other) if not p.faint]
+    return max(found, key=lambda w: w.judged, default=Worst(0.0))
+
+
+def pairings(one: xr.Dataset, other: xr.Dataset) -> list[Pairing]:
+    """Return every waveform that both results have, up to when the reference is known.
+
+    Those that are zero in both are left out.
+    """
+    n = _known_samples(other)
+    found = [
+        Pairing(place, a[:n], b[:n], error_of(other, place), False)
+        for (place, a), (_, b) in zip(waveforms(one, other), waveforms(other, one), strict=True)
+    ]
+    loudest = _loudest(found)
+    return [
+        p._replace(faint=max(rms(p.one), rms(p.other)) < loudest[p.place.quantity])
+        for p in found
+        if p.one.any() or p.other.any()
+    ]
+
+
+def waveforms(result: xr.Dataset, like: xr.Dataset) -> Iterator[tuple[Place, np.ndarray]]:
+    """Yield the motion of a result [n] at every place that it shares with another result."""
+    for quantity in QUANTITIES:
+        if quantity not in result or quantity not in like:
+            continue
+        values = motion(result, quantity)
+        places, axes = _places(result, quantity)
+        others, other_axes = _places(like, quantity)
+        for i in (i for i, y in enumerate(places) if y in others):
+            for k in (k for k, axis in enumerate(axes) if axis in other_axes):
+                wave = values[i] if values.ndim == 2 else values[i, :, k]
+                named = axes[k] if len(axes) > 1 else ""
+                yield Place(quantity, named, float(places[i])), wave
+
+
+def _places(result: xr.Dataset, quantity: str) -> tuple[list[float], list[str]]:
+    """Return the y of the receivers (m) and the axes of a quantity, "y" where it has no others."""
+    receivers, components = DIMENSIONS[quantity]
+    found = result[quantity]
+    axes = [str(a) for a in found[components].values] if components in found.dims else ["y"]
+    return found[receivers].values.tolist(), axes
+
+
+def motion(result: xr.Dataset, quantity: str) -> np.ndarray:
+    """Return a quantity less its static state [place, time] or [place, time, component].
+
+    The prestress of a section; all of the first sample where gravity's static state is there.
+    """
+    values = result[quantity].values
+    return values - static_state(result, quantity)
+
+
+def static_state(result: xr.Dataset, quantity: str) -> np.ndarray:
+    """Return what a quantity holds before the load acts, of a shape that broadcasts over time."""
+    values = result[quantity].values
+    if result.attrs.get("starts") == "at rest under gravity":
+        return values[:, :1]
+    prestress = float(result.attrs.get("prestress", 0.0)) if quantity == "stress" else 0.0
+    return np.full_like(values[:, :1], prestress)
+
+
+def error_of(result: xr.Dataset, place: Place) -> float:
+    """Return the bound of a result's own root-mean-square error at a place, 0 of a closed form."""
+    name = f"{place.quantity}_error"
+    if name not in result:
+        return 0.0
+    places, axes = _places(result, place.quantity)
+    error = result[name].values[places.index(place.y)]
+    return float(
+        error if np.ndim(error) == 0 else error[axes.index(place.axis) if place.axis else 0]
+    )
+
+
+def _known_samples(reference: xr.Dataset) -> int:
+    """Return how many samples a reference knows: all, or those before it turns chaotic."""
+    until = reference.attrs.get("known_until")
+    times = reference["time"].values
+    return len(times) if until is None else int(np.searchsorted(times, until, side="right"))
+
+
+def _loudest(found: list[Pairing]) -> dict[str, float]:
+    """Return by quantity the root mean square below which a waveform is faint.
+
+    Of a unit in which the reference stands still while something else moves, all are.
+    """
+    loud = {
+        quantity: max((rms(p.other) for p in found if p.place.quantity in unit), default=0.0)
+        for unit in UNITS
+        for quantity in unit
+    }
+    still = np.inf if any(loud.values()) else 0.0
+    least = {quantity: FAINT * value or still for quantity, value in loud.items()}
+    least["rotation"] = max(least["rotation"], ROUND_OFF * loud["displacement"])
+    return least
+
+
+def rms(waveform: np.ndarray) -> float:
+    """Return the root mean square of a waveform [n]."""
+    return float(np.linalg.norm(waveform) / np.sqrt(max(waveform.size, 1)))
 
 
 def delay(one: np.ndarray, other: np.ndarray, dt: float) -> float:

@@ -84,17 +84,20 @@ class PairItem(pytest.Item):
         if self.reason:
             raise Misfit(self.reason)
         from cases.errors import SceneError, UnstableError
-        from compare.metrics import misfit
+        from compare.metrics import worst
 
         try:
             one, other = (self._solved(name) for name in self.pair.split(" ~ "))
         except (SceneError, UnstableError) as error:
             raise Misfit(f"{self.pair}: {error}") from None
-        found = misfit(one, other)
-        self.user_properties.append(("misfit", float(found)))
-        if not found <= self.bound:
-            far = f"{self.pair}: misfit {found:.3g} exceeds the bound {self.bound:g}"
-            raise Misfit(f"{far}\n{self._command()}")
+        found = worst(one, other)
+        self.user_properties.append(("misfit", float(found.misfit)))
+        if not found.misfit <= self.bound:
+            far = f"misfit {found.misfit:.3g} of {found.where} exceeds the bound {self.bound:g}"
+            raise Misfit(f"{self.pair}: {far}\n{self._command()}")
+        if not found.judged <= self.bound:
+            least = f"the reference itself errs by {found.floor:.2g}, a tenth of what it can judge"
+            raise Misfit(f"{self.pair}: {least}; the bound is {self.bound:g}")
 
     def _solved(self, name: str):
         """Return a result; each engine runs once in a session for the same scene."""

@@ -54,13 +54,16 @@ def percent(x: float) -> str:
 
 
 def misfit_table(comparisons: list[Comparison]) -> Table:
-    """Return the relative L2 misfits in %: one row a pair, one column a variant and receiver."""
+    """Return the relative L2 misfits in %: one row a pair, one column a variant and receiver.
+
+    Faint waveforms and displacements, which are velocities once more, are in `distance_table`.
+    """
     names = variant_names(comparisons)
-    places = [(row.quantity, row.y) for row in _longest(comparisons)]
-    places = list(dict.fromkeys(places))
+    rows = [row for c in comparisons for row in c.rows if _is_shown(row)]
+    places = list(dict.fromkeys((row.quantity, row.y) for row in rows))
     cells: dict[Pair, dict[tuple, str]] = {}
     for name, comparison in zip(names, comparisons, strict=True):
-        for row in comparison.rows:
+        for row in filter(_is_shown, comparison.rows):
             where = (name, row.quantity, row.y)
             cells.setdefault(row.pair, {})[where] = percent(row.distance.misfit)
     columns = [(name, *place) for name in names for place in places]
@@ -76,8 +79,8 @@ def misfit_table(comparisons: list[Comparison]) -> Table:
     )
 
 
-def _longest(comparisons: list[Comparison]) -> list[Row]:
-    return max((c.rows for c in comparisons), key=len)
+def _is_shown(row: Row) -> bool:
+    return not (row.faint or row.quantity.startswith("displacement"))
 
 
 def given(comparisons: list[Comparison]) -> list[Pair]:
@@ -134,6 +137,8 @@ def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
             "quantity": row.quantity,
             "y (m)": row.y,
             "relative L2": row.distance.misfit,
+            "own error of the reference": row.floor,
+            "faint": row.faint,
             "peak ratio": row.distance.peak_ratio,
             "delay (s)": row.distance.delay,
             "period ratio": row.distance.period_ratio,
@@ -228,7 +233,7 @@ def reason_table(comparisons: list[Comparison]) -> Table:
 def summary_table(figures: dict[str, list[Comparison]]) -> Table:
     """Return the largest misfit in % of each pair over the variants of each figure.
 
-    Over all receivers of one variant together, as `[expect]` bounds it.
+    Of the waveform that is furthest off, as `[expect]` bounds it.
     """
 
     def worst(pair: Pair, comparisons: list[Comparison]) -> str:

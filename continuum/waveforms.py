@@ -39,7 +39,7 @@ def waveforms(scene: Scene, discrete: Discrete, samples: Samples) -> dict[str, n
 def _prestress(scene: Scene, discrete: Discrete) -> np.ndarray:
     """Return the prestress (Pa) of sections in the rock; that on a joint is in its traction."""
     places = np.array(scene.record.stress, dtype=float)
-    if scene.prestress is None or not discrete.body.mesh.joints.joint.size:
+    if scene.prestress is None:
         return np.zeros(places.size)
     on_joint = np.array([is_on_joint(discrete.body, place) for place in places], dtype=bool)
     return np.where(on_joint, 0.0, scene.prestress.normal)

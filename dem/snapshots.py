@@ -19,6 +19,7 @@ from cases.snapshots import (
     with_snapshots,
 )
 from cases.subcells import CORNERS
+from dem.static import prestressed
 
 CORNERS_OF_A_BLOCK = 8
 
@@ -44,6 +45,7 @@ class BlockFilm(Film):
         refuse_beyond_room(scene, CORNERS_OF_A_BLOCK * p.block_count)
         super().__init__(samples_between(scene) or 1, shoot)
         self.p = p
+        self.at_rest = prestressed(scene, p) if scene.prestress else None
 
     def developed(self, result: Fields) -> Fields:
         """Return the run's result with its snapshots."""
@@ -52,7 +54,10 @@ class BlockFilm(Film):
         centres[:, 0, 1] = self.p.spacing * (np.arange(count) + 0.5)
         shots = self.shots[: len(time)]
         motion = [corner_motion(shot, corners, self.p) for shot in shots]
-        u, v = (np.stack(x).reshape(len(time), -1, 3) for x in zip(*motion, strict=True))
+        u, v = (np.stack(x) for x in zip(*motion, strict=True))
+        if self.at_rest is not None:
+            u[..., 1] -= self.at_rest[:, None]
+        u, v = (x.reshape(len(time), -1, 3) for x in (u, v))
         found = snapshots(
             time,
             (centres + corners).reshape(-1, 3),

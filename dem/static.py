@@ -15,7 +15,9 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from cases.calibrate import Properties
 from cases.errors import SceneError
+from cases.sampling import Interpolation
 from cases.scene import Scene
 
 STEPS_BETWEEN_LOOKS = 10
@@ -60,6 +62,33 @@ class Rest(NamedTuple):
     def attributes(self) -> dict[str, Any]:
         """What a result says of it."""
         return {"static_steps": self.steps, "static_out_of_balance": self.ratio}
+
+
+def prestressed(scene: Scene, p: Properties) -> np.ndarray:
+    """Return the displacement of every block under the prestress alone [N], m: where results count
+    displacement from.
+
+    A fixed end keeps its place, the far one if both are; between two that give way the displacement
+    has zero mean.
+    """
+    normal = scene.prestress.normal if scene.prestress else 0.0
+    u = np.append(0.0, np.cumsum(-normal / p.stiffness))
+    half = normal / (2 * p.regular_stiffness)
+    if scene.ends.end == "fixed":
+        return u - u[-1] + half
+    return u - half if scene.ends.start == "fixed" else u - u.mean()
+
+
+def since_prestress(
+    scene: Scene, p: Properties, displacement: np.ndarray, points: Interpolation
+) -> np.ndarray:
+    """Return displacements along y [points, n] (m) as results count them: from the prestressed
+    state."""
+    if scene.prestress is None:
+        return displacement
+    u = prestressed(scene, p)
+    at_rest = (1 - points.weight) * u[points.left] + points.weight * u[points.right]
+    return displacement - at_rest[:, None]
 
 
 def settle(scene: Scene, system: System) -> Rest:

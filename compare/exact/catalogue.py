@@ -16,8 +16,8 @@ from compare.exact import (
     spatial_lattice,
 )
 
-#: Each module has NAME, applies(scene) -> Answer and solve(scene) -> xarray.Dataset; what they
-#: need of scipy is imported only when they solve.
+#: Each module has NAME, RESOLVES, applies(scene) -> Answer and solve(scene) -> xarray.Dataset; what
+#: they need of scipy is imported only when they solve.
 CATALOGUE: dict[str, ModuleType] = {
     module.NAME: module
     for module in (

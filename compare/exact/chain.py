@@ -40,7 +40,6 @@ class Chain:
     half_stiffness, half_viscosity : of the half block behind an end, N/m and N s/m.
     dashpot : Z A of a quiet or matched end, N s/m.
     prestress : N, compression positive.
-    pressed : float array [N], displacement under the prestress, m.
     gravity : its component along y, m/s2.
     mass_damping : alpha, 1/s.
     shaken : whether the drive is the velocity of the fixed start's wall (m/s), else a force (N).
@@ -58,7 +57,6 @@ class Chain:
     half_viscosity: float
     dashpot: float
     prestress: float
-    pressed: np.ndarray
     gravity: float
     mass_damping: float
     shaken: bool
@@ -102,25 +100,11 @@ def chain(scene: Scene) -> Chain:
         half_viscosity=half * (p.time_constant or 0.0),
         dashpot=p.impedance * p.area,
         prestress=prestress,
-        pressed=_pressed(prestress, p.stiffness * p.area, ends, half),
         gravity=gravity.acceleration * gravity.direction[1] if gravity else 0.0,
         mass_damping=p.mass_damping or 0.0,
         shaken=scene.load.shakes_base,
         gain=scene.load.direction[1] * (1.0 if scene.load.shakes_base else p.area),
     )
-
-
-def _pressed(
-    force: float, stiffness: np.ndarray, ends: tuple[str, str], half_stiffness: float
-) -> np.ndarray:
-    """Return the displacement of elastic blocks under a prestress (N), m.
-
-    The wall of a fixed end keeps its place, the end's if both are fixed; without one the mean does.
-    """
-    u = -np.append(0.0, np.cumsum(force / stiffness))
-    if ends[1] == "fixed":
-        return u - u[-1] + force / half_stiffness
-    return u - force / half_stiffness if ends[0] == "fixed" else u - u.mean()
 
 
 def _viscosity(p: Properties) -> np.ndarray:
@@ -202,4 +186,4 @@ def receivers(
 
     centres, points = d * (np.arange(n) + 0.5), scene.record.velocity
     stress = read(forces / chain.area, d * np.arange(n + 1), scene.record.stress)
-    return stress, read(v, centres, points), read(u + chain.pressed, centres, points)
+    return stress, read(v, centres, points), read(u, centres, points)

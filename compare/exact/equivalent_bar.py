@@ -12,11 +12,12 @@ import xarray as xr
 
 from cases.calibrate import calibrate
 from cases.scene import Scene
-from compare.exact.answer import YES, Answer, no
+from compare.exact.answer import YES, Answer, Resolves, Rock, no
 from compare.exact.conditions import bars_tension, beyond, has_thick_layer
 from compare.exact.laplace import Bar, end_of, solved
 
 NAME = "equivalent-bar"
+RESOLVES = Resolves(Rock.HOMOGENISED)
 
 
 def applies(scene: Scene) -> Answer:

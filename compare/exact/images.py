@@ -23,10 +23,11 @@ from cases.loads import load_history
 from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
-from compare.exact.answer import YES, Answer, no
+from compare.exact.answer import YES, Answer, Form, Resolves, Rock, no
 from compare.exact.conditions import bars_tension, beyond, has_interfaces, joints_are_damped
 
 NAME = "images"
+RESOLVES = Resolves(Rock.HOMOGENISED, Form.CLOSED)
 MOST_TRIPS = 1_000_000  # through the bar and back
 
 #: Reflection coefficient of stress at an end of the bar.

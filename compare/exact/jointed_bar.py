@@ -13,11 +13,12 @@ import xarray as xr
 
 from cases.calibrate import calibrate
 from cases.scene import Scene
-from compare.exact.answer import YES, Answer, no
+from compare.exact.answer import YES, Answer, Resolves, Rock, no
 from compare.exact.conditions import bars_tension, beyond, has_thick_layer
 from compare.exact.laplace import Bar, end_of, solved
 
 NAME = "jointed-bar"
+RESOLVES = Resolves(Rock.JOINTED)
 
 
 def applies(scene: Scene) -> Answer:

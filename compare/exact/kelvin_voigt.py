@@ -25,11 +25,12 @@ from cases.loads import Sine, load_history
 from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
-from compare.exact.answer import YES, Answer, no
+from compare.exact.answer import YES, Answer, Resolves, Rock, no
 from compare.exact.conditions import bars_tension, beyond, has_interfaces, rock_is_damped
 from compare.exact.series import rigid
 
 NAME = "kelvin-voigt"
+RESOLVES = Resolves(Rock.HOMOGENISED)
 SPLIT = 1e-5  # least distance of a mode's roots: q_n is even in it, so it costs 1e-10
 
 

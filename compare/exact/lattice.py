@@ -22,13 +22,14 @@ from cases.loads import Step
 from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
-from compare.exact.answer import YES, Answer, no
+from compare.exact.answer import YES, Answer, Resolves, Rock, no
 from compare.exact.chain import Chain, chain, rates, receivers
 from compare.exact.conditions import bars_tension, beyond
 from compare.exact.drive import drive
 from compare.exact.linear import response
 
 NAME = "lattice"
+RESOLVES = Resolves(Rock.RIGID_BLOCKS)
 MOST_BLOCKS = 2000
 HELD = ("reversed load", "gravity", "prestress", "mass damping")
 

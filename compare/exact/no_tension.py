@@ -27,13 +27,14 @@ from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
 from cases.size import require
-from compare.exact.answer import YES, Answer, no
+from compare.exact.answer import YES, Answer, Resolves, Rock, no
 from compare.exact.chain import Chain, chain, contact_forces, rates, receivers
 from compare.exact.conditions import bars_tension, beyond
 from compare.exact.drive import Signal, drive
 from compare.exact.lattice import HELD, at_rest
 
 NAME = "no-tension-chain"
+RESOLVES = Resolves(Rock.RIGID_BLOCKS)
 RELATIVE_TOLERANCE = 1e-9
 MOST_BLOCKS = 2000
 

@@ -24,12 +24,13 @@ from cases.loads import LoadHistory, load_history
 from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
-from compare.exact.answer import YES, Answer, no
+from compare.exact.answer import YES, Answer, Resolves, Rock, no
 from compare.exact.conditions import bars_tension, beyond, has_thick_layer, rock_is_damped
 from compare.exact.images import ENTERS
 from compare.exact.linear import response
 
 NAME = "one-joint"
+RESOLVES = Resolves(Rock.HOMOGENISED)
 
 
 class Joint(NamedTuple):

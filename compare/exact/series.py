@@ -24,9 +24,10 @@ from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
 from compare.exact import images
-from compare.exact.answer import YES, Answer, no
+from compare.exact.answer import YES, Answer, Resolves, Rock, no
 
 NAME = "series"
+RESOLVES = Resolves(Rock.HOMOGENISED)
 PAPER_TERMS = 100
 NEAR = sqrt(np.finfo(float).eps)  # relative distance to resonance below which the limit is nearer
 

@@ -22,10 +22,11 @@ from cases.face import face_points
 from cases.result import dataset
 from cases.sampling import interpolation, sample_times
 from cases.scene import Scene
-from compare.exact.answer import YES, Answer, no
+from compare.exact.answer import YES, Answer, Form, Resolves, Rock, no
 from compare.exact.conditions import beyond
 
 NAME = "sliding-block"
+RESOLVES = Resolves(Rock.ONE_BODY, Form.CLOSED, dimension=3)
 
 
 def applies(scene: Scene) -> Answer:

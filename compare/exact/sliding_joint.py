@@ -30,12 +30,13 @@ from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
 from cases.strength import UNLIMITED
-from compare.exact.answer import YES, Answer, no
+from compare.exact.answer import YES, Answer, Resolves, Rock, no
 from compare.exact.conditions import bars_tension, beyond, joints_are_damped
 from compare.exact.images import ENTERS
 from compare.exact.one_joint import around
 
 NAME = "slip-joint"
+RESOLVES = Resolves(Rock.HOMOGENISED)
 _gauss = cache(leggauss)
 FORGOTTEN = 40.0  # time constants after which exp has lost all digits
 

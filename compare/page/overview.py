@@ -7,7 +7,7 @@ from math import isnan
 from typing import NamedTuple
 
 from compare.engines import ENGINES
-from compare.page.standing import Standing, Verdict
+from compare.page.standing import NOT_CHECKED, Standing, Verdict
 from compare.tables import percent
 
 #: Engines as a sentence names them.
@@ -95,9 +95,13 @@ def _cell(scene: Ranked, engine: str) -> Cell | None:
 
 
 def _explained(one: Standing) -> str:
-    against = f"held against {' and '.join(one.finest)}" if one.finest else "the finest physics"
-    broken = f"; beyond the scene's bound: {', '.join(one.broken)}" if one.broken else ""
-    return against + broken
+    parts = [f"held against {' and '.join(one.finest)}: {one.where}"] if one.finest else []
+    if one.unchecked:
+        named = [name for name in one.unchecked if name] if len(one.variants) > 1 else []
+        parts.append(": ".join([NOT_CHECKED.word, *([", ".join(named)] if named else [])]))
+    if one.broken:
+        parts.append(f"beyond the scene's bound: {', '.join(one.broken)}")
+    return "; ".join(parts)
 
 
 def in_seconds(x: float) -> str:
@@ -119,10 +123,12 @@ def _sentence(engine: str, scenes: list[Ranked]) -> str:
     totals = [x for s in scenes if not isnan(x := s.standings[engine].total)]
     own = [x for s in scenes if not isnan(x := s.standings[engine].own)]
     held = any(s.standings[engine].finest for s in scenes)
-    alone = "not held against finer physics" if held else "the finest physics here"
+    alone = "not held against finer physics" if held else NOT_CHECKED.word
     far = f"{_span(_short, totals)} % from the finest physics" if totals else alone
     error = f", own numerical error ≤ {_short(max(own))} %" if own else ""
-    return f"({WORDS[engine]}): {far}{error}; {_cost(engine, scenes)}."
+    open_ones = sum(bool(s.standings[engine].unchecked) for s in scenes)
+    unchecked = f", {NOT_CHECKED.word} on {open_ones} of {len(scenes)} scenes" if totals else ""
+    return f"({WORDS[engine]}): {far}{error}{unchecked * bool(open_ones)}; {_cost(engine, scenes)}."
 
 
 def _cost(engine: str, scenes: list[Ranked]) -> str:

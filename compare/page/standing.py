@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from math import isfinite, isnan, nan
 from typing import NamedTuple
 
 from compare.engines import ENGINES
-from compare.metrics import misfit
-from compare.pairs import NUMERICAL, PAIRS, Comparison
-
-#: What knows the physics of a scene best, the first that is there: elastic rock with every joint,
-#: exact before computed, then one mechanism alone, then rigid blocks.
-FINEST = (
-    *("jointed-bar", "continuum-jointed", "slip-joint", "sliding-block", "no-tension-chain"),
-    *("spatial-lattice", "lattice", "kelvin-voigt", "equivalent-bar"),
-)
+from compare.metrics import Worst, worst
+from compare.pairs import Comparison
+from compare.panels import variant_names
+from compare.ranking import own_exact, reference_of
 
 
 class Verdict(NamedTuple):
@@ -33,20 +27,26 @@ VERDICTS = (
     (0.20, Verdict("△", "differs", "c")),
     (float("inf"), Verdict("▲", "far off", "d")),
 )
-UNKNOWN = Verdict("?", "not known", "n")
+NOT_CHECKED = Verdict("?", "not checked independently", "n")
 BROKEN = Verdict("✗", "out of bounds", "x")
+#: From the best to the worst: the worst variant decides.
+ORDER = (*(verdict for _, verdict in VERDICTS[:2]), NOT_CHECKED, *(v for _, v in VERDICTS[2:]))
+
+NOTHING = Worst(nan)
 
 
-class Standing(NamedTuple):
-    """One engine on all variants of a scene, each misfit the largest of them.
+class Held(NamedTuple):
+    """One engine on one variant.
 
-    own : from the exact solution of the engine's own model. total : from the finest physics, whose
-    names are `finest`. broken : bounds of [expect] not met.
+    own : from the exact solution of the engine's own model. total : from the reference, `against`,
+    empty where nothing has checked it independently; `reason` says what the reference is.
     """
 
-    own: float
-    total: float
-    finest: tuple[str, ...]
+    variant: str
+    own: Worst
+    total: Worst
+    against: str
+    reason: str
     broken: tuple[str, ...]
 
     @property
@@ -54,48 +54,88 @@ class Standing(NamedTuple):
         """What the numbers come to."""
         if self.broken:
             return BROKEN
-        if isnan(self.total):
-            return UNKNOWN
-        return next(verdict for most, verdict in VERDICTS if self.total <= most)
+        if isnan(self.total.judged):
+            return NOT_CHECKED
+        return next(verdict for most, verdict in VERDICTS if self.total.judged <= most)
+
+
+class Standing(NamedTuple):
+    """One engine on all variants of a scene."""
+
+    variants: tuple[Held, ...]
+
+    @property
+    def own(self) -> float:
+        """Largest numerical error; nan where no variant has an exact solution of the model."""
+        return _largest(held.own for held in self.variants).judged
+
+    @property
+    def total(self) -> float:
+        """Largest misfit from the references; nan where no variant has one."""
+        return _largest(held.total for held in self.variants).judged
+
+    @property
+    def where(self) -> str:
+        """The receiver and quantity of the largest misfit."""
+        return _largest(held.total for held in self.variants).where
+
+    @property
+    def finest(self) -> tuple[str, ...]:
+        """The references of the variants."""
+        return tuple(dict.fromkeys(held.against for held in self.variants if held.against))
+
+    @property
+    def unchecked(self) -> tuple[str, ...]:
+        """The variants that nothing has checked independently."""
+        return tuple(held.variant for held in self.variants if isnan(held.total.judged))
+
+    @property
+    def broken(self) -> tuple[str, ...]:
+        """Bounds of [expect] that are not met."""
+        return tuple(text for held in self.variants for text in held.broken)
+
+    @property
+    def verdict(self) -> Verdict:
+        """That of the worst variant."""
+        verdicts = [held.verdict for held in self.variants]
+        return BROKEN if BROKEN in verdicts else max(verdicts, key=ORDER.index)
 
 
 def standings(comparisons: list[Comparison]) -> dict[str, Standing]:
     """Return where each engine stands that has run on some variant."""
-    found = {}
+    found: dict[str, Standing] = {}
     for engine in ENGINES:
-        own = [c for c in comparisons if engine in c.results]
-        if own:
-            found[engine] = _standing(engine, own)
+        held = [
+            held_to(engine, comparison, name)
+            for name, comparison in zip(variant_names(comparisons), comparisons, strict=True)
+            if engine in comparison.results
+        ]
+        if held:
+            found[engine] = Standing(tuple(held))
     return found
 
 
-def _standing(engine: str, comparisons: list[Comparison]) -> Standing:
-    finest = [finest_of(c) for c in comparisons]
-    pairs = zip(comparisons, finest, strict=True)
-    return Standing(
-        _largest(_own(engine, c) for c in comparisons),
-        _largest(_apart(c, engine, name) for c, name in pairs if name != engine),
-        tuple(dict.fromkeys(name for name in finest if name != engine)),
-        tuple(text for c in comparisons for text in _broken(engine, c)),
+def held_to(engine: str, comparison: Comparison, variant: str = "") -> Held:
+    """Return how far an engine is from what it is held against in one variant."""
+    names, scene = comparison.results, comparison.scene
+    reference = reference_of(engine, names, scene)
+    against, reason = reference or ("", "")
+    own = own_exact(engine, names, scene)
+    return Held(
+        variant,
+        _apart(comparison, engine, own),
+        _apart(comparison, engine, against),
+        against,
+        reason,
+        tuple(_broken(engine, comparison)),
     )
 
 
-def finest_of(comparison: Comparison) -> str:
-    """Return the name of the result that knows the scene's physics best."""
-    return next(name for name in (*FINEST, *ENGINES) if name in comparison.results)
-
-
-def _own(engine: str, comparison: Comparison) -> float:
-    """Return the numerical error; nan where no exact solution of the engine's model applies."""
-    exact = [p.other for p in PAIRS if p.one == engine and p.kind == NUMERICAL]
-    return _largest(_apart(comparison, engine, name) for name in exact)
-
-
-def _apart(comparison: Comparison, one: str, other: str) -> float:
+def _apart(comparison: Comparison, one: str, other: str | None) -> Worst:
     """Return a misfit; nan where one of the two is not there, or the other stands still."""
     results = comparison.results
-    found = misfit(results[one], results[other]) if other in results else nan
-    return found if isfinite(found) else nan
+    found = worst(results[one], results[other]) if other in results else NOTHING
+    return found if isfinite(found.judged) else NOTHING
 
 
 def _broken(engine: str, comparison: Comparison) -> list[str]:
@@ -103,11 +143,10 @@ def _broken(engine: str, comparison: Comparison) -> list[str]:
     found = []
     for pair, bound in comparison.scene.expect.items():
         one, other = pair.split(" ~ ")
-        if one == engine and _apart(comparison, one, other) > bound:
+        if one == engine and _apart(comparison, one, other).misfit > bound:
             found.append(pair)
     return found
 
 
-def _largest(values: Iterable[float]) -> float:
-    known = [x for x in values if not isnan(x)]
-    return max(known, default=nan)
+def _largest(values) -> Worst:
+    return max((w for w in values if not isnan(w.judged)), key=lambda w: w.judged, default=NOTHING)

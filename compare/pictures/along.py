@@ -4,8 +4,7 @@ import xarray as xr
 
 from cases.scene import Scene
 from compare.engines import ENGINES, applies, solve
-from compare.pairs import ENGINES as BETWEEN
-from compare.pairs import PAIRS, Pair
+from compare.pairs import BETWEEN, PAIRS, Pair
 
 SECTIONS, TIMES = 60, 240  # at most so many intervals between the sections and samples kept
 FEWEST = 8  # blocks; in fewer there is no wave to be seen

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from compare.pairs import ENGINES, PAIRS
+from compare.pairs import BETWEEN, PAIRS
 from compare.panels import FORCES, UNITS
 from compare.pictures.along import referees
 from compare.pictures.units import Unit, unit_for
@@ -82,7 +82,7 @@ def diagrams_of(fields: dict[str, xr.Dataset]) -> list[Diagrams]:
     quantity = _quantity(fields[engines[0]])
     values = {name: quantity.of(result) for name, result in fields.items()}
     groups = {engine: _of_engine(engine, values, quantity) for engine in engines}
-    between = [p for p in PAIRS if p.kind == ENGINES and p.one in fields and p.other in fields]
+    between = [p for p in PAIRS if p.kind == BETWEEN and p.one in fields and p.other in fields]
     groups[""] = [_difference(p.one, p.other, values, quantity) for p in between]
     first = fields[engines[0]]
     places = first[first[quantity.variable].dims[0]].values

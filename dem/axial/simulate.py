@@ -22,6 +22,7 @@ from dem.axial.start import start
 from dem.axial.state import State
 from dem.fragments import break_times, with_fragments
 from dem.looks import Run, followed, sighting, versions
+from dem.static import since_prestress
 from joints.guard import Guard, guard, look
 
 if TYPE_CHECKING:
@@ -88,7 +89,9 @@ def simulate_fields(
             time.times[:count],
             samples.stress[:, :count],
             samples.velocity[:, :count],
-            samples.displacement[:, :count],
+            since_prestress(
+                scene, calibrate(scene), samples.displacement[:, :count], model.receivers.points
+            ),
             None if samples.energy is None else samples.energy[:, :count],
             terms=terms(model),
             model="rigid blocks",

@@ -35,6 +35,7 @@ from dem.spatial.section import contact_points, face_of, section
 from dem.spatial.stability import critical_spatial_step
 from dem.spatial.start import start
 from dem.spatial.threads import marcher, thread_count
+from dem.static import since_prestress
 from joints.guard import guard, look
 
 if TYPE_CHECKING:
@@ -89,7 +90,7 @@ def simulate_fields(
             scene,
             "dem",
             time.times[:count],
-            **waveforms(taken, *receivers(scene, p), p.area),
+            **waveforms(scene, p, taken),
             energy=taken.energy,
             terms=energy_terms(scene, p),
             model="rigid blocks in space",
@@ -136,15 +137,15 @@ def _film(
     return BlockFilm(scene, p, shooter(p, model, state, threads))
 
 
-def waveforms(
-    samples: Samples, sections: Interpolation, points: Interpolation, area: float
-) -> dict[str, np.ndarray]:
+def waveforms(scene: Scene, p: Properties, samples: Samples) -> dict[str, np.ndarray]:
     """Return the recorded fields at the scene's receivers, as `cases.result.fields` takes them."""
+    sections, points = receivers(scene, p)
     force, velocity = between(samples.force, sections), between(samples.velocity, points)
     moved = between(samples.displacement, points)
+    moved[:, 1] = since_prestress(scene, p, moved[:, 1], points)
     found = {
-        "stress": force[:, 1] / area,
-        "shear": np.moveaxis(force[:, [0, 2]], 1, 2) / area,
+        "stress": force[:, 1] / p.area,
+        "shear": np.moveaxis(force[:, [0, 2]], 1, 2) / p.area,
         "velocity": np.moveaxis(velocity[:, :3], 1, 2),
         "displacement": np.moveaxis(moved[:, :3], 1, 2),
     }

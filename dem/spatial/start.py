@@ -13,7 +13,7 @@ from dem.spatial.model import Model, State
 from dem.spatial.section import contact_points, face_of, section
 from dem.spatial.stability import critical_spatial_step
 from dem.spatial.step import march
-from dem.static import Rest, settle
+from dem.static import Rest, prestressed, settle
 
 NEVER = 1 << 60  # steps between samples where none are taken
 STEP_FRACTION = 0.9  # of the critical step: only where it ends counts
@@ -51,8 +51,9 @@ class Relaxation:
         )
         scene = _at_rest(scene, weighed)
         turns, face = scene.motion.rotation != "none", face_of(section(contact_points(scene)))
-        self.ends = (scene.ends.start, scene.ends.end)
-        dt = STEP_FRACTION * critical_spatial_step(p, face, self.ends, turns)
+        dt = STEP_FRACTION * critical_spatial_step(
+            p, face, (scene.ends.start, scene.ends.end), turns
+        )
         self.blocks = p.block_count
         self.model = build_model(scene, p, Clock(dt, 1, 1))._replace(stride=NEVER)
         self.state = state_at_rest(self.model, p.block_count)
@@ -60,10 +61,10 @@ class Relaxation:
         inertia = [p.block_mass] * 3 + [p.inertia_across, p.inertia_along, p.inertia_across]
         self.mass = np.repeat(inertia[: freedoms(self.model.contact.rows)], p.block_count)
         weight = 0.0 if self.model.weight is None else np.abs(self.model.weight).max()
-        prestress = scene.prestress.normal * p.area if scene.prestress else 0.0
-        self.scale = max(float(weight) * p.block_count, abs(prestress))
+        self.prestress = scene.prestress.normal if scene.prestress else 0.0
+        self.scale = max(float(weight) * p.block_count, abs(self.prestress) * p.area)
         self.most_steps = 10_000 + 20_000 * p.block_count
-        self._press(p, prestress / p.area)
+        self._press(scene, p)
 
     def advance(self, steps: int, alpha: float) -> None:
         """Take steps under mass-proportional damping alpha, 1/s."""
@@ -113,21 +114,17 @@ class Relaxation:
     def _rows(self) -> np.ndarray:
         return unpacked(self.state.motion, STRIDE, self.blocks)
 
-    def _press(self, p: Properties, normal: float) -> None:
-        """Place the blocks where elastic joints carry the prestress (Pa).
-
-        A fixed end keeps its place; between two that give way the displacement has zero mean.
-        """
+    def _press(self, scene: Scene, p: Properties) -> None:
+        """Place the blocks where elastic joints carry the prestress."""
         along = np.zeros((len(self.model.contact.rows.motion), p.block_count))
-        along[1, 1:] = np.cumsum(-normal / p.stiffness)
-        along[1] -= along[1].mean()
-        for kind, end, place, outward in (
-            (self.ends[0], self.state.start, 0, -1.0),
-            (self.ends[1], self.state.end, -1, 1.0),
+        along[1] = prestressed(scene, p)
+        half = self.prestress / (2 * p.regular_stiffness)
+        for kind, end, closure in (
+            (scene.ends.start, self.state.start, -half),
+            (scene.ends.end, self.state.end, half),
         ):
             if kind == "fixed":
-                end.closure[1] = outward * normal / (2 * p.regular_stiffness)
-                along[1] += end.closure[1] - along[1, place]
+                end.closure[1] = closure
         self.state.motion[:] = packed(along, STRIDE)
 
 

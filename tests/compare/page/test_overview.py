@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from compare.metrics import Worst
 from compare.page.overview import Ranked, in_seconds, overview
-from compare.page.standing import Standing, standings
+from compare.page.standing import NOT_CHECKED, Held, Standing, standings
 from compare.pairs import Comparison
 
 
@@ -18,7 +19,10 @@ def compared(pillar):
     def make(expect=None, **far):
         wave = np.sin(np.linspace(0, 9, 200))[None]
         results = {
-            name.replace("_", "-"): xr.Dataset({"stress": (("stress_y", "time"), (1 + x) * wave)})
+            name.replace("_", "-"): xr.Dataset(
+                {"stress": (("stress_y", "time"), (1 + x) * wave)},
+                {"stress_y": [20.0], "time": np.arange(200.0)},
+            )
             for name, x in far.items()
         }
         return Comparison(pillar().model_copy(update={"expect": expect or {}}), results)
@@ -47,11 +51,31 @@ def test_without_an_exact_solution_the_resolved_joints_are_the_finest(compared):
     assert found["dem"].finest == ("continuum-jointed",)
     assert found["dem"].verdict.word == "differs"
     assert found["continuum-jointed"].finest == () and np.isnan(found["continuum-jointed"].total)
+    assert found["continuum-jointed"].verdict == NOT_CHECKED
+
+
+def test_one_variant_that_nothing_checks_takes_the_tick_from_all(compared):
+    checked = compared(continuum_jointed=1e-4, jointed_bar=0.0)
+    alone = compared(continuum_jointed=0.0, dem=0.1)
+    found = standings([checked, alone])["continuum-jointed"]
+    assert [held.verdict.word for held in found.variants] == ["agrees", NOT_CHECKED.word]
+    assert found.verdict == NOT_CHECKED and len(found.unchecked) == 1
+    worse = compared(continuum_jointed=0.5, jointed_bar=0.0)
+    assert standings([worse, alone])["continuum-jointed"].verdict.word == "far off"
+
+
+def test_what_is_below_ten_times_the_error_of_the_reference_is_no_agreement(compared):
+    comparison = compared(dem=1e-4, jointed_bar=0.0)
+    bar = comparison.results["jointed-bar"]
+    rms = float(np.sqrt((bar.stress**2).mean()))
+    bar["stress_error"] = ("stress_y", [3e-3 * rms])
+    found = standings([comparison])["dem"]
+    assert found.total == pytest.approx(0.03) and found.verdict.word == "close"
 
 
 def test_of_a_reference_that_stands_still_nothing_is_known(compared):
     found = standings([compared(dem=0.1, spatial_lattice=-1.0)])
-    assert np.isnan(found["dem"].total) and found["dem"].verdict.word == "not known"
+    assert np.isnan(found["dem"].total) and found["dem"].verdict == NOT_CHECKED
 
 
 def test_a_bound_of_the_scene_that_is_not_met_outdoes_every_misfit(compared):
@@ -61,11 +85,13 @@ def test_a_bound_of_the_scene_that_is_not_met_outdoes_every_misfit(compared):
     assert found["dem"].verdict.sign == "✗" and found["dem"].verdict.word == "out of bounds"
 
 
+def standing(total, against):
+    held = Held("", Worst(nan), Worst(total), against, "", ())
+    return Standing((held,))
+
+
 def ranked(name, seconds, **total):
-    found = {
-        engine.replace("_", "-"): Standing(nan, x, ("jointed-bar",), ())
-        for engine, x in total.items()
-    }
+    found = {engine.replace("_", "-"): standing(x, "jointed-bar") for engine, x in total.items()}
     return Ranked(name, name, f"title of {name}", found, dict(zip(found, seconds, strict=True)))
 
 
@@ -94,11 +120,10 @@ def test_the_cheapest_everywhere_says_its_seconds():
 
 
 def test_an_engine_without_a_distance_is_not_given_one():
-    apart, finest = Standing(nan, nan, ("lattice",), ()), Standing(nan, nan, (), ())
-    standing = {"dem": apart, "continuum-jointed": finest}
-    said = dict(overview([Ranked("a", "a", "A", standing, dict.fromkeys(standing, 1.0))]).lead)
+    there = {"dem": standing(nan, "lattice"), "continuum-jointed": standing(nan, "")}
+    said = dict(overview([Ranked("a", "a", "A", there, dict.fromkeys(there, 1.0))]).lead)
     assert "not held against finer physics" in said["dem"]
-    assert "the finest physics here" in said["continuum-jointed"]
+    assert NOT_CHECKED.word in said["continuum-jointed"]
 
 
 @pytest.mark.parametrize(
