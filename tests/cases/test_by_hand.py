@@ -189,6 +189,14 @@ class TestDamping:
         assert p.time_constant == pytest.approx(0.004, rel=1e-13)
         assert p.joint_time_constant == pytest.approx(np.full(3, 0.004), rel=1e-13)
 
+    def test_rayleigh_without_the_round_off_of_one_that_is_zero(self):
+        """Ratios in proportion to frequencies, or to their inverse, but for the last digit."""
+        frequencies = [1000.0, 7000.0]
+        alpha, beta = Rayleigh(frequencies=frequencies, ratios=[0.017, 0.119]).coefficients
+        assert alpha == 0 and beta == pytest.approx(0.017 / (1000 * pi), rel=1e-12)
+        alpha, beta = Rayleigh(frequencies=frequencies, ratios=[0.119, 0.017]).coefficients
+        assert beta == 0 and alpha == pytest.approx(0.119 * 4000 * pi, rel=1e-12)
+
 
 class TestStrength:
     """Joint 2 under its own law, beside the others'."""
@@ -201,6 +209,14 @@ class TestStrength:
         assert p.cohesion.tolist() == [2e5, 1e5, 2e5]
         assert p.residual_cohesion.tolist() == [2e5, 4e4, 2e5]
         assert p.tensile_strength is None and p.critical_opening is None
+
+    def test_all_of_it(self):
+        joints = {"friction_angle": 45.0, "cohesion": 2e5, "residual_cohesion": 1e5}
+        joints |= {"tensile_strength": 1e5, "fracture_energy": 30.0}
+        p = calibrate(scene(joints=joints))
+        assert p.friction == exact(np.ones(3)) and p.critical_opening == exact(np.full(3, 6e-4))
+        assert p.cohesion.tolist() == [2e5] * 3 and p.residual_cohesion.tolist() == [1e5] * 3
+        assert p.tensile_strength.tolist() == [1e5] * 3
 
     def test_softening_spends_the_triangle(self):
         """w_c = 2 * 30 / 1e5 of all, 2 * 50 / 4e5 of joint 2."""
@@ -368,6 +384,8 @@ class TestFaces:
     """Contact points and their areas, and linear cells of a face."""
 
     def test_midpoints(self):
+        """The paper's are 2 x 2, (2)."""
+        assert (scene().joints.contact_points, scene().joints.point_rule) == (2, "midpoint")
         x, z, area = face_points(3.0, 3, "midpoint")
         assert x == pytest.approx([-1, -1, -1, 0, 0, 0, 1, 1, 1], abs=1e-15)
         assert z == pytest.approx([-1, 0, 1] * 3, abs=1e-15)
