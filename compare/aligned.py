@@ -23,7 +23,7 @@ from cases.sampling import sample_times
 from cases.scene import Scene
 from compare.curvefiles import LEAST_SAMPLES
 from compare.curves import Curves, Place
-from compare.metrics import Distance, delay, distance, relative_l2
+from compare.metrics import Distance, delay, distance, relative_l2, static_state
 
 MOST_SAMPLES = 4_000_000  # of a curve at a scene's interval, when its clock is moved
 INSTANT = 1e-12  # s; times are told apart from there on, in the tables too
@@ -144,12 +144,24 @@ def distance_at(
 def _waveforms(
     curves: Curves, results: Results
 ) -> Iterator[tuple[str, Place, np.ndarray, np.ndarray, np.ndarray]]:
-    """Yield solution, place, the curve's values, and the solution's times and values there."""
+    """Yield solution, place, the curve's values, and the solution's times and values there.
+
+    Both less what the solution holds before its load acts: a prestress is no part of the motion.
+    """
     for name, result in results.items():
         for place, values in curves.waveforms.items():
             ours = place.waveform(result)
             if ours is not None:
-                yield name, place, values, result.time.values, ours
+                static = static_level(place, result)
+                yield name, place, values - static, result.time.values, ours - static
+
+
+def static_level(place: Place, result: xr.Dataset) -> float:
+    """Return what a solution holds at a place before its load acts, SI."""
+    found = result[place.quantity]
+    still = np.broadcast_to(static_state(result, place.quantity), found.shape)
+    level = place.waveform(result.assign({place.quantity: (found.dims, still)}))
+    return 0.0 if level is None else float(level[0])
 
 
 def _missed(t: np.ndarray, values: np.ndarray, time: np.ndarray) -> float:

@@ -1,6 +1,7 @@
 """Waveforms of others as files hold them: a CSV or NetCDF file as named columns over time."""
 
 import csv
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -14,6 +15,8 @@ from cases.history import LARGEST, LARGEST_FILE
 from cases.size import require
 
 LEAST_SAMPLES = 3  # what a parabola through the peak of a correlation takes
+NUMBER = re.compile(r"\s*[-+.\d]")  # a line that begins so is no header
+HEADER_COMMENT = r"^\s*#|#(?=\s|$)"
 NETCDF = (".nc", ".nc3", ".nc4", ".netcdf", ".cdf")
 
 #: By quantity: the dimension of its receivers and that of its components, as results have them.
@@ -27,11 +30,15 @@ DIMENSIONS = {
 
 
 class Column(NamedTuple):
-    """The numbers of one column [n] in the file's unit; unit is empty where the file has none."""
+    """The numbers of one column [n] in the file's unit; unit is empty where the file has none.
+
+    empty : [n] where the file has no number, nan in `values`; None where it has all.
+    """
 
     name: str
     unit: str
     values: np.ndarray
+    empty: np.ndarray | None = None
 
 
 class Columns(NamedTuple):
@@ -42,19 +49,22 @@ class Columns(NamedTuple):
     row: Callable[[int], str]
 
 
-def read_columns(path: Path) -> Columns:
+def read_columns(path: Path, time_name: str = "time") -> Columns:
     """Return the columns of a NetCDF file, known by its suffix, or of a CSV file.
 
-    Raises SceneError, which names file, row and what is allowed: times must increase strictly, and
-    every number be finite and at most 1e30.
+    time_name : the header of a CSV file's times. Raises SceneError, which names file, row and what
+    is allowed: times must increase strictly, and every number be finite and at most 1e30.
     """
-    found = (_read_netcdf if path.suffix.lower() in NETCDF else _read_csv)(path)
+    netcdf = path.suffix.lower() in NETCDF
+    found = _read_netcdf(path) if netcdf else _read_csv(path, split_unit(time_name)[0].lower())
     time = found.time.values
     if len(time) < LEAST_SAMPLES:
         allowed = f"must hold at least {LEAST_SAMPLES} samples, not {len(time)}"
         raise SceneError(str(path), "", None, allowed)
     for column in (found.time, *found.rest):
         wrong = ~(np.abs(column.values) <= LARGEST)
+        if column.empty is not None:
+            wrong &= ~column.empty
         if wrong.any():
             i = int(np.argmax(wrong))
             value = float(column.values[i])
@@ -79,9 +89,9 @@ def split_unit(text: str) -> tuple[str, str]:
     return text, ""
 
 
-def _read_csv(path: Path) -> Columns:
+def _read_csv(path: Path, time_name: str) -> Columns:
     try:
-        rows = list(_rows(read_text(path, LARGEST_FILE).splitlines()))
+        rows = list(_rows(read_text(path, LARGEST_FILE).splitlines(), time_name))
     except ValueError as error:
         raise SceneError(str(path), "", None, str(error)) from None
     named = bool(rows) and not is_number(rows[0][1][0])
@@ -91,41 +101,72 @@ def _read_csv(path: Path) -> Columns:
     def row(i: int) -> str:
         return f"{path}, line {numbers[i]}"
 
+    at = _where_time(path, header, time_name)
+    data = np.array([_numbers(row(i), header, cells, at) for i, (_, cells) in enumerate(rows)])
+    empty = np.array([[not cell for cell in cells] for _, cells in rows])
+    data, empty = (x.reshape(-1, len(header)) for x in (data, empty))
+    columns = [
+        Column(*split_unit(text), data[:, i], empty[:, i] if empty[:, i].any() else None)
+        for i, text in enumerate(header)
+    ]
+    return Columns(columns[at], [c for c in columns if c is not columns[at]], row)
+
+
+def _where_time(path: Path, header: list[str], time_name: str) -> int:
+    """Return which column the times are."""
     names = [split_unit(text)[0].lower() for text in header]
-    if names.count("time") != 1 or len(names) < 2:
-        allowed = "must name one column time, and one or more as stress@20"
+    if names.count(time_name) != 1 or len(names) < 2:
+        allowed = (
+            "must name one column time, and one or more as stress@20; "
+            f"{path}:{header[0]}=time says that this is the time"
+        )
         raise SceneError(str(path), "header", ", ".join(header), allowed)
-    data = np.array([_numbers(row(i), header, cells) for i, (_, cells) in enumerate(rows)])
-    data = data.reshape(-1, len(header))
-    columns = [Column(*split_unit(text), data[:, i]) for i, text in enumerate(header)]
-    time = columns[names.index("time")]
-    return Columns(time, [c for c in columns if c is not time], row)
+    return names.index(time_name)
 
 
-def _rows(lines: list[str]) -> Iterator[tuple[int, list[str]]]:
-    """Yield line number and cells, separated by what the first line that is no comment has."""
+def _rows(lines: list[str], time_name: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield line number and cells, separated by what the first line that is no comment has.
+
+    A comment ends a line; within a header it begins with "# ", since names may hold the sign.
+    """
     separator = ""
     for number, line in enumerate(lines, 1):
-        text = line.split("#", 1)[0].strip()
-        if not text:
+        sign = "#" if separator or NUMBER.match(line) else HEADER_COMMENT
+        text = re.split(sign, line, maxsplit=1)[0].strip(" ")
+        if not text.strip():
             continue
-        separator = separator or next((s for s in ";\t" if s in text), ",")
         try:
-            cells = next(csv.reader([text], delimiter=separator, skipinitialspace=True))
+            separator = separator or _separator(text, time_name)
+            cells = _cells(text, separator)
         except csv.Error:
             raise ValueError(f"is not a CSV file (line {number})") from None
-        yield number, [cell.strip() for cell in cells]
+        yield number, cells
 
 
-def _numbers(where: str, header: list[str], cells: list[str]) -> list[float]:
+def _separator(text: str, time_name: str) -> str:
+    """Return what separates the cells of a file's first line: what parts the name of the times."""
+    for separator in ";\t,":
+        names = [split_unit(cell)[0].lower() for cell in _cells(text, separator)]
+        if len(names) > 1 and time_name in names:
+            return separator
+    return next((separator for separator in ";\t" if separator in text), ",")
+
+
+def _cells(text: str, separator: str) -> list[str]:
+    cells = next(csv.reader([text], delimiter=separator, skipinitialspace=True))
+    return [cell.strip() for cell in cells]
+
+
+def _numbers(where: str, header: list[str], cells: list[str], at: int) -> list[float]:
+    """Return the numbers of a row, nan for an empty cell; the times, column `at`, have none."""
     if len(cells) != len(header):
         columns = ", ".join(header) if header[1] else "time and value, without a header"
         allowed = f"must hold {len(header)} numbers ({columns}), not {len(cells)}"
         raise SceneError(where, "", None, allowed)
-    for name, cell in zip(header, cells, strict=True):
-        if not is_number(cell):
+    for i, (name, cell) in enumerate(zip(header, cells, strict=True)):
+        if not is_number(cell) and (cell or i == at):
             raise SceneError(where, name or "value", cell, "must be a number")
-    return [float(cell) for cell in cells]
+    return [float(cell or "nan") for cell in cells]
 
 
 def _read_netcdf(path: Path) -> Columns:

@@ -3,12 +3,13 @@
 A column is called [-]QUANTITY[_AXIS]@Y [UNIT]: `stress@20`, `-stress@20 [MPa]`,
 `velocity_x@20.25 [mm/s]`; velocity and displacement are along y where no axis is named. Stress is
 positive in compression and motion along +x, +y, +z; a minus sign says that the column holds the
-negative, as where tension is positive. Without a unit, SI.
+negative, as where tension is positive. Without a unit, SI. A column with another header is taken by
+COLUMN=LABEL, and one of a table of `jointwave compare --out` by its solution (`compare.columns`).
 """
 
 import re
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import pi
 from pathlib import Path
 from typing import NamedTuple
@@ -18,7 +19,8 @@ import xarray as xr
 
 from cases.errors import SceneError
 from cases.scene import Scene
-from compare.curvefiles import DIMENSIONS, Column, read_columns, split_unit
+from compare.columns import Asked, asked, base_of, exported, listed
+from compare.curvefiles import DIMENSIONS, LEAST_SAMPLES, Column, Columns, read_columns, split_unit
 from compare.engines import names
 
 MICRO = ("u", "µ", "μ")  # as typed, the micro sign, and the Greek letter
@@ -82,16 +84,22 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True)
 class Curves:
-    """The waveforms of one file.
+    """Waveforms of one file over one time.
 
     name : what tables call it. file : the path, as it was given. time : [n] s, strictly increasing.
-    waveforms : [n] by place, SI, compression positive.
+    waveforms : [n] by place, SI, compression positive. variant : of the scene that it is of, ""
+    the scene as it stands; None: of every variant.
     """
 
     name: str
     file: str
     time: np.ndarray
     waveforms: dict[Place, np.ndarray]
+    variant: str | None = None
+
+    def holds_for(self, scene: Scene) -> bool:
+        """Return whether it is to be put beside this variant of a scene."""
+        return self.variant is None or self.variant == scene.name
 
 
 class _Label(NamedTuple):
@@ -100,28 +108,37 @@ class _Label(NamedTuple):
     unit: str
 
 
+class _Found(NamedTuple):
+    """A column, what it holds, and whose it is in a table of ours."""
+
+    column: Column
+    label: _Label
+    solution: str = ""
+    variant: str = ""
+
+
 def read_curves(texts: list[str], scenes: list[Scene]) -> list[Curves]:
-    """Read what `--with` names, each FILE or FILE:LABEL, one entry a file.
+    """Read what `--with` names, each FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL.
 
     FILE is NetCDF (.nc), as `jointwave run` writes it or any that has `time` and, say, `stress`; or
     CSV: comma, semicolon or tab, # comments, a header `time [ms], stress@20 [MPa]` or two bare
-    columns, time in s first. LABEL takes one curve out of several, or names the only one.
-    Raises SceneError for a file that cannot be read, is not as stated, or has no curve at a
-    receiver that one of the scenes records.
+    columns, time in s first; or a table of `jointwave compare --out`. LABEL takes one curve out of
+    several, or names the only one; COLUMN is a header, or a solution or variant of such a table.
+    Empty cells are left out. One entry a file; where a file holds several solutions, variants, or
+    columns of different times, one for each. Raises SceneError for a file that cannot be read, is
+    not as stated, or has no curve at a receiver that one of the scenes records.
     """
-    found: dict[str, Curves] = {}
-    for text in texts:
-        one = _read(text)
-        if one.file in found:
-            both = found[one.file].waveforms
-            if twice := both.keys() & one.waveforms:
-                raise SceneError(text, "", None, f"{min(twice)} must be given once only")
-            one = replace(one, waveforms=both | one.waveforms)
-        found[one.file] = one
-    for one in found.values():
-        _require_recorded(one, scenes)
-    short = Counter(one.name for one in found.values()) + Counter(names())
-    return [c if short[c.name] == 1 else replace(c, name=c.file) for c in found.values()]
+    every = [asked(text, lambda label: _parse(*split_unit(label)) is not None) for text in texts]
+    files = dict.fromkeys(str(one.path) for one in every)
+    short = Counter(Path(file).name for file in files) + Counter(names())
+    found: list[Curves] = []
+    for file in files:
+        name = Path(file).name
+        mine = [one for one in every if str(one.path) == file]
+        found += _of_file(name if short[name] == 1 else file, mine)
+    for one in found:
+        _require_recorded(one, [s for s in scenes if one.holds_for(s)])
+    return [one for one in found if any(map(one.holds_for, scenes))]
 
 
 def is_recorded(place: Place, scene: Scene) -> bool:
@@ -130,7 +147,7 @@ def is_recorded(place: Place, scene: Scene) -> bool:
 
 
 def _require_recorded(curves: Curves, scenes: list[Scene]) -> None:
-    if any(is_recorded(place, scene) for place in curves.waveforms for scene in scenes):
+    if not scenes or any(is_recorded(p, scene) for p in curves.waveforms for scene in scenes):
         return
     place = next(iter(curves.waveforms))
     recorded = ", ".join(f"{y:g}" for y in getattr(scenes[0].record, place.key)) or "nowhere"
@@ -141,53 +158,102 @@ def _require_recorded(curves: Curves, scenes: list[Scene]) -> None:
     raise SceneError(curves.file, str(place), None, allowed)
 
 
-def _read(text: str) -> Curves:
-    path, wanted = _split(text)
-    table = read_columns(path)
-    waveforms: dict[Place, np.ndarray] = {}
-    for column in table.rest:
-        label = _label(path, column, len(table.rest) == 1, wanted)
-        if label is None:
-            continue
-        if label.place in waveforms:
-            raise SceneError(str(path), "", None, f"{label.place} must be there once only")
+def _of_file(name: str, every: list[Asked]) -> list[Curves]:
+    """Return the curves that are asked for of one file, called by this name."""
+    path = every[0].path
+    times = [one for one in every if one.is_time]
+    table = read_columns(path, times[0].column if times else "time")
+    unit = split_unit(times[0].label)[1] if times else ""
+    seconds = _factor(path, "time", unit or table.time.unit, TIME) * table.time.values
+    wanted = [one for one in every if not one.is_time] or [Asked(str(path), path)]
+    found = [one for choice in wanted for one in _fitting(table, choice)]
+    groups: dict[tuple, dict[Place, _Found]] = {}
+    for one in found:
+        there = b"" if one.column.empty is None else one.column.empty.tobytes()
+        group = groups.setdefault((one.solution, one.variant, there), {})
+        if one.label.place in group:
+            raise SceneError(str(path), "", None, f"{one.label.place} must be given once only")
+        group[one.label.place] = one
+    several = len({solution for solution, *_ in groups}) > 1
+    named: Counter[tuple] = Counter()
+    curves = []
+    for (solution, variant, _), group in groups.items():
+        called = f"{name}:{solution}" if several else name
+        named[called, variant] += 1
+        if named[called, variant] > 1:  # the same at other times
+            called = f"{called}:{next(iter(group))}"
+        whose = variant if len({v for _, v, _ in groups}) > 1 else None
+        curves.append(_curves(called, path, seconds, list(group.values()), whose))
+    return curves
+
+
+def _curves(
+    name: str, path: Path, seconds: np.ndarray, found: list[_Found], variant: str | None
+) -> Curves:
+    """Return columns that have the same empty cells as curves in SI."""
+    empty = found[0].column.empty
+    there = np.ones(len(seconds), bool) if empty is None else ~empty
+    if there.sum() < LEAST_SAMPLES:
+        allowed = f"must hold at least {LEAST_SAMPLES} samples, not {there.sum()}"
+        raise SceneError(str(path), found[0].column.name, None, allowed)
+    waveforms = {}
+    for column, label, *_ in found:
         factor = _factor(path, column.name, label.unit, UNITS[label.place.quantity])
-        waveforms[label.place] = (-factor if label.negative else factor) * column.values
-    if wanted and not waveforms:
-        held = ", ".join(c.name or "one column" for c in table.rest)
-        raise SceneError(str(path), "", None, f"holds {held}; {wanted.place} must be one of them")
-    time = _factor(path, "time", table.time.unit, TIME) * table.time.values
-    return Curves(path.name, str(path), time, waveforms)
+        waveforms[label.place] = (-factor if label.negative else factor) * column.values[there]
+    return Curves(name, str(path), seconds[there], waveforms, variant)
 
 
-def _split(text: str) -> tuple[Path, _Label | None]:
-    """Return the file and the label, None without one, of FILE or FILE:LABEL."""
-    file, colon, label = text.rpartition(":")
-    if not colon or Path(text).exists() or not ("@" in label or Path(file).exists()):
-        return Path(text), None
-    found = _parse(*split_unit(label))
-    if found is None:
-        raise SceneError("--with", text, None, f"{label!r} must be a label, such as {EXAMPLES}")
-    return Path(file), found
+def _fitting(table: Columns, choice: Asked) -> list[_Found]:
+    """Return the columns of a file that one argument asks for, with what each of them holds."""
+    wanted = _parse(*split_unit(choice.label)) if choice.label else None
+    named = [c for c in table.rest if not choice.column or choice.fits(c)]
+    alone = len(table.rest) == 1 or bool(choice.column and len(named) == 1)
+    found, base = [], base_of(table.rest)
+    for column in named:
+        ours = exported(column.name)
+        own = _parse(ours.label if ours else column.name, column.unit)
+        label = own if wanted is None else _as_wanted(column, own, wanted, alone)
+        if label is not None and ours:
+            variant = "" if ours.variant == base else ours.variant
+            found.append(_Found(column, label, ours.solution, variant))
+        elif label is not None:
+            found.append(_Found(column, label))
+        elif wanted is None:
+            raise _without_place(column, choice, table)
+    if not found:
+        raise _not_there(choice, table)
+    return found
 
 
-def _label(path: Path, column: Column, alone: bool, wanted: _Label | None) -> _Label | None:
-    """Return what a column holds; None where another one is wanted."""
-    own = _parse(column.name, column.unit)
-    if wanted is None:
-        if own is None:
-            name = column.name or "second column"
-            allowed = f"must be called as {EXAMPLES}, or its place be given as {path}:stress@20"
-            raise SceneError(str(path), name, None, allowed)
-        return own
+def _as_wanted(column: Column, own: _Label | None, wanted: _Label, alone: bool) -> _Label | None:
+    """Return what a column holds that may have a label of its own; None where another is wanted."""
     unit = wanted.unit or column.unit
     if own is not None:
-        if own.place != wanted.place:
-            return None
-        return _Label(own.place, own.negative or wanted.negative, unit)
+        (*what, y), (*wanted_what, wanted_y) = own.place, wanted.place
+        fits = what == wanted_what and bool(_same(np.array(y), wanted_y))
+        return _Label(own.place, own.negative or wanted.negative, unit) if fits else None
     bare = column.name.lower()
     fits = bare == wanted.place.quantity or (alone and bare not in UNITS)
     return wanted._replace(unit=unit) if fits else None
+
+
+def _without_place(column: Column, choice: Asked, table: Columns) -> SceneError:
+    which = f"{column.name}=" if column.name else ""
+    allowed = (
+        f"must be called as {EXAMPLES}, or its place be given as {choice.path}:{which}stress@20; "
+        f"the file holds {listed(table.rest)}"
+    )
+    return SceneError(str(choice.path), column.name or "second column", None, allowed)
+
+
+def _not_there(choice: Asked, table: Columns) -> SceneError:
+    held = f"{choice.path} holds {listed(table.rest)}"
+    if choice.column:
+        allowed = f"must be a label, such as {EXAMPLES}, a column or COLUMN=LABEL; {held}"
+        return SceneError("--with", choice.text, None, f"{choice.column!r} {allowed}")
+    label = _parse(*split_unit(choice.label))
+    wanted = label.place if label else "a label"
+    return SceneError("--with", choice.text, None, f"{held}; {wanted} must be one of them")
 
 
 def _parse(name: str, unit: str) -> _Label | None:

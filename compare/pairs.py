@@ -106,7 +106,7 @@ def compare(
         if progress:
             progress((i + 1) / len(everything))
     comparison.rows = measure(comparison.results, spectral)
-    for one in curves:
+    for one in (curve for curve in curves if curve.holds_for(scene)):
         beside = lay_beside(one, scene, comparison.results, align)
         comparison.besides.append(beside)
         comparison.rows += measure_curves(beside, comparison.results, spectral)

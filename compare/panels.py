@@ -33,7 +33,7 @@ class Panel(NamedTuple):
     @property
     def place(self) -> str:
         """Quantity, component and receiver, in words."""
-        return f"{self.quantity} {self.axis}".rstrip() + f" at y = {self.y:g} m"
+        return f"{self.quantity} {self.axis}".rstrip() + f" at y = {self.y:.12g} m"
 
     @property
     def given(self) -> dict[str, pd.Series]:

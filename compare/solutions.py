@@ -25,7 +25,11 @@ from compare.options import (
 
 WithOption = Annotated[
     list[str],
-    typer.Option("--with", metavar="FILE[:LABEL]", help="Curves of others; more than once."),
+    typer.Option(
+        "--with",
+        metavar="FILE[:COLUMN][=][LABEL]",
+        help="Curves of others: FILE, FILE:stress@20, FILE:COLUMN=stress@20; more than once.",
+    ),
 ]
 
 
@@ -53,7 +57,10 @@ def compare(
     header such as "time [ms], stress@20 [MPa]" (# starts a comment; commas, semicolons or tabs),
     or a NetCDF file of jointwave run or with time and stress(time). A label names the only curve
     of a file without names, or takes one out of several: curve.csv:stress@20,
-    "run.nc:-velocity@20.25 [mm/s]". Without a unit, SI. Stress is positive in compression; a minus
+    "run.nc:-velocity@20.25 [mm/s]", and with a column's header in front it takes that column:
+    "gauge.csv:CH 3=stress@20 [MPa]", "gauge.csv:t=time [ms]". A comparison.csv that --out has
+    written is read as it is, variant by variant, or one solution of it: comparison.csv:dem. Empty
+    cells are left out. Without a unit, SI. Stress is positive in compression; a minus
     sign says that the file has the negative. Only the overlap in time is compared, at the times of
     whichever has fewer samples there, the other interpolated linearly; amplitudes are never scaled,
     and clocks never moved without --align.
@@ -162,5 +169,6 @@ def _read_curves(given: list[str], scenes: list[cases.Scene], align: bool) -> li
     if not align:
         for scene in scenes:
             for one in curves:
-                common_times(one, scene)
+                if one.holds_for(scene):
+                    common_times(one, scene)
     return curves

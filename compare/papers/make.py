@@ -56,7 +56,8 @@ def make(
             comparison.results[name] = solve(name, scene)
             done += 1
             progress(done / sum(map(len, wanted)))
-        comparison.besides += [lay_beside(c, scene, comparison.results, False) for c in curves]
+        given = [curve for curve in curves if curve.holds_for(scene)]
+        comparison.besides += [lay_beside(c, scene, comparison.results, False) for c in given]
         found.append(comparison)
     figure = draw(found, look, asked.columns, asked.language)
     return save(figure, asked.out, kind, scenes[0].title, look.dpi)

@@ -86,7 +86,7 @@ class Comparing(NamedTuple):
     @property
     def about(self) -> list[Any]:
         """What decides a row beside the scene and the samples of the curves."""
-        named = [[c.file, list(map(str, c.waveforms))] for c in self.curves]
+        named = [[c.file, c.name, c.variant, list(map(str, c.waveforms))] for c in self.curves]
         return [self.spectral, self.align, self.writes, named]
 
     def solvers(self, case: Case) -> list[str]:

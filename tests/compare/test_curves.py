@@ -2,15 +2,20 @@
 
 import json
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
+import dem
 from cases.errors import SceneError
+from cases.scene import Prestress
+from compare import pairs
 from compare.aligned import distance_at, distances, lay_beside
 from compare.cli import main
 from compare.curves import Place, read_curves
+from compare.drawn import DIGITS, write_csv
 from compare.exact import lattice, spatial_lattice
 from compare.figures import draw
 from compare.pairs import Comparison, compare, measure_curves
@@ -73,6 +78,14 @@ READABLE = {
     "\ufeff0,0\n0.001,-1\n0.002,2\n0.004,-0.5\n": ":-stress@20 [MPa]",
     "time [ms], sigma_yy [MPa]\n0,0\n1,1\n2,-2\n4,.5\n": ":stress@20",
     "time [ms], stress [MPa], force\n0,0,7\n1,1,7\n2,-2,7\n4,.5,7\n": ":stress@20",
+    "time [ms], sigma, force # by hand\n0,0,7\n1,1,7\n2,-2,7\n4,.5,7\n": ":sigma=stress@20 [MPa]",
+    "time [ms], CH #1 [MPa], v\n0,0,7\n1,-1,7\n2,2,7\n4,-.5,7\n": ':"CH #1"=-stress@20',
+    "time [ms], a=b:c (kPa), v\n0,0,7\n1,1e3,7\n2,-2e3,7\n4,500,7\n": ":a=b:c=stress@20",
+    "time [ms],CH (1),CH (2)\n0,7,0\n1,7,1\n2,7,-2\n4,7,.5\n": ":CH (2)=stress@20 [MPa]",
+    "time,stress@20,v\n0,0,\n,,\n".replace(",,\n", "1e-3,1e6,3\n")
+    + "1.5e-3,,4\n2e-3,-2e6,\n4e-3,5e5,\n": ":stress@20",
+    "time;stress@20\n0;0\n5e-4;\n1e-3;1e6\n2e-3;-2e6\n4e-3;5e5\n": "",
+    "stress@20\ttime\n0\t0\n1e6\t1e-3\n-2e6\t2e-3\n\t3e-3\n5e5\t4e-3\n": "",
     "time, stress@10, -stress@20\n0,7,0\n1e-3,7,-1e6\n2e-3,7,2e6\n4e-3,7,-5e5\n": ":stress@20",
 }
 
@@ -83,6 +96,89 @@ def test_every_way_of_writing_a_csv_gives_the_same_curve(text, label, written, s
     assert curves.name == "curve.csv" and list(curves.waveforms) == [AT_20]
     np.testing.assert_allclose(curves.time, TIME, rtol=1e-15)
     np.testing.assert_allclose(curves.waveforms[AT_20], STRESS, rtol=1e-15)
+
+
+def test_columns_of_different_times_are_curves_of_their_own(written, scene):
+    """Two receivers, read in turn: no sample is made up for either."""
+    text = "time [ms],stress@20 [MPa],b\n0,0,\n.5,,3\n1,1,\n1.5,,4\n2,-2,5\n4,.5,6\n"
+    scene = scene.model_copy(
+        update={"record": scene.record.model_copy(update={"velocity": [0.25]})}
+    )
+    file = written(text)
+    one, other = read_curves([f"{file}:stress@20", f"{file}:b=velocity@0.25 [mm/s]"], [scene])
+    np.testing.assert_allclose(one.time, TIME, rtol=1e-15)
+    np.testing.assert_allclose(other.time, [5e-4, 1.5e-3, 2e-3, 4e-3], rtol=1e-15)
+    np.testing.assert_allclose(
+        other.waveforms[Place("velocity", "y", 0.25)], [3e-3, 4e-3, 5e-3, 6e-3]
+    )
+    assert (one.name, other.name) == ("curve.csv", "curve.csv:velocity_y@0.25")
+
+
+@pytest.fixture
+def table(pillar, tmp_path):
+    """Write the table of two variants, two solutions and two receivers; the variants' times
+    differ, so that cells are empty. Return scenes, results and file."""
+    base = pillar(time__duration=0.03, record__stress=[12.3456789, 20.0], record__velocity=[20.25])
+    record = base.record.model_copy(update={"interval": 0.7 * base.interval})
+    damped = base.joints.model_copy(update={"damping_ratio": 0.05})
+    other = base.model_copy(update={"name": "zeta #1, a; b", "joints": damped, "record": record})
+    scenes = [base, other]
+    found = [Comparison(s, {"lattice": lattice.solve(s), "dem": dem.simulate(s)}) for s in scenes]
+    file = write_csv(tmp_path / "comparison.csv", curve_table(found).reset_index(), DIGITS)
+    return scenes, found, str(file)
+
+
+def test_our_own_table_is_read_as_it_was_written(table):
+    """Solution by solution and variant by variant, at its own times, to the table's digits."""
+    scenes, found, file = table
+    assert ",," in Path(file).read_text()
+    curves = read_curves([file], scenes)
+    assert len(curves) == 4
+    for scene, comparison in zip(scenes, found, strict=True):
+        mine = {one.name: one for one in curves if one.holds_for(scene)}
+        assert mine.keys() == {"comparison.csv:dem", "comparison.csv:lattice"}
+        for name, result in comparison.results.items():
+            one = mine[f"comparison.csv:{name}"]
+            np.testing.assert_allclose(one.time, result.time.values, rtol=1e-5)
+            assert len(one.waveforms) == 3
+            for place, values in one.waveforms.items():
+                ours = place.waveform(result)
+                np.testing.assert_allclose(values, ours, rtol=1e-5, atol=1e-12 * abs(ours).max())
+
+
+@pytest.mark.parametrize(
+    ("which", "solution", "variant", "places"),
+    [
+        (":dem", "dem", None, 3),
+        (":lattice=stress@20", "lattice", None, 1),
+        (":lattice | undamped", "lattice", 0, 3),
+        (":zeta #1, a; b | dem", "dem", 1, 3),
+        (":dem | stress at y = 20 m | ζ = #1, a; b (Pa)", "dem", 1, 1),
+        (":dem | velocity at y = 20.25 m", "dem", None, 1),
+    ],
+)
+def test_one_solution_or_variant_of_our_own_table(which, solution, variant, places, table):
+    """By its parts, alone or with a label; one variant is held against every scene."""
+    scenes, found, file = table
+    curves = read_curves([file + which], scenes)
+    assert [one.name for one in curves] == ["comparison.csv"] * (2 if variant is None else 1)
+    for scene, comparison, one in zip(scenes, found, curves, strict=False):
+        result = (comparison if variant is None else found[variant]).results[solution]
+        assert one.variant == (scene.name if variant is None else None)
+        assert len(one.waveforms) == places
+        for place, values in one.waveforms.items():
+            ours = place.waveform(result)
+            np.testing.assert_allclose(values, ours, rtol=1e-5, atol=1e-12 * abs(ours).max())
+
+
+def test_variants_of_our_own_table_stand_beside_their_own(table, monkeypatch):
+    """Each variant is compared with the table's columns of it alone."""
+    monkeypatch.setattr(pairs, "names", lambda: ("lattice",))
+    scenes, _, file = table
+    curves = read_curves([f"{file}:lattice"], scenes)
+    for scene in scenes:
+        rows = compare(scene, curves=curves).rows
+        assert len(rows) == 3 and all(row.distance.misfit < 1e-5 for row in rows)
 
 
 @pytest.mark.parametrize(
@@ -170,6 +266,17 @@ def test_uneven_samples_count_by_the_time_they_stand_for():
     widest = np.diff(time).max()  # the trapezoidal rule errs by h^2 / 12 max |(t^2)''|
     assert found.misfit**2 == pytest.approx(1 / 3, abs=widest**2 / 6)
     assert found.peak_ratio == 2.0
+
+
+def test_prestress_does_not_dilute_a_curves_misfit(scene, tmp_path):
+    """A tenth too large is 10 % off, whatever stress stands in the rock; the clock is found too."""
+    still = scene.model_copy(update={"prestress": Prestress(normal=5e7)})
+    time, stress = sampled(scene, scene.interval)
+    file = save(tmp_path / "curve.csv", time + 1e-3, 5e7 + 1.1 * stress)
+    found, beside = the_distance(file, still, align=True)
+    assert found.misfit == pytest.approx(0.1, rel=1e-2)
+    assert found.peak_ratio == pytest.approx(1.1, rel=1e-2)
+    assert beside.shift.seconds == pytest.approx(-1e-3, abs=0.1 * scene.interval)
 
 
 @pytest.mark.parametrize("offset", [1.2345e-3, -3.3333e-3, 7e-7, 1000.0])
@@ -272,7 +379,7 @@ FAULTS = {
     "ragged": ("time,stress@20\n0,0\n1e-3\n2e-3,2\n", "curve.csv, line 3", "2 numbers"),
     "short": ("time,stress@20\n0,0\n1e-3,1\n", "curve.csv", "at least 3 samples"),
     "empty": ("", "curve.csv", "at least 3 samples"),
-    "no time": ("t,stress@20\n0,0\n1,1\n2,2\n", "header = 't, stress@20'", "time"),
+    "no time": ("t,stress@20\n0,0\n1,1\n2,2\n", "header = 't, stress@20'", ":t=time"),
     "one column named": ("t\n0,0\n1,1\n2,2\n", "header = 't'", "must name one column time"),
     "no place": ("time,stress\n0,0\n1,1\n2,2\n", "curve.csv: stress", "stress@20"),
     "no header": ("0,0\n1,1\n2,2\n", "second column", "stress@20"),
@@ -282,6 +389,9 @@ FAULTS = {
     "same": ("time,stress@20,stress@20\n0,0,0\n1,1,1\n2,2,2\n", "stress@20", "once"),
     "elsewhere": ("time,stress@21\n0,0\n1,1\n2,2\n", "stress@21", "stress at 20 m"),
     "wrong unit": ("time,stress@20\n0,0\n1,1\n2,2\n", "0 to 2 s", "time [ms]"),
+    "column empty": ("time,stress@20\n0,0\n1,1\n2,\n", "stress@20", "at least 3 samples, not 2"),
+    "time empty": ("time,stress@20\n0,0\n1,1\n,2\n", "line 4: time = ''", "must be a number"),
+    "unnamed": ("time,stress@20,CH 3\n0,0,0\n1,1,1\n2,2,2\n", "CH 3=stress@20", "holds stress@20"),
     "binary": ("time,stress@20\n0,\0\n1,1\n2,2\n", "curve.csv", "line 2"),
 }
 
@@ -312,7 +422,11 @@ def test_fault_is_one_line_and_exit_2(text, where, allowed, written, monkeypatch
         (["--with", "."], "directory"),
         (["--with", "GOOD:strain@20"], "'strain@20' must be a label"),
         (["--with", "GOOD:stress"], "'stress' must be a label"),
-        (["--with", "GOOD:stress@30"], "holds stress@20; stress@30"),
+        (["--with", "GOOD:CH 3"], "GOOD holds stress@20"),
+        (["--with", "GOOD:CH 3=stress@20"], "'CH 3' must be a label"),
+        (["--with", "GOOD:stress@20=velocity@20"], "GOOD holds stress@20"),
+        (["--with", "GOOD:t=time [ms]"], "header = 'time, stress@20'"),
+        (["--with", "GOOD:stress@30"], "GOOD holds stress@20; stress@30"),
         (["--with", "GOOD", "--with", "GOOD"], "once"),
         (["--align"], "--align: needs --with"),
     ],
@@ -320,6 +434,7 @@ def test_fault_is_one_line_and_exit_2(text, where, allowed, written, monkeypatch
 def test_wrong_option_is_one_line(arguments, words, tmp_path, monkeypatch, capsys):
     good = save(tmp_path / "good.csv", TIME, STRESS)
     arguments = [a.replace("GOOD", good) for a in arguments]
+    words = words.replace("GOOD", good)
     assert words in refused(["compare", SCENE, *arguments], monkeypatch, capsys)
 
 
