@@ -410,3 +410,12 @@ class TestFaces:
         nodes = np.array([(x, y) for y in (0, 0.5, 1) for x in (0, 0.5, 1)])
         cells = sorted(linear_cells("quadrilateral", nodes).tolist())
         assert cells == [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]]
+
+    def test_a_hexahedron_is_as_vtk_counts_it(self):
+        """Around the lower face, then around the upper: (x, y, z) of eight nodes in turn."""
+        nodes = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
+        assert linear_cells("hexahedron", nodes).tolist() == [[0, 4, 6, 2, 1, 5, 7, 3]]
+        assert linear_cells("interval", np.array([[1.0], [0.0], [0.5]])).tolist() == [
+            [1, 2],
+            [2, 0],
+        ]
