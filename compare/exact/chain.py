@@ -149,13 +149,13 @@ def contact_forces(
     if chain.bars_tension:
         force[~chain.tension & ((spring < 0) | (force < 0))] = 0.0
     forces[..., 1:-1] = force
-    start, first = _reaction(chain, chain.ends[0], u[..., 0], v[..., 0], faces[..., 0], wall)
-    end, last = _reaction(chain, chain.ends[1], u[..., -1], v[..., -1], faces[..., 1])
+    start, first = reaction(chain, chain.ends[0], u[..., 0], v[..., 0], faces[..., 0], wall)
+    end, last = reaction(chain, chain.ends[1], u[..., -1], v[..., -1], faces[..., 1])
     forces[..., 0], forces[..., -1] = chain.prestress + push - start, chain.prestress + end
     return forces, (first, last)
 
 
-def _reaction(chain: Chain, kind: str, u, v, face, wall=0.0):
+def reaction(chain: Chain, kind: str, u, v, face, wall=0.0):
     """Return what an end takes from its block (N) and the velocity of its face (m/s)."""
     if kind == "free":
         return 0.0, 0.0

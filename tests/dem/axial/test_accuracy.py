@@ -93,8 +93,7 @@ def test_no_tension_chain_at_the_default_step(pillar, changes):
     """Opening joints make the force jump; still below 0.2 %, peaks within 0.1 %.
 
     Undamped, only until the reflected pulse has passed: after it the separated blocks rattle
-    freely, and where they collide depends on the last digits (two tolerances of the referee,
-    1e-9 and 1e-10, are then 1 % apart themselves).
+    freely, and where they collide depends on the step.
     """
     scene = pillar(**{"joints__tension": False, **changes})
     result, exact = dem.simulate(scene), no_tension.solve(scene)
