@@ -53,7 +53,7 @@ NO = [
     ("lattice", BARRED, "a joint bars tension"),
     ("lattice", LONG, "more than 2,000 blocks: the matrix exponential is dense"),
     ("no-tension-chain", {}, "every joint carries tension: see lattice"),
-    ("no-tension-chain", BARRED | LONG, "more than 2,000 blocks: too many for a tight ODE solver"),
+    ("no-tension-chain", BARRED | LONG, "more than 2,000 blocks: too many events"),
     ("jointed-bar", {"rock": {"intact_modulus": None}}, "rock.intact_modulus is not given"),
     ("jointed-bar", BARRED, "a joint bars tension"),
     ("jointed-bar", SHAKEN, "the loaded end is fixed"),
