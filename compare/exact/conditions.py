@@ -25,6 +25,11 @@ def beyond(scene: Scene, *held: str) -> str | None:
     return next(reasons, None)
 
 
+def static_stress(scene: Scene) -> float:
+    """Return what every section holds before the load acts, Pa, where gravity does not."""
+    return scene.prestress.normal if scene.prestress else 0.0
+
+
 def rock_is_damped(p: Properties) -> bool:
     """Return whether the rock and its ordinary joints carry dashpots."""
     return bool(p.time_constant)

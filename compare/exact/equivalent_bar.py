@@ -23,7 +23,7 @@ RESOLVES = Resolves(Rock.HOMOGENISED)
 def applies(scene: Scene) -> Answer:
     """Return whether the scene's homogenised bar is linear and its layers add compliance."""
     p = calibrate(scene)
-    if reason := beyond(scene):
+    if reason := beyond(scene, "prestress"):
         return no(reason)
     if has_thick_layer(scene):
         return no("a soft layer has a thickness")

@@ -24,7 +24,7 @@ RESOLVES = Resolves(Rock.JOINTED)
 def applies(scene: Scene) -> Answer:
     """Return whether the scene is a linear bar of known intact rock."""
     p = calibrate(scene)
-    if reason := beyond(scene):
+    if reason := beyond(scene, "prestress"):
         return no(reason)
     if has_thick_layer(scene):
         return no("a soft layer has a thickness")

@@ -26,7 +26,13 @@ from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
 from compare.exact.answer import YES, Answer, Resolves, Rock, no
-from compare.exact.conditions import bars_tension, beyond, has_interfaces, rock_is_damped
+from compare.exact.conditions import (
+    bars_tension,
+    beyond,
+    has_interfaces,
+    rock_is_damped,
+    static_stress,
+)
 from compare.exact.series import rigid
 
 NAME = "kelvin-voigt"
@@ -37,7 +43,7 @@ SPLIT = 1e-5  # least distance of a mode's roots: q_n is even in it, so it costs
 def applies(scene: Scene) -> Answer:
     """Return whether the scene's homogenised bar is damped, free, uniform, and under a sine."""
     p = calibrate(scene)
-    if reason := beyond(scene):
+    if reason := beyond(scene, "prestress"):
         return no(reason)
     if bars_tension(p):
         return no("a joint bars tension")
@@ -72,7 +78,9 @@ def solve(scene: Scene, n_terms: int = 500) -> xr.Dataset:
         velocity += np.outer(shape, rate - w_rate / mode**2)
         displacement += np.outer(shape, q - w / mode**2)
     mass = p.density * length
-    return dataset(scene, NAME, times, stress, velocity / mass, displacement / mass)
+    return dataset(
+        scene, NAME, times, stress + static_stress(scene), velocity / mass, displacement / mass
+    )
 
 
 def response(

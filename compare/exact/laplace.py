@@ -37,6 +37,7 @@ from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
 from cases.size import require
+from compare.exact.conditions import static_stress
 
 TAIL = 1.5
 WRAPPED = 1e-10
@@ -94,8 +95,8 @@ def solved(scene: Scene, name: str, bar: Bar) -> xr.Dataset:
     """Return stress, velocity and displacement of a bar under the scene's load."""
     times, record = sample_times(scene), scene.record
     load = load_history(scene)
-    fields = response(bar, load, times, record.stress, record.velocity, scene.load.period)
-    return dataset(scene, name, times, *fields)
+    stress, *motion = response(bar, load, times, record.stress, record.velocity, scene.load.period)
+    return dataset(scene, name, times, stress + static_stress(scene), *motion)
 
 
 def response(

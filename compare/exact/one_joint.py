@@ -25,7 +25,13 @@ from cases.result import dataset
 from cases.sampling import sample_times
 from cases.scene import Scene
 from compare.exact.answer import YES, Answer, Resolves, Rock, no
-from compare.exact.conditions import bars_tension, beyond, has_thick_layer, rock_is_damped
+from compare.exact.conditions import (
+    bars_tension,
+    beyond,
+    has_thick_layer,
+    rock_is_damped,
+    static_stress,
+)
 from compare.exact.images import ENTERS
 from compare.exact.linear import response
 
@@ -45,7 +51,7 @@ def applies(scene: Scene) -> Answer:
     """Return whether one joint is all that the waves meet within the scene's duration."""
     p = calibrate(scene)
     compliance = p.excess_compliance
-    if reason := beyond(scene):
+    if reason := beyond(scene, "prestress"):
         return no(reason)
     if has_thick_layer(scene):
         return no("a soft layer has a thickness")
@@ -87,7 +93,7 @@ def solve(scene: Scene) -> xr.Dataset:
     stress = there[0] + back[0]
     there, back = waves(scene.record.velocity)
     velocity, displacement = (there - back) / p.impedance
-    return dataset(scene, NAME, times, stress, velocity, displacement)
+    return dataset(scene, NAME, times, stress + static_stress(scene), velocity, displacement)
 
 
 def around(

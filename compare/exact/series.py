@@ -25,6 +25,7 @@ from cases.sampling import sample_times
 from cases.scene import Scene
 from compare.exact import images
 from compare.exact.answer import YES, Answer, Resolves, Rock, no
+from compare.exact.conditions import static_stress
 
 NAME = "series"
 RESOLVES = Resolves(Rock.HOMOGENISED)
@@ -60,7 +61,9 @@ def solve(scene: Scene, n_terms: int = 2000) -> xr.Dataset:
     rigid_velocity, rigid_displacement = rigid(load, times)
     velocity += rigid_velocity / (p.density * length)
     displacement += rigid_displacement / (p.density * length)
-    return dataset(scene, NAME, times, stress, velocity, displacement, terms=n_terms)
+    return dataset(
+        scene, NAME, times, stress + static_stress(scene), velocity, displacement, terms=n_terms
+    )
 
 
 def amplitude(mode: float, load: Sine, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

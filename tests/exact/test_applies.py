@@ -150,7 +150,6 @@ BEYOND = [
     ({"load": {"direction": [0.0, -1.0, 0.0]}}, "the load acts against the axis"),
     ({"joints": BREAKS}, "a joint has a tensile strength"),
     ({"gravity": UP, "ends": {"end": "fixed"}}, "gravity acts"),
-    ({"prestress": {"normal": 1e6}}, "the joints are prestressed"),
     ({"damping": {"mass_proportional": 1.0}}, "the damping is proportional to mass"),
     ({"damping": {"local": 0.1}}, "the damping is local, which is not linear"),
 ]
