@@ -3,7 +3,7 @@ MAKEFLAGS += --no-print-directory
 RUN := tools/run.sh
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-all docs check fuzz bench bench-peers bench-plan test-debian13 clean distclean
+.PHONY: help setup demo test test-all docs check fuzz mutate bench bench-peers bench-plan test-debian13 clean distclean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -29,6 +29,9 @@ docs:  ## the documentation as pages, site/index.html, with the outcomes of the 
 
 fuzz: setup  ## 10,000 bad scenes, loads, curves, studies, meshes and commands, made by atheris (installed apart in .fuzz)
 	@$(RUN) python tools/fuzz
+
+mutate: setup  ## small faults in the code of cases/ and joints/, each of which a test should find (20 min; others: tools/mutate PATH)
+	@$(RUN) python tools/mutate
 
 check: setup  ## lint, formatting, types, and the direction of imports
 	@$(RUN) ruff check

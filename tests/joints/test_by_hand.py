@@ -12,6 +12,7 @@ import pytest
 from joints.ends import half_spring
 from joints.energy import elastic_energy, fracture_energy_spent, friction_work
 from joints.laws import History, Law, normal_traction, spring_traction, traction
+from joints.shear import shear_return
 from joints.softening import is_broken, strength_left
 from joints.stability import critical_step, critical_step_of_modes
 from joints.tangent import tangent
@@ -108,13 +109,33 @@ def test_shear_of_an_open_joint_is_nothing():
 
 def test_dashpot_in_shear():
     """C_s = 2e4: 0.2 m/s adds 4e3 Pa to 2e9 * 1 um; on the strength of 1e4 Pa spring and dashpot
-    over the step carry it together: (2e4 / 1e-5 * 0 + 1e4) / (2e9 + 2e4 / 1e-5) = 2.5 um."""
+    over the step carry it: (2e4 / 1e-5 * e + T) / (2e9 + 2e4 / 1e-5), that is (e + T / 2e9)
+    / 2 with e before the step."""
     one = Law(K, 1e4, False, K_S, 2e4, 1e4)
     h = History(None, 0.0, 0.0)
     _, t_x, _, after = step(one, -1e-4, (1e-6, 0.0), slip_rate=(0.2, 0.0), h=h)
     assert (t_x, after.ex) == near((-6e3, 1e-6))
     _, t_x, _, after = step(one, -1e-4, (1e-5, 0.0), slip_rate=(1.0, 0.0), h=h)
     assert (t_x, after.ex) == near((-1e4, 2.5e-6))
+    h = History(None, 1e-6, 2e-6)  # with the slip 10 and 40 / 3 um
+    rate = (0.9, 34 / 30)  # of the slip in 10 us; T* = 2e9 * (10, 40 / 3) um + 2e4 * rate
+    _, t_x, t_z, after = step(one, -1e-4, (9e-6, 34e-6 / 3), slip_rate=rate, h=h)
+    trial = 2e4 + 1.8e4, 8e4 / 3 + 6.8e4 / 3
+    share = 1e4 / sqrt(trial[0] ** 2 + trial[1] ** 2)
+    assert (t_x, t_z) == near((-share * trial[0], -share * trial[1]))
+    assert (after.ex, after.ez) == near(((1e-6 - t_x / 2e9) / 2, (2e-6 - t_z / 2e9) / 2))
+
+
+def test_friction_alone():
+    """0.5 of 1e5 Pa; pulled, nothing."""
+    one = Law(K, None, None, K_S, None, None, 0.5)
+    assert step(one, -1e-4, (1e-3, 0.0), h=History(None, 0.0, 0.0))[1] == near(-5e4)
+    assert step(one, 1e-4, (1e-3, 0.0), h=History(None, 0.0, 0.0))[1] == 0
+
+
+def test_shear_that_nothing_limits():
+    found = shear_return(Law(K, None, None, K_S), 1e-6, 2e-6, 0.0, 0.0, 0.0, 0.0, None, DT)
+    assert found[:4] == near((-2e3, -4e3, 1e-6, 2e-6)) and not found[4]
 
 
 def test_softened_cohesion():
@@ -188,11 +209,13 @@ def test_dashpot_behind_a_spring():
 
 
 def test_critical_step():
-    """omega = 10: 0.2 s; eta = 0.15 s: sqrt(4 * 0.15^2 + 4 / 100) - 0.3 = sqrt(0.13) - 0.3."""
+    """omega = 10: 0.2 s; eta = 0.15 s: sqrt(4 * 0.15^2 + 4 / 100) - 0.3 = sqrt(0.13) - 0.3; of
+    1.5 ms: sqrt(0.040009) - 0.003."""
     damped = sqrt(0.13) - 0.3
     assert critical_step_of_modes(10.0, 0.15) == near(damped)
     assert critical_step_of_modes(10.0, 0.0) == near(0.2)
     assert critical_step(lambda a, b: 100 * a + 15 * b, True) == near(damped)
+    assert critical_step(lambda a, b: 100 * a + 0.15 * b, True) == near(sqrt(0.040009) - 0.003)
     assert critical_step(lambda a, b: 100 * a + 0 * b, True) == near(0.2)
     assert critical_step(lambda a, b: 100 * a + 15 * b, False) == near(0.2)
 
@@ -213,6 +236,12 @@ def test_the_law_of_joints():
     assert one.carries_tension.tolist() == [True, False, True]
     assert (one.shear_stiffness, one.cohesion) == (5e8, 3e4)
     assert one.friction is one.residual_cohesion is one.tensile_strength is None
-    assert law(stiffness, None, np.ones(3, bool)).carries_tension is None
+    strengths = {"friction": 0.5, "residual_cohesion": 1e4, "tensile_strength": 1e5}
+    strengths["critical_opening"] = 3e-4
+    found = law(
+        stiffness, None, np.ones(3, bool), **{k: np.full(3, v) for k, v in strengths.items()}
+    )
+    assert {k: getattr(found, k) for k in strengths} == strengths
+    assert found.carries_tension is found.shear_stiffness is found.normal_viscosity is None
     assert law(stiffness, None, np.zeros(3, bool)).carries_tension is False
     assert uniform(np.array([])).size == 0
