@@ -1,42 +1,118 @@
-"""Reading the text files that a user names, with one phrase for whatever is wrong."""
+"""Reading the text files that a user names, with one phrase for whatever is wrong.
 
+What a file would take of memory follows from its size, and is asked before it is read.
+"""
+
+import io
+import json
 import re
 import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from itertools import count
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
+
+from cases.size import memory, spoken
 
 #: A key of so many parts: tomllib takes time with the third power of their number.
 LONG_KEY = re.compile(r"""(?<![\w"'-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){64}""")
 
+#: Bytes of memory at most for each byte of a file: as text of four bytes a character, with its
+#: copies, and as what TOML and JSON make of it: a table for each `a=1`, a list for each `[],`.
+TEXT, TOML, JSON = 12, 120, 40
+NUMBER = 64  # bytes of memory for each number of a table, with its copies
+SMALL = 10_000_000  # bytes: what takes less is read, however little memory a run may take
+LONGEST_LINE = 200_000  # characters, of a table
 
-def read_text(path: Path, largest: int) -> str:
+
+def read_text(path: Path, largest: int, times: int = TEXT) -> str:
     """Return the text of a file of at most `largest` bytes.
 
-    Raises ValueError, in one phrase. Only regular files are opened: a pipe would block.
+    times : bytes of memory that each of the file would take. Raises ValueError, in one phrase. Only
+    regular files are opened: a pipe would block.
     """
+    with _opened(path, largest, times) as file:
+        content = file.read(largest + 1)  # what the system makes up may have no size
+        if len(content) > largest:
+            raise ValueError(_too_large(largest))
+        return content.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+
+
+def read_lines(path: Path, largest: int) -> Iterator[tuple[int, str]]:
+    """Yield number and text of each line of a table of at most `largest` bytes; raises ValueError.
+
+    The numbers of the table are counted, and refused beyond the memory, before the first.
+    """
+    with _opened(path, largest, 0) as file:
+        _refuse_beyond_memory(NUMBER * _numbers_at_most(file, largest))
+        text = io.TextIOWrapper(file, "utf-8-sig")
+        for number in count(1):
+            line = text.readline(LONGEST_LINE)
+            if not line:
+                return
+            if len(line) == LONGEST_LINE:
+                raise ValueError(f"line {number} is longer than {LONGEST_LINE:,} characters")
+            yield number, line.rstrip("\n")
+
+
+@contextmanager
+def _opened(path: Path, largest: int, times: int) -> Iterator[BinaryIO]:
+    """Open a regular file whose size is allowed; what is wrong is a ValueError."""
     try:
         if path.is_dir():
             raise ValueError("is a directory, must be a file")
         if path.exists() and not path.is_file():
             raise ValueError("is not a regular file")
+        size = path.stat().st_size
+        if size > largest:
+            raise ValueError(_too_large(largest))
+        _refuse_beyond_memory(times * size)
         with path.open("rb") as file:
-            content = file.read(largest + 1)  # what the system makes up may have no size
-        if len(content) > largest:
-            raise ValueError(f"is too large, must hold at most {largest / 1e6:g} MB")
-        return content.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+            yield file
     except OSError as error:
         raise ValueError(f"cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise ValueError("is not UTF-8 text") from None
 
 
+def _too_large(largest: int) -> str:
+    return f"is too large, must hold at most {largest / 1e6:g} MB"
+
+
+def _refuse_beyond_memory(size: float) -> None:
+    if size > max(memory(), SMALL):
+        raise ValueError(f"would take about {spoken(size)} of memory; here are {spoken(memory())}")
+
+
+def _numbers_at_most(file: BinaryIO, largest: int) -> int:
+    """Return how many numbers a table can hold, by what separates them, and go back to its start."""
+    found = seen = 0
+    while part := file.read(1 << 20):
+        seen += len(part)
+        if seen > largest:
+            raise ValueError(_too_large(largest))
+        found += sum(map(part.count, (b"\n", b"\r", b",", b";", b"\t")))
+    file.seek(0)
+    return found + 1
+
+
 def read_toml(path: Path, largest: int) -> dict[str, Any]:
     """Return the tables of a TOML file of at most `largest` bytes; raises ValueError."""
-    text = read_text(path, largest)
+    text = read_text(path, largest, TOML)
     try:
         return parse_toml(text)
     except (ValueError, RecursionError) as error:
         raise ValueError(f"is not valid TOML: {error}") from None
+
+
+def read_json(path: Path, largest: int) -> Any:
+    """Return the value of a JSON file of at most `largest` bytes; raises ValueError."""
+    text = read_text(path, largest, JSON)
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError):
+        raise ValueError("is not valid JSON") from None
 
 
 def parse_toml(text: str) -> dict[str, Any]:

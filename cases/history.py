@@ -1,13 +1,14 @@
 """A recorded load history: a two-column CSV of time (s) and end stress (Pa), or base motion."""
 
 import csv
-from collections.abc import Iterator
+from array import array
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from cases.files import beside, is_number, read_text
+from cases.files import beside, is_number, read_lines
 
 LARGEST_FILE = 200_000_000  # bytes; some ten million samples
 LARGEST = 1e30  # s, Pa; what lies beyond is a mistake, and its squares overflow
@@ -33,8 +34,7 @@ class History:
         anywhere : whether it may lie outside `folder`. Raises ValueError, in one line, when there
         is nothing to read or it is not a history.
         """
-        lines = read_text(beside(folder, file, anywhere), LARGEST_FILE).splitlines()
-        numbers, rows = _rows(lines)
+        numbers, rows = _rows(read_lines(beside(folder, file, anywhere), LARGEST_FILE))
         if len(rows) < 2:
             raise ValueError("must hold at least two rows of time and load")
         wrong = ~(np.abs(rows) <= LARGEST).all(axis=1)
@@ -50,10 +50,9 @@ class History:
         return cls(time, stress)
 
 
-def _rows(lines: list[str]) -> tuple[list[int], np.ndarray]:
+def _rows(lines: Iterable[tuple[int, str]]) -> tuple[array, np.ndarray]:
     """Return the line numbers and the rows [n, 2] that hold data."""
-    numbers: list[int] = []
-    rows: list[list[float]] = []
+    numbers, rows = array("q"), array("d")
     for number, cells in _cells(lines):
         if not rows and not any(map(is_number, cells)):
             continue  # a header
@@ -62,12 +61,12 @@ def _rows(lines: list[str]) -> tuple[list[int], np.ndarray]:
                 f"must hold two numbers a line, time and load (line {number} does not)"
             )
         numbers.append(number)
-        rows.append([float(cell) for cell in cells])
-    return numbers, np.array(rows, dtype=float).reshape(-1, 2)
+        rows.extend(map(float, cells))
+    return numbers, np.frombuffer(rows).reshape(-1, 2)
 
 
-def _cells(lines: list[str]) -> Iterator[tuple[int, list[str]]]:
-    for number, line in enumerate(lines, 1):
+def _cells(lines: Iterable[tuple[int, str]]) -> Iterator[tuple[int, list[str]]]:
+    for number, line in lines:
         if line.strip() and not line.lstrip().startswith("#"):
             try:
                 yield number, next(csv.reader([line]))

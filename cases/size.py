@@ -7,6 +7,7 @@ the key of the scene that decides it. A run is refused where the sum is beyond `
 from __future__ import annotations
 
 import os
+import resource
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -94,6 +95,23 @@ def require(size: float, what: str) -> None:
     """Raise MemoryError where so many bytes are more than a run may take."""
     if size > memory():
         raise MemoryError(f"{what} would take about {spoken(size)}; here are {spoken(memory())}")
+
+
+@contextmanager
+def within(room: float) -> Iterator[None]:
+    """Let allocations of more than so many bytes raise MemoryError, where the system can tell."""
+    try:
+        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
+    except OSError:
+        yield
+        return
+    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+    asked = pages * resource.getpagesize() + int(room)
+    resource.setrlimit(resource.RLIMIT_AS, (min(x for x in (asked, soft, hard) if x >= 0), hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
 
 
 def value_of(scene: Scene, key: str) -> object:

@@ -2,7 +2,8 @@
 
 import csv
 import re
-from collections.abc import Callable, Iterator
+from array import array
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,9 +11,9 @@ import numpy as np
 import xarray as xr
 
 from cases.errors import SceneError
-from cases.files import is_number, read_text
+from cases.files import is_number, read_lines
 from cases.history import LARGEST, LARGEST_FILE
-from cases.size import require
+from compare.netcdf import load_netcdf
 
 LEAST_SAMPLES = 3  # what a parabola through the peak of a correlation takes
 NUMBER = re.compile(r"\s*[-+.\d]")  # a line that begins so is no header
@@ -90,21 +91,30 @@ def split_unit(text: str) -> tuple[str, str]:
 
 
 def _read_csv(path: Path, time_name: str) -> Columns:
-    try:
-        rows = list(_rows(read_text(path, LARGEST_FILE).splitlines(), time_name))
-    except ValueError as error:
-        raise SceneError(str(path), "", None, str(error)) from None
-    named = bool(rows) and not is_number(rows[0][1][0])
-    header = rows.pop(0)[1] if named else ["time", ""]
-    numbers = [number for number, _ in rows]
+    numbers, values, blank = array("q"), array("d"), bytearray()
+    header: list[str] = []
+    at = 0
 
     def row(i: int) -> str:
         return f"{path}, line {numbers[i]}"
 
-    at = _where_time(path, header, time_name)
-    data = np.array([_numbers(row(i), header, cells, at) for i, (_, cells) in enumerate(rows)])
-    empty = np.array([[not cell for cell in cells] for _, cells in rows])
-    data, empty = (x.reshape(-1, len(header)) for x in (data, empty))
+    try:
+        for number, cells in _rows(read_lines(path, LARGEST_FILE), time_name):
+            if not header:
+                header = ["time", ""] if is_number(cells[0]) else cells
+                at = _where_time(path, header, time_name)
+                if header is cells:
+                    continue
+            values.extend(_numbers(f"{path}, line {number}", header, cells, at))
+            blank.extend(not cell for cell in cells)
+            numbers.append(number)
+    except SceneError:
+        raise
+    except ValueError as error:
+        raise SceneError(str(path), "", None, str(error)) from None
+    header = header or ["time", ""]
+    data = np.frombuffer(values).reshape(-1, len(header))
+    empty = np.frombuffer(blank, dtype=bool).reshape(data.shape)
     columns = [
         Column(*split_unit(text), data[:, i], empty[:, i] if empty[:, i].any() else None)
         for i, text in enumerate(header)
@@ -124,13 +134,13 @@ def _where_time(path: Path, header: list[str], time_name: str) -> int:
     return names.index(time_name)
 
 
-def _rows(lines: list[str], time_name: str) -> Iterator[tuple[int, list[str]]]:
+def _rows(lines: Iterable[tuple[int, str]], time_name: str) -> Iterator[tuple[int, list[str]]]:
     """Yield line number and cells, separated by what the first line that is no comment has.
 
     A comment ends a line; within a header it begins with "# ", since names may hold the sign.
     """
     separator = ""
-    for number, line in enumerate(lines, 1):
+    for number, line in lines:
         sign = "#" if separator or NUMBER.match(line) else HEADER_COMMENT
         text = re.split(sign, line, maxsplit=1)[0].strip(" ")
         if not text.strip():
@@ -170,13 +180,10 @@ def _numbers(where: str, header: list[str], cells: list[str], at: int) -> list[f
 
 
 def _read_netcdf(path: Path) -> Columns:
+    wanted = {"time", *DIMENSIONS, *(name for pair in DIMENSIONS.values() for name in pair)}
     try:
-        if path.exists() and not path.is_file():
-            raise ValueError("it is not a regular file")
         # Undecoded, times keep the numbers and the unit that the file gives them.
-        with xr.open_dataset(path, decode_times=False) as lazy:
-            require(lazy.nbytes, "its variables")
-            found = lazy.load()
+        found = load_netcdf(path, wanted, decode_times=False)
     except FileNotFoundError as error:
         raise SceneError(str(path), "", None, f"cannot be read: {error.strerror}") from None
     except Exception as error:  # of whichever library xarray finds, on a file that is not whole

@@ -12,6 +12,7 @@ import numba
 
 import cases
 from cases.effects import is_spatial
+from cases.files import read_json
 from cases.sampling import Clock
 from cases.scene import Scene
 from compare.engines import solve
@@ -173,10 +174,13 @@ def whole(blocks: int) -> float:
     return known[count]
 
 
+LARGEST_FILE = 1_000_000  # bytes
+
+
 def _known() -> dict[str, float]:
     try:
-        return {count: float(ns) for count, ns in json.loads(_file().read_text()).items()}
-    except (OSError, ValueError, TypeError, AttributeError):
+        return {count: float(ns) for count, ns in read_json(_file(), LARGEST_FILE).items()}
+    except (ValueError, TypeError, AttributeError):
         return {}
 
 

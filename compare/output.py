@@ -8,17 +8,21 @@ import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from cases.errors import SceneError
+from cases.files import read_json
 from cases.result import Fields
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
+T = TypeVar("T")
+
+LARGEST_ROW = 100_000_000  # bytes, of what a study, a sweep or the battery keeps of a point
 UNFINISHED = ".unfinished-"  # in the names of files that are being written, which begin with a dot
 
 
@@ -141,6 +145,20 @@ def write_folder(path: Path, save: Callable[[Path], object]) -> Path:
 def write_text(path: Path, text: str) -> Path:
     """Write text as UTF-8."""
     return write(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+
+
+def read_kept(path: Path, form: type[T]) -> T:
+    """Return what `write_text` has kept as JSON, of a form: a NamedTuple, a list of them.
+
+    Raises SceneError where the file is not of that form.
+    """
+    from pydantic import TypeAdapter
+
+    try:
+        return TypeAdapter(form).validate_python(read_json(path, LARGEST_ROW))
+    except ValueError as error:  # pydantic's are of several lines
+        reason = str(error).partition("\n")[0]
+        raise SceneError(str(path), "", None, f"is damaged, remove it: {reason}") from None
 
 
 def fields_of(result: xr.Dataset) -> Fields:

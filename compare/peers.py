@@ -6,6 +6,7 @@ Every row is a run of a whole process on one core; ours are among them, taken in
 
 from __future__ import annotations
 
+import io
 import json
 from math import isfinite
 from pathlib import Path
@@ -14,6 +15,7 @@ from typing import NamedTuple
 import pandas as pd
 
 from cases.errors import SceneError
+from cases.files import read_text
 from compare.drawn import Drawn, save
 from compare.output import write_text
 from compare.peers_diagram import draw
@@ -21,10 +23,13 @@ from compare.tables import Table, percent
 
 PLACE = Path("out/peers/points.csv")  # where `make bench-peers` writes
 NAME = "peers"
-NEEDED = (
-    *("curve", "settings", "state", "message", "solves", "misfit", "total_misfit"),
-    *("seconds", "whole", "rate", "work", "beside", "stepping_over_ours", "whole_over_ours"),
+TEXTS = ("curve", "settings", "state", "message", "solves", "beside")
+NUMBERS = (
+    *("misfit", "total_misfit", "seconds", "whole", "rate", "work"),
+    *("stepping_over_ours", "whole_over_ours"),
 )
+NEEDED = (*TEXTS, *NUMBERS)
+LARGEST_FILE = 1_000_000  # bytes; the table has a row for each run
 HEADER = [
     "point",
     "own model, %",
@@ -56,14 +61,30 @@ def read(file: Path | None) -> pd.DataFrame | None:
     if file is None and not path.is_file():
         return None
     try:
-        table = pd.read_csv(path)
-    except (OSError, ValueError) as error:
+        table = pd.read_csv(io.StringIO(read_text(path, LARGEST_FILE)))
+    except ValueError as error:
         raise SceneError(str(path), "", None, f"cannot be read: {error}") from error
-    lacking = [name for name in NEEDED if name not in table]
-    if lacking:
-        allowed = f"is no table of make bench-peers: it has no column {lacking[0]}"
-        raise SceneError(str(path), "", None, allowed)
+    if fault := _fault(table):
+        raise SceneError(str(path), "", None, f"is no table of make bench-peers: {fault}")
     return table
+
+
+def _fault(table: pd.DataFrame) -> str:
+    """Return what is wrong with a table, or nothing."""
+    for name in NEEDED:
+        if name not in table:
+            return f"it has no column {name}"
+    for name in NUMBERS:
+        if not pd.api.types.is_numeric_dtype(table[name]):
+            return f"its column {name} does not hold numbers"
+    for row in table[table["state"] == "done"].to_dict("records"):
+        try:
+            dict(json.loads(row["settings"]))
+        except (TypeError, ValueError, RecursionError):
+            return f"its settings {str(row['settings'])[:60]!r} are no JSON object"
+        if not all(isinstance(row[name], str) for name in ("curve", "solves")):
+            return "a run has no curve or does not say what it solves"
+    return ""
 
 
 def write_section(folder: Path, found: pd.DataFrame) -> PeersSection:

@@ -16,11 +16,13 @@ import numba
 
 import joints.jit  # noqa: F401  it says where the kernels are
 from cases.effects import active_effects
+from cases.files import read_json
 from cases.result import scene_hash
 from cases.scene import Scene
 from compare.engines import ENGINES
 from compare.output import write_text
 
+LARGEST_FILE = 10_000_000  # bytes
 SHORTEST = 0.01  # s: what is over sooner tells too little to replace what is known
 CHANGED = 2.0  # a rate that has changed by this factor is written anew
 
@@ -91,8 +93,8 @@ OF_ROCK = ("scheme", "dim", "cell", "order", "processes")
 
 def _known() -> dict[str, float]:
     try:
-        return dict(json.loads(_file().read_text(encoding="utf-8")))
-    except (OSError, ValueError, TypeError):
+        return {str(key): float(value) for key, value in read_json(_file(), LARGEST_FILE).items()}
+    except (ValueError, TypeError, AttributeError):
         return {}
 
 

@@ -15,11 +15,11 @@ from compare import rates
 from compare.effort import BLOCKS, everything, stretch
 from compare.engines import Progress
 from compare.keeping.signature import program
-from compare.output import write_text
+from compare.output import read_kept, write_text
 from compare.scenes import find, shipped
 from compare.studies.pool import Pool
 from compare.studies.runner import alone
-from compare.worth import Balance, Dropped, Worth, balance, prepare
+from compare.worth import Balance, Dropped, balance, prepare
 
 RATE = "effects of a variant"  # what the seconds of cases are remembered by
 PREPARING = 0.8  # of the time, where nothing is compiled yet
@@ -130,20 +130,15 @@ def complete(wanted: list[Case], folder: Path, progress: Progress | None = None)
                 _time(case, folder)
             if progress:
                 progress((i + 1) / len(wanted))
-    return [_read(_file(case, folder)) for case in wanted]
+    return [read_kept(_file(case, folder), Balance) for case in wanted]
 
 
 def _time(case: Case, folder: Path) -> None:
-    answers = json.loads(_answers(case, folder).read_text(encoding="utf-8"))
-    found = balance(case.name, case.scene, [Dropped(**one) for one in answers])
+    answers = read_kept(_answers(case, folder), list[Dropped])
+    found = balance(case.name, case.scene, answers)
     facts = found._asdict() | {"effects": [one._asdict() for one in found.effects]}
     write_text(_file(case, folder), json.dumps(facts, indent=1))
     _answers(case, folder).unlink()
-
-
-def _read(file: Path) -> Balance:
-    facts = json.loads(file.read_text(encoding="utf-8"))
-    return Balance(**facts | {"effects": [Worth(**one) for one in facts["effects"]]})
 
 
 def _file(case: Case, folder: Path) -> Path:

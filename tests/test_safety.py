@@ -32,6 +32,26 @@ record = { stress = [1.0], velocity = [0.25] }
 numerics = { NUMERICS }
 """
 STEP = 'shape = "step", amplitude = 1.0'
+#: Calls that read a file whole, and the modules that may: the doors, which ask its size before, and
+#: those that read the program's own files or the system's.
+READS = {
+    "read_bytes",
+    "load_dataset",
+    "open_dataset",
+    "read_csv",
+    "genfromtxt",
+    "loadtxt",
+    "fromfile",
+}
+OF_PATHS = {"read_text"}
+DOORS = {
+    *("cases/files.py", "compare/netcdf.py"),  # the doors
+    *("cases/size.py", "compare/studies/table.py"),  # of the system
+    *("joints/cache.py", "compare/keeping/signature.py", "compare/starter.py"),  # of the program
+    *("compare/page/render.py", "compare/page/section.py"),  # what has just been written or read
+    "compare/peers.py",  # of a text in memory
+    *("compare/pytest_plugin.py", "continuum/meshing/tagged.py"),  # once their size is known
+}
 HISTORY = "0,0\n1,1\n"
 
 
@@ -76,6 +96,26 @@ def test_nothing_that_reads_or_runs_a_scene_makes_code_of_data():
         if (faults := set(faults_of(ast.parse(path.read_text(encoding="utf-8")))))
     }
     assert found == {}
+
+
+def reads_of(tree):
+    """Yield the calls of a module that read a file whole, whatever its size."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+            owner, name = getattr(node.func.value, "id", None), node.func.attr
+            if name in READS or (name in OF_PATHS and owner != "files"):
+                yield name
+            if (owner, name) in {("np", "load"), ("json", "load"), ("pickle", "load")}:
+                yield name
+
+
+def test_files_are_read_through_the_doors_that_ask_their_size():
+    found = {
+        str(path.relative_to(ROOT))
+        for path in SOURCES
+        if any(reads_of(ast.parse(path.read_text(encoding="utf-8"))))
+    }
+    assert found <= DOORS
 
 
 @pytest.fixture

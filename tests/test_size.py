@@ -1,10 +1,13 @@
 """Runs that would not fit the memory are refused before anything of theirs is made."""
 
+import hashlib
 import os
 import re
+import struct
 import subprocess
 import sys
 import tracemalloc
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +16,17 @@ import xarray as xr
 
 import cases
 from cases.errors import SceneError
+from cases.history import History
 from cases.size import LIMIT, memory, refuse_beyond_memory, waveform_bytes
-from compare.curvefiles import read_columns
+from compare import peers
+from compare.curvefiles import DIMENSIONS, read_columns
 from compare.engines import solve
 from compare.exact import images
+from compare.keeping.checkpoints import Checkpoints
+from compare.keeping.watch import result_of
+from compare.output import read_kept
+from compare.processes import ALONE
+from compare.studies.measure import Row
 
 AT_ONCE = 200e6  # bytes: what reading a scene of ten million blocks takes, not one run refused here
 
@@ -180,7 +190,7 @@ def test_a_large_file_of_curves_is_refused(tmp_path, limit):
     xr.Dataset({"stress": ("time", time)}, {"time": time}).to_netcdf(path, engine="scipy")
     assert read_columns(path).time.values.size == 20_000
     limit(1e-4)
-    with pytest.raises(SceneError, match="cannot be read as NetCDF: its variables would take"):
+    with pytest.raises(SceneError, match=r"cannot be read as NetCDF: .*would take"):
         read_columns(path)
 
 
@@ -210,3 +220,102 @@ def test_a_waveform_beyond_what_a_file_holds_is_refused(pillar):
         SceneError, match=r"record\.stress = '30 places'.*2\.4 GB; at most 2\.15 GB"
     ):
         waveform_bytes(scene)
+
+
+def hollow(path, begins, size=3_000_000_000):
+    """Write a file that says it is `size` long and takes 4 kB of the disk."""
+    path.write_bytes(begins)
+    os.truncate(path, size)
+    assert path.stat().st_blocks <= 16
+    return path
+
+
+def classic(path, count, variables, size):
+    """Write NetCDF 3 whose variables of `count` doubles over time all lie in the same place."""
+
+    def name(text):
+        return struct.pack(">i", len(text)) + text.encode() + b"\0" * (-len(text) % 4)
+
+    nothing, bytes_of = struct.pack(">ii", 0, 0), min(8 * count, 2**31 - 4)
+    header = b"CDF\2" + struct.pack(">iii", 0, 10, 1) + name("time") + struct.pack(">i", count)
+    header += nothing + struct.pack(">ii", 11, len(variables))
+    for one in variables:
+        where = struct.pack(">iiq", 6, bytes_of, 4096)
+        header += name(one) + struct.pack(">ii", 1, 0) + nothing + where
+    assert len(header) < 4096
+    return hollow(path, header, size)
+
+
+def checkpoint(path, shape, length, compression):
+    """Write a checkpoint whose digest fits, with one array that is zero."""
+    header = f"{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}".ljust(117) + "\n"
+    with zipfile.ZipFile(path, "w", compression) as whole, whole.open("00000.npy", "w") as file:
+        file.write(b"\x93NUMPY\1\0" + struct.pack("<H", len(header)) + header.encode())
+        for _ in range(length // 1_000_000):
+            file.write(bytes(1_000_000))
+    with path.open("r+b") as file:
+        digest = hashlib.file_digest(file, "sha256").hexdigest()
+        file.write(digest.encode())
+
+
+def scene_of(path):
+    path.write_text("".join(f"a{i}=1\n" for i in range(300_000)))
+    return cases.load(path)
+
+
+def kept(path, text):
+    path.write_text(text)
+    return read_kept(path, Row)
+
+
+def resumed(path, *content):
+    files = Checkpoints(path, {"scene": "a"}, ALONE)
+    checkpoint(files._path(5), *content)
+    files.load(5, (np.zeros(3),))
+
+
+def lines(path, text):
+    path.write_text(text)
+    return path
+
+
+#: Files that are small on the disk or to look at, and what a command does with them.
+BOMBS = {
+    "curves as NetCDF": lambda p: read_columns(classic(p / "a.nc", 2**28, ["time"], 2**31 + 4096)),
+    "curves in one place": lambda p: read_columns(
+        classic(p / "a.nc", 2**20, ["time", *DIMENSIONS, *sum(DIMENSIONS.values(), ())], 9_000_000)
+    ),
+    "a result": lambda p: result_of(classic(p / "a.nc", 2**28, ["stress"], 2**31 + 4096), {}),
+    "curves as CSV": lambda p: read_columns(lines(p / "a.csv", "0,0\n" * 5_000_000)),
+    "curves in one line": lambda p: read_columns(lines(p / "a.csv", "0," * 1_500_000)),
+    "a hollow CSV": lambda p: read_columns(hollow(p / "a.csv", b"0,0\n", 190_000_000)),
+    "a load": lambda p: History.from_csv(p, lines(p / "a.csv", "0,0\n" * 5_000_000).name),
+    "a checkpoint that is compressed": lambda p: resumed(
+        p / "a.nc", (50_000_000,), 400_000_000, zipfile.ZIP_DEFLATED
+    ),
+    "a checkpoint that is short": lambda p: resumed(
+        p / "a.nc", (50_000_000,), 8_000_000, zipfile.ZIP_STORED
+    ),
+    "a row": lambda p: read_kept(hollow(p / "a.json", b"{"), Row),
+    "a row of lists": lambda p: kept(p / "a.json", "[" + "[]," * 2_000_000 + "0]"),
+    "a row of depth": lambda p: kept(p / "a.json", "[" * 500_000),
+    "a table of peers": lambda p: peers.read(hollow(p / "a.csv", b"curve\n")),
+    "a scene": lambda p: scene_of(p / "a.toml"),
+    "a hollow scene": lambda p: cases.load(hollow(p / "a.toml", b"title = 'a'")),
+}
+
+
+@pytest.mark.parametrize("name", BOMBS)
+def test_a_file_is_refused_before_it_takes_the_memory(name, limit, tmp_path):
+    """In one line, with far less than what it would take."""
+    limit(0.2)
+    tracemalloc.start()
+    with pytest.raises((SceneError, ValueError, MemoryError)) as error:
+        BOMBS[name](tmp_path)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 0.25e9
+    assert len(str(error.value).splitlines()) == 1
+    assert re.search(
+        "would take|too large|longer than|no checkpoint|not valid JSON", str(error.value)
+    )

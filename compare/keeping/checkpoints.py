@@ -11,8 +11,12 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import os
 import re
+import zipfile
 from collections.abc import Iterator
+from contextlib import contextmanager
+from math import prod
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,11 +24,15 @@ import numpy as np
 
 from cases.arrays import arrays, fill
 from cases.errors import SceneError
+from cases.size import require, within
 from compare.keeping.signature import Signature, differences
 from compare.output import write
 from compare.processes import Processes
 
 DIGEST = 64  # characters of a SHA-256
+COPIES = 2  # of a file: its arrays, and one of them as bytes
+BUFFER = 1 << 20  # bytes
+DIRECTORY = 50_000_000  # bytes, of the zip's own directory in memory
 ABOUT = "about"  # the array that holds the signature
 ANEW = "remove it, or run without --resume"
 
@@ -56,7 +64,7 @@ class Checkpoints:
         """
         samples = self.processes.told_by_first(self._newest)
         if samples:
-            self.processes.together(lambda: _read(self._path(samples)))
+            self.processes.together(lambda: _check(self._path(samples)))
         return samples
 
     def load(self, samples: int, parts: Any) -> None:
@@ -118,7 +126,7 @@ class Checkpoints:
 
     def _refuse(self, other: Path) -> None:
         """Raise SceneError that says how another run differs."""
-        differing = differences(self.signature, json.loads(str(_read(other)[ABOUT])))
+        differing = differences(self.signature, _read_about(other)) or ["run"]
         raise SceneError(str(other), "", None, f"is of another {', '.join(differing)}: {ANEW}")
 
     def _remove_but(self, samples: int) -> None:
@@ -137,12 +145,63 @@ def _write(place: Path, held: dict[str, np.ndarray]) -> None:
 
 def _read(path: Path) -> dict[str, np.ndarray]:
     """Return the arrays of a file, in their order; raises SceneError where it is damaged."""
-    data = path.read_bytes()
-    body, digest = data[:-DIGEST], data[-DIGEST:]
-    if hashlib.sha256(body).hexdigest().encode() != digest:
-        raise SceneError(str(path), "", None, f"is damaged (its SHA-256 differs): {ANEW}")
-    with np.load(io.BytesIO(body), allow_pickle=False) as held:
-        return dict(held)
+    size = _check(path)
+    with _as_damage(path), within(COPIES * size + DIRECTORY), zipfile.ZipFile(path) as whole:
+        members = whole.infolist()
+        if sum(member.file_size for member in members) > size:
+            raise ValueError("holds more than it is long")
+        return {m.filename.removesuffix(".npy"): _array(whole, m) for m in members}
+
+
+def _read_about(path: Path) -> Signature:
+    """Return the signature of the run that a file is of."""
+    with _as_damage(path):
+        return dict(json.loads(str(_read(path)[ABOUT])))
+
+
+def _check(path: Path) -> int:
+    """Return the size of a file (bytes), having held none of it.
+
+    Raises SceneError where it is damaged, MemoryError where it is too large for the memory.
+    """
+    with path.open("rb") as file:
+        size = os.fstat(file.fileno()).st_size
+        require(COPIES * size, str(path))
+        digest, left = hashlib.sha256(), max(size - DIGEST, 0)
+        while left and (part := file.read(min(left, BUFFER))):
+            digest.update(part)
+            left -= len(part)
+        if digest.hexdigest().encode() != file.read():
+            raise SceneError(str(path), "", None, f"is damaged (its SHA-256 differs): {ANEW}")
+        return size
+
+
+def _array(whole: zipfile.ZipFile, member: zipfile.ZipInfo) -> np.ndarray:
+    """Return an array of a file; raises ValueError where it is not as `_write` has left it.
+
+    Nothing is compressed there, and an array has the size that its member has: none is larger than
+    the file.
+    """
+    if member.compress_type != zipfile.ZIP_STORED or member.file_size != member.compress_size:
+        raise ValueError("is compressed")
+    with whole.open(member) as file:
+        if np.lib.format.read_magic(file) != (1, 0):
+            raise ValueError("is of another version")
+        shape, by_columns, kind = np.lib.format.read_array_header_1_0(file)
+        if kind.hasobject or file.tell() + kind.itemsize * prod(shape) != member.file_size:
+            raise ValueError("is not as long as it says")
+        return np.frombuffer(file.read(), kind).reshape(shape, order="F" if by_columns else "C")
+
+
+@contextmanager
+def _as_damage(path: Path) -> Iterator[None]:
+    """Let whatever the content of a file leads to be one line: its digest may fit all the same."""
+    try:
+        yield
+    except (SceneError, OSError, MemoryError):
+        raise
+    except Exception:
+        raise SceneError(str(path), "", None, f"is no checkpoint: {ANEW}") from None
 
 
 def _kind(array: np.ndarray) -> tuple:

@@ -50,7 +50,8 @@ def _scene(scene: Scene) -> str:
     # One that cannot be read is refused, in its own words, by what would use it.
     if mesh is None or not Path(mesh).is_file():
         return scene_hash(scene)
-    return f"{scene_hash(scene)} {hashlib.sha256(Path(mesh).read_bytes()).hexdigest()[:16]}"
+    with Path(mesh).open("rb") as file:
+        return f"{scene_hash(scene)} {hashlib.file_digest(file, 'sha256').hexdigest()[:16]}"
 
 
 def _versions(name: str) -> str:

@@ -72,10 +72,12 @@ def result_of(path: Path, about: Signature) -> Fields | None:
     """Return a result of this signature; None where there is none that can be read."""
     if not path.is_file():
         return None
-    import xarray as xr
+    from compare.netcdf import load_netcdf
 
     try:
-        found = fields_of(xr.load_dataset(path))
+        found = fields_of(load_netcdf(path))
+    except MemoryError as error:
+        raise MemoryError(f"{path}: {error}") from None
     except Exception:  # whatever is wrong with it, it will be made again
         return None
     return found if found.attributes.get(ATTRIBUTE) == json.dumps(about) else None

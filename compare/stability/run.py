@@ -8,12 +8,13 @@ from collections.abc import Callable
 from concurrent.futures import Executor, as_completed
 from contextlib import nullcontext
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from compare import rates
 from compare.engines import Progress
-from compare.output import write_text
+from compare.output import read_kept, write_text
 from compare.stability.battery import CASES
 from compare.stability.case import SOLVERS
 from compare.stability.map import ENGINES, StabilityMap, make_map
@@ -21,6 +22,15 @@ from compare.stability.row import Row, row_of
 from compare.studies.runner import program
 
 Pool = Callable[[], Executor]
+
+
+class Cells(NamedTuple):
+    """A map as it is kept."""
+
+    ratio: list[float]
+    step: list[float]
+    stable: list[list[bool]]
+
 
 RATE = "hard case"  # what the seconds of rows are remembered by
 
@@ -82,7 +92,7 @@ def is_kept(place: tuple[int, int], folder: Path) -> bool:
 def _kept(place: tuple[int, int], folder: Path | None) -> Row | None:
     if folder is None or not _file(place, folder).is_file():
         return None
-    return Row(**json.loads(_file(place, folder).read_text(encoding="utf-8")))
+    return read_kept(_file(place, folder), Row)
 
 
 def _file(place: tuple[int, int], folder: Path) -> Path:
@@ -103,7 +113,7 @@ def run_maps(pool: Pool | None, folder: Path) -> list[StabilityMap]:
                 lists = {k: v.tolist() for k, v in found._asdict().items() if k != "engine"}
                 write_text(files[found.engine], json.dumps(lists))
     return [
-        StabilityMap(engine, **{k: np.array(v) for k, v in json.loads(file.read_text()).items()})
+        StabilityMap(engine, *map(np.array, read_kept(file, Cells)))
         for engine, file in files.items()
     ]
 

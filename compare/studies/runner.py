@@ -12,7 +12,7 @@ from tempfile import gettempdir
 from compare import rates
 from compare.engines import Progress
 from compare.keeping.signature import program
-from compare.output import write_text
+from compare.output import read_kept, write_text
 from compare.studies.measure import Row, measure
 from compare.studies.study import Point, Study
 
@@ -42,7 +42,7 @@ def run(
             done += 1
             if progress:
                 progress(done / len(points))
-    return [Row(**json.loads(place.read_text(encoding="utf-8"))) for place in places]
+    return [read_kept(place, Row) for place in places]
 
 
 def rate(study: Study) -> str:

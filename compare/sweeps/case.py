@@ -141,9 +141,9 @@ def key(case: Case, work: Work) -> str:
 
 def _of_run(done: Any) -> Rows:
     """Return a row for each receiver of a result, with the peak there."""
-    import xarray as xr
+    from compare.netcdf import load_netcdf
 
-    result = xr.load_dataset(done.job.path)
+    result = load_netcdf(done.job.path)
     about = {
         "engine": done.job.name,
         "steps": int(done.steps),

@@ -12,7 +12,7 @@ from typing import Any
 import cases
 from cases.errors import SceneError
 from compare.engines import Progress
-from compare.output import write_text
+from compare.output import read_kept, write_text
 from compare.scenes import find
 from compare.studies.pool import Pool
 from compare.sweeps.axis import Axis, settings
@@ -109,6 +109,6 @@ def _kept(place: Path | None) -> Outcome | None:
     """Return what was kept of a case; None where there is nothing, or its results are gone."""
     if place is None or not place.is_file():
         return None
-    found = Outcome(**json.loads(place.read_text(encoding="utf-8")))
-    gone = any(not Path(row["file"]).is_file() for row in found.rows if "file" in row)
+    found = read_kept(place, Outcome)
+    gone = any(not Path(str(row["file"])).is_file() for row in found.rows if "file" in row)
     return None if gone else found

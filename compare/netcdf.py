@@ -1,0 +1,77 @@
+"""NetCDF files, whose header says what they would take of memory before any of it is read."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from math import prod
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from cases.size import require, within
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+COPIES = 3  # of a variable: as it is stored, decoded, and in double precision
+LIBRARIES = 300_000_000  # bytes of addresses that those which read may take
+
+
+def load_netcdf(path: Path, wanted: Collection[str] | None = None, **decoding: Any) -> xr.Dataset:
+    """Return a NetCDF file, or those of its variables that are `wanted`, in memory.
+
+    decoding : for xarray.open_dataset. Raises MemoryError where they would take more than a run
+    may, OSError where there is no regular file, whatever its library raises on a damaged one.
+    """
+    import xarray as xr
+
+    if path.exists() and not path.is_file():
+        raise OSError("it is not a regular file")
+    sizes = _sizes(path)
+    others = [] if wanted is None else [name for name in sizes if name not in wanted]
+    total = COPIES * sum(size for name, size in sizes.items() if name not in others)
+    require(total, "its variables")
+    # A coordinate is read when the file is opened, and a header may say less than there is.
+    with (
+        within(LIBRARIES + total),
+        xr.open_dataset(path, drop_variables=others, **decoding) as lazy,
+    ):
+        return lazy.load()
+
+
+def _sizes(path: Path) -> dict[str, float]:
+    """Return what each variable takes as it is stored (bytes), from the header alone."""
+    with path.open("rb") as file:
+        is_classic = file.read(3) == b"CDF"
+    if is_classic:
+        require(path.stat().st_size, "the file")
+    with (_classic if is_classic else _hdf5)(path) as file:
+        return {
+            name: _item(variable) * prod(map(float, variable.shape))
+            for name, variable in file.variables.items()
+        }
+
+
+def _item(variable: Any) -> float:
+    """Return the bytes of one value, of a text of any length its place alone."""
+    kind = getattr(variable, "dtype", None)  # scipy's has none
+    return float(variable.itemsize() if kind is None else getattr(kind, "itemsize", 8))
+
+
+def _classic(path: Path) -> Any:
+    from scipy.io import netcdf_file
+
+    return netcdf_file(str(path), mmap=True)
+
+
+def _hdf5(path: Path) -> Any:
+    try:
+        from netCDF4 import Dataset
+    except ImportError:
+        pass
+    else:
+        return Dataset(path)
+    try:
+        from h5netcdf import File
+    except ImportError:
+        raise ValueError("it is no NetCDF 3, and NetCDF 4 needs netCDF4 or h5netcdf") from None
+    return File(path)
