@@ -20,7 +20,7 @@ class SceneError(ValueError):
         self._arguments = (where, key, value, allowed)
         found = "" if value is None else f" = {_short(value)}"
         subject = f"{key}{found}: " if key else ""
-        super().__init__(_one_line(f"{where}: {subject}{allowed}"))
+        super().__init__(" ".join(printable(f"{where}: {subject}{allowed}").split()))
 
     def __reduce__(self) -> tuple:
         """Return how to make it again: it crosses from worker processes."""
@@ -69,5 +69,16 @@ class _Found(reprlib.Repr):
 _short = _Found().repr
 
 
-def _one_line(text: str) -> str:
-    return " ".join(text.split())
+def printable(text: str) -> str:
+    """Return a text of others as one line that moves no cursor and hides nothing.
+
+    Control and format characters (escape sequences, C1, DEL, direction marks) and unassigned ones
+    are spelled as Python does; any kind of space, and the end of a line, is a space.
+    """
+    return text if text.isprintable() else "".join(map(_spelled, text))
+
+
+def _spelled(one: str) -> str:
+    if one.isprintable():
+        return one
+    return " " if one.isspace() else one.encode("unicode_escape").decode()

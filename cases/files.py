@@ -86,7 +86,7 @@ def _refuse_beyond_memory(size: float) -> None:
 
 
 def _numbers_at_most(file: BinaryIO, largest: int) -> int:
-    """Return how many numbers a table can hold, by what separates them, and go back to its start."""
+    """Return how many numbers a table can hold, by what separates them; go back to its start."""
     found = seen = 0
     while part := file.read(1 << 20):
         seen += len(part)

@@ -9,6 +9,7 @@ from pydantic import ValidationError
 from cases.errors import SceneError
 from cases.files import parse_toml, read_toml
 from cases.scene import Scene
+from cases.values import CONTROL
 
 LARGEST_FILE = 10_000_000  # bytes; a scene is a page of text
 #: It names a folder, beside what the scene's own results are called.
@@ -128,10 +129,10 @@ def _variant(
 ) -> dict[str, Any]:
     """Return the table of a variant, changed."""
     name = changes.get("name")
-    if not isinstance(name, str) or not VARIANT_NAME.fullmatch(name):
+    if not isinstance(name, str) or not VARIANT_NAME.fullmatch(name) or CONTROL.search(name):
         allowed = (
-            "must be a text of up to 80 characters without '/', not starting with '.' or ' ', nor "
-            "ending as results do: .nc, .pvd, .bp, -fields"
+            "must be a text of up to 80 characters without '/' or control characters, not starting "
+            "with '.' or ' ', nor ending as results do: .nc, .pvd, .bp, -fields"
         )
         raise SceneError(str(path), f"variants[{index}].name", name, allowed)
     table = _merge(base, changes)

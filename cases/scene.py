@@ -24,7 +24,7 @@ from cases.tables import (
     Rock,
     Time,
 )
-from cases.values import Pair, Positive, Table
+from cases.values import Pair, Positive, Table, Words
 
 __all__ = [
     "ContinuumNumerics",
@@ -51,8 +51,8 @@ __all__ = [
 class Scene(Table):
     """A whole scene: one pillar, its joints, its load, and what is recorded."""
 
-    title: str  #: what tables and figures call it
-    source: str | None = None  #: where it is from
+    title: Words  #: what tables and figures call it
+    source: Words | None = None  #: where it is from
     pillar: Pillar
     rock: Rock
     motion: Motion = Motion()

@@ -1,5 +1,6 @@
 """What a value in a scene file may be, and how a value that does not fit is reported."""
 
+import re
 from typing import Annotated
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
@@ -22,6 +23,21 @@ SOLUTIONS = (
     "slip-joint",
     "sliding-block",
 )
+
+#: What a text may not hold: it moves a terminal's cursor (C0, DEL, C1), turns the direction of
+#: what follows, or is no character of XML. Tabs and ends of lines it may.
+CONTROL = re.compile(
+    "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f"
+    "\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]"
+)
+
+
+def _words(text: str) -> str:
+    """Refuse a text that no terminal, page or drawing should be given."""
+    if found := CONTROL.search(text):
+        allowed = f"must not hold the control character U+{ord(found[0]):04X}"
+        raise PydanticCustomError("words", "{allowed}", {"allowed": allowed})
+    return text
 
 
 def _magnitude(value: float) -> float:
@@ -60,6 +76,7 @@ def _unit(vector: list[float]) -> list[float]:
     return vector
 
 
+Words = Annotated[str, AfterValidator(_words)]
 Number = Annotated[float, AfterValidator(_magnitude)]
 Amplitude = Annotated[float, AfterValidator(_amplitude)]  #: of a load
 Positive = Annotated[float, Field(gt=0), AfterValidator(_magnitude)]

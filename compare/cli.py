@@ -3,15 +3,17 @@
 import gc
 import os
 import sys
+import traceback
 from typing import Any
 
 import typer
 
-from cases.errors import InterruptedRun, SceneError, UnstableError
+from cases.errors import InterruptedRun, SceneError, UnstableError, printable
 from compare import commands, desk, motion, solutions, surveys
 from compare.keeping.signals import Ended, exit_code, watched
 from compare.options import app
 from compare.processes import Processes, started
+from compare.start import SHOWN, fault
 
 COMMANDS = (commands, solutions, surveys, motion, desk)  # their import puts them into the app
 
@@ -54,12 +56,17 @@ def main() -> None:
         if error.filename is None:
             _drop_output()
         _fail(processes, f"{error.filename or 'output'}: {error.strerror or error}", 2)
+    except UnicodeEncodeError as error:  # of a file's name: all else is UTF-8, or escaped
+        allowed = f"the locale's {error.encoding} cannot name a file so; set PYTHONUTF8=1"
+        _fail(processes, f"{error.object!a}: {allowed}", 2)
     except MemoryError as error:
         _fail(processes, f"not enough memory: {error}", 2)
-    except Exception:
+    except Exception as error:
         if processes.comm is None:
             raise
-        processes.crash()
+        if os.environ.get(SHOWN):
+            traceback.print_exc(file=processes.stderr)
+        _fail(processes, fault(error), 1)
     else:
         sys.exit(code if isinstance(code, int) else 0)
 
@@ -74,7 +81,7 @@ def _usage(error: Any) -> str:
 
 
 def _fail(processes: Processes, message: str, code: int) -> None:
-    line = " ".join(message.split())
+    line = " ".join(printable(message).split())
     if len(line) > LONGEST:
         line = f"{line[: LONGEST // 2]} ... {line[-LONGEST // 2 :]}"
     processes.fail(f"jointwave: {line}", code)

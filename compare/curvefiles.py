@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from cases.errors import SceneError
+from cases.errors import SceneError, printable
 from cases.files import is_number, read_lines
 from cases.history import LARGEST, LARGEST_FILE
 from compare.netcdf import load_netcdf
@@ -164,7 +164,7 @@ def _separator(text: str, time_name: str) -> str:
 
 def _cells(text: str, separator: str) -> list[str]:
     cells = next(csv.reader([text], delimiter=separator, skipinitialspace=True))
-    return [cell.strip() for cell in cells]
+    return [printable(cell).strip() for cell in cells]
 
 
 def _numbers(where: str, header: list[str], cells: list[str], at: int) -> list[float]:
@@ -219,11 +219,11 @@ def _columns_of(path: Path, variable: xr.DataArray) -> Iterator[Column]:
     for i, j in np.ndindex(values.shape[:2]):
         axis = f"_{variable[component].values[j]}" if component in variable.coords else ""
         at = f"@{float(variable[place][i]):.12g}" if place in variable.coords else ""
-        yield Column(f"{name}{axis}{at}", _unit(variable), values[i, j])
+        yield Column(printable(f"{name}{axis}{at}"), _unit(variable), values[i, j])
 
 
 def _unit(variable: xr.DataArray) -> str:
-    return str(variable.attrs.get("units", "")).strip()
+    return printable(str(variable.attrs.get("units", ""))).strip()
 
 
 def _floats(path: Path, variable: xr.DataArray) -> np.ndarray:

@@ -9,7 +9,7 @@ import matplotlib
 from matplotlib.figure import Figure
 from pandas import DataFrame
 
-from compare.output import write, write_text
+from compare.output import write, write_csv, write_text
 from compare.style import RC
 from compare.svg import compact
 
@@ -57,11 +57,6 @@ def save(
     return Drawn(name, title, folder, svg, caption, text)
 
 
-def write_csv(path: Path, table: DataFrame, digits: int = 9) -> Path:
-    """Write a table without its index."""
-    return write(path, lambda file: table.to_csv(file, float_format=f"%.{digits}g", index=False))
-
-
 def _write_drawings(figure: Figure, folder: Path, name: str, title: str, png: bool) -> str:
     """Write the drawings; return the SVG's element."""
     buffer = io.StringIO()
@@ -69,12 +64,19 @@ def _write_drawings(figure: Figure, folder: Path, name: str, title: str, png: bo
         _lay_out(figure)
         figure.savefig(buffer, format="svg", metadata={"Title": title, "Date": None})
         about = {"Title": title, "CreationDate": None}
-        write(folder / f"{name}.pdf", lambda path: figure.savefig(path, metadata=about))
+        _write_bytes(folder / f"{name}.pdf", figure, metadata=about)
         if png:
-            write(folder / f"{name}.png", lambda path: figure.savefig(path, dpi=DOTS))
+            _write_bytes(folder / f"{name}.png", figure, dpi=DOTS)
     svg = compact(buffer.getvalue(), name)
     write_text(folder / f"{name}.svg", svg)
     return svg[svg.index("<svg") :]
+
+
+def _write_bytes(path: Path, figure: Figure, **options: Any) -> None:
+    """Write a figure that is made in memory: its writers fail in many ways on a full disk."""
+    content = io.BytesIO()
+    figure.savefig(content, format=path.suffix[1:], **options)
+    write(path, lambda place: place.write_bytes(content.getbuffer()))
 
 
 def _lay_out(figure: Figure) -> None:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 import cases
-from cases.errors import SceneError
+from cases.errors import SceneError, printable
 from compare import completion
 from compare.processes import started
 from compare.scenes import find
@@ -120,4 +120,4 @@ def warn(scenes: list[cases.Scene]) -> None:
     from cases.effects import warnings
 
     for warning in dict.fromkeys(w for scene in scenes for w in warnings(scene)):
-        print(f"jointwave: {warning}", file=sys.stderr)
+        print(f"jointwave: {printable(warning)}", file=sys.stderr)

@@ -7,22 +7,25 @@ import shutil
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from errno import EIO
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from cases.errors import SceneError
-from cases.files import read_json
+from cases.errors import SceneError, printable
+from cases.files import is_number, read_json
 from cases.result import Fields
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 
 
 T = TypeVar("T")
 
 LARGEST_ROW = 100_000_000  # bytes, of what a study, a sweep or the battery keeps of a point
+FORMULA = ("=", "+", "-", "@")  # how what a spreadsheet computes begins
 UNFINISHED = ".unfinished-"  # in the names of files that are being written, which begin with a dot
 
 
@@ -73,10 +76,10 @@ def _names(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        named = str(error.filename or UNFINISHED)
-        if error.errno is None or UNFINISHED not in named:
+        if UNFINISHED not in str(error.filename or UNFINISHED):
             raise
-        raise OSError(error.errno, error.strerror, str(path)) from None
+        # Some libraries say in words of their own that a disk is full.
+        raise OSError(error.errno or EIO, error.strerror or str(error), str(path)) from None
 
 
 def sweep(folder: Path) -> None:
@@ -140,6 +143,26 @@ def write_folder(path: Path, save: Callable[[Path], object]) -> Path:
                 path.replace(old)
             new.replace(path)
     return path
+
+
+def write_csv(path: Path, table: pd.DataFrame, digits: int = 9) -> Path:
+    """Write a table without its index; text in it is as `csv_cell` has it."""
+    safe = table.rename(columns=csv_cell)
+    texts = [i for i, kind in enumerate(safe.dtypes) if kind.kind not in "biuf"]
+    for i in texts:
+        safe.isetitem(i, [csv_cell(value) for value in safe.iloc[:, i]])
+    return write(path, lambda file: safe.to_csv(file, float_format=f"%.{digits}g", index=False))
+
+
+def csv_cell(value: object) -> object:
+    """Return a cell that a spreadsheet takes for what it is; what is no text stays.
+
+    Text of others might begin a formula, and is put behind an apostrophe then.
+    """
+    if not isinstance(value, str):
+        return value
+    text = printable(value)
+    return f"'{text}" if text.startswith(FORMULA) and not is_number(text) else text
 
 
 def write_text(path: Path, text: str) -> Path:

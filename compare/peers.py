@@ -17,7 +17,7 @@ import pandas as pd
 from cases.errors import SceneError
 from cases.files import read_text
 from compare.drawn import Drawn, save
-from compare.output import write_text
+from compare.output import write_csv
 from compare.peers_diagram import draw
 from compare.tables import Table, percent
 
@@ -89,7 +89,7 @@ def _fault(table: pd.DataFrame) -> str:
 
 def write_section(folder: Path, found: pd.DataFrame) -> PeersSection:
     """Write peers.csv and the diagram into `folder`; return the section."""
-    write_text(folder / f"{NAME}.csv", found.to_csv(index=False))
+    write_csv(folder / f"{NAME}.csv", found)
     title = "The free pillar in other codes"
     figure = save(draw(NAME, title, found.to_dict("records")), folder, NAME, title)
     missing = [

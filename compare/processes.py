@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import os
 import sys
-import traceback
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from time import monotonic, sleep
@@ -110,20 +110,17 @@ class Processes:
     def fail(self, message: str, code: int) -> NoReturn:
         """Print one line and leave with an exit code, together or else for all."""
         if self.is_first:
-            print(message, file=self.stderr, flush=True)
+            self._tell(message)
         if self._own is not None and not self._all_arrive(PATIENCE):
             if not self.is_first:
-                print(message, file=self.stderr, flush=True)
+                self._tell(message)
             sleep(GRACE)
             self._own.Abort(code)
         sys.exit(code)
 
-    def crash(self) -> NoReturn:
-        """Show a mistake of the program itself, and end all processes."""
-        traceback.print_exc(file=self.stderr)
-        self.stderr.flush()
-        self._own.Abort(1)
-        raise SystemExit(1)
+    def _tell(self, message: str) -> None:
+        with suppress(OSError):  # nobody may be there to read it
+            print(message, file=self.stderr, flush=True)
 
     def _all_arrive(self, patience: float = float("inf")) -> bool:
         """Sleep until all processes are here, and return whether they came in time (s)."""

@@ -10,12 +10,12 @@ from time import perf_counter
 from pandas import DataFrame
 
 from compare import peers, tables, worth_section, worth_study
-from compare.drawn import save, write_csv
+from compare.drawn import save
 from compare.engines import Progress
 from compare.figures import draw
 from compare.findings import Finding
 from compare.findings.overview import mostly_dispersion
-from compare.output import write_text
+from compare.output import write_csv, write_text
 from compare.page.cost import seconds
 from compare.page.motion import make_motion
 from compare.page.overview import Overview, Ranked, overview

@@ -1,4 +1,7 @@
-"""The terminal: progress, tables that stay readable, or JSON."""
+"""The terminal: progress, tables that stay readable, or JSON.
+
+Titles and names come from others: no text gets here that is not `printable`.
+"""
 
 import json
 from collections.abc import Callable, Iterator, Sequence
@@ -17,6 +20,8 @@ from rich.progress import (
 )
 from rich.table import Table
 from rich.text import Text
+
+from cases.errors import printable
 
 WIDEST = 220  # a pipe has no width to respect: a machine or a log gets whole lines
 
@@ -39,22 +44,22 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
     with Progress(
         *columns, console=console, transient=True, disable=not console.is_terminal
     ) as bar:
-        task = bar.add_task(label, total=1.0)
+        task = bar.add_task(printable(label), total=1.0)
         yield lambda fraction: bar.update(task, completed=fraction)
 
 
 def say(text: str, style: str = "") -> None:
-    """Print a line of text."""
-    _console().print(text, style=style)
+    """Print a line of text, or several."""
+    _console().print("\n".join(map(printable, text.split("\n"))), style=style)
 
 
 def show_table(columns: list[str], rows: list[list[str]], styles: Sequence[str] = ()) -> None:
     """Print a table of text, folded to the terminal's width; `styles` are those of the rows."""
     table = Table(box=None, pad_edge=False)
     for column in columns:
-        table.add_column(column, overflow="fold")
+        table.add_column(printable(column), overflow="fold")
     for row, style in zip_longest(rows, styles, fillvalue=""):
-        table.add_row(*row, style=style or None)
+        table.add_row(*map(printable, row), style=style or None)
     _console().print(table)
 
 
@@ -65,11 +70,12 @@ def show_numbers(columns: list[str], groups: dict[str, list[list[str]]]) -> None
     """
     table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0))
     for i, column in enumerate(columns):
-        table.add_column(column, no_wrap=True, justify="left" if i == 0 else "right")
+        align = "left" if i == 0 else "right"
+        table.add_column(printable(column), no_wrap=True, justify=align)
     for heading, rows in groups.items():
-        table.add_row(Text(heading, style="bold"))
+        table.add_row(Text(printable(heading), style="bold"))
         for row in rows:
-            table.add_row(*row)
+            table.add_row(*map(printable, row))
     console = _console()
     wide = console.options.update_width(WIDEST)
     console.width = max(console.width, console.measure(table, options=wide).maximum)
@@ -78,10 +84,12 @@ def show_numbers(columns: list[str], groups: dict[str, list[list[str]]]) -> None
 
 def print_json(value: Any) -> None:
     """Print a value as JSON."""
-    # JSON has no nan and no infinity; null says as much.
-    print(json.dumps(json.loads(json.dumps(value), parse_constant=lambda _: None), indent=2))
+    # JSON has no nan and no infinity; null says as much. It escapes all but DEL.
+    text = json.dumps(json.loads(json.dumps(value), parse_constant=lambda _: None), indent=2)
+    print(text.replace("\x7f", "\\u007f"))
 
 
 def _console() -> Console:
-    console = Console(markup=False, highlight=False)
-    return console if console.is_terminal else Console(width=WIDEST, markup=False, highlight=False)
+    plain = {"markup": False, "highlight": False, "emoji": False}
+    console = Console(**plain)
+    return console if console.is_terminal else Console(width=WIDEST, **plain)

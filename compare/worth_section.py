@@ -9,7 +9,7 @@ from typing import NamedTuple
 import pandas as pd
 
 from compare.drawn import Drawn, save
-from compare.output import write
+from compare.output import write_csv
 from compare.tables import Table, percent
 from compare.worth import Balance, Worth
 from compare.worth_diagram import draw
@@ -65,9 +65,7 @@ def write_table(folder: Path, found: list[Balance]) -> Path:
     ]
     named = {"alone": "ns_alone", "cost": "ns_in_scene", "rock": "ns_rock_added"}
     frame = pd.DataFrame(rows).rename(columns=named)
-    return write(
-        folder / f"{NAME}.csv", lambda path: frame.to_csv(path, index=False, float_format="%.6g")
-    )
+    return write_csv(folder / f"{NAME}.csv", frame, 6)
 
 
 def table(found: list[Balance]) -> Table:

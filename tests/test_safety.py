@@ -1,16 +1,32 @@
 """What a scene may not do: run code, leave its folder, replace a file that is not a result."""
 
 import ast
+import csv
+import json
 import os
+import re
+import resource
+import subprocess
+import sys
 from pathlib import Path
 
+import pandas as pd
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from matplotlib.figure import Figure
 
 import cases
-from cases.errors import SceneError
+from cases.errors import SceneError, printable
+from cases.files import is_number
 from cases.read import load, load_variant
+from cases.values import CONTROL
+from compare import cli, start, terminal
+from compare.curvefiles import read_columns
+from compare.drawn import save
 from compare.jobs import plan
-from compare.output import refuse_foreign, write_folder
+from compare.keeping.lock import NAME, locked, opened
+from compare.output import refuse_foreign, write, write_csv, write_folder
 from compare.studies.study import load as load_study
 
 ROOT = Path(cases.__file__).parents[1]
@@ -34,16 +50,7 @@ numerics = { NUMERICS }
 STEP = 'shape = "step", amplitude = 1.0'
 #: Calls that read a file whole, and the modules that may: the doors, which ask its size before, and
 #: those that read the program's own files or the system's.
-READS = {
-    "read_bytes",
-    "load_dataset",
-    "open_dataset",
-    "read_csv",
-    "genfromtxt",
-    "loadtxt",
-    "fromfile",
-}
-OF_PATHS = {"read_text"}
+READS = {"read_bytes", "read_text", "load_dataset", "open_dataset", "read_csv", "loadtxt"}
 DOORS = {
     *("cases/files.py", "compare/netcdf.py"),  # the doors
     *("cases/size.py", "compare/studies/table.py"),  # of the system
@@ -103,9 +110,7 @@ def reads_of(tree):
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
             owner, name = getattr(node.func.value, "id", None), node.func.attr
-            if name in READS or (name in OF_PATHS and owner != "files"):
-                yield name
-            if (owner, name) in {("np", "load"), ("json", "load"), ("pickle", "load")}:
+            if name in READS or (owner, name) in {("np", "load"), ("json", "load")}:
                 yield name
 
 
@@ -254,3 +259,210 @@ def test_a_folder_with_other_files_is_not_replaced(tmp_path):
         write_folder(place, save)
     assert {p.name for p in place.iterdir()} == {"0000.vtu", "thesis.tex"}
     assert [p.name for p in tmp_path.iterdir()] == ["dem-fields"]
+
+
+#: What a hostile text is made of: escape sequences, C0, DEL, C1, marks of direction, markup, XML.
+HOSTILE = st.text(
+    st.one_of(
+        st.sampled_from("\x1b\x00\x07\x08\r\n\t\x7f\x9b\x85\u202e\u2066\u200f\ufeff\ud800"),
+        st.sampled_from("=+-@[]/:;,\"'<>&$\\_^{}"),
+        st.characters(),
+    ),
+    max_size=20,
+)
+OFTEN = settings(
+    max_examples=100,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+ESCAPES = "\x1b]0;owned\x07 \x1b[2J\x9b31m \x7f\u202e[red]:smile:"
+
+
+@OFTEN
+@given(text=HOSTILE)
+def test_a_text_of_others_is_one_line_of_what_can_be_seen(text):
+    found = printable(text)
+    assert found.isprintable() and printable(found) == found
+    assert found == text or not text.isprintable()
+
+
+@OFTEN
+@given(text=HOSTILE)
+def test_no_control_character_reaches_the_terminal(text, capfd):
+    """Of titles, names, keys or messages, in any kind of answer; markup is text."""
+    capfd.readouterr()
+    terminal.say(f"{text}[red]:smile:")
+    terminal.show_table([text, "b"], [[text, text]])
+    terminal.show_numbers([text, "b"], {text: [[text, text]]})
+    terminal.print_json({text: text})
+    found = capfd.readouterr().out
+    assert not CONTROL.search(found) and "[red]:smile:" in found
+
+
+@pytest.mark.parametrize("key", ["title", "source", "name"])
+@pytest.mark.parametrize("text", ["\x1b[31mred", "a\x7f", "\x9b2J", "ab\u202edc", "\u2066", "\0"])
+def test_a_scene_has_no_control_characters_in_its_texts(scene, key, text):
+    path, spelled = scene(), json.dumps(text).replace("\x7f", "\\u007f")
+    title = 'title = "short"\n'
+    changed = {
+        "title": f"title = {spelled}\n",
+        "source": f"{title}source = {spelled}\n",
+    }.get(key, title)
+    words = path.read_text().replace(title, changed)
+    path.write_text(words + (f"[[variants]]\nname = {spelled}\n" if key == "name" else ""))
+    with pytest.raises(SceneError, match=f"{key}.*control character") as error:
+        load(path)
+    assert str(error.value).isprintable()
+
+
+def told(monkeypatch, capfd, *arguments):
+    """Run the command here; return its exit code and what is on standard output and error."""
+    monkeypatch.setattr(sys, "argv", ["jointwave", *map(str, arguments)])
+    with pytest.raises(SystemExit) as end:
+        start.main()
+    return end.value.code, *capfd.readouterr()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("explain", ESCAPES),
+        (ESCAPES,),
+        ("explain", "guo-li-2002/fig-03", "--set", f"{ESCAPES}=1"),
+        ("explain", "guo-li-2002/fig-03", "--set", f"title={ESCAPES}"),
+        ("explain", "guo-li-2002/fig-03", "--variant", ESCAPES),
+        ("compare", "guo-li-2002/fig-03", f"--{ESCAPES}"),
+    ],
+)
+def test_a_mistake_is_told_without_its_escape_sequences(monkeypatch, capfd, arguments):
+    code, out, error = told(monkeypatch, capfd, *arguments)
+    assert code == 2 and not out and error.count("\n") == 1
+    assert error[:-1].isprintable() and "jointwave: " in error
+
+
+@pytest.mark.parametrize(
+    "raised, code, words",
+    [
+        (KeyError("no\nsuch"), 1, "a fault of the program, KeyError at test_safety.py"),
+        (RecursionError("deep"), 1, "a fault of the program, RecursionError"),
+        (UnicodeEncodeError("ascii", "\xe9.nc", 0, 1, "x"), 2, "'.xe9.nc': the locale's ascii"),
+        (OSError(28, "No space left on device", "x.png"), 2, "x.png: No space left on device"),
+        (MemoryError("much"), 2, "not enough memory: much"),
+    ],
+)
+def test_whatever_goes_wrong_is_one_line(monkeypatch, capfd, raised, code, words):
+    def app(**_):
+        raise raised
+
+    monkeypatch.setattr(cli, "app", app)
+    found, out, error = told(monkeypatch, capfd, "list")
+    assert found == code and not out and error.count("\n") == 1 and re.search(words, error)
+    if code == 1:
+        monkeypatch.setenv(start.SHOWN, "1")
+        with pytest.raises(type(raised)):
+            start.main()
+
+
+#: How a command is started whose streams are closed, full, or of a locale without the letters.
+STREAMS = {
+    "closed output": (">&-", 0),
+    "closed output and error": (">&- 2>&-", 0),
+    "all closed": ("<&- >&- 2>&-", 0),
+    "full output": (">/dev/full", 2),
+    "output that nobody reads": ("| head -c0", 1),
+    "error that nobody reads": ("--bogus 2>&1 >/dev/null | head -c0", 2),
+}
+
+
+@pytest.mark.parametrize("name", STREAMS)
+def test_streams_that_take_nothing_are_no_fault(name, tmp_path):
+    """What is written must not go into a file that was opened in a closed stream's place."""
+    how, code = STREAMS[name]
+    command = f"set -o pipefail; {sys.executable} -m compare list {how}"
+    error = subprocess.PIPE if "2>" not in how else None
+    done = subprocess.run(["bash", "-c", command], stdout=subprocess.PIPE, stderr=error, text=True)
+    assert done.returncode == code and not done.stdout
+    assert (done.stderr or "").count("\n") == (1 if name == "full output" else 0)
+
+
+@pytest.mark.parametrize("utf8", ["1", "0"])
+def test_a_locale_without_the_letters_spells_them(scene, utf8):
+    """Where it cannot even name the variant's folder, that is one line."""
+    path = scene()
+    path.write_text(path.read_text() + '[[variants]]\nname = "\u00b5 = 0.5 \u2013 \u7075"\n')
+    locale = {"LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": utf8}
+    command = [sys.executable, "-m", "compare", "run", str(path), "--out", str(path.parent / "o")]
+    environment = os.environ | locale | {"PYTHONIOENCODING": "ascii"}
+    done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
+    if utf8 == "1":
+        assert (done.returncode, done.stderr) == (0, "")
+        assert "\\xb5 = 0.5 \\u2013" in done.stdout
+    else:
+        assert done.returncode == 2 and done.stderr.count("\n") == 1
+        assert "\\xb5 = 0.5 \\u2013" in done.stderr and "PYTHONUTF8=1" in done.stderr
+
+
+def test_a_full_disk_is_named_with_the_file(tmp_path):
+    """Of each of a figure's writers, whatever they say, and nothing is left behind."""
+    figure = Figure()
+    figure.subplots().plot([0, 1])
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    table = pd.DataFrame({"a": range(3)})
+    for size, suffix in ((1, "csv"), (1000, "pdf")):
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+        try:
+            with pytest.raises(OSError, match="File too large") as error:
+                save(figure, tmp_path, "a", "title", table)
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        assert error.value.filename == str(tmp_path / f"a.{suffix}")
+    assert {path.name for path in tmp_path.iterdir()} == {"a.csv"}
+
+    def encode(path):
+        raise OSError("encoder error -2 when writing image file")
+
+    with pytest.raises(OSError, match="encoder error") as error:
+        write(tmp_path / "a.png", encode)
+    assert error.value.filename == str(tmp_path / "a.png") and error.value.errno
+
+
+@OFTEN
+@given(cells=st.lists(HOSTILE, min_size=1, max_size=4), number=st.floats(allow_nan=False))
+def test_no_cell_of_a_table_is_a_formula(tmp_path_factory, cells, number):
+    """Numbers stay numbers, and text that is none stays to be read, as one line a row."""
+    path = tmp_path_factory.mktemp("csv") / "a.csv"
+    table = pd.DataFrame({"text": cells, "number": number, "count": -1})
+    write_csv(path, table.rename(columns={"text": cells[0]}), 17)
+    with path.open(encoding="utf-8", newline="") as file:
+        header, *rows = csv.reader(file)
+    assert len(rows) == len(cells)
+    for text, cell in zip([cells[0], *cells], [header[0], *(row[0] for row in rows)], strict=True):
+        assert not cell.startswith(("=", "+", "-", "@")) or is_number(cell)
+        assert cell.isprintable() and cell.removeprefix("'") == printable(text).removeprefix("'")
+    assert {float(row[1]) for row in rows} == {number} and {row[2] for row in rows} == {"-1"}
+
+
+def test_own_tables_are_read_as_curves_again(tmp_path):
+    """Their numbers, negative ones too, and their columns' names."""
+    wave = {"time [s]": [0.0, 1e-3, 2e-3], "stress@20 [Pa]": [-1.0, 2.5e6, -3e-7]}
+    found = read_columns(write_csv(tmp_path / "a.csv", pd.DataFrame(wave)))
+    assert found.time.values.tolist() == wave["time [s]"]
+    assert found.rest[0].values.tolist() == wave["stress@20 [Pa]"]
+
+
+@pytest.mark.parametrize("kind", ["link", "link to nothing", "pipe"])
+def test_a_lock_follows_no_link(tmp_path, kind):
+    """Nor does it wait for a pipe; what the link leads to stays as it was, or away."""
+    diary, place = tmp_path / "diary", tmp_path / NAME
+    if kind == "pipe":
+        os.mkfifo(place)
+    else:
+        place.symlink_to(diary)
+    if kind == "link":
+        diary.write_text("my diary")
+    with pytest.raises(SceneError, match=r"is (a link|no file), remove it"), locked(tmp_path):
+        pass
+    with pytest.raises(SceneError, match=r"is (a link|no file), remove it"):
+        opened(place)
+    assert diary.exists() == (kind == "link") and os.path.lexists(place)

@@ -6,7 +6,7 @@ import sys
 from time import monotonic
 from typing import Any
 
-from cases.errors import InterruptedRun
+from cases.errors import InterruptedRun, printable
 from cases.sampling import sample_times
 from cases.scene import Scene
 from compare.keeping.checkpoints import Checkpoints
@@ -93,4 +93,4 @@ class RunKeeper:
 
     def _say(self, text: str) -> None:
         if self.processes.is_first:
-            print(f"jointwave: {text}", file=sys.stderr, flush=True)
+            print(f"jointwave: {printable(text)}", file=sys.stderr, flush=True)

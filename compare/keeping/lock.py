@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import fcntl
 import os
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from errno import ELOOP
 from pathlib import Path
 
 from cases.errors import SceneError
 from compare.output import sweep
 
 NAME = ".jointwave.lock"
+ELSE = "remove it: jointwave locks a file of its own there"
 
 
 @contextmanager
@@ -41,10 +44,31 @@ def locked(folder: Path, *inner: Path) -> Iterator[None]:
                 empty.rmdir()
 
 
+def opened(place: Path) -> int:
+    """Return an open file to lock; raises SceneError where anything but a file is in its place.
+
+    Whoever may write there could have put a link, which would be followed, or a pipe.
+    """
+    flags = os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
+    try:
+        # Where all may write, creating what another user has created already is forbidden.
+        handle = os.open(place, os.O_RDONLY | flags)
+    except FileNotFoundError:
+        handle = os.open(place, os.O_RDONLY | os.O_CREAT | flags, 0o644)
+    except OSError as error:
+        if error.errno != ELOOP:
+            raise
+        raise SceneError(str(place), "", None, f"is a link, {ELSE}") from None
+    if stat.S_ISREG(os.fstat(handle).st_mode):
+        return handle
+    os.close(handle)
+    raise SceneError(str(place), "", None, f"is no file, {ELSE}")
+
+
 def _hold(place: Path) -> int:
     """Return the open and locked file."""
     while True:
-        handle = os.open(place, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+        handle = opened(place)
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:

@@ -11,8 +11,9 @@ import xarray as xr
 
 import cases
 from compare import tables
-from compare.drawn import Drawn, save, write_csv
+from compare.drawn import Drawn, save
 from compare.findings import Finding, findings
+from compare.output import write_csv
 from compare.page.standing import Standing, standings
 from compare.pairs import Comparison
 from compare.pictures import Picture, pictures_of

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from compare.output import write
+from compare.output import write_csv
 from compare.stability.map import StabilityMap
 from compare.stability.row import FAILED, HELD, NONE, Row
 from compare.tables import Table
@@ -83,7 +83,7 @@ def write_rows(path: Path, rows: list[Row]) -> Path:
     """Write the rows as CSV; changes of the scene as JSON."""
     frame = pd.DataFrame(rows, columns=list(Row._fields))
     frame = frame.assign(changes=[json.dumps(row.changes) for row in rows])
-    return write(path, lambda p: frame.to_csv(p, index=False, float_format="%.9g"))
+    return write_csv(path, frame)
 
 
 def write_maps(path: Path, maps: list[StabilityMap]) -> Path:
@@ -98,4 +98,4 @@ def write_maps(path: Path, maps: list[StabilityMap]) -> Path:
         names = ["damping ratio", "step over undamped critical step", "stable", "wrong side"]
         parts.append(pd.DataFrame(cells, columns=names).assign(engine=m.engine))
     frame = pd.concat(parts)
-    return write(path, lambda p: frame.to_csv(p, index=False, float_format="%.9g"))
+    return write_csv(path, frame)

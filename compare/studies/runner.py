@@ -3,6 +3,7 @@
 import fcntl
 import hashlib
 import json
+import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, as_completed
 from contextlib import contextmanager, nullcontext
@@ -11,6 +12,7 @@ from tempfile import gettempdir
 
 from compare import rates
 from compare.engines import Progress
+from compare.keeping.lock import opened
 from compare.keeping.signature import program
 from compare.output import read_kept, write_text
 from compare.studies.measure import Row, measure
@@ -82,6 +84,9 @@ def key(point: Point) -> str:
 @contextmanager
 def alone() -> Iterator[None]:
     """Wait until no other timed study is running on this machine."""
-    with Path(gettempdir(), "jointwave-timing.lock").open("a") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
+    handle = opened(Path(gettempdir(), "jointwave-timing.lock"))
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX)
         yield
+    finally:
+        os.close(handle)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from compare.output import write
+from compare.output import write, write_csv
 from compare.studies.measure import Row
 from compare.studies.study import Study
 
@@ -22,9 +22,7 @@ def frame(rows: list[Row]) -> pd.DataFrame:
 def write_table(folder: Path, name: str, study: Study, rows: list[Row]) -> tuple[Path, Path]:
     """Write NAME.csv and NAME.nc into a folder; return both."""
     table = frame(rows)
-    csv = write(
-        folder / f"{name}.csv", lambda path: table.to_csv(path, index=False, float_format="%.9g")
-    )
+    csv = write_csv(folder / f"{name}.csv", table)
     data = table.rename_axis("point").to_xarray()
     data = data.assign({k: v.astype(str) for k, v in data.items() if v.dtype == object})
     data.attrs = {"title": study.title, "study": study.model_dump_json(), **machine()}

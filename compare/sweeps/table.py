@@ -11,7 +11,7 @@ import pandas as pd
 import xarray as xr
 
 from compare.metrics import Distance
-from compare.output import write
+from compare.output import write, write_csv
 from compare.sweeps.axis import Axis
 from compare.sweeps.case import Case, Outcome
 
@@ -67,8 +67,7 @@ def write_table(
     folder: Path, axes: list[Axis], table: pd.DataFrame, about: dict[str, str]
 ) -> list[Path]:
     """Write sweep.csv and, where anything is done, sweep.nc into a folder; return them."""
-    place = folder / f"{NAME}.csv"
-    files = [write(place, lambda path: table.to_csv(path, index=False, float_format="%.9g"))]
+    files = [write_csv(folder / f"{NAME}.csv", table)]
     if (table.state == "done").any():
         data = dataset(axes, table, about)
         place = folder / f"{NAME}.nc"
