@@ -12,6 +12,7 @@ from cases.calibrate import calibrate
 from cases.discretisation import check_discretisation
 from cases.errors import SceneError
 from cases.joint import JointLaw
+from cases.plausible import INTACT, meant
 from cases.scheme import check_scheme
 from cases.stiffness import equivalent_constants
 from cases.values import contradiction, is_extreme
@@ -92,7 +93,7 @@ def _check_rock(scene: Scene) -> None:
         raise contradiction(
             "rock.intact_modulus",
             intact,
-            f"must exceed the rock mass's equivalent modulus {modulus:.4g}",
+            f"must exceed the rock mass's equivalent modulus {modulus:.4g}{meant(intact, INTACT)}",
         )
 
 

@@ -43,16 +43,6 @@ def active_effects(scene: Scene) -> list[str]:
     return [effect.name for effect in effects(scene) if effect.active]
 
 
-def warnings(scene: Scene) -> list[str]:
-    """Return what a scene may say but should not, a line each."""
-    if scene.damping.local and scene.load.amplitude:
-        return [
-            "damping.local distorts waves: it is meant for static states, not for a scene whose "
-            "load acts"
-        ]
-    return []
-
-
 def _off_axis(scene: Scene) -> str | None:
     """Return what takes the scene off its axis, None where nothing does."""
     if scene.load.arm is not None:

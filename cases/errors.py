@@ -1,7 +1,11 @@
 """The errors that a user meets: a scene that cannot be run, a run that went wrong."""
 
 import reprlib
+from collections.abc import Iterable
+from difflib import get_close_matches
 from typing import Any
+
+CLOSE = 0.6  # of difflib: how alike a name and the one that is suggested are
 
 
 class SceneError(ValueError):
@@ -25,6 +29,19 @@ class SceneError(ValueError):
     def __reduce__(self) -> tuple:
         """Return how to make it again: it crosses from worker processes."""
         return type(self), self._arguments
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Return the known name that one was likely meant as, as the end of a message; else nothing.
+
+    Of names with folders the last part alone may be given.
+    """
+    names = list(known)
+    ends = {one.rpartition("/")[2]: one for one in reversed(names)}
+    folded = {one.casefold(): one for one in [*ends, *names]}
+    found = get_close_matches(name.casefold(), folded, 1, CLOSE)
+    match = folded[found[0]] if found else ""
+    return f"; did you mean {ends.get(match, match)}?" if match else ""
 
 
 class UnstableError(RuntimeError):

@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from cases.errors import SceneError
+from cases.errors import SceneError, nearest
 from cases.files import parse_toml, read_toml
 from cases.scene import Scene
 from cases.values import CONTROL
@@ -85,7 +85,8 @@ def load_variant(
     names = [variant.get("name") for variant in variants]
     if name not in names:
         known = sorted(str(n) for n in ["", *names])
-        raise SceneError(str(path), "variants.name", name, f"must be one of {known}")
+        allowed = f"must be one of {known}{nearest(name, known)}"
+        raise SceneError(str(path), "variants.name", name, allowed)
     which = names.index(name)
     return _validate(_variant(table, variants[which], path, which, overrides or {}), path, given)
 
@@ -161,7 +162,8 @@ def _scene_error(where: str, error: ValidationError) -> SceneError:
     if kind == "contradiction":
         key, value = context["key"], context["found"]
     elif kind == "extra_forbidden":
-        allowed += _known_keys(first["loc"])
+        known = _known_keys(first["loc"])
+        allowed += ", ".join(known) + nearest(str(first["loc"][-1]), known)
     elif kind == "list_type" and isinstance(value, dict):
         allowed = f"must be written [[{key}]]"
     if isinstance(value, dict) or kind == "missing":
@@ -170,12 +172,12 @@ def _scene_error(where: str, error: ValidationError) -> SceneError:
     return SceneError(where, key, value, allowed + more_text)
 
 
-def _known_keys(location: tuple[int | str, ...]) -> str:
+def _known_keys(location: tuple[int | str, ...]) -> list[str]:
     model: Any = Scene
     for part in location[:-1]:
         if isinstance(part, str):
             model = _table_of(model.model_fields[part].annotation)
-    return ", ".join(k for k in model.model_fields if k != "name")
+    return [k for k in model.model_fields if k != "name"]
 
 
 def _table_of(annotation: Any) -> Any:

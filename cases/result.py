@@ -12,6 +12,7 @@ import numpy as np
 from cases.effects import active_effects
 from cases.labels import label
 from cases.scene import Scene
+from cases.warnings import warnings
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -150,6 +151,7 @@ def fields(
         "scene_hash": scene_hash(scene),
         **static_attributes(scene),
         "effects": json.dumps(active_effects(scene)),
+        "warnings": json.dumps(warnings(scene)),
     }
     # The longest last, where it hides no other.
     about = {**common, **attributes, "scene": scene.model_dump_json()}

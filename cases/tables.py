@@ -92,8 +92,9 @@ class Motion(Table):
 
 
 class Ends(Table):
-    """What holds the two ends: quiet is (9) on the end block, matched the same dashpot behind the
-    end block's half-block spring, fixed that spring to a wall."""
+    """What holds the two ends: matched, a dashpot behind the end block's half-block spring,
+    reflects least; quiet, (9), has the dashpot on the end block; fixed has the spring and a wall.
+    """
 
     start: Literal["free", "quiet", "matched", "fixed"] = "free"  #: at y = 0
     end: Literal["free", "quiet", "matched", "fixed"] = "free"  #: at y = length

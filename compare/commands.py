@@ -24,12 +24,12 @@ from compare.options import (
     OutOption,
     SceneArgument,
     SetOption,
+    StrictOption,
     SweepOption,
     VariantOption,
     WorkersOption,
     app,
     load,
-    warn,
 )
 from compare.processes import started
 from compare.scenes import shipped
@@ -67,6 +67,7 @@ def run(
     ] = False,
     workers: WorkersOption = CORES,
     dry: DryOption = False,
+    strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Simulate a scene and write each result as DIR/[variant/]ENGINE[-MODEL].nc.
@@ -89,11 +90,10 @@ def run(
         from compare.sweeps.case import Running
 
         asked_for = command.ask(scene, changes, variant, swept, out)
-        command.sweep(asked_for, Running(wanted, vtx), workers, dry, as_json)
+        command.sweep(asked_for, Running(wanted, vtx), workers, dry, as_json, strict)
         return
-    scenes = load(scene, changes, variant)
+    scenes = load(scene, changes, variant, strict)
     asked = jobs.plan(scenes, wanted, out)
-    warn(scenes)
     if dry:
         from compare import forecast_view
 
@@ -112,6 +112,7 @@ def explain(
     scene: SceneArgument,
     changes: SetOption = [],  # noqa: B006
     variant: VariantOption = None,
+    strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Say what a scene calls for, its critical steps, and which exact solutions hold."""
@@ -119,8 +120,7 @@ def explain(
     from compare.effort import is_measured
     from compare.explain import explanation
 
-    scenes = load(scene, changes, variant if variant is not None else "")
-    warn(scenes)
+    scenes = load(scene, changes, variant if variant is not None else "", strict)
     if sys.stderr.isatty() and not is_measured():
         print("jointwave: measuring once what every effect costs, about a minute", file=sys.stderr)
     for one in scenes:

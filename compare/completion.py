@@ -13,13 +13,12 @@ from typing import Any, Literal, get_args, get_origin
 import typer
 
 import cases
-from compare.scenes import SHIPPED, find, shipped
+from compare.scenes import find, names
 
 
 def scenes(incomplete: str) -> list[str]:
     """Return shipped scenes and scene files that begin so."""
-    known = [path.relative_to(SHIPPED).with_suffix("").as_posix() for path in shipped()]
-    return [*_begun(known, incomplete), *files(incomplete)]
+    return [*_begun(names(), incomplete), *files(incomplete)]
 
 
 def files(incomplete: str, suffix: str = ".toml") -> list[str]:

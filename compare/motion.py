@@ -7,7 +7,7 @@ import typer
 
 from cases.errors import SceneError
 from cases.scene import Scene
-from compare.options import JsonOption, SceneArgument, SetOption, app, load, warn
+from compare.options import JsonOption, SceneArgument, SetOption, StrictOption, app, load
 
 ScaleOption = Annotated[
     float | None,
@@ -28,6 +28,7 @@ def animate(
     scale: ScaleOption = None,
     frames: Annotated[int, typer.Option(min=2, max=5000, help="From start to end.")] = FRAMES,
     seconds: Annotated[float, typer.Option(help="That the animation lasts.")] = SECONDS,
+    strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Write how the blocks move, by both engines, with the wave on them, as MP4 or GIF.
@@ -40,10 +41,9 @@ def animate(
     from compare import terminal
     from compare.moving import video
 
-    (one,) = load(scene, changes, variant)
+    (one,) = load(scene, changes, variant, strict)
     path = out or Path(f"{_name(scene, one)}.mp4")
     video.refuse(path, frames)
-    warn([one])
     with terminal.progress("both engines") as advance:
         from compare.moving.shots import take
 
@@ -94,6 +94,7 @@ def view(
         float | None, typer.Option(metavar="T", help="s; without it the middle of the scene.")
     ] = None,
     scale: ScaleOption = None,
+    strict: StrictOption = False,
 ) -> None:
     """Show the pillars of both engines in three dimensions, displaced and coloured by the wave.
 
@@ -104,12 +105,11 @@ def view(
     _require_pyvista()
     from compare.moving.offscreen import has_display
 
-    (one,) = load(scene, changes, variant)
+    (one,) = load(scene, changes, variant, strict)
     at = one.time.duration / 2 if time is None else time
     if not 0 < at <= one.time.duration:
         allowed = f"must be greater than 0 and at most time.duration = {one.time.duration:g} s"
         raise SceneError("--time", "", None, f"{allowed}, not {at:g}")
-    warn([one])
     if out is None and has_display():
         _open(one, at, scale)
     else:

@@ -76,6 +76,9 @@ DryOption = Annotated[
     bool,
     typer.Option("--dry-run", help="Only say what would run, how long, and how much memory."),
 ]
+StrictOption = Annotated[
+    bool, typer.Option("--strict", help="Refuse a scene that would be warned of.")
+]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON for a machine to read.")]
 
 CORES = os.cpu_count() or 1
@@ -104,20 +107,43 @@ def root(
         raise SceneError("mpiexec", "", None, allowed)
 
 
-def load(scene: str, changes: list[str], variant: str | None) -> list[cases.Scene]:
-    """Return a file's variants, or the one that is named, with `--set` applied."""
+def load(
+    scene: str, changes: list[str], variant: str | None, strict: bool = False
+) -> list[cases.Scene]:
+    """Return a file's variants, or the one that is named, with `--set` applied, warned of."""
     from cases.read import parse_override
 
     overrides = dict(parse_override(text) for text in changes)
     path = find(scene)
     if variant is None:
-        return cases.load(path, overrides)
-    return [cases.load_variant(path, variant, overrides)]
+        found = cases.load(path, overrides)
+    else:
+        found = [cases.load_variant(path, variant, overrides)]
+    warn(found, strict)
+    return found
 
 
-def warn(scenes: list[cases.Scene]) -> None:
-    """Print what scenes say but should not."""
-    from cases.effects import warnings
+def warn(scenes: list[cases.Scene], strict: bool = False) -> None:
+    """Print what scenes say but hardly mean, a line each; strict : it is an error.
 
-    for warning in dict.fromkeys(w for scene in scenes for w in warnings(scene)):
-        print(f"jointwave: {printable(warning)}", file=sys.stderr)
+    Raises SceneError of the first line, with the number of the others.
+    """
+    from cases.warnings import warnings
+
+    found: dict[str, list[cases.Scene]] = {}
+    for scene in scenes:
+        for line in warnings(scene):
+            found.setdefault(line, []).append(scene)
+    lines = [f"{line}{_whose(said, scenes)}" for line, said in found.items()]
+    if strict and lines:
+        more = f" (and {len(lines) - 1} more)" if len(lines) > 1 else ""
+        raise SceneError(scenes[0].where, "", None, f"{lines[0]}{more}, refused by --strict")
+    for line in lines:
+        print(f"jointwave: warning: {printable(line)}", file=sys.stderr)
+
+
+def _whose(said: list[cases.Scene], scenes: list[cases.Scene]) -> str:
+    """Return which variants say what is warned of, where not all do."""
+    if len(said) == len(scenes):
+        return ""
+    return f" [{', '.join(scene.name or 'without a variant' for scene in said)}]"

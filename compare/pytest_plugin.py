@@ -8,6 +8,7 @@ import shlex
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
+from warnings import warn
 
 import pytest
 
@@ -16,6 +17,10 @@ RESULTS = pytest.StashKey[dict]()
 
 
 LARGEST_FILE = 10_000_000  # bytes, as of any scene
+
+
+class SceneWarning(UserWarning):
+    """What a scene says but hardly means."""
 
 
 class Misfit(Exception):
@@ -88,6 +93,7 @@ class PairItem(pytest.Item):
         """Measure the pair; raises Misfit with all that the user needs to know."""
         if self.reason:
             raise Misfit(self.reason)
+        self._warn()
         from cases.errors import SceneError, UnstableError
         from compare.metrics import worst
 
@@ -103,6 +109,13 @@ class PairItem(pytest.Item):
         if not found.judged <= self.bound:
             least = f"the reference itself errs by {found.floor:.2g}, a tenth of what it can judge"
             raise Misfit(f"{self.pair}: {least}; the bound is {self.bound:g}")
+
+    def _warn(self) -> None:
+        """Warn of what the scene hardly means; an error where pytest takes warnings for errors."""
+        from cases.warnings import warnings
+
+        for line in warnings(self.scene):
+            warn(SceneWarning(f"{self.scene.where}: {line}"), stacklevel=1)
 
     def _solved(self, name: str):
         """Return a result; each engine runs once in a session for the same scene."""
@@ -121,7 +134,7 @@ class PairItem(pytest.Item):
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style=None):
         """Return the message alone: a traceback would say nothing about the scene."""
-        if isinstance(excinfo.value, Misfit):
+        if isinstance(excinfo.value, Misfit | SceneWarning):
             return str(excinfo.value)
         return super().repr_failure(excinfo, style)
 

@@ -3,8 +3,10 @@
 from pathlib import Path
 
 import cases
+from cases.errors import SceneError, nearest
 
 SHIPPED = Path(cases.__file__).parent
+MOST = 1000  # files of a folder that a name is looked for among
 
 
 def shipped() -> list[Path]:
@@ -13,9 +15,29 @@ def shipped() -> list[Path]:
 
 
 def find(scene: str) -> Path:
-    """Return the file of a scene given by path or by shipped name, `guo-li-2002/fig-03`."""
+    """Return the file of a scene given by path or by shipped name, `guo-li-2002/fig-03`.
+
+    Raises SceneError where there is none but one that is called much the same.
+    """
     path = Path(scene)
     if path.exists() or path.is_symlink():
         return path
     known = (SHIPPED / scene).with_suffix(".toml")
-    return known if known.is_file() else path
+    if known.is_file():
+        return known
+    if meant := nearest(scene, [*_beside(path), *names()]):
+        raise SceneError(scene, "", None, f"cannot be read: no such scene{meant}")
+    return path
+
+
+def names() -> list[str]:
+    """Return the names of the shipped scenes, `guo-li-2002/fig-03`, in order."""
+    return [path.relative_to(SHIPPED).with_suffix("").as_posix() for path in shipped()]
+
+
+def _beside(path: Path) -> list[str]:
+    """Return the scene files in the folder of a path."""
+    try:
+        return [str(file) for file in sorted(path.parent.glob("*.toml"))][:MOST]
+    except (OSError, ValueError):  # no folder, a NUL
+        return []

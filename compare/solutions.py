@@ -16,6 +16,7 @@ from compare.options import (
     ModelOption,
     SceneArgument,
     SetOption,
+    StrictOption,
     SweepOption,
     VariantOption,
     WorkersOption,
@@ -49,6 +50,7 @@ def compare(
     swept: SweepOption = [],  # noqa: B006
     workers: WorkersOption = CORES,
     dry: DryOption = False,
+    strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Solve a scene by all that applies, and print how far apart the solutions are.
@@ -76,9 +78,9 @@ def compare(
         asked = command.ask(scene, changes, variant, swept, out)
         every = [case.scene for case in asked.cases if case.scene is not None]
         work = Comparing(spectral, _read_curves(given, every, align), align, out is not None)
-        command.sweep(asked, work, workers, dry, as_json)
+        command.sweep(asked, work, workers, dry, as_json, strict)
         return
-    scenes = load(scene, changes, variant)
+    scenes = load(scene, changes, variant, strict)
     curves = _read_curves(given, scenes, align)
     if dry:
         from compare import forecast_view
@@ -137,6 +139,7 @@ def figure(
     language: Annotated[
         Language, typer.Option(help="Of the labels; zh needs a font that has it.")
     ] = Language.en,
+    strict: StrictOption = False,
 ) -> None:
     """Draw the waveforms of a scene as a figure for a paper.
 
@@ -147,7 +150,7 @@ def figure(
     from compare import jobs, terminal
     from compare.papers.make import Asked, make
 
-    scenes = load(scene, changes, variant)
+    scenes = load(scene, changes, variant, strict)
     runs = jobs.wanted([e.value for e in engine], model or []) if engine or model else []
     curves = _read_curves(given, scenes, False)
     asked = Asked(style.value, columns, kind.value if kind else None, language.value, out)

@@ -16,11 +16,11 @@ from compare.options import (
     OutOption,
     SceneArgument,
     SetOption,
+    StrictOption,
     VariantOption,
     WorkersOption,
     app,
     load,
-    warn,
 )
 from compare.processes import started
 
@@ -41,6 +41,7 @@ def effects(
     ),
     workers: WorkersOption = CORES,
     dry: DryOption = False,
+    strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Say what every effect of a scene costs, and how far the answer is without it.
@@ -52,7 +53,7 @@ def effects(
     from compare.studies.pool import on_pool
     from compare.worth_section import write_section
 
-    wanted = _cases(scene, changes, variant)
+    wanted = _cases(scene, changes, variant, strict)
     if dry:
         from compare import forecast_view
 
@@ -76,13 +77,15 @@ def plan(
     ] = None,
     changes: SetOption = [],  # noqa: B006
     variant: VariantOption = None,
+    strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Find the cheapest engine, elements and step that meet a misfit, by a few cheap runs."""
+    scenes = load(scene, changes, variant if variant is not None else "", strict)
     from compare import plan_view, planner, terminal
 
     found = []
-    for one in load(scene, changes, variant if variant is not None else ""):
+    for one in scenes:
         with terminal.progress(one.name or one.title) as advance:
             found.append(planner.plan(one, misfit, seconds, advance))
     plan_view.show_plans(found, misfit, as_json)
@@ -163,6 +166,7 @@ def report(
         typer.Option(help="Table of make bench-peers; absent: out/peers/points.csv if there."),
     ] = None,
     dry: DryOption = False,
+    strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Write scenes with every picture, misfit and cost as one HTML page that needs no other file.
@@ -170,7 +174,7 @@ def report(
     Without a scene: the figures of Guo & Li (2002), what they must show, and all studies.
     """
     for one in scenes or []:
-        warn(load(one, [], None))
+        load(one, [], None, strict)
     from compare import terminal, views
     from compare.report import build
 
@@ -184,13 +188,14 @@ def report(
     views.show_report(found, as_json)
 
 
-def _cases(scene: str | None, changes: list[str], variant: str | None) -> list[Any]:
+def _cases(scene: str | None, changes: list[str], variant: str | None, strict: bool) -> list[Any]:
     """Return the variants whose effects are asked for; without a scene all that are shipped."""
     from compare.worth_study import Case, all_shipped
 
     if scene is not None:
         return [
-            Case(scene, one) for one in load(scene, changes, variant if variant is not None else "")
+            Case(scene, one)
+            for one in load(scene, changes, variant if variant is not None else "", strict)
         ]
     if changes or variant is not None:
         key = "--set" if changes else "--variant"

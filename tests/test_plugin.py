@@ -92,6 +92,19 @@ def test_bound_that_is_not_met_prints_pair_misfit_bound_and_command_alone(run, p
     assert result.outlines[first + 2].startswith("===")
 
 
+def test_a_scene_is_warned_of_and_refused_where_warnings_are_errors(run):
+    """As `--strict` does; a scene that says what it means is neither."""
+    late = scene().replace("period = 0.01", "period = 0.011")
+    result = run("-v", scene=late)
+    result.assert_outcomes(passed=1, warnings=1)
+    result.stdout.fnmatch_lines(["*SceneWarning: *scene.toml: load.period = 0.011 s is longer*"])
+    strict = "-W", "error::compare.pytest_plugin.SceneWarning"
+    result = run(*strict, scene=late)
+    result.assert_outcomes(failed=1)
+    result.stdout.re_match_lines([r"\S+scene.toml: load.period = 0.011 s is longer"])
+    run(*strict, scene=scene()).assert_outcomes(passed=1)
+
+
 def test_misfit_is_kept_with_the_results(run, pytester):
     """The documentation's table of verification reads it there."""
     run("--junitxml", "tests.xml", scene=scene(bound=0.01)).assert_outcomes(passed=1)

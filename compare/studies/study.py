@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 import cases
-from cases.errors import SceneError
+from cases.errors import SceneError, nearest
 from cases.files import read_toml
 from cases.scene import Scene
 from compare.scenes import find
@@ -145,7 +145,8 @@ def load(name: str) -> Study:
     """
     path = shipped().get(name, Path(name))
     if not path.is_file():
-        raise SceneError(name, "", None, f"is no file, nor one of {', '.join(shipped())}")
+        known = ", ".join(shipped()) + nearest(name, shipped())
+        raise SceneError(name, "", None, f"is no file, nor one of {known}")
     try:
         table = read_toml(path, LARGEST_FILE)
     except ValueError as error:

@@ -39,12 +39,14 @@ def ask(
     return Asked(scene, found, wanted, out)
 
 
-def sweep(asked: Asked, work: Work, workers: int, dry: bool, as_json: bool) -> None:
+def sweep(
+    asked: Asked, work: Work, workers: int, dry: bool, as_json: bool, strict: bool = False
+) -> None:
     """Run every case, write the table, and show it; dry : only say what would run.
 
-    Raises SceneError where all fail.
+    strict : refuse scenes that are warned of. Raises SceneError where all fail.
     """
-    warn([case.scene for case in asked.cases if case.scene is not None])
+    warn([case.scene for case in asked.cases if case.scene is not None], strict)
     if dry:
         _foresee(asked, work, as_json)
         return

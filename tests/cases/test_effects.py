@@ -2,7 +2,7 @@
 
 import pytest
 
-from cases.effects import active_effects, effects, is_spatial, warnings
+from cases.effects import active_effects, effects, is_spatial
 
 ACROSS = {"load.direction": [1.0, 0.0, 0.0]}
 DOWN = {"direction": [0, -1, 0], "static": False}
@@ -98,11 +98,3 @@ def test_a_layer_may_be_the_only_joint_without_tension(scene_with):
 
 def test_every_effect_says_why(scene_with):
     assert all(effect.reason for effect in effects(scene_with()))
-
-
-def test_local_damping_under_a_load_is_warned_of(scene_with):
-    damped = {"damping": {"local": 0.8}}
-    (warning,) = warnings(scene_with(**damped))
-    assert warning.startswith("damping.local distorts waves")
-    assert warnings(scene_with(**damped, **{"load.amplitude": 0.0})) == []
-    assert warnings(scene_with()) == []

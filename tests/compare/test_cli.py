@@ -7,6 +7,10 @@ import sys
 import pytest
 import xarray as xr
 
+from cases.errors import SceneError
+from compare.cli import app
+from compare.starter import starter
+
 SCENE = "guo-li-2002/fig-03"
 SHORT = ("--set", "time.duration=0.02")
 
@@ -83,8 +87,88 @@ def test_explain_gives_the_critical_steps_of_motion_in_space():
 def test_warning_is_a_line_on_standard_error():
     """What should not be said is said to be so, and the answer is given all the same."""
     done = jointwave("explain", SCENE, "--set", "damping.local=0.3", "--json")
-    assert done.stderr.count("\n") == 1 and "damping.local" in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert done.stderr.startswith("jointwave: warning: damping.local")
     assert json.loads(done.stdout)["effects"]["local damping"]["active"]
+
+
+def in_process(*arguments):
+    """Call a command here, where it may raise."""
+    app([str(argument) for argument in arguments], standalone_mode=False)
+
+
+def test_a_result_holds_what_was_warned_of(tmp_path, capsys):
+    """Each variant its own; a line that several say is printed once."""
+    late = ("--set", "load.period=0.03", "--set", "joints.damping_ratio=0.02", *SHORT)
+    in_process("run", "guo-li-2002/fig-09", *late, "--out", tmp_path)
+    (line,) = capsys.readouterr().err.splitlines()
+    for folder in (tmp_path, tmp_path / "no tension"):
+        (kept,) = json.loads(xr.load_dataset(folder / "dem.nc").attrs["warnings"])
+        assert line == f"jointwave: warning: {kept}" and kept.startswith("load.period = 0.03 s")
+
+
+SLIPS = ("--set", "load.period=0.001", "--set", "rock.density=2.4")
+STRICT = {
+    "run": (SCENE,),
+    "explain": (SCENE,),
+    "compare": (SCENE,),
+    "figure": (SCENE, "--out", "a.pdf"),
+    "effects": (SCENE,),
+    "plan": (SCENE, "--misfit", "0.1"),
+    "animate": (SCENE,),
+    "view": (SCENE, "--out", "a.png"),
+}
+
+
+@pytest.mark.parametrize("command", STRICT)
+def test_strict_refuses_what_is_warned_of(command, tmp_path, monkeypatch, capsys):
+    """Before anything is run or written, with the first line and how many more there are."""
+    if command == "view":
+        pytest.importorskip("pyvista")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SceneError, match=r"fig-03.toml: rock.density = 2.4 .*\(and 1 more\)"):
+        in_process(command, *STRICT[command], *SLIPS, "--strict")
+    assert capsys.readouterr() == ("", "") and not list(tmp_path.iterdir())
+
+
+def test_strict_refuses_a_sweep_and_a_page(tmp_path):
+    """The page takes files alone; nothing is run of either."""
+    (tmp_path / "new.toml").write_text(starter(tmp_path / "new.toml").replace("2400.0", "2.4"))
+    for options in (
+        ("run", SCENE, "--sweep", "load.period=0.01,0.001"),
+        ("report", tmp_path / "new.toml"),
+    ):
+        with pytest.raises(SceneError, match="--strict"):
+            in_process(*options, "--strict", "--out", tmp_path / "out")
+        assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [
+        (("explain", "fig-3"), "guo-li-2002/fig-03"),
+        (("explain", "gou-li/fig-10"), "guo-li-2002/fig-10"),
+        (("explain", "beyond/spal.toml"), "beyond/spall"),
+        (("new", "a", "--from", "spall"), "beyond/spall"),
+        (("explain", SCENE, "--set", "pillar.lenght=1"), "length"),
+        (("explain", SCENE, "--set", "pilar.length=1"), "pillar"),
+        (("explain", SCENE, "--variant", "zeta 0.2"), "zeta 0.02"),
+        (("study", "dimension", "--dry-run"), "dimensions"),
+    ],
+)
+def test_a_name_that_is_unknown_is_told_the_nearest(typed, meant):
+    with pytest.raises(SceneError, match=rf"; did you mean {meant}\?$"):
+        in_process(*typed)
+
+
+def test_a_name_like_no_other_is_told_nothing(tmp_path, monkeypatch):
+    """But for a file of the folder that is called much the same."""
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SceneError, match=r"nothing.toml: cannot be read: No such file"):
+        in_process("explain", "nothing.toml")
+    (tmp_path / "pillar-of-mine.toml").touch()
+    with pytest.raises(SceneError, match=r"did you mean pillar-of-mine.toml"):
+        in_process("explain", "pilar-of-mine.toml")
 
 
 def test_run_tells_what_broke(tmp_path):
@@ -117,6 +201,7 @@ def test_compare_tells_numerical_from_modelling_error():
     [
         (("run",), "scene"),
         (("run", "nothing.toml"), "nothing.toml"),
+        (("run", "fig-3"), "did you mean guo-li-2002/fig-03?"),
         (("run", SCENE, "--set", "pillar.length"), "key=value"),
         (("run", SCENE, "--set", "pillar.length=-1"), "pillar.length = -1"),
         (("run", SCENE, "--variant", "none"), "variants.name"),

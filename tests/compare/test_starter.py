@@ -12,6 +12,7 @@ from cases.errors import SceneError
 from cases.keys import keys
 from cases.meaning import field_comments
 from cases.tables import Pillar
+from cases.warnings import warnings
 from compare.engines import solve
 from compare.metrics import misfit
 from compare.scenes import SHIPPED
@@ -56,6 +57,18 @@ def test_it_is_loaded_and_meets_its_own_expectations(tmp_path):
         for pair, bound in scene.expect.items():
             one, other = (solve(name, scene) for name in pair.split(" ~ "))
             assert misfit(one, other) <= bound
+        assert warnings(scene) == []
+
+
+def test_its_ends_let_waves_out(tmp_path):
+    """As well as rigid blocks can, and it says so."""
+    path = tmp_path / "x.toml"
+    text = starter(path)
+    path.write_text(text)
+    assert {cases.load(path)[0].ends.start, cases.load(path)[0].ends.end} == {"matched"}
+    assert "matched, a dashpot behind the end block's half-block spring, reflects least" in (
+        " ".join(text.replace("\n#", "").split())
+    )
 
 
 def test_its_comments_are_those_of_the_models(tmp_path):

@@ -21,12 +21,13 @@ import numpy as np
 
 import cases
 from cases.calibrate import calibrate
-from cases.effects import active_effects, is_spatial, warnings
+from cases.effects import active_effects, is_spatial
 from cases.errors import SceneError, UnstableError
 from cases.history import History
 from cases.loads import Recorded, load_history, step_means
 from cases.result import scene_hash
 from cases.scene import Scene
+from cases.warnings import warnings
 from compare import cli
 from compare.curvefiles import read_columns
 from compare.engines import applies, names

@@ -1,0 +1,116 @@
+"""What a load holds over frequency: the highest that matters, and the wave that it drives."""
+
+from functools import lru_cache
+from math import asin, pi, tan
+from typing import NamedTuple
+
+import numpy as np
+
+from cases.calibrate import Properties
+from cases.loads import LoadHistory, Recorded, Ricker, Sine, load_history
+from cases.scene import Scene
+
+#: Of a load's energy, the integral of its square over time: what lies below its highest frequency.
+#: A single sine cycle ends at 1.50 / T, a Ricker wavelet at 1.67 / T.
+SHARE = 0.95
+BINS, PADDING, MOST_CYCLES = 4096, 8, 32
+PART = 2**20  # samples of a record that are looked at together
+
+
+class ShortestWave(NamedTuple):
+    """The slowest wave that a load drives, at the load's highest frequency.
+
+    frequency : Hz. speed : m/s. blocks : how many of them a wavelength takes. cut_off : Hz, above
+    which a row of rigid blocks passes nothing.
+    """
+
+    frequency: float
+    speed: float
+    blocks: float
+    cut_off: float
+
+    @property
+    def reflection(self) -> float:
+        """tan(k d / 4): what a quiet end on a rigid block reflects of it (Guo & Li 2002, (9))."""
+        if self.frequency >= self.cut_off:
+            return 1.0
+        return tan(asin(self.frequency / self.cut_off) / 2)
+
+
+def shortest_wave(scene: Scene, p: Properties) -> ShortestWave | None:
+    """Return the wave that a scene's load makes shortest; None where no load acts."""
+    frequency = highest_frequency(scene)
+    if frequency is None:
+        return None
+    sheared = scene.load.is_across or scene.load.arm is not None
+    speed = p.shear_speed if sheared else p.bar_speed
+    blocks = speed / (frequency * p.spacing)
+    return ShortestWave(frequency, speed, blocks, speed / (pi * p.spacing))
+
+
+def highest_frequency(scene: Scene) -> float | None:
+    """Return the frequency (Hz) below which 95 % of the load's energy lies.
+
+    Of a step, which never ends, of what acts until the end of the scene; of a shaken base of its
+    velocity. None where no load acts.
+    """
+    load = scene.load
+    if not load.amplitude:
+        return None
+    if load.period is not None:
+        return _at_unit_period(load.shape, min(load.cycles or 1, MOST_CYCLES)) / load.period
+    if load.history is None:
+        return _step_frequency() / scene.time.duration
+    history = load_history(scene)
+    assert isinstance(history, Recorded)
+    if not history.stress.any():
+        return None
+    return _of_record(history, load.quantity == "acceleration")
+
+
+@lru_cache
+def _at_unit_period(shape: str, cycles: int) -> float:
+    load = Ricker(1.0, 1.0) if shape == "ricker" else Sine(1.0, 1.0, cycles)
+    return _below(_means(load, 0.0, 3.0 if shape == "ricker" else float(cycles)))
+
+
+@lru_cache
+def _step_frequency() -> float:
+    return _below((np.ones(BINS), 1.0 / BINS))
+
+
+def _of_record(history: Recorded, integrated: bool) -> float:
+    start, end = float(history.time[0]), float(history.time[-1])
+    if integrated:
+        edges = np.linspace(start, end, BINS)
+        return _below((history.impulse(edges), (end - start) / BINS))
+    parts = [slice(i, i + PART + 1) for i in range(0, history.time.size - 1, PART)]
+    energy = sum(_energy(history.time[part], history.stress[part]) for part in parts)
+    return _below(_means(history, start, end), energy)
+
+
+def _energy(time: np.ndarray, stress: np.ndarray) -> float:
+    """Return the integral of the square of a piecewise linear history."""
+    a, b = stress[:-1], stress[1:]
+    return float(np.diff(time) @ (a * a + a * b + b * b)) / 3
+
+
+def _means(load: LoadHistory, start: float, end: float) -> tuple[np.ndarray, float]:
+    """Return the mean of a load in each of equal bins, and their length."""
+    edges = np.linspace(start, end, BINS + 1)
+    length = (end - start) / BINS
+    return np.diff(load.impulse(edges)) / length, length
+
+
+def _below(samples: tuple[np.ndarray, float], energy: float = 0.0) -> float:
+    """Return the frequency below which the share of the energy lies, at most the Nyquist one.
+
+    energy : that of the load itself, where its bins may have lost some.
+    """
+    values, length = samples
+    count = PADDING * BINS
+    power = np.abs(np.fft.rfft(values, count)) ** 2 * 2 * length / count
+    power[0] /= 2
+    below = np.cumsum(power)  # up to half a line beyond each
+    lines = (np.arange(power.size) + 0.5) / (count * length)
+    return float(np.interp(SHARE * max(energy, below[-1]), below, lines))

@@ -1,0 +1,219 @@
+"""What a scene may say but hardly means: a line for each slip, from the scene alone.
+
+No rule refuses a scene: what is unusual may be meant. `--strict` takes each line for an error.
+"""
+
+from collections.abc import Callable, Iterator
+from math import hypot, sqrt
+
+import numpy as np
+
+from cases.calibrate import Properties, calibrate
+from cases.effects import is_spatial
+from cases.plausible import implausible
+from cases.scene import Scene
+from cases.spectrum import ShortestWave, shortest_wave
+
+LEAST_BLOCKS = 10.0  # and elements, a wavelength
+MOST_REFLECTED = 0.01  # by a quiet end on a rigid block, of the load's highest frequency
+SHORTENED = 1.5  # how many times shorter than asked for a step is not worth a line
+ONSET = 0.01  # of a load's peak: where it begins
+#: Of the duration: the end of a table that no one cut off there.
+LATE = 5.0
+#: Crossings of the pillar in a period of the load's highest frequency that no wave test has.
+STATIC = 100.0
+
+Rule = Callable[[Scene, Properties, ShortestWave | None], Iterator[str]]
+
+
+def warnings(scene: Scene) -> list[str]:
+    """Return what a scene may say but hardly means, a line each; a pure function of the scene."""
+    p = calibrate(scene)
+    wave = shortest_wave(scene, p)
+    return [line for rule in RULES for line in rule(scene, p, wave)]
+
+
+def _of_local_damping(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
+    if scene.damping.local and wave is not None:
+        yield (
+            "damping.local distorts waves: it is meant for static states, not for a scene whose "
+            "load acts"
+        )
+
+
+def _of_units(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
+    yield from implausible(scene)
+
+
+def _of_poisson(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
+    rock = scene.rock
+    if rock.p_speed and p.poisson < 0:
+        yield (
+            f"rock.p_speed = {rock.p_speed:g} below sqrt(2) rock.s_speed = {rock.s_speed:g} m/s "
+            f"gives a negative Poisson's ratio, {p.poisson:.3g}"
+        )
+    for key in ("equivalent_poisson", "intact_poisson"):
+        value = getattr(rock, key)
+        if value is not None and value < 0:
+            yield f"rock.{key} = {value:g} is negative: no rock is known to have such a one"
+
+
+def _of_times(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
+    """Say where the load acts outside the run, or its table is not in seconds."""
+    load, end = scene.load, scene.time.duration
+    if wave is None or load.shape == "step":
+        return
+    if load.history is not None:
+        yield from _of_table(scene, p, wave)
+    elif load.shape == "ricker" and load.period and 1.5 * load.period > end:
+        yield (
+            f"load.period = {load.period:g} s: the wavelet peaks at 1.5 periods, after the end of "
+            f"the scene at time.duration = {end:g} s"
+        )
+    elif load.period and load.period > end:
+        yield f"load.period = {load.period:g} s is longer than the scene, time.duration = {end:g} s"
+
+
+def _of_table(scene: Scene, p: Properties, wave: ShortestWave) -> Iterator[str]:
+    history, end = scene.load.history, scene.time.duration
+    assert history is not None
+    last, file = float(history.time[-1]), scene.load.file
+    peak = float(history.time[np.abs(history.stress).argmax()])
+    crossings = p.bar_speed / (wave.frequency * scene.pillar.length)
+    late = peak > end
+    if (late and last > LATE * end and last / 1e3 <= end) or STATIC < crossings < 1e3 * STATIC:
+        why = (
+            f"the scene ends at {end:g} s"
+            if late
+            else f"a wave crosses the pillar {crossings:.3g} times in a period of them"
+        )
+        yield (
+            f"load.file = {file!r}: its times, up to {last:g} s, look like milliseconds ({why}): "
+            f"in seconds they are {last / 1e3:g}"
+        )
+    elif late:
+        yield (
+            f"load.file = {file!r} peaks at {peak:g} s, after the end of the scene at "
+            f"time.duration = {end:g} s"
+        )
+
+
+def _of_wavelength(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
+    if wave is None or wave.blocks >= LEAST_BLOCKS:
+        return
+    where = f"at {wave.frequency:.4g} Hz, below which 95 % of the load's energy lies"
+    if wave.frequency >= wave.cut_off:
+        yield (
+            f"pillar.block = {p.spacing:g} m: rigid blocks pass nothing above {wave.cut_off:.4g} "
+            f"Hz; the load reaches {wave.frequency:.4g} Hz, below which 95 % of its energy lies"
+        )
+    else:
+        yield (
+            f"pillar.block = {p.spacing:g} m gives {wave.blocks:.3g} blocks a wavelength {where}; "
+            f"at least {LEAST_BLOCKS:g} resolve it"
+        )
+    count = scene.numerics.continuum.elements_per_block
+    if count is not None and count * wave.blocks < LEAST_BLOCKS:
+        yield (
+            f"numerics.continuum.elements_per_block = {count} gives {count * wave.blocks:.3g} "
+            f"elements a wavelength {where}; at least {LEAST_BLOCKS:g} resolve it"
+        )
+
+
+def _of_step(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
+    """Say where samples are closer than the steps that rigid blocks would take."""
+    interval, coarse = scene.interval, wave is not None and wave.blocks < LEAST_BLOCKS
+    if coarse and scene.record.interval is None:
+        return  # a 200th of a period that the blocks do not resolve, which is said already
+    wanted = scene.numerics.dem.step_fraction * _least_critical_step(scene, p)
+    if interval * SHORTENED < wanted and scene.numerics.dem.step_fraction <= 1:
+        whose = "" if scene.record.interval else ", a 200th of the period,"
+        yield (
+            f"record.interval = {interval:.4g} s{whose} shortens the step of rigid blocks, "
+            f"{wanted:.4g} s by numerics.dem.step_fraction"
+        )
+
+
+def _least_critical_step(scene: Scene, p: Properties) -> float:
+    """Return a critical step (s) of the row of blocks that no motion of it falls short of.
+
+    From bounds on its largest frequency (Gershgorin): of axial motion 4 K'_n A / m, of motion in
+    space twice the larger of those of the faces' springs in translation and in rotation. With
+    dashpots 2 / omega (sqrt(1 + (omega eta)^2) - omega eta), as leapfrog's that extrapolates rates.
+    """
+    normal, shear = float(p.stiffness.max()) * p.area, float(p.shear_stiffness.max()) * p.area
+    square = 4 * normal / p.block_mass
+    if is_spatial(scene):
+        turning = shear * p.spacing**2 / 4 + normal * p.side**2 / 4
+        twisting = shear * p.side**2 / 2
+        square = 2 * max(
+            square,
+            4 * shear / p.block_mass,
+            4 * turning / p.inertia_across,
+            4 * twisting / p.inertia_along,
+        )
+    omega, times = sqrt(square), p.joint_time_constant
+    ratio = 0.0 if times is None else omega * float(times.max())
+    return 2 / (omega * (hypot(1, ratio) + ratio))
+
+
+def _of_arrivals(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
+    """Say which receivers the wave does not reach before the end of the scene."""
+    falls = scene.gravity is not None and not scene.gravity.static
+    if wave is None or falls:
+        return
+    begin, end, speed = _onset(scene), scene.time.duration, _fastest(scene, p)
+    for key in ("stress", "velocity"):
+        for y in getattr(scene.record, key):
+            if begin + y / speed >= end:
+                yield (
+                    f"record.{key} = {y:g} m is reached at {begin + y / speed:.4g} s, at "
+                    f"{speed:.4g} m/s: after the end of the scene at time.duration = {end:g} s"
+                )
+
+
+def _fastest(scene: Scene, p: Properties) -> float:
+    """Return the speed (m/s) of the fastest wave that the load drives.
+
+    Bending runs ahead of shear, up to the speed of the bar (Timoshenko 1921).
+    """
+    load = scene.load
+    shear_alone = load.is_across and not load.direction[1] and scene.motion.rotation == "none"
+    twist = load.arm is not None and not load.is_across
+    return p.shear_speed if shear_alone or twist else p.bar_speed
+
+
+def _onset(scene: Scene) -> float:
+    """Return when a load first reaches a hundredth of its peak, s."""
+    load, history = scene.load, scene.load.history
+    if load.shape == "ricker":
+        return 0.68 * (load.period or 0.0)
+    if history is None:
+        return 0.0
+    felt = np.abs(history.stress) >= ONSET * np.abs(history.stress).max()
+    first = int(felt.argmax())
+    return float(history.time[max(first - 1, 0)])
+
+
+def _of_quiet_ends(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
+    """Say what a dashpot on a whole block reflects; a scene that names its source has it so."""
+    if wave is None or scene.source is not None or wave.reflection <= MOST_REFLECTED:
+        return
+    for key in ("start", "end"):
+        if getattr(scene.ends, key) == "quiet":
+            yield (
+                f"ends.{key} = 'quiet' reflects {wave.reflection:.2g} of the wave at "
+                f"{wave.frequency:.4g} Hz from rigid blocks; 'matched' {wave.reflection**2:.1g}"
+            )
+
+
+RULES: tuple[Rule, ...] = (
+    _of_units,
+    _of_poisson,
+    _of_times,
+    _of_wavelength,
+    _of_step,
+    _of_arrivals,
+    _of_quiet_ends,
+    _of_local_damping,
+)
