@@ -12,7 +12,7 @@ WORDS = {float: "number", int: "whole number", str: "text", bool: "`true` or `fa
 BOUNDS = {"gt": ">", "ge": "≥", "lt": "<", "le": "≤"}
 LENGTHS = {"min_length": "at least", "max_length": "at most"}
 #: What the functions that check a value ask for; some only refuse what no unit explains.
-CHECKS = {"_magnitude": "", "_amplitude": "", "_unit": "of length 1"}
+CHECKS = {"_magnitude": "", "_amplitude": "", "_unit": "of length 1", "_words": ""}
 
 
 def in_words(field: FieldInfo) -> str:
