@@ -77,8 +77,11 @@ def reference_of(name: str, names: Iterable[str], scene: Scene) -> Reference | N
 def own_exact(name: str, names: Iterable[str], scene: Scene) -> str | None:
     """Return the exact solution of an engine's own model among `names`, what its numerical error is
     measured from; None where there is none."""
-    rock = resolves(name).rock
-    own = [n for n in names if n != name and resolves(n).rock is rock and resolves(n).exact]
+    rock, own = resolves(name).rock, []
+    for other in names:
+        of = resolves(other)
+        if other != name and of.rock is rock and of.exact and of.discretised:
+            own.append(other)
     found = finest(own, scene)
     return found.name if found else None
 

@@ -34,12 +34,14 @@ class Resolves(NamedTuple):
     """What a solution resolves.
 
     rock : how it sees the rock mass. form : how it is known. dimension : 1 where it has no motion
-    across the axis beside a plane wave.
+    across the axis beside a plane wave. discretised : whether an engine discretises this very
+    model; a solution of one mechanism alone leaves out what else the engines have.
     """
 
     rock: Rock
     form: Form = Form.COMPUTED
     dimension: int = 1
+    discretised: bool = True
 
     @property
     def exact(self) -> bool:

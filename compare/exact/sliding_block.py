@@ -26,7 +26,7 @@ from compare.exact.answer import YES, Answer, Form, Resolves, Rock, no
 from compare.exact.conditions import beyond
 
 NAME = "sliding-block"
-RESOLVES = Resolves(Rock.ONE_BODY, Form.CLOSED, dimension=3)
+RESOLVES = Resolves(Rock.ONE_BODY, Form.CLOSED, dimension=3, discretised=False)
 
 
 def applies(scene: Scene) -> Answer:

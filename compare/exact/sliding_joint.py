@@ -36,7 +36,7 @@ from compare.exact.images import ENTERS
 from compare.exact.one_joint import around
 
 NAME = "slip-joint"
-RESOLVES = Resolves(Rock.HOMOGENISED)
+RESOLVES = Resolves(Rock.HOMOGENISED, discretised=False)
 _gauss = cache(leggauss)
 FORGOTTEN = 40.0  # time constants after which exp has lost all digits
 
