@@ -106,6 +106,25 @@ def test_forces_and_rates_of_a_chain():
         assert rates(one, state, 1000.0)[:4] == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("kind", "drive", "start", "face"),
+    [
+        ("quiet", 1000.0, -7000.0, 0.0),  # the load less 5e4 * 0.16
+        ("matched", 1000.0, 1000.0 - 5800 / 1.1, 5800 / 5.5e4),  # Z s / (Z + c), s / (Z + c)
+        ("fixed", 0.06, -5500.0, 0.06),  # 5e6 * 1e-3 + 5e3 (0.16 - 0.06) of a wall that moves
+    ],
+)
+def test_forces_of_a_held_start(kind, drive, start, face):
+    """Under 1 mm and 0.16 m/s of its block; s = 5e6 * 1e-3 + 5e3 * 0.16."""
+    quantity = {"quantity": "velocity"} if kind == "fixed" else {}
+    load = {"shape": "step", "amplitude": 1000.0, **quantity}
+    ratio = 0.5e-3 * sqrt(2500.0)  # eta = 1e-3 s
+    one = chain(scene(joints={"damping_ratio": ratio}, ends={"start": kind}, load=load))
+    forces, faces = contact_forces(one, np.array([0.1, -0.1, 0.16, 0.06, 0.0, 0.0]), drive)
+    assert forces == pytest.approx([start, 5250.0, 0.0], rel=1e-12)
+    assert faces[0] == pytest.approx(face, rel=1e-12)
+
+
 def test_no_tension_in_a_chain():
     """Open: nothing. Closed but parted faster than its dashpot lets it: nothing either."""
     ratio = 0.5e-3 * sqrt(2500.0)

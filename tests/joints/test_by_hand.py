@@ -81,8 +81,8 @@ def test_softening(gap, opening, spring, whole):
 def test_a_joint_remembers_its_largest_opening():
     h = History(1e-4)
     for gap, expected in ((2e-4, 2e-4), (-1e-4, 2e-4), (1.5e-4, 2e-4), (2.5e-4, 2.5e-4)):
-        h = step(SOFTENING, gap, h=h)[-1]
-        assert h.opening == expected
+        _, t_x, t_z, h = step(SOFTENING, gap, h=h)
+        assert h == (expected, None, None, None) and t_x == t_z == 0
 
 
 def test_shear_below_the_strength_is_elastic():
@@ -199,6 +199,14 @@ def test_tangent_of_a_softening_joint():
     for before, slope in ((1.5e-4, 5e8), (2e-4, -2.5e8), (4e-4, 0.0)):
         found = tangent(one, 2e-4, 0.0, (0.0, 0.0), (0.0, 0.0), History(before, None, None), 0.0)
         assert found.nn == near(slope)
+
+
+def test_tangent_of_a_cohesion_that_softens():
+    """It falls by 3e4 / 1e5 of the strength's 5e8 Pa/m, and the traction too."""
+    one = Law(K, None, None, K_S, None, 3e4, None, None, 1e5, 3e-4)
+    for before, rise in ((1.5e-4, 1.5e8), (2.5e-4, 0.0)):
+        h = History(before, 0.0, 0.0)
+        assert tangent(one, 2e-4, 0.0, (1e-3, 0.0), (0.0, 0.0), h, 0.0).xn == near(rise)
 
 
 def test_dashpot_behind_a_spring():

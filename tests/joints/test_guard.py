@@ -6,7 +6,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from joints.guard import CREATED, ENERGY, EVERY, RUNAWAY, SPEED, audit, exceeds, guard, look
+from joints.guard import (
+    CREATED,
+    ENERGY,
+    EVERY,
+    RUNAWAY,
+    SPEED,
+    audit,
+    exceeds,
+    guard,
+    is_lost,
+    look,
+)
 from joints.jit import jitted
 
 KINETIC, ELASTIC, VISCOUS, WORK = range(4)
@@ -16,6 +27,12 @@ KINETIC, ELASTIC, VISCOUS, WORK = range(4)
 def beyond(v, limit):
     """Return what `exceeds` does, for Python."""
     return exceeds(v, limit)
+
+
+@jitted
+def lost(held, v, n, energy, s, stride):
+    """Return what `is_lost` does, for Python."""
+    return is_lost(held, v, n, energy, s, stride)
 
 
 NUMBERS = st.floats(allow_nan=False)
@@ -53,6 +70,21 @@ def test_a_look_finds_what_is_beyond_the_limit_and_keeps_the_first():
     look(held, np.nextafter(2.0 * RUNAWAY, np.inf), 704)
     look(held, np.nan, 768)
     assert held.found.tolist() == [704, SPEED, 704 - EVERY - 1]
+
+
+def test_what_is_found_at_the_first_step_stays():
+    held = guard(2.0)
+    look(held, np.inf, 0)
+    look(held, np.inf, 96)
+    assert held.found.tolist() == [0, SPEED, -EVERY - 1]
+
+
+def test_energy_is_found_at_the_step_of_its_sample():
+    """Sample 2 of every tenth step holds 5 J of which 1 J was put in, as step 27 is done."""
+    held, energy = guard(2.0), np.array([[0.0, 0.0, 5.0], [0.0, 0.0, 1.0]])
+    assert not lost(held, np.zeros(3), 17, energy, 1, 10)
+    assert lost(held, np.zeros(3), 27, energy, 2, 10)
+    assert held.found.tolist() == [20, ENERGY, 20 - EVERY - 1]
 
 
 @pytest.mark.parametrize("speed", [np.nan, np.inf])

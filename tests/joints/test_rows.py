@@ -18,6 +18,7 @@ def test_zeros_start_on_a_cache_line_where_loops_do(shape, first):
 
 
 def test_arrays_do_not_overlap_and_may_be_empty():
+    assert not any(zeros(9).ctypes.data % CACHE_LINE for _ in range(20))
     one, two = zeros(9, 1), zeros(9, 1)
     one[:] = 1.0
     assert not two.any() and zeros(0).size == zeros((0, 8), 1).size == 0
