@@ -9,11 +9,26 @@ from math import cos, exp, pi, sin, sqrt
 import numpy as np
 import pytest
 
+from cases.calibrate import calibrate
 from cases.scene import Scene
-from compare.exact import equivalent_bar, images, jointed_bar, lattice, one_joint
+from compare.exact import (
+    beam,
+    column,
+    equivalent_bar,
+    images,
+    jointed_bar,
+    lattice,
+    one_joint,
+    parallel_joints,
+    series,
+    sliding_block,
+    thin_layer,
+)
 from compare.exact.chain import chain, contact_forces, rates
+from compare.exact.conditions import joints_are_damped
 from compare.exact.drive import drive
 from compare.exact.lattice import frequencies
+from compare.exact.leapfrog import modes
 from compare.exact.linear import advance
 
 PERIOD = 2 * pi / sqrt(5000.0)  # of the two blocks against each other, s
@@ -210,3 +225,109 @@ def test_jointed_bar_before_anything_comes_back():
     holds(found.stress[0, 1:3], [enters, enters], rel=1e-3)
     passed = enters * (1 - exp(-(0.03 - 1.5 / speed) / lag))
     holds(found.stress[1, 1:4], [0, 0, passed], rel=2e-3)
+
+
+@pytest.mark.parametrize("end", ["fixed", "matched"])
+def test_far_end_of_the_jointed_bar(end):
+    """The joint passes s (1 - e^-at), a = 2 K_n / z, which a wall doubles; before the dashpot Z
+    stands half of a joint: f' + b f = 2 a s (1 - e^-at) with b = a + 2 K_n / Z = a + 200."""
+    rock = {"density": 1000.0, "equivalent_modulus": 2.5e6, "equivalent_poisson": 0.25}
+    rock["intact_modulus"] = 5e6
+    at = {"stress": [2.0], "velocity": [1.5], "interval": 0.01}
+    found = jointed_bar.solve(
+        scene(0.06, rock=rock, ends={"start": "quiet", "end": end}, record=at)
+    )
+    t, a = np.array([0.03, 0.04, 0.05]) - 2 / (50 * sqrt(2)), 1e7 / (5e4 * sqrt(2))
+    b, twice = a + 200, 2000 * sqrt(2) / (1 + sqrt(2))
+    late, soon = np.exp(-a * t), np.exp(-b * t)
+    expected = {"fixed": 1 - late, "matched": a * ((1 - soon) / b - (late - soon) / 200)}[end]
+    holds(found.stress[0, :6], [0, 0, 0, *(twice * expected)], rel=2e-3)
+
+
+def test_series_of_the_free_bar():
+    """1000 sin(2 pi t / 0.04) in rock at rest: its peak at 0.5 m at 0.02 s, its zero at 0.03 s."""
+    load = {"shape": "sine", "amplitude": 1000.0, "period": 0.04}
+    at = {"stress": [0.5], "velocity": [0.5], "interval": 0.005}
+    found = series.solve(scene(0.065, load=load, record=at), n_terms=600)
+    half = 1000 / sqrt(2)
+    wave = [0, 0, 0, half, 1000, half, 0, -half, -1000, -half, 0, 0, 0, 0]
+    holds(found.stress[0], wave, rel=3e-3)
+    holds(along(found.velocity)[0], np.array(wave) / 5e4, rel=3e-3)
+    way = 1000 / 5e4 * 0.04 / (2 * pi)
+    ways = [0, 0, 0, 1 - 1 / sqrt(2), 1, 1 + 1 / sqrt(2), 2, 1 + 1 / sqrt(2), 1, 1 - 1 / sqrt(2), 0]
+    holds(along(found.displacement)[0][:11], np.array(ways) * way, rel=3e-3)
+
+
+def test_modes_of_two_masses():
+    """K = [[4, -4], [-4, 4]], masses 1: 2 sqrt(2) rad/s, and at rest against each other."""
+    found = modes(np.ones(2), np.array([[-2.0, 2.0]]))
+    assert found.omega.tolist() == [pytest.approx(2 * sqrt(2)), 0.0]
+    assert np.abs(found.shapes) == pytest.approx(np.full((2, 2), 1 / sqrt(2)))
+
+
+def test_one_damped_joint_among_others_is_damped():
+    pillar = {"length": 4.0, "side": 1.0, "block": 1.0}
+    one = scene(pillar=pillar, soft_layers=[{"y": 2.0, "damping_ratio": 0.1}])
+    assert joints_are_damped(calibrate(one)) and not joints_are_damped(calibrate(scene()))
+    assert images.applies(one).reason == "the joints are damped"
+
+
+def test_how_far_images_and_matrices_go():
+    """A million times 4 m at 50 m/s are 8e4 s; and 2000 blocks."""
+    assert images.applies(scene(7.99e4)) and not images.applies(scene(8.01e4))
+    for blocks, held in ((2000, True), (2001, False)):
+        pillar = {"length": float(blocks), "side": 1.0, "block": 1.0}
+        assert bool(lattice.applies(scene(pillar=pillar))) is held
+
+
+def test_nothing_slides_along_where_gravity_pulls_across():
+    gravity = {"direction": [1.0, 0.0, 0.0], "acceleration": 9.81, "static": False}
+    assert not sliding_block.applies(scene(gravity=gravity))
+
+
+@pytest.mark.parametrize(
+    ("count", "passed"),
+    [(2, (0.7822, 0.8890, 0.9864)), (3, (0.7927, 0.9995, 0.9138)), (5, (0.9963, 0.8840, 0.9468))],
+)
+def test_parallel_joints(count, passed):
+    """kappa = 1, spacings of 0.05, 0.1 and 0.2 wavelengths: by the product of their matrices."""
+    for spacing, expected in zip((0.05, 0.1, 0.2), passed, strict=True):
+        found = parallel_joints.transmission(count, 1.0, spacing)
+        assert found == pytest.approx(expected, abs=5.1e-5)
+        turn = np.exp(-2j * pi * spacing)
+        one = np.array([[1 + 0.5j, -0.5j], [0.5j, 1 - 0.5j]]) @ np.diag([1 / turn, turn])
+        whole = np.linalg.matrix_power(one, count)
+        assert found == pytest.approx(1 / max(np.abs(np.diag(whole))), rel=1e-12)
+
+
+def test_one_of_parallel_joints():
+    """2 kappa / sqrt(4 kappa^2 + 1), whatever the spacing."""
+    for kappa, passed in ((0.5, 1 / sqrt(2)), (1.0, 2 / sqrt(5)), (2.0, 4 / sqrt(17))):
+        for spacing in (0.0, 0.1):
+            found = parallel_joints.transmission(1, kappa, spacing)
+            assert found == pytest.approx(passed, rel=1e-12)
+    # At no distance two joints are one of half the stiffness.
+    assert parallel_joints.transmission(2, 1.0, 0.0) == pytest.approx(1 / sqrt(2), rel=1e-7)
+
+
+def test_thin_layer():
+    """Z_2 / Z_1 = 0.1: contrast 9.9, sin(0.3) = 0.2955; a quarter wave of 0.5: 1 / (1 + 0.5625)."""
+    assert thin_layer.transmission(0.1, 0.3) == pytest.approx(0.5643, abs=5e-5)
+    assert thin_layer.transmission(0.5, pi / 2) == pytest.approx(0.8, rel=1e-14)
+    assert thin_layer.joint(0.1, 0.3) == pytest.approx(1 / 3, rel=1e-14)
+
+
+def test_column():
+    """nu^2 k^2 a^2 / 12 and / 24; J = 0.1405770 a^4 (Timoshenko & Goodier, 109)."""
+    assert column.love_rayleigh(0.25, 3.0, 2.0) == pytest.approx(0.0625 * 36 / 12, rel=1e-14)
+    assert column.love_rayleigh(0.25, 3.0, 2.0, 2) == pytest.approx(0.0625 * 36 / 24, rel=1e-14)
+    assert column.torsion_constant(2.0) == pytest.approx(16 * 0.1405770, rel=1e-6)
+    assert column.torsion_speed(1000.0) == pytest.approx(918.4, abs=0.05)
+
+
+def test_beam():
+    """1.8751^2 sqrt(E h^2 / 12 rho L^4) = 3.516015 * 0.5; a slender one is stiff in shear."""
+    found = beam.euler_bernoulli(12.0, 1.0, 0.5, 1.0)
+    assert found == pytest.approx(3.516015 / 2, rel=1e-6)
+    slender = beam.timoshenko(12.0, 0.25, 1.0, 1e-4, 1.0)
+    assert slender == pytest.approx(3.516015e-4, rel=1e-6)
