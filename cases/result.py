@@ -40,6 +40,9 @@ ERRORS = {
     "rotation": ("velocity_y", "axis"),
 }
 
+#: Of the energy at rest: a million times what double precision rounds it to.
+AT_REST = 1e6 * float(np.finfo(float).eps)
+
 Variable = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
 
 
@@ -179,12 +182,15 @@ def imbalance(energy: np.ndarray, terms: Sequence[str] = TERMS) -> float:
     """Return the largest imbalance of an energy ledger [len(terms), n] over the largest work.
 
     Both count from the first sample, where the energy of a static state is there already. Where
-    no work is done, as under gravity alone, the largest term takes its place.
+    no work is done, as under gravity alone, the largest term takes its place. It is taken over
+    `AT_REST` of what a static state holds where that is more: its sums are rounded to a share of
+    it, tens of epsilon, which under a prestress of millions of times the load is all of the work.
     """
     since = energy - energy[:, :1]
     work = since[list(terms).index("work")]
     balance = since.sum(axis=0) - 2 * work
     scale = float(np.abs(work if work.any() else since).max())
+    scale = max(scale, AT_REST * float(np.abs(energy[:, 0]).max()))
     return float(np.abs(balance).max()) / scale if scale > 0 else 0.0
 
 
