@@ -51,9 +51,16 @@ def compare(
     workers: WorkersOption = CORES,
     dry: DryOption = False,
     strict: StrictOption = False,
+    every: Annotated[
+        bool, typer.Option("--all", help="Also every distance, and why a solution is missing.")
+    ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Solve a scene by all that applies, and print how far apart the solutions are.
+    """Solve a scene by all that applies, and say how far each engine is from the finest of it.
+
+    A line an engine: its worst misfit and where, the solution that it is held against, its own
+    numerical error, the time of its steps, and the verdict. --all adds every distance of every
+    pair; of curves of others, data over model.
 
     --with puts a waveform of another code, figure or experiment beside them: a CSV file with a
     header such as "time [ms], stress@20 [MPa]" (# starts a comment; commas, semicolons or tabs),
@@ -69,7 +76,7 @@ def compare(
 
     --sweep compares every value of a key, in several processes, and gives one table of all.
     """
-    from compare import pairs, terminal, views
+    from compare import comparison_view, pairs, terminal
 
     if swept:
         from compare.sweeps import command
@@ -95,7 +102,7 @@ def compare(
         from compare.report import write_comparisons
 
         write_comparisons(found, out)
-    views.show_comparisons(found, as_json)
+    comparison_view.show_comparisons(found, every, as_json)
 
 
 class Style(StrEnum):

@@ -1,10 +1,8 @@
 """What each command shows: its findings as tables, or the same facts as JSON."""
 
-from math import isnan
 from pathlib import Path
 from typing import Any
 
-from cases.result import energy_residual
 from cases.scene import Scene
 from compare.terminal import print_json, say, show_numbers, show_table
 
@@ -131,105 +129,6 @@ def _explanation_facts(found: Any) -> dict[str, Any]:
         "nanoseconds_with_everything": found.cost.everything,
         "solutions": {k: {"applies": a.yes, "why_not": a.reason} for k, a in found.answers.items()},
     }
-
-
-def show_comparisons(found: list[Any], as_json: bool) -> None:
-    """Print the distances of every pair, and why a solution is missing."""
-    if as_json:
-        print_json([_comparison_facts(c) for c in found])
-        return
-    for comparison in found:
-        scene = comparison.scene
-        say(f"\n{scene.title} {scene.name}", "bold")
-        groups: dict[str, list[list[str]]] = {}
-        for row in comparison.rows:
-            groups.setdefault(row.pair.kind, []).append(_distance_cells(row))
-        if groups:
-            show_numbers(DISTANCE_COLUMNS, groups)
-        else:
-            say("  nothing to compare: no two solutions of a pair apply")
-        for beside in comparison.besides:
-            say(f"  {_curve_sentence(beside)}")
-        for name, residual in _residuals(comparison).items():
-            say(f"  {name}: energy balance open by {residual:.1e} of the work put in")
-        for name, reason in comparison.reasons.items():
-            say(f"  {name} does not apply: {reason}", "dim")
-
-
-def _curve_sentence(beside: Any) -> str:
-    """Return in one line how a file's curves were put beside the solutions."""
-    shift, time = beside.shift, beside.time
-    whose = "its own" if beside.own_times else "the scene's"
-    start, end = (round(1e3 * t, 6) + 0.0 for t in (time[0], time[-1]))
-    parts = [f"at {len(time)} of {whose} times, {start:.6g} to {end:.6g} ms"]
-    parts += [f"{beside.outside:.1%} of its duration lies outside"]
-    parts += [f"straight lines between them miss {beside.missed:.2%} of the finer waveform"]
-    if shift is not None:
-        parts += [
-            f"clock moved by {1e3 * shift.seconds:+.4f} ms onto {shift.onto}, "
-            f"correlation {shift.correlation:.4f}"
-            if shift.onto
-            else "clock not moved: no wave to correlate with"
-        ]
-    if beside.left_out:
-        parts += [f"not in this scene: {', '.join(map(str, beside.left_out))}"]
-    return f"{beside.curves.name}: {'; '.join(parts)}"
-
-
-def _curve_facts(beside: Any) -> dict[str, Any]:
-    return {
-        "name": beside.curves.name,
-        "file": beside.curves.file,
-        "places": [str(place) for place in beside.curves.waveforms],
-        "left_out": [str(place) for place in beside.left_out],
-        "samples": len(beside.time),
-        "own_times": beside.own_times,
-        "start": float(beside.time[0]),
-        "end": float(beside.time[-1]),
-        "outside": float(beside.outside),
-        "missed": float(beside.missed),
-        "shift": beside.shift.__dict__ if beside.shift else None,
-    }
-
-
-DISTANCE_COLUMNS = ["pair", "at", "misfit", "peak", "delay, ms", "period", "envelope", "phase"]
-
-
-def _distance_cells(row: Any) -> list[str]:
-    d = row.distance
-    return [
-        f"{row.pair.one} ~ {row.pair.other}",
-        f"{row.quantity} {row.y:g} m",
-        _number(d.misfit, ".3%"),
-        _number(d.peak_ratio, ".4f"),
-        _number(1e3 * d.delay, "+.3f"),
-        _number(d.period_ratio, ".4f"),
-        _number(d.envelope, ".2%"),
-        _number(d.phase, ".2%"),
-    ]
-
-
-def _number(x: float | None, form: str) -> str:
-    return "-" if x is None or isnan(x) else format(x, form)
-
-
-def _comparison_facts(comparison: Any) -> dict[str, Any]:
-    return {
-        "title": comparison.scene.title,
-        "variant": comparison.scene.name,
-        "rows": [
-            {**r.pair._asdict(), "quantity": r.quantity, "y": r.y, **r.distance._asdict()}
-            for r in comparison.rows
-        ],
-        "curves": [_curve_facts(beside) for beside in comparison.besides],
-        "energy_residual": _residuals(comparison),
-        "does_not_apply": comparison.reasons,
-    }
-
-
-def _residuals(comparison: Any) -> dict[str, float]:
-    results = comparison.results.items()
-    return {name: energy_residual(r) for name, r in results if "energy" in r}
 
 
 def show_report(found: Any, as_json: bool) -> None:

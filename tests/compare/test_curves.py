@@ -479,7 +479,11 @@ def test_command_reads_what_run_wrote(tmp_path, monkeypatch, capsys):
     run = ["run", *short, "--engine", "exact", "--model", "lattice", "--out", str(tmp_path)]
     given = ["--no-spectral", "--with", str(tmp_path / "exact-lattice.nc")]
     said = []
-    for arguments in (run, ["compare", *short, *given, "--json"], ["compare", *short, *given]):
+    for arguments in (
+        run,
+        ["compare", *short, *given, "--json"],
+        ["compare", *short, *given, "--all"],
+    ):
         monkeypatch.setattr(sys, "argv", ["jointwave", *arguments])
         with pytest.raises(SystemExit) as end:
             main()
