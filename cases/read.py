@@ -203,10 +203,22 @@ def _merge(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
 
 
 def _assign(table: dict[str, Any], key: str, value: Any, where: str) -> None:
+    """Set a dotted key; the 0 of `soft_layers.0.y` is a place in a list of tables."""
     *parents, last = key.split(".")
+    at: Any = table
     for parent in parents:
-        inner = table.setdefault(parent, {})
-        if not isinstance(inner, dict):
+        place = _place(at, parent, key, value, where)
+        inner = at.setdefault(parent, {}) if isinstance(at, dict) else at[place]
+        if not isinstance(inner, dict | list):
             raise SceneError(where, key, value, f"is no key: {parent} is not a table")
-        table[parent] = table = dict(inner)  # a caller's own table stays as it is
-    table[last] = value
+        at[place] = at = inner.copy()  # a caller's own table stays as it is
+    at[_place(at, last, key, value, where)] = value
+
+
+def _place(at: Any, part: str, key: str, value: Any, where: str) -> Any:
+    """Return what a part of a key is in a table or list: a name, or an index that it has."""
+    if isinstance(at, dict):
+        return part
+    if not part.isdecimal() or int(part) >= len(at):
+        raise SceneError(where, key, value, f"is no key: {part} is none of 0 to {len(at) - 1}")
+    return int(part)

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from compare import curves, engines, metrics, pairs, planner, scenes
     from compare.curves import read_curves
     from compare.engines import applies, names, solve
+    from compare.fitting.fit import Fit, fit
     from compare.metrics import distance, misfit
     from compare.pairs import Comparison, compare, measure
     from compare.planner import plan
@@ -18,12 +19,14 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Comparison",
+    "Fit",
     "applies",
     "compare",
     "curves",
     "distance",
     "engines",
     "find",
+    "fit",
     "measure",
     "metrics",
     "misfit",
@@ -41,6 +44,7 @@ __all__ = [
 _OWN = {
     "curves": ("read_curves",),
     "engines": ("applies", "names", "solve"),
+    "fitting.fit": ("Fit", "fit"),
     "metrics": ("distance", "misfit"),
     "pairs": ("Comparison", "compare", "measure"),
     "planner": ("plan",),

@@ -10,12 +10,20 @@ import typer
 
 from cases.errors import InterruptedRun, SceneError, UnstableError, printable
 from compare import commands, desk, motion, solutions, surveys
+from compare.fitting import command as fitting
 from compare.keeping.signals import Ended, exit_code, watched
 from compare.options import app
 from compare.processes import Processes, started
 from compare.start import SHOWN, fault
 
-COMMANDS = (commands, solutions, surveys, motion, desk)  # their import puts them into the app
+COMMANDS = (
+    commands,
+    solutions,
+    fitting,
+    surveys,
+    motion,
+    desk,
+)  # their import puts them into the app
 
 # Older typer raises click's own errors and newer typer its copy of them: ask the class itself.
 UsageError: type[Exception] = next(

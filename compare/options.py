@@ -71,6 +71,14 @@ VariantOption = Annotated[
     ),
 ]
 OutOption = Annotated[Path, typer.Option(help="Folder for the results.")]
+WithOption = Annotated[
+    list[str],
+    typer.Option(
+        "--with",
+        metavar="FILE[:COLUMN][=][LABEL]",
+        help="Curves of others: FILE, FILE:stress@20, FILE:COLUMN=stress@20; more than once.",
+    ),
+]
 WorkersOption = Annotated[int, typer.Option(min=1, help="Processes, where nothing is timed.")]
 DryOption = Annotated[
     bool,

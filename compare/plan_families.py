@@ -85,7 +85,7 @@ def effort(scene: Scene, family: Family) -> Effort:
     if not answer:
         raise SceneError(scene.where, "", None, answer.reason)
     if family.engine == "dem":
-        freedoms, critical = _of_blocks(configured(scene, family, {}))
+        freedoms, critical = blocks_of(configured(scene, family, {}))
     else:
         freedoms, critical = _of_rock(configured(scene, family, {}), family.name)
     least = 1 if family.is_implicit else ceil(scene.interval / (COARSEST * critical) * (1 - 1e-9))
@@ -93,7 +93,7 @@ def effort(scene: Scene, family: Family) -> Effort:
     return Effort(least, each * freedoms * least * len(sample_times(scene)))
 
 
-def _of_blocks(scene: Scene) -> tuple[int, float]:
+def blocks_of(scene: Scene) -> tuple[int, float]:
     """Return the freedoms of rigid blocks and their critical step, s."""
     blocks = scene.pillar.block_count
     if is_spatial(scene):

@@ -19,19 +19,11 @@ from compare.options import (
     StrictOption,
     SweepOption,
     VariantOption,
+    WithOption,
     WorkersOption,
     app,
     load,
 )
-
-WithOption = Annotated[
-    list[str],
-    typer.Option(
-        "--with",
-        metavar="FILE[:COLUMN][=][LABEL]",
-        help="Curves of others: FILE, FILE:stress@20, FILE:COLUMN=stress@20; more than once.",
-    ),
-]
 
 
 @app.command()

@@ -1,0 +1,1 @@
+"""Keys of a scene fitted to measured waveforms by least squares."""
