@@ -123,17 +123,54 @@ def pairings(one: xr.Dataset, other: xr.Dataset) -> list[Pairing]:
 
     Those that are zero in both are left out.
     """
-    n = _known_samples(other)
-    found = [
-        Pairing(place, a[:n], b[:n], error_of(other, place), False)
-        for (place, a), (_, b) in zip(waveforms(one, other), waveforms(other, one), strict=True)
-    ]
+    found = _shared(one, other)
     loudest = _loudest(found)
     return [
         p._replace(faint=max(rms(p.one), rms(p.other)) < loudest[p.place.quantity])
         for p in found
         if p.one.any() or p.other.any()
     ]
+
+
+def _shared(one: xr.Dataset, other: xr.Dataset) -> list[Pairing]:
+    n = _known_samples(other)
+    return [
+        Pairing(place, a[:n], b[:n], error_of(other, place), False)
+        for (place, a), (_, b) in zip(waveforms(one, other), waveforms(other, one), strict=True)
+    ]
+
+
+class Stack(NamedTuple):
+    """All waveforms of a result [waveform, n] and of its reference, less their static states.
+
+    least : root mean square [waveform] below which one decides nothing, where it is in both.
+    """
+
+    one: np.ndarray
+    other: np.ndarray
+    least: np.ndarray
+
+    @property
+    def misfits(self) -> np.ndarray:
+        """Relative L2 distance of each waveform, 0 of those that are faint in both."""
+        return self.distances(self.one, self.other)
+
+    def distances(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+        """Return ||one - other|| / ||reference|| of each waveform, 0 of those that are faint."""
+        goal = np.linalg.norm(self.other, axis=1)
+        loudest = np.maximum(np.linalg.norm(self.one, axis=1), goal)
+        loud = loudest / np.sqrt(max(self.one.shape[1], 1)) >= self.least
+        difference = np.where(loud, np.linalg.norm(one - other, axis=1), 0.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(difference > 0, difference / goal, 0.0)
+
+
+def stacked(one: xr.Dataset, reference: xr.Dataset) -> Stack:
+    """Return the waveforms of a result beside those of its reference, for arithmetic on all."""
+    found = _shared(one, reference)
+    loudest = _loudest(found)
+    least = np.array([loudest[p.place.quantity] for p in found])
+    return Stack(np.array([p.one for p in found]), np.array([p.other for p in found]), least)
 
 
 def waveforms(result: xr.Dataset, like: xr.Dataset) -> Iterator[tuple[Place, np.ndarray]]:

@@ -1,8 +1,8 @@
 """Trial runs of a family, and what they say of finer steps.
 
-The error of a family falls with some order q, so that its waveforms at n steps per sample are
-w + c n^-q (Richardson): from two runs their misfit from the reference is known for every n. From
-three, so is q: half the steps leave 2^q times the difference. Seconds are a + b n.
+The error of a family falls with some order q, so that each of its waveforms at n steps per sample
+is w + c n^-q (Richardson): from two runs its misfit from the engine's own model is known for every
+n. From three, so is q: half the steps leave 2^q times the difference. Seconds are a + b n.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ import xarray as xr
 
 from cases.scene import Scene
 from compare.engines import solve
-from compare.metrics import recorded, relative_l2
+from compare.metrics import Stack, stacked
 from compare.plan_families import COARSEST, Family, configured, settings
+from compare.plan_reference import Own
 
 SHORT = 0.05  # s: a shorter run is timed three times more, as it is noise alone
 SLOWEST = 0.5  # order at which errors fall, at least: they do at kinks that repeat
@@ -27,28 +28,44 @@ HIT = 0.1  # of the misfit, that a trial may be from where those before it put i
 
 
 class Trial(NamedTuple):
-    """A run at so many steps per sample: its waveforms and the reference's, the s of stepping."""
+    """A run at so many steps per sample: its waveforms beside those of the engine's own model, the
+    seconds of stepping, and the critical step (s)."""
 
     per_sample: int
-    wave: np.ndarray
-    goal: np.ndarray
+    waves: Stack
     seconds: float
     critical: float
 
     @property
+    def misfits(self) -> np.ndarray:
+        """Relative L2 from the engine's own model, of each waveform."""
+        return self.waves.misfits
+
+    @property
     def misfit(self) -> float:
-        """Relative L2 from the reference."""
-        return relative_l2(self.wave, self.goal)
+        """That of the waveform which is furthest off: the numerical error."""
+        return _largest(self.misfits)
 
 
 class Choice(NamedTuple):
-    """One configuration and what it gives: relative L2 misfit, s of stepping; measured or not."""
+    """One configuration and what it gives; measured or predicted.
+
+    numerical : relative L2 misfit from the engine's own model, with what that is not known to.
+    modelling : of the own model from the finest physics. seconds : of stepping.
+    """
 
     family: Family
     settings: dict[str, Any]
-    misfit: float
+    per_sample: int
+    numerical: float
+    modelling: float
     seconds: float
     measured: bool = False
+
+    @property
+    def misfit(self) -> float:
+        """Numerical and modelling error together: what counts, whatever cancels in the sum."""
+        return self.numerical + self.modelling
 
 
 def timed(name: str, scene: Scene) -> tuple[xr.Dataset, float]:
@@ -62,33 +79,31 @@ def timed(name: str, scene: Scene) -> tuple[xr.Dataset, float]:
     return result, seconds
 
 
-def first_trial(scene: Scene, family: Family, reference: xr.Dataset) -> Trial:
+def first_trial(scene: Scene, family: Family, own: Own) -> Trial:
     """Run a family at the coarsest of its steps."""
     start = {} if family.is_implicit else {"step_fraction": COARSEST}
     if family.is_implicit:
         start = settings(scene, family, 1, scene.interval)
-    return _trial(scene, family, start, reference)
+    return _trial(scene, family, start, own)
 
 
-def trial_at(
-    scene: Scene, family: Family, per_sample: int, first: Trial, reference: xr.Dataset
-) -> Trial:
+def trial_at(scene: Scene, family: Family, per_sample: int, first: Trial, own: Own) -> Trial:
     """Run a family at so many steps per sample, after its first trial."""
-    return _trial(scene, family, settings(scene, family, per_sample, first.critical), reference)
+    return _trial(scene, family, settings(scene, family, per_sample, first.critical), own)
 
 
-def _trial(scene: Scene, family: Family, numerics: dict[str, Any], reference: xr.Dataset) -> Trial:
+def _trial(scene: Scene, family: Family, numerics: dict[str, Any], own: Own) -> Trial:
     result, seconds = timed(family.name, configured(scene, family, numerics))
-    wave, goal = recorded(result, reference)
     per_sample = round(scene.interval / float(result.attrs["dt"]))
-    return Trial(per_sample, wave, goal, seconds, float(result.attrs["critical_dt"]))
+    waves = stacked(result, own.reference.result)
+    return Trial(per_sample, waves, seconds, float(result.attrs["critical_dt"]))
 
 
 def is_trusted(trials: list[Trial], order: int, asked: float) -> bool:
     """Return whether finer steps can be told from these, or none comes within the misfit.
 
-    They can where the last trial is where those before it put it, to a part of the misfit that is
-    asked for or, if that is more, of what the model leaves at the finest steps.
+    They can where the last trial is where those before it put it, to a part of the numerical error
+    that is asked for or, if that is more, of what the elements leave at the finest steps.
     """
     if len(trials) < 2:
         return False
@@ -96,55 +111,58 @@ def is_trusted(trials: list[Trial], order: int, asked: float) -> bool:
         return True
     if len(trials) < 3:
         return False
-    last = trials[-1]
-    told, limit = forecast(trials[:-1], order)(last.per_sample), forecast(trials, order)(inf)
-    off = float(np.linalg.norm(told - last.wave) / np.linalg.norm(last.goal))
-    return off < HIT * max(asked, relative_l2(limit, last.goal))
+    last = trials[-1].waves
+    told, limit = forecast(trials[:-1], order)(trials[-1].per_sample), forecast(trials, order)(inf)
+    off, left = last.distances(told, last.one), last.distances(limit, last.other)
+    return _largest(off) < HIT * max(asked, _largest(left))
 
 
 def is_hopeless(trials: list[Trial], asked: float) -> bool:
-    """Return whether no step comes within the misfit, even if the error falls at the slowest."""
+    """Return whether no step comes within the numerical error that is asked for, even if the error
+    falls at the slowest."""
     coarse, fine = trials[-2:]
-    left = relative_l2(coarse.wave, fine.wave) / (
-        (fine.per_sample / coarse.per_sample) ** SLOWEST - 1
-    )
-    reach = left * float(np.linalg.norm(fine.wave) / np.linalg.norm(fine.goal))
-    return fine.misfit - reach > asked
+    moved = fine.waves.distances(coarse.waves.one, fine.waves.one)
+    reach = moved / ((fine.per_sample / coarse.per_sample) ** SLOWEST - 1)
+    return bool(np.any(fine.misfits - reach > asked))
 
 
-def rate(trials: list[Trial], order: int) -> float:
-    """Return the order at which the error falls: measured from three runs, else its scheme's."""
+def rate(trials: list[Trial], order: int) -> np.ndarray:
+    """Return the order at which the error of each waveform falls, [waveform, 1]: measured from
+    three runs, else its scheme's."""
     if len(trials) < 3:
-        return float(order)
-    a, b, c = (trial.wave for trial in trials[-3:])
-    before, after = np.linalg.norm(a - b), np.linalg.norm(b - c)
-    if not before or not after:
-        return float(order)
-    return float(np.clip(log2(before / after), SLOWEST, order))
+        return np.full((len(trials[0].waves.one), 1), float(order))
+    a, b, c = (trial.waves.one for trial in trials[-3:])
+    before, after = (np.linalg.norm(x, axis=1, keepdims=True) for x in (a - b, b - c))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = np.clip(np.log2(before / after), SLOWEST, order)
+    return np.where((before > 0) & (after > 0), found, order)
 
 
-def measured(scene: Scene, family: Family, trial: Trial) -> Choice:
+def measured(scene: Scene, family: Family, trial: Trial, own: Own) -> Choice:
     """Return the configuration of a trial, with what it gave."""
     numerics = settings(scene, family, trial.per_sample, trial.critical)
-    return Choice(family, numerics, trial.misfit, trial.seconds, True)
+    numerical = trial.misfit + own.reference.error
+    about = family, numerics, trial.per_sample
+    return Choice(*about, numerical, own.modelling, trial.seconds, True)
 
 
 def forecast(trials: list[Trial], order: int) -> Callable[[float], np.ndarray]:
     """Return a function from steps per sample to waveforms, w + c n^-q through the last trials."""
     coarse, fine = trials[-2:]
-    q = rate(trials, order)
-    part = (coarse.wave - fine.wave) / ((fine.per_sample / coarse.per_sample) ** q - 1)
-    return lambda n: fine.wave - part * (1 - (fine.per_sample / n) ** q)
+    q, wave = rate(trials, order), fine.waves.one
+    part = (coarse.waves.one - wave) / ((fine.per_sample / coarse.per_sample) ** q - 1)
+    return lambda n: wave - part * (1 - (fine.per_sample / n) ** q)
 
 
-def predicted(scene: Scene, family: Family, trials: list[Trial]) -> Iterator[Choice]:
+def predicted(scene: Scene, family: Family, trials: list[Trial], own: Own) -> Iterator[Choice]:
     """Yield the configurations of a family from the last trial but one on, as predicted."""
     coarse, fine = trials[-2:]
     told, (start, each) = forecast(trials, family.order), seconds_of(coarse, fine)
     for n in steps(coarse.per_sample, trials[0].per_sample * FINEST, 4):
-        numerics = settings(scene, family, n, fine.critical)
-        misfit = relative_l2(told(n), fine.goal)
-        yield Choice(family, numerics, misfit, start + each * n)
+        about = family, settings(scene, family, n, fine.critical), n
+        numerical = _largest(fine.waves.distances(told(n), fine.waves.other))
+        numerical += own.reference.error
+        yield Choice(*about, numerical, own.modelling, start + each * n)
 
 
 def seconds_of(coarse: Trial, fine: Trial) -> tuple[float, float]:
@@ -160,3 +178,7 @@ def steps(least: int, most: int, per_octave: int) -> list[int]:
     return list(
         dict.fromkeys(ceil(least * 2 ** (k / per_octave) - 1e-9) for k in range(octaves + 1))
     )
+
+
+def _largest(distances: np.ndarray) -> float:
+    return float(np.max(distances, initial=0.0))

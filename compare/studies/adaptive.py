@@ -18,6 +18,7 @@ from compare.exact.drive import drive
 from compare.exact.lattice import HELD, at_rest
 
 NAME = "solve-ivp"
+ENGINE = "dem"
 
 
 def applies(scene: Scene) -> Answer:

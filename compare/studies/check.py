@@ -40,11 +40,11 @@ def refuse_senseless(path: Path, study: Study) -> None:
             str(path), "curves", None, f"give {count:.6g} points, at most {MOST_POINTS}"
         )
     solvers = names()
-    _refuse_unknown(path, "finest", study.finest, solvers)
+    _refuse_unknown(path, "finest", study.finest, (*solvers, "none"))
     for i, curve in enumerate(study.curves):
         key = f"curves[{i}]"
         _refuse_unknown(path, f"{key}.method", curve.method, (*solvers, *METHODS))
-        _refuse_unknown(path, f"{key}.own", curve.own, (*solvers, "finest"))
+        _refuse_unknown(path, f"{key}.own", curve.own, (*solvers, "finest", "none"))
         _refuse_arguments(path, key, curve)
 
 

@@ -1,9 +1,11 @@
 """Work-precision diagrams: error over seconds and over counted work, both axes logarithmic.
 
+A cross is a point that is nearer than its errors allow, or than finer ones: it does not count.
 Colours are those of models; a marker is the order of the elements, open where steps are implicit;
 dashes tell dimensions. Over seconds, thin dotted lines join equal digits a second.
 """
 
+from math import isnan
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +23,8 @@ from compare.studies.study import Study
 from compare.style import RC, STYLES, WIDTH, style
 
 ERRORS = {
-    "numerical": "misfit from each curve's own model",
-    "total": "misfit from the finest physics",
+    "numerical": "numerical error (own model)",
+    "total": "numerical + modelling error",
 }
 COSTS = {"seconds": "seconds of stepping", "work": "freedoms x evaluations of the forces"}
 MARKERS = "DPX*<>hpd8H"
@@ -52,7 +54,11 @@ def draw(name: str, study: Study, rows: list[Row], costs: dict[str, str] | None 
                 _draw_panel(axes[i, j], study, rows, error, cost, f"{name}-{i}-{j}")
                 axes[i, j].set_xlabel(costs[cost])
             axes[i, 0].set_ylabel(ERRORS[error])
-        handles, labels = axes[0, 0].get_legend_handles_labels()
+        labelled = [
+            dict(zip(*ax.get_legend_handles_labels()[::-1], strict=True)) for ax in axes.flat
+        ]
+        entries = {label: handle for one in labelled for label, handle in one.items()}
+        labels, handles = list(entries), list(entries.values())
         columns, size = (3, 9.0) if max(map(len, labels)) < LONG else (2, 7.5)
         figure.legend(
             handles,
@@ -81,7 +87,7 @@ def _draw_panel(ax: Axes, study: Study, rows: list[Row], error: str, cost: str, 
     if best:
         ax.plot(
             [getattr(r, cost) for r in best],
-            [getattr(r, error) for r in best],
+            [r.held if error == "total" else getattr(r, error) for r in best],
             color="#bbbbbb",
             linewidth=5,
             zorder=1,
@@ -92,6 +98,7 @@ def _draw_panel(ax: Axes, study: Study, rows: list[Row], error: str, cost: str, 
         x, y = ([getattr(r, name) for r in found] for name in (cost, error))
         (line,) = ax.loglog(x, y, label=curve.label, zorder=2, **look(study, k))
         line.set_gid(f"{name}-{k}")
+    _draw_cancelling(ax, rows, error, cost, name)
     ax.xaxis.set_minor_formatter(NullFormatter())
     ax.grid(which="major", axis="both" if cost == "work" else "y", color="#e4e7ea", linewidth=0.6)
     if least:
@@ -99,6 +106,23 @@ def _draw_panel(ax: Axes, study: Study, rows: list[Row], error: str, cost: str, 
         ax.text(0.01, least, "fine runs differ", transform=ax.get_yaxis_transform(), **SMALL)
     if cost != "work":
         _draw_digits_per_second(ax)
+
+
+def _draw_cancelling(ax: Axes, rows: list[Row], error: str, cost: str, name: str) -> None:
+    """Cross what is measured where errors cancel: far below the sum that counts."""
+    shown = "measured" if error == "total" else error
+    found = [r for r in measured(rows, shown, cost) if r.cancels and _is_crossed(r, error)]
+    if found:
+        x, y = ([getattr(r, name) for r in found] for name in (cost, shown))
+        words = "errors cancel, or a finer point is worse: not counted"
+        (line,) = ax.plot(x, y, "x", color="#c0392b", markersize=6, zorder=3, label=words)
+        line.set_gid(f"{name}-cancels")
+
+
+def _is_crossed(row: Row, error: str) -> bool:
+    """Return whether a point that cancels is crossed: its numerical error if finer ones are worse
+    and nothing finer is known."""
+    return error == "total" or isnan(row.total)
 
 
 def _draw_digits_per_second(ax: Axes) -> None:

@@ -13,7 +13,7 @@ from cases.scene import Scene
 from compare.engines import applies, solve
 from compare.exact.answer import Answer
 from compare.studies.methods import METHODS
-from compare.studies.reference import error
+from compare.studies.reference import UNKNOWN, error, finest_of, known, own_of
 from compare.studies.study import Point
 
 LONG = 0.5  # s: a run that takes as long, its set-up included, is timed once more at most
@@ -23,8 +23,12 @@ class Row(NamedTuple):
     """What a study's table holds of one point; numbers that a method does not have are nan.
 
     state : "done" or "failed", with the reason in `message`.
-    numerical : misfit against the exact solution of the method's own model; total : against the
-        finest physics; their floors : below which they are not known, 0 of exact solutions.
+    numerical : misfit from the exact solution of the method's own model; modelling : of that from
+        the finest physics; total : both together, with their floors: what is certain. measured :
+        from the finest physics, where the two may cancel.
+    numerical_floor, total_floor : below which they are not known, 0 against closed forms.
+    held : the largest total of this and all finer points of the curve, or numerical error where no
+        total is known: what the point counts for. cancels : whether it measures less than that.
     steps : of time. work : freedoms times evaluations of all forces, which are
         degree-of-freedom-steps where a step takes one. bytes : of the model and its state.
     seconds, spread : stepping, median and half the range of the repeats; setup, compile : of the
@@ -37,7 +41,9 @@ class Row(NamedTuple):
     state: str
     message: str
     numerical: float
+    modelling: float
     total: float
+    measured: float
     numerical_floor: float
     total_floor: float
     dt: float
@@ -49,6 +55,8 @@ class Row(NamedTuple):
     spread: float
     setup: float
     compile: float
+    held: float
+    cancels: bool
 
 
 TIMED = ("seconds", "spread", "setup", "compile")  # all other columns are the same in every run
@@ -70,18 +78,22 @@ def _measured(point: Point) -> Row:
     seconds = [float(first.get("seconds_stepping", math.nan))]
     if study.timed:
         seconds = _repeated(run, study.repeats)
-    own = study.finest if point.curve.own == "finest" else point.curve.own
-    numerical = error(result, own, study, point.physics)
-    total = error(result, study.finest, study, {})
+    own = known(own_of(point), study, point.physics)
+    finest = known(finest_of(study), study, {})
+    numerical = error(result, own, study)
+    modelling = UNKNOWN if own is None else error(own.result, finest, study)
+    floor = numerical.floor + modelling.floor
     steps, freedoms = first.get("steps", math.nan), first.get("degrees_of_freedom", math.nan)
     return _row(
         point,
         "done",
         "",
         numerical=numerical.misfit,
-        total=total.misfit,
+        modelling=modelling.misfit,
+        total=numerical.misfit + modelling.misfit + floor,
+        measured=error(result, finest, study).misfit,
         numerical_floor=numerical.floor,
-        total_floor=total.floor,
+        total_floor=floor,
         dt=float(first.get("dt", math.nan)),
         steps=float(steps),
         freedoms=float(freedoms),
@@ -139,4 +151,6 @@ def _repeated(run: Callable[[], xr.Dataset], repeats: int) -> list[float]:
 
 def _row(point: Point, state: str, message: str, **numbers: float) -> Row:
     about = (point.curve.label, point.curve.method, point.settings, state, message)
-    return Row(*about, *(numbers.get(name, math.nan) for name in Row._fields[len(about) :]))
+    names = Row._fields[len(about) : -2]  # what is judged is known once the curve is
+    values = (numbers.get(name, math.nan) for name in names)
+    return Row._make((*about, *values, math.nan, False))

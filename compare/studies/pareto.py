@@ -1,18 +1,85 @@
-"""Which points of a study no other one beats, and what the cheapest of them reach."""
+"""Which points of a study no other one beats, and what the cheapest of them reach.
+
+A point counts for the error that it and all finer points of its curve hold: what a finer step
+undoes was luck.
+"""
 
 import math
 from typing import NamedTuple
 
+import numpy as np
+
+from compare.metrics import JUDGED
+from compare.studies.check import ARGUMENTS
 from compare.studies.measure import Row
 
 TARGETS = (0.1, 0.01, 1e-3, 1e-4)
+CLEARLY = 0.9  # of what it should be: below, an error is small by cancellation
+
+
+def judged(rows: list[Row]) -> list[Row]:
+    """Return the rows with what each counts for, and whether errors cancel in it."""
+    totals, numericals = assured(rows, "total"), assured(rows, "numerical")
+    found = []
+    for row, total, numerical in zip(rows, totals, numericals, strict=True):
+        held = numerical if math.isnan(total) else total
+        found.append(row._replace(held=held, cancels=_cancels(row, held)))
+    return found
+
+
+def _cancels(row: Row, held: float) -> bool:
+    """Return whether a point is nearer than the larger of its errors, or than a finer point."""
+    alone = max(row.numerical, row.modelling)
+    return row.measured < CLEARLY * alone or _counted(row) < CLEARLY * held
+
+
+def _counted(row: Row) -> float:
+    return row.numerical if math.isnan(row.total) else row.total
+
+
+def assured(rows: list[Row], error: str) -> list[float]:
+    """Return the largest error of each row and of all finer points of its curve; nan where a point
+    has none."""
+    found = [math.nan] * len(rows)
+    for curve in dict.fromkeys(row.curve for row in rows):
+        mine = [i for i, row in enumerate(rows) if row.curve == curve]
+        for i, value in zip(mine, _assured([rows[i] for i in mine], error), strict=True):
+            found[i] = value
+    return found
+
+
+def _assured(curve: list[Row], error: str) -> list[float]:
+    errors = np.array([getattr(r, error) if r.state == "done" else math.nan for r in curve])
+    size = np.array([(r.freedoms, r.steps) for r in curve])
+    model = np.array([_model(r) for r in curve])
+    least = np.nan_to_num(errors, nan=0.0)
+    return [
+        float(np.max(least, where=_finer(size, i) & (model == model[i]), initial=errors[i]))
+        for i in range(len(curve))
+    ]
+
+
+def _finer(size: np.ndarray, i: int) -> np.ndarray:
+    """Return which points are at least as fine as one: with as many freedoms and steps; later in
+    the curve where these are not counted."""
+    if np.isnan(size[i]).any():
+        return np.arange(len(size)) >= i
+    return (size >= size[i]).all(axis=1)
+
+
+def _model(row: Row) -> str:
+    """Return what is varied beside the numerics and the size of blocks: another problem."""
+    free = {"pillar.block", *ARGUMENTS}
+    kept = {k: v for k, v in row.settings.items() if k not in free and k[:9] != "numerics."}
+    return str(sorted(kept.items()))
 
 
 class Cheapest(NamedTuple):
-    """The cheapest point within a misfit."""
+    """The cheapest point within a misfit, and that of another curve; None where there is none."""
 
     misfit: float
     row: Row
+    next_best: Row | None
 
 
 def measured(rows: list[Row], error: str, cost: str) -> list[Row]:
@@ -25,29 +92,31 @@ def measured(rows: list[Row], error: str, cost: str) -> list[Row]:
 
 
 def front(rows: list[Row], error: str = "total", cost: str = "seconds") -> list[Row]:
-    """Return the points that no other one beats in both, the cheapest first (Pareto's front)."""
+    """Return the points that no other one beats in both, the cheapest first (Pareto's front), each
+    by the error that it counts for."""
     found: list[Row] = []
     least = math.inf
+    known = {id(row): value for row, value in zip(rows, assured(rows, error), strict=True)}
     ordered = sorted(
-        measured(rows, error, cost), key=lambda row: (getattr(row, cost), getattr(row, error))
+        measured(rows, error, cost), key=lambda row: (getattr(row, cost), known[id(row)])
     )
     for row in ordered:
-        if getattr(row, error) < least:
-            least = getattr(row, error)
+        if known[id(row)] < least:
+            least = known[id(row)]
             found.append(row)
     return found
 
 
-def cheapest(rows: list[Row], error: str = "total", cost: str = "seconds") -> list[Cheapest]:
-    """Return the cheapest point within each of `TARGETS`, as far as there are any, and as errors
-    are known."""
-    found, least = [], floor(rows, error)
+def cheapest(rows: list[Row]) -> list[Cheapest]:
+    """Return the cheapest point within each of `TARGETS`, as far as there are any, and as what
+    errors are measured from is known to a tenth of it."""
+    found, rows = [], sorted(judged(measured(rows, "total", "seconds")), key=lambda r: r.seconds)
     for target in TARGETS:
-        if target < least:
-            break
-        within = [r for r in front(rows, error, cost) if getattr(r, error) <= target]
+        within = [r for r in rows if r.held <= target and JUDGED * r.total_floor <= target]
         if within:
-            found.append(Cheapest(target, within[0]))
+            best = within[0]
+            others = (r for r in within if r.curve != best.curve)
+            found.append(Cheapest(target, best, next(others, None)))
     return found
 
 
@@ -65,11 +134,10 @@ def is_known(row: Row, error: str) -> bool:
 def most_digits_per_second(rows: list[Row]) -> Row | None:
     """Return the point that gets the most digits of the finest physics a second, None without."""
     known = measured(rows, "total", "seconds")
-    return max(known, key=digits_per_second, default=None)
+    return max(judged(known), key=digits_per_second, default=None)
 
 
 def digits_per_second(row: Row) -> float:
-    """Return the decimal digits that a point gets right over the seconds that it steps: of the
-    finest physics where that is known, else of its own model; nan without either."""
-    error = row.numerical if math.isnan(row.total) else row.total
-    return -math.log10(error) / row.seconds if error > 0 and row.seconds > 0 else math.nan
+    """Return the decimal digits that a judged point gets right over the seconds that it steps: of
+    the finest physics where that is known, else of its own model; nan without either."""
+    return -math.log10(row.held) / row.seconds if row.held > 0 and row.seconds > 0 else math.nan

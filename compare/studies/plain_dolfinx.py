@@ -26,6 +26,7 @@ from compare.exact.conditions import has_interfaces, joints_are_damped, rock_is_
 from compare.exact.drive import drive
 
 NAME = "plain-dolfinx"
+ENGINE = "continuum-equivalent"
 
 
 class Bar(NamedTuple):

@@ -3,18 +3,21 @@
 import math
 from typing import Any, NamedTuple
 
+import numpy as np
 import xarray as xr
 
 from cases.result import scene_hash
 from cases.scene import Scene
 from cases.tables import Numerics
-from compare.engines import solve
-from compare.metrics import misfit, relative_l2
-from compare.studies.study import Reference, Study
+from compare.engines import ENGINES, applies, exact_names, solve
+from compare.metrics import Pairing, pairings, relative_l2, worst
+from compare.ranking import applicable, finest, own_exact
+from compare.studies.methods import METHODS
+from compare.studies.study import FINEST, NONE, Point, Reference, Study
 
 
 class Error(NamedTuple):
-    """A misfit, and the floor below which it is not known: 0 against an exact solution."""
+    """A misfit, and the floor below which it is not known: 0 against a closed form."""
 
     misfit: float
     floor: float
@@ -23,20 +26,57 @@ class Error(NamedTuple):
 UNKNOWN = Error(math.nan, math.nan)
 
 
-def error(
-    result: xr.Dataset, against: str | Reference | None, study: Study, physics: dict[str, Any]
-) -> Error:
-    """Return the error of a result of the study's scene with some physics changed; unknown
-    without anything to measure it against."""
+class Known(NamedTuple):
+    """What errors are from, and its own relative error."""
+
+    result: xr.Dataset
+    error: float
+
+
+def finest_of(study: Study) -> str | Reference | None:
+    """Return what total errors are from: as the study says, else the finest exact solution; None
+    where the finest that applies is an engine, whose fine run the study does not give."""
+    if study.finest is not None:
+        return None if study.finest == NONE else study.finest
+    scene = study.base
+    found = finest([name for name, answer in applicable(scene).items() if answer], scene)
+    return None if found is None or found.name in ENGINES else found.name
+
+
+def own_of(point: Point) -> str | Reference | None:
+    """Return what a point's numerical error is from: as its curve says, else the exact solution of
+    its own model, else the study's fine run of the same engine; None without."""
+    own, study = point.curve.own, point.study
+    if own is not None:
+        return finest_of(study) if own == FINEST else None if own == NONE else own
+    scene, method = point.scene, point.curve.method
+    engine = METHODS[method].ENGINE if method in METHODS else method
+    exact = own_exact(engine, [n for n in exact_names() if applies(n, scene)], scene)
+    fine = study.finest if isinstance(study.finest, Reference) else None
+    return exact or (fine if fine is not None and fine.method == engine else None)
+
+
+def known(against: str | Reference | None, study: Study, physics: dict[str, Any]) -> Known | None:
+    """Return a reference of the study's scene with some physics changed; None without."""
     if against is None:
-        return UNKNOWN
+        return None
     if isinstance(against, str):
         exact = reference(against, study.changed(physics))
-        return Error(_misfit(result, exact, study), 0.0)
+        return Known(exact, worst(exact, exact).floor)
     changes = physics | against.changes
     fine = _solved(against.method, study.changed(changes))
     coarse = _solved(against.method, study.changed(changes | against.coarser))
-    return Error(_misfit(result, fine, study), _misfit(coarse, fine, study))
+    return Known(fine, _misfit(coarse, fine, study))
+
+
+def error(result: xr.Dataset, against: Known | None, study: Study) -> Error:
+    """Return the error of a result, over the quantity of the study; 0 of a reference itself,
+    unknown without one."""
+    if against is None:
+        return UNKNOWN
+    if result is against.result:
+        return Error(0.0, 0.0)
+    return Error(_misfit(result, against.result, study), against.error)
 
 
 def reference(name: str, scene: Scene) -> xr.Dataset:
@@ -55,6 +95,14 @@ _known: dict[tuple[str, str], xr.Dataset] = {}
 
 
 def _misfit(one: xr.Dataset, other: xr.Dataset, study: Study) -> float:
+    """Return the misfit of the waveform that is furthest off; of one quantity, the relative L2 norm
+    over time and all its receivers, of the component that is furthest off."""
     if study.quantity is None:
-        return misfit(one, other)
-    return relative_l2(one[study.quantity].values, other[study.quantity].values)
+        return worst(one, other).misfit
+    found = [p for p in pairings(one, other) if p.place.quantity == study.quantity]
+    axes = {p.place.axis: [q for q in found if q.place.axis == p.place.axis] for p in found}
+    return max((_norm(pairs) for pairs in axes.values()), default=math.nan)
+
+
+def _norm(pairs: list[Pairing]) -> float:
+    return relative_l2(np.array([p.one for p in pairs]), np.array([p.other for p in pairs]))

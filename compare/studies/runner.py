@@ -16,6 +16,7 @@ from compare.keeping.lock import opened
 from compare.keeping.signature import program
 from compare.output import read_kept, write_text
 from compare.studies.measure import Row, measure
+from compare.studies.pareto import judged
 from compare.studies.study import Point, Study
 
 Pool = Callable[[], Executor]
@@ -44,7 +45,7 @@ def run(
             done += 1
             if progress:
                 progress(done / len(points))
-    return [read_kept(place, Row) for place in places]
+    return judged([read_kept(place, Row) for place in places])
 
 
 def rate(study: Study) -> str:

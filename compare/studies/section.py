@@ -20,7 +20,8 @@ REPORTED = ("free-pillar", "convergence", "uniform-chain")
 
 
 class StudySection(NamedTuple):
-    """One study of the page; `name` is that of its files, `quantity` that of its misfits."""
+    """One study of the page; `name` is that of its files, `quantity` that of its misfits, "" where
+    all count."""
 
     name: str
     title: str
@@ -52,7 +53,7 @@ def _section(folder: Path, name: str) -> StudySection:
     figure = save(draw(name, study, rows), folder, name, study.title)
     said = sentences(study, rows) + [sentence(order) + "." for order in orders(study, rows)]
     failed = [f"{row.curve}: {row.message}" for row in rows if row.state == "failed"]
-    about = study.title, study.note, study.quantity or "stress", study.timed
+    about = study.title, study.note, study.quantity or "", study.timed
     return StudySection(name, *about, figure, said, _table(rows), failed)
 
 

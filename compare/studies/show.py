@@ -10,7 +10,15 @@ from compare.studies.pareto import digits_per_second
 from compare.studies.study import Study
 from compare.terminal import print_json, say, show_numbers
 
-COLUMNS = ["point", "numerical, %", "total, %", "steps", "work", "kB", "seconds", "±", "digits/s"]
+CANCELS = "×"
+COLUMNS = [
+    *("point", "numerical, %", "modelling, %", "sum, %", "measured, %", "steps", "work", "kB"),
+    *("set-up, s", "compiling, s", "stepping, s", "±", "digits/s"),
+]
+LEGEND = (
+    "Sum: numerical and modelling error with what their references are not known to; it counts. "
+    f"Measured: from the finest physics; {CANCELS} where errors cancel, or a finer point is worse."
+)
 
 
 def show_study(study: Study, rows: list[Row], files: tuple[Path, ...], as_json: bool) -> None:
@@ -29,6 +37,8 @@ def show_study(study: Study, rows: list[Row], files: tuple[Path, ...], as_json: 
     for row in rows:
         groups.setdefault(row.curve, []).append(cells(row))
     show_numbers(COLUMNS, groups)
+    if any(isfinite(row.total) for row in rows):
+        say(LEGEND)
     for line in [sentence(order) for order in found] + sentences(study, rows):
         say(line)
     for row in rows:
@@ -54,10 +64,14 @@ def cells(row: Row) -> list[str]:
     return [
         _settings(row) or "as it stands",
         _number(100 * row.numerical, ".3g"),
+        _number(100 * row.modelling, ".3g"),
         _number(100 * row.total, ".3g"),
+        _number(100 * row.measured, ".3g") + (f" {CANCELS}" if row.cancels else ""),
         _number(row.steps, ".0f"),
         _number(row.work, ".2e"),
         _number(row.bytes / 1e3, ".3g"),
+        _number(row.setup, ".2g"),
+        _number(row.compile, ".2g"),
         _number(row.seconds, ".3g"),
         _number(row.spread, ".1g"),
         _number(digits_per_second(row), ".3g"),

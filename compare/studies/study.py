@@ -16,6 +16,7 @@ from compare.studies.check import ARGUMENTS, plain, refuse_senseless
 
 LARGEST_FILE = 1_000_000  # bytes
 SHIPPED = Path(__file__).parent
+FINEST, NONE = "finest", "none"  # what errors may be measured against besides solutions
 
 
 Value = Annotated[Any, AfterValidator(plain)]
@@ -46,7 +47,8 @@ class Curve(Table):
     method : an engine, an exact solution, or a method of `compare.studies.methods`.
     vary : dotted keys and their values, all combinations; `terms` is an exact series' own.
     own : the exact solution of the curve's own model, or a fine run of it, for its numerical
-        error; "finest" that of the study; absent: none.
+        error; "finest": that of the study; "none"; absent: the exact one that ranks highest
+        (`compare.ranking`), else the study's fine run of the same engine.
     order : in theory, of the numerical error, with the first varied key or, where that falls as
         its value grows (elements, steps per period), with its inverse.
     """
@@ -67,8 +69,10 @@ class Curve(Table):
 class Study(Table):
     """A scene, the finest physics that it is known by, and curves.
 
-    finest : what total errors are measured against: an exact solution or a fine run; absent: none.
-    quantity : what misfits are taken over; absent: `compare.metrics.misfit` decides.
+    finest : what modelling errors are measured against: an exact solution or a fine run; "none";
+        absent: the exact solution that ranks highest (`compare.ranking`).
+    quantity : whose relative L2 norm over time and all its receivers is the misfit, as orders are
+        of in theory; absent: the misfit of the waveform that is furthest off.
     note : what to know when reading it.
     timed : whether seconds count: points are then run one at a time, `repeats` times each.
     """

@@ -1,4 +1,8 @@
-"""Every family of a scene on a grid of steps: the cheapest configuration that really does."""
+"""Every family of a scene on a grid of steps: the cheapest configuration that really does.
+
+A point meets a misfit by its numerical and modelling error together, and where all finer points of
+its family do.
+"""
 
 from collections.abc import Iterator
 from math import inf
@@ -6,7 +10,7 @@ from math import inf
 from cases.errors import SceneError
 from cases.scene import Scene
 from compare.plan_families import FAMILIES, Family, effort
-from compare.plan_reference import Reference
+from compare.plan_reference import Own, References
 from compare.plan_trials import (
     FINEST,
     Choice,
@@ -17,7 +21,7 @@ from compare.plan_trials import (
     steps,
     trial_at,
 )
-from compare.planner import FAILURES, reason_of
+from compare.planner import FAILURES, furthest_off, reason_of, too_far
 
 #: A family ends where a run takes so many times the seconds of the cheapest that does, as finer
 #: steps cost more. It is not begun where it would even at half the seconds that a freedom-step has
@@ -29,9 +33,9 @@ LONGEST = 2.0  # s: a run that takes as long is the last of its family
 class Study:
     """All points of a scene, and why the families that are not among them are not."""
 
-    def __init__(self, scene: Scene, reference: Reference, misfits: list[float]) -> None:
+    def __init__(self, scene: Scene, references: References, misfits: list[float]) -> None:
         """Run every family at two steps to a doubling until it meets all misfits or cannot win."""
-        self.scene, self.reference, self.misfits = scene, reference, misfits
+        self.scene, self.references, self.misfits = scene, references, misfits
         self.points: list[Choice] = []
         self.skipped: dict[str, str] = {}
         self._rates: dict[str, float] = {}
@@ -43,31 +47,36 @@ class Study:
 
     def best(self, misfit: float) -> list[Choice]:
         """Return the points that meet a misfit, the cheapest first."""
-        return sorted((p for p in self.points if p.misfit <= misfit), key=lambda p: p.seconds)
+        meets = (p for p in self.points if furthest_off(p, self.points) <= misfit)
+        return sorted(meets, key=lambda p: p.seconds)
 
     def _add(self, family: Family) -> None:
         work, rates = effort(self.scene, family).work, self._rates
         rate = rates.get(family.name, min(rates.values(), default=0.0))
         if 0.5 * rate * work > self._dear(self.misfits):
             raise SceneError(self.scene.where, "", None, f"over {DEARER:g} times the cheapest")
-        first = None
-        for trial in self._trials(family):
+        first, own = None, self.references.own(family.name)
+        if own.least >= max(self.misfits):
+            raise SceneError(self.scene.where, "", None, too_far(family, own))
+        for trial in self._trials(family, own):
             first = first or trial
             each = trial.seconds / (work * trial.per_sample / first.per_sample)
             rates[family.name] = min(rates.get(family.name, inf), each)
-            self.points.append(measured(self.scene, family, trial))
+            self.points.append(measured(self.scene, family, trial, own))
 
-    def _trials(self, family: Family) -> Iterator[Trial]:
-        """Yield runs of a family from the coarsest on, until no finer one can be of use."""
-        first = last = first_trial(self.scene, family, self.reference.result)
+    def _trials(self, family: Family, own: Own) -> Iterator[Trial]:
+        """Yield runs of a family from the coarsest on, until no finer one can be of use; what meets
+        all misfits is followed by one finer run."""
+        first = last = first_trial(self.scene, family, own)
         yield first
+        wanted = [m - own.least for m in self.misfits if m > own.least]
         for n in steps(first.per_sample, FINEST * first.per_sample, 2)[1:]:
-            wanted = [m for m in self.misfits if last.misfit > m]
-            if last.seconds > min(LONGEST, self._dear(wanted)):
+            missed = [m for m in wanted if last.misfit > m]
+            if last.seconds > min(LONGEST, self._dear([m + own.least for m in missed or wanted])):
                 return
-            before, last = last, trial_at(self.scene, family, n, first, self.reference.result)
+            before, last = last, trial_at(self.scene, family, n, first, own)
             yield last
-            if all(is_hopeless([before, last], m) for m in wanted):
+            if all(is_hopeless([before, last], m) for m in missed):
                 return
 
     def _dear(self, misfits: list[float]) -> float:

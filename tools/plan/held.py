@@ -8,7 +8,7 @@ from full_study import Study
 from cases.scene import Scene
 from compare.engines import solve
 from compare.plan_families import configured
-from compare.plan_reference import reference_of
+from compare.plan_reference import References
 from compare.plan_trials import Choice
 from compare.planner import FAILURES, Plan, options_of, plan, reason_of
 
@@ -19,10 +19,10 @@ SHORT = 0.05  # s: the longest run that takes part in all rounds; three are enou
 def rows_of(scene: Scene, misfits: list[float], rounds: int) -> list[dict]:
     """Return a row for each misfit; a scene that cannot be planned has its reason."""
     try:
-        reference = reference_of(scene, min(misfits))
+        references = References(scene, min(misfits))
     except FAILURES as error:
         return [_row(scene, m) | {"message": reason_of(error)} for m in misfits]
-    study = Study(scene, reference, misfits)
+    study = Study(scene, references, misfits)
     return [_held(scene, study, m, rounds) for m in misfits]
 
 
@@ -86,6 +86,7 @@ def _of_plan(found: Plan, misfit: float) -> dict:
         return about | {"chosen": "", "message": "nothing is predicted to meet it"}
     return about | {
         "chosen": _text(found.chosen),
+        "modelling": found.chosen.modelling,
         "predicted_misfit": found.chosen.misfit,
         "misfit": found.misfit if found.misfit < inf else nan,
         "predicted_seconds": found.chosen.seconds,

@@ -9,7 +9,8 @@ from compare.output import write_text
 WITHIN = 1.5  # times the cheapest of the study
 COLUMNS = (
     *("scene", "variant", "asked", "reference", "reference_error", "chosen", "met", "ratio"),
-    *("predicted_misfit", "misfit", "predicted_seconds", "obtained_seconds", "seconds"),
+    *("modelling", "predicted_misfit", "misfit"),
+    *("predicted_seconds", "obtained_seconds", "seconds"),
     *("best", "best_misfit", "best_seconds", "points", "trials", "planning", "message"),
 )
 

@@ -1,11 +1,14 @@
 """Orders of convergence, and which points no other beats."""
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from compare.engines import applies
 from compare.studies.measure import Row, method_applies
 from compare.studies.orders import orders
-from compare.studies.pareto import cheapest, digits_per_second, front
+from compare.studies.pareto import cheapest, digits_per_second, front, judged
+from compare.studies.reference import finest_of, own_of
 from compare.studies.runner import run
 from compare.studies.study import Reference, load, shipped
 
@@ -45,11 +48,44 @@ def test_no_order_where_none_is_claimed_or_nothing_falls(study):
 
 def test_the_front_is_what_no_other_point_beats():
     costs, errors = [1, 2, 3, 4, 5, 5], [0.5, 0.7, 0.1, 0.1, 0.01, 0.02]
-    rows = [row(total=e, seconds=float(c)) for c, e in zip(costs, errors, strict=True)]
+    rows = [
+        row(total=e, seconds=float(c), total_floor=0.0, curve=f"{c} {e}")
+        for c, e in zip(costs, errors, strict=True)
+    ]
     rows.append(row(total=1e-9, seconds=0.1, state="failed"))
     assert [(r.seconds, r.total) for r in front(rows)] == [(1, 0.5), (3, 0.1), (5, 0.01)]
+    found = [(c.misfit, c.row.seconds, c.next_best.seconds) for c in cheapest(rows[:-2])[:1]]
+    assert found == [(0.1, 3, 4)]
     assert [(c.misfit, c.row.seconds) for c in cheapest(rows)] == [(0.1, 3), (0.01, 5)]
-    assert digits_per_second(rows[4]) == pytest.approx(2 / 5)
+    assert digits_per_second(judged(rows)[4]) == pytest.approx(2 / 5)
+
+
+@settings(max_examples=40)
+@given(st.lists(st.tuples(st.floats(1e-6, 1.0), st.floats(0, 1e-3)), min_size=1, max_size=8))
+def test_a_point_counts_for_what_all_finer_points_hold(errors):
+    """Whatever the errors, and in whatever order the points stand."""
+    rows = [
+        row(total=e + floor, total_floor=floor, freedoms=10.0, steps=float(n), seconds=float(n + 1))
+        for n, (e, floor) in enumerate(errors)
+    ]
+    found = judged(rows)
+    for i, one in enumerate(found):
+        assert one.held == max(r.total for r in found[i:])
+    assert sorted(judged(rows[::-1]), key=lambda r: r.steps) == sorted(found, key=lambda r: r.steps)
+    for target in cheapest(rows):
+        finer = [r for r in rows if r.steps >= target.row.steps]
+        assert all(r.total <= target.misfit for r in finer)
+        assert 10 * target.row.total_floor <= target.misfit
+
+
+def test_points_of_other_physics_or_of_more_elements_in_fewer_steps_are_not_finer():
+    damped, free = ({"joints.damping_ratio": z} for z in (0.1, 0.0))
+    rows = [
+        row(total=0.1, freedoms=1.0, steps=1.0, settings=damped),
+        row(total=0.2, freedoms=1.0, steps=2.0, settings=free),
+        row(total=0.3, freedoms=9.0, steps=1.0, settings=free),
+    ]
+    assert [r.held for r in judged(rows)] == [0.1, 0.2, 0.3]
 
 
 #: The studies that claim an order; the others have corners in their motion.
@@ -62,7 +98,7 @@ def test_shipped_orders_are_within_a_tenth_of_theory(name, tmp_path):
     elements and step, explicit and implicit."""
     study = load(name)
     curves = tuple(curve for curve in study.curves if curve.order is not None)
-    study = study.model_copy(update={"curves": curves, "timed": False, "finest": None})
+    study = study.model_copy(update={"curves": curves, "timed": False, "finest": "none"})
     found = orders(study, run(study, tmp_path))
     assert [order.curve for order in found] == [curve.label for curve in curves]
     for order in found:
@@ -93,8 +129,9 @@ def test_every_point_of_shipped_studies_can_be_run(name):
     study = load(name)
     for point in study.points():
         assert (answer := method_applies(point, point.scene)), (point.settings, answer.reason)
-        for against, physics in ((point.curve.own, point.physics), (study.finest, {})):
-            against = study.finest if against == "finest" else against
+        own, finest = own_of(point), finest_of(study)
+        assert own is not None
+        for against, physics in ((own, point.physics), (finest, {})):
             if isinstance(against, Reference):
                 for changes in (against.changes, against.changes | against.coarser):
                     assert applies(against.method, study.changed(physics | changes))
@@ -114,6 +151,8 @@ def test_an_order_is_not_read_off_errors_that_are_not_known(study):
 
 
 def test_no_point_is_the_cheapest_within_a_misfit_that_is_not_known():
-    rows = [row(total=e, total_floor=3e-3, seconds=1.0) for e in (0.05, 1e-4)]
-    assert [c.misfit for c in cheapest(rows)] == [0.1, 0.01]
+    """What errors are measured from must be known to a tenth of it."""
+    points = [("a", 0.05), ("b", 1e-4)]
+    rows = [row(total=e, total_floor=3e-3, seconds=1.0, curve=name) for name, e in points]
+    assert [c.misfit for c in cheapest(rows)] == [0.1]
     assert [c.misfit for c in cheapest([r._replace(total_floor=0.0) for r in rows])][-1] == 1e-4

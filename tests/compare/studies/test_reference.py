@@ -1,12 +1,14 @@
 """Fine runs that stand for exact solutions, and how well they are known."""
 
+import numpy as np
 import pytest
 
 from compare.engines import solve
-from compare.metrics import misfit
+from compare.metrics import misfit, pairings
 from compare.studies.findings import sentences
 from compare.studies.measure import measure
 from compare.studies.orders import orders
+from compare.studies.reference import finest_of, own_of
 from compare.studies.runner import run
 
 STEP = "numerics.dem.step_fraction"
@@ -27,7 +29,8 @@ def test_the_floor_is_how_far_the_coarser_run_is_from_the_finer(study):
     runs = [solve("dem", asked.changed({STEP: f})) for f in (0.01, 0.02, 0.4)]
     exact = solve("lattice", asked.base)
     assert row.total_floor == row.numerical_floor == misfit(runs[1], runs[0])
-    assert row.total == row.numerical == misfit(runs[2], runs[0])
+    assert row.measured == row.numerical == misfit(runs[2], runs[0]) and row.modelling == 0
+    assert row.total == row.numerical + row.numerical_floor
     assert misfit(runs[0], exact) < row.total_floor < 4 * misfit(runs[0], exact)
 
 
@@ -51,6 +54,46 @@ def test_a_fine_run_follows_the_curve_in_its_physics_and_not_in_its_numerics(stu
         solve("dem", asked.changed({"pillar.block": 0.25, STEP: f})) for f in (0.4, 0.01)
     )
     assert row.numerical == misfit(found, exact)
+
+
+def test_errors_are_measured_by_the_one_ranking(study):
+    """Where the file is silent: own model and finest physics, of what applies to the scene."""
+    curves = [
+        {"label": name, "method": name}
+        for name in ("dem", "solve-ivp", "continuum-jointed", "continuum-equivalent", "series")
+    ]
+    asked = study(curves)
+    assert finest_of(asked) == "jointed-bar"
+    owns = [own_of(point) for point in asked.points()]
+    assert owns == ["lattice", "lattice", "jointed-bar", "images", "images"]
+    assert finest_of(study(finest="none")) is None
+    soft = study(changes=study().changes | {"joints.tension": False})
+    assert finest_of(soft) is None  # jointed rock, of which no exact solution holds
+    stiff = {"rock": {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0}}
+    assert finest_of(study(changes=study().changes | stiff)) == "lattice"
+
+
+def test_modelling_error_is_that_of_the_own_model_whatever_the_step(study):
+    asked = study(finest="jointed-bar")
+    rows = [measure(point) for point in asked.points()[:2]]
+    lattice, rock = (solve(name, asked.base) for name in ("lattice", "jointed-bar"))
+    assert [row.modelling for row in rows] == [misfit(lattice, rock)] * 2
+    assert all(row.total == row.numerical + row.modelling for row in rows)
+    assert rows[0].measured == misfit(solve("dem", asked.points()[0].scene), rock)
+
+
+def test_an_error_is_that_of_the_waveform_furthest_off_or_of_one_quantity_in_space(study):
+    """Receivers are pooled only where a study asks for the norm that orders are of in theory."""
+    places = study().changes | {"record.stress": [0.5, 2.0], "record.velocity": [1.0, 5.0]}
+    asked = study(changes=places)
+    one, other = solve("dem", asked.points()[0].scene), solve("lattice", asked.base)
+    pairs = pairings(one, other)
+    assert measure(asked.points()[0]).numerical == max(p.misfit for p in pairs)
+    of = [p for p in pairs if p.place.quantity == "velocity"]
+    off = sum(np.sum((p.one - p.other) ** 2) for p in of)
+    size = sum(np.sum(p.other**2) for p in of)
+    row = measure(study(changes=places, quantity="velocity").points()[0])
+    assert len(of) == 2 and row.numerical == pytest.approx(np.sqrt(off / size))
 
 
 def test_sentences_say_how_well_the_finest_physics_is_known(study, tmp_path):
