@@ -259,7 +259,7 @@ def checkpoint(path, shape, length, compression):
 
 
 def scene_of(path):
-    path.write_text("".join(f"a{i}=1\n" for i in range(300_000)))
+    path.write_text("a=1\n" * 600_000)
     return cases.load(path)
 
 
@@ -288,10 +288,10 @@ BOMBS = {
     "a result": lambda p: result_of(classic(p / "a.nc", 2**28, ["stress"], 2**31 + 4096), {}),
     "curves as CSV": lambda p: read_columns(lines(p / "a.csv", "0,0\n" * 5_000_000)),
     "curves in one line": lambda p: read_columns(lines(p / "a.csv", "0," * 1_500_000)),
-    "a hollow CSV": lambda p: read_columns(hollow(p / "a.csv", b"0,0\n", 190_000_000)),
+    "a hollow CSV": lambda p: read_columns(hollow(p / "a.csv", b"0,0\n", 20_000_000)),
     "a load": lambda p: History.from_csv(p, lines(p / "a.csv", "0,0\n" * 5_000_000).name),
     "a checkpoint that is compressed": lambda p: resumed(
-        p / "a.nc", (50_000_000,), 400_000_000, zipfile.ZIP_DEFLATED
+        p / "a.nc", (50_000_000,), 40_000_000, zipfile.ZIP_DEFLATED
     ),
     "a checkpoint that is short": lambda p: resumed(
         p / "a.nc", (50_000_000,), 8_000_000, zipfile.ZIP_STORED

@@ -1,11 +1,16 @@
 """Checkpoints bring back what they were given, or say in one line why they cannot."""
 
+import hashlib
+import io
 import shutil
 import signal
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import cases
 from cases.arrays import copied
@@ -105,6 +110,34 @@ def test_any_flipped_bit_is_noticed(tmp_path, parts):
             files.newest()
     path.write_bytes(whole)
     assert files.newest() == 5
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(at=st.integers(0, 2000), new=st.binary(max_size=4), about=st.sampled_from(["", "1", "{}"]))
+def test_content_that_its_digest_fits_is_one_line(tmp_path_factory, at, new, about):
+    """Whoever writes a checkpoint can write its SHA-256, too: it comes back or is refused."""
+    folder = tmp_path_factory.mktemp("checkpoint")
+    files = Checkpoints(folder / "dem.nc", SIGNATURE, ALONE)
+    parts = (np.arange(6.0).reshape(3, 2), np.array([True]))
+    files.save(5, parts)
+    (path,) = folder.iterdir()
+    body = path.read_bytes()[:-64]
+    changed = body[:at] + new + body[at + len(new) :]
+    if about:
+        buffer = io.BytesIO()
+        np.savez(buffer, **{"00000": parts[0], "00001": parts[1], "about": np.array(about)})
+        changed = buffer.getvalue()
+    path.write_bytes(changed + hashlib.sha256(changed).hexdigest().encode())
+    assert files.newest() == 5
+    with suppress(SceneError):
+        files.load(5, emptied_of(parts))
+    with pytest.raises(SceneError) as error:
+        Checkpoints(folder / "dem.nc", SIGNATURE | {"engine": "x"}, ALONE).newest()
+    assert len(str(error.value).splitlines()) == 1
+
+
+def emptied_of(parts):
+    return tuple(np.zeros_like(part) for part in parts)
 
 
 def test_set_that_a_kill_has_left_incomplete_does_not_count(tmp_path, parts):
