@@ -282,7 +282,11 @@ def test_how_far_images_and_matrices_go():
 
 def test_nothing_slides_along_where_gravity_pulls_across():
     gravity = {"direction": [1.0, 0.0, 0.0], "acceleration": 9.81, "static": False}
-    assert not sliding_block.applies(scene(gravity=gravity))
+    one = {"joints": {"friction_angle": 30.0}, "ends": {"end": "fixed"}}
+    one["load"] = {"shape": "step", "amplitude": 0.0}
+    assert not sliding_block.applies(scene(gravity=gravity, **one))
+    gravity["direction"] = [0.0, 1.0, 0.0]
+    assert sliding_block.applies(scene(gravity=gravity, **one))
 
 
 @pytest.mark.parametrize(
