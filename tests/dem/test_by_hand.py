@@ -46,6 +46,12 @@ def along(variable):
     return variable.sel(axis="y").values
 
 
+def closes(result):
+    """Hold a ledger to its sum: what the load puts in is found in the other terms."""
+    energy = result.energy.values
+    holds(energy[:-1].sum(axis=0), energy[-1])
+
+
 def test_free_blocks():
     """f = 0, 125, 437.5 N; v0 = 5e-3, 1.375e-2, 1.9375e-2, v1 = 0, 1.25e-3, 5.625e-3 m/s."""
     result = run()
@@ -104,10 +110,22 @@ def test_critical_steps():
 
 def test_prestress_of_a_fixed_end():
     """2 Pa close its spring of 5e6 Pa/m by 0.4 um, and nothing moves."""
-    load = {"shape": "step", "amplitude": 0.0}
-    result = run(samples=2, load=load, ends={"end": "fixed"}, prestress={"normal": 2.0})
-    holds(result.stress, np.full((4, 2), 2.0))
-    assert np.abs(along(result.velocity)).max() < 1e-15
+    for place in ("start", "end"):
+        load = {"shape": "step", "amplitude": 0.0}
+        load |= {"quantity": "velocity"} if place == "start" else {}
+        result = run(samples=2, load=load, ends={place: "fixed"}, prestress={"normal": 2.0})
+        holds(result.stress, np.full((4, 2), 2.0))
+        assert np.abs(along(result.velocity)).max() < 1e-15
+
+
+def test_work_of_a_prestress():
+    """100 Pa on 4 m2 push block 0 and hold block 1: 400 N times what the joint closes by."""
+    result = run(prestress={"normal": 100.0})
+    holds(along(result.velocity), along(run().velocity))
+    work = [0, 0.15 + 400 * 5e-5, 0.15 + 0.55 + 400 * 1.75e-4]
+    holds(result.energy.sel(term="work"), work)
+    elastic = result.energy.sel(term="elastic").values
+    holds(elastic - elastic[0], [0, 400 * 5e-5 + 0.0125, 400 * 1.75e-4 + 1750 * 1.75e-4 / 2])
 
 
 def test_matched_end():
@@ -122,6 +140,8 @@ def test_mass_damping():
     first = 5e-3 / 1.1
     second = (0.9 * first + 1e-5 * (1000 - 2.5e6 * 0.01 * first)) / 1.1
     holds(along(result.velocity)[0], [first / 2, (first + second) / 2])
+    closes(result)
+    assert result.energy.sel(term="viscous")[-1] > 0
 
 
 def test_local_damping():
@@ -129,6 +149,7 @@ def test_local_damping():
     result = run(damping={"local": 0.8})
     v0, v1 = [0.0, 5e-3, 6.75e-3, 8.225e-3], [0.0, 0.0, 1.25e-3, 1.775e-3]
     holds(along(result.velocity), [np.convolve(v, [0.5, 0.5], "valid") for v in (v0, v1)])
+    closes(result)
 
 
 def test_no_tension():
@@ -160,6 +181,10 @@ def test_a_shaken_base():
     result = run(samples=3, load=load, ends={"start": "fixed"})
     holds(along(result.velocity)[0], [0, 0.025, (0.05 + 0.1125) / 2])
     holds(result.stress.sel(stress_y=0.0), [0, 5000, 7500])
+    # 2e4 and 3e4 N over 1 mm a step; the half block's spring is of the boundary, 2e7 N/m.
+    holds(result.energy.sel(term="work"), [0, 10, 35])
+    holds(result.energy.sel(term="boundary"), [0, 10, 22.5])
+    closes(result)
 
 
 def test_a_shaken_base_of_damped_blocks():
