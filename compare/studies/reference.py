@@ -45,15 +45,22 @@ def finest_of(study: Study) -> str | Reference | None:
 
 def own_of(point: Point) -> str | Reference | None:
     """Return what a point's numerical error is from: as its curve says, else the exact solution of
-    its own model, else the study's fine run of the same engine; None without."""
+    its own model, else a run of its engine as fine as the study's fine run; None without."""
     own, study = point.curve.own, point.study
     if own is not None:
         return finest_of(study) if own == FINEST else None if own == NONE else own
     scene, method = point.scene, point.curve.method
     engine = METHODS[method].ENGINE if method in METHODS else method
     exact = own_exact(engine, [n for n in exact_names() if applies(n, scene)], scene)
-    fine = study.finest if isinstance(study.finest, Reference) else None
-    return exact or (fine if fine is not None and fine.method == engine else None)
+    return exact or _as_fine(engine, study.finest)
+
+
+def _as_fine(engine: str, finest: str | Reference | None) -> Reference | None:
+    """Return the run of an engine at the numerics of a fine run, where those are its own too."""
+    if not isinstance(finest, Reference):
+        return None
+    alike = engine.partition("-")[0] == finest.method.partition("-")[0]
+    return finest.model_copy(update={"method": engine}) if alike else None
 
 
 def known(against: str | Reference | None, study: Study, physics: dict[str, Any]) -> Known | None:

@@ -48,7 +48,7 @@ class Curve(Table):
     vary : dotted keys and their values, all combinations; `terms` is an exact series' own.
     own : the exact solution of the curve's own model, or a fine run of it, for its numerical
         error; "finest": that of the study; "none"; absent: the exact one that ranks highest
-        (`compare.ranking`), else the study's fine run of the same engine.
+        (`compare.ranking`), else a run of its engine at the numerics of the study's fine run.
     order : in theory, of the numerical error, with the first varied key or, where that falls as
         its value grows (elements, steps per period), with its inverse.
     """

@@ -73,6 +73,20 @@ def test_errors_are_measured_by_the_one_ranking(study):
     assert finest_of(study(changes=study().changes | stiff)) == "lattice"
 
 
+def test_a_fine_run_of_one_model_of_the_rock_stands_for_that_of_the_other(study):
+    """At the same numerics; blocks have others."""
+    numerics = {"changes": {"numerics.continuum.order": 4}, "coarser": {"pillar.block": 0.5}}
+    names = ("continuum-jointed", "continuum-equivalent", "dem")
+    asked = study(
+        [{"label": name, "method": name} for name in names],
+        finest={"method": "continuum-jointed", **numerics},
+        changes=study().changes | {"joints.friction_angle": 30.0, "load.direction": [1, 0, 0]},
+    )
+    rock, homogenised, blocks = (own_of(point) for point in asked.points())
+    assert rock == asked.finest and blocks is None
+    assert homogenised == rock.model_copy(update={"method": "continuum-equivalent"})
+
+
 def test_modelling_error_is_that_of_the_own_model_whatever_the_step(study):
     asked = study(finest="jointed-bar")
     rows = [measure(point) for point in asked.points()[:2]]
