@@ -1,4 +1,5 @@
-"""The paper's figures, drawn from comparisons: one panel a variant and receiver, every curve in it.
+"""Overlays as figures for print: waveforms in one pair of axes each, what they leave from their
+reference under them, and a legend above all.
 
 Stress in MPa, compression positive, over time in ms, as in Guo & Li (2002).
 """
@@ -6,84 +7,118 @@ Stress in MPa, compression positive, over time in ms, as in Guo & Li (2002).
 from typing import Any
 
 import matplotlib
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from compare.aligned import Beside
+from compare.overlays import UNITS, Overlay, Trace, by_solution, legend_of
 from compare.pairs import Comparison
-from compare.panels import Panel, panels
-from compare.style import FAMILIES, GIVEN, MARKERS, RC, WIDTH, in_order, is_engine, style
+from compare.panels import panels
+from compare.style import FAMILIES, RC, WIDTH, in_order, is_engine, style
 
-#: Factor from SI to the unit that is drawn, and that unit.
-UNITS = {
-    "stress": (1e-6, "MPa"),
-    "shear": (1e-6, "MPa"),
-    "velocity": (1.0, "m/s"),
-    "rotation": (1e3, "mrad"),
-}
+__all__ = ["UNITS", "add_legend", "draw", "draw_variants"]
 
-MOST_MARKS = 150  # samples of a curve in a panel that are marked one by one
+HEIGHT, SMALLER, RESIDUAL = 2.1, 1.6, 0.75  # inches of a panel, of many, and of its residuals
+THIN = 1.4  # points, the widest line of residuals
 
 
 def draw(name: str, comparisons: list[Comparison]) -> Figure:
-    """Return a figure of all variants; `name` scopes the ids of its parts ("fig-03").
+    """Return every solution of all variants; `name` scopes the ids of its parts ("fig-03").
 
     The curve of solution S in row i, column j is the SVG group NAME-i-j-S, that of the k-th file of
-    others NAME-i-j-given-k.
+    others NAME-i-j-given-k, and the residual of S NAME-residual-i-j-S.
     """
-    grid = panels(comparisons)
-    rows, columns = len(grid), max(map(len, grid))
+    grid = [[by_solution(panel) for panel in row] for row in panels(comparisons)]
     with matplotlib.rc_context(RC):
-        figure = Figure(figsize=(WIDTH, 1.0 + rows * (1.75 if rows > 2 else 2.3)))
-        FigureCanvasAgg(figure)
-        alike = len({UNITS[panel.quantity] for row in grid for panel in row}) == 1
-        axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=alike)
-        for i, row in enumerate(grid):
-            for j, panel in enumerate(row):
-                _draw_panel(axes[i, j], panel, f"{name}-{i}-{j}")
-                axes[i, j].set_title(
-                    f"({chr(97 + i * columns + j)})  {panel.place}, {panel.variant}", pad=4
-                )
-        _label_axes(axes, grid, alike)
-        names = {n for row in grid for panel in row for n in panel.curves}
-        add_legend(figure, names, comparisons[0].besides)
+        figure = _figure(name, grid)
+        names = {name for comparison in comparisons for name in comparison.results}
+        given = {t.part: t for row in grid for o in row for t in o.traces if t.part not in names}
+        add_legend(figure, names, list(given.values()))
     return figure
 
 
-def _draw_panel(ax: Axes, panel: Panel, gid: str) -> None:
+def draw_variants(name: str, grid: list[list[Overlay]]) -> Figure:
+    """Return the variants of every engine in one pair of axes each."""
+    with matplotlib.rc_context(RC):
+        figure = _figure(name, grid)
+        entries = legend_of(overlay for row in grid for overlay in row)
+        handles = [Line2D([], [], label=text, **look.of_line()) for text, look in entries.items()]
+        figure.legend(
+            handles=handles,
+            ncols=len(handles),
+            loc="upper center",
+            bbox_to_anchor=(0.5, 1.0),
+            frameon=False,
+            handlelength=3.5,
+        )
+        _lay_out(figure, 1)
+    return figure
+
+
+def _figure(name: str, grid: list[list[Overlay]]) -> Figure:
+    """Return the figure of overlays without its legend."""
+    rows, columns = len(grid), max(map(len, grid))
+    heights = [SMALLER if rows > 2 else HEIGHT]
+    heights += [RESIDUAL] if any(o.residuals for row in grid for o in row) else []
+    figure = Figure(figsize=(WIDTH, 0.9 + rows * (sum(heights) + 0.2 * len(heights))))
+    FigureCanvasAgg(figure)
+    every = len(heights)
+    axes = figure.subplots(
+        every * rows, columns, squeeze=False, sharex=True, height_ratios=heights * rows
+    )
+    alike = len({overlay.label for row in grid for overlay in row}) == 1
+    for i, row in enumerate(grid):
+        for j, overlay in enumerate(row):
+            upper, *lower = axes[every * i : every * (i + 1), j]
+            if alike and (i or j):
+                upper.sharey(axes[0, 0])
+            _draw(upper, overlay, f"{name}-{i}-{j}")
+            letter = f"({chr(97 + i * columns + j)})  " if i * columns + j < 26 else ""
+            upper.set_title(f"{letter}{overlay.heading}", pad=4)
+            if j == 0 or not alike:
+                upper.set_ylabel(overlay.label)
+            for ax in lower:
+                _draw_residuals(ax, overlay, f"{name}-residual-{i}-{j}")
+        for ax in axes[every * i : every * (i + 1), len(row) :].ravel():
+            ax.set_visible(False)
+    for ax in axes[-1]:
+        ax.set_xlabel("time (ms)")
+    return figure
+
+
+def _draw(ax: Axes, overlay: Overlay, gid: str) -> None:
     ax.axhline(0, color="#bbbbbb", linewidth=0.6, zorder=1)
-    factor = UNITS[panel.quantity][0]
-    for name, curve in panel.curves.items():
-        (line,) = ax.plot(1e3 * curve.index, factor * curve.values, **style(name).of_line())
-        line.set_gid(f"{gid}-{name}")
-    given = panel.given
-    for k, beside in enumerate(panel.comparison.besides):
-        if beside.curves.name in given:
-            curve = given[beside.curves.name]
-            (line,) = ax.plot(1e3 * curve.index, factor * curve.values, **_of_given(k, beside))
-            line.set_gid(f"{gid}-given-{k}")
+    for trace in overlay.traces:
+        line = trace.look.of_line() | _marked(trace)
+        (drawn,) = ax.plot(1e3 * trace.curve.index, overlay.factor * trace.curve.values, **line)
+        drawn.set_gid(f"{gid}-{trace.part}")
     ax.margins(x=0)
 
 
-def _label_axes(axes: np.ndarray, grid: list[list[Panel]], alike: bool) -> None:
-    for row, panels_of_row in zip(axes, grid, strict=True):
-        for ax, panel in zip(row[: 1 if alike else None], panels_of_row, strict=False):
-            ax.set_ylabel(f"{panel.quantity} ({UNITS[panel.quantity][1]})")
-    for ax in axes[-1]:
-        ax.set_xlabel("time (ms)")
+def _draw_residuals(ax: Axes, overlay: Overlay, gid: str) -> None:
+    """Draw what waveforms leave from their reference, on a scale of its own."""
+    ax.set_title(overlay.residual_heading, pad=2, fontsize=8)
+    ax.axhline(0, color="#bbbbbb", linewidth=0.6, zorder=1)
+    for trace in overlay.residuals:
+        assert trace.residual is not None
+        look = trace.look._replace(width=min(trace.look.width, THIN)).of_line()
+        values = trace.residual.values / overlay.unit.size
+        (drawn,) = ax.plot(1e3 * trace.residual.index, values, **look)
+        drawn.set_gid(f"{gid}-{trace.part}")
+    ax.margins(x=0)
+    ax.locator_params(axis="y", nbins=4)
+    if not overlay.residuals:
+        ax.set_yticks([])
 
 
-def _of_given(k: int, beside: Beside) -> dict[str, Any]:
-    """Return how the curve of the k-th file of others is drawn, its samples marked if few."""
-    look = GIVEN[k % len(GIVEN)].of_line()
-    marker = {"marker": MARKERS[k % len(MARKERS)], "markersize": 3.0, "markerfacecolor": "none"}
-    return look | marker if len(beside.time) <= MOST_MARKS else look
+def _marked(trace: Trace) -> dict[str, Any]:
+    if not trace.marker:
+        return {}
+    return {"marker": trace.marker, "markersize": 3.0, "markerfacecolor": "none"}
 
 
-def add_legend(figure: Figure, names: set[str], besides: list[Beside]) -> None:
+def add_legend(figure: Figure, names: set[str], given: list[Trace]) -> None:
     """Put one column of entries per model above the panels, where it hides no curve."""
     columns = [
         [_heading(family), *(_entry(name) for name in styles if name in names)]
@@ -93,10 +128,9 @@ def add_legend(figure: Figure, names: set[str], besides: list[Beside]) -> None:
     known = {name for styles in FAMILIES.values() for name in styles}
     if names - known:
         columns.append([_heading("Other"), *(_entry(name) for name in in_order(names - known))])
-    if besides:
+    if given:
         entries = [
-            Line2D([], [], label=_short(beside.curves.name), **_of_given(k, beside))
-            for k, beside in enumerate(besides)
+            Line2D([], [], label=_short(t.name), **t.look.of_line() | _marked(t)) for t in given
         ]
         columns.append([_heading("Given"), *entries])
     depth = max(map(len, columns))
@@ -114,8 +148,13 @@ def add_legend(figure: Figure, names: set[str], besides: list[Beside]) -> None:
     for text in legend.get_texts():
         if text.get_text() in (*FAMILIES, "Given"):
             text.set_fontweight("bold")
+    _lay_out(figure, depth)
+
+
+def _lay_out(figure: Figure, depth: int) -> None:
+    """Give the panels the room below a legend of so many lines."""
     top = 1 - (0.16 + 0.165 * depth) / figure.get_figheight()
-    figure.tight_layout(rect=(0, 0, 1, top), h_pad=0.8, w_pad=1.5)
+    figure.tight_layout(rect=(0, 0, 1, top), h_pad=0.5, w_pad=1.5)
 
 
 def _heading(text: str) -> Line2D:

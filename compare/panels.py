@@ -1,4 +1,6 @@
-"""What the panels of a figure show, and the table of every curve that is drawn in them."""
+"""What the panels of a figure show: at each receiver the component that moves most, less its
+static state; and the table of every waveform in them, as it was recorded.
+"""
 
 from typing import NamedTuple
 
@@ -8,7 +10,9 @@ import xarray as xr
 
 from cases.scene import Scene
 from compare.curves import Place
+from compare.metrics import motion
 from compare.pairs import Comparison
+from compare.ranking import finest
 from compare.style import in_order
 
 #: SI units of what panels show.
@@ -54,16 +58,47 @@ class Panel(NamedTuple):
         return "xz"[self.component] if self.quantity == "shear" else "xyz"[self.component]
 
     @property
-    def curves(self) -> dict[str, pd.Series]:
+    def recorded(self) -> dict[str, pd.Series]:
         """Every waveform of the panel in SI over time in s, by its solution, in drawing order."""
-        curves = {}
-        for name in in_order(set(self.comparison.results)):
-            result = self.comparison.results[name]
-            if self.quantity in result:
-                values = result[self.quantity].values[self.receiver]
-                values = values.ravel() if self.component is None else values[:, self.component]
-                curves[name] = pd.Series(values, np.round(result.time.values, 12))
-        return curves
+        return {name: self._waveform(name, False) for name in self._names}
+
+    @property
+    def curves(self) -> dict[str, pd.Series]:
+        """The same waveforms less their static state: the motion, which is what is drawn."""
+        return {name: self._waveform(name, True) for name in self._names}
+
+    @property
+    def at_rest(self) -> float:
+        """The static state that is taken from the first of them, SI; 0 where there is none."""
+        first = self._names[0]
+        return float((self._waveform(first, False) - self._waveform(first, True)).iloc[0])
+
+    @property
+    def reference(self) -> str:
+        """The solution that the others are held against, "" where none resolves the scene."""
+        found = finest(self._names, self.comparison.scene)
+        return found.name if found else ""
+
+    @property
+    def residuals(self) -> dict[str, pd.Series]:
+        """Each of `curves` less that of the reference, which has none itself."""
+        curves = self.curves
+        if self.reference not in curves:
+            return {}
+        known = curves[self.reference]
+        return {name: c - known for name, c in curves.items() if name != self.reference}
+
+    @property
+    def _names(self) -> list[str]:
+        results = self.comparison.results
+        return [name for name in in_order(set(results)) if self.quantity in results[name]]
+
+    def _waveform(self, name: str, moving: bool) -> pd.Series:
+        result = self.comparison.results[name]
+        found = motion(result, self.quantity) if moving else result[self.quantity].values
+        values = found[self.receiver]
+        values = values.ravel() if self.component is None else values[:, self.component]
+        return pd.Series(values, np.round(result.time.values, 12))
 
 
 def panels(comparisons: list[Comparison]) -> list[list[Panel]]:
@@ -98,8 +133,8 @@ def _panel(
 
 
 def _peaks(result: xr.Dataset, quantity: str, receiver: int) -> np.ndarray:
-    """Return the largest magnitude of every component."""
-    values = np.abs(result[quantity].values[receiver])
+    """Return the largest magnitude of the motion of every component."""
+    values = np.abs(motion(result, quantity)[receiver])
     return values.reshape(len(values), -1).max(axis=0)
 
 
@@ -135,7 +170,8 @@ def _part(scene: Scene, key: str) -> object:
 
 
 def curve_table(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return every drawn curve in SI: time first, one column a curve, its unit in the header.
+    """Return every drawn waveform as it was recorded, its static state included, in SI: time first,
+    one column a curve, its unit in the header.
 
     Variants may be sampled at different times; where one has no sample its cell is empty.
     """
@@ -143,6 +179,6 @@ def curve_table(comparisons: list[Comparison]) -> pd.DataFrame:
     for row in panels(comparisons):
         for panel in row:
             unit = UNITS[panel.quantity]
-            for name, curve in [*panel.curves.items(), *panel.given.items()]:
+            for name, curve in [*panel.recorded.items(), *panel.given.items()]:
                 columns[f"{name} | {panel.place} | {panel.variant} ({unit})"] = curve
     return pd.DataFrame(columns).rename_axis("time (s)")

@@ -52,7 +52,7 @@ class Page:
     @property
     def is_interactive(self) -> bool:
         """Whether any figure of the scenes can be zoomed."""
-        return any(drawn.plot for section in self.sections for drawn in section.figures)
+        return any(shown.drawn.plot for section in self.sections for shown in section.figures)
 
     @property
     def failed(self) -> list[tuple[Section, Finding]]:

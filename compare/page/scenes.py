@@ -13,9 +13,9 @@ from cases.result import scene_hash
 from cases.scene import Scene
 from compare import rates
 from compare.engines import Progress
-from compare.page.section import PAPER, Asked, Section, make_section
+from compare.page.section import PAPER, Asked, Section, linked, make_section
 from compare.pairs import Comparison, compare
-from compare.pictures import along_pillar
+from compare.pictures.along import along_pillar, recorded_along
 from compare.scenes import find
 from compare.studies.pool import Pool
 
@@ -63,7 +63,8 @@ def solve(
     with rates.timing(RATE, len(asked)), pool() as executor:
         order = _longest_first(unique)
         found = {key: executor.submit(compare, unique[key], None, True) for key in order}
-        along = {name: executor.submit(along_pillar, scenes[0]) for name, scenes in loaded.items()}
+        wide = {_along(scene): scene for variants in loaded.values() for scene in variants}
+        along = {key: executor.submit(along_pillar, scene) for key, scene in wide.items()}
         tell = _counted(
             [*found.values(), *along.values(), *besides(executor)], len(asked), progress
         )
@@ -71,12 +72,16 @@ def solve(
             name: [replace(found[_key(scene)].result(), scene=scene) for scene in variants]
             for name, variants in loaded.items()
         }
+        fields = {
+            name: [along[_along(scene)].result() for scene in variants]
+            for name, variants in loaded.items()
+        }
         drawn = [
-            executor.submit(make_section, folder, a, comparisons[a.name], along[a.name].result())
+            executor.submit(make_section, folder, a, comparisons[a.name], fields[a.name])
             for a in asked
         ]
         tell(drawn)
-    return Solved(comparisons, [future.result() for future in drawn])
+    return Solved(comparisons, linked([future.result() for future in drawn]))
 
 
 def _counted(
@@ -101,6 +106,11 @@ def _key(scene: Scene) -> str:
     """Return what decides a scene's results: its hash without names and bounds."""
     unnamed = scene.model_copy(update={"title": "", "source": None, "name": "", "expect": {}})
     return scene_hash(unnamed)
+
+
+def _along(scene: Scene) -> str:
+    """Return what decides a scene's results all along its pillar."""
+    return _key(recorded_along(scene))
 
 
 def _longest_first(scenes: dict[str, Scene]) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
+from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple
 
@@ -16,9 +17,13 @@ from compare.findings import Finding, findings
 from compare.output import write_csv
 from compare.page.standing import Standing, standings
 from compare.pairs import Comparison
-from compare.pictures import Picture, pictures_of
+from compare.pictures.picture import Picture
+from compare.pictures.pictures import pictures_of
 
 PAPER = Path(cases.__file__).parent / "guo-li-2002"
+Fields = list[dict[str, xr.Dataset]]
+#: What two drawings of the same may differ by: the names of their parts, and their titles.
+NAMES = re.compile(r"<title>.*?</title>|(?:\bid=\"|url\(#|href=\"#)[^\")]*", re.DOTALL)
 
 
 class Asked(NamedTuple):
@@ -40,6 +45,20 @@ class Asked(NamedTuple):
         return f"fig. {self.number}" if self.number else self.name
 
 
+class Shown(NamedTuple):
+    """A picture as it stands on the page.
+
+    folded : whether it stands in a fold. marks : what no other picture of the page shares. place,
+    words : the id and the words of the same picture further up, which is linked to in its place.
+    """
+
+    drawn: Drawn
+    folded: bool
+    marks: frozenset[str]
+    place: str = ""
+    words: str = ""
+
+
 class Section(NamedTuple):
     """One scene of the page; `toml` is its file's text, `command` what makes the same again."""
 
@@ -50,7 +69,7 @@ class Section(NamedTuple):
     source: str
     toml: str
     command: str
-    figures: list[Drawn]
+    figures: list[Shown]
     distances_file: Path
     findings: list[Finding]
     misfits: tables.Table
@@ -66,11 +85,11 @@ class Section(NamedTuple):
 
 
 def make_section(
-    folder: Path, asked: Asked, comparisons: list[Comparison], fields: dict[str, xr.Dataset]
+    folder: Path, asked: Asked, comparisons: list[Comparison], fields: Fields
 ) -> Section:
     """Draw all pictures of a scene's variants, write their files into `folder`, return its section.
 
-    fields : the first variant's results all along the pillar, for space-time diagrams.
+    fields : each variant's results all along the pillar, for space-time diagrams.
     """
     scene = comparisons[0].scene
     pictures = pictures_of(asked.name, comparisons, fields)
@@ -94,7 +113,33 @@ def make_section(
     )
 
 
-def draw(folder: Path, picture: Picture) -> Drawn:
+def draw(folder: Path, picture: Picture) -> Shown:
     """Write a picture's files: those that the page offers."""
     p = picture
-    return save(p.static, folder, p.name, p.title, p.table, p.caption, p.plot, png=False)
+    drawn = save(p.static, folder, p.name, p.title, p.table, p.caption, p.plot, png=False)
+    numbers = drawn.file("csv").read_bytes()
+    seen = NAMES.sub("", drawn.svg)
+    return Shown(
+        drawn, p.folded, frozenset(sha256(x).hexdigest() for x in (seen.encode(), numbers))
+    )
+
+
+def linked(sections: list[Section]) -> list[Section]:
+    """Return sections in which no picture stands twice: a later one is a link to the first, and its
+    files are removed. One is the same where its drawing is, or its numbers are."""
+    known: dict[str, tuple[str, str]] = {}
+    found = []
+    for section in sections:
+        figures = []
+        for shown in section.figures:
+            first = next((known[mark] for mark in shown.marks if mark in known), None)
+            if first is None:
+                words = f"{section.label}: {shown.drawn.title}"
+                known |= dict.fromkeys(shown.marks, (f"{shown.drawn.name}-figure", words))
+                figures.append(shown)
+                continue
+            for kind in ("svg", "pdf", "csv"):
+                shown.drawn.file(kind).unlink(missing_ok=True)
+            figures.append(shown._replace(place=first[0], words=first[1]))
+        found.append(section._replace(figures=figures))
+    return found

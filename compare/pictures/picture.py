@@ -18,7 +18,8 @@ class Picture:
     title : a heading. caption : what is seen and how it was computed, one or two sentences.
     static : for print. table : what is drawn, tidy; columns carry their units, no index.
     plot : the interactive figure of plotly.js, {"data": [...], "layout": {...}}, as plain values
-    that json can write; None where the picture is static only.
+    that json can write; None where the picture is static only. folded : whether it stands in a
+    fold of the page, which is closed until it is opened, and on paper.
     """
 
     name: str
@@ -28,3 +29,4 @@ class Picture:
     static: Figure
     table: pd.DataFrame
     plot: dict[str, Any] | None
+    folded: bool = False

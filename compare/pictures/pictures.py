@@ -3,6 +3,7 @@
 import xarray as xr
 
 from compare.pairs import Comparison
+from compare.panels import variant_names
 from compare.pictures.diagrams import diagrams_of
 from compare.pictures.energy import energy
 from compare.pictures.picture import Picture
@@ -13,16 +14,16 @@ from compare.pictures.waveforms import waveforms
 
 
 def pictures_of(
-    name: str, comparisons: list[Comparison], fields: dict[str, xr.Dataset]
+    name: str, comparisons: list[Comparison], fields: list[dict[str, xr.Dataset]]
 ) -> list[Picture]:
     """Return the pictures of a scene's variants.
 
-    name : what file names begin with ("fig-03"). fields : what `along_pillar` returns for one of
-    the variants; empty: no space-time diagrams.
+    name : what file names begin with ("fig-03"). fields : what `along_pillar` returns for each
+    variant; none: no space-time diagrams.
     """
     return [
         scene_picture(name, comparisons),
-        waveforms(name, comparisons),
+        *waveforms(name, comparisons),
         *_space_time(name, comparisons, fields),
         *spectra(name, comparisons),
         *energy(name, comparisons),
@@ -30,7 +31,13 @@ def pictures_of(
 
 
 def _space_time(
-    name: str, comparisons: list[Comparison], fields: dict[str, xr.Dataset]
+    name: str, comparisons: list[Comparison], fields: list[dict[str, xr.Dataset]]
 ) -> list[Picture]:
-    scenes = {comparison.scene.name: comparison.scene for comparison in comparisons}
-    return [space_time(name, scenes[shown.variant], shown) for shown in diagrams_of(fields)]
+    variants = zip(comparisons, variant_names(comparisons), fields, strict=False)
+    return [
+        space_time(
+            f"{name}-space-time-{k}{'-exact' * shown.exact}", comparison.scene, variant, shown
+        )
+        for k, (comparison, variant, found) in enumerate(variants)
+        for shown in diagrams_of(comparison.scene, found)
+    ]

@@ -1,4 +1,4 @@
-"""Space-time diagrams: y along the pillar over time, the stress as colour."""
+"""Space-time diagrams: y along the pillar over time, the motion as colour."""
 
 from typing import Any
 
@@ -19,39 +19,52 @@ from compare.style import RC, WIDTH
 COLOURS = 96  # of an image in print
 FINER = 2  # rows of it
 STOPS = 17  # of a colour scale on the page
-LAYER: dict[str, Any] = {"color": "#333333", "linewidth": 0.8, "linestyle": (0, (4, 3))}
+LAYER: dict[str, Any] = {"color": "#111111", "linewidth": 1.1, "linestyle": (0, (4, 3))}
+NAMED: dict[str, Any] = {
+    "xycoords": ("axes fraction", "data"),
+    "xytext": (0, 2),
+    "textcoords": "offset points",
+    "ha": "right",
+    "fontsize": 7,
+}
 
 
-def space_time(name: str, scene: Scene, shown: Diagrams) -> Picture:
-    """Return the picture of an engine's diagrams, or of the differences between engines."""
-    subject = f"{shown.engine}: " if shown.engine else "Between engines: "
+def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> Picture:
+    """Return the picture of diagrams of one variant; those of numerical errors are folded.
+
+    name : unique on the page. variant : its name there.
+    """
+    words = f"{shown.quantity.words} along the pillar over time, {variant}"
+    title = f"Numerical error of {words}" if shown.exact else f"{words[0].upper()}{words[1:]}"
     return Picture(
-        f"{name}-space-time-{shown.engine or 'engines'}",
+        name,
         "space-time",
-        f"{subject}{shown.quantity.words} along the pillar over time",
-        _caption(scene, shown),
+        title,
+        _caption(scene, variant, shown),
         _figure(scene, shown),
         shown.table(),
         _plot(scene, shown),
+        shown.exact,
     )
 
 
-def _caption(scene: Scene, shown: Diagrams) -> str:
+def _caption(scene: Scene, variant: str, shown: Diagrams) -> str:
     """Say what the colours are, and where and when they were computed."""
     sign = "Compression is red, tension blue. " if shown.quantity.variable == "stress" else ""
-    variant = f" of the variant {scene.name!r}" if scene.name else ""
     layers = " Dashed: the soft layer." if scene.soft_layers else ""
+    if shown.exact:
+        sign = "Each engine less the exact solution of its own model. "
     return (
-        f"{sign if shown.engine else ''}Drawn from {len(shown.y)} sections and {len(shown.time)} "
-        f"times of the run{variant}; a difference has colours of its own, whose ends are its "
-        f"largest value.{layers}"
+        f"{sign}Drawn from {len(shown.y)} places and {len(shown.time)} times of the variant "
+        f"{variant!r}, less its static state; a difference has colours of its own, whose ends are "
+        f"its largest value.{layers}"
     )
 
 
 def _figure(scene: Scene, shown: Diagrams) -> Figure:
     count = len(shown.diagrams)
     with matplotlib.rc_context(RC):
-        figure = Figure(figsize=(WIDTH, 3.5), layout="constrained")
+        figure = Figure(figsize=(WIDTH, 3.1), layout="constrained")
         FigureCanvasAgg(figure)
         axes = figure.subplots(1, max(count, 2), sharex=True, sharey=True, squeeze=False)[0]
         for ax, diagram in zip(axes, shown.diagrams, strict=False):
@@ -59,6 +72,8 @@ def _figure(scene: Scene, shown: Diagrams) -> Figure:
             _settle(ax)
         for ax in axes[count:]:
             ax.set_visible(False)
+        for layer in scene.soft_layers:
+            axes[0].annotate("soft layer", (0.99, layer.y), **NAMED)
         axes[0].set_ylabel("y (m)")
     return figure
 

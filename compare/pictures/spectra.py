@@ -39,6 +39,7 @@ def spectra(name: str, comparisons: list[Comparison]) -> list[Picture]:
             _figure(f"{name}-spectra", found, comparisons),
             _table([s for row in found for s in row]),
             _plot([s for row in found for s in row], looks_of(comparisons, given=False)),
+            True,
         )
     ]
 

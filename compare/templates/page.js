@@ -177,7 +177,7 @@
     all("figure[data-plot]").forEach((figure) => seen.observe(figure));
   }
 
-  /* Commands to copy; boxes that scroll, for keys; all opened on paper. */
+  /* Commands to copy; boxes that scroll, for keys. */
   function addCopying() {
     if (!navigator.clipboard) return;
     for (const button of all(".copy")) {
@@ -197,16 +197,6 @@
     for (const box of all(".scroll, .static")) box.tabIndex = box.scrollWidth > box.clientWidth ? 0 : -1;
   }
 
-  function openOnPaper() {
-    let opened = [];
-    addEventListener("beforeprint", () => {
-      opened = all("details:not([open])");
-      opened.forEach((part) => { part.open = true; });
-    });
-    addEventListener("afterprint", () => opened.forEach((part) => { part.open = false; }));
-  }
-
-  openOnPaper();
   addCopying();
   letKeysScroll();
   addEventListener("resize", letKeysScroll);

@@ -21,12 +21,17 @@ CHARTS = "figure[data-plot]"
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory):
-    """Build the page of two quick scenes: one of one's own with variants, and one of the paper."""
+    """Build the page of three quick scenes: one of one's own with variants, the same recorded by
+    its velocities, and one of the paper."""
     own = tmp_path_factory.mktemp("scenes") / "short pillar.toml"
+    moving = own.with_name("moving.toml")
     text = (PAPER / "fig-03.toml").read_text(encoding="utf-8").partition("[[variants]]")[0]
     text = re.sub(r"duration *=.*", "duration = 0.03", text)
-    own.write_text(f'{text}\n[[variants]]\nname = "zeta 0.05"\njoints.damping_ratio = 0.05\n')
-    return build(tmp_path_factory.mktemp("report"), scenes=[str(own), "guo-li-2002/fig-06"])
+    text = f'{text}\n[[variants]]\nname = "zeta 0.05"\njoints.damping_ratio = 0.05\n'
+    own.write_text(text)
+    moving.write_text(re.sub(r"stress *= .*", "velocity = [20.25]", text))
+    scenes = [str(own), str(moving), "guo-li-2002/fig-06"]
+    return build(tmp_path_factory.mktemp("report"), scenes=scenes)
 
 
 @pytest.fixture(scope="module")
@@ -64,8 +69,14 @@ def _refuse_outside(url, path, complaints):
         complaints.append(f"asks for {url}")
 
 
+def unfold(page):
+    """Open every fold."""
+    page.evaluate("document.querySelectorAll('details').forEach(d => { d.open = true })")
+
+
 def drawn(page):
-    """Let every chart come into view, and wait until it is drawn."""
+    """Open every fold, let every chart come into view, and wait until it is drawn."""
+    unfold(page)
     for figure in page.locator(CHARTS).all():
         figure.scroll_into_view_if_needed()
         figure.locator(".chart .main-svg").first.wait_for(timeout=20_000)
@@ -95,7 +106,7 @@ def test_the_first_screen_answers_how_far_apart_and_at_what_cost(opened, report)
     table = page.locator("table.overview")
     box = table.bounding_box()
     assert box["y"] + box["height"] <= WIDE[1] and box["x"] + box["width"] <= WIDE[0]
-    assert table.locator("tbody tr").count() == 2
+    assert table.locator("tbody tr").count() == 3
     heads = table.locator("thead").inner_text().replace("\u00a0", " ")
     assert all(heads.count(word) == 3 for word in ("own %", "finest %", "cost", "verdict"))
     lead = page.locator("ul.lead").inner_text()
@@ -106,7 +117,7 @@ def test_the_first_screen_answers_how_far_apart_and_at_what_cost(opened, report)
 
 def test_a_verdict_is_never_a_colour_alone(opened):
     grades = opened().locator(".grade").all_inner_texts()
-    assert len(grades) == 6
+    assert len(grades) == 9
     assert all(re.fullmatch(r"[✓≈△▲✗?] [a-z ]+", text) for text in grades)
 
 
@@ -138,7 +149,8 @@ def test_dragging_zooms_all_panels_of_a_chart(opened):
 
 def test_a_curve_is_switched_off_and_on_in_every_panel_by_mouse_and_by_key(opened):
     page = opened()
-    figure = drawn(page)[0]
+    drawn(page)
+    figure = page.locator("#short-pillar-waveforms-figure")
     button = figure.get_by_role("button", name="dem", exact=True)
     shown = "box => box.data.filter(t => t.legendgroup === 'dem').map(t => t.visible ?? true)"
     states = []
@@ -148,11 +160,12 @@ def test_a_curve_is_switched_off_and_on_in_every_panel_by_mouse_and_by_key(opene
         found = figure.locator(".chart").evaluate(shown)
         states.append(found)
         assert button.get_attribute("aria-pressed") == str(found[0]).lower()
-    assert states == [[False, False], [True, True], [False, False]]
+    assert states == [[False] * 4, [True] * 4, [False] * 4]  # in both variants, and residuals
 
 
 def test_every_download_is_a_whole_file_of_its_kind(opened, report):
     page = opened(accept_downloads=True)
+    unfold(page)
     links = page.locator(".files a").all()
     figures = page.locator("figure").count()
     assert len(links) == 3 * figures > 3
@@ -209,17 +222,38 @@ def test_no_figure_is_blank_on_screen_or_on_paper(opened):
         assert spread(figure.locator(".static").screenshot()) > 8
 
 
-def test_the_page_prints_with_its_figures_and_opened_details(opened):
+def test_the_page_prints_what_is_not_folded(opened):
+    """Folds stay closed; each scene takes at most three sides and a half."""
     page = opened()
-    drawn(page)
     pdf = page.pdf(prefer_css_page_size=True)
     assert pdf.startswith(b"%PDF")
     sheets = len(re.findall(rb"/Type\s*/Page\b", pdf))
-    assert 6 <= sheets <= 40
+    assert 4 <= sheets <= 11
     page.evaluate("dispatchEvent(new Event('beforeprint'))")
-    assert page.locator("details:not([open])").count() == 0
-    page.evaluate("dispatchEvent(new Event('afterprint'))")
-    assert page.locator("details[open]").count() == 0
+    assert page.locator("details[open]").count() == 0 < page.locator("details").count()
+
+
+def test_no_two_captions_show_the_same_picture_or_numbers(opened, report):
+    """Pixel by pixel, and file by file; what two scenes share is drawn once and linked to."""
+    page = opened()
+    unfold(page)
+    page.emulate_media(media="print")
+    found = {}
+    for figure in page.locator("figure").all():
+        name = figure.get_attribute("id").removesuffix("-figure")
+        numbers = (report.page.parent / "figures" / f"{name}.csv").read_bytes()
+        for seen in (figure.locator(".static").screenshot(), numbers):
+            assert found.setdefault(seen, name) == name
+    links = page.locator("#moving p a[href^='#short-pillar']")
+    assert links.all_inner_texts() == ["short-pillar: Energy over time"]
+    assert page.locator(links.get_attribute("href")).count() == 1
+
+
+def test_every_variant_has_a_diagram_of_its_own_under_its_name(opened):
+    heads = opened().locator("h3").all_inner_texts()
+    for words in ("Stress along", "Velocity along"):
+        for variant in ("undamped", "ζ = 0.05"):
+            assert f"{words} the pillar over time, {variant}" in heads
 
 
 CLIPPED = """boxes => [...document.querySelectorAll(
@@ -242,7 +276,6 @@ OUTSIDE = """figure => {
 def test_no_text_is_clipped(opened, size):
     page = opened(size)
     drawn(page)
-    page.evaluate("document.querySelectorAll('details').forEach(d => { d.open = true })")
     assert page.evaluate("document.documentElement.scrollWidth") == size[0]
     assert page.evaluate(CLIPPED, BOXES) == []
     for figure in page.locator("figure").all():
@@ -297,7 +330,7 @@ def test_the_command_of_a_scene_is_copied(opened):
 
 def test_without_scripts_figures_stand_still_and_links_lead_to_files(opened, report):
     page = opened(path=report.page, java_script_enabled=False)
-    for figure in page.locator("figure").all():
+    for figure in page.locator("section > figure").all():
         assert figure.locator(".static svg").is_visible()
     for link in page.locator("figure .files a").all():
         assert (report.page.parent / link.get_attribute("href")).stat().st_size > 100

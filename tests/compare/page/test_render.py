@@ -8,7 +8,7 @@ from compare.drawn import Drawn
 from compare.findings import Finding
 from compare.page.overview import Overview
 from compare.page.render import Page, render
-from compare.page.section import Section
+from compare.page.section import Section, Shown, linked
 from compare.studies.section import StudySection
 from compare.tables import Table
 
@@ -48,10 +48,15 @@ def section(tmp_path, figure):
 
     def make(findings, **changes):
         about = "fig-05", "fig. 5", 5, "Ends", "source", "toml", "jointwave report five"
-        one = Section(*about, [figure("ends")], file, findings, *[empty] * 4, {})
+        one = Section(*about, [shown(figure("ends"))], file, findings, *[empty] * 4, {})
         return one._replace(**changes)
 
     return make
+
+
+def shown(drawn, folded=False, marks=("drawing", "numbers")):
+    """Return a figure as it stands on the page."""
+    return Shown(drawn, folded, frozenset(marks))
 
 
 def test_a_failed_claim_is_red_and_named_at_the_top(page, section):
@@ -99,4 +104,26 @@ def test_a_file_that_is_not_there_is_an_error_not_a_dead_link(page, section, fig
     one = figure("gone")
     Path(one.file("pdf")).unlink()
     with pytest.raises(FileNotFoundError):
-        page(sections=[section([], figures=[one])])
+        page(sections=[section([], figures=[shown(one)])])
+
+
+@pytest.mark.parametrize("shared", ["drawing", "numbers"])
+def test_no_picture_stands_twice(page, section, figure, shared):
+    """A later one is a link to the first, and its files are gone; so of one of equal numbers."""
+    one, other, third = figure("first"), figure("second"), figure("third")
+    sections = [
+        section([], figures=[shown(one)]),
+        section([], figures=[shown(other, marks=(shared, "x")), shown(third, marks=("y", "z"))]),
+    ]
+    found = linked(sections)
+    assert [s.place for section in found for s in section.figures] == ["", "first-figure", ""]
+    assert other.file("pdf").exists() is False and third.file("pdf").exists()
+    found = [found[0], found[1]._replace(name="fig-06")]
+    html = page(sections=found)
+    assert html.count("<figure id=") == 2 and 'id="second-figure"' not in html
+    assert 'The same picture as <a href="#first-figure">fig. 5: A figure</a>.' in html
+
+
+def test_a_folded_picture_is_closed_until_it_is_opened(page, section, figure):
+    html = page(sections=[section([], figures=[shown(figure("more"), folded=True)])])
+    assert "<details><summary>A figure</summary>" in html and "<details open" not in html

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
+from compare.overlays import variant_styles
 from compare.pictures.diagrams import DIFFERENCE, FIELD
 from compare.style import STYLES, TERMS, is_engine
 
@@ -79,6 +80,12 @@ def test_an_engine_and_an_exact_solution_stay_apart(sight):
     engines = [s.colour for name, s in STYLES.items() if is_engine(name)]
     exact = [s.colour for name, s in STYLES.items() if not is_engine(name)]
     assert min(least_distance([a, b], sight) for a in engines for b in exact) > 15
+
+
+@pytest.mark.parametrize("sight", SIGHTS)
+@pytest.mark.parametrize("count", range(2, 7))
+def test_variants_stay_apart(count, sight):
+    assert least_distance([look.colour for look in variant_styles(count)], sight) > 15
 
 
 @pytest.mark.parametrize("sight", SIGHTS)

@@ -39,7 +39,7 @@ def test_front_moves_at_the_speed_of_the_bar(pillar, name, bound):
     """That of the blocks is a little behind: the chain's long waves are slower than the bar's."""
     scene = pillar(time__duration=0.045)
     fields = fields_of(scene, ["dem", name])
-    shown = diagrams_of({"dem": fields[name].assign_attrs(variant="")})[0]
+    shown = diagrams_of(scene, {"dem": fields[name]})[0]
     speed = front_speed(shown.diagrams[0], shown.time, shown.y, 0.5e6 / shown.diagrams[0].unit.size)
     assert speed == pytest.approx(calibrate(scene).bar_speed, rel=bound)
 
@@ -59,21 +59,52 @@ def test_difference_from_what_the_engine_is_exactly_is_round_off(pillar):
     joints = np.rint(result.stress_y.values[1:-1] / p.spacing).astype(int)
     inner = result.isel(stress_y=slice(1, -1))
     closed = inner.assign(stress=(("stress_y", "time"), k / p.area * (u[joints - 1] - u[joints])))
-    (shown,) = diagrams_of({"dem": inner, "lattice": closed})
-    assert [d.name for d in shown.diagrams] == ["dem", "lattice", "dem − lattice"]
-    assert 0 < shown.diagrams[2].share < 1e-9
+    shown, errors = diagrams_of(scene, {"dem": inner, "lattice": closed})
+    assert [d.name for d in shown.diagrams] == ["dem"] and errors.exact
+    assert [d.name for d in errors.diagrams] == ["dem − lattice"]
+    assert 0 < errors.diagrams[0].share < 1e-9
 
 
 def test_difference_from_the_exact_chain_is_the_numerical_error(pillar):
-    (shown,) = diagrams_of(fields_of(pillar(time__duration=0.03), ["dem", "lattice"]))
-    one, other, difference = shown.diagrams
+    scene = pillar(time__duration=0.03)
+    fields = fields_of(scene, ["dem", "lattice"])
+    shown, errors = diagrams_of(scene, fields)
+    (one,), (difference,) = shown.diagrams, errors.diagrams
     largest = np.abs(difference.values).max() * difference.unit.size
     assert 1e-5 < difference.share < 2e-3
-    assert largest == pytest.approx(
-        difference.share * np.abs(other.values).max() * other.unit.size, rel=0.01
-    )
-    assert one.limit == other.limit and difference.limit < one.limit * one.unit.size
+    peak = np.abs(fields["lattice"].stress.values).max()
+    assert largest == pytest.approx(difference.share * peak, rel=0.01)
+    assert difference.limit * difference.unit.size < one.limit * one.unit.size
     assert f"at most {100 * difference.share:.2g} %" in difference.heading
+
+
+def test_the_range_of_a_field_says_that_tension_is_cut(pillar):
+    """Where joints bar it, nothing is blue but the load itself: the least stress is none."""
+    scene = pillar(time__duration=0.03, joints__tension=False, joints__damping_ratio=0.02)
+    shown = diagrams_of(scene, fields_of(scene, ["dem"]))[0].diagrams[0]
+    inner = shown.values[1:-1]
+    assert shown.heading.endswith(f"between the ends 0 to {inner.max():.4g}")
+    assert inner.min() == 0 < inner.max()
+
+
+def test_a_scene_that_records_velocities_is_drawn_by_them(pillar):
+    """At the centres of blocks: another picture than that of the stress."""
+    scene = pillar(time__duration=0.03, record__stress=[], record__velocity=[20.25])
+    (shown, _) = diagrams_of(scene, fields_of(scene, ["dem", "lattice"]))
+    assert shown.quantity.words == "velocity" and shown.diagrams[0].unit.name == "mm/s"
+    assert shown.y[:2].tolist() == [0.25, 1.25]
+    stress = diagrams_of(scene, fields_of(pillar(time__duration=0.03), ["dem", "lattice"]))[0]
+    assert stress.quantity.words == "stress"
+
+
+def test_the_wave_is_drawn_not_the_prestress(pillar):
+    """A shear wave on which no prestress tells: the same diagram with it and without."""
+    across = {"load__direction": [1.0, 0.0, 0.0], "motion__rotation": "none"}
+    scenes = [pillar(time__duration=0.02, prestress__normal=n, **across) for n in (0.0, 1e7)]
+    waves = [fields_of(scene, ["spatial-lattice"])["spatial-lattice"] for scene in scenes]
+    without, stressed = (diagrams_of(scenes[0], {"dem": wave})[0] for wave in waves)
+    assert stressed.quantity.words == without.quantity.words == "shear x"
+    np.testing.assert_allclose(stressed.diagrams[0].values, without.diagrams[0].values, atol=0.01)
 
 
 def test_sections_are_the_waveforms_of_the_comparison(pillar, compared, monkeypatch):
@@ -100,19 +131,20 @@ def test_few_blocks_show_no_wave(pillar):
     assert along_pillar(scene) == {}
 
 
-def test_every_engine_stands_beside_its_own_model_and_the_others(pillar):
-    fields = along_pillar(pillar(pillar__length=10.0, record__stress=[5.0], time__duration=0.02))
-    found = {shown.engine: [d.name for d in shown.diagrams] for shown in diagrams_of(fields)}
-    assert {engine: names[1] for engine, names in found.items() if engine} == {
-        "dem": "lattice",
-        "continuum-jointed": "jointed-bar",
-        "continuum-equivalent": "equivalent-bar",
-    }
-    assert found[""] == [
+def test_engines_stand_beside_each_other_and_their_errors_apart(pillar):
+    scene = pillar(pillar__length=10.0, record__stress=[5.0], time__duration=0.02)
+    shown, errors = diagrams_of(scene, along_pillar(scene))
+    assert [d.name for d in shown.diagrams] == [
+        "dem",
         "dem − continuum-jointed",
         "dem − continuum-equivalent",
         "continuum-equivalent − continuum-jointed",
     ]
+    names = [d.name for d in errors.diagrams]
+    assert names[:2] == ["dem − lattice", "continuum-jointed − jointed-bar"]
+    assert names[2].startswith("continuum-equivalent − ") and len(names) == 3
+    picture = space_time("fig", scene, "as it stands", shown)
+    assert picture.title == "Stress along the pillar over time, as it stands"
 
 
 def spatial(stress, shear, rotation):
@@ -128,7 +160,13 @@ def spatial(stress, shear, rotation):
                 np.stack([0 * wave, rotation * wave, 0 * wave], axis=2),
             ),
         },
-        {"time": time, "stress_y": y, "velocity_y": y},
+        {
+            "time": time,
+            "stress_y": y,
+            "velocity_y": y,
+            "across": ["x", "z"],
+            "axis": ["x", "y", "z"],
+        },
         {"variant": ""},
     )
 
@@ -141,27 +179,28 @@ def spatial(stress, shear, rotation):
         ((0.0, 0.0, 1e-3), "rotation y", "mrad"),
     ],
 )
-def test_largest_force_is_drawn_else_what_turns(peaks, words, unit):
-    (shown,) = diagrams_of({"dem": spatial(*peaks)})
+def test_largest_force_is_drawn_else_what_turns(pillar, peaks, words, unit):
+    (shown,) = diagrams_of(pillar(), {"dem": spatial(*peaks)})
     assert shown.quantity.words == words
     assert shown.diagrams[0].unit.name == unit
     assert shown.diagrams[0].limit > 0
 
 
-def test_nothing_moves_nothing_is_drawn():
-    assert diagrams_of({"dem": spatial(0.0, 0.0, 0.0)}) == []
+def test_nothing_moves_nothing_is_drawn(pillar):
+    assert diagrams_of(pillar(), {"dem": spatial(0.0, 0.0, 0.0)}) == []
 
 
 @pytest.fixture
 def picture(pillar):
     layer = {"y": 20.0, "spacing_stiffness": 4.375e8}
     scene = pillar(time__duration=0.03, soft_layers=[layer])
-    (shown,) = diagrams_of(fields_of(scene, ["dem", "lattice"]))
-    return space_time("fig", scene, shown)
+    bar = {"dem": fields_of(scene, ["dem"])["dem"]}
+    bar["continuum-equivalent"] = fields_of(scene, ["equivalent-bar"])["equivalent-bar"]
+    return space_time("fig", scene, "soft layer", diagrams_of(scene, bar)[0])
 
 
 def test_traces_hold_the_numbers_of_the_table(picture):
-    assert len(picture.plot["data"]) == 3
+    assert len(picture.plot["data"]) == 2
     for trace, column in zip(picture.plot["data"], picture.table.columns[2:], strict=True):
         z = unpacked(trace["z"])
         assert column.startswith(f"{trace['name']} (")
@@ -179,15 +218,18 @@ def test_one_diagram_takes_little_of_the_page(picture):
 
 
 def test_soft_layer_is_drawn_through_every_diagram(picture):
-    assert [shape["y0"] for shape in picture.plot["layout"]["shapes"]] == [20.0] * 3
+    assert [shape["y0"] for shape in picture.plot["layout"]["shapes"]] == [20.0] * 2
     drawn = [ax for ax in picture.static.axes if ax.images and ax.get_title(loc="left")]
+    assert [t.get_text() for t in drawn[0].texts] == [
+        "soft layer"
+    ] and "soft layer" in picture.title
     for ax in drawn:
         assert any(set(line.get_ydata()) == {20.0} for line in ax.lines)
 
 
 def test_static_diagrams_hold_the_same_numbers_in_the_same_colours(picture, ink):
     drawn = [ax for ax in picture.static.axes if ax.get_title(loc="left")]
-    assert len(drawn) == 3
+    assert len(drawn) == 2
     for ax, trace in zip(drawn, picture.plot["data"], strict=True):
         (image,) = ax.images
         rows = image.get_array()[::FINER]
