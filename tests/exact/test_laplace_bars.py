@@ -57,30 +57,88 @@ def test_attenuation_is_quadratic_in_frequency_while_it_is_small():
     assert omega / k.real == pytest.approx(c, rel=1e-6)
 
 
-def test_a_step_and_a_record_arrive_as_images_say(misfit):
-    """A triangle is smooth but for three kinks. A step is off within two fine steps, a tenth of a
-    sample each, of its dozen jumps: at most 12 of 2000 samples by half of a jump, 4 %."""
+@pytest.mark.parametrize("front", [True, False])
+def test_a_step_and_a_record_arrive_as_images_say(misfit, monkeypatch, front):
+    """With the part in front of the first joint apart it is round-off. Inverted as a whole, a
+    triangle is off at its three kinks, by the least of what the record resolves; a step within two
+    fine steps, a tenth of a sample each, of its dozen jumps: at most 12 of 2000 samples by half of
+    a jump, 4 %."""
+    monkeypatch.setattr(laplace, "MOST_TRIPS", laplace.MOST_TRIPS if front else 0)
     c = np.sqrt(4e9 / 2400)
     bar, times = replace(ROCK, length=60.0), np.linspace(0, 0.25, 2001)
     triangle = Recorded(np.array([0.0, 0.01, 0.04]), np.array([0.0, 1e6, 0.0]))
-    for load, bound in ((triangle, 9e-5), (Step(1e6), 4e-2)):
+    for load, bound in ((triangle, 9e-6), (Step(1e6), 4e-2)):
         stress, velocity, displacement = laplace.response(bar, load, times, [21.0], [33.0])
+        bound = 1e-9 if front else bound
         there, back = images.images(load.value, [21.0], times, 60.0, c)
         assert misfit(stress, there + back) < bound
         there, back = images.images(load.value, [33.0], times, 60.0, c)
         assert misfit(velocity, (there - back) / Z) < bound
         there, back = images.images(load.impulse, [33.0], times, 60.0, c)
-        assert misfit(displacement, (there - back) / Z) < 9e-5
+        assert misfit(displacement, (there - back) / Z) < 1e-7
 
 
-def test_the_window_and_the_steps_may_be_refined_without_effect(scene, misfit, monkeypatch):
-    """Halving both the fine step and what wraps moves 99 joints' result by less than 0.009 %."""
-    at = scene()
-    coarse = jointed_bar.solve(at)
-    monkeypatch.setattr(laplace, "STEPS_PER_PERIOD", 3200)
+def random_bar(scene, folder, seed):
+    """Return a module and a scene of a jointed or homogenised bar with any load, layers and ends,
+    with receivers on its ends, on joints and between."""
+    r = np.random.default_rng(seed)
+    (folder / "load.csv").write_text("0.001,0.4\n0.004,1\n0.0131,-0.7\n0.02,0.2\n")
+    load = [
+        {"shape": "sine", "period": r.uniform(0.004, 0.02), "cycles": int(r.integers(1, 3))},
+        {"shape": "ricker", "period": r.uniform(0.004, 0.02)},
+        {"shape": "table", "file": "load.csv"},
+    ][r.integers(3)]
+    table = scene(
+        pillar={"length": 10.0},
+        ends={
+            "start": str(r.choice(["free", "quiet", "matched"])),
+            "end": str(r.choice(["free", "quiet", "matched", "fixed"])),
+        },
+        joints={"damping_ratio": r.choice([0.004, 0.05, 0.5])} if r.random() < 0.4 else {},
+        soft_layers=[
+            {"y": 0.5 * int(r.integers(1, 20)), "spacing_stiffness": 4e8 * r.uniform(0.3, 8)}
+            | ({"damping_ratio": 0.02} if r.random() < 0.5 else {})
+        ],
+        time={"duration": r.uniform(0.02, 0.06)},
+        record={
+            "stress": [r.uniform(0.1, 0.4), 0.5, r.uniform(1, 9)],
+            "velocity": [0.0, 0.5, r.uniform(1, 9), 10.0],
+        },
+    ).model_dump(exclude_none=True)
+    table["load"] = load | {"amplitude": 1e6}
+    module = equivalent_bar if r.random() < 0.5 else jointed_bar
+    return module, Scene.model_validate(table, context={"folder": folder})
+
+
+@pytest.mark.parametrize(
+    "seed", [*range(12), *(pytest.param(s, marks=pytest.mark.slow) for s in range(12, 150))]
+)
+def test_the_bound_of_the_error_holds(scene, tmp_path, monkeypatch, seed):
+    """Against steps many times as fine in a longer window."""
+    module, at = random_bar(scene, tmp_path, seed)
+    monkeypatch.setattr(laplace, "CHEAP", laplace.CHEAP / 8)
+    found = module.solve(at)
+    monkeypatch.setattr(laplace, "CHEAP", 8 * laplace.CHEAP)
+    monkeypatch.setattr(laplace, "FINER", 4 * laplace.FINER)
     monkeypatch.setattr(laplace, "TAIL", 2.5)
-    fine = jointed_bar.solve(at)
-    assert max(misfit(coarse, fine, k) for k in ("stress", "velocity", "displacement")) < 9e-5
+    finer = module.solve(at)
+    for name in ("stress", "velocity", "displacement"):
+        waves, exact = (
+            x[name].values.reshape(-1, len(x.time)).astype(float) for x in (found, finer)
+        )
+        bound = found[f"{name}_error"].values.ravel()
+        error = np.sqrt(((waves - exact) ** 2).mean(axis=1))
+        assert (error <= bound).all(), (name, error / bound)
+
+
+def test_the_pillar_s_stress_is_known_to_a_millionth(scene):
+    """A tenth of the bounds of 1e-5 that scenes may set is then judged: inside the rock, at any
+    joint and behind; in front of the first joint, where kinks return 700 times, to 1e-4."""
+    found = jointed_bar.solve(scene(record={"velocity": [0.0, 20.0, 33.3]}))
+    for name in ("stress", "velocity", "displacement"):
+        waves = found[name].values.reshape(-1, len(found.time))
+        relative = found[f"{name}_error"].values.ravel() / np.sqrt((waves**2).mean(axis=1))
+        assert (relative[-2:] < 1e-6).all() and (relative < 1e-4).all()
 
 
 def test_fine_joints_are_the_homogenised_bar(scene, misfit):
@@ -102,7 +160,8 @@ def test_fine_joints_are_the_homogenised_bar(scene, misfit):
 
 @pytest.mark.parametrize("zeta", [0.02, 0.1, 1.5])
 def test_the_damped_bar_s_modes_agree(scene, misfit, zeta):
-    """Both are smooth but at y = 0, where the load's kinks fall on samples: 0.009 % (`laplace`)."""
+    """Each to its own bound; both are smooth but at y = 0, where kinks of the load fall on
+    samples."""
     at = scene(joints={"damping_ratio": zeta})
     modes, laplace_bar = kelvin_voigt.solve(at), equivalent_bar.solve(at)
     for variable in ("stress", "velocity", "displacement"):
