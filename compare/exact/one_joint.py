@@ -33,7 +33,7 @@ from compare.exact.conditions import (
     static_stress,
 )
 from compare.exact.images import ENTERS
-from compare.exact.linear import response
+from compare.exact.linear import bound, twins
 
 NAME = "one-joint"
 RESOLVES = Resolves(Rock.HOMOGENISED)
@@ -81,19 +81,24 @@ def _start_stays_silent(scene: Scene, p: Properties) -> Answer:
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, velocity and displacement on both sides of the scene's soft layer."""
     p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
-    joint, enters = the_joint(p), ENTERS[scene.ends.start]
+    joint, enters, places = the_joint(p), ENTERS[scene.ends.start], scene.record
 
-    def passed(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return transmitted(joint, p.impedance, load, at)
+    def waveforms(which: int) -> list[np.ndarray]:
+        def passed(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            return _transmitted(joint, p.impedance, load, at, which)
 
-    def waves(places: list[float]) -> np.ndarray:
-        return enters * around(joint.y, p.bar_speed, passed, load, times, places)
+        def waves(y: list[float]) -> np.ndarray:
+            return enters * around(joint.y, p.bar_speed, passed, load, times, y)
 
-    there, back = waves(scene.record.stress)
-    stress = there[0] + back[0]
-    there, back = waves(scene.record.velocity)
-    velocity, displacement = (there - back) / p.impedance
-    return dataset(scene, NAME, times, stress + static_stress(scene), velocity, displacement)
+        there, back = waves(places.stress)
+        stress = there[0] + back[0] + static_stress(scene)
+        there, back = waves(places.velocity)
+        return [stress, *((there - back) / p.impedance)]
+
+    found, twin = waveforms(0), waveforms(1)
+    bounds = [bound(a, b) for a, b in zip(found, twin, strict=True)]
+    errors = dict(zip(("stress", "velocity", "displacement"), bounds, strict=True))
+    return dataset(scene, NAME, times, *found, errors=errors)
 
 
 def around(
@@ -153,10 +158,15 @@ def transmitted(
 
     `times` are equally spaced and begin before the load does.
     """
+    return _transmitted(joint, impedance, load, times, 0)
+
+
+def _transmitted(joint, impedance, load, times, which) -> tuple[np.ndarray, np.ndarray]:
+    """Return what `transmitted` does, or its twin (`linear.twins`) where `which` is 1."""
     tau = joint.time_constant + impedance / (2 * joint.stiffness)
     share = joint.time_constant / tau
     rate, one = np.array([[-1 / tau]]), np.ones(1)
-    smooth = response(rate, one / tau, one[None], load, times)[:, 0]
+    smooth = twins(rate, one / tau, one[None], load, times)[which, :, 0]
     stress = share * load.value(times) + (1 - share) * smooth
     impulse = load.impulse(times) - (1 - share) * tau * smooth
     return stress, impulse

@@ -22,7 +22,7 @@ from compare.exact.answer import YES, Answer, Resolves, Rock, no
 from compare.exact.conditions import bars_tension, beyond
 from compare.exact.drive import drive
 from compare.exact.lattice import HELD
-from compare.exact.linear import response
+from compare.exact.linear import bound, twins
 from compare.exact.spatial import PLANES, plane, row
 from compare.exact.spatial_system import System, at_rest, system
 
@@ -54,8 +54,8 @@ def solve(scene: Scene) -> xr.Dataset:
     times, record = sample_times(scene), scene.record
     area, blocks = scene.pillar.area, row(scene)
     push, fall, base = drive_vector(scene), falling(scene), _base(scene)
-    forces = np.zeros((len(record.stress), len(times), 6))
-    motion, rate = np.zeros((2, len(record.velocity), len(times), 6))
+    forces = np.zeros((2, len(record.stress), 6, len(times)))
+    motion, rate = np.zeros((2, 2, len(record.velocity), 6, len(times)))
     for freedoms in PLANES[scene.motion.rotation]:
         own = list(freedoms)
         if not (push[own].any() or fall[own].any() or (base is not None and base[own].any())):
@@ -63,20 +63,27 @@ def solve(scene: Scene) -> xr.Dataset:
         shaken = None if base is None else base[own]
         parts = system(plane(blocks, freedoms), push[own], fall[own], shaken)
         found = _receivers(scene, parts, len(own), times)
-        forces[..., own], motion[..., own], rate[..., own] = found
-    stress = forces[..., 1] / area
+        for field, part in zip((forces, motion, rate), found, strict=True):
+            field[:, :, own] = part
+    tractions, turns, moves, rates = (
+        forces / area,
+        motion[:, :, 3:],
+        motion[:, :, :3],
+        rate[:, :, :3],
+    )
+    waves = {
+        "stress": tractions[:, :, 1],
+        "shear": tractions[:, :, [0, 2]],
+        "velocity": rates,
+        "displacement": moves,
+        "rotation": turns,
+    }
+    stress = tractions[0, :, 1]
     if scene.prestress is not None:
         stress += scene.prestress.normal
-    return dataset(
-        scene,
-        NAME,
-        times,
-        stress,
-        rate[..., :3],
-        motion[..., :3],
-        shear=forces[..., [0, 2]] / area,
-        rotation=motion[..., 3:],
-    )
+    fields = {name: x[0].swapaxes(-1, -2) for name, x in waves.items() if name != "stress"}
+    errors = {name: bound(*pair) for name, pair in waves.items()}
+    return dataset(scene, NAME, times, stress, **fields, errors=errors)
 
 
 def drive_vector(scene: Scene) -> np.ndarray:
@@ -107,21 +114,22 @@ def _base(scene: Scene) -> np.ndarray | None:
 
 
 def _receivers(scene: Scene, parts: System, c: int, times: np.ndarray) -> list[np.ndarray]:
-    """Return the forces, displacements and velocities [receivers, n, c] of one plane."""
+    """Return the forces, displacements and velocities [2, receivers, c, n] of one plane and of its
+    twin."""
     signal, gravity = drive(scene), scene.gravity
     rows, counts = _rows(scene, parts, c)
-    out = np.zeros((len(times), len(rows)))
+    out = np.zeros((2, len(times), len(rows)))
     if parts.load.any():
-        out += response(parts.matrix, parts.load, rows, signal, times)
+        out += twins(parts.matrix, parts.load, rows, signal, times)
         sections = _read(_contacts(scene), scene.record.stress, c)
-        out[:, : counts[0]] += np.outer(signal.value(times), sections @ parts.direct)
+        out[..., : counts[0]] += np.outer(signal.value(times), sections @ parts.direct)
     if parts.gravity.any() and gravity is not None:
         if gravity.static:
             out += rows @ at_rest(parts)
         else:
-            out += response(parts.matrix, parts.gravity, rows, Step(1.0), times)
-    fields = np.split(out.T, np.cumsum(counts))
-    return [part.reshape(-1, c, len(times)).swapaxes(1, 2) for part in fields]
+            out += twins(parts.matrix, parts.gravity, rows, Step(1.0), times)
+    fields = np.split(out, np.cumsum(counts), axis=2)
+    return [part.reshape(2, len(times), -1, c).transpose(0, 2, 3, 1) for part in fields]
 
 
 def _rows(scene: Scene, parts: System, c: int) -> tuple[np.ndarray, tuple[int, int]]:
