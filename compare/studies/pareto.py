@@ -121,8 +121,15 @@ def cheapest(rows: list[Row]) -> list[Cheapest]:
 
 
 def floor(rows: list[Row], error: str) -> float:
-    """Return the error below which these are not known; 0 against exact solutions."""
-    floors = [getattr(row, f"{error}_floor", 0.0) for row in rows]
+    """Return the error below which these are not known; 0 against exact solutions. Of totals that
+    of the finest physics, without what is not known of each curve's own model."""
+    if error == "total":
+        of_finest = [r.total_floor - r.numerical_floor for r in rows]
+        return _largest(of_finest) or _largest([r.total_floor for r in rows])
+    return _largest([getattr(row, f"{error}_floor", 0.0) for row in rows])
+
+
+def _largest(floors: list[float]) -> float:
     return max((value for value in floors if not math.isnan(value)), default=0.0)
 
 

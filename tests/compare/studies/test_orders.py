@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from compare.engines import applies
 from compare.studies.measure import Row, method_applies
 from compare.studies.orders import orders
-from compare.studies.pareto import cheapest, digits_per_second, front, judged
+from compare.studies.pareto import cheapest, digits_per_second, floor, front, judged
 from compare.studies.reference import finest_of, own_of
 from compare.studies.runner import run
 from compare.studies.study import Reference, load, shipped
@@ -156,3 +156,12 @@ def test_no_point_is_the_cheapest_within_a_misfit_that_is_not_known():
     rows = [row(total=e, total_floor=3e-3, seconds=1.0, curve=name) for name, e in points]
     assert [c.misfit for c in cheapest(rows)] == [0.1]
     assert [c.misfit for c in cheapest([r._replace(total_floor=0.0) for r in rows])][-1] == 1e-4
+
+
+def test_the_floor_of_totals_is_that_of_the_finest_physics():
+    """Not what is not known of a coarser model's own run; of the finest curve, its own."""
+    known = row(total_floor=0.004, numerical_floor=0.004)
+    coarse = row(total_floor=0.104, numerical_floor=0.1)
+    assert floor([known, coarse], "total") == pytest.approx(0.004)
+    assert floor([known], "total") == 0.004
+    assert floor([known, coarse], "numerical") == 0.1
