@@ -9,6 +9,7 @@ import resource
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pandas as pd
 import pytest
@@ -298,6 +299,48 @@ def test_no_control_character_reaches_the_terminal(text, capfd):
     terminal.print_json({text: text})
     found = capfd.readouterr().out
     assert not CONTROL.search(found) and "[red]:smile:" in found
+
+
+def test_every_line_that_is_printed_was_made_printable():
+    """What is not a constant has gone through `printable`, or is JSON or a line made of it."""
+    raw = []
+    for path in sorted((ROOT / "compare").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "print":
+                names = {getattr(n.func, "id", getattr(n.func, "attr", "")) for n in calls(node)}
+                if shows(node) and not names & {"printable", "dumps", "version"}:
+                    raw.append(f"{path.relative_to(ROOT)}:{ast.unparse(node)}")
+    assert {line.partition(":")[0] for line in raw} <= PRINTED, raw
+
+
+#: Modules that print what is safe already, and what it is.
+PRINTED = {
+    "compare/processes.py",  # a message of compare/cli.py, which made it printable
+    "compare/start.py",  # `fault`, in ASCII
+    "compare/terminal.py",  # JSON, dumped the line before
+    "compare/doctor.py",  # a number, in another process
+}
+
+
+def calls(node):
+    return [n for n in ast.walk(node) if isinstance(n, ast.Call) and n is not node]
+
+
+def shows(node):
+    """Return whether a print shows anything but constants."""
+    return any(not isinstance(a, ast.Constant) for a in node.args)
+
+
+def test_a_title_is_text_in_a_drawing(tmp_path):
+    """Neither markup nor mathematics: as it stands in the SVG's title, and nowhere an element."""
+    title = 'costs $5 <b>&amp; $x_{ ]]> <script>alert(1)</script> "q" \''
+    figure = Figure()
+    figure.subplots().plot([0, 1])
+    drawn = save(figure, tmp_path, "a", title, png=False)
+    found = ElementTree.parse(drawn.file("svg")).getroot()
+    svg = "{http://www.w3.org/2000/svg}"
+    assert found.findtext(f"{svg}title") == title
+    assert not [e for e in found.iter() if e.tag.removeprefix(svg) in ("script", "b")]
 
 
 @pytest.mark.parametrize("key", ["title", "source", "name"])
