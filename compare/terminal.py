@@ -90,6 +90,6 @@ def print_json(value: Any) -> None:
 
 
 def _console() -> Console:
-    plain = {"markup": False, "highlight": False, "emoji": False}
+    plain: dict[str, Any] = {"markup": False, "highlight": False, "emoji": False}
     console = Console(**plain)
     return console if console.is_terminal else Console(width=WIDEST, **plain)
