@@ -4,7 +4,6 @@ Heavy packages are imported by the command that needs them, so a run of the rigi
 without dolfinx and matplotlib.
 """
 
-import sys
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
@@ -113,15 +112,17 @@ def explain(
     changes: SetOption = [],  # noqa: B006
     variant: VariantOption = None,
     strict: StrictOption = False,
+    measured: Annotated[
+        bool,
+        typer.Option("--measure", help="Time a rigid block's step; may compile for a minute."),
+    ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Say what a scene calls for, its critical steps, and which exact solutions hold."""
+    """Say what a scene calls for, its critical steps, which exact solutions hold, and which of them
+    is the reference."""
     from compare import views
-    from compare.effort import is_measured
     from compare.explain import explanation
 
     scenes = load(scene, changes, variant if variant is not None else "", strict)
-    if sys.stderr.isatty() and not is_measured():
-        print("jointwave: measuring once what every effect costs, about a minute", file=sys.stderr)
     for one in scenes:
-        views.show_explanation(explanation(one), as_json)
+        views.show_explanation(explanation(one, measured), as_json)

@@ -157,9 +157,9 @@ def _samples(time: Clock, blocks: int, most: int = BLOCK_STEPS) -> int:
     return min(time.samples, max(64, most // blocks) // time.stride + 1)
 
 
-def is_measured() -> bool:
-    """Return whether `whole` is known already."""
-    return _file().exists()
+def remembered_whole(blocks: int) -> float | None:
+    """Return `whole` where it was measured already, else None."""
+    return _known().get(str(everything(blocks).pillar.block_count))
 
 
 def whole(blocks: int) -> float:

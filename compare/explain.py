@@ -6,9 +6,10 @@ from cases.calibrate import Properties, calibrate
 from cases.effects import Effect, effects, is_spatial
 from cases.scene import Scene
 from compare import rates
-from compare.effort import nanoseconds, whole
-from compare.engines import ENGINES, applies, exact_names
+from compare.effort import nanoseconds, remembered_whole, whole
+from compare.engines import ENGINES
 from compare.exact.answer import Answer
+from compare.ranking import Reference, applicable, reference_of
 
 
 @dataclass(frozen=True)
@@ -23,36 +24,50 @@ class StepChoice:
 
 @dataclass(frozen=True)
 class Cost:
-    """What a step of one rigid block costs here: of this scene, and with every effect, ns."""
+    """What a step of one rigid block costs here: of this scene, and with every effect, ns; None
+    where it was never measured."""
 
-    own: float
-    everything: float
-
-    @property
-    def share(self) -> float:
-        """The scene's own part of the cost of everything."""
-        return self.own / self.everything
+    own: float | None
+    everything: float | None
 
 
 @dataclass(frozen=True)
 class Explanation:
-    """Everything that can be said of a scene but what comes out of it."""
+    """Everything that can be said of a scene but what comes out of it.
+
+    references : what each engine is held against; None where nothing checks it independently.
+    """
 
     scene: Scene
     properties: Properties
     effects: list[Effect]
     steps: list[StepChoice]
     answers: dict[str, Answer]
+    references: dict[str, Reference | None]
     cost: Cost
 
 
-def explanation(scene: Scene) -> Explanation:
-    """Return what a scene calls for, what is left out, and what can solve it."""
-    answers = {name: applies(name, scene) for name in (*ENGINES, *exact_names())}
+def explanation(scene: Scene, measured: bool = False) -> Explanation:
+    """Return what a scene calls for, what is left out, and what can solve it.
+
+    measured : step some blocks to say what they cost, which may compile kernels for a minute; else
+    the cost is what such a scene's steps took here before.
+    """
+    answers = applicable(scene)
+    able = [name for name, answer in answers.items() if answer]
+    references = {name: reference_of(name, able, scene) for name in ENGINES if answers[name]}
     steps = [_step(name, scene) for name in ENGINES if answers[name]]
-    cost = Cost(nanoseconds(scene), whole(scene.pillar.block_count))
-    rates.note_block_step(scene, cost.own)
-    return Explanation(scene, calibrate(scene), effects(scene), steps, answers, cost)
+    cost = _cost(scene, measured)
+    return Explanation(scene, calibrate(scene), effects(scene), steps, answers, references, cost)
+
+
+def _cost(scene: Scene, measured: bool) -> Cost:
+    count = scene.pillar.block_count
+    if not measured:
+        return Cost(rates.block_step(scene), remembered_whole(count))
+    own = nanoseconds(scene)
+    rates.note_block_step(scene, own)
+    return Cost(own, whole(count))
 
 
 def _step(name: str, scene: Scene) -> StepChoice:

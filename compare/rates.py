@@ -46,6 +46,12 @@ def note_block_step(scene: Scene, nanoseconds: float, threads: int = 1) -> None:
     _keep(_key("dem", scene, {"threads": threads}), 1e-9 * nanoseconds)
 
 
+def block_step(scene: Scene) -> float | None:
+    """Return what a step of one rigid block took, ns; None where none such was ever timed."""
+    rate = _known().get(_key("dem", scene, {"threads": 1}))
+    return None if rate is None else 1e9 * rate
+
+
 def stepping(name: str, scene: Scene, about: Mapping[str, Any]) -> float | None:
     """Return the seconds that a run's steps should take; None where none such was ever timed.
 

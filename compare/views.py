@@ -106,12 +106,25 @@ def show_explanation(found: Any, as_json: bool) -> None:
         for s in found.steps
     ]
     show_table(["engine", "critical step, s", "step, s", "fraction", "steps"], steps)
-    say(
-        f"a step of a rigid block takes {found.cost.own:.2g} ns here, "
-        f"{100 * found.cost.share:.2g} % of the {found.cost.everything:.2g} ns with every effect"
-    )
+    say(_cost_sentence(found.cost))
     answers = [[k, "yes" if a else "no", a.reason] for k, a in found.answers.items()]
     show_table(["solution", "applies", "why not"], answers)
+    for engine, reference in found.references.items():
+        held = "not checked independently: no other solution leaves out less"
+        if reference is not None:
+            held = f"held against {reference.name}: {reference.reason}"
+        say(f"{engine} is {held}")
+
+
+def _cost_sentence(cost: Any) -> str:
+    """Return what a step costs, as far as it is known."""
+    if cost.own is None:
+        return "what a step of a rigid block takes here is known after a run, or by --measure"
+    own = f"a step of a rigid block takes {cost.own:.2g} ns here"
+    if cost.everything is None:
+        return own
+    share = 100 * cost.own / cost.everything
+    return f"{own}, {share:.2g} % of the {cost.everything:.2g} ns with every effect"
 
 
 def _explanation_facts(found: Any) -> dict[str, Any]:
@@ -127,6 +140,7 @@ def _explanation_facts(found: Any) -> dict[str, Any]:
         "steps": [s.__dict__ for s in found.steps],
         "nanoseconds_per_block_step": found.cost.own,
         "nanoseconds_with_everything": found.cost.everything,
+        "references": {k: r._asdict() if r else None for k, r in found.references.items()},
         "solutions": {k: {"applies": a.yes, "why_not": a.reason} for k, a in found.answers.items()},
     }
 

@@ -8,7 +8,9 @@ import pytest
 import xarray as xr
 
 from cases.errors import SceneError
+from compare import effort, rates
 from compare.cli import app
+from compare.explain import explanation
 from compare.starter import starter
 
 SCENE = "guo-li-2002/fig-03"
@@ -63,11 +65,31 @@ def test_explain_says_what_is_left_out_and_why():
     assert not facts["effects"]["dashpots"]["active"]
     assert facts["solutions"]["lattice"]["applies"]
     assert "tension" in facts["solutions"]["no-tension-chain"]["why_not"]
+    reference = {"name": "jointed-bar", "reason": "deformable rock with every joint, exact"}
+    assert facts["references"]["dem"] == reference
     assert {s["engine"] for s in facts["steps"]} == {
         "dem",
         "continuum-jointed",
         "continuum-equivalent",
     }
+
+
+def test_explain_steps_no_block_unless_it_is_asked_to(pillar, monkeypatch):
+    """No kernel is compiled or loaded; what was measured is remembered."""
+    scene = pillar(time__duration=0.01, numerics__continuum__elements_per_block=1)
+
+    def refuse(*_):
+        raise AssertionError("a block is stepped")
+
+    with monkeypatch.context() as held:
+        held.setattr(effort, "stretch", refuse)
+        assert explanation(scene).cost.own is None
+        with pytest.raises(AssertionError, match="a block is stepped"):
+            explanation(scene, measured=True)
+    rates.note_block_step(scene, 2.5)
+    found = explanation(scene)
+    assert found.cost.own == pytest.approx(2.5)
+    assert found.references["dem"].name == "jointed-bar"
 
 
 def test_explain_gives_the_critical_steps_of_motion_in_space():
