@@ -132,7 +132,7 @@ def test_no_button_of_a_chart_sends_it_away(opened):
 def test_dragging_zooms_all_panels_of_a_chart(opened):
     page = opened()
     chart = drawn(page)[0].locator(".chart")
-    chart.scroll_into_view_if_needed()
+    chart.locator(".nsewdrag").first.scroll_into_view_if_needed()
     panel = chart.locator(".nsewdrag").first.bounding_box()
     y = panel["y"] + panel["height"] / 2
     before = chart.evaluate("box => [...box.layout.xaxis.range]")
