@@ -14,11 +14,11 @@ from compare.options import (
     ModelOption,
     SceneArgument,
     SetOption,
+    StrictOption,
     VariantOption,
     WithOption,
     app,
     load,
-    warn,
 )
 
 
@@ -43,6 +43,7 @@ def fit(
     out: Annotated[
         Path | None, typer.Option(help="Also write table, fitted scene, curves and figure.")
     ] = None,
+    strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Fit keys of a scene to measured waveforms by least squares, with 95 % intervals.
@@ -67,8 +68,7 @@ def fit(
     from compare.fitting.show import facts_of, show_fit
     from compare.keeping.lock import locked
 
-    (one,) = load(scene, changes, variant or "")
-    warn([one])
+    (one,) = load(scene, changes, variant or "", strict)
     curves = read_curves(given, [one])
     solver = _solver(one, engine, model)
     with ExitStack() as held:

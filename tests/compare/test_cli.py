@@ -138,6 +138,7 @@ STRICT = {
     "effects": (SCENE,),
     "plan": (SCENE, "--misfit", "0.1"),
     "animate": (SCENE,),
+    "fit": (SCENE, "--with", "a.csv", "--free", "load.amplitude"),
     "view": (SCENE, "--out", "a.png"),
 }
 
