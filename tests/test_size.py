@@ -27,6 +27,7 @@ from compare.keeping.watch import result_of
 from compare.output import read_kept
 from compare.processes import ALONE
 from compare.studies.measure import Row
+from continuum.meshing.tagged import read_tagged
 
 AT_ONCE = 200e6  # bytes: what reading a scene of ten million blocks takes, not one run refused here
 
@@ -300,6 +301,7 @@ BOMBS = {
     "a row of lists": lambda p: kept(p / "a.json", "[" + "[]," * 2_000_000 + "0]"),
     "a row of depth": lambda p: kept(p / "a.json", "[" * 500_000),
     "a table of peers": lambda p: peers.read(hollow(p / "a.csv", b"curve\n")),
+    "a mesh": lambda p: read_tagged(hollow(p / "a.msh", b"$MeshFormat\n4.1 1 8\n")),
     "a scene": lambda p: scene_of(p / "a.toml"),
     "a hollow scene": lambda p: cases.load(hollow(p / "a.toml", b"title = 'a'")),
 }

@@ -1,8 +1,6 @@
 """A gmsh file as it stands: vertices, rock cells, and the facets of its named groups."""
 
-import resource
-from collections.abc import Iterator
-from contextlib import contextmanager, redirect_stderr
+from contextlib import redirect_stderr
 from io import StringIO
 from pathlib import Path
 from typing import NamedTuple
@@ -10,6 +8,7 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
+from cases.size import memory, require, within
 from continuum.meshing.cells import FROM_GMSH
 
 #: meshio's names of the kinds of cells, and of their facets.
@@ -79,7 +78,9 @@ def _read(path: Path):
     if not path.is_file():
         raise MeshError("is no file" if path.exists() else "does not exist")
     try:
-        room = ROOM + ROOM_OF_BYTE * path.stat().st_size
+        size = path.stat().st_size
+        require(size, "it")
+        room = min(ROOM + ROOM_OF_BYTE * size, max(ROOM, memory()))
         with redirect_stderr(StringIO()), catch_warnings(), within(room):
             simplefilter("ignore")
             return meshio.gmsh.read(path)
@@ -89,23 +90,6 @@ def _read(path: Path):
         if "gmsh:physical" in reason:
             raise MeshError(f"holds cells of no group, {SAVE_GROUPS}") from None
         raise MeshError(f"cannot be read as a gmsh mesh, version 2.2 or 4.1: {reason}") from None
-
-
-@contextmanager
-def within(room: int) -> Iterator[None]:
-    """Let allocations of more than so many bytes raise MemoryError, where the system can tell."""
-    try:
-        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
-    except OSError:
-        yield
-        return
-    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
-    limits = [pages * resource.getpagesize() + room, *(x for x in (soft, hard) if x >= 0)]
-    resource.setrlimit(resource.RLIMIT_AS, (min(limits), hard))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
 
 
 def _rock(mesh, names: list[str]) -> tuple[str, np.ndarray]:
