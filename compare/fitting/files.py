@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import filecmp
 import json
 import math
 import shutil
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +17,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import cases
+from cases.errors import SceneError
 from cases.read import FILE_KEYS
 from cases.scene import Scene
 from cases.size import value_of
@@ -127,10 +130,10 @@ def _write_scene(found: Fit, given: Scene, path: Path) -> list[Path]:
     for name in (value_of(found.scene, key) for key in FILE_KEYS):
         there = path.parent / str(name)
         if name is not None and (folder / str(name)).resolve() != there.resolve():
-            source = folder / str(name)
-            written.append(
-                write(there, lambda place, source=source: shutil.copyfile(source, place))
-            )
+            if there.exists() and not filecmp.cmp(folder / str(name), there, shallow=False):
+                allowed = "is another file and would be replaced: choose another --out"
+                raise SceneError(str(there), "", None, allowed)
+            written.append(write(there, partial(shutil.copyfile, folder / str(name))))
     cases.load(path)  # it runs
     return written
 
@@ -178,7 +181,7 @@ def draw(found: Fit) -> Figure:
         FigureCanvasAgg(figure)
         axes = figure.subplots(2 * count, sharex=True, height_ratios=[3, 1] * count, squeeze=False)
         for i, one in enumerate(found.waveforms):
-            _draw_waveform(*axes[2 * i : 2 * i + 2, 0], one, found.solver, i)
+            _draw_waveform(axes[2 * i, 0], axes[2 * i + 1, 0], one, found.solver, i)
         figure.align_ylabels()
         axes[-1, 0].set_xlabel("time (ms)")
         handles, labels = axes[0, 0].get_legend_handles_labels()

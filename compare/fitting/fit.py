@@ -201,7 +201,7 @@ class _Search:
         return [np.stack(parts, axis=1) for parts in zip(*columns, strict=True)]
 
     def _derivative(self, x: np.ndarray, i: int) -> list[np.ndarray]:
-        ends = []
+        ends: list[tuple[float, list[np.ndarray] | None]] = []
         for sign in (-1, 1):
             there = x.copy()
             there[i] = np.clip(x[i] + sign * self.problem.step, self.low[i], self.high[i])
@@ -280,7 +280,7 @@ class _Search:
 
     def _other_starts(self) -> list[np.ndarray]:
         """Return the starts that fit best of those with one key a factor larger or smaller."""
-        starts = []
+        starts: list[tuple[float, int, np.ndarray]] = []
         for i, key in enumerate(self.keys):
             for factor in FACTORS if key.logarithmic else ():
                 x = self.start.copy()

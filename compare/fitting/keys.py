@@ -138,7 +138,7 @@ def _free(key: str, numbers: list[float], scene: Scene) -> Free:
 def _unit(key: str, model: type[BaseModel], scene: Scene) -> str:
     """Return the unit of a key, as the comment of its field begins; "" of a ratio."""
     if key == "load.amplitude":
-        return LOADS[scene.load.quantity]
+        return "" if scene.load.file else LOADS[scene.load.quantity]
     about = field_comments(model).get(key.rpartition(".")[2], "")
     found = UNIT.search(re.split(r"[;(]", about)[0])
     return found[0] if found else ""
@@ -152,7 +152,7 @@ def _three(
         return numbers[0], low, high
     if len(numbers) == 2:
         inside = start is not None and numbers[0] <= start <= numbers[1]
-        return start if inside else None, *numbers
+        return start if inside else None, numbers[0], numbers[1]
     return (numbers[1], numbers[0], numbers[2]) if numbers else (start, low, high)
 
 
