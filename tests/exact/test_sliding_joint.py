@@ -120,3 +120,19 @@ def test_behind_a_joint_that_slips_stress_is_cut_off_at_its_strength(scene):
     assert shear[1:].max() == pytest.approx(3e5, rel=1e-9)
     assert shear[0].max() == pytest.approx(5e5, rel=1e-3)
     assert (sliding_joint.solve(at).stress == 2e5).all()
+
+
+@pytest.mark.parametrize("interval", [5e-5, 4e-3])
+def test_the_bound_of_its_error_holds_where_samples_are_far_apart_too(scene, interval):
+    """By a record eight times as dense, whose crossings of the strength are all found."""
+    layer = {"y": 20.0, "cohesion": 2e5, "friction_angle": 0.0, "spacing_stiffness": 4.375e8}
+    tables = SHEAR | {"time": {"duration": 0.04}, "soft_layers": [layer]}
+    record = SHEAR["record"] | {"interval": interval}
+    found = sliding_joint.solve(scene(**tables | {"record": record}))
+    dense = sliding_joint.solve(scene(**tables | {"record": record | {"interval": interval / 8}}))
+    for name in ("shear", "velocity", "displacement"):
+        exact = dense[name].values[:, ::8]
+        error = np.sqrt(((found[name].values - exact) ** 2).mean(axis=1))
+        assert (error <= found[f"{name}_error"].values).all()
+        if interval < 1e-3:
+            assert found[f"{name}_error"].max() < 1e-9 * np.abs(exact).max()
