@@ -126,7 +126,12 @@ def plot_stacks(found: list[tuple[Stack, Stack]], looks: dict[str, Style]) -> di
     """Return the interactive figure: under each quantity's waveforms their residuals."""
     stacks = [stack for pair in found for stack in pair]
     rows = [
-        interactive.Panel(s.heading, s.label, 90 + 60 * len(s.curves), {"tickvals": list(s.curves)})
+        interactive.Panel(
+            s.heading.replace(", ", ",<br>"),
+            s.label,
+            90 + 60 * len(s.curves),
+            {"tickvals": list(s.curves)},
+        )
         for s in stacks
     ]
     traces = [
