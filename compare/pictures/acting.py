@@ -5,10 +5,12 @@ from matplotlib.axes import Axes
 from cases.scene import Gravity, Scene
 from compare.pictures import symbols
 from compare.pictures.frame import HEIGHT, WIDTH, Frame
-from compare.pictures.symbols import ROCK, SOFT
+from compare.pictures.symbols import CHARACTER, SOFT
 from compare.pictures.units import unit_for
 
 LENGTH, GRAVITY = 0.42, 0.3  # inches of arrows
+LEVEL = HEIGHT - 0.1  # inches of a prestress
+ASIDE = GRAVITY / 2 + 0.05  # inches from the arrow of gravity to its number
 
 
 def draw_load(ax: Axes, scene: Scene, place: Frame) -> None:
@@ -42,36 +44,38 @@ def draw_load(ax: Axes, scene: Scene, place: Frame) -> None:
 
 
 def draw_forces(ax: Axes, scene: Scene, place: Frame) -> None:
-    """Draw gravity beside the pillar, and a prestress within it."""
+    """Draw gravity beside the pillar, and a prestress above it and what is written there."""
     if scene.gravity is not None and scene.gravity.acceleration:
-        _draw_gravity(ax, scene.gravity, place.x(scene.pillar.length))
+        _draw_gravity(ax, scene.gravity, gravity_at(scene, place))
     if scene.prestress is not None and scene.prestress.normal:
-        _draw_prestress(ax, scene.prestress.normal, place.x(scene.pillar.length / 2), place.middle)
+        _draw_prestress(ax, scene.prestress.normal, place.x(scene.pillar.length / 2), LEVEL)
 
 
-def _draw_gravity(ax: Axes, gravity: Gravity, end: float) -> None:
+def gravity_at(scene: Scene, place: Frame) -> float:
+    """Return where the arrow of gravity stands, inches."""
+    return min(place.x(scene.pillar.length) + 1.5, WIDTH - 0.3)
+
+
+def _draw_gravity(ax: Axes, gravity: Gravity, x: float) -> None:
     across, along, depth = gravity.direction
-    x, level = min(end + 1.5, WIDTH - 0.5), HEIGHT - 0.35
-    tip = (x + GRAVITY * along, level + GRAVITY * across)
+    level = LEVEL - GRAVITY / 2
+    tip = (x + GRAVITY / 2 * along, level + GRAVITY / 2 * across)
     symbols.along_or_across(ax, tip, (along, across), -depth, GRAVITY)
-    words = f"{gravity.acceleration:g} m/s²"
-    ax.text(x - 0.08, level, words, ha="right", va="center", fontsize=8)
+    ax.text(x - ASIDE, level, gravity_words(gravity), ha="right", va="center", fontsize=8)
+
+
+def gravity_words(gravity: Gravity) -> str:
+    """Return what is written beside the arrow of gravity."""
+    return f"{gravity.acceleration:g} m/s²"
 
 
 def _draw_prestress(ax: Axes, normal: float, x: float, level: float) -> None:
-    """Draw two arrows, towards each other in compression."""
+    """Draw two arrows, towards each other in compression, beside the number."""
     unit = unit_for("Pa", abs(normal))
-    ax.text(
-        x,
-        level,
-        f"prestress {normal / unit.size:g} {unit.name}",
-        ha="center",
-        va="center",
-        fontsize=8,
-        zorder=7,
-        bbox={"facecolor": ROCK, "edgecolor": "none", "pad": 1.5},
-    )
+    words = f"prestress {normal / unit.size:g} {unit.name}"
+    ax.text(x, level, words, ha="center", va="center", fontsize=8)
+    inner = CHARACTER * len(words) / 2 + 0.1
     for side in (-1, 1):
-        far, near = (x + side * 1.25, level), (x + side * 0.85, level)
+        far, near = (x + side * (inner + 0.4), level), (x + side * inner, level)
         tail, tip = (far, near) if normal > 0 else (near, far)
         symbols.arrow(ax, tail, tip, SOFT)

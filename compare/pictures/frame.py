@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from cases.scene import Scene
 
-WIDTH, HEIGHT = 7.3, 1.68  # inches of the drawing
+WIDTH, HEIGHT = 7.3, 1.82  # inches of the drawing
 SIDES = 0.95  # inches beside the pillar: its load and what holds it
 THICK, SQUAT = 0.42, 0.6  # inches across the pillar: at least, and at most
 BASE = 0.6  # inches under the pillar: its scale

@@ -7,11 +7,11 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from cases.scene import Scene, SoftLayer
+from compare.pictures.acting import ASIDE, gravity_at, gravity_words
 from compare.pictures.frame import WIDTH, Frame
-from compare.pictures.symbols import INK, LAYER, RECEIVER, SOFT
+from compare.pictures.symbols import CHARACTER, INK, LAYER, RECEIVER, SOFT
 from compare.pictures.units import unit_for
 
-CHARACTER = 0.066  # inches of a character
 ABOVE = 0.33  # inches of the labels over the pillar
 
 
@@ -49,7 +49,14 @@ def draw_receivers(ax: Axes, scene: Scene, place: Frame) -> None:
         Label(place.x(layer.y), _of_layer(layer, scene.pillar.block), LAYER)
         for layer in scene.soft_layers
     ]
-    _write(ax, sorted(labels), place)
+    _write(ax, sorted(labels), place, _right(scene, place))
+
+
+def _right(scene: Scene, place: Frame) -> float:
+    """Return how far to the right labels may reach, inches."""
+    if scene.gravity is None or not scene.gravity.acceleration:
+        return WIDTH
+    return gravity_at(scene, place) - ASIDE - CHARACTER * (len(gravity_words(scene.gravity)) + 1)
 
 
 def _of_layer(layer: SoftLayer, spacing: float) -> str:
@@ -72,14 +79,15 @@ def _number(value: float, si: str) -> str:
     return f"{value / unit.size:.3g} {unit.name}"
 
 
-def _write(ax: Axes, labels: list[Label], place: Frame) -> None:
+def _write(ax: Axes, labels: list[Label], place: Frame, right: float) -> None:
     """Write labels in one line above the pillar, moved aside where they would meet; none at all
     where there is no room for them: the scale tells where receivers are."""
-    widths = [CHARACTER * (len(label.text) + 1) for label in labels]
-    if sum(widths) > WIDTH:
+    widths = np.array([CHARACTER * (len(label.text) + 1) for label in labels])
+    if not labels or widths.sum() > right:
         return
     base = place.top + ABOVE
-    for label, x in zip(labels, _apart([label.x for label in labels], widths), strict=True):
+    wanted = np.array([label.x for label in labels])
+    for label, x in zip(labels, _apart(wanted, widths, right), strict=True):
         if abs(x - label.x) > 0.01:
             ax.plot(
                 [label.x, x], [place.top + 0.12, base - 0.08], color=label.colour, linewidth=0.6
@@ -87,17 +95,27 @@ def _write(ax: Axes, labels: list[Label], place: Frame) -> None:
         ax.text(x, base, label.text, ha="center", va="center", fontsize=8, color=label.colour)
 
 
-def _apart(places: list[float], widths: list[float]) -> np.ndarray:
-    """Return sorted places moved as far apart as widths ask for.
+def _apart(wanted: np.ndarray, widths: np.ndarray, right: float) -> np.ndarray:
+    """Return sorted places moved as far apart as widths ask for, between 0 and `right`.
 
-    It is the mean of pushing all to the right and all to the left, which both hold the distances.
+    They are moved as little as can be, in the sum of squares: less what stands before each, this is
+    isotonic regression (Barlow & Brunk 1972), here by its min-max formula.
     """
-    right, left = np.array(places), np.array(places)
-    for i in range(1, len(places)):
-        right[i] = max(right[i], right[i - 1] + (widths[i - 1] + widths[i]) / 2)
-    for i in range(len(places) - 2, -1, -1):
-        left[i] = min(left[i], left[i + 1] - (widths[i + 1] + widths[i]) / 2)
-    return (right + left) / 2
+    before = np.concatenate([[0.0], np.cumsum((widths[1:] + widths[:-1]) / 2)])
+    free, n = wanted - before, len(wanted)
+    moved = [
+        max(min(free[j : k + 1].mean() for k in range(i, n)) for j in range(i + 1))
+        for i in range(n)
+    ]
+    return np.clip(moved, widths[0] / 2, right - widths[-1] / 2 - before[-1]) + before
+
+
+def ticks(scene: Scene, place: Frame) -> list[float]:
+    """Return what the scale is marked with, m."""
+    length = scene.pillar.length
+    count = max(2, round(place.scale * length / 0.55))
+    found = MaxNLocator(count, steps=[1, 2, 2.5, 5, 10]).tick_values(0, length)
+    return [float(y) for y in found if 0 <= y <= length * (1 + 1e-9)]
 
 
 def draw_scale(ax: Axes, scene: Scene, place: Frame) -> None:
@@ -105,9 +123,7 @@ def draw_scale(ax: Axes, scene: Scene, place: Frame) -> None:
     pillar, level = scene.pillar, place.bottom - 0.14
     end = place.x(pillar.length)
     ax.plot([place.start, end], [level, level], color=INK, linewidth=0.8)
-    steps = max(2, round((end - place.start) / 0.55))
-    ticks = np.array(MaxNLocator(steps, steps=[1, 2, 2.5, 5, 10]).tick_values(0, pillar.length))
-    for y in ticks[(ticks >= 0) & (ticks <= pillar.length * (1 + 1e-9))]:
+    for y in ticks(scene, place):
         ax.plot([place.x(y)] * 2, [level, level - 0.05], color=INK, linewidth=0.8)
         ax.text(place.x(y), level - 0.07, f"{y:g}", ha="center", va="top", fontsize=8)
     times = place.thick / (place.scale * pillar.side)

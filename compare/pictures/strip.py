@@ -14,8 +14,8 @@ from cases.scene import Scene
 from compare.pictures import symbols
 from compare.pictures.acting import draw_forces, draw_load
 from compare.pictures.frame import HEIGHT, WIDTH, Frame, frame
-from compare.pictures.labels import draw_receivers, draw_scale
-from compare.pictures.symbols import EDGE, INK, LAYER, ROCK
+from compare.pictures.labels import draw_receivers, draw_scale, ticks
+from compare.pictures.symbols import CHARACTER, EDGE, INK, LAYER, ROCK
 
 MOST = 400  # blocks that are drawn one by one
 ROOM = 0.5  # inches of what stands beyond an end
@@ -34,6 +34,7 @@ def draw_strip(ax: Axes, scene: Scene) -> None:
     _draw_layers(ax, scene, place)
     for end, outward in ((scene.ends.start, -1), (scene.ends.end, 1)):
         _draw_end(ax, end, place, place.x(0 if outward < 0 else scene.pillar.length), outward)
+        _name_end(ax, end, scene, place, outward)
     draw_load(ax, scene, place)
     draw_forces(ax, scene, place)
     draw_receivers(ax, scene, place)
@@ -77,7 +78,7 @@ def _draw_layers(ax: Axes, scene: Scene, place: Frame) -> None:
 
 
 def _draw_end(ax: Axes, end: str, place: Frame, x: float, outward: int) -> None:
-    """Draw what holds an end, and its name."""
+    """Draw what holds an end."""
     far, middle = x + outward * ROOM, (x, place.middle)
     half = (x + outward * ROOM / 2, place.middle)
     if end == "fixed":
@@ -89,9 +90,17 @@ def _draw_end(ax: Axes, end: str, place: Frame, x: float, outward: int) -> None:
         symbols.dashpot(ax, half, (far, place.middle))
     if end in ("quiet", "matched"):
         symbols.wall(ax, far, place.middle, 0.3, outward)
+
+
+def _name_end(ax: Axes, end: str, scene: Scene, place: Frame, outward: int) -> None:
+    """Write what holds an end below it, beside the wall and the number of the scale there."""
+    y = 0.0 if outward < 0 else ticks(scene, place)[-1]
+    number = place.x(y) + outward * CHARACTER * (len(f"{y:g}") + 1) / 2
+    x = place.x(0.0 if outward < 0 else scene.pillar.length) + outward * 0.1
+    x = min(x, number) if outward < 0 else max(x, number)
     ax.text(
-        x + outward * (0.17 if end == "fixed" else 0.1),
-        place.bottom - 0.16,
+        x,
+        place.bottom - 0.21,
         f"{end} {'start' if outward < 0 else 'end'}",
         ha="right" if outward < 0 else "left",
         va="top",

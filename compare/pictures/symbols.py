@@ -10,6 +10,7 @@ from matplotlib.patches import Arc, Circle, FancyArrowPatch, Rectangle
 INK, LOAD, RECEIVER, LAYER = "#1c2126", "#b3001b", "#00549e", "#8a3b12"
 ROCK, EDGE, SOFT = "#efe9dd", "#9a917f", "#5d6670"
 THIN = 0.9  # points
+CHARACTER = 0.066  # inches of a character of 8 points
 
 Point = tuple[float, float]
 

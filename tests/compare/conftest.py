@@ -1,8 +1,10 @@
 """What tests measure kept apart from the user's own; and a browser for the tests of pages."""
 
 import shutil
+from itertools import combinations
 
 import pytest
+from matplotlib.text import Text
 
 from compare import rates
 
@@ -26,3 +28,44 @@ def browser():
         started = player.chromium.launch(executable_path=path, args=["--no-sandbox"])
         yield started
         started.close()
+
+
+@pytest.fixture
+def collisions(monkeypatch):
+    """Return a function that lists what a reader of a figure would complain of: text and axes
+    beyond its edges, and texts, legends, colour bars and axes that lie over each other."""
+
+    def found(figure):
+        texts, draw = {}, Text.draw
+
+        def noted(text, *arguments):
+            texts[text] = text.get_text().strip()
+            return draw(text, *arguments)
+
+        with monkeypatch.context() as patch:
+            patch.setattr(Text, "draw", noted)
+            figure.canvas.draw()
+        words = [(said, t.get_window_extent(), t) for t, said in texts.items() if said]
+        areas = [(str(ax), ax.bbox, ax) for ax in figure.axes if ax.axison]
+        areas += [("legend", x.get_window_extent(), x) for x in figure.legends]
+        slack = figure.dpi / 72  # a point
+        return _outside([*words, *areas], figure.bbox.padded(0.1 * slack)) + [
+            f"{one!r} over {other!r}"
+            for (one, a, of_one), (other, b, of_other) in combinations([*words, *areas], 2)
+            if _meet(a, b, slack) and of_one not in of_other.findobj(Text)
+        ]
+
+    return found
+
+
+def _outside(parts, page):
+    return [
+        f"{name!r} is outside"
+        for name, box, _ in parts
+        if box.x0 < page.x0 or box.y0 < page.y0 or box.x1 > page.x1 or box.y1 > page.y1
+    ]
+
+
+def _meet(a, b, slack):
+    across = min(a.x1, b.x1) - max(a.x0, b.x0)
+    return across > slack and min(a.y1, b.y1) - max(a.y0, b.y0) > slack

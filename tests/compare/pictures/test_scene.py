@@ -18,6 +18,7 @@ from compare.pictures.section import draw_section
 from compare.pictures.strip import MOST, draw_strip
 from compare.scenes import find
 
+KEPT = (None, "blocks", "joints")  # groups whose parts no words stand near
 LAYERS = [
     {"y": 20.0, "spacing_stiffness": 4.375e8},
     {"y": 30.0, "cohesion": 5.0e4},
@@ -145,9 +146,34 @@ def test_a_squat_pillar_is_true_to_scale_and_a_slender_one_says_by_how_much(pill
 
 
 def test_labels_move_apart_as_far_as_they_must():
-    places = _apart([1.0, 1.1, 1.2, 5.0], [0.5] * 4)
-    assert (np.diff(places) >= 0.5 - 1e-12).all()
-    assert places[1] == pytest.approx(1.1) and places[3] == 5.0
+    """As little as can be, and within what there is."""
+    wanted, widths = np.array([1.0, 1.1, 1.2, 5.0]), np.full(4, 0.5)
+    assert _apart(wanted, widths, 7.0) == pytest.approx([0.6, 1.1, 1.6, 5.0])
+    assert _apart(wanted, widths, 5.0) == pytest.approx([0.6, 1.1, 1.6, 4.75])
+    assert _apart(wanted - 1.0, widths, 7.0) == pytest.approx([0.25, 0.75, 1.25, 4.0])
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"prestress__normal": 1e7, "record__stress": [10.0, 25.0], "soft_layers": LAYERS},
+        {"record__stress": [6.25 * i for i in range(9)], "prestress__normal": -1.5e6},
+        {"gravity__direction": [-1.0, 0.0, 0.0], "ends__end": "fixed", "record__stress": [49.5]},
+        {"pillar__length": 2.0, "pillar__side": 1.0, "record__stress": [1.0], "ends__end": "quiet"},
+        {"ends__end": "matched", "record__velocity": [19.75, 20.25], "prestress__normal": 5e5},
+    ],
+)
+def test_words_lie_over_nothing_else(pillar, collisions, changes):
+    """Neither over each other nor over arrows, layers and the marks of receivers."""
+    picture = scene_picture("fig", [Comparison(pillar(**changes))]).static
+    assert collisions(picture) == []
+    renderer = picture.canvas.get_renderer()
+    ax = picture.axes[0]
+    drawn = [*ax.patches, *(a for a in ax.get_children() if a.get_gid() not in KEPT)]
+    for text in ax.texts:
+        box = text.get_window_extent(renderer)
+        for artist in drawn:
+            assert not box.overlaps(artist.get_window_extent(renderer)), (text, artist)
 
 
 def test_no_labels_where_there_is_no_room_for_them(pillar):
