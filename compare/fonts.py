@@ -11,6 +11,8 @@ from functools import cache
 from matplotlib import font_manager
 from matplotlib.ft2font import FT2Font
 
+LATIN = "DejaVu Sans"  # comes with matplotlib
+
 #: Preferred first: TrueType outlines can be embedded in every format as they are.
 CHINESE = (
     "WenQuanYi Micro Hei",
@@ -28,6 +30,12 @@ CHINESE = (
 )
 HINT = "apt install fonts-wqy-microhei (or fonts-noto-cjk, for SVG and PNG)"
 NEEDED = "应力时间刚性块体"  # characters that a font for Chinese has
+
+
+def families() -> list[str]:
+    """Return the families that text is drawn with: Latin letters, then Chinese ones if there."""
+    chinese = chinese_font()
+    return [LATIN] if chinese is None else [LATIN, chinese.name]
 
 
 @cache

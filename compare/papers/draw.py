@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-from textwrap import wrap
-
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
 from cases.errors import SceneError
 from compare import fonts
-from compare.figures import UNITS
 from compare.pairs import Comparison
-from compare.panels import Panel, panels
+from compare.panels import UNITS, Panel, panels
+from compare.papers.arrange import Cell, add_axes, add_legend, arrange, cells, set_titles
 from compare.papers.look import MM, Look
 from compare.papers.words import WORDS, Words
+from compare.pictures.units import Unit, unit_for
 from compare.style import in_order
 
-LATIN = "DejaVu Sans"  # comes with matplotlib
-POINT = 25.4 / 72  # mm
-MOST_ACROSS = 2  # panels beside each other, in two columns
+MEASURED = 200  # dots an inch that letters are measured with
 
 
 def draw(comparisons: list[Comparison], look: Look, columns: int, language: str) -> Figure:
@@ -31,97 +30,103 @@ def draw(comparisons: list[Comparison], look: Look, columns: int, language: str)
     Raises SceneError where it would be taller than a page, and where no font here has its letters.
     """
     words, families = WORDS[language], _families(language)
-    grid = panels(comparisons)
-    found = [panel for row in grid for panel in row]
-    _refuse_unknown_letters([words.title(panel) for panel in found], families)
+    every = [panel for row in panels(comparisons) for panel in row]
+    titles = _titles(every, words)
+    by_variant = [
+        [title for title, panel in zip(titles, every, strict=True) if panel.comparison is one]
+        for one in comparisons
+    ]
+    _refuse_unknown_letters(titles, families)
     _refuse_unknown_letters([b.curves.name for b in comparisons[0].besides], families)
-    across = min(len(grid[0]), MOST_ACROSS) if columns == 2 else 1
     with matplotlib.rc_context(look.rc(families)):
-        figure = Figure(figsize=(look.widths[columns - 1] * MM, 1.0))
+        figure = Figure((look.widths[columns - 1] * MM, look.tallest * MM), dpi=MEASURED)
         FigureCanvasAgg(figure)
-        rows = -(-len(found) // across)
-        axes = figure.subplots(rows, across, squeeze=False).ravel()
-        for i, (ax, panel) in enumerate(zip(axes, found, strict=False)):
-            letter = f"({chr(97 + i)}) " if len(found) > 1 else ""
-            _draw_panel(ax, panel, look, words)
-            _set_title(ax, letter + words.title(panel), look, look.widths[columns - 1] / across)
-            ax.set_xlabel(words.time)
-        for ax in axes[len(found) :]:
-            ax.set_visible(False)
-        legend = _add_legend(figure, comparisons, look, words)
-        _arrange(figure, look, rows, legend, comparisons[0])
+        legend = add_legend(figure, _entries(comparisons, look, words), look)
+        places = cells(by_variant, look, columns, legend)
+        if not places:
+            raise _too_many(len(every), look, comparisons[0])
+        axes = add_axes(figure, places)
+        units = _units(every)
+        for ax, panel in zip(axes, every, strict=True):
+            _draw_panel(ax, panel, look, units[panel.quantity])
+            ax.set_ylabel(words.axis(panel, units[panel.quantity].name))
+        _label_times(axes, places, comparisons, words)
+        arrange(figure, look, axes, places, legend)  # for their width
+        set_titles(axes, titles)
+        arrange(figure, look, axes, places, legend)
     return figure
 
 
+def _titles(found: list[Panel], words: Words) -> list[str]:
+    if len(found) == 1:
+        return [words.title(found[0])]
+    return [f"({_letter(i)}) {words.title(panel)}" for i, panel in enumerate(found)]
+
+
+def _letter(i: int) -> str:
+    """Return a, b, ..., z, aa, ab, ..."""
+    return (_letter(i // 26 - 1) if i >= 26 else "") + chr(97 + i % 26)
+
+
+def _units(found: list[Panel]) -> dict[str, Unit]:
+    """Return the unit of every quantity that suits its largest value."""
+    peaks: dict[str, float] = {}
+    for panel in found:
+        for curve in [*panel.curves.values(), *panel.given.values()]:
+            peak = float(np.abs(curve.values).max(initial=0.0))
+            peaks[panel.quantity] = max(peak, peaks.get(panel.quantity, 0.0))
+    return {quantity: unit_for(UNITS[quantity], 1.001 * peak) for quantity, peak in peaks.items()}
+
+
 def _families(language: str) -> list[str]:
-    """Return the fonts' families: Latin letters, then Chinese ones where they are installed."""
-    chinese = fonts.chinese_font()
-    if chinese is None and language == "zh":
+    """Return the fonts' families; raises SceneError where there is none for a language."""
+    found = fonts.families()
+    if len(found) == 1 and language == "zh":
         allowed = f"needs a font with Chinese characters: {fonts.HINT}"
         raise SceneError("--language", "zh", None, allowed)
-    return [LATIN] if chinese is None else [LATIN, chinese.name]
+    return found
 
 
-def _draw_panel(ax: Axes, panel: Panel, look: Look, words: Words) -> None:
-    factor, unit = UNITS[panel.quantity]
+def _draw_panel(ax: Axes, panel: Panel, look: Look, unit: Unit) -> None:
     ax.axhline(0, color="#999999", linewidth=0.4, zorder=1)
     for name, curve in panel.curves.items():
-        ax.plot(1e3 * curve.index, factor * curve.values, **look.of_line(name))
+        ax.plot(1e3 * curve.index, curve.values / unit.size, **look.of_line(name))
     for k, beside in enumerate(panel.comparison.besides):
         curve = panel.given.get(beside.curves.name)
         if curve is not None:
-            ax.plot(1e3 * curve.index, factor * curve.values, **look.of_given(k))
+            ax.plot(1e3 * curve.index, curve.values / unit.size, **look.of_given(k))
     ax.margins(x=0)
-    ax.set_ylabel(words.axis(panel, unit))
+    ax.yaxis.set_major_locator(MaxNLocator(4))  # the same whatever height the panel is given
 
 
-def _set_title(ax: Axes, title: str, look: Look, width: float) -> None:
-    """Put a title over a panel, in as many lines as it needs; width : mm."""
-    letters = int(width / (0.6 * look.text * POINT))
-    ax.set_title("\n".join(wrap(title.replace("$", r"\$"), letters)), pad=3)
+def _label_times(
+    axes: list[Axes], places: list[Cell], comparisons: list[Comparison], words: Words
+) -> None:
+    """Write times below all panels; where they are the same, below the lowest of each column."""
+    alike = len({comparison.scene.time.duration for comparison in comparisons}) == 1
+    for ax, (row, column) in zip(axes, places, strict=True):
+        if alike and (row + 1, column) in places:
+            ax.tick_params(labelbottom=False)
+        else:
+            ax.set_xlabel(words.time)
 
 
-def _add_legend(figure: Figure, found: list[Comparison], look: Look, words: Words) -> float:
-    """Put the legend above the panels, as wide as fits; return its height, mm."""
+def _entries(found: list[Comparison], look: Look, words: Words) -> list[Line2D]:
+    """Return the legend's entries: solutions in their order, then the files of others."""
     names = in_order({name for comparison in found for name in comparison.results})
     entries = [Line2D([], [], label=words.solution(n), **look.of_line(n)) for n in names]
-    for k, beside in enumerate(found[0].besides):
-        label = beside.curves.name.replace("$", r"\$")
-        entries.append(Line2D([], [], label=label, **look.of_given(k)))
-    for columns in range(len(entries), 0, -1):
-        legend = figure.legend(
-            handles=entries,
-            ncols=columns,
-            loc="upper center",
-            bbox_to_anchor=(0.5, 1.0),
-            frameon=False,
-            handlelength=look.handle,
-            handletextpad=0.5,
-            columnspacing=1.2,
-            labelspacing=0.3,
-            borderpad=0.1,
-            borderaxespad=0.2,
-        )
-        box = legend.get_window_extent().transformed(figure.dpi_scale_trans.inverted())
-        if box.width <= figure.get_figwidth() or columns == 1:
-            break
-        legend.remove()
-    return box.height / MM
+    given = enumerate(found[0].besides)
+    return entries + [
+        Line2D([], [], label=beside.curves.name, **look.of_given(k)) for k, beside in given
+    ]
 
 
-def _arrange(figure: Figure, look: Look, rows: int, legend: float, first: Comparison) -> None:
-    """Give the figure its height and the panels their places below the legend of so many mm."""
-    legend += look.small * POINT / 2
-    panel = min(look.panel, (look.tallest - legend) / rows)
-    if panel < look.least:
-        allowed = (
-            f"{rows} rows of panels do not fit {look.tallest:g} mm: choose a --variant, or fewer "
-            "places by --set record.stress=..."
-        )
-        raise SceneError(first.scene.where, "", None, allowed)
-    height = rows * panel + legend
-    figure.set_figheight(height * MM)
-    figure.tight_layout(rect=(0, 0, 1, 1 - legend / height), pad=0.3, h_pad=0.6, w_pad=0.8)
+def _too_many(count: int, look: Look, first: Comparison) -> SceneError:
+    allowed = (
+        f"{count} panels do not fit {look.tallest:g} mm: choose --columns 2, a --variant, or fewer "
+        "places by --set record.stress=..."
+    )
+    return SceneError(first.scene.where, "", None, allowed)
 
 
 def _refuse_unknown_letters(given: list[str], families: list[str]) -> None:

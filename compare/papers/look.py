@@ -11,15 +11,17 @@ from typing import Any, NamedTuple
 from compare.style import GIVEN, RC, is_engine, style
 
 MM = 1 / 25.4  # inches
+POINT = 25.4 / 72  # mm
 
 
 class Look(NamedTuple):
-    """widths : mm, of one and of two columns. tallest : mm. panel, least : mm, height of a panel as
-    it should be and at least. text, small : points, of titles and labels, and of ticks and legend.
-    handle : length of a line in the legend, in letters. prints : whether dashes tell curves apart
-    without colour. dpi : of a PNG."""
+    """widths : mm, of one and of two columns. most : panels beside each other, at most, in each.
+    tallest : mm. panel, least : mm, height of a panel as it should be and at least. text, small :
+    points, of titles and labels, and of ticks and legend. handle : length of a line in the legend,
+    in letters. prints : whether dashes tell curves apart without colour. dpi : of a PNG."""
 
     widths: tuple[float, float]
+    most: tuple[int, int]
     tallest: float
     panel: float
     least: float
@@ -44,6 +46,7 @@ class Look(NamedTuple):
             "ytick.major.width": 0.5,
             "xtick.major.size": 2.5,
             "ytick.major.size": 2.5,
+            "text.hinting": "none",  # letters as wide in print as they are measured
             "pdf.fonttype": 42,  # TrueType, not outlines of single letters
             "svg.fonttype": "none",  # letters stay letters; the font is put into the file
         }
@@ -84,6 +87,6 @@ DASHES: dict[str, Any] = {
 }
 
 LOOKS = {
-    "journal": Look((90.0, 190.0), 240.0, 42.0, 26.0, 8.0, 7.5, 2.8, True, 600),
-    "screen": Look((160.0, 280.0), 900.0, 58.0, 40.0, 10.0, 9.0, 4.5, False, 160),
+    "journal": Look((90.0, 190.0), (2, 4), 240.0, 42.0, 26.0, 8.0, 7.5, 2.8, True, 600),
+    "screen": Look((160.0, 280.0), (2, 4), 900.0, 58.0, 40.0, 10.0, 9.0, 4.5, False, 160),
 }

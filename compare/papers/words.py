@@ -4,19 +4,24 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from compare.panels import Panel
+from compare.metrics import static_state
+from compare.panels import UNITS, Panel
+from compare.pictures.units import unit_for
+from compare.style import in_order
 
 
 class Words(NamedTuple):
     """The words of one language.
 
-    solutions, quantities : by name. place : with {quantity} and {y}. parts : of the variants' names
-    that are ours; those of the user stay as they are. comma : between place and variant.
+    solutions, quantities : by name. place : with {quantity} and {y}. static : with {value}, what a
+    waveform is drawn without. parts : of the variants' names that are ours; those of the user stay
+    as they are. comma : between place and variant.
     """
 
     solutions: dict[str, str]
     quantities: dict[str, str]
     place: str
+    static: str
     time: str
     parts: dict[str, str]
     comma: str
@@ -33,8 +38,19 @@ class Words(NamedTuple):
         """Return what stands over a panel."""
         quantity = " ".join([self.quantities[panel.quantity], panel.axis]).strip()
         parts = [self.parts.get(part, part) for part in panel.variant.split(", ")]
-        place = self.place.format(quantity=quantity, y=f"{panel.y:g}")
-        return self.comma.join([place, *parts])
+        place = [self.place.format(quantity=quantity, y=f"{panel.y:g}")]
+        if rest := static(panel):
+            unit = unit_for(UNITS[panel.quantity], abs(rest))
+            place.append(self.static.format(value=f"{rest / unit.size:.4g}\u00a0{unit.name}"))
+        return self.comma.join([*place, *parts])
+
+
+def static(panel: Panel) -> float:
+    """Return the static state of the waveforms of a panel, SI: what they are drawn without."""
+    results = panel.comparison.results
+    first = next(results[n] for n in in_order(set(results)) if panel.quantity in results[n])
+    found = static_state(first, panel.quantity)[panel.receiver].ravel()
+    return float(found[panel.component or 0])
 
 
 ENGLISH = Words(
@@ -60,7 +76,8 @@ ENGLISH = Words(
         "velocity": "velocity",
         "rotation": "rotation",
     },
-    place="{quantity} at y = {y} m",
+    place="{quantity} at y\u00a0=\u00a0{y}\u00a0m",
+    static="less the static {value}",
     time="time (ms)",
     parts={},
     comma=", ",
@@ -84,7 +101,8 @@ CHINESE = Words(
         "sliding-block": "滑动块体（精确解）",
     },
     quantities={"stress": "应力", "shear": "剪应力", "velocity": "速度", "rotation": "转角"},
-    place="{quantity}，y = {y} m",
+    place="{quantity}，y\u00a0=\u00a0{y}\u00a0m",
+    static="减去静态值 {value}",
     time="时间 (ms)",
     parts={
         "undamped": "无阻尼",
