@@ -48,6 +48,18 @@ class Look(NamedTuple):
     quantity: Quantity
 
 
+def caption(scene: Scene, look: Look) -> str:
+    """Return what is said of a picture: how much is exaggerated, and what its stress is less."""
+    parts = [f"displacements × {look.scale:,g}"]
+    if look.stretch != 1:
+        parts.append(f"thickness × {look.stretch:g}")
+    if look.quantity == STRESS and scene.gravity is not None:
+        parts.append("stress less its static state")
+    elif look.quantity == STRESS and scene.prestress is not None and scene.prestress.normal:
+        parts.append(f"stress less the prestress of {scene.prestress.normal / 1e6:g} MPa")
+    return ", ".join(parts)
+
+
 def look_at(scene: Scene, found: dict[str, Snapshots], scale: float | None = None) -> Look:
     """Return how snapshots by engine are drawn; `scale` (of displacements) in place of our own.
 

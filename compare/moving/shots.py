@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import ceil
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from cases.consistency import checked
 from cases.errors import SceneError
@@ -11,18 +11,24 @@ from cases.scene import Scene
 from cases.snapshots import Snapshots, snapshots_of
 from cases.tables import Time
 from compare.engines import ENGINES, Progress, applies, solve
+from compare.panels import UNITS
+
+if TYPE_CHECKING:
+    import numpy as np
+    import xarray as xr
 
 
 class Shots(NamedTuple):
     """One scene as each engine sees it.
 
     scene : with the instants in its record. found : by engine, all at the same instants.
-    reasons : by engine, why one has none.
+    reasons : by engine, why one has none. results : by engine, with the waveforms as recorded.
     """
 
     scene: Scene
     found: dict[str, Snapshots]
     reasons: dict[str, str]
+    results: dict[str, xr.Dataset]
 
 
 def at_instants(scene: Scene, count: int) -> Scene:
@@ -44,25 +50,35 @@ def until(scene: Scene, time: float) -> Scene:
 def take(scene: Scene, count: int, progress: Progress | None = None) -> Shots:
     """Simulate a scene with both engines and return `count` snapshots of each.
 
-    The rock is jointed where that applies, else homogenised. Raises SceneError and UnstableError as
-    the engines do.
+    Their stress is that of the motion, less the static state. The rock is jointed where that
+    applies, else homogenised. Raises SceneError and UnstableError as the engines do.
     """
     if count < 2:
         raise SceneError("snapshots", "", count, "must be at least 2")
     asked, chosen, reasons = at_instants(scene, count), ["dem"], {}
-    for name in ENGINES[1:]:
+    for name in list(ENGINES)[1:]:
         answer = applies(name, asked)
         if answer:
             chosen.append(name)
             break
         reasons[name] = answer.reason
-    found = {}
+    found, results = {}, {}
     for i, name in enumerate(chosen):
         result = solve(name, asked, _part(progress, i, len(chosen)))
         taken = snapshots_of(result)
         assert taken is not None
-        found[name] = taken
-    return Shots(asked, found, {} if len(found) > 1 else reasons)
+        found[name] = taken._replace(stress=_less_static(result, taken.stress))
+        results[name] = result[[q for q in UNITS if q in result]]
+    return Shots(asked, found, {} if len(found) > 1 else reasons, results)
+
+
+def _less_static(result: xr.Dataset, stress: np.ndarray | None) -> np.ndarray | None:
+    """Return the axial stress of the motion, as `compare.metrics.motion` does for waveforms."""
+    if stress is None:
+        return None
+    if result.attrs.get("starts") == "at rest under gravity":
+        return stress - stress[:1]
+    return stress - result.attrs.get("prestress", 0.0)
 
 
 def _part(progress: Progress | None, i: int, count: int) -> Progress | None:

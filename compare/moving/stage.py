@@ -6,9 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista
+from matplotlib.ticker import MaxNLocator
 
-from compare.moving.look import STRESS, Look
+from compare import fonts
+from compare.moving.look import STRESS, Look, caption
 from compare.moving.surface import Y, solid, surface_of
+from compare.papers.arrange import wrapped
 from compare.snapshot_picture import COLOURS
 from compare.style import in_order, style
 
@@ -19,6 +22,8 @@ if TYPE_CHECKING:
 SIZE = 1280, 720  # pixels
 APART = 3.0  # from one pillar's axis to the next, in thicknesses as drawn, at least
 TILT = 0.35, 0.3  # how far the viewer stands to the right and above, of the distance
+BAR = 0.5, 0.06, 0.45, 0.06  # left, bottom, width and height of the colours, of the picture
+LONGEST, WIDE = 110, 0x2E7F  # letters in a line; the last that is no wider than Latin ones
 SHOWN = 1.1  # of the pillar's length, that the picture is wide
 CELLS = {
     "triangle": pyvista.CellType.TRIANGLE,
@@ -47,6 +52,7 @@ class Stage:
         for i, (name, s) in enumerate(self.found.items()):
             self.grids[name], self.edges[name] = grid_of(s), edges_of(s)
             self._add(name, -i * self._apart * look.up)
+        self._label_bar()
         self._aim()
         self.show(0)
 
@@ -97,20 +103,46 @@ class Stage:
             return s.stress[i]
         return s.velocity[i] @ self.look.up
 
-    def _add(self, name: str, place: np.ndarray) -> None:
+    @property
+    def _peak(self) -> float:
+        """The largest that the colours show, SI."""
         every = [self._values(s, slice(None)) for s in self.found.values()]
-        peak = max(float(np.abs(x).max()) for x in every) or 1.0
+        return max(float(np.abs(x).max()) for x in every) or 1.0
+
+    def _label_bar(self) -> None:
+        """Write what the colours show above their bar, and numbers below it."""
+        quantity, peak = self.look.quantity, self._peak * self.look.quantity.factor
+        left, bottom, width, height = BAR
+        self._say(quantity.label, (left + width / 2, bottom + height + 0.012), "center")
+        for value in MaxNLocator(4, symmetric=True).tick_values(-peak, peak):
+            if abs(value) <= peak:
+                place = (left + width * (value + peak) / (2 * peak), bottom - 0.032)
+                self._say(f"{value:.3g}", place, "center")
+
+    def _say(self, text: str, place: tuple[float, float], side: str) -> None:
+        """Write at a place in parts of the picture, its left, middle or right end there."""
+        actor = self.plotter.add_text(
+            text,
+            position=place,
+            viewport=True,
+            font_size=9,
+            color="black",
+            font_file=font_for(text),
+            name=f"{text} at {place[0]:.4f}",
+        )
+        actor.prop.justification_horizontal = side
+
+    def _add(self, name: str, place: np.ndarray) -> None:
+        peak = self._peak
         quantity, grid = self.look.quantity, self.grids[name]
         grid[quantity.name] = self._values(self.found[name], 0)
         bar = {
-            "title": quantity.label.replace(quantity.unit, "Pa" if quantity == STRESS else "m/s"),
-            "color": "black",
-            "fmt": "%.2g",
-            "title_font_size": 16,
-            "label_font_size": 14,
-            "position_x": 0.5,
-            "position_y": 0.03,
-            "width": 0.45,
+            "title": " ",  # what it says is written by _label_bar, beside its numbers
+            "n_labels": 0,
+            "position_x": BAR[0],
+            "position_y": BAR[1],
+            "width": BAR[2],
+            "height": BAR[3],
         }
         pillar = self.plotter.add_mesh(
             grid,
@@ -152,17 +184,32 @@ class Stage:
         self.plotter.renderer.ResetCameraClippingRange()
 
     def _write(self, i: int) -> None:
-        scene, look = self.shots.scene, self.look
-        stretched = f", thickness × {look.stretch:g}" if look.stretch != 1 else ""
+        scene = self.shots.scene
         lines = [
             ", ".join(text for text in (scene.title, scene.name) if text),
-            f"t = {1e3 * self.time[i]:.4g} ms, displacements × {look.scale:,g}{stretched}",
+            f"t = {1e3 * self.time[i]:.4g} ms, {caption(scene, self.look)}",
             *(f"{name} does not apply: {why}" for name, why in self.shots.reasons.items()),
         ]
-        text = "\n".join(lines)
+        text = "\n".join(part for line in lines for part in wrapped(line, _fits))
         self.plotter.add_text(
-            text, position="upper_left", font_size=11, color="black", name="about"
+            text,
+            position="upper_left",
+            font_size=11,
+            color="black",
+            font_file=font_for(text),
+            name="about",
         )
+
+
+def _fits(line: str) -> bool:
+    """Return whether a line fits the picture; letters beyond Latin ones are twice as wide."""
+    return len(line) + sum(ord(letter) > WIDE for letter in line) <= LONGEST
+
+
+def font_for(text: str) -> str:
+    """Return the file of a font that has a text's letters: VTK takes one for all of them."""
+    files = [fonts.file_of(family) for family in fonts.families()]
+    return min(files, key=lambda file: len(fonts.missing(file, text)))
 
 
 def grid_of(s: Snapshots) -> pyvista.UnstructuredGrid:

@@ -6,7 +6,6 @@ import pytest
 from cases.calibrate import calibrate
 from compare.moving.frame import Frame
 from compare.moving.look import look_at
-from compare.moving.shots import Shots
 from compare.style import style
 
 
@@ -73,19 +72,16 @@ def test_the_picture_says_when_how_much_and_who(frame):
     said = " ".join(t.get_text() for t in frame.figure.texts)
     assert f"displacements × {frame.look.scale:,g}" in said and "thickness × 2" not in said
     assert "axial stress (MPa), compression positive" in said and "t = 10.00 ms" in said
-    assert [ax.get_title(loc="left") for ax in frame.figure.axes[:2]] == list(frame.waves)
+    strips = [drawn.axes for drawn in frame.faces.values()]
+    assert [ax.get_title(loc="left") for ax in strips] == list(frame.waves)
 
 
-def test_nothing_is_clipped(frame):
-    """Words lie inside the picture, pillars inside their strips."""
+def test_nothing_is_clipped(frame, collisions):
+    """Words lie inside the picture and beside each other, pillars inside their strips."""
     frame.image(20)
-    width, height = frame.canvas.get_width_height()
-    renderer = frame.canvas.get_renderer()
-    texts = [*frame.figure.texts, *(ax.xaxis.label for ax in frame.figure.axes)]
-    texts += [ax.yaxis.label for ax in frame.figure.axes]
-    for text in texts:
-        box = text.get_window_extent(renderer)
-        assert box.x0 >= 0 and box.x1 <= width and box.y0 >= 0 and box.y1 <= height, text
+    for part in frame.moving:
+        part.set_animated(False)
+    assert collisions(frame.figure) == []
     for i in (0, 20, 40):
         frame.show(i)
         for name, drawn in frame.faces.items():
@@ -96,10 +92,41 @@ def test_nothing_is_clipped(frame):
             assert low < corners[:, 1].min() and corners[:, 1].max() < high, name
 
 
+@pytest.mark.parametrize("title", ["A title of many words, " * 12, "w" * 200])
+def test_a_title_of_any_length_is_whole(shots, collisions, title):
+    taken = shots()
+    scene = taken.scene.model_copy(update={"title": title.strip()})
+    reasons = {"continuum-jointed": "a reason of many words " * 10}
+    some = taken._replace(scene=scene, found={"dem": taken.found["dem"]}, reasons=reasons)
+    frame = Frame(some, look_at(taken.scene, some.found), dots=50)
+    frame.clock.set(text="t = 1000.00 ms", animated=False)
+    assert collisions(frame.figure) == []
+    said = "".join(t.get_text() for t in frame.figure.texts).replace("\n", "").replace(" ", "")
+    assert title.replace(" ", "") in said
+
+
+def test_a_receiver_is_drawn_sample_by_sample_up_to_the_frame(shots):
+    """Six frames miss the wave's peaks; the samples between them are drawn all the same."""
+    taken = shots(6)
+    frame = Frame(taken, look_at(taken.scene, taken.found), dots=50)
+    label = next(iter(frame.traces.values())).axes.get_ylabel()
+    size = {"stress\n(MPa)": 1e6, "stress\n(kPa)": 1e3}[label]
+    for i in (0, 3, 5):
+        frame.show(i)
+        for name, result in taken.results.items():
+            times, values = frame.traces[name].get_data()
+            recorded = result.stress.values[0, result.time.values <= frame.time[i] + 1e-9] / size
+            np.testing.assert_allclose(values, recorded)
+            assert times[-1] == pytest.approx(1e3 * frame.time[i])
+    result = taken.results["dem"]
+    at_frames = result.stress.sel(time=frame.time, method="nearest").values[0] / size
+    assert np.abs(frame.traces["dem"].get_ydata()).max() > 1.02 * np.abs(at_frames).max()
+
+
 def test_an_engine_that_does_not_apply_is_named_with_the_reason(shots):
     taken = shots()
-    one = Shots(
-        taken.scene, {"dem": taken.found["dem"]}, {"continuum-jointed": "it costs $1 or $2"}
+    one = taken._replace(
+        found={"dem": taken.found["dem"]}, reasons={"continuum-jointed": "it costs $1 or $2"}
     )
     frame = Frame(one, look_at(one.scene, one.found), dots=50)
     said = [t.get_text() for t in frame.figure.texts]

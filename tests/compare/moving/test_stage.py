@@ -1,6 +1,7 @@
 """The pillars in three dimensions: points and colours are the results', and they are seen."""
 
 import sys
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -62,6 +63,28 @@ def test_the_slider_moves_everything_to_its_time(stage, shots):
     np.testing.assert_array_equal(stage.grids["dem"][STRESS.name], shots().found["dem"].stress[20])
 
 
+def test_numbers_and_title_of_the_colours_lie_beside_them(stage):
+    """VTK's own title lay over its numbers, and these told Pa in powers of ten."""
+    from compare.moving.stage import BAR, SIZE
+
+    stage.plotter.render()
+    left, low, width, height = (part * SIZE[i % 2] for i, part in enumerate(BAR))
+    boxes = {"bar": (left, left + width, low, low + height)}
+    for text in stage.plotter.renderer.actors.values():
+        if hasattr(text, "GetBoundingBox") and text.GetInput().strip():
+            box = [0.0] * 4
+            text.GetBoundingBox(stage.plotter.renderer, box)
+            place = text.GetActualPositionCoordinate()
+            x, y = place.GetComputedDisplayValue(stage.plotter.renderer)
+            boxes[text.GetInput()] = (x + box[0], x + box[1], y + box[2], y + box[3])
+    assert {"axial stress (MPa), compression positive", "0"} < set(boxes) and len(boxes) >= 5
+    for x0, x1, y0, y1 in boxes.values():
+        assert x0 >= 0 and x1 <= SIZE[0] and y0 >= 0 and y1 <= SIZE[1]
+    for (one, a), (other, b) in combinations(boxes.items(), 2):
+        apart = a[1] <= b[0] or b[1] <= a[0] or a[3] <= b[2] or b[3] <= a[2]
+        assert apart, (one, other)
+
+
 def colours_of(path):
     """How many pixels are red, how many blue, of a picture of this size."""
     with Image.open(path) as file:
@@ -76,7 +99,7 @@ def test_a_picture_without_a_display_shows_the_wave(shots, engines, tmp_path):
     """Compression red and tension blue, by a process of its own."""
     taken = shots()
     reasons = {"continuum-jointed": "a reason"} if len(engines) == 1 else {}
-    some = Shots(taken.scene, {n: taken.found[n] for n in engines}, reasons)
+    some = Shots(taken.scene, {n: taken.found[n] for n in engines}, reasons, taken.results)
     look = look_at(taken.scene, taken.found)
     try:
         offscreen.draw(tmp_path / "wave.png", some, look, 18)
