@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from compare.metrics import static_state
 from compare.panels import UNITS, Panel
 from compare.pictures.units import unit_for
-from compare.style import in_order
 
 
 class Words(NamedTuple):
@@ -39,18 +37,10 @@ class Words(NamedTuple):
         quantity = " ".join([self.quantities[panel.quantity], panel.axis]).strip()
         parts = [self.parts.get(part, part) for part in panel.variant.split(", ")]
         place = [self.place.format(quantity=quantity, y=f"{panel.y:g}")]
-        if rest := static(panel):
+        if rest := panel.at_rest:
             unit = unit_for(UNITS[panel.quantity], abs(rest))
             place.append(self.static.format(value=f"{rest / unit.size:.4g}\u00a0{unit.name}"))
         return self.comma.join([*place, *parts])
-
-
-def static(panel: Panel) -> float:
-    """Return the static state of the waveforms of a panel, SI: what they are drawn without."""
-    results = panel.comparison.results
-    first = next(results[n] for n in in_order(set(results)) if panel.quantity in results[n])
-    found = static_state(first, panel.quantity)[panel.receiver].ravel()
-    return float(found[panel.component or 0])
 
 
 ENGLISH = Words(

@@ -38,14 +38,15 @@ def collisions(monkeypatch):
     def found(figure):
         texts, draw = {}, Text.draw
 
-        def noted(text, *arguments):
-            texts[text] = text.get_text().strip()
-            return draw(text, *arguments)
+        def noted(text, renderer):
+            if text.get_visible():
+                texts[text] = text.get_text().strip(), text.get_window_extent(renderer)
+            return draw(text, renderer)
 
         with monkeypatch.context() as patch:
             patch.setattr(Text, "draw", noted)
             figure.canvas.draw()
-        words = [(said, t.get_window_extent(), t) for t, said in texts.items() if said]
+        words = [(said, box, text) for text, (said, box) in texts.items() if said]
         areas = [(str(ax), ax.bbox, ax) for ax in figure.axes if ax.axison]
         areas += [("legend", x.get_window_extent(), x) for x in figure.legends]
         slack = figure.dpi / 72  # a point

@@ -114,3 +114,17 @@ def test_variants_begin_rows_and_times_are_written_once_a_column(many):
     assert len(rows) == 6
     labels = [ax.get_xlabel() for ax in figure.axes]
     assert labels == ["", "", "", "time (ms)", "", "", "", "", "time (ms)", "time (ms)"]
+
+
+def test_the_motion_is_drawn_and_the_title_says_without_what(many):
+    """A prestress of ten times the wave neither flattens it nor is forgotten."""
+    (found,) = many(2, 1, ("dem", "lattice"))
+    waves = 1e-6 * found.results["dem"]["stress"].values
+    for result in found.results.values():
+        result["stress"] = result["stress"] + 1e7
+        result.attrs |= {"starts": "prestressed", "prestress": 1e7}
+    figure = draw([found], LOOKS["journal"], 1, "en")
+    for ax, wave in zip(figure.axes, waves, strict=True):
+        assert "less the static 10\u00a0MPa" in ax.get_title(loc="left").replace("\n", " ")
+        assert ax.get_ylabel() == "stress (MPa)"
+        assert ax.lines[1].get_ydata() == pytest.approx(wave, abs=1e-8)
