@@ -95,7 +95,8 @@ class Overlay(NamedTuple):
 
     @property
     def _largest(self) -> float:
-        return max((float(np.abs(t.residual).max()) for t in self.residuals), default=0.0)
+        residuals = (t.residual for t in self.traces)
+        return max((float(np.abs(r).max()) for r in residuals if r is not None), default=0.0)
 
     @property
     def residual_heading(self) -> str:

@@ -75,8 +75,9 @@ def compare(
         from compare.sweeps.case import Comparing
 
         asked = command.ask(scene, changes, variant, swept, out)
-        every = [case.scene for case in asked.cases if case.scene is not None]
-        work = Comparing(spectral, _read_curves(given, every, align), align, out is not None)
+        swept_scenes = [case.scene for case in asked.cases if case.scene is not None]
+        curves = _read_curves(given, swept_scenes, align)
+        work = Comparing(spectral, curves, align, out is not None)
         command.sweep(asked, work, workers, dry, as_json, strict)
         return
     scenes = load(scene, changes, variant, strict)

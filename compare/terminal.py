@@ -70,8 +70,7 @@ def show_numbers(columns: list[str], groups: dict[str, list[list[str]]]) -> None
     """
     table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0))
     for i, column in enumerate(columns):
-        align = "left" if i == 0 else "right"
-        table.add_column(printable(column), no_wrap=True, justify=align)
+        table.add_column(printable(column), no_wrap=True, justify="right" if i else "left")
     for heading, rows in groups.items():
         table.add_row(Text(printable(heading), style="bold"))
         for row in rows:

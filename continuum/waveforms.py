@@ -1,5 +1,7 @@
 """What a run has recorded, in the form of a result."""
 
+from typing import Any
+
 import numpy as np
 
 from cases.result import ALL_TERMS
@@ -12,7 +14,7 @@ from continuum.team import ALONE, Alone
 from joints.laws import Law
 
 
-def waveforms(scene: Scene, discrete: Discrete, samples: Samples) -> dict[str, np.ndarray]:
+def waveforms(scene: Scene, discrete: Discrete, samples: Samples) -> dict[str, Any]:
     """Return the recorded fields at the scene's receivers, as `cases.result.fields` takes them.
 
     What a mesh in two dimensions has no room for is zero.

@@ -2,6 +2,7 @@
 
 from functools import cached_property
 from math import ceil, log10
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -208,7 +209,7 @@ class Frame:
         return height
 
 
-def _bold(text: str) -> dict[str, str]:
+def _bold(text: str) -> dict[str, Any]:
     """Return how a text is set in bold, which the fonts of other than Latin letters may lack."""
     if fonts.missing(fonts.file_of(fonts.LATIN), text):
         return {}

@@ -75,7 +75,7 @@ def set_titles(axes: list[Axes], titles: list[str]) -> None:
         width = ax.get_window_extent().width
         drawn = ax.set_title("", pad=3)
         drawn.set_text(_in_lines(title, drawn, width))
-        count = int(width / ax.get_figure().dpi / MM / TICK)
+        count = int(width / ax.figure.dpi / MM / TICK)
         ax.xaxis.set_major_locator(MaxNLocator(max(1, min(count, 8)), steps=[1, 2, 2.5, 5, 10]))
 
 

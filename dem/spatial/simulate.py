@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from time import perf_counter
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -137,7 +137,7 @@ def _film(
     return BlockFilm(scene, p, shooter(p, model, state, threads))
 
 
-def waveforms(scene: Scene, p: Properties, samples: Samples) -> dict[str, np.ndarray]:
+def waveforms(scene: Scene, p: Properties, samples: Samples) -> dict[str, Any]:
     """Return the recorded fields at the scene's receivers, as `cases.result.fields` takes them."""
     sections, points = receivers(scene, p)
     force, velocity = between(samples.force, sections), between(samples.velocity, points)
