@@ -1,10 +1,12 @@
 """The work-precision diagram of all codes: their errors over stepping and over whole processes."""
 
+from math import nan
 from typing import Any, NamedTuple
 
 from matplotlib.figure import Figure
 
 from compare.studies.diagram import draw as draw_study
+from compare.studies.pareto import assured
 from compare.studies.study import Curve, Study
 
 COSTS = {"seconds": "seconds of stepping", "whole": "seconds of the whole process"}
@@ -19,15 +21,23 @@ OURS = {  # how our curves are coloured: as their engines are everywhere
 
 
 class Point(NamedTuple):
-    """What the diagram shows of a row of the table."""
+    """What the diagram shows of a row of the table; in words of a study's row."""
 
     curve: str
     state: str
+    settings: dict[str, Any]
     numerical: float
     total: float
+    freedoms: float
+    steps: float
     seconds: float
     whole: float
     work: float
+    measured: float = nan
+    held: float = nan
+    cancels: bool = False
+    numerical_floor: float = 0.0
+    total_floor: float = 0.0
 
 
 def draw(name: str, title: str, rows: list[dict[str, Any]]) -> Figure:
@@ -40,6 +50,8 @@ def draw(name: str, title: str, rows: list[dict[str, Any]]) -> Figure:
     ]
     study = Study(title=title, scene="", timed=True, curves=curves)
     points: Any = [_point(row) for row in done]
+    held = assured(points, "total")
+    points = [point._replace(held=error) for point, error in zip(points, held, strict=True)]
     return draw_study(name, study, points, COSTS)
 
 
@@ -48,5 +60,6 @@ def _label(curve: str, solves: str) -> str:
 
 
 def _point(row: dict[str, Any]) -> Point:
-    numbers = [float(row[k]) for k in ("misfit", "total_misfit", "seconds", "whole", "work")]
-    return Point(_label(row["curve"], row["solves"]), "done", *numbers)
+    columns = ("misfit", "total_misfit", "freedoms", "steps", "seconds", "whole", "work")
+    numbers = [float(row.get(column, nan)) for column in columns]
+    return Point(_label(row["curve"], row["solves"]), "done", {}, *numbers)

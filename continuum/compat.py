@@ -5,8 +5,10 @@ Meshes and forms live on one process each; matrices leave as real scipy CSR.
 
 import inspect
 import logging
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from pathlib import Path
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -44,6 +46,7 @@ with quiet_logging():
     from mpi4py import MPI
 
 VERSION: str = dolfinx.__version__
+ABANDONED = 60.0  # s: no form takes a compiler so long
 
 
 def cell_mesh(cell: str, cells: np.ndarray, x: np.ndarray):
@@ -72,16 +75,18 @@ def lagrange_space(domain, order: int, components: int | None = None):
     """
     if hasattr(fem, "functionspace"):
         shape = () if components is None else ((components,),)
-        return fem.functionspace(domain, ("Lagrange", order, *shape))
+        return _once_compiled(lambda: fem.functionspace(domain, ("Lagrange", order, *shape)))
     if components is None:
-        return fem.FunctionSpace(domain, ("Lagrange", order))
-    return fem.VectorFunctionSpace(domain, ("Lagrange", order), dim=components)
+        return _once_compiled(lambda: fem.FunctionSpace(domain, ("Lagrange", order)))
+    vector = fem.VectorFunctionSpace
+    return _once_compiled(lambda: vector(domain, ("Lagrange", order), dim=components))
 
 
 def cell_values(domain, values: np.ndarray) -> fem.Function:
     """Return the function that is constant in each cell, from values in the order of input."""
     make = getattr(fem, "functionspace", None) or fem.FunctionSpace
-    function = fem.Function(make(domain, ("DG", 0)), dtype=np.float64)
+    constant = _once_compiled(lambda: make(domain, ("DG", 0)))
+    function = fem.Function(constant, dtype=np.float64)
     function.x.array[cell_nodes(function.function_space)[:, 0]] = values[input_cells(domain)]
     return function
 
@@ -113,7 +118,27 @@ def vector(form: ufl.Form) -> np.ndarray:
 
 def _compiled(form: ufl.Form):
     with quiet_logging():
-        return fem.form(form, dtype=np.float64)
+        return _once_compiled(lambda: fem.form(form, dtype=np.float64))
+
+
+def _once_compiled(make):
+    """Return what is made of compiled code, once whoever compiles it has put it into the cache."""
+    while True:
+        try:
+            return make()
+        except TimeoutError:
+            _forget_abandoned()
+
+
+def _forget_abandoned() -> None:
+    """Remove what compilers that were killed have left in the cache, or else all wait for it."""
+    jit = dolfinx.jit
+    options = getattr(jit, "get_options", None) or jit.get_parameters
+    for source in Path(options()["cache_dir"]).glob("libffcx_*.c"):
+        with suppress(FileNotFoundError):
+            is_old = time.time() - source.stat().st_mtime > ABANDONED
+            if is_old and not source.with_suffix(".c.cached").exists():
+                source.unlink()
 
 
 def reference_element(cell: str, order: int):

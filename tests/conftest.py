@@ -46,6 +46,14 @@ def pillar():
 
 
 @pytest.fixture
+def without_warnings():
+    """Return a function that gives the lines of a text but for warnings of what a scene says."""
+    return lambda text: [
+        line for line in text.splitlines() if not line.startswith("jointwave: warning: ")
+    ]
+
+
+@pytest.fixture
 def instructions():
     """Return a function that counts one kind of instruction in a kernel for given arguments.
 

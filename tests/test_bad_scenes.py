@@ -528,7 +528,7 @@ def test_history_that_cannot_be_read(file, word, tmp_path):
 def test_scene_that_cannot_be_read(tmp_path):
     os.mkfifo(tmp_path / "pipe.toml")
     (tmp_path / "dangling.toml").symlink_to("gone.toml")
-    assert "No such file" in line_of(tmp_path / "gone.toml")
+    assert "no such scene" in line_of(tmp_path / "gone.toml")
     assert "No such file" in line_of(tmp_path / "dangling.toml")
     assert "directory" in line_of(tmp_path)
     assert "regular file" in line_of(tmp_path / "pipe.toml")
@@ -546,11 +546,14 @@ def run(scene: Path, out: Path, *options: str) -> subprocess.CompletedProcess:
 
 
 def assert_refused(done: subprocess.CompletedProcess, words: list[str], out: Path) -> None:
-    """Assert exit status 2, one line on standard error that holds the words, nothing written."""
+    """Assert exit status 2, one line on standard error that holds the words, nothing written.
+
+    What is unusual in the scene may have been warned of before its engines were built.
+    """
     assert done.returncode == 2
-    assert len(done.stderr.splitlines()) == 1
+    (line,) = [x for x in done.stderr.splitlines() if not x.startswith("jointwave: warning: ")]
     for word in words:
-        assert word in done.stderr
+        assert word in line
     assert not out.exists()
 
 

@@ -84,7 +84,9 @@ def test_bound_that_is_not_met_prints_pair_misfit_bound_and_command_alone(run, p
     result = run(scene=scene(bound=1e-9))
     result.assert_outcomes(failed=1)
     command = f"jointwave compare {pytester.path / 'scene.toml'} --variant '' --out misfit"
-    result.stdout.re_match_lines([r"dem ~ lattice: misfit \S+ exceeds the bound 1e-09"])
+    result.stdout.re_match_lines(
+        [r"dem ~ lattice: misfit \S+ of stress at 2 m exceeds the bound 1e-09"]
+    )
     assert command in result.outlines
     first = next(i for i, line in enumerate(result.outlines) if line.startswith("dem ~ lattice"))
     assert result.outlines[first - 1].strip("_ ") == "dem ~ lattice"

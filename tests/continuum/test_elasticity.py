@@ -1,5 +1,10 @@
 """Mass and stiffness of rock against what each must reproduce exactly."""
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 import ufl
@@ -11,6 +16,7 @@ from continuum.body import whole
 from continuum.elasticity import Material, Section, discretise, measure
 from continuum.meshing.description import Part
 
+ROOT = Path(__file__).parents[2]
 ROCK = Material(modulus=8.64e10, poisson=0.25, density=2400.0)
 UNIT = Material(modulus=1.0, poisson=0.0, density=1.0)
 ORDERS = [1, 2, 3, 4]
@@ -181,3 +187,33 @@ def test_frequencies_converge_at_twice_the_order(order):
         values = eigh(piece.stiffness.toarray(), np.diag(piece.mass), eigvals_only=True)
         errors.append(abs(np.sqrt(values[2]) - 2 * np.pi / 3))
     assert np.log2(errors[0] / errors[1]) == pytest.approx(2 * order, abs=0.25)
+
+
+def test_a_compiler_that_was_killed_keeps_nobody_waiting(tmp_path):
+    """What it left in the cache of forms is forgotten once no compiler would still be at it."""
+    program = (
+        "import numpy as np, ufl\n"
+        "from continuum import compat\n"
+        "mesh = compat.cell_mesh('interval', np.array([[0, 1]]), np.array([[0.0], [1.0]]))\n"
+        "print(compat.vector(ufl.TestFunction(compat.lagrange_space(mesh, 1)) * ufl.dx))\n"
+    )
+    command = [sys.executable, "-c", program]
+    environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path), "PYTHONPATH": str(ROOT)}
+    for name in ("parameters", "options"):  # as versions call it
+        (tmp_path / f"dolfinx_jit_{name}.json").write_text('{"timeout": 1}')
+
+    def solved():
+        done = subprocess.run(
+            command, capture_output=True, text=True, cwd=tmp_path, env=environment, timeout=120
+        )
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    whole = solved()
+    ready = list((tmp_path / "fenics").glob("libffcx_*.c.cached"))
+    for file in ready:
+        source = file.with_suffix("")
+        file.unlink()
+        source.write_text("")
+        os.utime(source, (0, 0))
+    assert ready and solved() == whole

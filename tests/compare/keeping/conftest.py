@@ -85,13 +85,15 @@ def start(request):
 
 
 @pytest.fixture
-def finish():
-    """Return a function that waits for a process to end; gives its exit code and its own lines."""
+def finish(without_warnings):
+    """Return a function that waits for a process to end; gives its exit code and its own lines,
+    but for warnings: the scenes end early."""
 
     def finished(process):
         _, said = process.communicate(timeout=PATIENCE)
         assert "Traceback" not in said, said
-        return process.returncode, [x for x in said.splitlines() if x.startswith("jointwave: ")]
+        lines = [line for line in without_warnings(said) if line.startswith("jointwave: ")]
+        return process.returncode, lines
 
     return finished
 

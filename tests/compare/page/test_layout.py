@@ -72,6 +72,8 @@ def shown(browser, page):
         opened = context.new_page()
         opened.goto(page.as_uri())
         for figure in opened.locator("figure[data-plot]").all():
+            if not figure.is_visible():  # in a fold
+                continue
             figure.scroll_into_view_if_needed()
             figure.locator(".chart .main-svg").first.wait_for(timeout=60_000)
         opened.evaluate("scrollTo(0, 0)")
