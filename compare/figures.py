@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 
 from compare.overlays import UNITS, Overlay, Trace, by_solution, legend_of
 from compare.pairs import Comparison
-from compare.panels import panels
+from compare.panels import in_page, panels
 from compare.style import FAMILIES, RC, WIDTH, in_order, is_engine, style
 
 __all__ = ["UNITS", "add_legend", "draw", "draw_variants"]
@@ -29,7 +29,7 @@ def draw(name: str, comparisons: list[Comparison]) -> Figure:
     The curve of solution S in row i, column j is the SVG group NAME-i-j-S, that of the k-th file of
     others NAME-i-j-given-k, and the residual of S NAME-residual-i-j-S.
     """
-    grid = [[by_solution(panel) for panel in row] for row in panels(comparisons)]
+    grid = [[by_solution(panel) for panel in row] for row in in_page(panels(comparisons))]
     with matplotlib.rc_context(RC):
         figure = _figure(name, grid)
         names = {name for comparison in comparisons for name in comparison.results}

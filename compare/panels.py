@@ -102,7 +102,7 @@ class Panel(NamedTuple):
 
 
 def panels(comparisons: list[Comparison]) -> list[list[Panel]]:
-    """Return the grid of panels: variants down and receivers across, or receivers down.
+    """Return the panels of every variant, a row each.
 
     Of a spatial scene each shows the largest component: of stress and shear, of velocity, and of
     rotation where nothing is displaced.
@@ -114,9 +114,22 @@ def panels(comparisons: list[Comparison]) -> list[list[Panel]]:
             [_panel(comparison, name, FORCES, i, y) for i, y in enumerate(record.stress)]
             + [_panel(comparison, name, MOTION, i, y) for i, y in enumerate(record.velocity)]
         )
-    if len(rows) == 1 and len(rows[0]) > 2:
-        return [[panel] for panel in rows[0]]
     return rows
+
+
+def in_page(rows: list[list[Panel]]) -> list[list[Panel]]:
+    """Return the panels of variants as they fit a page's width: at most two beside each other.
+
+    Variants down and receivers across; of more than two receivers the other way round, or in turn.
+    """
+    if max(map(len, rows)) <= 2:
+        return rows
+    every = [panel for row in rows for panel in row]
+    if len(rows) == 1 or any(len(row) != len(rows[0]) for row in rows):
+        return [[panel] for panel in every]
+    if len(rows) == 2:
+        return [list(column) for column in zip(*rows, strict=True)]
+    return [every[i : i + 2] for i in range(0, len(every), 2)]
 
 
 def _panel(

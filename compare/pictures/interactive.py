@@ -5,6 +5,7 @@ a narrow screen; the legend is below them. Numbers are packed as base64 of their
 """
 
 from base64 import b64decode, b64encode
+from textwrap import wrap
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from compare.style import Style
 FONT = {"family": "system-ui, 'Segoe UI', Helvetica, Arial, 'DejaVu Sans', sans-serif", "size": 13}
 INK, GRID = "#1c2126", "#e3e6e9"
 LINE = 17  # px of a line of a heading
+NARROW = 42  # characters of such a line that a phone has room for
 TOP, BOTTOM, LEFT, RIGHT = 11, 58, 66, 16  # px around the panels
 GAP = 20  # px between panels, besides their headings
 ENTRY = 20  # px of a line of the legend
@@ -97,7 +99,11 @@ def layout(panels: list[Panel], x: dict[str, Any], entries: int) -> dict[str, An
     """Return the layout of panels under each other on one x axis, `entries` in the legend."""
     # Two lines of the legend on a wide screen; on a narrow one it takes its room from the panels.
     legend = ENTRY * (1 + (entries > 5)) if entries else 0
-    rooms = [LINE * (1 + panel.heading.count("<br>")) for panel in panels]
+    headings = [
+        [line for part in panel.heading.split("\n") for line in wrap(part, NARROW)]
+        for panel in panels
+    ]
+    rooms = [LINE * max(1, len(lines)) for lines in headings]
     inner = sum(p.height for p in panels) + sum(rooms[1:]) + GAP * (len(panels) - 1)
     axes: dict[str, Any] = {}
     notes, top = [], float(inner)
@@ -105,7 +111,7 @@ def layout(panels: list[Panel], x: dict[str, Any], entries: int) -> dict[str, An
         domain = [max(0.0, (top - panel.height) / inner), top / inner]
         axis = _axis(panel.label) | {"domain": domain} | (panel.axis or {})
         axes[axis_key(i)] = axis
-        notes.append(_heading(panel.heading, domain[1]))
+        notes.append(_heading("<br>".join(headings[i]), domain[1]))
         top -= panel.height + GAP + (rooms[i + 1] if i + 1 < len(rooms) else 0)
     return {
         "template": {"layout": {}},

@@ -110,10 +110,9 @@ def evenly(
 
 
 def _plot(scene: Scene, shown: Diagrams) -> dict[str, Any]:
-    headings = [diagram.heading.replace("\n", "<br>") for diagram in shown.diagrams]
     panels = [
-        interactive.Panel(heading, "y (m)", axis={"matches": "y"} if i else None)
-        for i, heading in enumerate(headings)
+        interactive.Panel(diagram.heading, "y (m)", axis={"matches": "y"} if i else None)
+        for i, diagram in enumerate(shown.diagrams)
     ]
     layout = interactive.layout(panels, {"title": {"text": "time (ms)"}}, 0)
     layout["margin"]["r"] = 62

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from compare.figures import add_legend
 from compare.pairs import Comparison
-from compare.panels import UNITS, panels
+from compare.panels import UNITS, in_page, panels
 from compare.pictures import interactive
 from compare.pictures.marks import Mark
 from compare.pictures.picture import Picture
@@ -27,7 +27,7 @@ NEAR = 1.25  # the ratio of two marks whose names stand on either side of them
 
 def spectra(name: str, comparisons: list[Comparison]) -> list[Picture]:
     """Return the picture of all spectra, none where nothing moves."""
-    found = [[spectra_of(panel) for panel in row] for row in panels(comparisons)]
+    found = [[spectra_of(panel) for panel in row] for row in in_page(panels(comparisons))]
     if not any(c.any() for row in found for s in row for c in s.curves.values()):
         return []
     return [
@@ -74,6 +74,8 @@ def _figure(name: str, found: list[list[Spectra]], comparisons: list[Comparison]
         for i, row in enumerate(found):
             for j, one in enumerate(row):
                 _draw(axes[i, j], one, next(limits), f"{name}-{i}-{j}")
+            for ax in axes[i, len(row) :]:
+                ax.set_visible(False)
         for ax in axes[-1]:
             ax.set_xlabel("frequency (Hz)")
         for ax, row in zip(axes[:, 0], found, strict=True):

@@ -127,7 +127,7 @@ def plot_stacks(found: list[tuple[Stack, Stack]], looks: dict[str, Style]) -> di
     stacks = [stack for pair in found for stack in pair]
     rows = [
         interactive.Panel(
-            s.heading.replace(", ", ",<br>"),
+            s.heading,
             s.label,
             90 + 60 * len(s.curves),
             {"tickvals": list(s.curves)},

@@ -132,8 +132,7 @@ def _plot(overlays: list[Overlay], looks: dict[str, Style]) -> dict[str, Any]:
         rows.append(interactive.Panel(overlay.heading, label, UPPER, alike))
         if overlay.residuals:
             traces += [_rest(t, overlay, len(rows)) for t in overlay.residuals]
-            heading = overlay.residual_heading.replace(", ", ",<br>")  # a phone's width
-            rows.append(interactive.Panel(heading, "", LOWER, {"nticks": 4}))
+            rows.append(interactive.Panel(overlay.residual_heading, "", LOWER, {"nticks": 4}))
     layout = interactive.layout(rows, {"title": {"text": "time (ms)"}}, len(looks))
     return {"data": interactive.in_layers(traces, looks), "layout": layout}
 
