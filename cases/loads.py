@@ -10,6 +10,7 @@ from math import pi
 
 import numpy as np
 
+from cases.sampling import Interpolation
 from cases.scene import Scene
 
 
@@ -151,6 +152,22 @@ def step_means(load: LoadHistory, dt: float, count: int) -> np.ndarray:
     """
     edges = dt * (np.arange(count + 1) - 0.5)
     return np.diff(load.impulse(edges)) / dt
+
+
+def beside_means(
+    scene: Scene, sections: Interpolation, times: np.ndarray, dt: float
+) -> np.ndarray:
+    """Return what the stress at a loaded face is beside the mean that `step_means` applies, Pa.
+
+    sections : between contacts, of which 0 is that face. A force enters there alone.
+
+    Float array [section, axis, time], of the load's components along x, y and z.
+    """
+    load, is_force = load_history(scene), not scene.load.shakes_base and scene.load.arm is None
+    means = (load.impulse(times + dt / 2) - load.impulse(times - dt / 2)) / dt
+    share = np.where(sections.left == 0, 1.0 - sections.weight, 0.0) * is_force
+    rest = np.multiply.outer(scene.load.direction, load.value(times) - means)
+    return np.multiply.outer(share, rest)
 
 
 def base_steps(scene: Scene, dt: float, count: int) -> np.ndarray:

@@ -60,6 +60,18 @@ def _label(curve: str, solves: str) -> str:
 
 
 def _point(row: dict[str, Any]) -> Point:
-    columns = ("misfit", "total_misfit", "freedoms", "steps", "seconds", "whole", "work")
-    numbers = [float(row.get(column, nan)) for column in columns]
-    return Point(_label(row["curve"], row["solves"]), "done", {}, *numbers)
+    def number(column: str) -> float:
+        return float(row.get(column, nan))
+
+    return Point(
+        curve=_label(row["curve"], row["solves"]),
+        state="done",
+        settings={},
+        numerical=number("misfit"),
+        total=number("total_misfit"),
+        freedoms=number("freedoms"),
+        steps=number("steps"),
+        seconds=number("seconds"),
+        whole=number("whole"),
+        work=number("work"),
+    )

@@ -11,6 +11,7 @@ import numpy as np
 from cases.arrays import size_of
 from cases.calibrate import calibrate
 from cases.keeper import Keeper
+from cases.loads import beside_means
 from cases.result import Fields, fields
 from cases.runaway import stopped
 from cases.sampling import Clock
@@ -40,11 +41,13 @@ class Scheme(NamedTuple):
     marcher : of (scene, model, state, samples, clock, guard), to what takes samples first ..
         last - 1.
     forces : how often a step computes the force of every joint.
+    takes_means : whether the load is its mean over each step.
     """
 
     build: Callable[[Scene], tuple[Model, State, Clock, float]]
     marcher: Marcher
     forces: int
+    takes_means: bool
 
 
 def _leapfrog(
@@ -59,11 +62,11 @@ def _leapfrog(
 def scheme_of(scene: Scene) -> Scheme:
     """Return how a scene's chain is stepped; a scheme that it does not name is not imported."""
     if scene.numerics.dem.scheme == "leapfrog":
-        return Scheme(build, _leapfrog, 1)
+        return Scheme(build, _leapfrog, 1, True)
     from dem.axial import fourth_order
     from dem.axial.composition import KICKS
 
-    return Scheme(fourth_order.build, fourth_order.marcher, len(KICKS))
+    return Scheme(fourth_order.build, fourth_order.marcher, len(KICKS), False)
 
 
 def simulate_fields(
@@ -83,11 +86,14 @@ def simulate_fields(
     compiled = perf_counter()
 
     def result(count: int) -> Fields:
+        stress, times = samples.stress[:, :count], time.times[:count]
+        if scheme.takes_means:
+            stress = stress + beside_means(scene, model.receivers.sections, times, time.dt)[:, 1]
         found = fields(
             scene,
             "dem",
-            time.times[:count],
-            samples.stress[:, :count],
+            times,
+            stress,
             samples.velocity[:, :count],
             since_prestress(
                 scene, calibrate(scene), samples.displacement[:, :count], model.receivers.points

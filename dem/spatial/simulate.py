@@ -12,6 +12,7 @@ from cases.arrays import changed, size_of
 from cases.calibrate import Properties, calibrate
 from cases.errors import SceneError
 from cases.keeper import Keeper
+from cases.loads import beside_means
 from cases.result import Fields, fields
 from cases.runaway import stopped
 from cases.sampling import Clock, Interpolation, clock
@@ -90,7 +91,7 @@ def simulate_fields(
             scene,
             "dem",
             time.times[:count],
-            **waveforms(scene, p, taken),
+            **waveforms(scene, p, taken, time),
             energy=taken.energy,
             terms=energy_terms(scene, p),
             model="rigid blocks in space",
@@ -137,15 +138,17 @@ def _film(
     return BlockFilm(scene, p, shooter(p, model, state, threads))
 
 
-def waveforms(scene: Scene, p: Properties, samples: Samples) -> dict[str, Any]:
+def waveforms(scene: Scene, p: Properties, samples: Samples, time: Clock) -> dict[str, Any]:
     """Return the recorded fields at the scene's receivers, as `cases.result.fields` takes them."""
     sections, points = receivers(scene, p)
     force, velocity = between(samples.force, sections), between(samples.velocity, points)
+    times = time.times[: force.shape[-1]]
+    stress = force[:, :3] / p.area + beside_means(scene, sections, times, time.dt)
     moved = between(samples.displacement, points)
     moved[:, 1] = since_prestress(scene, p, moved[:, 1], points)
     found = {
-        "stress": force[:, 1] / p.area,
-        "shear": np.moveaxis(force[:, [0, 2]], 1, 2) / p.area,
+        "stress": stress[:, 1],
+        "shear": np.moveaxis(stress[:, [0, 2]], 1, 2),
         "velocity": np.moveaxis(velocity[:, :3], 1, 2),
         "displacement": np.moveaxis(moved[:, :3], 1, 2),
     }

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import dem
-from compare.exact import lattice, no_tension
-from compare.metrics import misfit
+from cases.loads import load_history
+from compare.exact import lattice, no_tension, spatial_lattice
+from compare.metrics import misfit, relative_l2
 
 SOFT = [{"y": 20.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.02}]
 DOWN = {"direction": [0, 1, 0]}
@@ -76,6 +77,57 @@ def test_default_step_is_accurate(pillar, changes):
     assert misfit(result, exact) < 2e-3
     peak, expected = (float(np.abs(x.stress).max()) for x in (result, exact))
     assert peak == pytest.approx(expected, rel=1e-3)
+
+
+SHORT_PULSE = "s,Pa\n0,0\n1e-4,1\n1.7e-4,-0.8\n2.9e-4,0.3\n4e-4,0\n"  # some four default steps
+
+
+@pytest.fixture
+def struck(pillar, tmp_path):
+    """Return a function that gives a short pillar under a table load, a direction and a start."""
+    (tmp_path / "pulse.csv").write_text(SHORT_PULSE)
+
+    def scene(direction, start, fraction=0.05):
+        load = {"shape": "table", "file": str(tmp_path / "pulse.csv"), "amplitude": 1e6}
+        return pillar(
+            pillar__length=5.0,
+            time__duration=0.01,
+            motion__rotation="none",
+            load={**load, "direction": direction},
+            ends__start=start,
+            record__stress=[0.0, 0.2],
+            numerics__dem__step_fraction=fraction,
+        )
+
+    return scene
+
+
+ACROSS_AND_ALONG = [([0, 1, 0], "stress", lattice), ([0.6, 0, -0.8], "shear", spatial_lattice)]
+
+
+@pytest.mark.parametrize(("direction", "quantity", "exact"), ACROSS_AND_ALONG)
+def test_a_free_face_carries_the_load_itself(struck, direction, quantity, exact):
+    """Not its mean over the step, which is of first order where the load bends within steps."""
+    scene = struck(direction, "free")
+    result = dem.simulate(scene)
+    found = result[quantity].values[0].reshape(result.time.size, -1)
+    load = load_history(scene).value(result.time.values)[:, None]
+    axes = np.array([1.0]) if quantity == "stress" else np.array([0.6, -0.8])
+    assert np.abs(found - load * axes).max() < 1e-9 * np.abs(load).max()
+
+
+@pytest.mark.parametrize(("direction", "quantity", "exact"), ACROSS_AND_ALONG)
+def test_a_loaded_quiet_start_is_of_second_order(struck, direction, quantity, exact):
+    """At the face and between it and the first joint."""
+    steps, errors = [], []
+    for fraction in (0.02, 0.01, 0.005):
+        scene = struck(direction, "quiet", fraction)
+        result, known = dem.simulate(scene), exact.solve(scene)[quantity].values
+        steps.append(result.attrs["dt"])
+        pairs = zip(result[quantity].values, known, strict=True)
+        errors.append([relative_l2(found, value) for found, value in pairs])
+    order = np.diff(np.log(errors), axis=0).T / np.diff(np.log(steps))
+    assert order == pytest.approx(ORDER, abs=0.01)
 
 
 @pytest.mark.parametrize(
