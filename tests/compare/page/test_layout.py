@@ -12,7 +12,8 @@ from compare.report import build
 
 WIDE, NARROW = (1280, 800), (390, 844)
 MOST_SIDES = 35  # of the whole report in print
-RECEIVERS, VARIANTS = 5, 2
+#: Receivers and variants.
+SIZES = [(5, 2), *(pytest.param(size, marks=pytest.mark.slow) for size in ((1, 1), (1, 4), (8, 4)))]
 
 #: Every pair of lines of text of which more than 2 pixels lie over each other in both directions.
 OVERLAPS = """() => {
@@ -41,16 +42,17 @@ OVERLAPS = """() => {
 }"""
 
 
-@pytest.fixture(scope="module")
-def page(tmp_path_factory):
+@pytest.fixture(scope="module", params=SIZES, ids=str)
+def page(request, tmp_path_factory):
     """Build the page of one scene of one's own with a long title, receivers and variants."""
+    receivers, variants = request.param
     own = tmp_path_factory.mktemp("scenes") / "own.toml"
     text = (PAPER / "fig-03.toml").read_text(encoding="utf-8").partition("[[variants]]")[0]
-    places = [4.0 * (i + 1) for i in range(RECEIVERS)]
+    places = [2.5 * (i + 1) for i in range(receivers)]
     for key, value in (("duration", 0.03), ("stress", places), ("title", f'"{TITLE}"')):
         text = re.sub(rf"(?m)^{key} *=.*", f"{key} = {value}", text)
-    for i in range(1, VARIANTS):
-        name = f"the same joints after {i} cycles"
+    for i in range(1, variants):
+        name = f"the same joints with dashpots of ratio {0.01 * i}"
         text += f'\n[[variants]]\nname = "{name}"\njoints.damping_ratio = {0.01 * i}\n'
     own.write_text(text)
     return build(tmp_path_factory.mktemp("report"), workers=1, scenes=[str(own)]).page
