@@ -13,12 +13,14 @@ from compare.studies.orders import orders
 from compare.studies.runner import run
 from compare.studies.study import load
 
-README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+STUDY = (ROOT / "docs" / "how-to" / "study.md").read_text(encoding="utf-8")
 
 
-def blocks(language):
+def blocks(language, text=README):
     """Return the code blocks of this language."""
-    return re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
+    return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
 
 
 @pytest.fixture
@@ -40,9 +42,9 @@ def test_scene_meets_its_own_expectations(scene_file):
 
 
 def test_study_runs_on_its_scene(scene_file):
-    """The study names the scene beside it; every point is done, at the order that it says."""
+    """That of the guide to studies: every point is done, at the order that it says."""
     path = scene_file.with_name("my-study.toml")
-    path.write_text(blocks("toml")[1], encoding="utf-8")
+    path.write_text(blocks("toml", STUDY)[0], encoding="utf-8")
     study = load(str(path))
     rows = run(study, scene_file.parent / "points")
     assert [row.state for row in rows] == ["done"] * 3
@@ -70,4 +72,8 @@ def test_numbers_of_the_free_pillar(pillar):
 def test_pictures_and_pages_that_it_links_are_there():
     """No dead link into the project."""
     for link in re.findall(r"\]\(([^)h][^)]*)\)", README):
-        assert os.path.exists(Path(__file__).parent.parent / link), link
+        assert os.path.exists(ROOT / link), link
+
+
+def test_it_is_read_in_one_go():
+    assert README.count("\n") <= 150
