@@ -82,7 +82,13 @@ def alike(found, expected):
         assert np.abs(found[name] - waves).max() < ROUND_OFF * peak, name
 
 
-@pytest.mark.parametrize("joints", JOINTS.values(), ids=JOINTS)
+@pytest.mark.parametrize(
+    "joints",
+    [
+        pytest.param(j, marks=() if "prestress" in name else pytest.mark.slow, id=name)
+        for name, j in JOINTS.items()
+    ],
+)
 def test_jointed_rock_moves_alike_in_all_dimensions(joints, short, ready):
     compare(ready, short(**{"load": SINE, **ROCK, **joints}), "jointed")
 
@@ -102,7 +108,10 @@ def test_homogenised_rock_moves_alike_in_all_dimensions(order, short, ready):
 SLIDING = {"friction_angle": 30.0, "cohesion": 1e4, "damping_ratio": 0.02}
 
 
-@pytest.mark.parametrize(("dim", "way"), [(2, [0.6, 0.8, 0.0]), (3, [0.48, 0.8, 0.36])])
+@pytest.mark.parametrize(
+    ("dim", "way"),
+    [pytest.param(2, [0.6, 0.8, 0.0], marks=pytest.mark.slow), (3, [0.48, 0.8, 0.36])],
+)
 def test_plane_wave_that_slides_moves_as_the_bar_across(dim, way, short, ready):
     """Sections that move as one, motion.rotation = "none", are the bar with E along and G across:
     lambda + 2 G is E where Poisson's ratio is 0. Joints slide and open by the same law."""

@@ -92,7 +92,10 @@ def test_points_of_other_physics_or_of_more_elements_in_fewer_steps_are_not_fine
 CLAIMING = [name for name in shipped() if any(curve.order for curve in load(name).curves)]
 
 
-@pytest.mark.parametrize("name", CLAIMING)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(n, marks=() if n == "free-pillar" else pytest.mark.slow) for n in CLAIMING],
+)
 def test_shipped_orders_are_within_a_tenth_of_theory(name, tmp_path):
     """Every order that a study claims, by counts and errors alone: blocks in size and step, rock in
     elements and step, explicit and implicit."""

@@ -144,7 +144,13 @@ STRENGTHS = {
 }
 
 
-@pytest.mark.parametrize("kind", STRENGTHS)
+@pytest.mark.parametrize(
+    "kind",
+    [
+        pytest.param(kind, marks=pytest.mark.slow if "dashpots" in kind else ())
+        for kind in STRENGTHS
+    ],
+)
 def test_implicit_and_explicit_steps_meet(pillar, implicit, kind):
     """The paper's pillar and pulse: both err with the square of the step, so that their distance
     is a quarter at half the step; kinks in time, of the pulse and of joints that open or slip, may

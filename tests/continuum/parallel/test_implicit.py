@@ -62,7 +62,13 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("scene", SCENES)
+#: Whose kernels take a minute to compile in each number of processes.
+DEAR = ("blocks that slip and break", "dashpots, half joints, mass damping")
+
+
+@pytest.mark.parametrize(
+    "scene", [pytest.param(s, marks=pytest.mark.slow if s in DEAR else ()) for s in SCENES]
+)
 def test_any_number_of_processes_gives_the_same_waveforms(scene, jointwave, tmp_path):
     """Newton's method ends far below what it may leave, so that sums in another order differ by
     round-off; an iterate more or less, where a residual is at the bound, changes nothing."""
