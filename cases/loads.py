@@ -154,9 +154,7 @@ def step_means(load: LoadHistory, dt: float, count: int) -> np.ndarray:
     return np.diff(load.impulse(edges)) / dt
 
 
-def beside_means(
-    scene: Scene, sections: Interpolation, times: np.ndarray, dt: float
-) -> np.ndarray:
+def beside_means(scene: Scene, sections: Interpolation, times: np.ndarray, dt: float) -> np.ndarray:
     """Return what the stress at a loaded face is beside the mean that `step_means` applies, Pa.
 
     sections : between contacts, of which 0 is that face. A force enters there alone.
