@@ -51,7 +51,10 @@ def test_a_solid_line_has_no_dashes():
 
 
 def test_panels_stand_apart_under_each_other():
-    panels = [interactive.Panel("a", "m", 190), interactive.Panel("b<br>c", "m", 80)]
+    panels = [
+        interactive.Panel("a", "m", 190),
+        interactive.Panel("a phone has no room for all of " * 2, "m", 80),
+    ]
     layout = interactive.layout(panels, {}, 0)
     low, high = layout["yaxis"]["domain"], layout["yaxis2"]["domain"]
     assert low[1] == 1 and low[0] > high[1] and high[0] == pytest.approx(0, abs=1e-12)
