@@ -24,7 +24,7 @@ test-all:  ## make test with the slow tests too: the longest of the hard cases
 
 docs:  ## the documentation as pages, site/index.html, with the outcomes of the last make test
 	@tools/setup.sh docs
-	@$(RUN) python tools/docs/examples.py
+	@$(RUN) python tools/docs/notebooks.py
 	@NO_MKDOCS_2_WARNING=1 $(RUN) python -m mkdocs build --strict
 
 fuzz: setup  ## 10,000 bad scenes, loads, curves, studies, meshes and commands, made by atheris (installed apart in .fuzz)

@@ -1,6 +1,7 @@
 """From a TOML file to validated scenes: overrides, variants, and errors in one line."""
 
 import re
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -54,7 +55,7 @@ def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[Scen
     Raises SceneError, in one line, for anything that cannot be simulated.
     """
     path = Path(path)
-    table, variants = _read(path, overrides or {})
+    table, variants = _parts(_read_toml(path), path, overrides or {})
     given = frozenset(overrides or {})
     scenes = [_validate(table, path, given)]
     for i, variant in enumerate(variants):
@@ -78,8 +79,25 @@ def load_variant(
 
     asked : whether the user gave the overrides, which may then name files anywhere.
     """
-    path, given = Path(path), frozenset(overrides or {}) if asked else frozenset()
-    table, variants = _read(path, overrides or {})
+    given = frozenset(overrides or {}) if asked else frozenset()
+    return _one(_read_toml(Path(path)), Path(path), name, overrides or {}, given)
+
+
+def load_tables(
+    tables: dict[str, Any], name: str = "", overrides: dict[str, Any] | None = None
+) -> Scene:
+    """Return one variant of a scene whose file would hold these tables.
+
+    Files that it names lie in the working folder or below.
+    """
+    return _one(deepcopy(tables), Path("scene"), name, overrides or {}, frozenset(overrides or {}))
+
+
+def _one(
+    whole: dict[str, Any], path: Path, name: str, overrides: dict[str, Any], given: frozenset[str]
+) -> Scene:
+    """Return one variant of the tables of a whole file."""
+    table, variants = _parts(whole, path, overrides)
     if not name:
         return _validate(table, path, given)
     names = [variant.get("name") for variant in variants]
@@ -88,12 +106,13 @@ def load_variant(
         allowed = f"must be one of {known}{nearest(name, known)}"
         raise SceneError(str(path), "variants.name", name, allowed)
     which = names.index(name)
-    return _validate(_variant(table, variants[which], path, which, overrides or {}), path, given)
+    return _validate(_variant(table, variants[which], path, which, overrides), path, given)
 
 
-def _read(path: Path, overrides: dict[str, Any]) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+def _parts(
+    table: dict[str, Any], path: Path, overrides: dict[str, Any]
+) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     """Return the table of a scene, changed, and those of its variants."""
-    table = _read_toml(path)
     for key, value in overrides.items():
         _assign(table, key, value, str(path))
     if "name" in table:

@@ -15,8 +15,8 @@ TOOLS = ROOT / "tools" / "docs"
 @pytest.fixture
 def examples(monkeypatch):
     monkeypatch.syspath_prepend(str(TOOLS))
-    yield importlib.import_module("examples")
-    sys.modules.pop("examples")
+    yield importlib.import_module("notebooks")
+    sys.modules.pop("notebooks")
 
 
 @pytest.fixture
@@ -46,7 +46,7 @@ def test_a_page_is_its_text_its_code_and_what_came_out(examples, short):
     order = [
         "# Title",
         "What $x$ is.",
-        "`cases/examples/short.py`",
+        "`examples/short.py`",
         "```python\nx = 1\nprint(x)\n```",
     ]
     order += [

@@ -12,7 +12,7 @@ from pathlib import Path
 import api
 import citation
 import commands
-import examples
+import notebooks
 import scene_reference
 import verification
 
@@ -25,7 +25,7 @@ GENERATED = {
     "verification": lambda _: verification.page(ROOT / "tests", RESULTS),
     "api": lambda module: api.page(ROOT, module),
     "commands": lambda _: commands.page(),
-    "example": lambda name: examples.page(name),
+    "example": lambda name: notebooks.page(name),
     "citation": lambda _: citation.page(ROOT / "CITATION.cff"),
 }
 MARK = re.compile(r"^<!-- generated: (\S+) ?(.*?) -->$", re.MULTILINE)

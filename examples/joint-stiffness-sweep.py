@@ -26,10 +26,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-import cases
-import compare
-from cases.calibrate import calibrate
-from compare.exact.one_joint import coefficients
+import jointwave as jw
 
 PERIOD = 0.02  # s, of the pulse's peak frequency
 tables = {
@@ -41,8 +38,8 @@ tables = {
     "time": {"duration": 0.2},
     "record": {"stress": [30.0]},
 }
-plain = cases.Scene.model_validate(tables)
-rock = calibrate(plain)
+plain = jw.load(tables)
+rock = jw.properties(plain)
 print(f"impedance Z              {rock.impedance:.4g} Pa s/m")
 print(f"K'_n of an ordinary joint {rock.regular_stiffness:.4g} Pa/m")
 
@@ -59,12 +56,12 @@ def with_joint(stiffness):
     """Return the scene with a joint at 20 m that adds the compliance 1/stiffness (m/Pa)."""
     softer = 1 / (1 / stiffness + 1 / rock.regular_stiffness)
     layer = {"y": 20.0, "spacing_stiffness": plain.pillar.block * softer}
-    return cases.Scene.model_validate(tables | {"soft_layers": [layer]})
+    return jw.load(tables | {"soft_layers": [layer]})
 
 
 def spectrum(engine, scene):
     """Return angular frequencies (rad/s) and the spectrum of the stress behind the joint."""
-    stress = compare.solve(engine, scene).stress[0]
+    stress = jw.simulate(scene, engine).stress[0]
     step = float(stress.time[1] - stress.time[0])
     return 2 * np.pi * np.fft.rfftfreq(stress.size, step), np.fft.rfft(stress.values)
 
@@ -107,7 +104,7 @@ for stiffness in stiffnesses:
     row = []
     for engine in looks:
         omega, found = measured[engine, stiffness]
-        formula = abs(coefficients(omega, stiffness, rock.impedance)[0])
+        formula = 1 / np.sqrt(1 + (omega * rock.impedance / (2 * stiffness)) ** 2)
         row.append(abs(found - formula).max())
     worst = max(worst, *row)
     print(f"{stiffness:.3e}   {row[0]:.4f}   {row[1]:.4f}")

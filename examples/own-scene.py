@@ -16,9 +16,7 @@
 # A scene is a few tables: as a TOML file, which the command `jointwave` takes, or as a dictionary.
 
 # %%
-import cases
-import compare
-import dem
+import jointwave as jw
 
 tables = {
     "title": "A weak layer in a short pillar",
@@ -35,15 +33,15 @@ tables = {
     "time": {"duration": 0.05},  # s
     "record": {"stress": [4.0, 12.0], "fields": 2.5e-4},  # m, s
 }
-scene = cases.Scene.model_validate(tables)
+scene = jw.load(tables)
 
 # %% [markdown]
 # A scene that contradicts itself is refused, with what would be allowed:
 
 # %%
 try:
-    cases.Scene.model_validate(tables | {"pillar": {"length": 20.0, "side": 0.5, "block": 0.3}})
-except ValueError as error:
+    jw.load(tables | {"pillar": {"length": 20.0, "side": 0.5, "block": 0.3}})
+except jw.SceneError as error:
     print(error)
 else:
     raise AssertionError("a block that does not divide the pillar was taken")
@@ -54,8 +52,8 @@ else:
 # Everything that can solve the scene, and why the rest cannot:
 
 # %%
-for name in compare.names():
-    print(f"{name:22} {compare.applies(name, scene).reason or 'holds'}")
+for name, reason in jw.solvers(scene).items():
+    print(f"{name:22} {reason or 'holds'}")
 
 # %% [markdown]
 # ## The wave in space and time
@@ -67,7 +65,7 @@ for name in compare.names():
 import matplotlib.pyplot as plt
 import numpy as np
 
-result = dem.simulate(scene)
+result = jw.simulate(scene)
 centres = scene.pillar.block * (np.arange(scene.pillar.block_count) + 0.5)
 wave = result.field_stress.assign_coords(cell=("cell", centres, {"long_name": "y", "units": "m"}))
 wave.plot(x="cell", y="field_time", cmap="RdBu_r", robust=True)
@@ -79,7 +77,7 @@ plt.show()
 # is what stands in front of it beyond the pulse itself; between the two no energy is lost:
 
 # %%
-without = dem.simulate(cases.Scene.model_validate(tables | {"soft_layers": []}))
+without = jw.simulate(jw.load(tables | {"soft_layers": []}))
 reflected = (result.stress - without.stress).sel(stress_y=4.0)
 passed, incident = result.stress.sel(stress_y=12.0), without.stress.sel(stress_y=12.0)
 for label, wave in {"incident": incident, "passed": passed, "reflected": reflected}.items():
@@ -105,6 +103,6 @@ assert abs(sum(shares) - 1) < 0.01
 # An `[expect]` table in the file makes it a test of its own: `pytest my-scenes/`. From Python:
 
 # %%
-distance = compare.misfit(result, compare.solve("lattice", scene))
+distance = jw.misfit(result, jw.simulate(scene, "lattice"))
 print(f"rigid blocks from their exact motion: {distance:.1e}")
 assert distance < 0.005

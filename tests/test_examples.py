@@ -4,7 +4,6 @@ import os
 import re
 import subprocess
 import sys
-import tomllib
 from pathlib import Path
 
 import matplotlib
@@ -13,9 +12,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-import cases
-
-EXAMPLES = Path(cases.__file__).parent / "examples"
+EXAMPLES = Path(__file__).parents[1] / "examples"
 NAMES = sorted(path.stem for path in EXAMPLES.glob("*.py"))
 CELL = re.compile(r"^# %%( \[markdown\])?\n", re.MULTILINE)
 MEASUREMENTS = 100
@@ -116,14 +113,3 @@ def test_the_reach_follows_the_confidence_and_the_noise(calibration):
     exact = calibration["fit"](clean)
     assert exact.best == pytest.approx([np.log10(4e8), 1.3], rel=1e-6)
     assert (exact.reach < 1e-3 * wide.reach).all()
-
-
-def test_examples_are_shipped():
-    """The package's data hold them, beside the scenes."""
-    root = EXAMPLES.parents[1]
-    if not (root / "pyproject.toml").exists():
-        pytest.skip("only its installation is here")
-    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))
-    patterns = project["tool"]["setuptools"]["package-data"]["cases"]
-    shipped = {path for pattern in patterns for path in EXAMPLES.parent.glob(pattern)}
-    assert {EXAMPLES / f"{name}.py" for name in NAMES} <= shipped

@@ -28,9 +28,7 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.stats import t as student
 
-import cases
-import compare
-import dem
+import jointwave as jw
 
 INTERVAL = 1.0e-4  # s
 tables = {
@@ -53,13 +51,13 @@ STIFFNESS, STRENGTH, NOISE = 4.0e8, 1.3, 0.02e6  # Pa (S K_n), of the load's amp
 def scene(stiffness):
     """Return the scene with a joint of this spacing stiffness (Pa) at 8 m."""
     layer = {"y": 8.0, "spacing_stiffness": float(stiffness)}
-    return cases.Scene.model_validate(tables | {"soft_layers": [layer]})
+    return jw.load(tables | {"soft_layers": [layer]})
 
 
 def waveform(parameters):
     """Return the stress behind the joint [time], Pa, for (log10 of the stiffness, strength)."""
     exponent, strength = parameters
-    return strength * dem.simulate(scene(10.0**exponent)).stress.values[0]
+    return strength * jw.simulate(scene(10.0**exponent)).stress.values[0]
 
 
 def measure(seed):
@@ -140,7 +138,7 @@ assert sum(inside) >= 14  # fewer happen once in 30,000 times, if the intervals 
 # distance between the engines what that is worth.
 
 # %%
-rock = STRENGTH * compare.solve("jointed-bar", scene(STIFFNESS)).stress.values[0]
+rock = STRENGTH * jw.simulate(scene(STIFFNESS), "jointed-bar").stress.values[0]
 other = fit(rock)
 print(f"heard through deformable rock: {10 ** (other.best[0]) / STIFFNESS - 1:+.2%}")
 assert abs(10 ** other.best[0] / STIFFNESS - 1) < 0.05

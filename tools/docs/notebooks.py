@@ -1,6 +1,6 @@
 """The examples as pages: their text, their code, and what came out when they were last run.
 
-    python tools/docs/examples.py
+    python tools/docs/notebooks.py
 
 runs those that have changed since and keeps them as out/examples/NAME.ipynb, which Jupyter opens.
 """
@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 ROOT = Path(__file__).parents[2]
-EXAMPLES = ROOT / "cases" / "examples"
+EXAMPLES = ROOT / "examples"
 KEPT = ROOT / "out" / "examples"
 CELL = re.compile(r"^# %%( \[markdown\])?\n", re.MULTILINE)
 LONGEST = 40  # lines of an output
@@ -40,7 +40,7 @@ def _bare(comment: str) -> str:
 def page(name: str, kept: Path = KEPT) -> str:
     """Return an example as Markdown, with its outputs where it has been run as it stands."""
     found, outputs = cells(name), _outputs(name, kept)
-    path = f"cases/examples/{name}.py"
+    path = f"examples/{name}.py"
     head = f"A notebook in jupytext's percent format: `{path}`.\n"
     parts = [head] if outputs is not None else [head, NOT_RUN]
     code = iter(outputs or [])

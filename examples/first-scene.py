@@ -17,12 +17,9 @@
 # engines simulate it, exact solutions say how far from the truth each of them is.
 
 # %%
-import cases
-import compare
-import continuum
-import dem
+import jointwave as jw
 
-scene = cases.load_variant(compare.find("guo-li-2002/fig-03"), "", {"time.duration": 0.06})
+scene = jw.load("guo-li-2002/fig-03", changes={"time.duration": 0.06})
 print(scene.title, "-", scene.pillar.block_count, "blocks")
 
 # %% [markdown]
@@ -32,8 +29,8 @@ print(scene.title, "-", scene.pillar.block_count, "blocks")
 # scene records, positive in compression, and the energies.
 
 # %%
-blocks = dem.simulate(scene)
-rock = continuum.simulate(scene, model="jointed")
+blocks = jw.simulate(scene, "dem")
+rock = jw.simulate(scene, "continuum-jointed")
 blocks
 
 # %% [markdown]
@@ -59,17 +56,17 @@ plt.show()
 # distance between the models is the *modelling* error, which no smaller step removes.
 
 # %%
-lattice, bar = compare.solve("lattice", scene), compare.solve("jointed-bar", scene)
-print(f"blocks, numerical error  {compare.misfit(blocks, lattice):.2%}")
-print(f"rock, numerical error    {compare.misfit(rock, bar):.2%}")
-print(f"blocks, modelling error  {compare.misfit(lattice, bar):.2%}")
-assert compare.misfit(blocks, lattice) < 0.005 < compare.misfit(lattice, bar)
+lattice, bar = jw.simulate(scene, "lattice"), jw.simulate(scene, "jointed-bar")
+print(f"blocks, numerical error  {jw.misfit(blocks, lattice):.2%}")
+print(f"rock, numerical error    {jw.misfit(rock, bar):.2%}")
+print(f"blocks, modelling error  {jw.misfit(lattice, bar):.2%}")
+assert jw.misfit(blocks, lattice) < 0.005 < jw.misfit(lattice, bar)
 
 # %% [markdown]
-# `compare.compare` does all of that at once, for every pair and every receiver:
+# `jw.compare` does all of that at once, for every pair and every receiver:
 
 # %%
-for row in compare.compare(scene).rows:
+for row in jw.compare(scene).rows:
     if row.quantity == "stress":
         pair, found = row.pair, row.distance
         print(f"{pair.one:20} {pair.other:20} {pair.kind:16} {found.misfit:8.3%}")

@@ -1,0 +1,207 @@
+"""Stress waves in jointed rock by two engines, held against exact solutions: the Python interface.
+
+    import jointwave as jw
+
+    scene = jw.load("guo-li-2002/fig-03")
+    blocks, rock = jw.simulate(scene, "dem"), jw.simulate(scene, "continuum-jointed")
+    print(jw.misfit(blocks, rock))
+
+Results are xarray Datasets in SI units, compression positive. What a function needs is imported
+when it is first called: dolfinx, for one, takes a second.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from xarray import Dataset
+
+    from cases.calibrate import Properties
+    from cases.scene import Scene
+    from compare.curves import Curves
+    from compare.fitting.fit import Fit
+    from compare.pairs import Comparison
+    from compare.planner import Plan
+
+__all__ = [
+    "compare",
+    "figure",
+    "fit",
+    "load",
+    "load_variants",
+    "misfit",
+    "plan",
+    "properties",
+    "read_curves",
+    "shipped",
+    "simulate",
+    "solvers",
+]
+
+Progress = Callable[[float], None]
+
+
+def load(
+    scene: str | Path | dict[str, Any], variant: str = "", changes: dict[str, Any] | None = None
+) -> Scene:
+    """Return a scene, immutable and validated.
+
+    scene : a file, a shipped scene ("guo-li-2002/fig-03"), or its tables as a dictionary.
+    variant : its name; empty: the scene as it stands. changes : of keys by their dotted path,
+    {"joints.damping_ratio": 0.02}.
+
+    Raises jointwave.SceneError, one line with file, key, value and what is allowed.
+    """
+    from cases.read import load_tables, load_variant
+
+    if isinstance(scene, dict):
+        return load_tables(scene, variant, changes)
+    return load_variant(_file(scene), variant, changes)
+
+
+def load_variants(scene: str | Path, changes: dict[str, Any] | None = None) -> list[Scene]:
+    """Return a scene and all its variants, each as `load` does."""
+    from cases import read
+
+    return read.load(_file(scene), changes)
+
+
+def shipped() -> list[str]:
+    """Return the names of the scenes that come along."""
+    from compare.scenes import names
+
+    return names()
+
+
+def properties(scene: Scene) -> Properties:
+    """Return what follows from a scene: stiffnesses, speeds, impedance, damping, of every joint."""
+    from cases.calibrate import calibrate
+
+    return calibrate(scene)
+
+
+def solvers(scene: Scene) -> dict[str, str]:
+    """Return all engines and exact solutions by name, with the reason why one does not hold for a
+    scene; an empty one where it does."""
+    from compare.engines import applies, names
+
+    return {name: applies(name, scene).reason for name in names()}
+
+
+def simulate(
+    scene: Scene, solver: str = "dem", progress: Progress | None = None, **options: Any
+) -> Dataset:
+    """Return waveforms, energies and cost of a scene by an engine or an exact solution.
+
+    solver : "dem" (rigid blocks), "continuum-jointed", "continuum-equivalent", or an exact solution
+    ("lattice"; see `solvers`). progress : called with the finished fraction. options : `comm`, of
+    mpi4py, for a continuum that several processes share; `keeper`, for checkpoints.
+
+    Raises SceneError where the solver does not hold, UnstableError where a run loses its bound.
+    """
+    from compare.engines import solve
+
+    return solve(solver, scene, progress, **options)
+
+
+def compare(
+    scene: Scene,
+    curves: Sequence[Curves] = (),
+    progress: Progress | None = None,
+    align: bool = False,
+) -> Comparison:
+    """Return a scene by everything that holds for it, with the distances of all pairs.
+
+    curves : of others, as `read_curves` returns them; align : whether their clocks are moved.
+    """
+    from compare import pairs
+
+    return pairs.compare(scene, progress, curves=curves, align=align)
+
+
+def misfit(one: Dataset, other: Dataset) -> float:
+    """Return the relative L2 misfit of two results of a scene: that of the waveform, one component
+    of one quantity at one receiver less its static state, which is furthest off."""
+    from compare import metrics
+
+    return metrics.misfit(one, other)
+
+
+def read_curves(files: Sequence[str], scenes: Sequence[Scene]) -> list[Curves]:
+    """Return waveforms of another code, a figure or an experiment: FILE, FILE:stress@20 or
+    FILE:COLUMN=stress@20 each, CSV or NetCDF."""
+    from compare import curves
+
+    return curves.read_curves(list(files), list(scenes))
+
+
+def fit(
+    scene: Scene,
+    curves: Sequence[Curves],
+    free: Sequence[str],
+    solver: str | None = None,
+    progress: Progress | None = None,
+) -> Fit:
+    """Return keys of a scene fitted to measured waveforms by least squares, with 95 % intervals.
+
+    free : dotted keys, KEY, KEY=START, KEY=LOW:HIGH or KEY=LOW:START:HIGH, and `clock`. solver : as
+    of `simulate`; None: the exact chain of rigid blocks where it holds and is short, else "dem".
+
+    Raises SceneError for what cannot be fitted, StoppedError where the search does not converge.
+    """
+    from compare.fitting import fit as fitting
+
+    return fitting.fit(scene, curves, free, solver, progress)
+
+
+def plan(
+    scene: Scene, misfit: float, seconds: float | None = None, progress: Progress | None = None
+) -> Plan:
+    """Return the cheapest engine, elements and step within a misfit, numerical and modelling error
+    together, run; seconds : instead the best within so many of stepping.
+
+    Raises SceneError where nothing exact is known of the scene, and no run converges in reach.
+    """
+    from compare import planner
+
+    return planner.plan(scene, misfit, seconds, progress)
+
+
+def figure(
+    comparisons: Sequence[Comparison],
+    columns: int = 2,
+    style: str = "journal",
+    language: str = "en",
+) -> Figure:
+    """Return a figure for a paper of a scene's comparisons, a variant each.
+
+    columns : of the page, 1 or 2. style : "journal" or "screen".
+    language : "en" or "zh". Raises SceneError where it would be taller than a page.
+    """
+    from compare.papers.draw import draw
+    from compare.papers.look import LOOKS
+
+    return draw(list(comparisons), LOOKS[style], columns, language)
+
+
+def _file(scene: str | Path) -> Path:
+    from compare.scenes import find
+
+    return find(str(scene))
+
+
+def __getattr__(name: str) -> Any:
+    """Return the exceptions and the class of scenes, imported when they are asked for."""
+    if name in ("SceneError", "StoppedError", "UnstableError"):
+        from cases import errors
+
+        return getattr(errors, name)
+    if name == "Scene":
+        from cases.scene import Scene
+
+        return Scene
+    raise AttributeError(f"module 'jointwave' has no attribute {name!r}")

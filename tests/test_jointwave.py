@@ -1,0 +1,82 @@
+"""The Python interface: functions do what those behind them do, and cost nothing before."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import cases
+import compare
+import jointwave as jw
+from compare.curves import Curves, Place
+from compare.stability.linear_cases import SHORT
+
+TABLES = {
+    "title": "made of tables",
+    "pillar": {"length": 5.0, "side": 0.5, "block": 0.5},
+    "rock": {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0},
+    "load": {"shape": "ricker", "amplitude": 1e6, "period": 0.01},
+    "time": {"duration": 0.03},
+    "record": {"stress": [2.0]},
+    "variants": [{"name": "damped", "joints": {"damping_ratio": 0.05}}],
+}
+
+
+def test_a_scene_is_loaded_from_a_name_a_file_or_tables(tmp_path):
+    name = "guo-li-2002/fig-03"
+    changes = {"time.duration": 0.02}
+    assert jw.load(name, "zeta 0.02", changes) == cases.load_variant(
+        compare.find(name), "zeta 0.02", changes
+    )
+    assert name in jw.shipped() and SHORT in jw.shipped()
+    assert [s.name for s in jw.load_variants(name)] == [
+        s.name for s in cases.load(compare.find(name))
+    ]
+    damped = jw.load(TABLES, "damped", {"record.stress": [3.0]})
+    assert (damped.joints.damping_ratio, damped.record.stress) == (0.05, [3.0])
+    assert TABLES["record"] == {"stress": [2.0]}  # as it was
+    with pytest.raises(jw.SceneError, match=r"scene: pillar\.block = 0\.3: must divide"):
+        jw.load(TABLES, changes={"pillar.block": 0.3})
+
+
+def test_a_scene_is_solved_measured_and_drawn():
+    scene = jw.load(TABLES)
+    blocks, exact = jw.simulate(scene), jw.simulate(scene, "lattice")
+    assert jw.misfit(blocks, exact) == compare.misfit(blocks, exact) > 0
+    assert jw.solvers(scene)["lattice"] == "" != jw.solvers(scene)["jointed-bar"]
+    assert jw.properties(scene).block_count == 10
+    found = jw.compare(scene)
+    assert {"dem", "lattice"} <= found.results.keys()
+    assert len(jw.figure([found], columns=1).axes) == 1
+
+
+def test_keys_are_fitted_and_numerics_planned():
+    scene = jw.load(TABLES)
+    heard = jw.simulate(jw.load(TABLES, changes={"load.amplitude": 2e6}), "lattice")
+    noise = np.random.default_rng(0).normal(scale=1e3, size=heard.time.size)
+    curve = Curves(
+        "gauge",
+        "gauge",
+        heard.time.values,
+        {Place("stress", "", 2.0): heard.stress.values[0] + noise},
+    )
+    (estimate,) = jw.fit(scene, [curve], ["load.amplitude"]).estimates
+    assert estimate.value == pytest.approx(2e6, rel=1e-3)
+    assert jw.plan(scene, misfit=0.05).misfit <= 0.05
+
+
+def test_names_that_are_not_there_are_no_attributes():
+    assert jw.Scene is cases.Scene and jw.UnstableError is cases.UnstableError
+    with pytest.raises(AttributeError, match="module 'jointwave' has no attribute 'solve'"):
+        _ = jw.solve
+    assert all(callable(getattr(jw, name)) for name in jw.__all__)
+
+
+def test_importing_it_imports_nothing_else():
+    script = (
+        "import sys, jointwave\n"
+        "print(sorted({'numpy', 'xarray', 'numba', 'scipy', 'pydantic'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert done.stdout == "[]\n", done.stderr
