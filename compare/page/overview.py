@@ -16,7 +16,7 @@ WORDS = {
     "continuum-jointed": "continuum, every joint resolved",
     "continuum-equivalent": "homogenised continuum",
 }
-ROOM = 30  # characters of a scene in the table
+ROOM = 22  # characters of a scene in the table
 LIMITS = "✓ agrees within 1 %, ≈ close within 5 %, △ differs within 20 %, ▲ far off beyond"
 
 

@@ -62,7 +62,7 @@ def _of_variants(name: str, comparisons: list[Comparison], grid: list[list[Overl
         f"thin and dark. Dotted: the reference, {_references(shown)}. {BELOW} {POSITIVE}"
         f"{_at_rest(shown)}",
         draw_variants(f"{name}-variants", grid),
-        _variant_table(overlays),
+        _variant_table(overlays, shown),
         _plot(overlays, legend_of(overlays)),
     )
 
@@ -105,17 +105,18 @@ def _at_rest(shown: list[Panel]) -> str:
     return f" Drawn is the motion, less the static state: {'; '.join(states)}."
 
 
-def _variant_table(overlays: list[Overlay]) -> pd.DataFrame:
-    """Return every curve and residual of engines in SI: time first, one column each."""
+def _variant_table(overlays: list[Overlay], shown: list[Panel]) -> pd.DataFrame:
+    """Return every curve of engines, and what it is held against, in SI: time first, a column each."""
     columns: dict[str, pd.Series] = {}
     for overlay in overlays:
-        unit = UNITS[overlay.quantity]
         for trace in overlay.traces:
             if trace.part.startswith("variant"):
-                columns[f"{overlay.heading} | {trace.name} ({unit})"] = trace.curve
-        for trace in overlay.residuals:
-            words = f"{overlay.heading} less {overlay.reference} | {trace.name} ({unit})"
-            columns[words] = trace.residual
+                name = f"{overlay.heading} | {trace.name} ({UNITS[overlay.quantity]})"
+                columns[name] = trace.curve
+    for panel in shown:
+        if panel.reference in (curves := panel.curves):
+            name = f"{panel.reference}, {panel.place} | {panel.variant} ({UNITS[panel.quantity]})"
+            columns[name] = curves[panel.reference]
     return pd.DataFrame(columns).rename_axis("time (s)").reset_index()
 
 

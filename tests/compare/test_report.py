@@ -12,6 +12,7 @@ from cases.effects import active_effects
 from compare.fieldfiles import read_pvd
 from compare.page.scenes import _key
 from compare.page.section import PAPER
+from compare.page.standing import NOT_CHECKED
 from compare.pairs import Comparison
 from compare.panels import curve_table, variant_names
 from compare.report import build
@@ -99,7 +100,7 @@ def test_the_first_screen_holds_every_engine_on_every_figure(report, browser):
     rows = page.locator("table.overview tbody tr").all_inner_texts()
     assert len(rows) == len(FIGURES) and all(row.count("×") == 3 for row in rows)
     lead = page.locator("ul.lead").inner_text().replace("\u00a0", " ")
-    assert "(rigid blocks): 0.16 to 4 % from the finest physics" in lead
+    assert "(rigid blocks): 0.22 to 4 % from the finest physics" in lead
     assert "the cheapest's time" in lead and "a run." in lead
     page.close()
 
@@ -114,8 +115,9 @@ def test_the_overview_is_measured(report):
             summary["dem ~ continuum-jointed"][line.label],
         )
         assert bar.own == summary["continuum-equivalent ~ equivalent-bar"][line.label]
-        assert {cell.verdict.word for cell in line.cells} <= {"agrees", "close", "differs"}
-        assert jointed.verdict.word == "agrees" or jointed.verdict.word == "not known"
+        assert {dem.verdict.word, bar.verdict.word} <= {"agrees", "close", "differs"}
+        unchecked = line.name in ("fig-09", "fig-10")  # without tension nothing else resolves rock
+        assert jointed.verdict.word == (NOT_CHECKED.word if unchecked else "agrees")
 
 
 def test_most_of_the_papers_own_distance_is_dispersion(report, text):
@@ -152,12 +154,12 @@ def test_csv_holds_every_curve_and_only_those(report, name):
 
 
 def test_csv_holds_the_load_itself(report):
-    """At y = 0 the rigid blocks' stress is the load: 1 MPa times sin(2 pi t / 10 ms)."""
+    """At y = 0 the rigid blocks' stress is the load: 1 MPa times sin(2 pi t / 10 ms), 6 digits."""
     table = pd.read_csv(report.page.parent / "figures" / "fig-02-waveforms.csv")
     (column,) = (c for c in table if c.startswith("dem | stress at y = 0 m"))
     one = table[table["time (s)"] < 0.01]
     sine = 1e6 * np.sin(2 * np.pi * one["time (s)"] / 0.01)
-    np.testing.assert_allclose(one[column], sine, atol=2e3)  # the mean over a step, half a step off
+    np.testing.assert_allclose(one[column], sine, atol=1.0)
 
 
 def test_misfits_are_written_as_numbers(report):
