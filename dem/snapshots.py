@@ -8,7 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from cases.calibrate import Properties
+from cases.loads import beside_means
 from cases.result import Fields
+from cases.sampling import interpolation
 from cases.scene import Scene
 from cases.snapshots import (
     Film,
@@ -39,12 +41,17 @@ class Shot(NamedTuple):
 
 
 class BlockFilm(Film):
-    """The blocks at every snapshot that a scene asks for; raises SceneError for too many."""
+    """The blocks at every snapshot that a scene asks for; raises SceneError for too many.
 
-    def __init__(self, scene: Scene, p: Properties, shoot: Callable[[int], Shot]) -> None:
+    step : s, over which the load is a mean; None where it is not.
+    """
+
+    def __init__(
+        self, scene: Scene, p: Properties, shoot: Callable[[int], Shot], step: float | None
+    ) -> None:
         refuse_beyond_room(scene, CORNERS_OF_A_BLOCK * p.block_count)
         super().__init__(samples_between(scene) or 1, shoot)
-        self.p = p
+        self.scene, self.p, self.step = scene, p, step
         self.at_rest = prestressed(scene, p) if scene.prestress else None
 
     def developed(self, result: Fields) -> Fields:
@@ -58,6 +65,10 @@ class BlockFilm(Film):
         if self.at_rest is not None:
             u[..., 1] -= self.at_rest[:, None]
         u, v = (x.reshape(len(time), -1, 3) for x in (u, v))
+        stress = np.stack([shot.stress for shot in shots])
+        if self.step is not None:
+            face = interpolation(self.p.spacing * np.arange(count + 1), [0.0])
+            stress[:, 0] += beside_means(self.scene, face, time, self.step)[0, 1]
         found = snapshots(
             time,
             (centres + corners).reshape(-1, 3),
@@ -66,7 +77,7 @@ class BlockFilm(Film):
             np.arange(count),
             u,
             v,
-            np.stack([(shot.stress[:-1] + shot.stress[1:]) / 2 for shot in shots]),
+            (stress[:, :-1] + stress[:, 1:]) / 2,
         )
         return with_snapshots(result, found)
 

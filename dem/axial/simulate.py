@@ -82,7 +82,7 @@ def simulate_fields(
     march = scheme.marcher(scene, model, state, samples, time, held)
     built = perf_counter()
     march(0, 0)
-    film = _film(scene, model, state, time.stride)
+    film = _film(scene, model, state, time.stride, time.dt if scheme.takes_means else None)
     compiled = perf_counter()
 
     def result(count: int) -> Fields:
@@ -135,12 +135,17 @@ def _with_breaks(result: Fields, scene: Scene, state: State, time: Clock) -> Fie
     return with_fragments(result, calibrate(scene), ~np.isnan(times), state.v, times)
 
 
-def _film(scene: Scene, model: Model, state: State, stride: int) -> BlockFilm | None:
-    """Return what keeps snapshots; None, and nothing imported, where none are asked for."""
+def _film(
+    scene: Scene, model: Model, state: State, stride: int, mean: float | None
+) -> BlockFilm | None:
+    """Return what keeps snapshots; None, and nothing imported, where none are asked for.
+
+    mean : s, over which the load is a mean; None where it is not.
+    """
     if scene.record.fields is None:
         return None
     from dem.axial.snapshots import shooter
     from dem.snapshots import BlockFilm
 
     p = calibrate(scene)
-    return BlockFilm(scene, p, shooter(p, model, state, stride))
+    return BlockFilm(scene, p, shooter(p, model, state, stride), mean)

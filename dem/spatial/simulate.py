@@ -82,7 +82,7 @@ def simulate_fields(
     march = marcher(model, state, room_for(model, threads, held), samples)
     built = perf_counter()
     march(0, 0)
-    film = _film(scene, p, model, state, threads)
+    film = _film(scene, p, model, state, threads, time.dt)
     compiled = perf_counter()
 
     def result(count: int) -> Fields:
@@ -127,7 +127,7 @@ def simulate_fields(
 
 
 def _film(
-    scene: Scene, p: Properties, model: Model, state: State, threads: int
+    scene: Scene, p: Properties, model: Model, state: State, threads: int, dt: float
 ) -> BlockFilm | None:
     """Return what keeps snapshots; None, and nothing imported, where none are asked for."""
     if scene.record.fields is None:
@@ -135,7 +135,7 @@ def _film(
     from dem.snapshots import BlockFilm
     from dem.spatial.snapshots import shooter
 
-    return BlockFilm(scene, p, shooter(p, model, state, threads))
+    return BlockFilm(scene, p, shooter(p, model, state, threads), dt)
 
 
 def waveforms(scene: Scene, p: Properties, samples: Samples, time: Clock) -> dict[str, Any]:
