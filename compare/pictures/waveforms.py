@@ -106,7 +106,7 @@ def _at_rest(shown: list[Panel]) -> str:
 
 
 def _variant_table(overlays: list[Overlay], shown: list[Panel]) -> pd.DataFrame:
-    """Return every curve of engines, and what it is held against, in SI: time first, a column each."""
+    """Return curves of engines and what they are held against, SI: time first, a column each."""
     columns: dict[str, pd.Series] = {}
     for overlay in overlays:
         for trace in overlay.traces:
