@@ -154,18 +154,23 @@ def step_means(load: LoadHistory, dt: float, count: int) -> np.ndarray:
     return np.diff(load.impulse(edges)) / dt
 
 
-def beside_means(scene: Scene, sections: Interpolation, times: np.ndarray, dt: float) -> np.ndarray:
-    """Return what the stress at a loaded face is beside the mean that `step_means` applies, Pa.
+def with_load_itself(
+    stress: np.ndarray, scene: Scene, sections: Interpolation, times: np.ndarray, dt: float
+) -> np.ndarray:
+    """Return stresses (Pa) that hold the load itself where steps of dt (s) took its mean.
 
-    sections : between contacts, of which 0 is that face. A force enters there alone.
-
-    Float array [section, axis, time], of the load's components along x, y and z.
+    stress : float array [section, time] along y, or [section, axis, time]. sections : between
+    contacts, of which 0 is the loaded face.
     """
-    load, is_force = load_history(scene), not scene.load.shakes_base and scene.load.arm is None
-    means = (load.impulse(times + dt / 2) - load.impulse(times - dt / 2)) / dt
-    share = np.where(sections.left == 0, 1.0 - sections.weight, 0.0) * is_force
-    rest = np.multiply.outer(scene.load.direction, load.value(times) - means)
-    return np.multiply.outer(share, rest)
+    faced = np.flatnonzero((sections.left == 0) & (sections.weight < 1.0))
+    if not faced.size or scene.load.shakes_base or scene.load.arm is not None:
+        return stress
+    load, found = load_history(scene), stress.copy()
+    mean = (load.impulse(times + dt / 2) - load.impulse(times - dt / 2)) / dt
+    axes = scene.load.direction[1] if stress.ndim == 2 else np.array(scene.load.direction)
+    beside = np.multiply.outer(axes, load.value(times) - mean)
+    found[faced] += np.multiply.outer(1.0 - sections.weight[faced], beside)
+    return found
 
 
 def base_steps(scene: Scene, dt: float, count: int) -> np.ndarray:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cases.calibrate import Properties
-from cases.loads import beside_means
+from cases.loads import with_load_itself
 from cases.result import Fields
 from cases.sampling import interpolation
 from cases.scene import Scene
@@ -67,8 +67,9 @@ class BlockFilm(Film):
         u, v = (x.reshape(len(time), -1, 3) for x in (u, v))
         stress = np.stack([shot.stress for shot in shots])
         if self.step is not None:
-            face = interpolation(self.p.spacing * np.arange(count + 1), [0.0])
-            stress[:, 0] += beside_means(self.scene, face, time, self.step)[0, 1]
+            y = self.p.spacing * np.arange(count + 1)
+            contacts = interpolation(y, y.tolist())
+            stress = with_load_itself(stress.T, self.scene, contacts, time, self.step).T
         found = snapshots(
             time,
             (centres + corners).reshape(-1, 3),

@@ -11,7 +11,7 @@ import numpy as np
 from cases.arrays import size_of
 from cases.calibrate import calibrate
 from cases.keeper import Keeper
-from cases.loads import beside_means
+from cases.loads import with_load_itself
 from cases.result import Fields, fields
 from cases.runaway import stopped
 from cases.sampling import Clock
@@ -88,7 +88,7 @@ def simulate_fields(
     def result(count: int) -> Fields:
         stress, times = samples.stress[:, :count], time.times[:count]
         if scheme.takes_means:
-            stress = stress + beside_means(scene, model.receivers.sections, times, time.dt)[:, 1]
+            stress = with_load_itself(stress, scene, model.receivers.sections, times, time.dt)
         found = fields(
             scene,
             "dem",

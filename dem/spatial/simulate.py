@@ -12,7 +12,7 @@ from cases.arrays import changed, size_of
 from cases.calibrate import Properties, calibrate
 from cases.errors import SceneError
 from cases.keeper import Keeper
-from cases.loads import beside_means
+from cases.loads import with_load_itself
 from cases.result import Fields, fields
 from cases.runaway import stopped
 from cases.sampling import Clock, Interpolation, clock
@@ -143,7 +143,7 @@ def waveforms(scene: Scene, p: Properties, samples: Samples, time: Clock) -> dic
     sections, points = receivers(scene, p)
     force, velocity = between(samples.force, sections), between(samples.velocity, points)
     times = time.times[: force.shape[-1]]
-    stress = force[:, :3] / p.area + beside_means(scene, sections, times, time.dt)
+    stress = with_load_itself(force[:, :3] / p.area, scene, sections, times, time.dt)
     moved = between(samples.displacement, points)
     moved[:, 1] = since_prestress(scene, p, moved[:, 1], points)
     found = {
