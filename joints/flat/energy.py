@@ -1,0 +1,40 @@
+"""The energy that a joint stores and dissipates, per unit area (J/m2)."""
+
+from joints.flat.formula import formula
+from joints.flat.normal import spring_traction
+
+
+@formula
+def elastic_energy(law, parts, gap, opening, ex, ez):
+    """Return the energy in the springs, half of traction times elastic displacement.
+
+    gap, opening : m; ex, ez : elastic slip, m.
+    """
+    energy = -0.5 * spring_traction(law, parts, gap, opening) * gap
+    if parts.shear:
+        energy = energy + 0.5 * law.shear_stiffness * (ex * ex + ez * ez)
+    return energy
+
+
+@formula
+def friction_work(law, ex_old, ez_old, ex, ez, dx, dz):
+    """Return what sliding takes in a step of slip dx, dz: the mean spring force times the slide.
+
+    The slide is the slip less the change of elastic slip. Together with the change of
+    `elastic_energy` this is the trapezoid rule of leapfrog's ledger, exactly.
+    """
+    along_x = (ex_old + ex) * (dx - (ex - ex_old))
+    along_z = (ez_old + ez) * (dz - (ez - ez_old))
+    return 0.5 * law.shear_stiffness * (along_x + along_z)
+
+
+@formula
+def fracture_energy_spent(law, opening):
+    """Return what opening has spent: the area under the softening curve less what unloads.
+
+    With the linear curve this is G_c (k - w_0) / (w_c - w_0), between zero and G_c = s_t w_c / 2.
+    """
+    first = law.tensile_strength / law.normal_stiffness
+    whole = 0.5 * law.tensile_strength * law.critical_opening
+    share = min((opening - first) / (law.critical_opening - first), 1.0)
+    return 0.0 if opening <= first else whole * share

@@ -1,0 +1,130 @@
+"""The law of a joint: its parameters, which parts it has, and the whole of it in one call.
+
+Every formula here is plain Python that numba compiles into the kernels that call it. A kernel takes
+the parameters as one table, and `Parts`, a tuple of booleans, as a constant: what a law lacks is
+folded away when the kernel is compiled. A new parameter is a field of `Law`, and its formula.
+
+Per unit area: traction in Pa, compression positive; gap in m, positive when open, so that
+penetration is negative. The shear traction acts on the right block.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from joints.flat.formula import formula
+from joints.flat.normal import normal_traction
+from joints.flat.shear import cohesion_left, shear_return, shear_strength
+
+
+class Law(NamedTuple):
+    """The parameters of all joints [n], or of one joint (floats, in kernels).
+
+    normal_stiffness, normal_viscosity : K, Pa/m, and K eta, Pa s/m; None without dashpots.
+    carries_tension : whether tension is carried; None where every joint does.
+    shear_stiffness, shear_viscosity : K_s, Pa/m, and K_s eta, Pa s/m; None without shear.
+    cohesion, friction : c, Pa, and tan(phi); None where no joint slides.
+    residual_cohesion : what slip leaves of the cohesion, Pa; None where it leaves all.
+    tensile_strength, critical_opening : s_t, Pa, and w_c, m; None without softening.
+
+    A joint without a strength that others have is given `joints.flat.shear.UNLIMITED`.
+    """
+
+    normal_stiffness: Any
+    normal_viscosity: Any = None
+    carries_tension: Any = None
+    shear_stiffness: Any = None
+    shear_viscosity: Any = None
+    cohesion: Any = None
+    friction: Any = None
+    residual_cohesion: Any = None
+    tensile_strength: Any = None
+    critical_opening: Any = None
+
+
+class Parts(NamedTuple):
+    """Which parts the law has: constants of a compiled kernel.
+
+    varied : joints differ, and the table has a column for each; else one for all.
+    limited : the shear traction has a limit: Coulomb's, or none is left where a joint is open.
+    """
+
+    dashpots: bool
+    no_tension: bool
+    softening: bool
+    shear: bool
+    slip: bool
+    residual: bool
+    limited: bool
+    varied: bool
+
+
+class History(NamedTuple):
+    """What one point of a joint remembers; 0 for what its law does not use.
+
+    opening : the largest so far, m. ex, ez : elastic part of the slip, m. cohesion : of this
+    point, Pa, where slip changes it.
+    """
+
+    opening: float = 0.0
+    ex: float = 0.0
+    ez: float = 0.0
+    cohesion: float = 0.0
+
+
+def parts_of(law: Law) -> Parts:
+    """Return which parts a law has."""
+    shear = law.shear_stiffness is not None
+    slip = law.cohesion is not None or law.friction is not None
+    no_tension, softening = law.carries_tension is not None, law.tensile_strength is not None
+    return Parts(
+        dashpots=law.normal_viscosity is not None,
+        no_tension=no_tension,
+        softening=softening,
+        shear=shear,
+        slip=slip,
+        residual=law.residual_cohesion is not None,
+        limited=shear and (slip or no_tension or softening),
+        varied=any(np.ndim(value) for value in law if value is not None),
+    )
+
+
+def table_of(law: Law) -> np.ndarray:
+    """Return the parameters as kernels take them: [field, 1], or [field, joint] where some vary.
+
+    Absent ones are 0, and take no memory: nothing reads their pages.
+    """
+    given = [(row, value) for row, value in enumerate(law) if value is not None]
+    table = np.zeros((len(law), max(np.size(value) for _, value in given)))
+    for row, value in given:
+        table[row] = value
+    return table
+
+
+@formula
+def law_of(table, j):
+    """Return the law of joint j, of column 0 where all are alike: every parameter a number."""
+    return Law(
+        table[0, j], table[1, j], table[2, j], table[3, j], table[4, j],
+        table[5, j], table[6, j], table[7, j], table[8, j], table[9, j],
+    )  # fmt: skip
+
+
+@formula
+def traction(law, parts, gap, gap_rate, slip, slip_rate, dt, history):
+    """Return (t_n, t_x, t_z, history) of one point after a step: the whole law.
+
+    gap, gap_rate : m and m/s at the end of the step; slip : its increments (dx, dz) over the
+    step, m; slip_rate : (x, z), m/s; dt : s; history : before the step.
+    """
+    opening = max(history.opening, gap)
+    t_n = normal_traction(law, parts, gap, gap_rate, opening)
+    if not parts.shear:
+        return t_n, 0.0, 0.0, History(opening, history.ex, history.ez, history.cohesion)
+    tau = shear_strength(law, parts, t_n, gap, opening, history.cohesion)
+    t_x, t_z, ex, ez, slipped = shear_return(
+        law, parts, history.ex + slip[0], history.ez + slip[1],
+        history.ex, history.ez, slip_rate[0], slip_rate[1], tau, dt,
+    )  # fmt: skip
+    cohesion = cohesion_left(law, parts, history.cohesion, slipped)
+    return t_n, t_x, t_z, History(opening, ex, ez, cohesion)

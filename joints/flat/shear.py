@@ -1,0 +1,89 @@
+"""Shear traction of a joint: spring and dashpot up to Coulomb's strength, equation (3).
+
+The traction acts on the right block, in the two directions x and z of the face. The elastic part
+e of the slip is its memory: a step adds the increment of slip, and what exceeds the strength is
+scaled back along its own direction (radial return). With T* = -K_s e - C_s de/dt on the strength
+and de/dt taken over the step, e is where spring and dashpot together carry exactly T*.
+"""
+
+from math import sqrt
+
+from joints.flat.formula import formula
+from joints.flat.softening import is_broken, strength_left
+
+# Pa; more than any joint carries, and still a number when squared.
+UNLIMITED = 1e100
+
+
+@formula
+def shear_traction(law, parts, slip_x, slip_z, rate_x, rate_z):
+    """Return (t_x, t_z) (Pa) where nothing slides, from the whole slip (m) and its rate."""
+    t_x, t_z = -law.shear_stiffness * slip_x, -law.shear_stiffness * slip_z
+    if parts.dashpots:
+        t_x, t_z = t_x - law.shear_viscosity * rate_x, t_z - law.shear_viscosity * rate_z
+    return t_x, t_z
+
+
+@formula
+def shear_strength(law, parts, t_n, gap, opening, cohesion):
+    """Return the limit of |T| (Pa); `UNLIMITED` where there is none.
+
+    c s(k) / s_t + t_n tan(phi), not below zero; zero where the joint does not hold.
+
+    t_n, gap : normal traction, Pa, and gap, m.
+    opening : the largest so far, m. cohesion : of this point, Pa, where slip changes it.
+    """
+    tau = UNLIMITED
+    if parts.slip:
+        c = cohesion if parts.residual else law.cohesion
+        # A cohesion that stands for no limit has none where broken faces touch either.
+        if parts.softening and c < UNLIMITED:
+            c = c * (strength_left(law, opening) / law.tensile_strength)
+        tau = max(c + t_n * law.friction, 0.0)
+    return tau if holds(law, parts, gap, opening) else 0.0
+
+
+@formula
+def holds(law, parts, gap, opening):
+    """Return whether the two faces hold each other: not where open without tension, or broken."""
+    pulls = (not parts.no_tension or law.carries_tension != 0.0) and not is_broken(
+        law, parts, opening
+    )
+    return gap <= 0.0 or pulls
+
+
+@formula
+def shear_return(law, parts, ex, ez, ex_old, ez_old, rate_x, rate_z, tau, dt):
+    """Return (t_x, t_z, ex, ez, slipped) at the end of a step.
+
+    ex, ez : trial elastic slip, the old one and the whole increment, m.
+    ex_old, ez_old : elastic slip before the step, m; rate_x, rate_z : of the slip, m/s.
+    tau : strength, Pa; dt : the step, s.
+    """
+    t_x, t_z = shear_traction(law, parts, ex, ez, rate_x, rate_z)
+    if not parts.limited:
+        return t_x, t_z, ex, ez, False
+    square = t_x * t_x + t_z * t_z
+    slipped = square > tau * tau
+    scale = tau / sqrt(square) if slipped else 1.0
+    t_x, t_z = scale * t_x, scale * t_z
+    x = _elastic_slip(law, parts, scale * ex, t_x, ex_old, dt)
+    z = _elastic_slip(law, parts, scale * ez, t_z, ez_old, dt)
+    return t_x, t_z, x if slipped else ex, z if slipped else ez, slipped
+
+
+@formula
+def _elastic_slip(law, parts, scaled, t, old, dt):
+    if not parts.dashpots:
+        return scaled
+    # t = -K_s e - C_s (e - old) / dt, solved for e.
+    drag = law.shear_viscosity / dt
+    return (drag * old - t) / (law.shear_stiffness + drag)
+
+
+@formula
+def cohesion_left(law, parts, cohesion, slipped):
+    """Return the cohesion (Pa) of a point after a step, where slip changes it."""
+    if parts.residual and slipped:
+        return min(cohesion, law.residual_cohesion)
+    return cohesion
