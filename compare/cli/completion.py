@@ -72,9 +72,8 @@ def models(incomplete: str) -> list[str]:
 
 def studies(incomplete: str) -> list[str]:
     """Return shipped studies and the files of others."""
-    known = sorted(
-        path.stem for path in (Path(__file__).parents[1] / "experiments" / "study").glob("*.toml")
-    )
+    shipped = Path(__file__).parents[1] / "experiments" / "study" / "shipped"
+    known = sorted(path.stem for path in shipped.glob("*.toml"))
     return [*_begun([*known, "stability"], incomplete), *files(incomplete)]
 
 

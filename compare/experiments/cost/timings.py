@@ -1,6 +1,6 @@
-"""What steps have cost here, by what decides their cost; of each what was measured last.
+"""Rates measured on this machine: seconds of a step, of a point, of a command; the last of each.
 
-Kept beside the kernels, so that what another state of the program took is not taken for this one's.
+They are saved beside the kernels, so that those of another state of the program do not count.
 """
 
 from __future__ import annotations

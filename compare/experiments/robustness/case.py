@@ -1,9 +1,9 @@
-"""A hard case: a scene with changes, the solvers it is put to, and the criterion that judges it."""
+"""Hard cases: a scene with changes, the solvers it is put to, and the criterion that judges it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import xarray as xr
@@ -14,6 +14,7 @@ from cases.schema.scene import Scene
 from compare.engines import solve
 from compare.scenes import find
 
+SHORT = "hard/short-pillar"  # the scene of most cases
 #: In a case's changes: numerics.dem.step_fraction or numerics.continuum.step_fraction.
 STEP = "step_fraction"
 ALLOW = "allow_unstable"
@@ -59,23 +60,36 @@ class Finding(NamedTuple):
     said: str = ""
 
 
+class Criterion(NamedTuple):
+    """A bound from theory. words : what it bounds. judge : measures it on one solver."""
+
+    words: str
+    judge: Callable[[Trial], Finding]
+
+    def __call__(self, trial: Trial) -> Finding:
+        """Return what the criterion finds."""
+        return self.judge(trial)
+
+
+def criterion(words: str) -> Callable[[Callable[[Trial], Finding]], Criterion]:
+    """Return the decorator that makes a function of a trial a criterion."""
+    return partial(Criterion, words)
+
+
 class Case(NamedTuple):
     """A hard case.
 
-    name : in words. scene : a shipped scene, "hard/short-pillar".
-    criterion : in words, what theory bounds. judge : what measures it on one solver.
-    changes : of the scene, dotted keys; those of [numerics] may be `STEP` and `ALLOW`.
-    spared : why a solver is not put to the case, by its name or its engine's or its scheme's.
-    slow : takes long; run by `make test-all` and the study alone.
+    name : in words. changes : of the scene, dotted keys; those of [numerics] may be `STEP` and
+    `ALLOW`. spared : why a solver is not put to the case, by its name or its engine's or its
+    scheme's. slow : takes long; run by `make test-all` and the study alone. scene : a shipped one.
     """
 
     name: str
-    scene: str
-    criterion: str
-    judge: Callable[[Trial], Finding]
+    criterion: Criterion
     changes: dict[str, Any] = {}  # noqa: RUF012
     spared: dict[str, str] = {}  # noqa: RUF012
     slow: bool = False
+    scene: str = SHORT
 
     def why_spared(self, solver: Solver) -> str | None:
         """Return why a solver is not put to this case; None where it is."""
@@ -83,6 +97,11 @@ class Case(NamedTuple):
             if key in self.spared:
                 return self.spared[key]
         return None
+
+
+def rock_is_spared(reason: str) -> dict[str, str]:
+    """Return the reason why no deformable rock is put to a case, as `Case.spared` has it."""
+    return {"continuum-jointed": reason, "continuum-equivalent": reason}
 
 
 class Trial:

@@ -19,7 +19,7 @@ from matplotlib.ticker import NullFormatter
 from compare.experiments.study.measure import Row
 from compare.experiments.study.pareto import floor, front, is_known, measured
 from compare.experiments.study.study import Study
-from compare.figures.export import save
+from compare.figures.export import Drawn, save
 from compare.figures.style import RC, STYLES, WIDTH, style
 
 ERRORS = {
@@ -72,12 +72,11 @@ def draw(name: str, study: Study, rows: list[Row], costs: dict[str, str] | None 
     return figure
 
 
-def write_diagram(folder: Path, name: str, study: Study, rows: list[Row]) -> tuple[Path, ...]:
-    """Write the diagram into a folder; return its files, none where no error is known."""
+def write_diagram(folder: Path, name: str, study: Study, rows: list[Row]) -> Drawn | None:
+    """Write the diagram into a folder; None where no error is known."""
     if not any(measured(rows, error, "work") for error in ERRORS):
-        return ()
-    drawn = save(draw(name, study, rows), folder, name, study.title)
-    return tuple(drawn.file(kind) for kind in ("svg", "pdf", "png"))
+        return None
+    return save(draw(name, study, rows), folder, name, study.title)
 
 
 def _draw_panel(ax: Axes, study: Study, rows: list[Row], error: str, cost: str, name: str) -> None:

@@ -15,7 +15,7 @@ from compare.experiments.study.check import ARGUMENTS, plain, refuse_senseless
 from compare.scenes import find
 
 LARGEST_FILE = 1_000_000  # bytes
-SHIPPED = Path(__file__).parent
+SHIPPED = Path(__file__).parent / "shipped"
 FINEST, NONE = "finest", "none"  # what errors may be measured against besides solutions
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
+from hashlib import sha256
 from math import nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -12,7 +11,7 @@ import numpy as np
 
 from cases.errors import InterruptedRun, SceneError, UnstableError
 from cases.schema.scene import Scene
-from compare.runs.checkpoint.signature import program
+from compare.experiments import store
 from results.dataset import scene_hash
 
 if TYPE_CHECKING:
@@ -118,7 +117,7 @@ Work = Running | Comparing
 
 
 def outcome(case: Case, work: Work) -> Outcome:
-    """Return what comes of a case; what cannot be solved is an outcome that says why."""
+    """Return the outcome of a case; of one that cannot be solved the reason."""
     if case.scene is None:
         return Outcome("failed", case.message, [])
     try:
@@ -130,14 +129,16 @@ def outcome(case: Case, work: Work) -> Outcome:
 
 
 def key(case: Case, work: Work) -> str:
-    """Return what tells cases apart: everything that decides a row, this program included."""
-    assert case.scene is not None
-    about = [str(case.folder), scene_hash(case.scene), type(work).__name__, program(), work.about]
-    digest = hashlib.sha256(json.dumps(about).encode())
-    for curve in work.curves if isinstance(work, Comparing) else []:
-        for values in (curve.time, *curve.waveforms.values()):
-            digest.update(np.ascontiguousarray(values).tobytes())
-    return digest.hexdigest()[:16]
+    """Return what tells cases apart: everything that decides a row."""
+    scene = case.message if case.scene is None else scene_hash(case.scene)
+    curves = work.curves if isinstance(work, Comparing) else []
+    samples = [
+        sha256(np.asarray(values).tobytes()).hexdigest()
+        for curve in curves
+        for values in (curve.time, *curve.waveforms.values())
+    ]
+    about = [str(case.folder), case.variant, scene, type(work).__name__, work.about]
+    return store.key(*about, samples)
 
 
 def _of_run(done: Any) -> Rows:

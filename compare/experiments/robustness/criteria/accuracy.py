@@ -13,9 +13,10 @@ import xarray as xr
 
 from cases.material.calibrate import calibrate
 from compare.engines import applies, solve
-from compare.experiments.robustness.case import Finding, Trial
+from compare.experiments.robustness.case import Finding, Trial, criterion
 from compare.misfit.metrics import misfit
 
+SECOND_ORDER = "misfit from the exact solution, at most the phase error of a second-order scheme"
 #: Exact solutions of the models that the engines discretise, the first that applies counts.
 REFEREES = {
     "dem": ("lattice", "no-tension-chain", "spatial-lattice"),
@@ -108,6 +109,7 @@ def time_of_element(trial: Trial) -> float:
     return p.spacing / count / sqrt((modulus or p.modulus) / p.density)
 
 
+@criterion(SECOND_ORDER)
 def near_exact(trial: Trial) -> Finding:
     """The misfit from the exact solution is at most the scheme's phase error (and elements')."""
     result, scene = trial.run(), trial.scene()

@@ -22,7 +22,7 @@ from cases.errors import UnstableError
 from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from cases.schema.scene import Scene
-from compare.experiments.robustness.case import STEP, Finding, Trial
+from compare.experiments.robustness.case import STEP, Finding, Trial, criterion
 
 if TYPE_CHECKING:
     from continuum.body import Body
@@ -38,6 +38,7 @@ class Loose(NamedTuple):
     speed: Callable[[], float]
 
 
+@criterion("logarithm of the last speed over the first, off that of ten thousand dashpots' impacts")
 def restitution(trial: Trial) -> Finding:
     """After n impacts the speed is e^n of the first, and it never grows.
 

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from cases.material.calibrate import calibrate
-from compare.experiments.robustness.case import STEP, Finding, Trial
+from compare.experiments.robustness.case import STEP, Finding, Trial, criterion
 from compare.experiments.robustness.criteria.accuracy import EPS
 from compare.experiments.robustness.criteria.energies import ROUND_OFF, SPENT
 from compare.misfit.metrics import relative_l2
@@ -26,6 +26,7 @@ def every_step(trial: Trial) -> dict[str, Any]:
     return {"record__interval": dt, "record__stress": joints.tolist(), "record__velocity": []}
 
 
+@criterion("misfit from elastic joints under the same prestress")
 def just_closed(trial: Trial) -> Finding:
     """A prestress of just the largest tension of the wave leaves every joint closed.
 
@@ -43,6 +44,7 @@ def just_closed(trial: Trial) -> Finding:
     return Finding(relative_l2(barred, bound), 10 * EPS * steps, f"misfit at {p:.3g} Pa")
 
 
+@criterion("misfit from a load 2^99 times as large, over that")
 def scales_by_two(trial: Trial) -> Finding:
     """Joints that bar tension know no scale: a load smaller by a power of two does the same in
     every digit, with gaps down to 1e-40 m that open and close as those of a large one do."""
@@ -52,6 +54,7 @@ def scales_by_two(trial: Trial) -> Finding:
     return Finding(found, 0.0, f"misfit; smallest load {small:.2g} Pa")
 
 
+@criterion("imbalance over the work")
 def ledger(trial: Trial) -> Finding:
     """No energy is made or lost where joints open, close, slide and break."""
     from results.dataset import energy_residual
@@ -68,6 +71,7 @@ def _spent(result: xr.Dataset) -> str:
     return f"of the work; spent: {', '.join(parts)}"
 
 
+@criterion("fracture energy spent over that of a joint, off a whole number")
 def whole_joints(trial: Trial) -> Finding:
     """Breaking costs each joint its fracture energy, G_c times the section, and no more.
 
@@ -82,6 +86,7 @@ def whole_joints(trial: Trial) -> Finding:
     return Finding(abs(joints - round(joints)), KINKS, f"of a joint; {round(joints)} broke")
 
 
+@criterion("misfit from a joint that cannot slide, where the cohesion is just the largest shear")
 def just_held(trial: Trial) -> Finding:
     """At a cohesion of just the largest shear a joint holds, just below it slides.
 
@@ -115,6 +120,7 @@ def _fine(trial: Trial) -> dict[str, Any]:
     return {"record__interval": dt, STEP: 1.0}
 
 
+@criterion("traction that should not be there, Pa")
 def one_ulp(trial: Trial) -> Finding:
     """A gap of the smallest number is open and carries nothing; the same closed pushes back."""
     from joints.laws import normal_traction

@@ -11,7 +11,7 @@ from cases.errors import SceneError
 from cases.material.calibrate import calibrate
 from compare.engines import applies, solve
 from compare.exact.bar import equivalent_bar, jointed_bar
-from compare.experiments.robustness.case import Finding, Trial
+from compare.experiments.robustness.case import Finding, Trial, criterion
 from compare.experiments.robustness.criteria.accuracy import (
     CUBES,
     REFEREE,
@@ -24,6 +24,7 @@ from compare.experiments.robustness.criteria.accuracy import (
 from compare.misfit.metrics import misfit, relative_l2
 
 
+@criterion("misfit from the exact solution, at most the dispersion of a second-order front")
 def shock(trial: Trial) -> Finding:
     """A jump in stress is as wrong as the dispersion of steps and elements makes it.
 
@@ -43,6 +44,7 @@ def shock(trial: Trial) -> Finding:
     )
 
 
+@criterion("misfit from the exact row of blocks in space")
 def in_space(trial: Trial) -> Finding:
     """Stress, motion and rotation of a row of blocks in space are within the phase error of the
     exact row, whatever the inertia of the blocks: each apart, as they differ in size."""
@@ -57,6 +59,7 @@ def in_space(trial: Trial) -> Finding:
     return Finding(found[worst], phase_error(trial, result), f"misfit of the {worst}")
 
 
+@criterion("largest number of the result")
 def nothing(trial: Trial) -> Finding:
     """Without a load nothing moves: every number of the result is zero, not merely small."""
     result = trial.run()
@@ -64,6 +67,7 @@ def nothing(trial: Trial) -> Finding:
     return Finding(float(max(found)), 0.0, "largest number of the result")
 
 
+@criterion("misfit from the result of 1 Pa times the amplitude")
 def scaled(trial: Trial) -> Finding:
     """What is linear scales with its load: over the amplitude, the result is that of 1 Pa.
 
@@ -79,6 +83,7 @@ def scaled(trial: Trial) -> Finding:
     return Finding(found, 2.2e-16 * (2 + float(one.attrs["steps"])), "misfit over the amplitude")
 
 
+@criterion("refused in one line that names the key")
 def refused(trial: Trial) -> Finding:
     """What cannot be computed is refused in one line that names the key."""
     try:
@@ -89,6 +94,7 @@ def refused(trial: Trial) -> Finding:
     return Finding(1.0, 0.0, "was not refused")
 
 
+@criterion("misfit from a pillar of a thousand blocks before any wave is back")
 def untouched_far_end(trial: Trial) -> Finding:
     """What no wave has reached does not matter: a long pillar's first blocks do what those of a
     short one do, bit by bit in explicit steps, which pass on one block a step."""
@@ -99,6 +105,7 @@ def untouched_far_end(trial: Trial) -> Finding:
     return Finding(found, 0.0, f"misfit of {long.attrs['degrees_of_freedom']:,} freedoms")
 
 
+@criterion("misfit from the exact bar, at most Love's correction and the phase error")
 def as_bar(trial: Trial) -> Finding:
     """A slender column of solid elements is a bar, whatever the shape of its elements.
 
