@@ -11,6 +11,7 @@ import typer
 import cases
 from cases.errors import SceneError, printable
 from compare.cli import completion
+from compare.engines import selection
 from compare.runs.processes import started
 from compare.scenes import find
 
@@ -29,14 +30,8 @@ SceneArgument = Annotated[
 ]
 
 
-class Engine(StrEnum):
-    """What can simulate or solve a scene."""
-
-    dem = "dem"
-    continuum = "continuum"
-    exact = "exact"
-
-
+#: What can simulate or solve a scene, as --engine selects it.
+Engine = StrEnum("Engine", list(selection()))  # type: ignore[misc]
 EngineOption = Annotated[list[Engine], typer.Option(help="May be given more than once.")]
 ModelOption = Annotated[
     list[str] | None,
