@@ -10,6 +10,7 @@ import typer
 
 import cases
 from cases.errors import SceneError, printable
+from compare import scenes
 from compare.cli import completion
 from compare.engines import selection
 from compare.runs.processes import started
@@ -119,9 +120,9 @@ def load(
     overrides = dict(parse_override(text) for text in changes)
     path = find(scene)
     if variant is None:
-        found = cases.load(path, overrides)
+        found = scenes.load(path, overrides)
     else:
-        found = [cases.load_variant(path, variant, overrides)]
+        found = [scenes.load_variant(path, variant, overrides)]
     warn(found, strict)
     return found
 

@@ -47,7 +47,7 @@ def list_scenes(as_json: JsonOption = False) -> None:
 @app.command()
 def run(
     scene: SceneArgument,
-    engine: EngineOption = [Engine(DEM.engine)],  # noqa: B006
+    engine: EngineOption = [Engine(DEM.engine)],  # noqa: B006, B008
     model: ModelOption = None,
     changes: SetOption = [],  # noqa: B006
     variant: VariantOption = None,

@@ -9,14 +9,13 @@ from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import Any
 
-import cases
 from cases.errors import SceneError
 from compare.engines import Progress
 from compare.experiments.pool import Pool
 from compare.experiments.sweep.axis import Axis, settings
 from compare.experiments.sweep.case import Case, Outcome, Work, key, outcome
 from compare.runs.output import read_kept, write_text
-from compare.scenes import find
+from compare.scenes import find, load, load_variant
 
 KEPT = "points"  # the folder of what is done
 LONGEST = 100  # characters of a folder's name
@@ -34,9 +33,9 @@ def cases_of(
         folder, overrides = out / _folder(setting, i), {**changes, **setting}
         try:
             scenes = (
-                cases.load(path, overrides)
+                load(path, overrides)
                 if variant is None
-                else [cases.load_variant(path, variant, overrides)]
+                else [load_variant(path, variant, overrides)]
             )
         except SceneError as error:
             errors.append(error)
