@@ -19,9 +19,10 @@ from compare.engines import applies, solve
 from compare.experiments.ablation.variants import left_out, only
 from compare.experiments.cost.step_cost import everything, freedoms_in_turns, in_turns, stretch
 from compare.misfit.metrics import misfit
+from compare.solvers.continuum import JOINTED_ROCK
 
 FAILURES = (SceneError, UnstableError)  # of a scene that cannot be so
-ROCK = "continuum-jointed"
+ROCK = JOINTED_ROCK.name
 OWN = "own"  # the scene as it stands, among those without one of its effects
 
 

@@ -146,10 +146,10 @@ def _half(before: xr.Dataset | None) -> float:
 
 
 def _family(name: str, level: int) -> Family:
-    if name == "dem":
-        return Family(name, "dem", {"scheme": "leapfrog"}, 2)
+    if ENGINES[name].has_rigid_blocks:
+        return Family(name, {"scheme": "leapfrog"}, 2)
     changes = {"scheme": "explicit", "order": 2, "elements_per_block": 2**level}
-    return Family(name, "continuum", changes, 2)
+    return Family(name, changes, 2)
 
 
 def _at_most(scene: Scene, family: Family, dt: float) -> tuple[dict[str, Any], xr.Dataset]:

@@ -11,7 +11,7 @@ import xarray as xr
 import cases
 from cases.errors import SceneError
 from cases.schema.scene import Scene
-from compare.engines import solve
+from compare.engines import ENGINES, solve
 from compare.scenes import find
 
 SHORT = "hard/short-pillar"  # the scene of most cases
@@ -30,7 +30,17 @@ class Solver(NamedTuple):
     @property
     def part(self) -> str:
         """Which table of [numerics] is this engine's."""
-        return self.engine.partition("-")[0]
+        return ENGINES[self.engine].engine
+
+    @property
+    def model(self) -> str:
+        """The model of the rock, "" of rigid blocks."""
+        return ENGINES[self.engine].model or ""
+
+    @property
+    def is_rigid(self) -> bool:
+        """Whether its blocks are rigid, so that it has no elements."""
+        return ENGINES[self.engine].has_rigid_blocks
 
     @property
     def name(self) -> str:
@@ -38,18 +48,12 @@ class Solver(NamedTuple):
         return f"{self.engine} {self.scheme}"
 
 
-def _solver(engine: str, scheme: str, **more: Any) -> Solver:
-    part = engine.partition("-")[0]
-    return Solver(engine, scheme, {f"numerics.{part}.scheme": scheme, **more})
-
-
-LEAPFROG = _solver("dem", "leapfrog")
-FOURTH = _solver("dem", "fourth-order")
-JOINTED = _solver("continuum-jointed", "explicit")
-JOINTED_IMPLICIT = _solver("continuum-jointed", "implicit")
-EQUIVALENT = _solver("continuum-equivalent", "explicit")
-EQUIVALENT_IMPLICIT = _solver("continuum-equivalent", "implicit")
-SOLVERS = (LEAPFROG, FOURTH, JOINTED, JOINTED_IMPLICIT, EQUIVALENT, EQUIVALENT_IMPLICIT)
+SOLVERS = tuple(
+    Solver(name, scheme, {f"numerics.{engine.engine}.scheme": scheme})
+    for name, engine in ENGINES.items()
+    for scheme in engine.schemes
+)
+LEAPFROG, FOURTH, JOINTED, _, EQUIVALENT, _ = SOLVERS
 
 
 class Finding(NamedTuple):
@@ -130,14 +134,8 @@ class Trial:
 
 
 def critical_step(solver: Solver, scene: Scene) -> float:
-    """Return the critical step (s) of a solver's explicit steps along the axis."""
-    if solver.engine == "dem":
-        from dem.axial.simulate import scheme_of
-
-        return scheme_of(scene).build(scene)[3]
-    from continuum.simulate import steps_of
-
-    return steps_of(scene, solver.engine.removeprefix("continuum-"))[1]
+    """Return the critical step (s) of a solver's explicit steps."""
+    return ENGINES[solver.engine].prepare(scene).critical
 
 
 def is_refusal_of_scheme(error: SceneError) -> bool:

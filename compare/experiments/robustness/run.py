@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compare.engines import Progress
+from compare.engines import ENGINES, Progress
 from compare.experiments import store
 from compare.experiments.pool import Pool
 from compare.experiments.robustness.case import SOLVERS
-from compare.experiments.robustness.map import ENGINES, StabilityMap, make_map
+from compare.experiments.robustness.map import StabilityMap, make_map
 from compare.experiments.robustness.row import Row, row_of
 from compare.experiments.robustness.suite import CASES
 from compare.experiments.store import Store
@@ -60,8 +60,9 @@ def run(
 def run_maps(pool: Pool | None, folder: Path) -> list[StabilityMap]:
     """Return the maps of all engines, saved in `folder`."""
     maps: Store[Cells] = Store(Cells, folder)
-    found = maps.compute(ENGINES, store.key, cells, pool)
-    return [StabilityMap(e, *map(np.array, one)) for e, one in zip(ENGINES, found, strict=True)]
+    names = list(ENGINES)
+    found = maps.compute(names, store.key, cells, pool)
+    return [StabilityMap(e, *map(np.array, one)) for e, one in zip(names, found, strict=True)]
 
 
 def cells(engine: str) -> Cells:

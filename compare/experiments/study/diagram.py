@@ -16,11 +16,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
+from compare.engines import names
 from compare.experiments.study.measure import Row
 from compare.experiments.study.pareto import floor, front, is_known, measured
 from compare.experiments.study.study import Study
 from compare.figures.export import Drawn, save
-from compare.figures.style import RC, STYLES, WIDTH, style
+from compare.figures.style import RC, WIDTH, style
 
 ERRORS = {
     "numerical": "numerical error (own model)",
@@ -157,7 +158,7 @@ def look(study: Study, k: int) -> dict[str, Any]:
 def colour(study: Study, k: int) -> str:
     """Return the colour of a curve: its model's, as in all figures."""
     method = study.curves[k].method
-    if method in STYLES:
+    if method in names():
         return style(method).colour
-    others = list(dict.fromkeys(c.method for c in study.curves if c.method not in STYLES))
+    others = list(dict.fromkeys(c.method for c in study.curves if c.method not in names()))
     return OTHERS[others.index(method) % len(OTHERS)]

@@ -10,11 +10,11 @@ import xarray as xr
 
 from cases.errors import SceneError, StoppedError, UnstableError
 from cases.schema.scene import Scene
-from compare.engines import applies, solve
-from compare.exact.answer import Answer
+from compare.engines import applies, solve, solver
 from compare.experiments.study.methods.catalogue import METHODS
 from compare.experiments.study.reference import UNKNOWN, error, finest_of, known, own_of
 from compare.experiments.study.study import Point
+from compare.solvers.record import Answer
 
 LONG = 0.5  # s: a run that takes as long, its set-up included, is timed once more at most
 
@@ -120,9 +120,7 @@ def runner(point: Point, scene: Scene) -> Callable[[], xr.Dataset]:
     if method in METHODS:
         return lambda: METHODS[method].solve(scene, **arguments)
     if arguments:
-        from compare.exact.catalogue import CATALOGUE
-
-        return lambda: _timed(lambda: CATALOGUE[method].solve(scene, **arguments))
+        return lambda: _timed(lambda: solver(method).run(scene, **arguments))
     return lambda: _timed(lambda: solve(method, scene))
 
 

@@ -8,7 +8,7 @@ import xarray as xr
 
 from cases.schema.scene import Scene
 from cases.schema.tables import Numerics
-from compare.engines import ENGINES, applies, exact_names, solve
+from compare.engines import ENGINES, applies, exact_names, solve, solver
 from compare.experiments.study.methods.catalogue import METHODS
 from compare.experiments.study.study import FINEST, NONE, Point, Reference, Study
 from compare.misfit.metrics import Pairing, pairings, relative_l2, worst
@@ -59,7 +59,7 @@ def _as_fine(engine: str, finest: str | Reference | None) -> Reference | None:
     """Return the run of an engine at the numerics of a fine run, where those are its own too."""
     if not isinstance(finest, Reference):
         return None
-    alike = engine.partition("-")[0] == finest.method.partition("-")[0]
+    alike = solver(engine).engine == solver(finest.method).engine
     return finest.model_copy(update={"method": engine}) if alike else None
 
 

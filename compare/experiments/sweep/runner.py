@@ -6,14 +6,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import cases
 from cases.errors import SceneError
 from compare.engines import Progress
 from compare.experiments.pool import Pool
 from compare.experiments.store import Store
 from compare.experiments.sweep.axis import Axis, settings
 from compare.experiments.sweep.case import Case, Outcome, Work, key, outcome
-from compare.scenes import find
+from compare.scenes import find, load, load_variant
 
 POINTS = "points"  # the folder of what is done
 LONGEST = 100  # characters of a folder's name
@@ -31,9 +30,9 @@ def cases_of(
         folder, overrides = out / _folder(setting, i), {**changes, **setting}
         try:
             scenes = (
-                cases.load(path, overrides)
+                load(path, overrides)
                 if variant is None
-                else [cases.load_variant(path, variant, overrides)]
+                else [load_variant(path, variant, overrides)]
             )
         except SceneError as error:
             errors.append(error)

@@ -50,8 +50,8 @@ def restitution(trial: Trial) -> Finding:
     p, (layer, _) = calibrate(scene), scene.soft_layers
     omega = sqrt(p.stiffness[p.soft[0]] * p.area / p.block_mass)
     dt = float(trial.case.changes[STEP]) * trial.critical
-    kind = trial.solver.engine.removeprefix("continuum-")
-    loose = _blocks(scene, dt) if kind == "dem" else _rock(scene, dt, kind)
+    solver = trial.solver
+    loose = _blocks(scene, dt) if solver.is_rigid else _rock(scene, dt, solver.model)
     peaks = _peaks(loose, max(1, round(pi / omega / dt / SAMPLES)))
     zeta = layer.damping_ratio or 0.0
     e = -zeta * (pi - 2 * asin(zeta)) / sqrt(1 - zeta**2)

@@ -12,6 +12,7 @@ from compare.experiments.robustness.case import STEP, Finding, Trial, criterion
 from compare.experiments.robustness.criteria.accuracy import EPS
 from compare.experiments.robustness.criteria.energies import ROUND_OFF, SPENT
 from compare.misfit.metrics import relative_l2
+from compare.solvers.continuum import JOINTED_ROCK
 
 #: Of the work put in. Where a joint opens within a step the trapezoid of its force is off by
 #: K (v dt)^2 / 8 at most; at a twentieth of the critical step that is 3e-4 of m v^2 / 2.
@@ -139,12 +140,12 @@ def _law(trial: Trial):
     from joints.laws import law_of
 
     scene = trial.scene()
-    if trial.solver.engine == "dem":
+    if trial.solver.is_rigid:
         from dem.axial.model import build_chain
 
         return law_of(build_chain(scene, calibrate(scene), 1e-6, ("free", "free")).law, 0)
     from continuum.build import discretise
 
-    joints = discretise(scene, "jointed").joints
+    joints = discretise(scene, str(JOINTED_ROCK.model)).joints
     assert joints is not None
     return law_of(joints.law, 0)

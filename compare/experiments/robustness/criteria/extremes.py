@@ -9,19 +9,21 @@ import xarray as xr
 
 from cases.errors import SceneError
 from cases.material.calibrate import calibrate
-from compare.engines import applies, solve
+from compare.engines import solve
 from compare.exact.bar import equivalent_bar, jointed_bar
+from compare.exact.blocks import spatial_lattice
 from compare.experiments.robustness.case import Finding, Trial, criterion
 from compare.experiments.robustness.criteria.accuracy import (
     CUBES,
     REFEREE,
-    REFEREES,
     element_error,
     lost_after,
     peak,
     phase_error,
+    referee,
 )
 from compare.misfit.metrics import misfit, relative_l2
+from compare.solvers.continuum import JOINTED_ROCK
 
 
 @criterion("misfit from the exact solution, at most the dispersion of a second-order front")
@@ -35,12 +37,12 @@ def shock(trial: Trial) -> Finding:
     section is under stress for a quarter of the time or more.
     """
     result, scene = trial.run(), trial.scene()
-    names = [name for name in REFEREES[trial.solver.engine] if applies(name, scene)]
+    name = referee(trial, scene)
     lost = lost_after(trial, result)
     return Finding(
-        misfit(result, solve(names[0], scene)),
+        misfit(result, solve(name, scene)),
         sqrt(4.2 / pi * lost / (scene.time.duration / 4)),
-        f"misfit from {names[0]}",
+        f"misfit from {name}",
     )
 
 
@@ -49,7 +51,7 @@ def in_space(trial: Trial) -> Finding:
     """Stress, motion and rotation of a row of blocks in space are within the phase error of the
     exact row, whatever the inertia of the blocks: each apart, as they differ in size."""
     result, scene = trial.run(), trial.scene()
-    exact = solve("spatial-lattice", scene)
+    exact = spatial_lattice.solve(scene)
     found = {
         name: relative_l2(result[name].values, exact[name].values)
         for name in ("stress", "shear", "velocity", "rotation")
@@ -124,5 +126,5 @@ def as_bar(trial: Trial) -> Finding:
 
 def _bar(trial: Trial, scene) -> xr.Dataset:
     """Return the exact bar of a scene whose section is solid."""
-    exact = jointed_bar if trial.solver.engine == "continuum-jointed" else equivalent_bar
+    exact = jointed_bar if trial.solver.engine == JOINTED_ROCK.name else equivalent_bar
     return exact.solve(scene)

@@ -95,7 +95,7 @@ def _fastest(trial: Trial) -> float:
     scene = trial.scene()
     p, times = calibrate(scene), sample_times(scene)
     impulse = p.area * np.trapz(np.abs(load_history(scene).value(times)), times)
-    if trial.solver.engine == "dem":
+    if trial.solver.is_rigid:
         return impulse / p.block_mass
     n = scene.numerics.continuum
     mass = p.block_mass / (n.elements_per_block or 1) / (n.order * (n.order + 1))
