@@ -45,6 +45,11 @@ def plain(value: Any) -> Any:
     return [plain(part) for part in value] if isinstance(value, list | tuple) else value
 
 
+def finite(value: Any) -> Any:
+    """Return the same for a machine: null for NaN and infinity, which JSON does not have."""
+    return json.loads(json.dumps(plain(value)), parse_constant=lambda _: None)
+
+
 @dataclass(frozen=True)
 class Store(Generic[T]):
     """The results of an experiment's points.

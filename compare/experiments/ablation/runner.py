@@ -36,7 +36,7 @@ class Case(NamedTuple):
 
     @property
     def key(self) -> str:
-        """What tells cases apart: everything that decides the result."""
+        """The key of the case: a hash of everything that decides the result."""
         return store.key(self.name, self.scene.name, scene_hash(self.scene))
 
 

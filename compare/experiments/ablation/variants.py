@@ -1,4 +1,4 @@
-"""What a scene is without one of its effects, or with one alone."""
+"""Variants of a scene: without one of its effects, or with one alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a run would take, told without it: its steps, its size, its seconds, its memory."""
+"""The cost of a run before it is made: its steps, its size, its seconds, its memory."""
 
 from __future__ import annotations
 

@@ -105,8 +105,8 @@ def stretch(scene: Scene, threads: int = 1) -> Stretch:
 
 
 def stretches(scene: Scene, guarded: tuple[bool, ...], threads: int = 1) -> list[Stretch]:
-    """Return the same with the very same arrays, once for each: `guarded`, under a guard that looks
-    and never finds anything, or not."""
+    """Return the same with the same arrays, once for each: `guarded`, under a divergence monitor
+    that never finds anything, or not."""
     if is_spatial(scene):
         return _in_space(scene, guarded, threads)
     return _along_axis(scene, guarded)

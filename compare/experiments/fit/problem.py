@@ -1,4 +1,4 @@
-"""What a fit compares: the waveforms of a solution at the times of measured ones, key by key."""
+"""The problem of a fit: waveforms of a solution at the times of measured ones, key by key."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ def solver_of(scene: Scene, asked: str | None) -> str:
 def problem_of(
     scene: Scene, name: str, curves: list[Curves], clock: float | None, reach: float
 ) -> Problem:
-    """Return what a fit compares.
+    """Return the problem of a fit.
 
     name : of the solver. clock : the shift that it begins with, s; None: it stays.
     reach : how far the clock may move later, s, so long does the solution last beyond the scene.

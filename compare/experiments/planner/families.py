@@ -56,7 +56,7 @@ def _implicit(name: str, order: int) -> Family:
 
 
 _BOTH = JOINTED_ROCK.name, EQUIVALENT_ROCK.name
-#: Coarse ones first: what they give tells whether finer ones are worth a trial.
+#: Coarse ones first: what they give tells whether finer ones need a trial.
 FAMILIES = (
     Family(DEM.name, {"scheme": "leapfrog"}, 2),
     Family(DEM.name, {"scheme": "fourth-order"}, 4),
@@ -78,7 +78,7 @@ def is_finer(one: Family, other: Family) -> bool:
 
 
 class Effort(NamedTuple):
-    """What the coarsest step of a family takes: steps per sample, and freedom-steps of the run."""
+    """The cost of a family's coarsest step: steps per sample, and freedom-steps of the run."""
 
     least: int
     work: float

@@ -29,7 +29,7 @@ class Solver(NamedTuple):
 
     @property
     def part(self) -> str:
-        """Which table of [numerics] is this engine's."""
+        """The table of [numerics] that is this engine's."""
         return ENGINES[self.engine].engine
 
     @property
@@ -57,7 +57,7 @@ LEAPFROG, FOURTH, JOINTED, _, EQUIVALENT, _ = SOLVERS
 
 
 class Finding(NamedTuple):
-    """What a criterion has found: it holds where value <= bound; `said` adds to the message."""
+    """The finding of a criterion: it holds where value <= bound; `said` adds to the message."""
 
     value: float
     bound: float

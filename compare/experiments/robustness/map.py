@@ -36,7 +36,7 @@ CELLS = 40
 
 
 class StabilityMap(NamedTuple):
-    """What an engine did in every cell.
+    """The stability of an engine in every cell.
 
     ratio : float array [m], damping ratio of the highest mode; step : [n], over the undamped
     critical one; both at the centres of the cells, in equal ratios. stable : bool array [n, m].

@@ -1,4 +1,4 @@
-"""What a study may say beyond the types of its keys: methods that are there, points in number."""
+"""Checks of a study beyond the types of its keys: known methods, the number of points."""
 
 from __future__ import annotations
 

@@ -96,7 +96,7 @@ def _draw_panel(ax: Axes, study: Study, rows: list[Row], error: str, cost: str, 
     for k, curve in enumerate(study.curves):
         found = measured([r for r in rows if r.curve == curve.label], error, cost)
         x, y = ([getattr(r, name) for r in found] for name in (cost, error))
-        (line,) = ax.loglog(x, y, label=curve.label, zorder=2, **look(study, k))
+        (line,) = ax.loglog(x, y, label=curve.label, zorder=2, **line_style(study, k))
         line.set_gid(f"{name}-{k}")
     _draw_cancelling(ax, rows, error, cost, name)
     ax.xaxis.set_minor_formatter(NullFormatter())
@@ -140,7 +140,7 @@ def _draw_digits_per_second(ax: Axes) -> None:
     ax.set_ylim(low, high)
 
 
-def look(study: Study, k: int) -> dict[str, Any]:
+def line_style(study: Study, k: int) -> dict[str, Any]:
     """Return how matplotlib draws a curve."""
     changes = study.curves[k].changes
     order, dim = (changes.get(f"numerics.continuum.{key}") for key in ("order", "dim"))

@@ -20,7 +20,7 @@ LONG = 0.5  # s: a run that takes as long, its set-up included, is timed once mo
 
 
 class Row(NamedTuple):
-    """What a study's table holds of one point; numbers that a method does not have are nan.
+    """A point in the table of a study; numbers that a method does not have are nan.
 
     state : "done" or "failed", with the reason in `message`.
     numerical : misfit from the exact solution of the method's own model; modelling : of that from

@@ -1,4 +1,4 @@
-"""What errors are measured against: exact solutions, or fine runs whose own error is bounded."""
+"""References of errors: exact solutions, or fine runs whose own error is bounded."""
 
 import math
 from typing import Any, NamedTuple
@@ -27,7 +27,7 @@ UNKNOWN = Error(math.nan, math.nan)
 
 
 class Known(NamedTuple):
-    """What errors are from, and its own relative error."""
+    """A reference of errors, and its own relative error."""
 
     result: xr.Dataset
     error: float

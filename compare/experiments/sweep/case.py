@@ -1,4 +1,4 @@
-"""One variant at one point of a sweep, and what is made of it: its runs, or its comparison."""
+"""A case of a sweep: one variant at one point, and its runs or its comparison."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Case(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What came of a case: "done" with its rows, or "failed" with the reason."""
+    """The outcome of a case: "done" with its rows, or "failed" with the reason."""
 
     state: str
     message: str
@@ -55,7 +55,7 @@ class Running(NamedTuple):
 
     @property
     def about(self) -> list[Any]:
-        """What decides a row beside the scene."""
+        """All that decides a row beside the scene."""
         return [self.runs, self.vtx]
 
     def solvers(self, case: Case) -> list[str]:
@@ -85,7 +85,7 @@ class Comparing(NamedTuple):
 
     @property
     def about(self) -> list[Any]:
-        """What decides a row beside the scene and the samples of the curves."""
+        """All that decides a row beside the scene and the samples of the curves."""
         named = [[c.file, c.name, c.variant, list(map(str, c.waveforms))] for c in self.curves]
         return [self.spectral, self.align, self.writes, named]
 

@@ -43,7 +43,7 @@ def impulse_bound(trial: Trial) -> Finding:
 
 
 STEPS = 20_000
-STEPS_AT_THE_CRITICAL = 2000  # before what grows by steps is more than a guard lets pass
+STEPS_AT_THE_CRITICAL = 2000  # before linear growth is more than the divergence monitor allows
 
 
 def _gain(x: float, steps: int) -> float:

@@ -1,4 +1,4 @@
-"""What a user would write instead, timed beside the engines."""
+"""The catalogue of methods that a user would write instead, timed beside the engines."""
 
 from types import ModuleType
 

@@ -103,16 +103,16 @@ def _march(scene: Scene, bar: Bar, time: Clock) -> tuple[np.ndarray, np.ndarray]
     from dolfinx import fem
 
     dt, gain = time.dt, scene.load.direction[1]
-    push = gain * drive(scene).value(dt * np.arange(time.steps + 1))
+    load = gain * drive(scene).value(dt * np.arange(time.steps + 1))
     u, v, force = np.zeros((3, len(bar.mass)))
-    slowed, pushed = bar.mass - dt / 2 * bar.dashpot, bar.mass + dt / 2 * bar.dashpot
+    below, above = bar.mass - dt / 2 * bar.dashpot, bar.mass + dt / 2 * bar.dashpot
     sampled = np.zeros((2, time.samples, len(bar.mass)))
     for n in range(time.steps + 1):
         bar.motion.x.array[:] = u + bar.eta * v
         force[:] = 0.0
         fem.assemble_vector(force, bar.form)
-        force[bar.start] += push[n]
-        before, v = v, (slowed * v + dt * force) / pushed
+        force[bar.start] += load[n]
+        before, v = v, (below * v + dt * force) / above
         v[bar.held] = 0.0
         if n % time.stride == 0:
             sampled[:, n // time.stride] = u, (before + v) / 2
