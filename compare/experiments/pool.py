@@ -26,8 +26,9 @@ def shared(
 ) -> T | None:
     """Return what `work` makes of a pool and a progress bar while a folder is locked.
 
-    label : of the bar. out : the folder; None writes nothing. workers : as `on_pool` has them. Of
-    several MPI processes the others return None when the first is done.
+    label : of the bar. out : the folder; None writes nothing. workers : processes of this machine
+    where MPI has started none; 1: none but this one. Of several MPI processes the others return
+    None when the first is done.
     """
     from compare.cli import terminal
 
@@ -35,15 +36,12 @@ def shared(
     with ExitStack() as stack, terminal.progress(label) as advance:
         if out is not None:
             processes.by_first(lambda: stack.enter_context(locked(out)))
-        return on_pool(processes, workers, lambda pool: work(pool, advance))
+        return _on_pool(processes, workers, lambda pool: work(pool, advance))
 
 
-def on_pool(processes: Processes, workers: int, work: Callable[[Pool | None], T]) -> T | None:
+def _on_pool(processes: Processes, workers: int, work: Callable[[Pool | None], T]) -> T | None:
     """Return what `work` makes of a pool; of several MPI processes the first works with the others
-    as its pool, and these return None when it has done.
-
-    workers : processes of this machine where MPI has started none; 1: none but this one.
-    """
+    as its pool, and these return None when it has done."""
     if processes.comm is None:
         return work(partial(Workers, workers) if workers > 1 else None)
     from mpi4py.futures import MPICommExecutor

@@ -17,8 +17,9 @@ class Summary(NamedTuple):
 
     name : of its files, and of its section of the page. table : rows of text under headings.
     sentences : its findings. failed : a line for each row that failed. facts : for a machine.
-    note : about all of it. legend : of the table, on the terminal. about : in the caption of the
-    figure: the quantity of its misfits, or the scenes. timed : whether it has seconds.
+    note : about all of it. legend : of the table, on the terminal. about : for the caption of the
+    figure: what it shows, the quantity of its misfits, or its scenes. timed : whether it has
+    seconds.
     """
 
     name: str

@@ -53,7 +53,7 @@ def make_study(
         files,
         {"rows": rows, "sentences": said, "files": list(map(str, files))},
         figure,
-        NOTE,
+        about=NOTE,
     )
 
 

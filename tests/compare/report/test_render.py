@@ -89,7 +89,7 @@ def test_hard_cases_stand_with_their_margins_and_what_failed(page, figure):
     table = Table(["engine", "value", "bound", "margin", ""], {"step": [["dem", "1", "2"]]})
     said, failed = ["3 of 4 rows hold."], ["step, dem: 3 above 2"]
     drawn = figure("stability")
-    found = Summary("stability", "Hard cases", table, said, failed, [], {}, drawn, "A note.")
+    found = Summary("stability", "Hard cases", table, said, failed, [], {}, drawn, about="A note.")
     html = page(stability=found)
     assert '<a href="#stability">' in html and "<li>3 of 4 rows hold.</li>" in html
     assert 'class="fails">Rows that do not hold: step, dem: 3 above 2.' in html
