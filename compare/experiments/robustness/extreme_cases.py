@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from compare.engines import ENGINES
 from compare.experiments.robustness.case import STEP, Case
 from compare.experiments.robustness.criteria import accuracy, extremes, layers
 from compare.experiments.robustness.linear_cases import SECOND_ORDER, SHORT
@@ -134,7 +135,7 @@ def _shapes() -> list[Case]:
     }
     axial = {"dem": "its blocks along the axis have no section"}
     shape = "misfit from the exact row of blocks in space"
-    rock = {k: "see the slender hexahedra" for k in ("continuum-jointed", "continuum-equivalent")}
+    rock = {k: "see the slender hexahedra" for k in ENGINES if not ENGINES[k].has_rigid_blocks}
     found = [
         Case(
             "Poisson's ratio 0.49999",
