@@ -32,9 +32,11 @@ GIVEN = "given curves"  # those of others
 def pairs() -> tuple[Pair, ...]:
     """Return the pairs whose distance is measured, as the records of the solvers name them: by the
     meaning of their distance, then in the order of the registry."""
+    every = solvers()
+    place = {one.name: i for i, one in enumerate(every)}
     found = [
-        (kind, names().index(one), names().index(other.name), Pair(one, other.name, kind.words))
-        for other in solvers()
+        (kind, place[one], place[other.name], Pair(one, other.name, kind.words))
+        for other in every
         for kind, ones in (other.distances or {}).items()
         for one in ones
     ]

@@ -105,7 +105,7 @@ class Case(NamedTuple):
 
 def rock_is_spared(reason: str) -> dict[str, str]:
     """Return the reason why no deformable rock is put to a case, as `Case.spared` has it."""
-    return {"continuum-jointed": reason, "continuum-equivalent": reason}
+    return {name: reason for name, engine in ENGINES.items() if not engine.has_rigid_blocks}
 
 
 class Trial:
