@@ -44,7 +44,7 @@ ALLOWED = {
     "too_short": "must hold {min_length} numbers",
     "too_long": "must hold {max_length} numbers",
     "magnitude": "must lie between 1e-30 and 1e30 in size",
-    "pair": "{allowed}",
+    "pair": "must be 'a ~ b', two solvers by name",
 }
 
 

@@ -1,24 +1,42 @@
-"""Everything that can solve a scene, by name: the two engines and the exact solutions."""
+"""The registry: everything that can solve a scene, by name, the engines and the exact solutions."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from cases.errors import SceneError
 from cases.schema.scene import Scene
 from cases.size import refuse_beyond_memory, waveform_bytes
-from compare.exact.answer import YES, Answer, Form, Resolves, Rock, no
+from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
+from compare.solvers.dem import DEM
+from compare.solvers.record import Answer, Solver
 from numerics.checkpoint import Keeper
 
 if TYPE_CHECKING:
     import xarray as xr
 
-#: What each engine resolves.
-ENGINES = {
-    "dem": Resolves(Rock.RIGID_BLOCKS, Form.RUN, dimension=3),
-    "continuum-jointed": Resolves(Rock.JOINTED, Form.RUN, dimension=3),
-    "continuum-equivalent": Resolves(Rock.HOMOGENISED, Form.RUN, dimension=3),
+    from results.dataset import Fields
+
+#: The engines by name; their packages are imported when they run.
+ENGINES: dict[str, Solver] = {one.name: one for one in (DEM, JOINTED_ROCK, EQUIVALENT_ROCK)}
+
+#: The modules of the exact solutions by name, each of which ends with its record, SOLVER. The model
+#: that an engine discretises comes before coarser ones; a module is imported when it is asked for.
+EXACT = {
+    "lattice": "blocks.lattice",
+    "no-tension-chain": "blocks.no_tension",
+    "jointed-bar": "bar.jointed_bar",
+    "equivalent-bar": "bar.equivalent_bar",
+    "images": "bar.images",
+    "series": "bar.series",
+    "kelvin-voigt": "bar.kelvin_voigt",
+    "one-joint": "joint.one_joint",
+    "spatial-lattice": "blocks.spatial_lattice",
+    "slip-joint": "joint.sliding_joint",
+    "sliding-block": "blocks.sliding_block",
 }
 
 Progress = Callable[[float], None]
@@ -26,28 +44,40 @@ Progress = Callable[[float], None]
 
 def exact_names() -> tuple[str, ...]:
     """Return the names of all exact solutions."""
-    from compare.exact.catalogue import CATALOGUE
-
-    return tuple(CATALOGUE)
+    return tuple(EXACT)
 
 
 def names() -> tuple[str, ...]:
     """Return the names of everything that can solve a scene."""
-    return (*ENGINES, *exact_names())
+    return (*ENGINES, *EXACT)
+
+
+@cache
+def solver(name: str) -> Solver:
+    """Return the record of an engine or exact solution; raises SceneError for an unknown name."""
+    if name in ENGINES:
+        return ENGINES[name]
+    if name not in EXACT:
+        raise SceneError("engine", "", None, f"{name!r} is unknown; allowed: {', '.join(names())}")
+    return import_module(f"compare.exact.{EXACT[name]}").SOLVER
+
+
+def solvers() -> list[Solver]:
+    """Return all records, engines first."""
+    return [solver(name) for name in names()]
+
+
+def selection() -> dict[str, dict[str | None, str]]:
+    """Return the names of all solvers by --engine and --model."""
+    found: dict[str, dict[str | None, str]] = {}
+    for one in ENGINES.values():
+        found.setdefault(one.engine, {})[one.model] = one.name
+    return {**found, Solver.engine: {name: name for name in EXACT}}
 
 
 def applies(name: str, scene: Scene) -> Answer:
     """Return whether this engine or solution holds for the scene, or the reason why not."""
-    if name == "dem":
-        return YES
-    if name.startswith("continuum-"):
-        try:
-            from continuum import applies as continuum_applies
-        except ImportError as error:
-            return no(f"dolfinx cannot be imported ({error})")
-        reason = continuum_applies(scene, name.removeprefix("continuum-"))
-        return no(reason) if reason else YES
-    return _exact(name).applies(scene)
+    return solver(name).applies(scene)
 
 
 def solve(
@@ -60,32 +90,35 @@ def solve(
     """Return the result of one engine or exact solution.
 
     comm : mpi4py's communicator of processes that share a run of the continuum, None without.
-    keeper : watches over a run of an engine; None: nobody.
+    keeper : saves checkpoints of a run of an engine; None: there are none.
     Raises SceneError where it does not apply or the name is unknown, UnstableError where a run
     goes unstable.
     """
-    answer = applies(name, scene)
-    if not answer:
-        raise SceneError(scene.title, "", None, f"{name} does not apply: {answer.reason}")
-    if name == "dem":
-        from dem import simulate
-
-        return simulate(scene, progress, keeper=keeper)
-    if name.startswith("continuum-"):
-        from continuum import simulate as simulate_continuum
-
-        model = name.removeprefix("continuum-")
-        return simulate_continuum(scene, model=model, progress=progress, comm=comm, keeper=keeper)
+    one = _that_applies(name, scene)
+    if one.is_engine:
+        return one.run(scene, progress, comm, keeper)
     try:
         refuse_beyond_memory(scene, {"record.interval": waveform_bytes(scene)})
-        return _exact(name).solve(scene)
+        return one.run(scene)
     except MemoryError as error:
         raise SceneError(scene.where, "", None, f"not enough memory: {name}: {error}") from None
 
 
-def _exact(name: str):
-    from compare.exact.catalogue import CATALOGUE
+def solve_fields(
+    name: str, scene: Scene, progress: Progress | None, comm=None, keeper: Keeper | None = None
+) -> Fields:
+    """Return the result that `solve` returns as plain arrays."""
+    from compare.runs.output import fields_of
 
-    if name not in CATALOGUE:
-        raise SceneError("engine", "", None, f"{name!r} is unknown; allowed: {', '.join(names())}")
-    return CATALOGUE[name]
+    one = solver(name)
+    if one.fields is not None:
+        return one.fields(scene, progress, comm, keeper)
+    return fields_of(solve(name, scene, progress, comm, keeper))
+
+
+def _that_applies(name: str, scene: Scene) -> Solver:
+    one = solver(name)
+    answer = one.applies(scene)
+    if not answer:
+        raise SceneError(scene.title, "", None, f"{name} does not apply: {answer.reason}")
+    return one

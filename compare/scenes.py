@@ -1,9 +1,12 @@
-"""Where scenes are found: a path, or the name of a shipped one."""
+"""Scenes by path, or by the name of a shipped one, with the solvers that they name checked."""
 
 from pathlib import Path
+from typing import Any
 
 import cases
 from cases.errors import SceneError, nearest
+from cases.schema.scene import Scene
+from compare import engines as registry
 
 SHIPPED = Path(cases.__file__).parent
 MOST = 1000  # files of a folder that a name is looked for among
@@ -28,6 +31,29 @@ def find(scene: str) -> Path:
     if meant := nearest(scene, [*_beside(path), *names()]):
         raise SceneError(scene, "", None, f"cannot be read: no such scene{meant}")
     return path
+
+
+def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[Scene]:
+    """Return a scene and its variants as `cases.load` does; raises SceneError, too, where [expect]
+    names what is no solver."""
+    return [known(scene) for scene in cases.load(path, overrides)]
+
+
+def load_variant(
+    path: str | Path, name: str = "", overrides: dict[str, Any] | None = None
+) -> Scene:
+    """Return one variant of a scene as `cases.load_variant` does, with [expect] checked."""
+    return known(cases.load_variant(path, name, overrides))
+
+
+def known(scene: Scene) -> Scene:
+    """Return a scene; raises SceneError where its [expect] names what is no solver."""
+    solvers = registry.names()
+    for pair in scene.expect:
+        if not set(pair.split(" ~ ")) <= set(solvers):
+            allowed = f"must be 'a ~ b', two of {', '.join(solvers)}"
+            raise SceneError(scene.where, f"expect.{pair}", None, allowed)
+    return scene
 
 
 def names() -> list[str]:

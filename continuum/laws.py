@@ -76,25 +76,13 @@ def joint_law(p: Properties, joints: Resolved, joint: np.ndarray, shears: bool) 
 
     shears : whether the motion has components along the joints.
     """
-
-    def at(values: np.ndarray | None) -> np.ndarray | None:
-        return None if values is None else values[joint]
-
-    strengths = {}
-    if shears:
-        strengths = {
-            "shear_stiffness": at(joints.shear_stiffness),
-            "cohesion": at(p.cohesion),
-            "friction": at(p.friction),
-            "residual_cohesion": at(p.residual_cohesion),
-        }
+    damping = p.joint_time_constant
     return law(
         joints.stiffness[joint],
-        at(p.joint_time_constant),
+        None if damping is None else damping[joint],
         p.tension[joint],
-        tensile_strength=at(p.tensile_strength),
-        critical_opening=at(p.critical_opening),
-        **strengths,
+        shear_stiffness=joints.shear_stiffness[joint] if shears else None,
+        **p.strengths(shears, joint),
     )
 
 

@@ -25,17 +25,13 @@ def law(
     tension: np.ndarray,
     *,
     shear_stiffness: np.ndarray | None = None,
-    cohesion: np.ndarray | None = None,
-    friction: np.ndarray | None = None,
-    residual_cohesion: np.ndarray | None = None,
-    tensile_strength: np.ndarray | None = None,
-    critical_opening: np.ndarray | None = None,
+    **strengths: np.ndarray | None,
 ) -> Law:
     """Return the law of joints with these properties [n], in its smallest form.
 
     stiffness, shear_stiffness Pa/m; time_constant eta of both in s, None without dashpots;
-    tension: whether it is carried; strengths in Pa, friction tan(phi), critical_opening in m,
-    None where no joint has them.
+    tension: whether it is carried; strengths: the other fields of the law, None where no joint has
+    them.
     """
 
     def viscosity(stiffness: np.ndarray | None) -> np.ndarray | None:
@@ -47,9 +43,5 @@ def law(
         carries_tension=None if tension.all() else uniform(tension),
         shear_stiffness=uniform(shear_stiffness),
         shear_viscosity=uniform(viscosity(shear_stiffness)),
-        cohesion=uniform(cohesion),
-        friction=uniform(friction),
-        residual_cohesion=uniform(residual_cohesion),
-        tensile_strength=uniform(tensile_strength),
-        critical_opening=uniform(critical_opening),
+        **{name: uniform(values) for name, values in strengths.items()},
     )

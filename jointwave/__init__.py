@@ -56,18 +56,19 @@ def load(
 
     Raises jointwave.SceneError, one line with file, key, value and what is allowed.
     """
-    from cases.read import load_tables, load_variant
+    from cases.read import load_tables
+    from compare.scenes import known, load_variant
 
     if isinstance(scene, dict):
-        return load_tables(scene, variant, changes)
+        return known(load_tables(scene, variant, changes))
     return load_variant(_file(scene), variant, changes)
 
 
 def load_variants(scene: str | Path, changes: dict[str, Any] | None = None) -> list[Scene]:
     """Return a scene and all its variants, each as `load` does."""
-    from cases import read
+    from compare import scenes
 
-    return read.load(_file(scene), changes)
+    return scenes.load(_file(scene), changes)
 
 
 def shipped() -> list[str]:

@@ -9,7 +9,7 @@ import pytest
 import cases
 import compare
 import jointwave as jw
-from compare.experiments.robustness.linear_cases import SHORT
+from compare.experiments.robustness.case import SHORT
 from compare.misfit.external import Curves, Place
 from compare.misfit.metrics import misfit
 

@@ -11,15 +11,16 @@ import numpy as np
 from cases.material.dashpots import dashpots
 from cases.material.elastic import joint_stiffness
 from cases.material.stiffness import rock_mass, stiffness
-from cases.material.strength import strength
+from cases.material.strength import Strength, strength
 
 if TYPE_CHECKING:
     from cases.schema.scene import Scene
 
 
-@dataclass(frozen=True)
-class Properties:
-    """The numbers of a scene that both engines and all exact solutions start from.
+@dataclass(frozen=True, kw_only=True)
+class Properties(Strength):
+    """The numbers of a scene that both engines and all exact solutions start from, with the
+    strength of its joints.
 
     Attributes
     ----------
@@ -41,8 +42,6 @@ class Properties:
         None without intact_modulus; K_s infinite where intact rock alone is too soft in shear.
     joint_time_constant : float array [N - 1], eta of each joint, s; None without any dashpot.
     tension : bool array [N - 1], whether a joint carries tension.
-    friction, cohesion, residual_cohesion, tensile_strength, critical_opening : float arrays
-        [N - 1], each None where no joint has it; see `cases.material.strength.Strength`.
     soft : int array, indices of the joints that [[soft_layers]] changes.
     """
 
@@ -72,11 +71,6 @@ class Properties:
     own_shear_stiffness: np.ndarray | None
     joint_time_constant: np.ndarray | None
     tension: np.ndarray
-    friction: np.ndarray | None
-    cohesion: np.ndarray | None
-    residual_cohesion: np.ndarray | None
-    tensile_strength: np.ndarray | None
-    critical_opening: np.ndarray | None
     soft: np.ndarray
 
     @property
@@ -155,5 +149,5 @@ def calibrate(scene: Scene) -> Properties:
         **mass._asdict(),
         **springs._asdict(),
         **dashpots(scene, soft, mass.modulus / spacing, springs.stiffness)._asdict(),
-        **strength(scene, soft)._asdict(),
+        **vars(strength(scene, soft)),
     )

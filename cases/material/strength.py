@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,21 +14,36 @@ if TYPE_CHECKING:
 #: still a number.
 UNLIMITED = 1e100
 
-KEYS = ("friction_angle", "cohesion", "residual_cohesion", "tensile_strength", "fracture_energy")
+#: The keys of slip and of softening: without them no joint has that effect.
+SLIP = ("friction_angle", "cohesion", "residual_cohesion")
+SOFTENING = ("tensile_strength", "fracture_energy")
+
+#: The parameters that act along a joint, which axial motion leaves out.
+ALONG = ("friction", "cohesion", "residual_cohesion")
 
 
-class Strength(NamedTuple):
-    """Float arrays [N - 1], each None where no joint has it.
+@dataclass(frozen=True)
+class Strength:
+    """The parameters of the joints' strength, the one list of them: float arrays [N - 1], each None
+    where no joint has it. They bear the names that the joint law gives them.
 
     friction : tan of the friction angle. cohesion, residual_cohesion, tensile_strength : Pa.
     critical_opening : w_c = 2 G_c / sigma_t, at which softening has used up the strength, m.
     """
 
-    friction: np.ndarray | None
-    cohesion: np.ndarray | None
-    residual_cohesion: np.ndarray | None
-    tensile_strength: np.ndarray | None
-    critical_opening: np.ndarray | None
+    friction: np.ndarray | None = None
+    cohesion: np.ndarray | None = None
+    residual_cohesion: np.ndarray | None = None
+    tensile_strength: np.ndarray | None = None
+    critical_opening: np.ndarray | None = None
+
+    def strengths(
+        self, shears: bool = True, joint: np.ndarray | slice = np.s_[:]
+    ) -> dict[str, np.ndarray | None]:
+        """Return the parameters by name at some joints; shears : those along the joints, too."""
+        names = [one.name for one in fields(Strength) if shears or one.name not in ALONG]
+        values = {name: getattr(self, name) for name in names}
+        return {name: None if x is None else x[joint] for name, x in values.items()}
 
 
 def strength(scene: Scene, soft: np.ndarray) -> Strength:
@@ -36,9 +52,10 @@ def strength(scene: Scene, soft: np.ndarray) -> Strength:
     Beside joints that slip, one without friction and cohesion of its own has a cohesion without
     limit; beside joints that break, one without tensile strength likewise.
     """
-    if all(getattr(law, key) is None for law in (scene.joints, *scene.layers) for key in KEYS):
-        return Strength(None, None, None, None, None)
-    angle, cohesion, residual, limit, energy = (_per_joint(scene, soft, key) for key in KEYS)
+    keys, laws = (*SLIP, *SOFTENING), (scene.joints, *scene.layers)
+    if all(getattr(law, key) is None for law in laws for key in keys):
+        return Strength()
+    angle, cohesion, residual, limit, energy = (_per_joint(scene, soft, key) for key in keys)
     slips = ~(np.isnan(angle) & np.isnan(cohesion))
     never = ~slips & slips.any()
     whole = np.where(never, UNLIMITED, np.nan_to_num(cohesion))

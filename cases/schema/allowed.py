@@ -6,8 +6,8 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from cases.schema.values import SOLUTIONS
-
+#: Whose names [expect] pairs; cases do not know them.
+SOLVERS = "solvers"
 WORDS = {float: "number", int: "whole number", str: "text", bool: "`true` or `false`"}
 BOUNDS = {"gt": ">", "ge": "≥", "lt": "<", "le": "≤"}
 LENGTHS = {"min_length": "at least", "max_length": "at most"}
@@ -38,7 +38,7 @@ def _words(kind: Any, constraints: list) -> str:
     if model := model_in(kind):
         return "tables" if origin is list else f"table `{model.__name__}`"
     if origin is dict:
-        return f'`"a ~ b" = {_words(parts[1], [])}`, a and b of: {", ".join(SOLUTIONS)}'
+        return f'`"a ~ b" = {_words(parts[1], [])}`, two {SOLVERS}'
     if origin is list:
         return f"list of {_count(constraints)}{_plural(_words(parts[0], []))}{_checks(constraints)}"
     return WORDS[kind] + _bounds(constraints) + _checks(constraints)

@@ -62,19 +62,15 @@ def settings(incomplete: str) -> list[str]:
 
 def models(incomplete: str) -> list[str]:
     """Return models of the continuum and exact solutions."""
-    from cases.schema.values import SOLUTIONS
-    from compare.engines import ENGINES
-    from compare.runs.jobs import CONTINUUM_MODELS
+    from compare.runs.jobs import models_known
 
-    exact = [name for name in SOLUTIONS if name not in ENGINES]
-    return _begun([*CONTINUUM_MODELS, *exact], incomplete)
+    return _begun(models_known(), incomplete)
 
 
 def studies(incomplete: str) -> list[str]:
     """Return shipped studies and the files of others."""
-    known = sorted(
-        path.stem for path in (Path(__file__).parents[1] / "experiments" / "study").glob("*.toml")
-    )
+    shipped = Path(__file__).parents[1] / "experiments" / "study" / "shipped"
+    known = sorted(path.stem for path in shipped.glob("*.toml"))
     return [*_begun([*known, "stability"], incomplete), *files(incomplete)]
 
 

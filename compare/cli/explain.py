@@ -2,14 +2,14 @@
 
 from dataclasses import dataclass
 
-from cases.effects import Effect, effects, is_spatial
+from cases.effects import Effect, effects
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
-from compare.engines import ENGINES
-from compare.exact.answer import Answer
+from compare.engines import ENGINES, solver
 from compare.experiments.cost import timings
 from compare.experiments.cost.step_cost import nanoseconds, remembered_whole, whole
 from compare.misfit.ranking import Reference, applicable, reference_of
+from compare.solvers.record import Answer
 
 
 @dataclass(frozen=True)
@@ -71,17 +71,5 @@ def _cost(scene: Scene, measured: bool) -> Cost:
 
 
 def _step(name: str, scene: Scene) -> StepChoice:
-    if name == "dem" and is_spatial(scene):
-        from dem.spatial.simulate import prepare
-
-        _, _, time, critical = prepare(scene)
-    elif name == "dem":
-        from dem.axial.simulate import scheme_of
-
-        _, _, time, critical = scheme_of(scene).build(scene)
-    else:
-        from continuum.simulate import steps_of
-
-        choice, critical = steps_of(scene, name.removeprefix("continuum-"))
-        time = choice.time
-    return StepChoice(name, critical, time.dt, time.steps)
+    run = solver(name).prepare(scene)
+    return StepChoice(name, run.critical, run.dt, run.steps)

@@ -18,7 +18,7 @@ from cases.schema.field_docs import field_comments
 from cases.schema.keys import TableOf, default_of, tables
 from cases.schema.scene import Scene
 from compare.runs.output import create
-from compare.scenes import find
+from compare.scenes import find, load
 
 WIDTH = 100  # characters of a line
 
@@ -104,7 +104,7 @@ def write_new(name: str, source: str | None = None) -> list[Path]:
     if source is None:
         return [create(path, starter(path).encode())]
     given = find(source)
-    cases.load(given)
+    load(given)
     places = {path: given, **{path.parent / file: given.parent / file for file in _files(given)}}
     for place in places:
         if place.exists() or place.is_symlink():

@@ -10,7 +10,9 @@ import typer
 
 import cases
 from cases.errors import SceneError, printable
+from compare import scenes
 from compare.cli import completion
+from compare.engines import selection
 from compare.runs.processes import started
 from compare.scenes import find
 
@@ -29,14 +31,8 @@ SceneArgument = Annotated[
 ]
 
 
-class Engine(StrEnum):
-    """What can simulate or solve a scene."""
-
-    dem = "dem"
-    continuum = "continuum"
-    exact = "exact"
-
-
+#: What can simulate or solve a scene, as --engine selects it.
+Engine = StrEnum("Engine", list(selection()))  # type: ignore[misc]
 EngineOption = Annotated[list[Engine], typer.Option(help="May be given more than once.")]
 ModelOption = Annotated[
     list[str] | None,
@@ -124,9 +120,9 @@ def load(
     overrides = dict(parse_override(text) for text in changes)
     path = find(scene)
     if variant is None:
-        found = cases.load(path, overrides)
+        found = scenes.load(path, overrides)
     else:
-        found = [cases.load_variant(path, variant, overrides)]
+        found = [scenes.load_variant(path, variant, overrides)]
     warn(found, strict)
     return found
 

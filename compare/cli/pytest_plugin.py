@@ -59,7 +59,8 @@ class SceneFile(pytest.File):
     """One scene file; its tests are the pairs of [expect] in each variant that they apply to."""
 
     def collect(self) -> Iterator["PairItem"]:
-        from cases import SceneError, load
+        from cases import SceneError
+        from compare.scenes import load
 
         try:
             scenes = load(self.path)

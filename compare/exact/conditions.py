@@ -1,15 +1,19 @@
-"""What the solutions ask of a scene before they hold."""
+"""The physics of a scene that an exact solution must hold for."""
 
 from cases.effects import is_spatial
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
+from compare.solvers.record import YES, Answer, no
+
+#: Physics in groups, as `beyond` names them.
+DAMPED = ("damped joints", "damped rock")
+LAYERS = ("thick layers", "soft layers", "stiff layers")
 
 
 def beyond(scene: Scene, *held: str) -> str | None:
     """Return why a solution does not hold for a scene, None where it does.
 
-    held : what the solution holds for, of "spatial motion", "reversed load", "gravity",
-        "prestress" and "mass damping".
+    held : what the solution holds for, of the names below.
     """
     p = calibrate(scene)
     physics = {
@@ -20,9 +24,34 @@ def beyond(scene: Scene, *held: str) -> str | None:
         "prestress": (scene.prestress is not None, "the joints are prestressed"),
         "mass damping": (bool(p.mass_damping), "the damping is proportional to mass"),
         "local damping": (bool(p.local_damping), "the damping is local, which is not linear"),
+        "thick layers": (has_thick_layer(scene), "a soft layer has a thickness"),
+        "no tension": (not p.tension.all(), "a joint bars tension"),
+        "damped joints": (joints_are_damped(p), "the joints are damped"),
+        "damped rock": (bool(p.time_constant), "the rock is damped"),
+        "soft layers": (p.excess_compliance.any(), "a soft layer reflects within the bar"),
+        "stiff layers": (
+            (p.excess_compliance < 0).any(),
+            "a soft layer is stiffer than the ordinary joints",
+        ),
+        "fixed start": (scene.ends.start == "fixed", "the loaded end is fixed"),
     }
     reasons = (why for name, (there, why) in physics.items() if there and name not in held)
     return next(reasons, None)
+
+
+def holds(scene: Scene, held: tuple[str, ...], *against: tuple[bool, str]) -> Answer:
+    """Return whether a solution that holds for the physics `held` holds for a scene.
+
+    against : conditions that are against it, each with its reason; the first that is true counts.
+    """
+    if reason := beyond(scene, *held):
+        return no(reason)
+    return next((no(reason) for there, reason in against if there), YES)
+
+
+def is_free(scene: Scene) -> bool:
+    """Return whether both ends are free."""
+    return (scene.ends.start, scene.ends.end) == ("free", "free")
 
 
 def static_stress(scene: Scene) -> float:
@@ -30,24 +59,9 @@ def static_stress(scene: Scene) -> float:
     return scene.prestress.normal if scene.prestress else 0.0
 
 
-def rock_is_damped(p: Properties) -> bool:
-    """Return whether the rock and its ordinary joints carry dashpots."""
-    return bool(p.time_constant)
-
-
 def joints_are_damped(p: Properties) -> bool:
     """Return whether any joint carries a dashpot; a damped rock has damped joints."""
     return p.joint_time_constant is not None and bool(p.joint_time_constant.any())
-
-
-def bars_tension(p: Properties) -> bool:
-    """Return whether any joint cannot be pulled."""
-    return not bool(p.tension.all())
-
-
-def has_interfaces(p: Properties) -> bool:
-    """Return whether a soft layer differs in stiffness from the ordinary joints."""
-    return bool(p.excess_compliance.any())
 
 
 def has_thick_layer(scene: Scene) -> bool:

@@ -1,25 +1,47 @@
-"""What maps the points of a study: processes of this machine, or of a cluster by mpi4py."""
+"""Executors of experiments: processes of this machine, or of a cluster by mpi4py."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import fcntl
+import os
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
+from contextlib import ExitStack, contextmanager
 from functools import partial
+from pathlib import Path
+from tempfile import gettempdir
 from typing import TypeVar
 
-from compare.runs.processes import Processes
+from compare.engines import Progress
+from compare.runs.checkpoint.lock import locked, opened
+from compare.runs.processes import Processes, started
 from compare.runs.workers import Workers
 
 T = TypeVar("T")
 Pool = Callable[[], Executor]
 
 
-def on_pool(processes: Processes, workers: int, work: Callable[[Pool | None], T]) -> T | None:
-    """Return what `work` makes of a pool; of several MPI processes the first works with the others
-    as its pool, and these return None when it has done.
+def shared(
+    label: str, out: Path | None, workers: int, work: Callable[[Pool | None, Progress], T]
+) -> T | None:
+    """Return what `work` makes of a pool and a progress bar while a folder is locked.
 
-    workers : processes of this machine where MPI has started none; 1: none but this one.
+    label : of the bar. out : the folder; None writes nothing. workers : processes of this machine
+    where MPI has started none; 1: none but this one. Of several MPI processes the others return
+    None when the first is done.
     """
+    from compare.cli import terminal
+
+    processes = started()
+    with ExitStack() as stack, terminal.progress(label) as advance:
+        if out is not None:
+            processes.by_first(lambda: stack.enter_context(locked(out)))
+        return _on_pool(processes, workers, lambda pool: work(pool, advance))
+
+
+def _on_pool(processes: Processes, workers: int, work: Callable[[Pool | None], T]) -> T | None:
+    """Return what `work` makes of a pool; of several MPI processes the first works with the others
+    as its pool, and these return None when it has done."""
     if processes.comm is None:
         return work(partial(Workers, workers) if workers > 1 else None)
     from mpi4py.futures import MPICommExecutor
@@ -33,3 +55,14 @@ class Lent(Executor):
 
     def __init__(self, executor: Executor) -> None:
         self.submit = executor.submit  # type: ignore[method-assign]
+
+
+@contextmanager
+def alone() -> Iterator[None]:
+    """Wait until no other timed experiment is running on this machine."""
+    handle = opened(Path(gettempdir(), "jointwave-timing.lock"))
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)

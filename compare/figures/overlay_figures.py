@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from compare.figures.overlays import UNITS, Overlay, Trace, by_solution, legend_of
-from compare.figures.style import FAMILIES, RC, WIDTH, in_order, is_engine, style
+from compare.figures.style import RC, WIDTH, families, in_order, is_engine, style
 from compare.figures.subplots import in_page, panels
 from compare.misfit.pairs import Comparison
 
@@ -122,10 +122,10 @@ def add_legend(figure: Figure, names: set[str], given: list[Trace]) -> None:
     """Put one column of entries per model above the panels, where it hides no curve."""
     columns = [
         [_heading(family), *(_entry(name) for name in styles if name in names)]
-        for family, styles in FAMILIES.items()
+        for family, styles in families().items()
         if names & set(styles)
     ]
-    known = {name for styles in FAMILIES.values() for name in styles}
+    known = {name for styles in families().values() for name in styles}
     if names - known:
         columns.append([_heading("Other"), *(_entry(name) for name in in_order(names - known))])
     if given:
@@ -146,7 +146,7 @@ def add_legend(figure: Figure, names: set[str], given: list[Trace]) -> None:
         labelspacing=0.25,
     )
     for text in legend.get_texts():
-        if text.get_text() in (*FAMILIES, "Given"):
+        if text.get_text() in (*families(), "Given"):
             text.set_fontweight("bold")
     _lay_out(figure, depth)
 

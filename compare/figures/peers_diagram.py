@@ -8,15 +8,17 @@ from matplotlib.figure import Figure
 from compare.experiments.study.diagram import draw as draw_study
 from compare.experiments.study.pareto import assured
 from compare.experiments.study.study import Curve, Study
+from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
+from compare.solvers.dem import DEM
 
 COSTS = {"seconds": "seconds of stepping", "whole": "seconds of the whole process"}
 OURS = {  # how our curves are coloured: as their engines are everywhere
-    "jointwave blocks": "dem",
-    "jointwave blocks in space": "dem",
-    "jointwave bar": "continuum-equivalent",
-    "jointwave hexahedra": "continuum-equivalent",
-    "jointwave hexahedra of order 2": "continuum-equivalent",
-    "jointwave jointed bar": "continuum-jointed",
+    "jointwave blocks": DEM.name,
+    "jointwave blocks in space": DEM.name,
+    "jointwave bar": EQUIVALENT_ROCK.name,
+    "jointwave hexahedra": EQUIVALENT_ROCK.name,
+    "jointwave hexahedra of order 2": EQUIVALENT_ROCK.name,
+    "jointwave jointed bar": JOINTED_ROCK.name,
 }
 
 

@@ -5,7 +5,11 @@ exact solutions are thin, dark and dashed over them. Hues are those of Okabe & I
 stay apart under every colour blindness.
 """
 
+from functools import cache
 from typing import Any, NamedTuple
+
+from compare.engines import ENGINES, names, solver, solvers
+from compare.solvers.record import HEADINGS, Line
 
 WIDTH = 11.0  # inches of every figure; the page shows it at the width of its column
 
@@ -40,31 +44,19 @@ def _slot(first: float, last: float) -> tuple[float, tuple[float, float]]:
     return (PERIOD - first, (last - first, PERIOD - (last - first)))
 
 
-#: By model, as the legend groups them: heading, then the engine, then exact solutions.
-FAMILIES: dict[str, dict[str, Style]] = {
-    "Rigid blocks": {
-        "dem": Style("#56b4e9", 2.2, "-", 2),
-        "lattice": Style("#00349a", 1.1, _slot(0, 4), 9),
-        "no-tension-chain": Style("#00349a", 1.1, _slot(0, 9), 9),
-        "spatial-lattice": Style("#00349a", 1.1, _slot(0, 9), 9),
-    },
-    "Intact rock and joints": {
-        "continuum-jointed": Style("#f0a030", 3.4, "-", 1),
-        "jointed-bar": Style("#a83200", 1.1, _slot(4.5, 8.5), 8),
-        "one-joint": Style("#d55e00", 1.1, _slot(6, 8.5), 7),
-    },
-    "Homogenised bar": {
-        "continuum-equivalent": Style("#8fd4bd", 4.8, "-", 0),
-        "equivalent-bar": Style("#005a3c", 1.1, _slot(9, 13), 6),
-        "images": Style("#00a26d", 1.1, _slot(13.5, 15.5), 5),
-        "kelvin-voigt": Style("#00a26d", 1.1, _slot(13.5, 15.5), 5),
-        "series": Style("#b0307e", 1.1, _slot(16, 18), 4),
-    },
-    "One mechanism alone": {
-        "slip-joint": Style("#a83200", 1.1, _slot(9, 18), 8),
-        "sliding-block": Style("#a83200", 1.1, _slot(9, 18), 8),
-    },
-}
+@cache
+def families() -> dict[str, dict[str, Style]]:
+    """Return the styles by model, as the legend groups them: heading, engines, exact solutions."""
+    found: dict[str, dict[str, Style]] = {heading: {} for heading in HEADINGS}
+    for one in solvers():
+        found[one.words.heading][one.name] = _style(one.line)
+    return found
+
+
+def _style(line: Line) -> Style:
+    dashes = _slot(*line.slot) if line.slot else "-"
+    return Style(line.colour, line.width, dashes, line.order)
+
 
 #: Of others' curves, one file after the other: black and grey, which no solution has, between
 #: engines and exact solutions.
@@ -75,8 +67,6 @@ GIVEN = (
     Style("#6e6e6e", 0.9, (0, (6, 2, 1.5, 2)), 3),
 )
 MARKERS = "oxs+"  # of the samples, where they are few enough to be told apart
-
-STYLES = {name: style for family in FAMILIES.values() for name, style in family.items()}
 
 #: Of the terms of an energy ledger: those of Tol (2021), "muted", and black.
 TERMS = {
@@ -111,15 +101,17 @@ RC: dict[Any, Any] = {
 
 def style(name: str) -> Style:
     """Return how an engine or exact solution is drawn; grey for one that has no style yet."""
-    return STYLES.get(name, Style("#777777", 1.1, _slot(0, 9), 3))
+    if name in names():
+        return _style(solver(name).line)
+    return Style("#777777", 1.1, _slot(0, 9), 3)
 
 
-def in_order(names: set[str]) -> list[str]:
+def in_order(drawn: set[str]) -> list[str]:
     """Return names as the legend has them, those without a style last."""
-    known = [name for name in STYLES if name in names]
-    return known + sorted(names - set(known))
+    known = [name for family in families().values() for name in family if name in drawn]
+    return known + sorted(drawn - set(known))
 
 
 def is_engine(name: str) -> bool:
     """Return whether a curve is an engine's, not an exact solution's."""
-    return name == "dem" or name.startswith("continuum-")
+    return name in ENGINES

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from time import perf_counter
 from typing import NamedTuple
 
@@ -9,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from cases.schema.scene import Scene
-from compare.engines import Progress, applies, names, solve
+from compare.engines import Progress, applies, names, solve, solvers
 from compare.experiments.cost import timings
 from compare.misfit.alignment import Beside, distances, lay_beside
 from compare.misfit.external import Curves
@@ -24,32 +25,22 @@ class Pair(NamedTuple):
     kind: str
 
 
-NUMERICAL = "numerical error"
-MODELLING = "modelling error"
-BETWEEN = "between engines"
 GIVEN = "given curves"  # those of others
-PAIRS = (
-    # Against the exact solution of the very model that the engine discretises.
-    Pair("dem", "lattice", NUMERICAL),
-    Pair("dem", "no-tension-chain", NUMERICAL),
-    Pair("dem", "spatial-lattice", NUMERICAL),
-    Pair("continuum-jointed", "jointed-bar", NUMERICAL),
-    Pair("continuum-equivalent", "equivalent-bar", NUMERICAL),
-    Pair("continuum-equivalent", "images", NUMERICAL),
-    Pair("continuum-equivalent", "kelvin-voigt", NUMERICAL),
-    Pair("series", "images", NUMERICAL),
-    # Against the exact solution of a model that resolves more, or homogenises more.
-    Pair("dem", "jointed-bar", MODELLING),
-    Pair("dem", "equivalent-bar", MODELLING),
-    Pair("continuum-equivalent", "jointed-bar", MODELLING),
-    # Against one mechanism alone.
-    Pair("dem", "slip-joint", MODELLING),
-    Pair("continuum-equivalent", "slip-joint", MODELLING),
-    Pair("dem", "sliding-block", MODELLING),
-    Pair("dem", "continuum-jointed", BETWEEN),
-    Pair("dem", "continuum-equivalent", BETWEEN),
-    Pair("continuum-equivalent", "continuum-jointed", BETWEEN),
-)
+
+
+@cache
+def pairs() -> tuple[Pair, ...]:
+    """Return the pairs whose distance is measured, as the records of the solvers name them: by the
+    meaning of their distance, then in the order of the registry."""
+    every = solvers()
+    place = {one.name: i for i, one in enumerate(every)}
+    found = [
+        (kind, place[one], place[other.name], Pair(one, other.name, kind.words))
+        for other in every
+        for kind, ones in (other.distances or {}).items()
+        for one in ones
+    ]
+    return tuple(pair for *_, pair in sorted(found))
 
 
 class Row(NamedTuple):
@@ -119,7 +110,7 @@ def measure(results: dict[str, xr.Dataset], spectral: bool = False) -> list[Row]
     Envelope and phase misfits are those of stress, shear, velocity and rotation that are not faint.
     """
     rows = []
-    for pair in PAIRS:
+    for pair in pairs():
         if pair.one not in results or pair.other not in results:
             continue
         one, other = results[pair.one], results[pair.other]

@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
-from compare.engines import ENGINES, applies, names
-from compare.exact.answer import WORDS, Answer, Resolves, Rock
+from compare.engines import applies, names, solver
 from compare.exact.conditions import has_thick_layer
+from compare.solvers.record import Answer, Rock
 
 
 class Reference(NamedTuple):
@@ -27,22 +27,13 @@ class Reference(NamedTuple):
 NOT_CHECKED = "not checked independently"
 
 
-def resolves(name: str) -> Resolves:
-    """Return what an engine or exact solution resolves."""
-    if name in ENGINES:
-        return ENGINES[name]
-    from compare.exact.catalogue import CATALOGUE
-
-    return CATALOGUE[name].RESOLVES
-
-
 def lacks(name: str, scene: Scene) -> str:
     """Return the effect of a scene that a solution which applies to it leaves out, "" where none.
 
     The thickness of a soft layer: rigid blocks take it for a joint. The inertia across the axis of
     a column of two or three dimensions: a bar has none.
     """
-    of = resolves(name)
+    of = solver(name)
     if has_thick_layer(scene) and of.rock is Rock.RIGID_BLOCKS:
         return "the thickness of a soft layer"
     dim, free_sides = scene.numerics.continuum.dim or 1, scene.motion.rotation != "none"
@@ -58,9 +49,9 @@ def finest(names: Iterable[str], scene: Scene) -> Reference | None:
     if not complete:
         return None
     name = max(complete, key=_fineness)
-    of = resolves(name)
+    of = solver(name)
     how = "exact" if of.exact else "computed, with no exact solution of this scene to check it"
-    return Reference(name, f"{WORDS[of.rock]}, {how}")
+    return Reference(name, f"{of.rock.words}, {how}")
 
 
 def reference_of(name: str, names: Iterable[str], scene: Scene) -> Reference | None:
@@ -77,9 +68,9 @@ def reference_of(name: str, names: Iterable[str], scene: Scene) -> Reference | N
 def own_exact(name: str, names: Iterable[str], scene: Scene) -> str | None:
     """Return the exact solution of an engine's own model among `names`, what its numerical error is
     measured from; None where there is none."""
-    rock, own = resolves(name).rock, []
+    rock, own = solver(name).rock, []
     for other in names:
-        of = resolves(other)
+        of = solver(other)
         if other != name and of.rock is rock and of.exact and of.discretised:
             own.append(other)
     found = finest(own, scene)
@@ -87,7 +78,7 @@ def own_exact(name: str, names: Iterable[str], scene: Scene) -> str | None:
 
 
 def _fineness(name: str) -> tuple[int, int]:
-    of = resolves(name)
+    of = solver(name)
     return int(of.rock), int(of.form)
 
 

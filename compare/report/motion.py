@@ -10,6 +10,7 @@ import cases
 from cases.material.calibrate import calibrate
 from compare.figures.export import Drawn, save
 from compare.scenes import find
+from compare.solvers.dem import DEM
 from results.snapshots import Snapshots, snapshots_of
 
 MOVING = "beyond/eccentric-blow"  # the scene that is shown as a whole, and with which changes
@@ -36,7 +37,7 @@ def make_motion(out: Path) -> Motion:
     assert found is not None
     file = write_pvd(out / "fields" / "dem.pvd", found)
     shown = read_pvd(file).since(1)
-    figure = draw_snapshots("snapshots", {"dem": shown})
+    figure = draw_snapshots("snapshots", {DEM.name: shown})
     drawn = save(figure, out / "figures", "snapshots", scene.title, _table(shown))
     return Motion(scene.title, drawn, file, calibrate(scene).bar_speed)
 

@@ -10,12 +10,6 @@ from compare.engines import ENGINES
 from compare.report.tables import percent
 from compare.report.verdict import NOT_CHECKED, Standing, Verdict
 
-#: Engines as a sentence names them.
-WORDS = {
-    "dem": "rigid blocks",
-    "continuum-jointed": "continuum, every joint resolved",
-    "continuum-equivalent": "homogenised continuum",
-}
 ROOM = 22  # characters of a scene in the table
 LIMITS = "✓ agrees within 1 %, ≈ close within 5 %, △ differs within 20 %, ▲ far off beyond"
 
@@ -128,7 +122,8 @@ def _sentence(engine: str, scenes: list[Ranked]) -> str:
     error = f", own numerical error ≤ {_short(max(own))} %" if own else ""
     open_ones = sum(bool(s.standings[engine].unchecked) for s in scenes)
     unchecked = f", {NOT_CHECKED.word} on {open_ones} of {len(scenes)} scenes" if totals else ""
-    return f"({WORDS[engine]}): {far}{error}{unchecked * bool(open_ones)}; {_cost(engine, scenes)}."
+    found = f"{far}{error}{unchecked * bool(open_ones)}; {_cost(engine, scenes)}"
+    return f"({ENGINES[engine].words.sentence}): {found}."
 
 
 def _cost(engine: str, scenes: list[Ranked]) -> str:

@@ -11,8 +11,7 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader
 from markupsafe import Markup, escape
 
-from compare.experiments.ablation.section import WorthSection
-from compare.experiments.study.section import StudySection
+from compare.experiments.summary import Summary
 from compare.figures.style import style
 from compare.report.compression import pack_plot, pack_table
 from compare.report.findings import Finding
@@ -42,11 +41,11 @@ class Page:
     machine: str
     versions: dict[str, str]
     about: Finding | None = None
-    studies: list[StudySection] = field(default_factory=list)
+    studies: list[Summary] = field(default_factory=list)
     peers: PeersSection | None = None
     peers_file: str = ""
-    effects: WorthSection | None = None
-    stability: StudySection | None = None
+    effects: Summary | None = None
+    stability: Summary | None = None
     motion: Motion | None = None
 
     @property

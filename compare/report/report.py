@@ -11,11 +11,12 @@ from pandas import DataFrame
 
 from compare.engines import Progress
 from compare.experiments.ablation import runner as ablation_runs
-from compare.experiments.ablation import section as ablation_section
-from compare.experiments.pool import Lent, Pool
-from compare.experiments.robustness.section import make_section as make_hard_section
-from compare.experiments.study.runner import alone
-from compare.experiments.study.section import REPORTED, make_sections, measured_on
+from compare.experiments.ablation.summary import summarise as summarise_ablation
+from compare.experiments.cost.machine import measured_on
+from compare.experiments.pool import Lent, Pool, alone
+from compare.experiments.robustness.summary import make_study as make_hard_cases
+from compare.experiments.study.summary import REPORTED
+from compare.experiments.study.summary import reported as reported_studies
 from compare.figures.export import save
 from compare.figures.overlay_figures import draw
 from compare.figures.subplots import curve_table
@@ -91,7 +92,7 @@ def build(
             others = peers.read(peers_table)
             page = _of_paper(Path(out), progress, lambda: Lent(executor))
             page = _with_hard_cases(page, Path(out), lambda: Lent(executor)) if hard else page
-            page = _with_studies(page, Path(out), studies, others)
+            page = _with_studies(page, Path(out), studies, others, lambda: Lent(executor))
     file = write_text(Path(out) / "index.html", render(page, Path(out)))
     found = {section.name: section.findings for section in page.sections}
     taken = perf_counter() - began
@@ -107,13 +108,12 @@ def _of_scenes(out: Path, scenes: Sequence[str], progress: Progress | None, pool
 
 
 def _of_paper(out: Path, progress: Progress | None, pool: Pool) -> Page:
-    """Return the page of the paper's figures, and prepare the effects that it weighs."""
-    kept, moving = out / "effects", []
-    weighed = ablation_runs.unprepared(ablation_runs.reported(), kept)
+    """Return the page of the paper's figures."""
+    moving: list[Future] = []
 
     def besides(executor: Executor) -> list[Future]:
         moving.append(executor.submit(make_motion, out))
-        return [*moving, *ablation_runs.submit(executor, weighed, kept)]
+        return moving
 
     solved = solve(out / "figures", asked_for(()), progress, pool, besides)
     page = _page(solved, PAPERS, "jointwave report --out DIR")
@@ -144,19 +144,19 @@ def _ranked(solved: Solved) -> list[Ranked]:
 
 
 def _with_hard_cases(page: Page, out: Path, pool: Pool) -> Page:
-    return replace(page, stability=make_hard_section(out, pool))
+    return replace(page, stability=make_hard_cases(out / "studies", pool, slow=False))
 
 
 def _with_studies(
-    page: Page, out: Path, studies: tuple[str, ...], others: DataFrame | None
+    page: Page, out: Path, studies: tuple[str, ...], others: DataFrame | None, pool: Pool
 ) -> Page:
     """Return the page with what was measured: the seconds after everything else, and alone."""
-    measured = make_sections(out, studies)
-    balances = ablation_runs.complete(ablation_runs.reported(), out / "effects")
+    measured = reported_studies(out, studies)
+    effects = ablation_runs.run(ablation_runs.reported(), out / "effects", pool)
     return replace(
         page,
         studies=measured,
-        effects=ablation_section.write_section(out / "effects", balances),
+        effects=summarise_ablation(out / "effects", effects),
         peers=None if others is None else peers.write_section(out / "studies", others),
         peers_file=str(peers.PLACE),
     )

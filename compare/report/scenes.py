@@ -8,7 +8,6 @@ from concurrent.futures import Executor, Future, as_completed
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import cases
 from cases.schema.scene import Scene
 from compare.engines import Progress
 from compare.experiments.cost import timings
@@ -16,7 +15,7 @@ from compare.experiments.pool import Pool
 from compare.figures.charts.along_axis import along_pillar, recorded_along
 from compare.misfit.pairs import Comparison, compare
 from compare.report.section import PAPER, Asked, Section, linked, make_section
-from compare.scenes import find
+from compare.scenes import find, load
 from results.dataset import scene_hash
 
 RATE = "scene of the report"  # what the seconds of scenes are remembered by
@@ -58,7 +57,7 @@ def solve(
     Each variant is solved once, however many scenes share it. `besides` submits what else is to be
     done at the same time.
     """
-    loaded = {one.name: cases.load(one.file) for one in asked}
+    loaded = {one.name: load(one.file) for one in asked}
     unique = {_key(scene): scene for variants in loaded.values() for scene in variants}
     with timings.timing(RATE, len(asked)), pool() as executor:
         order = _longest_first(unique)

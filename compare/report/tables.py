@@ -8,7 +8,7 @@ import pandas as pd
 
 from compare.figures.subplots import variant_names
 from compare.misfit.metrics import misfit
-from compare.misfit.pairs import GIVEN, PAIRS, Comparison, Pair, Row
+from compare.misfit.pairs import GIVEN, Comparison, Pair, Row, pairs
 from results.dataset import energy_residual
 
 #: What each pair's distance is made of.
@@ -93,7 +93,7 @@ def _by_kind(
     lines: Callable[[Pair], list[list[str]]], more: Iterable[Pair] = ()
 ) -> dict[str, list[list[str]]]:
     groups: dict[str, list[list[str]]] = {}
-    for pair in (*PAIRS, *more):
+    for pair in (*pairs(), *more):
         if found := lines(pair):
             groups.setdefault(pair.kind, []).extend(found)
     return groups

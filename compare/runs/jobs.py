@@ -5,10 +5,9 @@ from typing import NamedTuple
 
 from cases.errors import SceneError
 from cases.schema.scene import Scene
-from compare.engines import applies, exact_names
+from compare.engines import ENGINES, applies, selection
 from compare.runs.output import refuse_foreign
-
-CONTINUUM_MODELS = ("jointed", "equivalent")
+from compare.solvers.record import Solver
 
 
 class Job(NamedTuple):
@@ -21,19 +20,27 @@ class Job(NamedTuple):
 
 def wanted(engines: list[str], models: list[str]) -> list[tuple[str, str | None]]:
     """Return (engine, model) for each run asked for; the model None stands for all that apply."""
-    known = {"dem": (), "continuum": CONTINUUM_MODELS}
+    known = selection()
     found: list[tuple[str, str | None]] = []
     left = list(models)
     for engine in engines:
-        allowed = known[engine] if engine in known else exact_names()
-        mine = [m for m in models if m in allowed]
+        mine = [m for m in models if m in known[engine]]
         left = [m for m in left if m not in mine]
         found += [(engine, m) for m in mine] or [(engine, None)]
     if left:
-        options = [*CONTINUUM_MODELS, *exact_names()]
-        allowed_text = f"must be a model of a chosen --engine: {', '.join(options)}"
+        allowed_text = f"must be a model of a chosen --engine: {', '.join(models_known())}"
         raise SceneError("--model", left[0], None, allowed_text)
     return found
+
+
+def models_known() -> list[str]:
+    """Return all models of engines and all exact solutions."""
+    return [model for models in selection().values() for model in models if model]
+
+
+def engine_of(model: str) -> str:
+    """Return the --engine that has a model, that of the exact solutions for an unknown one."""
+    return next((one for one, models in selection().items() if model in models), Solver.engine)
 
 
 def plan(scenes: list[Scene], runs: list[tuple[str, str | None]], out: Path) -> list[Job]:
@@ -44,7 +51,7 @@ def plan(scenes: list[Scene], runs: list[tuple[str, str | None]], out: Path) -> 
         folder = out / scene.name if scene.name else out
         for engine, model in runs:
             for name in names_of(engine, model, scene):
-                file = name if engine != "exact" else f"exact-{name}"
+                file = name if name in ENGINES else f"{engine}-{name}"
                 refuse_foreign(folder / f"{file}.nc")
                 jobs.append(Job(scene, name, folder / f"{file}.nc"))
     return jobs
@@ -55,16 +62,11 @@ def names_of(engine: str, model: str | None, scene: Scene) -> list[str]:
 
     Raises SceneError where none does.
     """
-    if engine == "dem":
-        return ["dem"]
-    every = (
-        [f"continuum-{m}" for m in CONTINUUM_MODELS]
-        if engine == "continuum"
-        else list(exact_names())
-    )
+    every = selection()[engine]
     if model is not None:
-        return [f"continuum-{model}" if engine == "continuum" else model]
-    found = [name for name in every if applies(name, scene)]
+        return [every[model]]
+    found = [name for name in every.values() if applies(name, scene)]
     if not found:
-        raise SceneError(scene.title, "", None, f"no {engine}: {applies(every[0], scene).reason}")
+        reason = applies(next(iter(every.values())), scene).reason
+        raise SceneError(scene.title, "", None, f"no {engine}: {reason}")
     return found

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cases.errors import SceneError, StoppedError
-from compare.engines import Progress, solve
+from compare.engines import Progress, solve_fields, solver
 from compare.experiments.cost import timings
 from compare.runs.checkpoint.resume import Keeping, Watch, result_of, watch
 from compare.runs.checkpoint.schedule import RunKeeper
@@ -83,7 +83,7 @@ def _watch(job: Job, keeping: Keeping | None, processes: Processes) -> Watch | N
 
 def _is_shared(job: Job) -> bool:
     """Return whether several processes run a job together."""
-    return job.name.startswith("continuum-")
+    return solver(job.name).shares
 
 
 def _made(
@@ -191,8 +191,4 @@ def _residual(result: Fields) -> float | None:
 
 
 def _solve(job: Job, progress: Progress, comm, keeper: RunKeeper | None) -> Fields:
-    if job.name == "dem":
-        from dem import simulate_fields
-
-        return simulate_fields(job.scene, progress, keeper=keeper)
-    return fields_of(solve(job.name, job.scene, progress, comm, keeper))
+    return solve_fields(job.name, job.scene, progress, comm, keeper)

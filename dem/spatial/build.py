@@ -112,11 +112,7 @@ def build_contact(scene: Scene, p: Properties, motion: Motion) -> Contact:
         p.joint_time_constant,
         p.tension,
         shear_stiffness=p.shear_stiffness,
-        cohesion=p.cohesion,
-        friction=p.friction,
-        residual_cohesion=p.residual_cohesion,
-        tensile_strength=p.tensile_strength,
-        critical_opening=p.critical_opening,
+        **p.strengths(),
     )
     points, damped = contact_points(scene), p.joint_time_constant is not None
     by_points = points_looked_after(scene, p) > 0

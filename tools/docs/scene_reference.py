@@ -6,9 +6,10 @@ from typing import Any, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from cases.schema.allowed import in_words, model_in
+from cases.schema.allowed import SOLVERS, in_words, model_in
 from cases.schema.field_docs import field_comments
 from cases.schema.keys import TableOf, default_of, tables
+from compare.engines import names
 
 HEAD = "| key | allowed | default | meaning |\n| --- | --- | --- | --- |"
 
@@ -36,7 +37,8 @@ def _row(key: str, name: str, field: FieldInfo, comment: str) -> str:
         link = f"[below](#{_anchor(key)})"
         return f"| {shown} | {in_words_of_table(field)} | {_default(field)} | {link} |"
     meaning = comment.replace("|", "\\|")
-    return f"| {shown} | {in_words(field)} | {_default(field)} | {meaning} |"
+    allowed = in_words(field).replace(f"two {SOLVERS}", f"a and b of: {', '.join(names())}")
+    return f"| {shown} | {allowed} | {_default(field)} | {meaning} |"
 
 
 def in_words_of_table(field: FieldInfo) -> str:

@@ -32,7 +32,7 @@ def seeds(target: str) -> list[bytes]:
     where = {
         "scene": "cases/*/*.toml",
         "load": "cases/*/*.csv",
-        "study": "compare/experiments/study/*.toml",
+        "study": "compare/experiments/study/shipped/*.toml",
     }
     return [path.read_bytes() for path in sorted(ROOT.glob(where[target]))]
 

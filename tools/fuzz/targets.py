@@ -172,7 +172,7 @@ SOLVERS = (
     "compare.experiments.ablation.runner.run",
     "compare.experiments.planner.planner.plan",
     "compare.experiments.study.runner.run",
-    "compare.experiments.robustness.section.make_study",
+    "compare.experiments.robustness.summary.make_study",
     "compare.report.report.build",
     "compare.figures.print.make.make",
     "compare.figures.animation.snapshots.take",

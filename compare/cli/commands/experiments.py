@@ -1,6 +1,5 @@
 """Commands that weigh accuracy against cost over many runs: effects, plan, study, report."""
 
-from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -22,7 +21,6 @@ from compare.cli.options import (
     load,
 )
 from compare.runs.checkpoint.lock import locked
-from compare.runs.processes import started
 
 
 @app.command()
@@ -44,30 +42,31 @@ def effects(
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Say what every effect of a scene costs, and how far the answer is without it.
+    """Measure the cost of every effect of a scene, and how far the result is without it.
 
     Without a scene: of every variant of every shipped scene. That takes a while; what is done is
-    kept in DIR and not run again.
+    saved in DIR and not run again.
     """
-    from compare.cli import terminal
-    from compare.experiments.ablation import runner as ablation_runs
-    from compare.experiments.ablation import show as ablation_view
-    from compare.experiments.ablation.section import write_section
-    from compare.experiments.pool import on_pool
+    from compare.experiments.ablation import runner
+    from compare.experiments.ablation.summary import TEXTS, summarise
+    from compare.experiments.pool import shared
+    from compare.experiments.summary import show
 
     wanted = _cases(scene, changes, variant, strict)
     if dry:
-        from compare.experiments.cost import dry_run
+        from compare.experiments.cost.dry_run import show_parts
+        from compare.experiments.cost.experiment_cost import parts_of_effects
 
-        dry_run.show_effects(wanted, out, as_json)
+        show_parts(parts_of_effects(wanted, out), as_json)
         return
-    with locked(out), terminal.progress(f"{len(wanted)} variants") as advance:
-        found = on_pool(
-            started(), workers, lambda pool: ablation_runs.run(wanted, out, pool, advance)
-        )
+    found = shared(
+        f"{len(wanted)} variants",
+        out,
+        workers,
+        lambda pool, advance: runner.run(wanted, out, pool, advance),
+    )
     assert found is not None  # one process only: see root
-    section = write_section(out, found)
-    ablation_view.show_balances(found, section, as_json)
+    show(summarise(out, found), as_json, TEXTS)
 
 
 @app.command()
@@ -111,47 +110,49 @@ def study(
     """Run a study: a scene solved in many ways, each with its error and its cost, as one table
     and its diagram.
 
-    Points that are done are kept in DIR/NAME/ and not run again. Under mpiexec the processes share
+    Points that are done are saved in DIR/NAME/ and not run again. Under mpiexec the processes share
     the points; those of a timed study are run one at a time. The study `stability` puts both
     engines to hard cases, each with a criterion from theory.
     """
     if dry:
-        from compare.experiments.cost import dry_run
+        from compare.experiments.cost.dry_run import show_parts
+        from compare.experiments.cost.experiment_cost import parts_of_study
 
-        dry_run.show_study(name, out, as_json)
+        show_parts(parts_of_study(name, out), as_json)
         return
     if name == "stability":
         _study_stability(out, workers, as_json)
         return
-    from compare.cli import terminal
-    from compare.experiments.pool import on_pool
-    from compare.experiments.study.diagram import write_diagram
+    from compare.experiments.pool import shared
     from compare.experiments.study.runner import run as run_points
-    from compare.experiments.study.show import show_study
     from compare.experiments.study.study import load
-    from compare.experiments.study.table import write_table
+    from compare.experiments.study.summary import summarise
+    from compare.experiments.summary import show
 
-    asked, stem, processes = load(name), Path(name).stem, started()
-    with ExitStack() as held, terminal.progress(asked.title) as advance:
-        processes.by_first(lambda: held.enter_context(locked(out / stem)))
-        rows = on_pool(
-            processes, workers, lambda pool: run_points(asked, out / stem, pool, advance)
-        )
+    asked, stem = load(name), Path(name).stem
+    rows = shared(
+        asked.title,
+        out / stem,
+        workers,
+        lambda pool, advance: run_points(asked, out / stem, pool, advance),
+    )
     if rows is not None:
-        files = (*write_table(out, stem, asked, rows), *write_diagram(out, stem, asked, rows))
-        show_study(asked, rows, files, as_json)
+        show(summarise(out, stem, asked, rows), as_json)
 
 
 def _study_stability(out: Path, workers: int, as_json: bool) -> None:
-    from compare.cli import terminal
-    from compare.experiments.pool import on_pool
-    from compare.experiments.robustness.section import TITLE, make_study
-    from compare.experiments.robustness.show import show
+    from compare.experiments.pool import shared
+    from compare.experiments.robustness.summary import NAME, TEXTS, TITLE, make_study
+    from compare.experiments.summary import show
 
-    with terminal.progress(TITLE) as advance:
-        found = on_pool(started(), workers, lambda pool: make_study(out, pool, progress=advance))
+    found = shared(
+        TITLE,
+        out / NAME,
+        workers,
+        lambda pool, advance: make_study(out, pool, progress=advance),
+    )
     if found is not None:
-        show(found, as_json)
+        show(found, as_json, TEXTS)
 
 
 @app.command()
@@ -183,9 +184,10 @@ def report(
     from compare.report.report import build
 
     if dry:
-        from compare.experiments.cost import dry_run
+        from compare.experiments.cost.dry_run import show_parts
+        from compare.experiments.cost.experiment_cost import parts_of_report
 
-        dry_run.show_report(scenes or (), out, as_json)
+        show_parts(parts_of_report(scenes or (), out), as_json)
         return
     with locked(out, out / "figures", out / "studies"), terminal.progress("scenes") as advance:
         found = build(out, advance, scenes=scenes or (), peers_table=peers)

@@ -32,6 +32,7 @@ from compare.runs.checkpoint.lock import locked
 from compare.runs.checkpoint.signals import watched
 from compare.runs.processes import started
 from compare.scenes import shipped
+from compare.solvers.dem import DEM
 
 
 @app.command("list")
@@ -46,7 +47,7 @@ def list_scenes(as_json: JsonOption = False) -> None:
 @app.command()
 def run(
     scene: SceneArgument,
-    engine: EngineOption = [Engine.dem],  # noqa: B006
+    engine: EngineOption = [Engine(DEM.engine)],  # noqa: B006, B008
     model: ModelOption = None,
     changes: SetOption = [],  # noqa: B006
     variant: VariantOption = None,

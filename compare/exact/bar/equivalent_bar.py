@@ -12,35 +12,23 @@ import xarray as xr
 
 from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
-from compare.exact.answer import YES, Answer, Resolves, Rock, no
 from compare.exact.bar.laplace import Bar, end_of, solved
-from compare.exact.conditions import bars_tension, beyond, has_thick_layer
+from compare.exact.conditions import DAMPED, holds
+from compare.solvers.record import BAR, Answer, Kind, Rock, Solver, Words, thin
 
-NAME = "equivalent-bar"
-RESOLVES = Resolves(Rock.HOMOGENISED)
+HELD = ("prestress", "soft layers", *DAMPED)
 
 
 def applies(scene: Scene) -> Answer:
     """Return whether the scene's homogenised bar is linear and its layers add compliance."""
-    p = calibrate(scene)
-    if reason := beyond(scene, "prestress"):
-        return no(reason)
-    if has_thick_layer(scene):
-        return no("a soft layer has a thickness")
-    if bars_tension(p):
-        return no("a joint bars tension")
-    if (p.excess_compliance < 0).any():
-        return no("a soft layer is stiffer than the ordinary joints")
-    if p.damps_alone.any():
-        return no("a homogenised bar cannot damp one ordinary joint by itself")
-    if scene.ends.start == "fixed":
-        return no("the loaded end is fixed")
-    return YES
+    alone = bool(calibrate(scene).damps_alone.any())
+    reason = "a homogenised bar cannot damp one ordinary joint by itself"
+    return holds(scene, HELD, (alone, reason))
 
 
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, velocity and displacement of the scene's homogenised bar."""
-    return solved(scene, NAME, bar(scene))
+    return solved(scene, SOLVER.name, bar(scene))
 
 
 def bar(scene: Scene) -> Bar:
@@ -58,3 +46,14 @@ def bar(scene: Scene) -> Bar:
         start=end_of(scene.ends.start, p.impedance),
         end=end_of(scene.ends.end, p.impedance),
     )
+
+
+SOLVER = Solver(
+    name="equivalent-bar",
+    rock=Rock.HOMOGENISED,
+    words=Words(BAR, "homogenised bar, exact", "等效杆（精确解）"),
+    line=thin("#005a3c", 6, (9, 13), (7, 2, 1.2, 2)),
+    applies=applies,
+    run=solve,
+    distances={Kind.NUMERICAL: ("continuum-equivalent",), Kind.MODELLING: ("dem",)},
+)

@@ -22,18 +22,10 @@ from cases.loads import load_history
 from cases.material.calibrate import calibrate
 from cases.sampling import sample_times
 from cases.schema.scene import Scene
-from compare.exact.answer import YES, Answer, Form, Resolves, Rock, no
-from compare.exact.conditions import (
-    bars_tension,
-    beyond,
-    has_interfaces,
-    joints_are_damped,
-    static_stress,
-)
+from compare.exact.conditions import holds, static_stress
+from compare.solvers.record import BAR, Answer, Form, Kind, Rock, Solver, Words, thin
 from results.dataset import dataset
 
-NAME = "images"
-RESOLVES = Resolves(Rock.HOMOGENISED, Form.CLOSED)
 MOST_TRIPS = 1_000_000  # through the bar and back
 
 #: Reflection coefficient of stress at an end of the bar.
@@ -44,20 +36,9 @@ ENTERS = {"free": 1.0, "quiet": 0.5, "matched": 0.5}
 
 def applies(scene: Scene) -> Answer:
     """Return whether images are the exact solution of the scene's homogenised bar."""
-    p = calibrate(scene)
-    if reason := beyond(scene, "prestress"):
-        return no(reason)
-    if bars_tension(p):
-        return no("a joint bars tension")
-    if joints_are_damped(p):
-        return no("the joints are damped")
-    if has_interfaces(p):
-        return no("a soft layer reflects within the bar")
-    if scene.ends.start not in ENTERS:
-        return no("the loaded end is fixed")
-    if p.bar_speed * scene.time.duration > 2 * scene.pillar.length * MOST_TRIPS:
-        return no(f"the wave runs through the bar more than {MOST_TRIPS:,} times")
-    return YES
+    trips = calibrate(scene).bar_speed * scene.time.duration / (2 * scene.pillar.length)
+    many = f"the wave runs through the bar more than {MOST_TRIPS:,} times"
+    return holds(scene, ("prestress", "thick layers"), (trips > MOST_TRIPS, many))
 
 
 def solve(scene: Scene) -> xr.Dataset:
@@ -76,7 +57,7 @@ def solve(scene: Scene) -> xr.Dataset:
     velocity = enters * (there - back) / p.impedance
     there, back = waves(load.impulse, scene.record.velocity)
     displacement = enters * (there - back) / p.impedance
-    return dataset(scene, NAME, times, stress + static_stress(scene), velocity, displacement)
+    return dataset(scene, SOLVER.name, times, stress + static_stress(scene), velocity, displacement)
 
 
 def images(
@@ -108,3 +89,15 @@ def images(
         if trips * end:
             back += trips * end * signal(t - (2 * (k + 1) * length - y) / speed)
     return there, back
+
+
+SOLVER = Solver(
+    name="images",
+    rock=Rock.HOMOGENISED,
+    form=Form.CLOSED,
+    words=Words(BAR, "homogenised bar, images", "等效杆（镜像法）"),
+    line=thin("#00a26d", 5, (13.5, 15.5), (7, 2, 1.2, 2, 1.2, 2)),
+    applies=applies,
+    run=solve,
+    distances={Kind.NUMERICAL: ("continuum-equivalent", "series")},
+)

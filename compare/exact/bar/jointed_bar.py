@@ -13,33 +13,22 @@ import xarray as xr
 
 from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
-from compare.exact.answer import YES, Answer, Resolves, Rock, no
 from compare.exact.bar.laplace import Bar, end_of, solved
-from compare.exact.conditions import bars_tension, beyond, has_thick_layer
+from compare.exact.conditions import DAMPED, holds
+from compare.solvers.record import JOINTED, Answer, Kind, Rock, Solver, Words, thin
 
-NAME = "jointed-bar"
-RESOLVES = Resolves(Rock.JOINTED)
+HELD = ("prestress", "soft layers", "stiff layers", *DAMPED)
 
 
 def applies(scene: Scene) -> Answer:
     """Return whether the scene is a linear bar of known intact rock."""
-    p = calibrate(scene)
-    if reason := beyond(scene, "prestress"):
-        return no(reason)
-    if has_thick_layer(scene):
-        return no("a soft layer has a thickness")
-    if p.own_stiffness is None:
-        return no("rock.intact_modulus is not given")
-    if bars_tension(p):
-        return no("a joint bars tension")
-    if scene.ends.start == "fixed":
-        return no("the loaded end is fixed")
-    return YES
+    unknown = calibrate(scene).own_stiffness is None
+    return holds(scene, HELD, (unknown, "rock.intact_modulus is not given"))
 
 
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, velocity and displacement of the scene's jointed bar."""
-    return solved(scene, NAME, bar(scene))
+    return solved(scene, SOLVER.name, bar(scene))
 
 
 def bar(scene: Scene) -> Bar:
@@ -59,3 +48,17 @@ def bar(scene: Scene) -> Bar:
         start=end_of(scene.ends.start, p.impedance, half_joint, eta),
         end=end_of(scene.ends.end, p.impedance, half_joint, eta),
     )
+
+
+SOLVER = Solver(
+    name="jointed-bar",
+    rock=Rock.JOINTED,
+    words=Words(JOINTED, "jointed bar, exact", "节理杆（精确解）"),
+    line=thin("#a83200", 8, (4.5, 8.5), (6, 2.4)),
+    applies=applies,
+    run=solve,
+    distances={
+        Kind.NUMERICAL: ("continuum-jointed",),
+        Kind.MODELLING: ("dem", "continuum-equivalent"),
+    },
+)

@@ -24,19 +24,12 @@ from cases.loads import Sine, load_history
 from cases.material.calibrate import calibrate
 from cases.sampling import sample_times
 from cases.schema.scene import Scene
-from compare.exact.answer import YES, Answer, Resolves, Rock, no
 from compare.exact.bar.series import rigid
-from compare.exact.conditions import (
-    bars_tension,
-    beyond,
-    has_interfaces,
-    rock_is_damped,
-    static_stress,
-)
+from compare.exact.conditions import DAMPED, holds, is_free, static_stress
+from compare.solvers.record import BAR, Answer, Kind, Rock, Solver, Words, thin
 from results.dataset import dataset
 
-NAME = "kelvin-voigt"
-RESOLVES = Resolves(Rock.HOMOGENISED)
+HELD = ("prestress", "thick layers", "fixed start", *DAMPED)
 SAFETY = 2.0
 ROUND_OFF = 1e-9  # of a waveform's peak
 SPLIT = 1e-5  # least distance of a mode's roots: q_n is even in it, so it costs 1e-10
@@ -44,18 +37,13 @@ SPLIT = 1e-5  # least distance of a mode's roots: q_n is even in it, so it costs
 
 def applies(scene: Scene) -> Answer:
     """Return whether the scene's homogenised bar is damped, free, uniform, and under a sine."""
-    p = calibrate(scene)
-    if reason := beyond(scene, "prestress"):
-        return no(reason)
-    if bars_tension(p):
-        return no("a joint bars tension")
-    if not rock_is_damped(p):
-        return no("the rock is not damped")
-    if has_interfaces(p):
-        return no("a soft layer reflects within the bar")
-    if (scene.ends.start, scene.ends.end) != ("free", "free"):
-        return no("an end is not free")
-    return YES if scene.load.shape == "sine" else no("the load is not a sine")
+    return holds(
+        scene,
+        HELD,
+        (not calibrate(scene).time_constant, "the rock is not damped"),
+        (not is_free(scene), "an end is not free"),
+        (scene.load.shape != "sine", "the load is not a sine"),
+    )
 
 
 def solve(scene: Scene, n_terms: int = 500) -> xr.Dataset:
@@ -90,7 +78,7 @@ def solve(scene: Scene, n_terms: int = 500) -> xr.Dataset:
             half[name] /= p.density * length
         errors[name] = _left_out(waves, half[name])
     found["stress"] += static_stress(scene)
-    return dataset(scene, NAME, times, **found, errors=errors)
+    return dataset(scene, SOLVER.name, times, **found, errors=errors)
 
 
 def _left_out(waves: np.ndarray, half: np.ndarray) -> np.ndarray:
@@ -135,3 +123,15 @@ def wavenumber(omega: np.ndarray | float, speed: float, eta: float) -> np.ndarra
     The phase speed is omega / Re k and the attenuation -Im k, about omega^2 eta / 2c.
     """
     return np.asarray(omega / (speed * np.sqrt(1 + 1j * np.asarray(omega) * eta)))
+
+
+SOLVER = Solver(
+    name="kelvin-voigt",
+    rock=Rock.HOMOGENISED,
+    words=Words(BAR, "Kelvin-Voigt bar, exact", "黏弹性杆（精确解）"),
+    line=thin("#00a26d", 5, (13.5, 15.5), (4, 2, 1.2, 2, 1.2, 2)),
+    applies=applies,
+    run=solve,
+    distances={Kind.NUMERICAL: ("continuum-equivalent",)},
+    arguments=("n_terms",),
+)

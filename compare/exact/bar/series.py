@@ -23,13 +23,11 @@ from cases.loads import Sine, load_history
 from cases.material.calibrate import calibrate
 from cases.sampling import sample_times
 from cases.schema.scene import Scene
-from compare.exact.answer import YES, Answer, Resolves, Rock, no
 from compare.exact.bar import images
-from compare.exact.conditions import static_stress
+from compare.exact.conditions import is_free, static_stress
+from compare.solvers.record import BAR, Answer, Rock, Solver, Words, no, thin
 from results.dataset import dataset
 
-NAME = "series"
-RESOLVES = Resolves(Rock.HOMOGENISED)
 PAPER_TERMS = 100
 ROUND_OFF = 1e-12  # of the sum, by a waveform's peak
 NEAR = sqrt(np.finfo(float).eps)  # relative distance to resonance below which the limit is nearer
@@ -40,11 +38,11 @@ def applies(scene: Scene) -> Answer:
     answer = images.applies(scene)
     if not answer:
         return answer
-    if (scene.ends.start, scene.ends.end) != ("free", "free"):
+    if not is_free(scene):
         return no("an end is not free")
     if 0.0 in scene.record.stress:
         return no("every term is zero at the loaded end")
-    return YES if scene.load.shape == "sine" else no("the load is not a sine")
+    return answer if scene.load.shape == "sine" else no("the load is not a sine")
 
 
 def solve(scene: Scene, n_terms: int = 2000) -> xr.Dataset:
@@ -69,7 +67,7 @@ def solve(scene: Scene, n_terms: int = 2000) -> xr.Dataset:
         "displacement": displacement,
     }
     errors = _left_out(found, images.solve(scene), scene.load.scale)
-    return dataset(scene, NAME, times, **found, errors=errors, terms=n_terms)
+    return dataset(scene, SOLVER.name, times, **found, errors=errors, terms=n_terms)
 
 
 def _left_out(found: dict, exact: xr.Dataset, scale: float) -> dict[str, np.ndarray]:
@@ -103,3 +101,14 @@ def rigid(load: Sine, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the first and second time integrals of the load (Pa s, Pa s2)."""
     omega, t = 2 * pi / load.period, np.clip(times, 0.0, load.end)
     return load.impulse(times), load.amplitude / omega * (t - np.sin(omega * t) / omega)
+
+
+SOLVER = Solver(
+    name="series",
+    rock=Rock.HOMOGENISED,
+    words=Words(BAR, "homogenised bar, series", "等效杆（级数解）"),
+    line=thin("#b0307e", 4, (16, 18), (12, 3)),
+    applies=applies,
+    run=solve,
+    arguments=("n_terms",),
+)

@@ -25,17 +25,16 @@ from cases.loads import LoadHistory
 from cases.material.calibrate import calibrate
 from cases.sampling import sample_times
 from cases.schema.scene import Scene
-from compare.exact.answer import YES, Answer, Resolves, Rock, no
 from compare.exact.blocks.chain import Chain, chain, contact_forces, receivers, split
 from compare.exact.blocks.events import integrate
 from compare.exact.blocks.lattice import HELD, at_rest
-from compare.exact.conditions import bars_tension, beyond
+from compare.exact.conditions import holds
 from compare.exact.drive import drive
+from compare.solvers.record import BLOCKS, Answer, Kind, Rock, Solver, Words, no, thin
 from results.dataset import dataset
 
-NAME = "no-tension-chain"
-RESOLVES = Resolves(Rock.RIGID_BLOCKS)
 MOST_BLOCKS = 2000
+MANY = f"more than {MOST_BLOCKS:,} blocks: too many events"
 NOISE = 1024.0
 SAFETY = 4.0
 PARTED = 1e-6
@@ -44,13 +43,16 @@ ROUNDING = 4 * float(np.finfo(float).eps)
 
 def applies(scene: Scene) -> Answer:
     """Return whether a joint of the chain bars tension and the chain is not too long."""
-    if reason := beyond(scene, *HELD):
-        return no(reason)
-    if not bars_tension(calibrate(scene)):
-        return no("every joint carries tension: see lattice")
-    if scene.pillar.block_count > MOST_BLOCKS:
-        return no(f"more than {MOST_BLOCKS:,} blocks: too many events")
-    return no("a joint that bars tension is pulled at rest") if _pulled(scene) else YES
+    carried = bool(calibrate(scene).tension.all())
+    answer = holds(
+        scene,
+        (*HELD, "no tension"),
+        (carried, "every joint carries tension: see lattice"),
+        (scene.pillar.block_count > MOST_BLOCKS, MANY),
+    )
+    if answer and _pulled(scene):
+        return no("a joint that bars tension is pulled at rest")
+    return answer
 
 
 def _pulled(scene: Scene) -> bool:
@@ -76,7 +78,7 @@ def solve(scene: Scene) -> xr.Dataset:
     until = {} if known == len(times) else {"known_until": float(times[known - 1])}
     return dataset(
         scene,
-        NAME,
+        SOLVER.name,
         times,
         *(field.T for field in found),
         errors=dict(zip(("stress", "velocity", "displacement"), bounds, strict=True)),
@@ -121,3 +123,14 @@ def contact(load: LoadHistory, times: np.ndarray, impedance: float) -> Contact:
     gap = 2 / impedance * (np.maximum.accumulate(impulse) - impulse)
     transmitted = np.where(gap > 0, 0.0, incident)
     return Contact(transmitted, transmitted - incident, gap)
+
+
+SOLVER = Solver(
+    name="no-tension-chain",
+    rock=Rock.RIGID_BLOCKS,
+    words=Words(BLOCKS, "no-tension chain, exact", "无拉力块体链（精确解）"),
+    line=thin("#00349a", 9, (0, 9), (1.2, 1.2)),
+    applies=applies,
+    run=solve,
+    distances={Kind.NUMERICAL: ("dem",)},
+)

@@ -21,12 +21,11 @@ from cases.face import face_points
 from cases.material.calibrate import calibrate
 from cases.sampling import interpolation, sample_times
 from cases.schema.scene import Scene
-from compare.exact.answer import YES, Answer, Form, Resolves, Rock, no
-from compare.exact.conditions import beyond
+from compare.exact.conditions import DAMPED, LAYERS, holds
+from compare.solvers.record import ALONE, Answer, Form, Kind, Rock, Solver, Words, no, thin
 from results.dataset import dataset
 
-NAME = "sliding-block"
-RESOLVES = Resolves(Rock.ONE_BODY, Form.CLOSED, dimension=3, discretised=False)
+HELD = ("spatial motion", "gravity", "no tension", "fixed start", *DAMPED, *LAYERS)
 
 
 def applies(scene: Scene) -> Answer:
@@ -36,15 +35,18 @@ def applies(scene: Scene) -> Answer:
         return no("there are not two blocks")
     if gravity is None or gravity.static or gravity.direction[1] <= 0:
         return no("no sudden gravity presses the joint")
-    if reason := beyond(scene, "spatial motion", "gravity"):
-        return no(reason)
-    if scene.load.amplitude:
-        return no("a load acts")
-    if (scene.ends.start, scene.ends.end) != ("free", "fixed"):
-        return no("the block is not free, or its base not fixed")
-    if p.friction is None or p.cohesion is not None:
-        return no("the joint does not slip by friction alone")
-    return no("the block topples") if _topples(scene, float(p.friction[0])) else YES
+    stands = (scene.ends.start, scene.ends.end) == ("free", "fixed")
+    rubs = p.friction is not None and p.cohesion is None
+    answer = holds(
+        scene,
+        HELD,
+        (bool(scene.load.amplitude), "a load acts"),
+        (not stands, "the block is not free, or its base not fixed"),
+        (not rubs, "the joint does not slip by friction alone"),
+    )
+    if answer and p.friction is not None and _topples(scene, float(p.friction[0])):
+        return no("the block topples")
+    return answer
 
 
 def _topples(scene: Scene, friction: float) -> bool:
@@ -77,7 +79,7 @@ def solve(scene: Scene) -> xr.Dataset:
     still = np.ones_like(times)
     return dataset(
         scene,
-        NAME,
+        SOLVER.name,
         times,
         np.outer(normal, still),
         velocity,
@@ -97,3 +99,17 @@ def _gravity(scene: Scene) -> tuple[np.ndarray, float]:
 def _read(nodes: np.ndarray, places: list[float], values: np.ndarray) -> np.ndarray:
     left, right, weight = interpolation(nodes, places)
     return (1 - weight) * values[left] + weight * values[right]
+
+
+SOLVER = Solver(
+    name="sliding-block",
+    rock=Rock.ONE_BODY,
+    form=Form.CLOSED,
+    dimension=3,
+    discretised=False,
+    words=Words(ALONE, "sliding block, exact", "滑动块体（精确解）"),
+    line=thin("#a83200", 8, (9, 18), (9, 2.4, 3, 2.4)),
+    applies=applies,
+    run=solve,
+    distances={Kind.MODELLING: ("dem",)},
+)

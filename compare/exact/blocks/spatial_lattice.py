@@ -17,17 +17,15 @@ from cases.loads import Step
 from cases.material.calibrate import calibrate
 from cases.sampling import interpolation, sample_times
 from cases.schema.scene import Scene
-from compare.exact.answer import YES, Answer, Resolves, Rock, no
 from compare.exact.blocks.lattice import HELD
 from compare.exact.blocks.spatial import PLANES, plane, row
 from compare.exact.blocks.spatial_system import System, at_rest, system
-from compare.exact.conditions import bars_tension, beyond
+from compare.exact.conditions import holds
 from compare.exact.drive import drive
 from compare.exact.linear import bound, twins
+from compare.solvers.record import BLOCKS, Answer, Kind, Rock, Solver, Words, no, thin
 from results.dataset import dataset
 
-NAME = "spatial-lattice"
-RESOLVES = Resolves(Rock.RIGID_BLOCKS, dimension=3)
 MOST_BLOCKS = 500
 
 
@@ -36,17 +34,14 @@ def applies(scene: Scene) -> Answer:
     p = calibrate(scene)
     if not is_spatial(scene):
         return no("the motion is axial: see lattice")
-    if reason := beyond(scene, "spatial motion", *HELD):
-        return no(reason)
-    if bars_tension(p):
-        return no("a joint bars tension")
-    if p.friction is not None or p.cohesion is not None:
-        return no("a joint can slip")
-    if scene.motion.rotation == "finite":
-        return no("rotations are finite")
-    if scene.pillar.block_count > MOST_BLOCKS:
-        return no(f"more than {MOST_BLOCKS:,} blocks: the matrix exponential is dense")
-    return YES
+    many = f"more than {MOST_BLOCKS:,} blocks: the matrix exponential is dense"
+    return holds(
+        scene,
+        ("spatial motion", *HELD),
+        (p.friction is not None or p.cohesion is not None, "a joint can slip"),
+        (scene.motion.rotation == "finite", "rotations are finite"),
+        (scene.pillar.block_count > MOST_BLOCKS, many),
+    )
 
 
 def solve(scene: Scene) -> xr.Dataset:
@@ -83,7 +78,7 @@ def solve(scene: Scene) -> xr.Dataset:
         stress += scene.prestress.normal
     fields = {name: x[0].swapaxes(-1, -2) for name, x in waves.items() if name != "stress"}
     errors = {name: bound(*pair) for name, pair in waves.items()}
-    return dataset(scene, NAME, times, stress, **fields, errors=errors)
+    return dataset(scene, SOLVER.name, times, stress, **fields, errors=errors)
 
 
 def drive_vector(scene: Scene) -> np.ndarray:
@@ -160,3 +155,15 @@ def _read(nodes: np.ndarray, places: list[float], c: int) -> np.ndarray:
     matrix[i, left] += 1 - weight
     matrix[i, right] += weight
     return np.kron(matrix, np.eye(c))
+
+
+SOLVER = Solver(
+    name="spatial-lattice",
+    rock=Rock.RIGID_BLOCKS,
+    dimension=3,
+    words=Words(BLOCKS, "blocks in space, exact", "空间块体列（精确解）"),
+    line=thin("#00349a", 9, (0, 9), (1.2, 4)),
+    applies=applies,
+    run=solve,
+    distances={Kind.NUMERICAL: ("dem",)},
+)

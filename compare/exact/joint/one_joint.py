@@ -23,20 +23,13 @@ from cases.loads import LoadHistory, load_history
 from cases.material.calibrate import Properties, calibrate
 from cases.sampling import sample_times
 from cases.schema.scene import Scene
-from compare.exact.answer import YES, Answer, Resolves, Rock, no
 from compare.exact.bar.images import ENTERS
-from compare.exact.conditions import (
-    bars_tension,
-    beyond,
-    has_thick_layer,
-    rock_is_damped,
-    static_stress,
-)
+from compare.exact.conditions import holds, static_stress
 from compare.exact.linear import bound, twins
+from compare.solvers.record import JOINTED, Answer, Rock, Solver, Words, no, thin
 from results.dataset import dataset
 
-NAME = "one-joint"
-RESOLVES = Resolves(Rock.HOMOGENISED)
+HELD = ("prestress", "damped joints", "soft layers", "stiff layers")
 
 
 class Joint(NamedTuple):
@@ -51,31 +44,20 @@ def applies(scene: Scene) -> Answer:
     """Return whether one joint is all that the waves meet within the scene's duration."""
     p = calibrate(scene)
     compliance = p.excess_compliance
-    if reason := beyond(scene, "prestress"):
-        return no(reason)
-    if has_thick_layer(scene):
-        return no("a soft layer has a thickness")
-    if bars_tension(p):
-        return no("a joint bars tension")
-    if rock_is_damped(p):
-        return no("the rock is damped")
-    if np.count_nonzero(compliance) != 1:
-        return no("not exactly one joint differs in stiffness")
-    if compliance.min() < 0:
-        return no("the layer is stiffer than the ordinary joints")
-    if scene.ends.end not in ("quiet", "matched"):
-        return no("the far end reflects")
-    return _start_stays_silent(scene, p)
-
-
-def _start_stays_silent(scene: Scene, p: Properties) -> Answer:
-    if scene.ends.start == "fixed":
-        return no("the loaded end is fixed")
+    answer = holds(
+        scene,
+        HELD,
+        (np.count_nonzero(compliance) != 1, "not exactly one joint differs in stiffness"),
+        (bool((compliance < 0).any()), "the layer is stiffer than the ordinary joints"),
+        (scene.ends.end not in ("quiet", "matched"), "the far end reflects"),
+    )
+    if not answer or scene.ends.start != "free":
+        return answer
     nearest = min([*scene.record.stress, *scene.record.velocity])
     back = (2 * the_joint(p).y + nearest) / p.bar_speed
-    if scene.ends.start == "free" and back < scene.time.duration:
-        return no(f"the free start sends the reflection back, to a receiver at {back:.4g} s")
-    return YES
+    if back >= scene.time.duration:
+        return answer
+    return no(f"the free start sends the reflection back, to a receiver at {back:.4g} s")
 
 
 def solve(scene: Scene) -> xr.Dataset:
@@ -98,7 +80,7 @@ def solve(scene: Scene) -> xr.Dataset:
     found, twin = waveforms(0), waveforms(1)
     bounds = [bound(a, b) for a, b in zip(found, twin, strict=True)]
     errors = dict(zip(("stress", "velocity", "displacement"), bounds, strict=True))
-    return dataset(scene, NAME, times, *found, errors=errors)
+    return dataset(scene, SOLVER.name, times, *found, errors=errors)
 
 
 def around(
@@ -170,3 +152,13 @@ def _transmitted(joint, impedance, load, times, which) -> tuple[np.ndarray, np.n
     stress = share * load.value(times) + (1 - share) * smooth
     impulse = load.impulse(times) - (1 - share) * tau * smooth
     return stress, impulse
+
+
+SOLVER = Solver(
+    name="one-joint",
+    rock=Rock.HOMOGENISED,
+    words=Words(JOINTED, "one joint, exact", "单节理（精确解）"),
+    line=thin("#d55e00", 7, (6, 8.5), (3, 3)),
+    applies=applies,
+    run=solve,
+)

@@ -29,15 +29,14 @@ from cases.material.calibrate import Properties, calibrate
 from cases.material.strength import UNLIMITED
 from cases.sampling import sample_times
 from cases.schema.scene import Scene
-from compare.exact.answer import YES, Answer, Resolves, Rock, no
 from compare.exact.bar.images import ENTERS
-from compare.exact.conditions import bars_tension, beyond, joints_are_damped
+from compare.exact.conditions import LAYERS, holds
 from compare.exact.joint.one_joint import around
 from compare.exact.linear import bound
+from compare.solvers.record import ALONE, Answer, Kind, Rock, Solver, Words, no, thin
 from results.dataset import dataset
 
-NAME = "slip-joint"
-RESOLVES = Resolves(Rock.HOMOGENISED, discretised=False)
+HELD = ("spatial motion", "prestress", "fixed start", *LAYERS)
 _gauss = cache(leggauss)
 ROUND_OFF = 1e-11  # of the largest waveform: the roots' tolerance
 FORGOTTEN = 40.0  # time constants after which exp has lost all digits
@@ -53,25 +52,19 @@ class SlipJoint(NamedTuple):
 
 def applies(scene: Scene) -> Answer:
     """Return whether a plane shear wave meets one joint that can slip, and nothing else."""
-    p, load = calibrate(scene), scene.load
+    p, load, ends = calibrate(scene), scene.load, {scene.ends.start, scene.ends.end}
     if not load.is_across or load.direction[1] or load.arm or scene.motion.rotation != "none":
         return no("there is no plane shear wave: a load across, on blocks that do not turn")
-    if reason := beyond(scene, "spatial motion", "prestress"):
-        return no(reason)
-    if bars_tension(p):
-        return no("a joint bars tension")
-    if joints_are_damped(p):
-        return no("the joints are damped")
-    if not {scene.ends.start, scene.ends.end} <= {"quiet", "matched"}:
-        return no("an end reflects")
-    if np.count_nonzero(_slips(p)) != 1:
-        return no("not exactly one joint can slip")
-    if p.residual_cohesion is not None:
-        return no("slip weakens the joint")
-    compliance = _excess_compliance(p)
-    if compliance[~_slips(p)].any():
-        return no("a joint that cannot slip differs in stiffness")
-    return no("the joint is stiffer than the others") if compliance.min() < 0 else YES
+    slips, compliance = _slips(p), _excess_compliance(p)
+    return holds(
+        scene,
+        HELD,
+        (not ends <= {"quiet", "matched"}, "an end reflects"),
+        (np.count_nonzero(slips) != 1, "not exactly one joint can slip"),
+        (p.residual_cohesion is not None, "slip weakens the joint"),
+        (bool(compliance[~slips].any()), "a joint that cannot slip differs in stiffness"),
+        (bool((compliance < 0).any()), "the joint is stiffer than the others"),
+    )
 
 
 def solve(scene: Scene) -> xr.Dataset:
@@ -99,7 +92,7 @@ def solve(scene: Scene) -> xr.Dataset:
     normal = scene.prestress.normal if scene.prestress else 0.0
     stress = np.full((len(scene.record.stress), len(times)), normal)
     rotation = np.zeros_like(found["velocity"])
-    return dataset(scene, NAME, times, stress, **found, rotation=rotation, errors=errors)
+    return dataset(scene, SOLVER.name, times, stress, **found, rotation=rotation, errors=errors)
 
 
 def _finer(times: np.ndarray, parts: int) -> np.ndarray:
@@ -216,3 +209,15 @@ def _relaxed(load: LoadHistory, relaxation: float, s: float, start: float, end: 
     before = width * (1 - x) / 2
     kernel = weights * width / 2 * np.exp(-before / relaxation) / relaxation
     return s * exp((start - end) / relaxation) + float(kernel @ load.value(end - before))
+
+
+SOLVER = Solver(
+    name="slip-joint",
+    rock=Rock.HOMOGENISED,
+    discretised=False,
+    words=Words(ALONE, "sliding joint, exact", "滑动节理（精确解）"),
+    line=thin("#a83200", 8, (9, 18), (6, 2.4, 3, 2.4)),
+    applies=applies,
+    run=solve,
+    distances={Kind.MODELLING: ("dem", "continuum-equivalent")},
+)

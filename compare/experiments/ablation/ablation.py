@@ -1,8 +1,8 @@
-"""What every effect of a scene costs, and what it is worth: how far the answer is without it.
+"""Ablation: the cost of every effect of a scene, and how far the result is without it.
 
-Cost is that of a step of one rigid block, and of one freedom of the jointed rock where that
-applies; worth is the relative L2 misfit of the rigid blocks with the effect left out, against those
-of the scene as it stands.
+The cost is that of a step of one rigid block, and of one freedom of the jointed rock where that
+applies; the influence is the relative L2 misfit of the rigid blocks without the effect, against
+those of the scene as it stands.
 """
 
 from __future__ import annotations
@@ -19,16 +19,17 @@ from compare.engines import applies, solve
 from compare.experiments.ablation.variants import left_out, only
 from compare.experiments.cost.step_cost import everything, freedoms_in_turns, in_turns, stretch
 from compare.misfit.metrics import misfit
+from compare.solvers.continuum import JOINTED_ROCK
 
 FAILURES = (SceneError, UnstableError)  # of a scene that cannot be so
-ROCK = "continuum-jointed"
+ROCK = JOINTED_ROCK.name
 OWN = "own"  # the scene as it stands, among those without one of its effects
 
 
 class Dropped(NamedTuple):
-    """The answer without an effect.
+    """The result without an effect.
 
-    misfit : from the answer with it. steps : of the scene over those without it, where the effect
+    misfit : from the result with it. steps : of the scene over those without it, where the effect
     shortens the step. alone : whether the scene can have it without the others. rock : whether the
     jointed rock can be without it. reason : why it cannot be left out; empty where it can.
     """
@@ -41,7 +42,7 @@ class Dropped(NamedTuple):
     reason: str
 
 
-class Worth(NamedTuple):
+class Effect(NamedTuple):
     """One effect of a scene; numbers that there are not are nan.
 
     alone : ns of a block-step that it adds to the scene without any other. cost : ns that it adds
@@ -59,7 +60,7 @@ class Worth(NamedTuple):
     reason: str
 
 
-class Balance(NamedTuple):
+class Ablation(NamedTuple):
     """All effects of a scene.
 
     scene, title, variant : its names. bare, own, everything : ns of a block-step with what the
@@ -74,7 +75,7 @@ class Balance(NamedTuple):
     own: float
     everything: float
     rock: float
-    effects: list[Worth]
+    effects: list[Effect]
 
     @property
     def label(self) -> str:
@@ -83,23 +84,23 @@ class Balance(NamedTuple):
 
 
 def prepare(scene: Scene) -> list[Dropped]:
-    """Return what leaving out each effect does to the answer, and compile all that is timed."""
-    answer = dem.simulate(scene)
-    dropped = [_drop(scene, name, answer) for name in active_effects(scene)]
+    """Return the results without each effect, and compile all that is timed."""
+    result = dem.simulate(scene)
+    dropped = [_drop(scene, name, result) for name in active_effects(scene)]
     _step(only(scene, None))
     _runs(lambda: solve(ROCK, scene))
     return dropped
 
 
-def _drop(scene: Scene, name: str, answer: Any) -> Dropped:
+def _drop(scene: Scene, name: str, result: Any) -> Dropped:
     try:
         one = left_out(scene, name)
         without = dem.simulate(one)
     except FAILURES as error:
         return Dropped(name, nan, nan, False, False, getattr(error, "allowed", str(error)))
-    steps = answer.attrs["steps"] / without.attrs["steps"]
+    steps = result.attrs["steps"] / without.attrs["steps"]
     alone, rock = _runs(lambda: _step(only(scene, name))), _runs(lambda: solve(ROCK, one))
-    return Dropped(name, misfit(without, answer), float(steps), alone, rock, "")
+    return Dropped(name, misfit(without, result), float(steps), alone, rock, "")
 
 
 def _step(scene: Scene) -> None:
@@ -114,8 +115,8 @@ def _runs(work: Callable[[], object]) -> bool:
     return True
 
 
-def balance(name: str, scene: Scene, dropped: list[Dropped]) -> Balance:
-    """Return what every effect that a scene calls for costs and is worth.
+def ablate(name: str, scene: Scene, dropped: list[Dropped]) -> Ablation:
+    """Return the cost and the influence of every effect that a scene calls for.
 
     name : of the scene, as its user knows it. dropped : what `prepare` returned.
     """
@@ -127,7 +128,7 @@ def balance(name: str, scene: Scene, dropped: list[Dropped]) -> Balance:
     ns_without = dict(zip(without, rest[len(alone) :], strict=True))
     rock = _ns_in_rock(scene, dropped)
     found = [
-        Worth(
+        Effect(
             one.effect,
             ns_alone.get(one.effect, nan) - bare,
             (cost := own - ns_without.get(one.effect, nan)),
@@ -139,7 +140,7 @@ def balance(name: str, scene: Scene, dropped: list[Dropped]) -> Balance:
         )
         for one in dropped
     ]
-    return Balance(name, scene.title, scene.name, bare, own, full, rock.get(OWN, nan), found)
+    return Ablation(name, scene.title, scene.name, bare, own, full, rock.get(OWN, nan), found)
 
 
 def _without(scene: Scene, dropped: list[Dropped]) -> dict[str, Scene]:

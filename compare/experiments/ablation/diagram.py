@@ -1,4 +1,4 @@
-"""Cost against worth of every effect, both axes logarithmic: one point an effect of a scene."""
+"""Influence over cost of every effect, both axes logarithmic: one point an effect of a scene."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from compare.experiments.ablation.ablation import Balance, Worth
+from compare.experiments.ablation.ablation import Ablation, Effect
 from compare.figures.style import RC, WIDTH
 
 LEAST_SHARE = 0.5  # %, of a step: less does not stand out of the clock's noise
@@ -25,13 +25,13 @@ COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#56b4e9", "#0
 Place = tuple[float, float]
 
 
-def draw(found: list[Balance]) -> Figure:
+def draw(found: list[Ablation]) -> Figure:
     """Return the diagram; a point bears the number of its scene in the table.
 
     Points at an edge lie there or beyond, and are hollow. The points of the k-th effect are the SVG
     group effects-points-k.
     """
-    by_effect: dict[str, list[tuple[int, Worth]]] = {}
+    by_effect: dict[str, list[tuple[int, Effect]]] = {}
     for number, b in enumerate(found, start=1):
         for w in b.effects:
             if not w.reason:
@@ -51,17 +51,21 @@ def draw(found: list[Balance]) -> Figure:
 
 
 def _draw_effect(
-    ax: Axes, k: int, effect: str, ones: list[tuple[int, Worth]]
+    ax: Axes, k: int, effect: str, ones: list[tuple[int, Effect]]
 ) -> list[tuple[int, Place]]:
     """Draw the points of an effect; return the number of each and where it is."""
-    colour, marker = COLOURS[k % len(COLOURS)], MARKERS[k % len(MARKERS)]
-    look: dict[str, Any] = {"color": colour, "marker": marker, "linestyle": "none", "markersize": 7}
+    marks: dict[str, Any] = {
+        "color": COLOURS[k % len(COLOURS)],
+        "marker": MARKERS[k % len(MARKERS)],
+        "linestyle": "none",
+        "markersize": 7,
+    }
     places = [(max(100 * w.share, LEAST_SHARE), max(100 * w.misfit, LEAST_MISFIT)) for _, w in ones]
-    (line,) = ax.plot(*zip(*places, strict=True), **look, markerfacecolor="none", label=effect)
+    (line,) = ax.plot(*zip(*places, strict=True), **marks, markerfacecolor="none", label=effect)
     line.set_gid(f"effects-points-{k}")
     inside = [p for p in places if p[0] > LEAST_SHARE and p[1] > LEAST_MISFIT]
     if inside:
-        ax.plot(*zip(*inside, strict=True), **look)
+        ax.plot(*zip(*inside, strict=True), **marks)
     return [(number, place) for (number, _), place in zip(ones, places, strict=True)]
 
 
@@ -71,7 +75,7 @@ def _finish(ax: Axes) -> None:
     ax.set_xlim(LEAST_SHARE / 1.12, 150)
     ax.set_ylim(LEAST_MISFIT / 1.8, max(300, 1.5 * ax.get_ylim()[1]))
     ax.set_xlabel("cost: part of a step of a block in the scene, %")
-    ax.set_ylabel("worth: misfit of the answer without the effect, %")
+    ax.set_ylabel("influence: misfit of the result without the effect, %")
     for axis, least in ((ax.xaxis, LEAST_SHARE), (ax.yaxis, LEAST_MISFIT)):
         ticks = [10.0**n for n in range(-3, 7) if 10.0**n > 1.1 * least]
         low, high = axis.get_view_interval()
@@ -82,7 +86,7 @@ def _finish(ax: Axes) -> None:
     ax.grid(which="major", color="#e4e7ea", linewidth=0.6)
 
 
-def _add_legend(figure: Figure, ax: Axes, found: list[Balance]) -> None:
+def _add_legend(figure: Figure, ax: Axes, found: list[Ablation]) -> None:
     """Say what markers and numbers stand for."""
     handles, labels = ax.get_legend_handles_labels()
     nothing = Line2D([], [], linestyle="none")

@@ -1,4 +1,4 @@
-"""What a scene is without one of its effects, or with one alone."""
+"""Variants of a scene: without one of its effects, or with one alone."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Any
 
 from cases.effects import active_effects
 from cases.errors import SceneError
+from cases.material.strength import SLIP, SOFTENING
 from cases.schema.consistency import checked
 from cases.schema.scene import Scene
 
@@ -78,8 +79,8 @@ WITHOUT: dict[str, Callable[[Scene], Scene]] = {
     "energy ledger": _table("record", energy=False),
     "field output": _table("record", fields=None),
     "finite rotation": _table("motion", rotation="small"),
-    "slip": _joints(friction_angle=None, cohesion=None, residual_cohesion=None),
-    "softening": _joints(tensile_strength=None, fracture_energy=None),
+    "slip": _joints(**dict.fromkeys(SLIP)),
+    "softening": _joints(**dict.fromkeys(SOFTENING)),
     "mass damping": _table("damping", mass_proportional=None, rayleigh=None),
     "local damping": _table("damping", local=None),
     "gravity": lambda scene: scene.model_copy(update={"gravity": None}),

@@ -1,17 +1,19 @@
-"""What `--dry-run` shows."""
+"""The output of `--dry-run`."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
-from typing import Any
+from dataclasses import asdict
+from typing import TYPE_CHECKING
 
 from cases.schema.scene import Scene
 from cases.size import spoken
 from compare.cli.terminal import print_json, progress, say, show_table
 from compare.engines import applies, names
-from compare.experiments.cost import experiment_cost
 from compare.experiments.cost.run_cost import Forecast, forecast, seconds_of
+
+if TYPE_CHECKING:
+    from compare.experiments.cost.experiment_cost import Part
 
 COLUMNS = ["", "variant", "engine", "scheme", "steps", "size", "time", "memory"]
 UNKNOWN = "no estimate"  # where nothing of the kind was ever timed here
@@ -33,9 +35,7 @@ def show_all(scenes: list[Scene], as_json: bool) -> None:
 
 
 def show_forecasts(
-    found: list[tuple[str, Forecast]],
-    as_json: bool,
-    failing: list[tuple[str, str]] = [],  # noqa: B006
+    found: list[tuple[str, Forecast]], as_json: bool, failing: Sequence[tuple[str, str]] = ()
 ) -> None:
     """Print what would run under its point of a sweep, empty without, and all of it together.
 
@@ -48,8 +48,7 @@ def show_forecasts(
         print_json({"runs": runs, "seconds": seconds, "untimed": unknown, "failing": failed})
         return
     first = 0 if any(point for point, _ in found) else 1
-    rows = [_cells(point, one)[first:] for point, one in found]
-    show_table(COLUMNS[first:], rows)
+    show_table(COLUMNS[first:], [_cells(point, one)[first:] for point, one in found])
     for point, message in failing:
         say(f"would fail: {point}: {message}", "red")
     most = max((one.bytes for _, one in found), default=0.0)
@@ -89,33 +88,18 @@ def _cells(point: str, one: Forecast) -> list[str]:
     ]
 
 
-def show_study(name: str, out: Path, as_json: bool) -> None:
-    """Print the curves of a study."""
-    _show_parts(experiment_cost.parts_of_study(name, out), as_json)
-
-
-def show_effects(wanted: list[Any], out: Path, as_json: bool) -> None:
-    """Print the variants whose effects would be weighed."""
-    _show_parts(experiment_cost.parts_of_effects(wanted, out), as_json)
-
-
-def show_report(scenes: Sequence[str], out: Path, as_json: bool) -> None:
-    """Print the parts of the report of some scenes, or of the paper's."""
-    _show_parts(experiment_cost.parts_of_report(scenes, out), as_json)
-
-
-def _show_parts(found: list[dict[str, Any]], as_json: bool) -> None:
-    """Print the parts of a command that is more than runs: what, how many, of those done."""
+def show_parts(found: Sequence[Part], as_json: bool) -> None:
+    """Print the parts of a command that is more than runs: how many points, how many to do."""
     if as_json:
-        print_json(found)
+        print_json([asdict(one) for one in found])
         return
     rows = [
         [
-            part["part"],
-            f"{part['to_do']} of {part['count']} to do",
-            UNKNOWN if part["seconds"] is None else f"about {in_words(part['seconds'])}",
+            one.part,
+            f"{one.to_do} of {one.count} to do",
+            UNKNOWN if one.seconds is None else f"about {in_words(one.seconds)}",
         ]
-        for part in found
+        for one in found
     ]
     show_table(["part", "", "time"], rows)
     say("nothing has been run or written")

@@ -1,59 +1,67 @@
-"""What commands over many runs would do: the parts of a study, of the report, of the effects."""
+"""The cost of commands over many runs: the parts of a study, of the report, of the effects."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
+from compare.experiments.ablation import runner as ablation
 from compare.experiments.cost import timings
+from compare.experiments.robustness import run as robustness
+from compare.experiments.robustness.row import Row as HardRow
+from compare.experiments.robustness.summary import NAME as HARD_CASES
+from compare.experiments.store import Store
+from compare.experiments.study import runner as studies
+from compare.experiments.study.measure import Row
+from compare.experiments.study.study import load
+from compare.experiments.study.summary import REPORTED
 
-Part = dict[str, Any]
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a command: how many points it has, and how many of them are to do; seconds : of
+    those, None where none was ever timed here."""
+
+    part: str
+    count: int
+    to_do: int
+    seconds: float | None
 
 
-def _part(part: str, count: int, done: int, each: float | None) -> Part:
-    """Return a part: how many it has, how many of them are to do, and their seconds.
-
-    each : seconds of one, None where none was ever timed here.
-    """
-    left = count - done
+def _part(part: str, store: Store, keys: Sequence[str], rate: str) -> Part:
+    """Return a part; rate : what the seconds of a point are remembered by."""
+    left, each = sum(not store.has(key) for key in keys), timings.whole(rate)
     seconds = 0.0 if not left else None if each is None else each * left
-    return {"part": part, "count": count, "to_do": left, "seconds": seconds}
+    return Part(part, len(keys), left, seconds)
 
 
 def parts_of_study(name: str, out: Path) -> list[Part]:
     """Return the curves of a study, or the rows of the hard cases."""
-    if name == "stability":
+    if name == HARD_CASES:
         return [_hard_cases(out, slow=True)]
-    from compare.experiments.study.runner import is_kept, rate
-    from compare.experiments.study.study import load
-
-    study, parts = load(name), []
+    study, stem = load(name), Path(name).stem
+    rows, parts = Store[Row](Row, out / stem), []
     for curve in study.curves:
         points = study.model_copy(update={"curves": [curve]}).points()
-        done = sum(is_kept(point, out / Path(name).stem) for point in points)
-        label = f"{Path(name).stem}: {curve.label} ({curve.method})"
-        parts.append(_part(label, len(points), done, timings.whole(rate(study))))
+        label = f"{stem}: {curve.label} ({curve.method})"
+        parts.append(_part(label, rows, list(map(studies.key, points)), studies.rate(study)))
     return parts
 
 
 def _hard_cases(out: Path, slow: bool) -> Part:
-    from compare.experiments.robustness import run
-    from compare.experiments.robustness.section import NAME
-
-    rows = run.places(slow)
-    done = sum(run.is_kept(place, out / NAME) for place in rows)
-    return _part("hard cases", len(rows), done, timings.whole(run.RATE))
+    keys = [robustness.key(place) for place in robustness.places(slow)]
+    rows = Store[HardRow](HardRow, out / HARD_CASES)
+    return _part("hard cases", rows, keys, robustness.RATE)
 
 
-def parts_of_effects(wanted: list[Any], out: Path) -> list[Part]:
-    """Return the variants whose effects would be weighed."""
-    from compare.experiments.ablation.runner import RATE, is_complete
-
-    each = timings.whole(RATE)
-    names = [f"{case.name} {case.scene.name}".strip() for case in wanted]
-    done = [is_complete(case, out) for case in wanted]
-    return [_part(name, 1, int(is_done), each) for name, is_done in zip(names, done, strict=True)]
+def parts_of_effects(wanted: Sequence[ablation.Case], out: Path) -> list[Part]:
+    """Return the variants whose effects would be measured."""
+    done = ablation.ablations(out)
+    return [
+        _part(f"{case.name} {case.scene.name}".strip(), done, [case.key], ablation.RATE)
+        for case in wanted
+    ]
 
 
 def parts_of_report(scenes: Sequence[str], out: Path) -> list[Part]:
@@ -61,17 +69,16 @@ def parts_of_report(scenes: Sequence[str], out: Path) -> list[Part]:
 
     Raises SceneError for a scene that there is not.
     """
-    from compare.experiments.ablation import runner as ablation_runs
-    from compare.experiments.study.section import REPORTED
     from compare.report.scenes import RATE, asked_for
 
-    first = _part("scenes", len(asked_for(scenes)), 0, timings.whole(RATE))
+    first = _part("scenes", Store(None, None), list(map(str, asked_for(scenes))), RATE)
     if scenes:
         return [first]
-    weighed = ablation_runs.reported()
-    known = sum(ablation_runs.is_complete(case, out / "effects") for case in weighed)
-    parts = [first]
-    for name in REPORTED:
-        parts += parts_of_study(name, out / "studies")
-    parts.append(_hard_cases(out / "studies", slow=False))
-    return [*parts, _part("effects", len(weighed), known, timings.whole(ablation_runs.RATE))]
+    of_studies = [part for name in REPORTED for part in parts_of_study(name, out / "studies")]
+    effects = [case.key for case in ablation.reported()]
+    return [
+        first,
+        *of_studies,
+        _hard_cases(out / "studies", slow=False),
+        _part("effects", ablation.ablations(out / "effects"), effects, ablation.RATE),
+    ]

@@ -1,22 +1,18 @@
-"""What a step costs here, with the effects that a scene calls for: of one block, of one freedom."""
+"""The cost of a step of one block or one freedom, with the effects that a scene calls for."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from math import inf
 from pathlib import Path
 from time import perf_counter
 
-import numba
-
 import cases
 from cases.effects import is_spatial
-from cases.files import read_json
 from cases.sampling import Clock
 from cases.schema.scene import Scene
 from compare.engines import solve
-from compare.runs.output import write_text
+from compare.experiments.cost import timings
 
 PILLAR = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
 #: A function that takes some samples, and its number of block-steps.
@@ -109,8 +105,8 @@ def stretch(scene: Scene, threads: int = 1) -> Stretch:
 
 
 def stretches(scene: Scene, guarded: tuple[bool, ...], threads: int = 1) -> list[Stretch]:
-    """Return the same with the very same arrays, once for each: `guarded`, under a guard that looks
-    and never finds anything, or not."""
+    """Return the same with the same arrays, once for each: `guarded`, under a divergence monitor
+    that never finds anything, or not."""
     if is_spatial(scene):
         return _in_space(scene, guarded, threads)
     return _along_axis(scene, guarded)
@@ -159,30 +155,20 @@ def _samples(time: Clock, blocks: int, most: int = BLOCK_STEPS) -> int:
 
 def remembered_whole(blocks: int) -> float | None:
     """Return `whole` where it was measured already, else None."""
-    return _known().get(str(everything(blocks).pillar.block_count))
+    seconds = timings.whole(_of_everything(everything(blocks)))
+    return None if seconds is None else 1e9 * seconds
 
 
 def whole(blocks: int) -> float:
-    """Return what a block-step with every effect costs in a row of so many blocks, ns; measured
+    """Return the cost of a block-step with every effect in a row of so many blocks, ns; measured
     once for each version."""
-    known = _known()
-    scene = everything(blocks)
-    count = str(scene.pillar.block_count)
-    if count not in known:
-        known[count] = nanoseconds(scene)
-        write_text(_file(), json.dumps(known))
-    return known[count]
+    known = remembered_whole(blocks)
+    if known is None:
+        scene = everything(blocks)
+        known = nanoseconds(scene)
+        timings.note_whole(_of_everything(scene), 1e-9 * known)
+    return known
 
 
-LARGEST_FILE = 1_000_000  # bytes
-
-
-def _known() -> dict[str, float]:
-    try:
-        return {count: float(ns) for count, ns in read_json(_file(), LARGEST_FILE).items()}
-    except (ValueError, TypeError, AttributeError):
-        return {}
-
-
-def _file() -> Path:
-    return Path(numba.config.CACHE_DIR) / "effort.json"
+def _of_everything(scene: Scene) -> str:
+    return f"every effect in {scene.pillar.block_count} blocks"

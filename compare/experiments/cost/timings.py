@@ -1,6 +1,6 @@
-"""What steps have cost here, by what decides their cost; of each what was measured last.
+"""Rates measured on this machine: seconds of a step, of a point, of a command; the last of each.
 
-Kept beside the kernels, so that what another state of the program took is not taken for this one's.
+They are saved beside the kernels, so that those of another state of the program do not count.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from cases.files import read_json
 from cases.schema.scene import Scene
 from compare.engines import ENGINES
 from compare.runs.output import write_text
+from compare.solvers.dem import DEM
 from results.dataset import scene_hash
 
 LARGEST_FILE = 10_000_000  # bytes
@@ -33,7 +34,8 @@ def note(name: str, scene: Scene, about: Mapping[str, Any], seconds: float | Non
     about : its attributes. seconds : that it took in all, which is what exact solutions cost.
     """
     if name in ENGINES:
-        count, spent = about["steps"] * units(name, scene, about), float(about["seconds_stepping"])
+        units = ENGINES[name].units(scene, about["degrees_of_freedom"])
+        count, spent = about["steps"] * units, float(about["seconds_stepping"])
         key = _key(name, scene, about)
         if count and (spent > SHORTEST or key not in _known()):
             _keep(key, spent / count)
@@ -43,29 +45,26 @@ def note(name: str, scene: Scene, about: Mapping[str, Any], seconds: float | Non
 
 def note_block_step(scene: Scene, nanoseconds: float, threads: int = 1) -> None:
     """Remember what a step of one rigid block costs."""
-    _keep(_key("dem", scene, {"threads": threads}), 1e-9 * nanoseconds)
+    _keep(_of_blocks(scene, threads), 1e-9 * nanoseconds)
 
 
 def block_step(scene: Scene) -> float | None:
     """Return what a step of one rigid block took, ns; None where none such was ever timed."""
-    rate = _known().get(_key("dem", scene, {"threads": 1}))
+    rate = _known().get(_of_blocks(scene, 1))
     return None if rate is None else 1e9 * rate
 
 
-def stepping(name: str, scene: Scene, about: Mapping[str, Any]) -> float | None:
+def stepping(
+    name: str, scene: Scene, settings: Mapping[str, Any], steps: int, freedoms: int
+) -> float | None:
     """Return the seconds that a run's steps should take; None where none such was ever timed.
 
-    about : as `compare.experiments.cost.run_cost` knows it: steps, degrees_of_freedom, scheme, ...
+    settings : what decides the cost of a step, see `compare.solvers.record.Prepared`.
     """
     if name not in ENGINES:
         return _known().get(f"{name} {scene_hash(scene)}")
-    rate = _known().get(_key(name, scene, about))
-    return None if rate is None else rate * about["steps"] * units(name, scene, about)
-
-
-def units(name: str, scene: Scene, about: Mapping[str, Any]) -> float:
-    """Return what a step's cost is counted in: blocks, or freedoms of the rock."""
-    return scene.pillar.block_count if name == "dem" else about["degrees_of_freedom"]
+    rate = _known().get(_key(name, scene, settings))
+    return None if rate is None else rate * steps * ENGINES[name].units(scene, freedoms)
 
 
 def note_whole(what: str, seconds: float) -> None:
@@ -89,12 +88,11 @@ def whole(what: str) -> float | None:
 
 def _key(name: str, scene: Scene, about: Mapping[str, Any]) -> str:
     effects = " ".join(sorted(active_effects(scene)))
-    if name == "dem":
-        return f"dem {scene.numerics.dem.scheme} {about['threads']} {effects}"
-    return " ".join(str(x) for x in (name, *(about[k] for k in OF_ROCK), effects))
+    return " ".join(str(x) for x in (name, *(about[k] for k in ENGINES[name].cost), effects))
 
 
-OF_ROCK = ("scheme", "dim", "cell", "order", "processes")
+def _of_blocks(scene: Scene, threads: int) -> str:
+    return _key(DEM.name, scene, {"scheme": scene.numerics.dem.scheme, "threads": threads})
 
 
 def _known() -> dict[str, float]:

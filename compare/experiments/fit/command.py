@@ -94,8 +94,7 @@ def _solver(scene: Scene, engine: Engine | None, models: list[str] | None) -> st
     if engine is None and not models:
         return None
     if engine is None:
-        names = jobs.CONTINUUM_MODELS
-        engine = Engine.continuum if (models or [""])[0] in names else Engine.exact
+        engine = Engine(jobs.engine_of((models or [""])[0]))
     ((of, model), *more) = jobs.wanted([engine.value], models or [])
     found = jobs.names_of(of, model, scene)
     if more or len(found) > 1:

@@ -43,7 +43,7 @@ class Free(NamedTuple):
 
     @property
     def size(self) -> float:
-        """What a change of 1 in the unknown of the search is, on a linear scale."""
+        """The change of the value for a change of 1 in the unknown, on a linear scale."""
         return abs(self.start or 0.0) or (self.high - self.low if isfinite(self.high) else 1.0)
 
     def unknown(self, value: float) -> float:

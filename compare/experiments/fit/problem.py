@@ -1,4 +1,4 @@
-"""What a fit compares: the waveforms of a solution at the times of measured ones, key by key."""
+"""The problem of a fit: waveforms of a solution at the times of measured ones, key by key."""
 
 from __future__ import annotations
 
@@ -11,11 +11,13 @@ import xarray as xr
 
 from cases.errors import SceneError, UnstableError
 from cases.schema.scene import Scene
-from compare.engines import applies, solve
+from compare.engines import applies, solve, solver
+from compare.exact.blocks import lattice
 from compare.experiments.fit.keys import CLOCK, changed
-from compare.experiments.planner.families import COARSEST, blocks_of
+from compare.experiments.planner.families import COARSEST
 from compare.misfit.alignment import INSTANT, static_level
 from compare.misfit.external import Curves, Place, is_recorded
+from compare.solvers.dem import DEM
 
 SHORT = 200  # blocks, up to which matrix exponentials cost little
 FINER = 4  # samples of the solution to one of the scene, where the clock is free
@@ -79,12 +81,12 @@ class Problem:
     @property
     def step(self) -> float:
         """The change of an unknown that a difference takes."""
-        return COMPUTED_STEP if self.steps or self.solver.startswith("continuum") else EXACT_STEP
+        return COMPUTED_STEP if solver(self.solver).is_engine else EXACT_STEP
 
     def _stepped(self, scene: Scene) -> Scene:
         if not self.steps:
             return scene
-        fraction = scene.interval / self.steps / blocks_of(scene)[1]
+        fraction = scene.interval / self.steps / DEM.prepare(scene).critical
         if fraction > COARSEST:
             raise UnstableError("beyond the critical step, with the steps of where the fit began")
         step = {"step_fraction": fraction * (1 + 1e-6)}  # or rounding makes it one step more
@@ -97,7 +99,7 @@ def solver_of(scene: Scene, asked: str | None) -> str:
     they are linear and few; raises SceneError where it does not apply."""
     if asked is None:
         few = scene.pillar.block_count <= SHORT
-        return "lattice" if few and applies("lattice", scene) else "dem"
+        return (lattice.SOLVER if few and lattice.applies(scene) else DEM).name
     answer = applies(asked, scene)
     if not answer:
         raise SceneError(scene.where, "", None, f"{asked} does not apply: {answer.reason}")
@@ -105,10 +107,11 @@ def solver_of(scene: Scene, asked: str | None) -> str:
 
 
 def problem_of(
-    scene: Scene, solver: str, curves: list[Curves], clock: float | None, reach: float
+    scene: Scene, name: str, curves: list[Curves], clock: float | None, reach: float
 ) -> Problem:
-    """Return what a fit compares. clock : the shift that it begins with, s; None: it stays.
+    """Return the problem of a fit.
 
+    name : of the solver. clock : the shift that it begins with, s; None: it stays.
     reach : how far the clock may move later, s, so long does the solution last beyond the scene.
     Raises SceneError where a curve shares fewer samples with the scene than a fit takes.
     """
@@ -117,7 +120,7 @@ def problem_of(
     record = scene.record.model_copy(update={"interval": interval, "energy": False, "fields": None})
     time = scene.time.model_copy(update={"duration": scene.time.duration + reach})
     base = scene.model_copy(update={"record": record, "time": time, "expect": {}})
-    result = solve(solver, base)
+    result = solve(name, base)
     found = []
     for one in curves:
         own = one.time + shift
@@ -128,9 +131,9 @@ def problem_of(
             level = static_level(place, result)
             found.append(Measured(one.name, place, one.time[inside], values[inside], level))
     _require_samples(found, curves, scene)
-    if solver != "dem":
-        return Problem(base, solver, found)
-    return Problem(base, solver, found, round(interval / float(result.attrs["dt"])))
+    if name != DEM.name:
+        return Problem(base, name, found)
+    return Problem(base, name, found, round(interval / float(result.attrs["dt"])))
 
 
 def _require_samples(found: list[Measured], curves: list[Curves], scene: Scene) -> None:

@@ -1,4 +1,4 @@
-"""What `jointwave fit` prints."""
+"""The output of `jointwave fit`."""
 
 from __future__ import annotations
 

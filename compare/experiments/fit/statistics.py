@@ -1,4 +1,4 @@
-"""How well fitted numbers are known: covariance, independent samples, what is not told apart.
+"""Uncertainty of fitted numbers: covariance, independent samples, unknowns not told apart.
 
 Near the best fit a waveform is linear in the unknowns. With the Jacobian J there and a residual of
 variance s2 the unknowns scatter with the covariance s2 (J^T J)^-1, and Student's t with n - p
@@ -23,7 +23,7 @@ SINGULAR = 1e-9  # of the largest eigenvalue, where derivatives are no better th
 
 
 class Known(NamedTuple):
-    """What is known of p unknowns: how far an interval reaches to either side [p], inf where
+    """The uncertainty of p unknowns: how far an interval reaches to either side [p], inf where
     nothing bounds it, the correlations [p, p], and of each waveform its independent samples."""
 
     reach: np.ndarray

@@ -5,13 +5,13 @@ from __future__ import annotations
 from math import ceil
 from typing import Any, NamedTuple
 
-from cases.effects import is_spatial
 from cases.errors import SceneError
-from cases.material.calibrate import calibrate
 from cases.sampling import sample_times
 from cases.schema.consistency import checked
 from cases.schema.scene import Numerics, Scene
-from compare.engines import applies
+from compare.engines import ENGINES, applies, solver
+from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
+from compare.solvers.dem import DEM
 
 COARSEST = 0.9  # of the critical step, explicit
 #: Explicit steps that an implicit one costs, at least.
@@ -21,13 +21,17 @@ IMPLICIT = 500
 class Family(NamedTuple):
     """Configurations that differ in their step alone.
 
-    name : of the engine. engine : whose numerics `changes` are of. order : of the scheme.
+    name : of the engine. changes : of its numerics. order : of the scheme.
     """
 
     name: str
-    engine: str
     changes: dict[str, Any]
     order: int
+
+    @property
+    def engine(self) -> str:
+        """The table of [numerics] that `changes` are of."""
+        return ENGINES[self.name].engine
 
     @property
     def label(self) -> str:
@@ -40,24 +44,25 @@ class Family(NamedTuple):
         return self.changes["scheme"] == "implicit"
 
 
-def _rock(model: str, order: int, elements: int) -> Family:
+def _rock(name: str, order: int, elements: int) -> Family:
     changes = {"scheme": "explicit", "order": order, "elements_per_block": elements}
-    return Family(f"continuum-{model}", "continuum", changes, 2)
+    return Family(name, changes, 2)
 
 
-def _implicit(model: str, order: int) -> Family:
+def _implicit(name: str, order: int) -> Family:
     """Without numerical damping: only the accuracy of the waveforms counts here."""
-    found = _rock(model, order, 1)
+    found = _rock(name, order, 1)
     return found._replace(changes={**found.changes, "scheme": "implicit", "spectral_radius": 1.0})
 
 
-#: Coarse ones first: what they give tells whether finer ones are worth a trial.
+_BOTH = JOINTED_ROCK.name, EQUIVALENT_ROCK.name
+#: Coarse ones first: what they give tells whether finer ones need a trial.
 FAMILIES = (
-    Family("dem", "dem", {"scheme": "leapfrog"}, 2),
-    Family("dem", "dem", {"scheme": "fourth-order"}, 4),
-    *(_rock(model, p, 1) for p in (1, 2, 3, 4) for model in ("jointed", "equivalent")),
-    *(_rock("jointed", p, n) for p, n in ((1, 2), (2, 2), (1, 4), (4, 2))),
-    *(_implicit(model, p) for p in (1, 2, 4) for model in ("jointed", "equivalent")),
+    Family(DEM.name, {"scheme": "leapfrog"}, 2),
+    Family(DEM.name, {"scheme": "fourth-order"}, 4),
+    *(_rock(name, p, 1) for p in (1, 2, 3, 4) for name in _BOTH),
+    *(_rock(JOINTED_ROCK.name, p, n) for p, n in ((1, 2), (2, 2), (1, 4), (4, 2))),
+    *(_implicit(name, p) for p in (1, 2, 4) for name in _BOTH),
 )
 
 
@@ -73,7 +78,7 @@ def is_finer(one: Family, other: Family) -> bool:
 
 
 class Effort(NamedTuple):
-    """What the coarsest step of a family takes: steps per sample, and freedom-steps of the run."""
+    """The cost of a family's coarsest step: steps per sample, and freedom-steps of the run."""
 
     least: int
     work: float
@@ -84,35 +89,11 @@ def effort(scene: Scene, family: Family) -> Effort:
     answer = applies(family.name, scene)
     if not answer:
         raise SceneError(scene.where, "", None, answer.reason)
-    if family.engine == "dem":
-        freedoms, critical = blocks_of(configured(scene, family, {}))
-    else:
-        freedoms, critical = _of_rock(configured(scene, family, {}), family.name)
+    run = solver(family.name).prepare(configured(scene, family, {}))
+    freedoms, critical = run.freedoms, run.critical
     least = 1 if family.is_implicit else ceil(scene.interval / (COARSEST * critical) * (1 - 1e-9))
     each = IMPLICIT if family.is_implicit else family.order**2 / 4  # the fourth order: four forces
     return Effort(least, each * freedoms * least * len(sample_times(scene)))
-
-
-def blocks_of(scene: Scene) -> tuple[int, float]:
-    """Return the freedoms of rigid blocks and their critical step, s."""
-    blocks = scene.pillar.block_count
-    if is_spatial(scene):
-        from dem.spatial.simulate import critical_step_of
-
-        turns = scene.motion.rotation != "none"
-        return (6 if turns else 3) * blocks, critical_step_of(scene, calibrate(scene))
-    from dem.axial.simulate import scheme_of
-
-    return blocks, scheme_of(scene).build(scene)[3]
-
-
-def _of_rock(scene: Scene, name: str) -> tuple[int, float]:
-    """Return the freedoms of deformable rock and its critical step, s."""
-    from continuum.build import critical_step_of, discretise
-
-    model = name.removeprefix("continuum-")
-    discrete = discretise(scene, model)
-    return discrete.body.degrees_of_freedom, critical_step_of(scene, discrete, model)
 
 
 def settings(scene: Scene, family: Family, per_sample: int, critical: float) -> dict[str, Any]:

@@ -52,7 +52,7 @@ FAILURES = (SceneError, UnstableError, StoppedError)
 
 
 class Plan(NamedTuple):
-    """What was chosen, and what came of it.
+    """The choice, and the result of running it.
 
     reference : the finest physics, and the reason why it is that. trials : runs that were made to
     predict; planning : s that all of the planning took, the references and compiling included.

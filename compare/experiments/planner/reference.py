@@ -1,4 +1,4 @@
-"""What a plan measures errors from: the finest physics of a scene, and each engine's own model.
+"""The references of a plan's errors: the finest physics of a scene, and each engine's own model.
 
 Either is an exact solution that knows itself well enough, or a run that has converged to itself.
 """
@@ -24,7 +24,7 @@ LEVELS = 10
 
 
 class Reference(NamedTuple):
-    """What errors are from; settings : of an engine's run, "" where the solution is exact.
+    """A reference of errors; settings : of an engine's run, "" where the solution is exact.
 
     error : relative, of the reference itself: the bound that a computed solution gives; of a run,
     how far it is from the one before; 0 of a closed form.
@@ -53,7 +53,7 @@ class Own(NamedTuple):
 
     @property
     def least(self) -> float:
-        """What no step reduces: modelling error, and what the own reference is not known to."""
+        """The error that no step reduces: of modelling, and of the own reference itself."""
         return self.modelling + self.reference.error
 
 
@@ -146,10 +146,10 @@ def _half(before: xr.Dataset | None) -> float:
 
 
 def _family(name: str, level: int) -> Family:
-    if name == "dem":
-        return Family(name, "dem", {"scheme": "leapfrog"}, 2)
+    if ENGINES[name].has_rigid_blocks:
+        return Family(name, {"scheme": "leapfrog"}, 2)
     changes = {"scheme": "explicit", "order": 2, "elements_per_block": 2**level}
-    return Family(name, "continuum", changes, 2)
+    return Family(name, changes, 2)
 
 
 def _at_most(scene: Scene, family: Family, dt: float) -> tuple[dict[str, Any], xr.Dataset]:

@@ -1,4 +1,4 @@
-"""What was planned and what came of it, on the terminal."""
+"""The output of `jointwave plan`: the choice as predicted and as obtained."""
 
 from typing import Any
 

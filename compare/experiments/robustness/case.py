@@ -1,9 +1,9 @@
-"""A hard case: a scene with changes, the solvers it is put to, and the criterion that judges it."""
+"""Hard cases: a scene with changes, the solvers it is put to, and the criterion that judges it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import xarray as xr
@@ -11,9 +11,10 @@ import xarray as xr
 import cases
 from cases.errors import SceneError
 from cases.schema.scene import Scene
-from compare.engines import solve
+from compare.engines import ENGINES, solve
 from compare.scenes import find
 
+SHORT = "hard/short-pillar"  # the scene of most cases
 #: In a case's changes: numerics.dem.step_fraction or numerics.continuum.step_fraction.
 STEP = "step_fraction"
 ALLOW = "allow_unstable"
@@ -28,8 +29,18 @@ class Solver(NamedTuple):
 
     @property
     def part(self) -> str:
-        """Which table of [numerics] is this engine's."""
-        return self.engine.partition("-")[0]
+        """The table of [numerics] that is this engine's."""
+        return ENGINES[self.engine].engine
+
+    @property
+    def model(self) -> str:
+        """The model of the rock, "" of rigid blocks."""
+        return ENGINES[self.engine].model or ""
+
+    @property
+    def is_rigid(self) -> bool:
+        """Whether its blocks are rigid, so that it has no elements."""
+        return ENGINES[self.engine].has_rigid_blocks
 
     @property
     def name(self) -> str:
@@ -37,45 +48,52 @@ class Solver(NamedTuple):
         return f"{self.engine} {self.scheme}"
 
 
-def _solver(engine: str, scheme: str, **more: Any) -> Solver:
-    part = engine.partition("-")[0]
-    return Solver(engine, scheme, {f"numerics.{part}.scheme": scheme, **more})
-
-
-LEAPFROG = _solver("dem", "leapfrog")
-FOURTH = _solver("dem", "fourth-order")
-JOINTED = _solver("continuum-jointed", "explicit")
-JOINTED_IMPLICIT = _solver("continuum-jointed", "implicit")
-EQUIVALENT = _solver("continuum-equivalent", "explicit")
-EQUIVALENT_IMPLICIT = _solver("continuum-equivalent", "implicit")
-SOLVERS = (LEAPFROG, FOURTH, JOINTED, JOINTED_IMPLICIT, EQUIVALENT, EQUIVALENT_IMPLICIT)
+SOLVERS = tuple(
+    Solver(name, scheme, {f"numerics.{engine.engine}.scheme": scheme})
+    for name, engine in ENGINES.items()
+    for scheme in engine.schemes
+)
+LEAPFROG, FOURTH, JOINTED, _, EQUIVALENT, _ = SOLVERS
 
 
 class Finding(NamedTuple):
-    """What a criterion has found: it holds where value <= bound; `said` adds to the message."""
+    """The finding of a criterion: it holds where value <= bound; `said` adds to the message."""
 
     value: float
     bound: float
     said: str = ""
 
 
+class Criterion(NamedTuple):
+    """A bound from theory. words : what it bounds. judge : measures it on one solver."""
+
+    words: str
+    judge: Callable[[Trial], Finding]
+
+    def __call__(self, trial: Trial) -> Finding:
+        """Return what the criterion finds."""
+        return self.judge(trial)
+
+
+def criterion(words: str) -> Callable[[Callable[[Trial], Finding]], Criterion]:
+    """Return the decorator that makes a function of a trial a criterion."""
+    return partial(Criterion, words)
+
+
 class Case(NamedTuple):
     """A hard case.
 
-    name : in words. scene : a shipped scene, "hard/short-pillar".
-    criterion : in words, what theory bounds. judge : what measures it on one solver.
-    changes : of the scene, dotted keys; those of [numerics] may be `STEP` and `ALLOW`.
-    spared : why a solver is not put to the case, by its name or its engine's or its scheme's.
-    slow : takes long; run by `make test-all` and the study alone.
+    name : in words. changes : of the scene, dotted keys; those of [numerics] may be `STEP` and
+    `ALLOW`. spared : why a solver is not put to the case, by its name or its engine's or its
+    scheme's. slow : takes long; run by `make test-all` and the study alone. scene : a shipped one.
     """
 
     name: str
-    scene: str
-    criterion: str
-    judge: Callable[[Trial], Finding]
+    criterion: Criterion
     changes: dict[str, Any] = {}  # noqa: RUF012
     spared: dict[str, str] = {}  # noqa: RUF012
     slow: bool = False
+    scene: str = SHORT
 
     def why_spared(self, solver: Solver) -> str | None:
         """Return why a solver is not put to this case; None where it is."""
@@ -83,6 +101,11 @@ class Case(NamedTuple):
             if key in self.spared:
                 return self.spared[key]
         return None
+
+
+def rock_is_spared(reason: str) -> dict[str, str]:
+    """Return the reason why no deformable rock is put to a case, as `Case.spared` has it."""
+    return {name: reason for name, engine in ENGINES.items() if not engine.has_rigid_blocks}
 
 
 class Trial:
@@ -111,14 +134,8 @@ class Trial:
 
 
 def critical_step(solver: Solver, scene: Scene) -> float:
-    """Return the critical step (s) of a solver's explicit steps along the axis."""
-    if solver.engine == "dem":
-        from dem.axial.simulate import scheme_of
-
-        return scheme_of(scene).build(scene)[3]
-    from continuum.simulate import steps_of
-
-    return steps_of(scene, solver.engine.removeprefix("continuum-"))[1]
+    """Return the critical step (s) of a solver's explicit steps."""
+    return ENGINES[solver.engine].prepare(scene).critical
 
 
 def is_refusal_of_scheme(error: SceneError) -> bool:

@@ -17,7 +17,7 @@ import cases
 from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from cases.schema.scene import Scene
-from compare.engines import Progress
+from compare.engines import ENGINES, Progress
 from compare.scenes import find
 
 #: What is stepped: a short pillar with free ends; Rayleigh's beta is the eta of rock and joints.
@@ -29,7 +29,6 @@ PILLAR = {
     "record.energy": False,
     "load.amplitude": 0.0,
 }
-ENGINES = ("dem", "continuum-jointed", "continuum-equivalent")
 STEPS = 3000
 #: A stable mode is amplified by 1 / sqrt(1 - (x / x_c)^2) at most, 1e3 at 5e-7 below the line.
 BOUND = 1e3
@@ -37,7 +36,7 @@ CELLS = 40
 
 
 class StabilityMap(NamedTuple):
-    """What an engine did in every cell.
+    """The stability of an engine in every cell.
 
     ratio : float array [m], damping ratio of the highest mode; step : [n], over the undamped
     critical one; both at the centres of the cells, in equal ratios. stable : bool array [n, m].
@@ -68,9 +67,10 @@ def boundary(ratio: np.ndarray) -> np.ndarray:
 
 
 def make_map(engine: str, cells: int = CELLS, progress: Progress | None = None) -> StabilityMap:
-    """Return the map of an engine, "dem" or "continuum-jointed" or "continuum-equivalent"."""
+    """Return the map of an engine."""
     ratio, step = np.geomspace(1e-3, 10, cells), np.geomspace(0.02, 2, cells)
-    prepare = _blocks if engine == "dem" else _rock(engine.removeprefix("continuum-"))
+    one = ENGINES[engine]
+    prepare = _blocks if one.has_rigid_blocks else _rock(str(one.model))
     _, critical = prepare(_scene(0.0))
     stable = np.zeros((cells, cells), dtype=bool)
     for j, zeta in enumerate(ratio):

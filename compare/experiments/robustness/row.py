@@ -1,4 +1,4 @@
-"""One line of the battery: a case on one solver, judged."""
+"""A row of the robustness suite: a case on one solver, judged."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def row_of(case: Case, solver: Solver) -> Row:
     state, finding = _judged(case, solver)
     value, bound = finding.value, finding.bound
     margin = bound / value if value > 0 else (inf if value == 0 else float("nan"))
-    about = case.name, solver.engine, solver.scheme, case.criterion
+    about = case.name, solver.engine, solver.scheme, case.criterion.words
     seconds = perf_counter() - began
     return Row(*about, bound, value, margin, state, finding.said, seconds, case.scene, case.changes)
 
@@ -53,7 +53,7 @@ def _judged(case: Case, solver: Solver) -> tuple[str, Finding]:
     if reason:
         return NONE, Finding(nothing, nothing, reason)
     try:
-        finding = case.judge(Trial(case, solver))
+        finding = case.criterion(Trial(case, solver))
     except (SceneError, UnstableError) as error:
         return FAILED, Finding(nothing, nothing, str(error))
     # A bound that is not finite bounds nothing, and nan is at most nothing.

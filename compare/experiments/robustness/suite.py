@@ -1,4 +1,4 @@
-"""All hard cases, in the order of the report."""
+"""The robustness suite: all hard cases, in the order of the report."""
 
 from compare.experiments.robustness.case import Case
 from compare.experiments.robustness.extreme_cases import EXTREME

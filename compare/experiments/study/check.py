@@ -1,4 +1,4 @@
-"""What a study may say beyond the types of its keys: methods that are there, points in number."""
+"""Checks of a study beyond the types of its keys: known methods, the number of points."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cases.errors import SceneError
-from compare.engines import names
+from compare.engines import names, solvers
 from compare.experiments.study.methods.catalogue import METHODS
 
 if TYPE_CHECKING:
     from compare.experiments.study.study import Curve, Reference, Study
 
 MOST_POINTS = 10_000
-#: Settings that are no keys of a scene, and the methods that take them.
-ARGUMENTS = {"n_terms": ("series", "kelvin-voigt"), "rtol": ("solve-ivp",)}
+#: Settings that are no keys of a scene, with their type.
+ARGUMENTS: dict[str, type[int] | type[float]] = {"n_terms": int, "rtol": float}
 LARGEST_ARGUMENT = 1e9
 
 
@@ -61,14 +61,20 @@ def _refuse_arguments(path: Path, key: str, curve: Curve) -> None:
     """Raise SceneError for arguments that a curve's method does not take."""
     given = [(name, [value]) for name, value in curve.changes.items()] + [*curve.vary.items()]
     for name, values in given:
-        takers = ARGUMENTS.get(name)
-        if takers is None:
+        if name not in ARGUMENTS:
             continue
+        takers = _takers(name)
         if curve.method not in takers:
             allowed = f"is an argument of {', '.join(takers)}"
             raise SceneError(str(path), f"{key}.{name}", None, allowed)
         for value in values:
-            kind = int if name == "n_terms" else float
-            if type(value) is not kind or not 0 < value < LARGEST_ARGUMENT:
+            kind = ARGUMENTS[name]
+            if type(value) is not kind or not 0 < float(value) < LARGEST_ARGUMENT:
                 allowed = f"must be {'a whole number' if kind is int else 'a number'} above 0"
                 raise SceneError(str(path), f"{key}.{name}", value, allowed)
+
+
+def _takers(argument: str) -> list[str]:
+    """Return the methods that take an argument."""
+    found = [one.name for one in solvers() if argument in one.arguments]
+    return found + [name for name, module in METHODS.items() if argument in module.ARGUMENTS]

@@ -16,11 +16,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
+from compare.engines import names
 from compare.experiments.study.measure import Row
 from compare.experiments.study.pareto import floor, front, is_known, measured
 from compare.experiments.study.study import Study
-from compare.figures.export import save
-from compare.figures.style import RC, STYLES, WIDTH, style
+from compare.figures.export import Drawn, save
+from compare.figures.style import RC, WIDTH, style
 
 ERRORS = {
     "numerical": "numerical error (own model)",
@@ -72,12 +73,11 @@ def draw(name: str, study: Study, rows: list[Row], costs: dict[str, str] | None 
     return figure
 
 
-def write_diagram(folder: Path, name: str, study: Study, rows: list[Row]) -> tuple[Path, ...]:
-    """Write the diagram into a folder; return its files, none where no error is known."""
+def write_diagram(folder: Path, name: str, study: Study, rows: list[Row]) -> Drawn | None:
+    """Write the diagram into a folder; None where no error is known."""
     if not any(measured(rows, error, "work") for error in ERRORS):
-        return ()
-    drawn = save(draw(name, study, rows), folder, name, study.title)
-    return tuple(drawn.file(kind) for kind in ("svg", "pdf", "png"))
+        return None
+    return save(draw(name, study, rows), folder, name, study.title)
 
 
 def _draw_panel(ax: Axes, study: Study, rows: list[Row], error: str, cost: str, name: str) -> None:
@@ -96,7 +96,7 @@ def _draw_panel(ax: Axes, study: Study, rows: list[Row], error: str, cost: str, 
     for k, curve in enumerate(study.curves):
         found = measured([r for r in rows if r.curve == curve.label], error, cost)
         x, y = ([getattr(r, name) for r in found] for name in (cost, error))
-        (line,) = ax.loglog(x, y, label=curve.label, zorder=2, **look(study, k))
+        (line,) = ax.loglog(x, y, label=curve.label, zorder=2, **line_style(study, k))
         line.set_gid(f"{name}-{k}")
     _draw_cancelling(ax, rows, error, cost, name)
     ax.xaxis.set_minor_formatter(NullFormatter())
@@ -140,7 +140,7 @@ def _draw_digits_per_second(ax: Axes) -> None:
     ax.set_ylim(low, high)
 
 
-def look(study: Study, k: int) -> dict[str, Any]:
+def line_style(study: Study, k: int) -> dict[str, Any]:
     """Return how matplotlib draws a curve."""
     changes = study.curves[k].changes
     order, dim = (changes.get(f"numerics.continuum.{key}") for key in ("order", "dim"))
@@ -158,7 +158,7 @@ def look(study: Study, k: int) -> dict[str, Any]:
 def colour(study: Study, k: int) -> str:
     """Return the colour of a curve: its model's, as in all figures."""
     method = study.curves[k].method
-    if method in STYLES:
+    if method in names():
         return style(method).colour
-    others = list(dict.fromkeys(c.method for c in study.curves if c.method not in STYLES))
+    others = list(dict.fromkeys(c.method for c in study.curves if c.method not in names()))
     return OTHERS[others.index(method) % len(OTHERS)]

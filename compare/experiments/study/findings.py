@@ -1,4 +1,4 @@
-"""What a study shows, as sentences made of its numbers."""
+"""The findings of a study, as sentences made of its numbers."""
 
 from math import isfinite, isnan
 

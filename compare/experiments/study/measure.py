@@ -10,17 +10,17 @@ import xarray as xr
 
 from cases.errors import SceneError, StoppedError, UnstableError
 from cases.schema.scene import Scene
-from compare.engines import applies, solve
-from compare.exact.answer import Answer
+from compare.engines import applies, solve, solver
 from compare.experiments.study.methods.catalogue import METHODS
 from compare.experiments.study.reference import UNKNOWN, error, finest_of, known, own_of
 from compare.experiments.study.study import Point
+from compare.solvers.record import Answer
 
 LONG = 0.5  # s: a run that takes as long, its set-up included, is timed once more at most
 
 
 class Row(NamedTuple):
-    """What a study's table holds of one point; numbers that a method does not have are nan.
+    """A point in the table of a study; numbers that a method does not have are nan.
 
     state : "done" or "failed", with the reason in `message`.
     numerical : misfit from the exact solution of the method's own model; modelling : of that from
@@ -120,9 +120,7 @@ def runner(point: Point, scene: Scene) -> Callable[[], xr.Dataset]:
     if method in METHODS:
         return lambda: METHODS[method].solve(scene, **arguments)
     if arguments:
-        from compare.exact.catalogue import CATALOGUE
-
-        return lambda: _timed(lambda: CATALOGUE[method].solve(scene, **arguments))
+        return lambda: _timed(lambda: solver(method).run(scene, **arguments))
     return lambda: _timed(lambda: solve(method, scene))
 
 

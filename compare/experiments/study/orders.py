@@ -14,7 +14,7 @@ KNOWN = 10  # times its floor an error must be for its order to hold to some per
 
 
 class Order(NamedTuple):
-    """What was measured along one curve: the order between its two finest points, with the varied
+    """The order measured along one curve: that between its two finest points, with the varied
     key or its inverse; all of them; and what theory says."""
 
     curve: str

@@ -1,4 +1,4 @@
-"""Which points of a study no other one beats, and what the cheapest of them reach.
+"""The Pareto front of a study, and its cheapest points within a misfit.
 
 A point counts for the error that it and all finer points of its curve hold: what a finer step
 undoes was luck.
@@ -70,8 +70,8 @@ def _finer(size: np.ndarray, i: int) -> np.ndarray:
 def _model(row: Row) -> str:
     """Return what is varied beside the numerics and the size of blocks: another problem."""
     free = {"pillar.block", *ARGUMENTS}
-    kept = {k: v for k, v in row.settings.items() if k not in free and k[:9] != "numerics."}
-    return str(sorted(kept.items()))
+    physics = {k: v for k, v in row.settings.items() if k not in free and k[:9] != "numerics."}
+    return str(sorted(physics.items()))
 
 
 class Cheapest(NamedTuple):

@@ -1,4 +1,4 @@
-"""What errors are measured against: exact solutions, or fine runs whose own error is bounded."""
+"""References of errors: exact solutions, or fine runs whose own error is bounded."""
 
 import math
 from typing import Any, NamedTuple
@@ -8,7 +8,7 @@ import xarray as xr
 
 from cases.schema.scene import Scene
 from cases.schema.tables import Numerics
-from compare.engines import ENGINES, applies, exact_names, solve
+from compare.engines import ENGINES, applies, exact_names, solve, solver
 from compare.experiments.study.methods.catalogue import METHODS
 from compare.experiments.study.study import FINEST, NONE, Point, Reference, Study
 from compare.misfit.metrics import Pairing, pairings, relative_l2, worst
@@ -27,7 +27,7 @@ UNKNOWN = Error(math.nan, math.nan)
 
 
 class Known(NamedTuple):
-    """What errors are from, and its own relative error."""
+    """A reference of errors, and its own relative error."""
 
     result: xr.Dataset
     error: float
@@ -59,7 +59,7 @@ def _as_fine(engine: str, finest: str | Reference | None) -> Reference | None:
     """Return the run of an engine at the numerics of a fine run, where those are its own too."""
     if not isinstance(finest, Reference):
         return None
-    alike = engine.partition("-")[0] == finest.method.partition("-")[0]
+    alike = solver(engine).engine == solver(finest.method).engine
     return finest.model_copy(update={"method": engine}) if alike else None
 
 

@@ -1,7 +1,8 @@
-"""What a study is: a scene, curves of what is varied, and what errors are measured against."""
+"""Studies: a scene, curves of varied keys, and the references of errors."""
 
 from collections.abc import Iterator
 from itertools import product
+from math import prod
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -11,11 +12,11 @@ import cases
 from cases.errors import SceneError, nearest
 from cases.files import read_toml
 from cases.schema.scene import Scene
-from compare.experiments.study.check import ARGUMENTS, plain, refuse_senseless
+from compare.experiments.study.check import ARGUMENTS, MOST_POINTS, plain, refuse_senseless
 from compare.scenes import find
 
 LARGEST_FILE = 1_000_000  # bytes
-SHIPPED = Path(__file__).parent
+SHIPPED = Path(__file__).parent / "shipped"
 FINEST, NONE = "finest", "none"  # what errors may be measured against besides solutions
 
 
@@ -30,7 +31,7 @@ class Table(BaseModel):
 
 
 class Reference(Table):
-    """What errors are measured against where there is no exact solution: an engine's fine run.
+    """The reference of errors where there is no exact solution: an engine's fine run.
 
     changes : of the scene, its numerics above all. coarser : changes on top of these; how far that
         run is from this one is the floor below which errors are not known.
@@ -47,6 +48,8 @@ class Curve(Table):
     method : an engine, an exact solution, or a method of
     `compare.experiments.study.methods.catalogue`.
     vary : dotted keys and their values, all combinations; `terms` is an exact series' own.
+    each : dotted keys and their values: of every combination a curve of its own, whose label has
+        the value in place of the key's last part in braces.
     own : the exact solution of the curve's own model, or a fine run of it, for its numerical
         error; "finest": that of the study; "none"; absent: the exact one that ranks highest
         (`compare.misfit.ranking`), else a run of its engine at the numerics of the study's fine
@@ -59,13 +62,36 @@ class Curve(Table):
     method: str
     changes: dict[str, Value] = Field(default_factory=dict)
     vary: dict[str, Values] = Field(default_factory=dict)
+    each: dict[str, Values] = Field(default_factory=dict)
     own: str | Reference | None = None
     order: float | None = None
 
     def settings(self) -> Iterator[dict[str, Any]]:
         """Yield the varied keys of every point."""
-        for values in product(*self.vary.values()):
-            yield dict(zip(self.vary, values, strict=True))
+        return combinations(self.vary)
+
+    def expanded(self) -> Iterator["Curve"]:
+        """Yield the curves that `each` makes of this one."""
+        for values in combinations(self.each):
+            label = self.label
+            for key, value in values.items():
+                label = label.replace(f"{{{key.rpartition('.')[2]}}}", str(value))
+            changes = self.changes | values
+            yield self.model_copy(update={"label": label, "changes": changes, "each": {}})
+
+
+def combinations(values: dict[str, list[Any]]) -> Iterator[dict[str, Any]]:
+    """Yield all combinations of the values of some keys."""
+    for one in product(*values.values()):
+        yield dict(zip(values, one, strict=True))
+
+
+def each_expanded(curves: list[Curve]) -> list[Curve]:
+    """Return the curves without `each`; raises ValueError for more than a study may have."""
+    count = sum(prod(len(values) for values in curve.each.values()) for curve in curves)
+    if count > MOST_POINTS:
+        raise ValueError(f"give {count:.6g} curves, at most {MOST_POINTS}")
+    return [one for curve in curves for one in curve.expanded()]
 
 
 class Study(Table):
@@ -88,7 +114,7 @@ class Study(Table):
     note: str = ""
     timed: bool = False
     repeats: Annotated[int, Field(ge=1, le=100)] = 3
-    curves: Annotated[list[Curve], Field(min_length=1)]
+    curves: Annotated[list[Curve], Field(min_length=1), AfterValidator(each_expanded)]
 
     @property
     def base(self) -> Scene:
@@ -124,7 +150,7 @@ class Point(Table):
 
     @property
     def physics(self) -> dict[str, Any]:
-        """What the point changes of the scene besides its numerics."""
+        """The changes of the scene besides its numerics."""
         changes = self.curve.changes | self.settings
         return {
             key: value
@@ -134,7 +160,7 @@ class Point(Table):
 
     @property
     def arguments(self) -> dict[str, Any]:
-        """What is varied beside the scene's keys, such as the terms of a series."""
+        """The settings that are no keys of the scene, such as the terms of a series."""
         everything = self.curve.changes | self.settings
         return {key: value for key, value in everything.items() if key in ARGUMENTS}
 

@@ -1,4 +1,4 @@
-"""What a key is swept over: `--sweep KEY=FROM:TO:COUNT`, `KEY=log:FROM:TO:COUNT` or `KEY=A,B,C`."""
+"""Values of a swept key: `--sweep KEY=FROM:TO:COUNT`, `KEY=log:FROM:TO:COUNT` or `KEY=A,B,C`."""
 
 from __future__ import annotations
 

@@ -1,9 +1,8 @@
-"""One variant at one point of a sweep, and what is made of it: its runs, or its comparison."""
+"""A case of a sweep: one variant at one point, and its runs or its comparison."""
 
 from __future__ import annotations
 
-import hashlib
-import json
+from hashlib import sha256
 from math import nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -12,7 +11,7 @@ import numpy as np
 
 from cases.errors import InterruptedRun, SceneError, UnstableError
 from cases.schema.scene import Scene
-from compare.runs.checkpoint.signature import program
+from compare.experiments import store
 from results.dataset import scene_hash
 
 if TYPE_CHECKING:
@@ -41,7 +40,7 @@ class Case(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What came of a case: "done" with its rows, or "failed" with the reason."""
+    """The outcome of a case: "done" with its rows, or "failed" with the reason."""
 
     state: str
     message: str
@@ -56,7 +55,7 @@ class Running(NamedTuple):
 
     @property
     def about(self) -> list[Any]:
-        """What decides a row beside the scene."""
+        """All that decides a row beside the scene."""
         return [self.runs, self.vtx]
 
     def solvers(self, case: Case) -> list[str]:
@@ -86,7 +85,7 @@ class Comparing(NamedTuple):
 
     @property
     def about(self) -> list[Any]:
-        """What decides a row beside the scene and the samples of the curves."""
+        """All that decides a row beside the scene and the samples of the curves."""
         named = [[c.file, c.name, c.variant, list(map(str, c.waveforms))] for c in self.curves]
         return [self.spectral, self.align, self.writes, named]
 
@@ -118,7 +117,7 @@ Work = Running | Comparing
 
 
 def outcome(case: Case, work: Work) -> Outcome:
-    """Return what comes of a case; what cannot be solved is an outcome that says why."""
+    """Return the outcome of a case; of one that cannot be solved the reason."""
     if case.scene is None:
         return Outcome("failed", case.message, [])
     try:
@@ -130,14 +129,16 @@ def outcome(case: Case, work: Work) -> Outcome:
 
 
 def key(case: Case, work: Work) -> str:
-    """Return what tells cases apart: everything that decides a row, this program included."""
-    assert case.scene is not None
-    about = [str(case.folder), scene_hash(case.scene), type(work).__name__, program(), work.about]
-    digest = hashlib.sha256(json.dumps(about).encode())
-    for curve in work.curves if isinstance(work, Comparing) else []:
-        for values in (curve.time, *curve.waveforms.values()):
-            digest.update(np.ascontiguousarray(values).tobytes())
-    return digest.hexdigest()[:16]
+    """Return what tells cases apart: everything that decides a row."""
+    scene = case.message if case.scene is None else scene_hash(case.scene)
+    curves = work.curves if isinstance(work, Comparing) else []
+    samples = [
+        sha256(np.asarray(values).tobytes()).hexdigest()
+        for curve in curves
+        for values in (curve.time, *curve.waveforms.values())
+    ]
+    about = [str(case.folder), case.variant, scene, type(work).__name__, work.about]
+    return store.key(*about, samples)
 
 
 def _of_run(done: Any) -> Rows:

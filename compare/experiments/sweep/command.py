@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -12,12 +11,11 @@ from compare.cli import terminal
 from compare.cli.options import warn
 from compare.experiments.cost import dry_run
 from compare.experiments.cost.run_cost import Forecast, forecast
-from compare.experiments.pool import on_pool
-from compare.experiments.sweep import runner, show, table
+from compare.experiments.pool import shared
+from compare.experiments.summary import show
+from compare.experiments.sweep import runner, summary
 from compare.experiments.sweep.axis import Axis, axes
 from compare.experiments.sweep.case import Case, Work
-from compare.runs.checkpoint.lock import locked
-from compare.runs.processes import started
 
 
 class Asked(NamedTuple):
@@ -51,25 +49,19 @@ def sweep(
     if dry:
         _foresee(asked, work, as_json)
         return
-    processes = started()
-    with ExitStack() as held, terminal.progress(f"{len(asked.cases)} points") as advance:
-        if asked.out is not None:
-            place = asked.out
-            processes.by_first(lambda: held.enter_context(locked(place)))
-        found = on_pool(
-            processes,
-            workers,
-            lambda pool: runner.run(asked.cases, work, asked.out, pool, advance),
-        )
+    found = shared(
+        f"{len(asked.cases)} points",
+        asked.out,
+        workers,
+        lambda pool, advance: runner.run(asked.cases, work, asked.out, pool, advance),
+    )
     if found is None:  # not the first process
         return
     if all(one.state == "failed" for one in found):
         allowed = f"all {len(found)} points fail: {found[0].message}"
         raise SceneError(asked.scene, "", None, allowed)
-    rows = table.frame(asked.axes, asked.cases, found)
-    about = {"scene": asked.scene}
-    files = [] if asked.out is None else table.write_table(asked.out, asked.axes, rows, about)
-    show.show_sweep(asked.axes, rows, files, as_json)
+    rows = summary.table(asked.axes, asked.cases, found)
+    show(summary.summarise(asked.out, asked.scene, asked.axes, rows), as_json)
 
 
 def _foresee(asked: Asked, work: Work, as_json: bool) -> None:

@@ -11,6 +11,7 @@ from cases.schema.scene import Scene
 from cases.schema.tables import Time
 from compare.engines import ENGINES, Progress, applies, solve
 from compare.figures.subplots import UNITS
+from compare.solvers.dem import DEM
 from results.snapshots import Snapshots, snapshots_of
 
 if TYPE_CHECKING:
@@ -55,8 +56,8 @@ def take(scene: Scene, count: int, progress: Progress | None = None) -> Shots:
     """
     if count < 2:
         raise SceneError("snapshots", "", count, "must be at least 2")
-    asked, chosen, reasons = at_instants(scene, count), ["dem"], {}
-    for name in list(ENGINES)[1:]:
+    asked, chosen, reasons = at_instants(scene, count), [DEM.name], {}
+    for name in [engine for engine in ENGINES if engine != DEM.name]:
         answer = applies(name, asked)
         if answer:
             chosen.append(name)

@@ -8,19 +8,14 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from compare.engines import ENGINES
 from compare.figures.charts import interactive
 from compare.figures.charts.ledgers import Ledger, drawn_terms, ledgers_of, table
 from compare.figures.figure import Picture
 from compare.figures.style import RC, TERMS, WIDTH, Style, in_order, style
 from compare.figures.units import Unit, unit_for
 from compare.misfit.pairs import Comparison
-
-#: Colours are those of terms; engines differ by their dashes.
-DASHES = {
-    "dem": "-",
-    "continuum-jointed": (0, (5, 2)),
-    "continuum-equivalent": (0, (1.2, 1.6)),
-}
+from compare.solvers.dem import DEM
 
 
 def energy(name: str, comparisons: list[Comparison]) -> list[Picture]:
@@ -43,7 +38,7 @@ def energy(name: str, comparisons: list[Comparison]) -> list[Picture]:
 
 
 def _caption(ledgers: list[Ledger]) -> str:
-    worst = {engine: 0.0 for engine in DASHES}
+    worst = {engine: 0.0 for engine in ENGINES}
     for ledger in ledgers:
         worst[ledger.engine] = max(worst[ledger.engine], float(np.abs(ledger.residual).max()))
     engines = {ledger.engine for ledger in ledgers}
@@ -55,11 +50,17 @@ def _caption(ledgers: list[Ledger]) -> str:
 
 
 def _look(engine: str, term: str) -> Style:
-    return Style(TERMS[term], 2.0 if term == "work" else 1.4, DASHES[engine], 1)
+    return Style(TERMS[term], 2.0 if term == "work" else 1.4, _dashes(engine), 1)
+
+
+def _dashes(engine: str) -> Any:
+    """Return the dashes of an engine, by which engines differ: colours are those of terms."""
+    dashes = ENGINES[engine].line.ledger
+    return (0, dashes) if dashes else "-"
 
 
 def _of_engine(engine: str) -> Style:
-    return style(engine)._replace(width=1.6, dashes=DASHES[engine])
+    return style(engine)._replace(width=1.6, dashes=_dashes(engine))
 
 
 def _figure(ledgers: list[Ledger], unit: Unit) -> Figure:
@@ -100,9 +101,8 @@ def _draw(axes: np.ndarray, ledgers: list[Ledger], unit: Unit) -> None:
 
 def _add_legend(figure: Figure, ledgers: list[Ledger]) -> None:
     engines = in_order({ledger.engine for ledger in ledgers})
-    entries = [
-        Line2D([], [], label=term, **_look("dem", term).of_line()) for term in drawn_terms(ledgers)
-    ]
+    looks = {term: _look(DEM.name, term) for term in drawn_terms(ledgers)}
+    entries = [Line2D([], [], label=term, **look.of_line()) for term, look in looks.items()]
     entries += [Line2D([], [], label=e, **_of_engine(e).of_line()) for e in engines]
     figure.legend(handles=entries, ncols=len(entries), loc="outside upper center", frameon=False)
 
@@ -110,7 +110,7 @@ def _add_legend(figure: Figure, ledgers: list[Ledger]) -> None:
 def _plot(ledgers: list[Ledger], unit: Unit) -> dict[str, Any]:
     """Return the interactive figure: of each variant its terms, and under them what is missing."""
     variants = list(dict.fromkeys(ledger.variant for ledger in ledgers))
-    looks = {t: _look("dem", t) for t in drawn_terms(ledgers)}
+    looks = {t: _look(DEM.name, t) for t in drawn_terms(ledgers)}
     looks |= {e: _of_engine(e) for e in in_order({x.engine for x in ledgers})}
     traces, panels = [], []
     for j, variant in enumerate(variants):

@@ -13,7 +13,7 @@ from compare.figures.style import in_order, is_engine
 from compare.figures.subplots import FORCES, MOTION, UNITS
 from compare.figures.units import Unit, unit_for
 from compare.misfit.metrics import motion
-from compare.misfit.pairs import BETWEEN, PAIRS
+from compare.misfit.pairs import pairs
 from compare.misfit.ranking import own_exact
 
 #: Diverging, even to the eye and told apart under every colour blindness (ColorBrewer).
@@ -96,7 +96,7 @@ def diagrams_of(scene: Scene, fields: dict[str, xr.Dataset]) -> list[Diagrams]:
     values = {name: quantity.of(result) for name, result in fields.items()}
     if not any(v.any() for v in values.values()):
         return []
-    between = [p for p in PAIRS if p.kind == BETWEEN and p.one in fields and p.other in fields]
+    between = [p for p in pairs() if {p.one, p.other} <= set(engines)]
     shown = [_field(engines[0], values, quantity)]
     shown += [_difference(p.one, p.other, values, quantity) for p in between]
     own = {engine: own_exact(engine, fields, scene) for engine in engines}

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from compare.figures.style import GIVEN, RC, is_engine, style
+from compare.engines import names, solver
+from compare.figures.style import GIVEN, RC, style
 
 MM = 1 / 25.4  # inches
 POINT = 25.4 / 72  # mm
@@ -54,37 +55,16 @@ class Look(NamedTuple):
     def of_line(self, name: str) -> dict[str, Any]:
         """Return how a solution's curve is drawn, as arguments of matplotlib's plot."""
         line = style(name).of_line()
-        if self.prints:
-            wide = ENGINE_WIDTH.get(name, 1.2) if is_engine(name) else EXACT_WIDTH
-            line |= {"linewidth": wide, "linestyle": DASHES.get(name, "-")}
+        if self.prints and name in names():
+            own = solver(name).line
+            dashes = (0, own.printed) if own.printed else "-"
+            line |= {"linewidth": own.printed_width, "linestyle": dashes}
         return line
 
     def of_given(self, k: int) -> dict[str, Any]:
         """Return how the curve of the k-th file of others is drawn."""
         return GIVEN[k % len(GIVEN)].of_line()
 
-
-#: On paper, points: engines wide and light, exact solutions thin and dark over them.
-ENGINE_WIDTH = {"dem": 1.5, "continuum-jointed": 2.2, "continuum-equivalent": 2.9}
-EXACT_WIDTH = 0.8
-
-#: On paper, in line widths: no two alike, so that a grey copy still tells them apart.
-DASHES: dict[str, Any] = {
-    "dem": "-",
-    "continuum-jointed": (0, (3.5, 0.9)),
-    "continuum-equivalent": (0, (1.1, 0.8)),
-    "lattice": (0, (1.2, 2.2)),
-    "no-tension-chain": (0, (1.2, 1.2)),
-    "spatial-lattice": (0, (1.2, 4)),
-    "jointed-bar": (0, (6, 2.4)),
-    "one-joint": (0, (3, 3)),
-    "equivalent-bar": (0, (7, 2, 1.2, 2)),
-    "images": (0, (7, 2, 1.2, 2, 1.2, 2)),
-    "kelvin-voigt": (0, (4, 2, 1.2, 2, 1.2, 2)),
-    "series": (0, (12, 3)),
-    "slip-joint": (0, (6, 2.4, 3, 2.4)),
-    "sliding-block": (0, (9, 2.4, 3, 2.4)),
-}
 
 LOOKS = {
     "journal": Look((90.0, 190.0), (2, 4), 240.0, 42.0, 26.0, 8.0, 7.5, 2.8, True, 600),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from compare.engines import names, solver
 from compare.figures.subplots import UNITS, Panel
 from compare.figures.units import unit_for
 
@@ -11,12 +12,13 @@ from compare.figures.units import unit_for
 class Words(NamedTuple):
     """The words of one language.
 
-    solutions, quantities : by name. place : with {quantity} and {y}. static : with {value}, what a
-    waveform is drawn without. parts : of the variants' names that are ours; those of the user stay
-    as they are. comma : between place and variant.
+    solutions : the field of a solver's words that has its label. quantities : by name. place : with
+    {quantity} and {y}. static : with {value}, what a waveform is drawn without. parts : of the
+    variants' names that are ours; those of the user stay as they are. comma : between place and
+    variant.
     """
 
-    solutions: dict[str, str]
+    solutions: str
     quantities: dict[str, str]
     place: str
     static: str
@@ -26,7 +28,7 @@ class Words(NamedTuple):
 
     def solution(self, name: str) -> str:
         """Return what a legend calls an engine or exact solution."""
-        return self.solutions.get(name, name)
+        return getattr(solver(name).words, self.solutions) if name in names() else name
 
     def axis(self, panel: Panel, unit: str) -> str:
         """Return the label of a panel's ordinate."""
@@ -44,22 +46,7 @@ class Words(NamedTuple):
 
 
 ENGLISH = Words(
-    solutions={
-        "dem": "rigid blocks",
-        "continuum-jointed": "jointed rock",
-        "continuum-equivalent": "homogenised rock",
-        "lattice": "rigid blocks, exact",
-        "no-tension-chain": "no-tension chain, exact",
-        "spatial-lattice": "blocks in space, exact",
-        "jointed-bar": "jointed bar, exact",
-        "one-joint": "one joint, exact",
-        "equivalent-bar": "homogenised bar, exact",
-        "images": "homogenised bar, images",
-        "kelvin-voigt": "Kelvin-Voigt bar, exact",
-        "series": "homogenised bar, series",
-        "slip-joint": "sliding joint, exact",
-        "sliding-block": "sliding block, exact",
-    },
+    solutions="english",
     quantities={
         "stress": "stress",
         "shear": "shear stress",
@@ -74,22 +61,7 @@ ENGLISH = Words(
 )
 
 CHINESE = Words(
-    solutions={
-        "dem": "刚性块体（离散元）",
-        "continuum-jointed": "节理岩体（有限元）",
-        "continuum-equivalent": "等效岩体（有限元）",
-        "lattice": "块体链（精确解）",
-        "no-tension-chain": "无拉力块体链（精确解）",
-        "spatial-lattice": "空间块体列（精确解）",
-        "jointed-bar": "节理杆（精确解）",
-        "one-joint": "单节理（精确解）",
-        "equivalent-bar": "等效杆（精确解）",
-        "images": "等效杆（镜像法）",
-        "kelvin-voigt": "黏弹性杆（精确解）",
-        "series": "等效杆（级数解）",
-        "slip-joint": "滑动节理（精确解）",
-        "sliding-block": "滑动块体（精确解）",
-    },
+    solutions="chinese",
     quantities={"stress": "应力", "shear": "剪应力", "velocity": "速度", "rotation": "转角"},
     place="{quantity}，y\u00a0=\u00a0{y}\u00a0m",
     static="减去静态值 {value}",

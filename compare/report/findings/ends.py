@@ -5,6 +5,7 @@ import numpy as np
 from compare.misfit import pulses
 from compare.misfit.pairs import Comparison
 from compare.report.findings.finding import Finding, percent, share
+from compare.solvers.dem import DEM
 
 
 def _by_end(comparisons: list[Comparison], end: str) -> Comparison:
@@ -41,7 +42,8 @@ def what_the_quiet_end_leaves(comparisons: list[Comparison]) -> Finding:
     free, quiet = (_by_end(comparisons, end) for end in ("free", "quiet"))
     scene, y = free.scene, free.scene.record.stress[0]
     sent, left = (
-        pulses.passage(pulses.waveforms(c, "stress", 0)["dem"], scene, y, 1) for c in (free, quiet)
+        pulses.passage(pulses.waveforms(c, "stress", 0)[DEM.name], scene, y, 1)
+        for c in (free, quiet)
     )
     predicted = pulses.peak(pulses.quiet_share(sent, scene)) / pulses.peak(sent)
     measured = pulses.peak(left) / pulses.peak(sent)
@@ -60,11 +62,12 @@ def matched_end(comparisons: list[Comparison]) -> Finding:
     quiet, matched = (
         reflected_over_incident(_by_end(comparisons, end)) for end in ("quiet", "matched")
     )
+    blocks = DEM.name
     return Finding(
         "the matched end reflects least",
         f"With the dashpot behind the half-block spring (in jointed rock behind half a joint) the "
         f"reflected pulse has this share of the incident peak: {percent(matched, 2)}; for the "
-        f"rigid blocks {quiet['dem'] / max(matched['dem'], 1e-12):.0f} times less than with the "
+        f"rigid blocks {quiet[blocks] / max(matched[blocks], 1e-12):.0f} times less than with the "
         f"quiet end.",
-        all(x < 0.01 for x in matched.values()) and matched["dem"] < quiet["dem"],
+        all(x < 0.01 for x in matched.values()) and matched[blocks] < quiet[blocks],
     )

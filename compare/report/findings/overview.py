@@ -1,8 +1,11 @@
 """What the whole page is about: how much of a distance is error, and how much is physics."""
 
+from compare.exact.bar import equivalent_bar, jointed_bar
+from compare.exact.blocks import lattice
 from compare.misfit.metrics import misfit
 from compare.misfit.pairs import Comparison
 from compare.report.findings.finding import Finding, share
+from compare.solvers.dem import DEM
 
 
 def mostly_dispersion(comparison: Comparison) -> Finding:
@@ -12,10 +15,11 @@ def mostly_dispersion(comparison: Comparison) -> Finding:
     less than half as far from the jointed bar as from the homogenised one.
     """
     r, scene = comparison.results, comparison.scene
-    total = misfit(r["dem"], r["equivalent-bar"])
-    own = misfit(r["dem"], r["lattice"])
-    rigid = misfit(r["dem"], r["jointed-bar"])
-    joints = misfit(r["jointed-bar"], r["equivalent-bar"])
+    blocks, homogenised, jointed = (
+        r[one.name] for one in (DEM, equivalent_bar.SOLVER, jointed_bar.SOLVER)
+    )
+    total, own = misfit(blocks, homogenised), misfit(blocks, r[lattice.SOLVER.name])
+    rigid, joints = misfit(blocks, jointed), misfit(jointed, homogenised)
     holds = rigid < 0.5 * total
     end = (
         "So most of what looks like the rigid-block model's error against the homogenised series "

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import cases
 from cases.schema.scene import Scene
+from compare.engines import solver
 from results.dataset import scene_hash
 
 Signature = dict[str, str]
@@ -56,8 +57,4 @@ def _scene(scene: Scene) -> str:
 
 def _versions(name: str) -> str:
     found = {package: version(package) for package in ("numpy", "numba")}
-    if name.startswith("continuum-"):
-        from continuum import compat
-
-        found["dolfinx"] = compat.VERSION
-    return json.dumps(found)
+    return json.dumps(found | solver(name).libraries())

@@ -15,7 +15,8 @@ def layer(**keys):
 
 def test_joints_of_an_elastic_scene_have_no_strength(scene_with):
     p = calibrate(scene_with(soft_layers=[{"y": 20.0}]))
-    assert all(getattr(p, part) is None for part in Strength._fields)
+    assert all(getattr(p, part) is None for part in p.strengths())
+    assert p.strengths().keys() == vars(Strength()).keys()
 
 
 def test_friction_of_all_joints_needs_no_cohesion(scene_with):

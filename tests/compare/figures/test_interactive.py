@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from compare.engines import names
 from compare.figures.charts import interactive
-from compare.figures.style import STYLES, Style
+from compare.figures.style import Style, style
 from compare.figures.units import FINE, unit_for
 
 
@@ -34,10 +35,10 @@ def painted(lengths, places):
     return np.searchsorted(edges, places % edges[-1], side="right") % 2 == 0
 
 
-@pytest.mark.parametrize("name", [n for n, s in STYLES.items() if s.dashes != "-"])
+@pytest.mark.parametrize("name", [n for n in names() if style(n).dashes != "-"])
 def test_dashes_begin_where_they_begin_in_print(name):
     """matplotlib begins `offset` into a pattern; SVG's own pattern must be turned by that."""
-    look = STYLES[name]
+    look = style(name)
     offset, lengths = look.dashes
     turned = [float(x.removesuffix("px")) for x in interactive.line(look)["dash"].split(",")]
     assert len(turned) % 2 == 0  # SVG repeats an odd pattern with dashes and gaps exchanged

@@ -15,7 +15,7 @@ TWIST = {"load__arm": 0.2, "record__stress": []}
 def comparison(pillar, solution=spatial_lattice, **changes):
     """Return a scene solved by one exact solution."""
     scene = pillar(**RECORD | changes)
-    return Comparison(scene, {solution.NAME: solution.solve(scene)})
+    return Comparison(scene, {solution.SOLVER.name: solution.solve(scene)})
 
 
 @pytest.mark.parametrize(

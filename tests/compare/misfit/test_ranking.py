@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from compare.engines import names
-from compare.misfit.ranking import applicable, finest, lacks, own_exact, reference_of, resolves
+from compare.engines import names, solver
+from compare.misfit.ranking import applicable, finest, lacks, own_exact, reference_of
 
 LAYER = {"y": 20.0, "spacing_stiffness": 4.375e8}
 CASES = [
@@ -57,10 +57,10 @@ def test_a_reference_is_finer_complete_and_the_same_in_any_order(
     found = reference_of(name, order, pillar_scene)
     if found is None:
         return
-    one, other = resolves(name), resolves(found.name)
+    one, other = solver(name), solver(found.name)
     assert found.name != name and not lacks(found.name, pillar_scene)
     assert (other.rock, other.form) > (one.rock, one.form)
-    again = resolves(reference_of(name, sorted(there), pillar_scene).name)
+    again = solver(reference_of(name, sorted(there), pillar_scene).name)
     assert (again.rock, again.form) == (other.rock, other.form)
 
 

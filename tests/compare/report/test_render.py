@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from compare.experiments.study.section import StudySection
+from compare.experiments.summary import Summary
 from compare.figures.export import Drawn
 from compare.report.findings import Finding
 from compare.report.overview import Overview
@@ -79,7 +79,7 @@ def test_text_of_scenes_is_escaped(page, section):
 
 
 def test_without_a_table_of_other_codes_one_line_says_how_to_get_it(page, figure):
-    study = StudySection("s", "S", "", "stress", True, figure("s"), [], Table([], {}), [])
+    study = Summary("s", "S", Table([], {}), [], [], [], {}, figure("s"), timed=True)
     html = page(studies=[study], peers_file="a.csv")
     assert "run <code>make bench-peers</code>, then <code>jointwave report" in html
     assert "--peers a.csv</code>" in html
@@ -87,8 +87,9 @@ def test_without_a_table_of_other_codes_one_line_says_how_to_get_it(page, figure
 
 def test_hard_cases_stand_with_their_margins_and_what_failed(page, figure):
     table = Table(["engine", "value", "bound", "margin", ""], {"step": [["dem", "1", "2"]]})
-    about = "stability", "Hard cases", "A note.", "", False, figure("stability")
-    found = StudySection(*about, ["3 of 4 rows hold."], table, ["step, dem: 3 above 2"])
+    said, failed = ["3 of 4 rows hold."], ["step, dem: 3 above 2"]
+    drawn = figure("stability")
+    found = Summary("stability", "Hard cases", table, said, failed, [], {}, drawn, about="A note.")
     html = page(stability=found)
     assert '<a href="#stability">' in html and "<li>3 of 4 rows hold.</li>" in html
     assert 'class="fails">Rows that do not hold: step, dem: 3 above 2.' in html

@@ -10,8 +10,8 @@ import pytest
 import cases
 from cases.effects import active_effects
 from compare.experiments.ablation.runner import reported
-from compare.experiments.study.section import REPORTED
 from compare.experiments.study.study import load
+from compare.experiments.study.summary import REPORTED
 from compare.figures.subplots import curve_table, variant_names
 from compare.misfit.pairs import Comparison
 from compare.report.report import build

@@ -22,7 +22,7 @@ from cases.errors import UnstableError
 from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from cases.schema.scene import Scene
-from compare.experiments.robustness.case import STEP, Finding, Trial
+from compare.experiments.robustness.case import STEP, Finding, Trial, criterion
 
 if TYPE_CHECKING:
     from continuum.body import Body
@@ -38,6 +38,7 @@ class Loose(NamedTuple):
     speed: Callable[[], float]
 
 
+@criterion("logarithm of the last speed over the first, off that of ten thousand dashpots' impacts")
 def restitution(trial: Trial) -> Finding:
     """After n impacts the speed is e^n of the first, and it never grows.
 
@@ -49,8 +50,8 @@ def restitution(trial: Trial) -> Finding:
     p, (layer, _) = calibrate(scene), scene.soft_layers
     omega = sqrt(p.stiffness[p.soft[0]] * p.area / p.block_mass)
     dt = float(trial.case.changes[STEP]) * trial.critical
-    kind = trial.solver.engine.removeprefix("continuum-")
-    loose = _blocks(scene, dt) if kind == "dem" else _rock(scene, dt, kind)
+    solver = trial.solver
+    loose = _blocks(scene, dt) if solver.is_rigid else _rock(scene, dt, solver.model)
     peaks = _peaks(loose, max(1, round(pi / omega / dt / SAMPLES)))
     zeta = layer.damping_ratio or 0.0
     e = -zeta * (pi - 2 * asin(zeta)) / sqrt(1 - zeta**2)

@@ -8,10 +8,11 @@ import numpy as np
 import xarray as xr
 
 from cases.material.calibrate import calibrate
-from compare.experiments.robustness.case import STEP, Finding, Trial
+from compare.experiments.robustness.case import STEP, Finding, Trial, criterion
 from compare.experiments.robustness.criteria.accuracy import EPS
 from compare.experiments.robustness.criteria.energies import ROUND_OFF, SPENT
 from compare.misfit.metrics import relative_l2
+from compare.solvers.continuum import JOINTED_ROCK
 
 #: Of the work put in. Where a joint opens within a step the trapezoid of its force is off by
 #: K (v dt)^2 / 8 at most; at a twentieth of the critical step that is 3e-4 of m v^2 / 2.
@@ -26,6 +27,7 @@ def every_step(trial: Trial) -> dict[str, Any]:
     return {"record__interval": dt, "record__stress": joints.tolist(), "record__velocity": []}
 
 
+@criterion("misfit from elastic joints under the same prestress")
 def just_closed(trial: Trial) -> Finding:
     """A prestress of just the largest tension of the wave leaves every joint closed.
 
@@ -43,6 +45,7 @@ def just_closed(trial: Trial) -> Finding:
     return Finding(relative_l2(barred, bound), 10 * EPS * steps, f"misfit at {p:.3g} Pa")
 
 
+@criterion("misfit from a load 2^99 times as large, over that")
 def scales_by_two(trial: Trial) -> Finding:
     """Joints that bar tension know no scale: a load smaller by a power of two does the same in
     every digit, with gaps down to 1e-40 m that open and close as those of a large one do."""
@@ -52,6 +55,7 @@ def scales_by_two(trial: Trial) -> Finding:
     return Finding(found, 0.0, f"misfit; smallest load {small:.2g} Pa")
 
 
+@criterion("imbalance over the work")
 def ledger(trial: Trial) -> Finding:
     """No energy is made or lost where joints open, close, slide and break."""
     from results.dataset import energy_residual
@@ -68,6 +72,7 @@ def _spent(result: xr.Dataset) -> str:
     return f"of the work; spent: {', '.join(parts)}"
 
 
+@criterion("fracture energy spent over that of a joint, off a whole number")
 def whole_joints(trial: Trial) -> Finding:
     """Breaking costs each joint its fracture energy, G_c times the section, and no more.
 
@@ -82,6 +87,7 @@ def whole_joints(trial: Trial) -> Finding:
     return Finding(abs(joints - round(joints)), KINKS, f"of a joint; {round(joints)} broke")
 
 
+@criterion("misfit from a joint that cannot slide, where the cohesion is just the largest shear")
 def just_held(trial: Trial) -> Finding:
     """At a cohesion of just the largest shear a joint holds, just below it slides.
 
@@ -115,6 +121,7 @@ def _fine(trial: Trial) -> dict[str, Any]:
     return {"record__interval": dt, STEP: 1.0}
 
 
+@criterion("traction that should not be there, Pa")
 def one_ulp(trial: Trial) -> Finding:
     """A gap of the smallest number is open and carries nothing; the same closed pushes back."""
     from joints.laws import normal_traction
@@ -133,12 +140,12 @@ def _law(trial: Trial):
     from joints.laws import law_of
 
     scene = trial.scene()
-    if trial.solver.engine == "dem":
+    if trial.solver.is_rigid:
         from dem.axial.model import build_chain
 
         return law_of(build_chain(scene, calibrate(scene), 1e-6, ("free", "free")).law, 0)
     from continuum.build import discretise
 
-    joints = discretise(scene, "jointed").joints
+    joints = discretise(scene, str(JOINTED_ROCK.model)).joints
     assert joints is not None
     return law_of(joints.law, 0)

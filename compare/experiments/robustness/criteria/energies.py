@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from compare.experiments.robustness.case import STEP, Finding, Trial
+from compare.experiments.robustness.case import STEP, Criterion, Finding, Trial, criterion
 
 EPS = 2.2e-16
 SAMPLES = 1000
@@ -42,7 +42,7 @@ def _clock(trial: Trial, steps: int) -> dict:
     return found
 
 
-def no_trend(steps: int):
+def no_trend(steps: int) -> Criterion:
     """Return the criterion that the energy of an undamped pillar has no trend over these steps.
 
     Leapfrog conserves its discrete energy exactly, the composition of fourth order and the
@@ -54,6 +54,9 @@ def no_trend(steps: int):
     theirs may add up to eps a step.
     """
 
+    @criterion(
+        "linear trend of the energy, at most a random walk of round-off and the fit's own error"
+    )
     def judge(trial: Trial) -> Finding:
         found = drift(trial, steps)
         x = found.steps / found.steps[-1]
@@ -67,6 +70,7 @@ def no_trend(steps: int):
     return judge
 
 
+@criterion("fall of what is spent, over the work")
 def passive(trial: Trial) -> Finding:
     """What is dissipated never comes back, and energy is neither made nor lost.
 

@@ -9,21 +9,24 @@ import xarray as xr
 
 from cases.errors import SceneError
 from cases.material.calibrate import calibrate
-from compare.engines import applies, solve
+from compare.engines import solve
 from compare.exact.bar import equivalent_bar, jointed_bar
-from compare.experiments.robustness.case import Finding, Trial
+from compare.exact.blocks import spatial_lattice
+from compare.experiments.robustness.case import Finding, Trial, criterion
 from compare.experiments.robustness.criteria.accuracy import (
     CUBES,
     REFEREE,
-    REFEREES,
     element_error,
     lost_after,
     peak,
     phase_error,
+    referee,
 )
 from compare.misfit.metrics import misfit, relative_l2
+from compare.solvers.continuum import JOINTED_ROCK
 
 
+@criterion("misfit from the exact solution, at most the dispersion of a second-order front")
 def shock(trial: Trial) -> Finding:
     """A jump in stress is as wrong as the dispersion of steps and elements makes it.
 
@@ -34,20 +37,21 @@ def shock(trial: Trial) -> Finding:
     section is under stress for a quarter of the time or more.
     """
     result, scene = trial.run(), trial.scene()
-    names = [name for name in REFEREES[trial.solver.engine] if applies(name, scene)]
+    name = referee(trial, scene)
     lost = lost_after(trial, result)
     return Finding(
-        misfit(result, solve(names[0], scene)),
+        misfit(result, solve(name, scene)),
         sqrt(4.2 / pi * lost / (scene.time.duration / 4)),
-        f"misfit from {names[0]}",
+        f"misfit from {name}",
     )
 
 
+@criterion("misfit from the exact row of blocks in space")
 def in_space(trial: Trial) -> Finding:
     """Stress, motion and rotation of a row of blocks in space are within the phase error of the
     exact row, whatever the inertia of the blocks: each apart, as they differ in size."""
     result, scene = trial.run(), trial.scene()
-    exact = solve("spatial-lattice", scene)
+    exact = spatial_lattice.solve(scene)
     found = {
         name: relative_l2(result[name].values, exact[name].values)
         for name in ("stress", "shear", "velocity", "rotation")
@@ -57,6 +61,7 @@ def in_space(trial: Trial) -> Finding:
     return Finding(found[worst], phase_error(trial, result), f"misfit of the {worst}")
 
 
+@criterion("largest number of the result")
 def nothing(trial: Trial) -> Finding:
     """Without a load nothing moves: every number of the result is zero, not merely small."""
     result = trial.run()
@@ -64,6 +69,7 @@ def nothing(trial: Trial) -> Finding:
     return Finding(float(max(found)), 0.0, "largest number of the result")
 
 
+@criterion("misfit from the result of 1 Pa times the amplitude")
 def scaled(trial: Trial) -> Finding:
     """What is linear scales with its load: over the amplitude, the result is that of 1 Pa.
 
@@ -79,6 +85,7 @@ def scaled(trial: Trial) -> Finding:
     return Finding(found, 2.2e-16 * (2 + float(one.attrs["steps"])), "misfit over the amplitude")
 
 
+@criterion("refused in one line that names the key")
 def refused(trial: Trial) -> Finding:
     """What cannot be computed is refused in one line that names the key."""
     try:
@@ -89,6 +96,7 @@ def refused(trial: Trial) -> Finding:
     return Finding(1.0, 0.0, "was not refused")
 
 
+@criterion("misfit from a pillar of a thousand blocks before any wave is back")
 def untouched_far_end(trial: Trial) -> Finding:
     """What no wave has reached does not matter: a long pillar's first blocks do what those of a
     short one do, bit by bit in explicit steps, which pass on one block a step."""
@@ -99,6 +107,7 @@ def untouched_far_end(trial: Trial) -> Finding:
     return Finding(found, 0.0, f"misfit of {long.attrs['degrees_of_freedom']:,} freedoms")
 
 
+@criterion("misfit from the exact bar, at most Love's correction and the phase error")
 def as_bar(trial: Trial) -> Finding:
     """A slender column of solid elements is a bar, whatever the shape of its elements.
 
@@ -117,5 +126,5 @@ def as_bar(trial: Trial) -> Finding:
 
 def _bar(trial: Trial, scene) -> xr.Dataset:
     """Return the exact bar of a scene whose section is solid."""
-    exact = jointed_bar if trial.solver.engine == "continuum-jointed" else equivalent_bar
+    exact = jointed_bar if trial.solver.engine == JOINTED_ROCK.name else equivalent_bar
     return exact.solve(scene)

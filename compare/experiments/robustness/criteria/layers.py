@@ -10,9 +10,10 @@ import xarray as xr
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.joint import SoftLayer
 from compare.exact.bar import jointed_bar
-from compare.experiments.robustness.case import Finding, Trial
+from compare.experiments.robustness.case import Finding, Trial, criterion
 from compare.experiments.robustness.criteria.accuracy import (
     REFEREE,
+    SECOND_ORDER,
     element_error,
     peak,
     phase_error,
@@ -20,6 +21,7 @@ from compare.experiments.robustness.criteria.accuracy import (
 from compare.misfit.metrics import relative_l2
 
 
+@criterion("misfit in front of it from a pillar that ends there, at most what the layer leaks")
 def free_end(trial: Trial) -> Finding:
     """In front of a layer of almost no stiffness the pillar ends free.
 
@@ -58,6 +60,7 @@ def _of_steps(trial: Trial, one, other) -> float:
     return phase_error(trial, one)
 
 
+@criterion("misfit from the exact bar without it, at most its delay and the phase error")
 def no_layer(trial: Trial) -> Finding:
     """A joint of almost no compliance leaves whole rock.
 
@@ -76,6 +79,7 @@ def no_layer(trial: Trial) -> Finding:
     return Finding(found, bound, "misfit from the bar without it")
 
 
+@criterion("misfit from the chain in which the two blocks are one")
 def welded_blocks(trial: Trial) -> Finding:
     """Two rigid blocks on a joint of almost no compliance are one block.
 
@@ -93,6 +97,7 @@ def welded_blocks(trial: Trial) -> Finding:
     return Finding(found, phase_error(trial, result) + compliance, "misfit of displacements")
 
 
+@criterion(SECOND_ORDER)
 def as_chain(trial: Trial) -> Finding:
     """The displacements are those of leapfrog on this chain in closed form.
 

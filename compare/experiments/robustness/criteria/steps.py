@@ -13,7 +13,7 @@ from cases.errors import SceneError, UnstableError
 from cases.loads import load_history
 from cases.material.calibrate import calibrate
 from cases.sampling import sample_times
-from compare.experiments.robustness.case import ALLOW, STEP, Finding, Trial
+from compare.experiments.robustness.case import ALLOW, STEP, Finding, Trial, criterion
 
 RANGE = log(1.7e308) - log(2.2e-308)  # all numbers, from the least to the largest
 
@@ -24,6 +24,7 @@ def exactly(trial: Trial, steps: int) -> dict[str, Any]:
     return {"record__interval": dt, "time__duration": dt * steps * (1 + 1e-9)}
 
 
+@criterion("fastest block or node, m/s, at most what the impulse gives at this step")
 def impulse_bound(trial: Trial) -> Finding:
     """No point moves faster than the load's impulse can make it, amplified as at this step.
 
@@ -42,7 +43,7 @@ def impulse_bound(trial: Trial) -> Finding:
 
 
 STEPS = 20_000
-STEPS_AT_THE_CRITICAL = 2000  # before what grows by steps is more than a guard lets pass
+STEPS_AT_THE_CRITICAL = 2000  # before linear growth is more than the divergence monitor allows
 
 
 def _gain(x: float, steps: int) -> float:
@@ -94,13 +95,14 @@ def _fastest(trial: Trial) -> float:
     scene = trial.scene()
     p, times = calibrate(scene), sample_times(scene)
     impulse = p.area * np.trapz(np.abs(load_history(scene).value(times)), times)
-    if trial.solver.engine == "dem":
+    if trial.solver.is_rigid:
         return impulse / p.block_mass
     n = scene.numerics.continuum
     mass = p.block_mass / (n.elements_per_block or 1) / (n.order * (n.order + 1))
     return impulse / mass
 
 
+@criterion("refused; forced, stopped before it can have passed all numbers")
 def caught(trial: Trial) -> Finding:
     """A step above the critical one is refused; forced, it is stopped within the range of numbers.
 
@@ -144,6 +146,7 @@ def _steps_until(trial: Trial, message: str, x: float) -> float:
     return round(float(found[1]) / (x * trial.critical))
 
 
+@criterion("energy after the load, over that at its end")
 def never_grows(trial: Trial) -> Finding:
     """Once the load has ended, implicit steps of any length never add energy.
 

@@ -10,21 +10,22 @@ import xarray as xr
 
 from cases.sampling import sample_times
 from cases.schema.scene import Scene
-from compare.exact.answer import YES, Answer, no
 from compare.exact.blocks.chain import chain, rates, receivers
 from compare.exact.blocks.lattice import HELD, at_rest
-from compare.exact.conditions import beyond
+from compare.exact.conditions import holds
 from compare.exact.drive import drive
+from compare.solvers.dem import DEM
+from compare.solvers.record import Answer
 from results.dataset import dataset
 
 NAME = "solve-ivp"
-ENGINE = "dem"
+ENGINE = DEM.name
+ARGUMENTS = ("rtol",)
 
 
 def applies(scene: Scene) -> Answer:
     """Return whether the scene is a chain of rigid blocks that moves along the axis."""
-    reason = beyond(scene, *HELD)
-    return no(reason) if reason else YES
+    return holds(scene, (*HELD, "no tension"))
 
 
 def solve(scene: Scene, rtol: float = 1e-6, method: str = "DOP853") -> xr.Dataset:

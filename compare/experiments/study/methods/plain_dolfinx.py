@@ -19,14 +19,16 @@ import xarray as xr
 from cases.material.calibrate import calibrate
 from cases.sampling import Clock, clock
 from cases.schema.scene import Scene
-from compare.exact.answer import YES, Answer, no
 from compare.exact.bar import equivalent_bar
-from compare.exact.conditions import has_interfaces, joints_are_damped, rock_is_damped
+from compare.exact.conditions import joints_are_damped
 from compare.exact.drive import drive
+from compare.solvers.continuum import EQUIVALENT_ROCK
+from compare.solvers.record import YES, Answer, no
 from results.dataset import dataset
 
 NAME = "plain-dolfinx"
-ENGINE = "continuum-equivalent"
+ENGINE = EQUIVALENT_ROCK.name
+ARGUMENTS: tuple[str, ...] = ()
 
 
 class Bar(NamedTuple):
@@ -53,9 +55,9 @@ def applies(scene: Scene) -> Answer:
     if not (answer := equivalent_bar.applies(scene)):
         return answer
     p, numerics = calibrate(scene), scene.numerics.continuum
-    if has_interfaces(p):
+    if p.excess_compliance.any():
         return no("a soft layer cuts the bar")
-    if joints_are_damped(p) and not rock_is_damped(p):
+    if joints_are_damped(p) and not p.time_constant:
         return no("a joint damps alone")
     if numerics.dim not in (None, 1) or numerics.mesh is not None:
         return no("it is a bar, meshed by itself")
@@ -101,16 +103,16 @@ def _march(scene: Scene, bar: Bar, time: Clock) -> tuple[np.ndarray, np.ndarray]
     from dolfinx import fem
 
     dt, gain = time.dt, scene.load.direction[1]
-    push = gain * drive(scene).value(dt * np.arange(time.steps + 1))
+    load = gain * drive(scene).value(dt * np.arange(time.steps + 1))
     u, v, force = np.zeros((3, len(bar.mass)))
-    slowed, pushed = bar.mass - dt / 2 * bar.dashpot, bar.mass + dt / 2 * bar.dashpot
+    below, above = bar.mass - dt / 2 * bar.dashpot, bar.mass + dt / 2 * bar.dashpot
     sampled = np.zeros((2, time.samples, len(bar.mass)))
     for n in range(time.steps + 1):
         bar.motion.x.array[:] = u + bar.eta * v
         force[:] = 0.0
         fem.assemble_vector(force, bar.form)
-        force[bar.start] += push[n]
-        before, v = v, (slowed * v + dt * force) / pushed
+        force[bar.start] += load[n]
+        before, v = v, (below * v + dt * force) / above
         v[bar.held] = 0.0
         if n % time.stride == 0:
             sampled[:, n // time.stride] = u, (before + v) / 2
@@ -127,7 +129,7 @@ def _bar(scene: Scene) -> Bar:
 
     p, order = calibrate(scene), scene.numerics.continuum.order
     per_block = scene.numerics.continuum.elements_per_block
-    count = p.block_count * (per_block or elements_for(scene, p, "equivalent"))
+    count = p.block_count * (per_block or elements_for(scene, p, str(EQUIVALENT_ROCK.model)))
     y = np.linspace(0.0, scene.pillar.length, count + 1)[:, None]
     cells = np.arange(count)[:, None] + np.arange(2)
     space = compat.lagrange_space(compat.cell_mesh("interval", cells, y), order)

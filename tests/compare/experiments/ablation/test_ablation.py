@@ -1,4 +1,4 @@
-"""What effects cost and are worth: leaving one out leaves exactly that one out."""
+"""Cost and influence of effects: leaving one out leaves exactly that one out."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ import dem
 from cases.effects import active_effects
 from cases.errors import SceneError
 from compare.experiments.ablation import ablation
-from compare.experiments.ablation.ablation import balance, prepare
+from compare.experiments.ablation.ablation import ablate, prepare
 from compare.experiments.ablation.variants import WITHOUT, left_out, only
 from compare.misfit.metrics import relative_l2
 
@@ -81,10 +81,10 @@ def cheap(monkeypatch):
     monkeypatch.setattr("compare.experiments.cost.step_cost.REPEATS", 1)
 
 
-def test_worth_is_the_misfit_of_the_answer_without(pillar, cheap):
-    """The ledger is worth nothing, dashpots are worth what they change and shorten the step."""
+def test_influence_is_the_misfit_of_the_result_without(pillar, cheap):
+    """The ledger changes nothing; dashpots do, and shorten the step."""
     scene = pillar(joints__damping_ratio=0.05, time__duration=0.03)
-    one = balance("a/b", scene, prepare(scene))
+    one = ablate("a/b", scene, prepare(scene))
     found = {w.effect: w for w in one.effects}
     assert set(found) == {"dashpots", "energy ledger"}
     assert found["energy ledger"].misfit == 0 and found["energy ledger"].steps == 1
@@ -109,7 +109,7 @@ def test_costs_are_differences_of_what_was_timed(pillar, monkeypatch):
     monkeypatch.setattr(ablation, "in_turns", known)
     scene = pillar(joints__damping_ratio=0.05, time__duration=0.01)
     names = "dashpots", "energy ledger"
-    one = balance(
+    one = ablate(
         "a/b", scene, [ablation.Dropped(name, 0.0, 1.0, True, False, "") for name in names]
     )
     assert (one.bare, one.own, one.everything) == (1.0, 7.0, 20.0)
@@ -125,7 +125,7 @@ def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, cheap):
     assert "moves the wall" in stays.reason
     scene = pillar(time__duration=0.01)
     there = ablation.Dropped("energy ledger", 0.0, 1.0, True, False, "")
-    fixed, ledger = balance("a/b", scene, [stays, there]).effects
+    fixed, ledger = ablate("a/b", scene, [stays, there]).effects
     assert fixed.reason == stays.reason
     assert np.isnan([fixed.alone, fixed.cost, fixed.share, fixed.rock, fixed.misfit]).all()
     assert ledger.reason == "" and np.isfinite([ledger.alone, ledger.cost]).all()
@@ -135,6 +135,6 @@ def test_rock_that_cannot_take_the_scene_has_no_number(pillar, cheap):
     """Local damping is the rigid blocks' alone; their own costs are there all the same."""
     scene = pillar(damping={"local": 0.1}, time__duration=0.01)
     there = ablation.Dropped("local damping", 0.1, 1.0, False, False, "")
-    found = balance("a/b", scene, [there])
+    found = ablate("a/b", scene, [there])
     assert np.isnan(found.rock) and np.isnan(found.effects[0].rock)
     assert np.isfinite(found.effects[0].cost)

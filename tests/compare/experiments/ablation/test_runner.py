@@ -10,18 +10,18 @@ import pytest
 
 from compare.cli.program import main
 from compare.experiments.ablation import runner
-from compare.experiments.ablation.ablation import Balance, Dropped, Worth
+from compare.experiments.ablation.ablation import Ablation, Dropped, Effect
 from compare.experiments.ablation.diagram import draw
 from compare.experiments.ablation.runner import Case, all_shipped, reported, run
-from compare.experiments.ablation.section import sentences, table, write_section
+from compare.experiments.ablation.summary import sentences, summarise, table
 
-LEDGER = Worth("energy ledger", 1.0, 3.0, 0.75, 1.0, nan, 0.0, "")
-LAYER = Worth("joints that differ", 0.1, -0.1, -0.025, 1.0, nan, 0.8, "")
-DAMPED = Worth("dashpots", 0.2, 2.0, 0.5, 4.0, 1.5, 0.05, "")
-SPACE = Worth("spatial motion", nan, nan, nan, nan, nan, nan, "is what the scene is about")
+LEDGER = Effect("energy ledger", 1.0, 3.0, 0.75, 1.0, nan, 0.0, "")
+LAYER = Effect("joints that differ", 0.1, -0.1, -0.025, 1.0, nan, 0.8, "")
+DAMPED = Effect("dashpots", 0.2, 2.0, 0.5, 4.0, 1.5, 0.05, "")
+SPACE = Effect("spatial motion", nan, nan, nan, nan, nan, nan, "is what the scene is about")
 FOUND = [
-    Balance("set/one", "One", "", 0.5, 4.0, 40.0, nan, [LAYER, LEDGER]),
-    Balance("set/two", "Two", "hard", 0.5, 4.0, 20.0, 3.0, [SPACE, DAMPED]),
+    Ablation("set/one", "One", "", 0.5, 4.0, 40.0, nan, [LAYER, LEDGER]),
+    Ablation("set/two", "Two", "hard", 0.5, 4.0, 20.0, 3.0, [SPACE, DAMPED]),
 ]
 
 
@@ -29,16 +29,15 @@ FOUND = [
 def counted(monkeypatch):
     """Replace solving and timing by something that counts; return what was timed."""
     timed = []
-    monkeypatch.setattr(runner, "prepare_whole", lambda: None)
     monkeypatch.setattr(
         runner, "prepare", lambda scene: [Dropped("energy ledger", 0.0, 1.0, True, False, "")]
     )
 
-    def balance(name, scene, dropped):
+    def ablate(name, scene, dropped):
         timed.append((name, dropped))
         return FOUND[0]._replace(scene=name, effects=[LEDGER, SPACE])
 
-    monkeypatch.setattr(runner, "balance", balance)
+    monkeypatch.setattr(runner, "ablate", ablate)
     return timed
 
 
@@ -51,15 +50,20 @@ def test_what_is_done_is_not_done_again(counted, pillar, tmp_path):
     assert [name for name, _ in counted] == ["a/b", "a/c"]
     assert repr(again[0]) == repr(first[0])
     assert fractions == sorted(fractions) and fractions[-1] == 1
-    assert sorted(p.name for p in tmp_path.iterdir()) == sorted(f"{c.key}.json" for c in more)
+    names = [f"{case.key}{end}.json" for case in more for end in ("", "-prepared")]
+    assert sorted(p.name for p in tmp_path.iterdir()) == sorted(names)
 
 
 def test_an_interrupted_run_keeps_what_was_solved(counted, pillar, tmp_path, monkeypatch):
     """Answers that are there are taken; only the timing is left to do."""
     wanted = [Case("a/b", pillar())]
-    runner.prepare_case(wanted[0], tmp_path)
+    timed = runner.ablate
+    monkeypatch.setattr(runner, "ablate", lambda *case: (_ for _ in ()).throw(KeyboardInterrupt))
+    with pytest.raises(KeyboardInterrupt):
+        run(wanted, tmp_path)
     monkeypatch.setattr(runner, "prepare", lambda scene: pytest.fail("solved again"))
-    run(wanted, tmp_path, None, None)
+    monkeypatch.setattr(runner, "ablate", timed)
+    run(wanted, tmp_path)
     assert counted[0][1] == [Dropped("energy ledger", 0.0, 1.0, True, False, "")]
 
 
@@ -80,7 +84,7 @@ def test_sentences_have_the_numbers_of_the_extremes():
     assert "10.0 % (set/one) to 20.0 % (set/two, hard)" in sets
     assert "the energy ledger: 75.0 % of a step of set/one" in nothing
     assert "dearest is dashpots in set/two, hard (50.0 % of a step, misfit 5.00 % without)" in some
-    assert "worth most is joints that differ in set/one (nothing that shows, misfit 80.0 %" in some
+    assert "influential is joints that differ in set/one (nothing that shows, misfit 80.0 %" in some
 
 
 def test_table_has_the_dearest_first_and_says_why_an_effect_stays():
@@ -95,7 +99,7 @@ def test_table_has_the_dearest_first_and_says_why_an_effect_stays():
 
 
 def test_diagram_has_a_point_for_every_effect_that_can_be_left_out():
-    """What costs or is worth nothing lies at an edge, hollow; the rest is filled."""
+    """What costs or influences nothing lies at an edge, hollow; the rest is filled."""
     ax = draw(FOUND).axes[0]
     points = {line.get_label(): line.get_xydata()[0] for line in ax.lines if line.get_gid()}
     assert set(points) == {"energy ledger", "joints that differ", "dashpots"}
@@ -108,7 +112,7 @@ def test_diagram_has_a_point_for_every_effect_that_can_be_left_out():
 
 
 def test_files_hold_every_number(tmp_path):
-    section = write_section(tmp_path, FOUND)
+    section = summarise(tmp_path, FOUND)
     frame = pd.read_csv(tmp_path / "effects.csv", keep_default_na=False)
     assert frame["effect"].tolist() == [w.effect for b in FOUND for w in b.effects]
     assert frame["ns_everything"].tolist() == [40, 40, 20, 20]

@@ -187,8 +187,8 @@ def test_what_is_done_of_a_study_is_known(tmp_path, monkeypatch):
         'vary = { "numerics.dem.step_fraction" = [0.4, 0.2] }\n'
     )
     (before,) = parts_of_study(str(file), tmp_path)
-    assert (before["count"], before["to_do"], before["seconds"]) == (2, 2, None)
+    assert (before.count, before.to_do, before.seconds) == (2, 2, None)
     run(load(str(file)), tmp_path / "mine")
     (after,) = parts_of_study(str(file), tmp_path)
-    assert (after["to_do"], after["seconds"]) == (0, 0.0)
+    assert (after.to_do, after.seconds) == (0, 0.0)
     assert timings.whole(rate(load(str(file)))) > 0

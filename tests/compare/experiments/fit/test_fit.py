@@ -16,9 +16,10 @@ from cases.schema.keys import keys
 from compare.cli.program import main
 from compare.exact.blocks import lattice
 from compare.experiments.fit import fit as fitting
-from compare.experiments.fit.files import draw, toml
+from compare.experiments.fit.diagram import draw
 from compare.experiments.fit.keys import changed, free_keys
 from compare.experiments.fit.problem import problem_of
+from compare.experiments.fit.scene_text import scene_text
 from compare.experiments.fit.statistics import autocorrelation_time
 from compare.misfit.external import Curves, Place, read_curves
 from compare.scenes import shipped
@@ -247,7 +248,7 @@ def test_every_number_of_a_scene_is_free_or_refused(scene):
             set_here = changed(scene, {here: 0.3})
         except SceneError:
             continue
-        told = toml(set_here)
+        told = scene_text(set_here)
         assert f"{name} = 0.3" in told and table.split(".")[0] in told
 
 
@@ -256,7 +257,7 @@ def test_scene_is_written_as_it_is_read(tmp_path):
     for path in shipped():
         for scene in cases.load(path):
             if scene.load.file is None:
-                (tmp_path / "scene.toml").write_text(toml(scene), "utf-8")
+                (tmp_path / "scene.toml").write_text(scene_text(scene), "utf-8")
                 (again,) = cases.load(tmp_path / "scene.toml")
                 assert again.model_dump() == {**scene.model_dump(), "name": ""}
 
@@ -288,7 +289,7 @@ FAULTS = {
 @pytest.fixture
 def files(scene, tmp_path):
     """Write scene and measurement, in MPa and ms, tension positive, and return their paths."""
-    (tmp_path / "scene.toml").write_text(toml(scene))
+    (tmp_path / "scene.toml").write_text(scene_text(scene))
     curves = heard(scene, noise=white(7, 1e4), late=1e-3)
     columns = np.c_[1e3 * curves.time, -1e-6 * curves.waveforms[AT_3]]
     path = tmp_path / "gauge.csv"

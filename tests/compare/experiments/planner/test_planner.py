@@ -165,7 +165,7 @@ SLIPPING = {
 def test_a_finer_step_that_is_worse_takes_the_credit_of_a_coarser_one():
     """7.1, 2.1, 0.96, 1.7, 1.9 %: only what no finer step undoes is met."""
     errors = (0.071, 0.021, 0.0096, 0.017, 0.019)
-    family = Family("dem", "dem", {}, 2)
+    family = Family("dem", {}, 2)
     along = [Choice(family, {}, 2**k, e, 0.0, 2.0**k, True) for k, e in enumerate(errors)]
     assert planner.cheapest(along, 0.01, None) is None
     assert planner.cheapest(along, 0.02, None).misfit == 0.0096
@@ -258,7 +258,7 @@ def test_steps_are_so_many_to_a_doubling():
 
 def test_finer_families_cost_more():
     coarse, fine = (
-        Family("continuum-jointed", "continuum", {"scheme": "explicit", **elements}, 2)
+        Family("continuum-jointed", {"scheme": "explicit", **elements}, 2)
         for elements in (
             {"order": 1, "elements_per_block": 1},
             {"order": 2, "elements_per_block": 1},
@@ -272,7 +272,7 @@ def test_finer_families_cost_more():
 
 def choice(numerical, seconds):
     """Return one of the steps of a family of its own, its model the finest physics."""
-    family = Family("dem", "dem", {"scheme": f"{numerical} {seconds}"}, 2)
+    family = Family("dem", {"scheme": f"{numerical} {seconds}"}, 2)
     return Choice(family, {}, 1, numerical, 0.0, seconds, True)
 
 

@@ -4,15 +4,24 @@ import numpy as np
 import pytest
 
 from compare.engines import solve
-from compare.experiments.robustness.case import ALLOW, FOURTH, LEAPFROG, STEP, Case, Finding, Trial
+from compare.experiments.robustness.case import (
+    ALLOW,
+    FOURTH,
+    LEAPFROG,
+    STEP,
+    Case,
+    Criterion,
+    Finding,
+    Trial,
+)
 from compare.experiments.robustness.criteria import accuracy, energies, steps
-from compare.experiments.robustness.linear_cases import BLOW, JOINT, SHORT, TINY
+from compare.experiments.robustness.linear_cases import BLOW, JOINT, TINY
 from compare.experiments.robustness.row import FAILED, HELD, NONE, row_of
 
 
 def judged(judge, changes, solver=LEAPFROG, **about):
     """Return the row of a case of one's own."""
-    return row_of(Case("a case", SHORT, "a criterion", judge, changes, **about), solver)
+    return row_of(Case("a case", judge, changes, **about), solver)
 
 
 def test_unstable_step_breaks_the_bound_of_the_stable_one(monkeypatch):
@@ -30,7 +39,7 @@ def test_step_that_is_never_stopped_is_not_caught():
         def run(self, **more):
             return super().run(**more | {STEP: 0.9})
 
-    case = Case("a case", SHORT, "", steps.caught, {STEP: 1.001} | BLOW)
+    case = Case("a case", steps.caught, {STEP: 1.001} | BLOW)
     assert not np.isfinite(steps.caught(Sound(case, LEAPFROG)).value)
 
 
@@ -42,7 +51,7 @@ def test_wrong_stiffness_breaks_the_accuracy():
             layers = [{"y": 0.5 * j, "normal_stiffness": 1.05 * JOINT} for j in range(1, 20)]
             return super().run(soft_layers=layers, **more)
 
-    case = Case("a case", SHORT, "", accuracy.near_exact)
+    case = Case("a case", accuracy.near_exact)
     sound, wrong = (accuracy.near_exact(kind(case, LEAPFROG)) for kind in (Trial, Stiffer))
     assert sound.value < sound.bound and wrong.value > wrong.bound
 
@@ -67,7 +76,7 @@ def test_dissipated_energy_that_comes_back_is_seen(pillar):
 def test_bound_that_bounds_nothing_fails():
     """A bound of infinity or nan, and a value of nan, hold nothing."""
     for finding in (Finding(1.0, np.inf), Finding(1.0, np.nan), Finding(np.nan, 1.0)):
-        assert judged(lambda trial, found=finding: found, {}).state == FAILED
+        assert judged(Criterion("", lambda trial, found=finding: found), {}).state == FAILED
 
 
 def test_spared_and_impossible_rows_give_their_reason():

@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from compare.experiments.study.diagram import draw, look
+from compare.experiments.study.diagram import draw, line_style
 from compare.experiments.study.findings import sentences
 from compare.experiments.study.pareto import cheapest, judged, measured
 from compare.experiments.study.runner import run
-from compare.experiments.study.show import cells
 from compare.experiments.study.study import load
+from compare.experiments.study.summary import cells
 
 
 def test_every_point_is_drawn_where_it_was_measured(study, tmp_path):
@@ -96,6 +96,6 @@ def test_an_order_of_elements_has_one_marker_and_what_is_implicit_is_dashed(stud
         for s in ("explicit", "implicit")
         for p in (1, 4)
     ]
-    looks = [look(study(curves), k) for k in range(len(curves))]
-    assert len({(x["color"], x["marker"], str(x["linestyle"])) for x in looks}) == len(curves)
-    assert len({x["color"] for x in looks}) == 2 == len({x["marker"] for x in looks})
+    styles = [line_style(study(curves), k) for k in range(len(curves))]
+    assert len({(x["color"], x["marker"], str(x["linestyle"])) for x in styles}) == len(curves)
+    assert len({x["color"] for x in styles}) == 2 == len({x["marker"] for x in styles})

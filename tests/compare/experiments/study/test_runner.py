@@ -9,6 +9,7 @@ from multiprocessing import get_context
 
 import pytest
 
+from compare.experiments.pool import alone
 from compare.experiments.study import measure, runner
 from compare.experiments.study.measure import TIMED
 from compare.experiments.study.runner import run
@@ -76,8 +77,8 @@ def test_timed_points_are_run_one_at_a_time_whatever_the_pool(study, tmp_path):
 
 def test_two_timed_studies_do_not_run_at_once(study, tmp_path):
     """The second waits for what the first has locked."""
-    program = "from compare.experiments.study.runner import alone\nwith alone(): print('in')"
-    with runner.alone():
+    program = "from compare.experiments.pool import alone\nwith alone(): print('in')"
+    with alone():
         waiting = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE)
         with pytest.raises(subprocess.TimeoutExpired):
             waiting.communicate(timeout=3)

@@ -75,6 +75,17 @@ def test_a_mistake_in_a_study_is_one_line(tmp_path, old, new, words):
         load(str(path))
 
 
+def test_a_curve_for_each_value_is_one_as_written_out(study):
+    """With the value in its label and its changes; the others of its keys stay."""
+    one = {"label": "order {order}", "method": "continuum-jointed", "changes": {"a": 1}}
+    found = study([{**one, "each": {"numerics.continuum.order": [2, 3]}}])
+    assert [curve.label for curve in found.curves] == ["order 2", "order 3"]
+    assert found.curves[1].changes == {"a": 1, "numerics.continuum.order": 3}
+    assert not any(curve.each for curve in found.curves)
+    with pytest.raises(ValueError, match=r"give 1e\+06 curves, at most 10000"):
+        study([{**one, "each": {"a": list(range(1000)), "b": list(range(1000))}}])
+
+
 def test_a_study_that_is_not_there_names_those_that_are(tmp_path):
     done = command("no-such", "--out", tmp_path, code=2)
     assert done.stderr.startswith("jointwave: no-such: is no file, nor one of column-3d")

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from cases.schema.values import SOLUTIONS
+from compare.engines import names
 from compare.misfit.pairs import Comparison
 from results.dataset import dataset
 
-EVERY = tuple(SOLUTIONS)
+EVERY = names()
 
 
 @pytest.fixture

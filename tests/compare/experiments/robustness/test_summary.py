@@ -5,7 +5,7 @@ import csv
 import numpy as np
 import pytest
 
-from compare.experiments.robustness import diagram, table
+from compare.experiments.robustness import diagram, summary
 from compare.experiments.robustness.criteria.energies import Drift
 from compare.experiments.robustness.map import make_map
 from compare.experiments.robustness.row import FAILED
@@ -22,21 +22,19 @@ def rows():
 
 def test_table_has_every_row_with_its_margin_or_reason(rows):
     """Under a heading of case and criterion; a failed row says so."""
-    found = table.table(rows)
+    found = summary.table(rows)
     ((heading, lines),) = found.groups.items()
     assert heading.startswith(CASES[0].name) and len(lines) == len(rows)
     assert lines[0][-1] == "failed: because" and f"{rows[1].margin:.3g}" in lines[1]
     assert any("does not apply" in line[-1] for line in lines)
-    assert len(table.failures(rows)) == 1 and "3 of 4 rows hold" in table.summary(rows)[0]
+    assert len(summary.failures(rows)) == 1 and "3 of 4 rows hold" in summary.sentences(rows, [])[0]
 
 
 def test_files_hold_every_row_and_cell(rows, tmp_path):
     """CSV, one line each below the header."""
     found = make_map("dem", cells=5)
-    for path, count in (
-        (table.write_rows(tmp_path / "rows.csv", rows), len(rows)),
-        (table.write_maps(tmp_path / "map.csv", [found]), 25),
-    ):
+    files = summary.write(tmp_path, rows, [found])
+    for path, count in zip(files, (len(rows), 25), strict=True):
         with path.open(newline="") as file:
             assert len(list(csv.DictReader(file))) == count
 

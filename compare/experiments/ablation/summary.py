@@ -1,0 +1,154 @@
+"""The summary of an ablation: the table, the diagram, and sentences of their numbers."""
+
+from __future__ import annotations
+
+from math import isfinite
+from pathlib import Path
+
+import pandas as pd
+
+from compare.experiments.ablation.ablation import Ablation, Effect
+from compare.experiments.ablation.diagram import draw
+from compare.experiments.summary import Summary
+from compare.experiments.tables import number
+from compare.figures.export import save
+from compare.report.tables import Table, percent
+from compare.runs.output import write_csv
+
+NAME = "effects"
+TITLE = "Cost and influence of every effect"
+RESOLVED = 0.01  # of a step: less does not stand out of the clock's noise
+COLUMNS = [
+    "effect",
+    "misfit without (%)",
+    "of the scene's step (%)",
+    "in the scene (ns)",
+    "alone (ns)",
+    "steps, times",
+    "jointed rock (ns)",
+    "why it stays",
+]
+TEXTS = COLUMNS[-1:]
+Pair = tuple[Ablation, Effect]
+
+
+def summarise(folder: Path, found: list[Ablation]) -> Summary:
+    """Return the summary; write effects.csv and the diagram into `folder`."""
+    csv = write_table(folder, found)
+    figure = save(draw(found), folder, NAME, TITLE)
+    return Summary(
+        NAME,
+        TITLE,
+        table(found),
+        sentences(found),
+        [],
+        [csv, *(figure.file(kind) for kind in ("svg", "pdf", "png"))],
+        found,
+        figure,
+        about="; ".join(a.label for a in found),
+        timed=True,
+    )
+
+
+def write_table(folder: Path, found: list[Ablation]) -> Path:
+    """Write effects.csv, a row an effect of a scene, ns and ratios."""
+    rows = [
+        {
+            "scene": a.scene,
+            "variant": a.variant,
+            **e._asdict(),
+            "ns_bare": a.bare,
+            "ns_own": a.own,
+            "ns_everything": a.everything,
+            "ns_rock": a.rock,
+        }
+        for a in found
+        for e in a.effects
+    ]
+    named = {"alone": "ns_alone", "cost": "ns_in_scene", "rock": "ns_rock_added"}
+    return write_csv(folder / f"{NAME}.csv", pd.DataFrame(rows).rename(columns=named), 6)
+
+
+def table(found: list[Ablation]) -> Table:
+    """Return all numbers, the effects of each scene under the cost of its own set, dearest first.
+
+    The last column is there if any effect stays.
+    """
+    stays = any(e.reason for a in found for e in a.effects)
+    columns = len(COLUMNS) if stays else len(COLUMNS) - 1
+    groups = {
+        f"{i}. {_heading(a)}": [_cells(e)[:columns] for e in sorted(a.effects, key=_dearest)]
+        for i, a in enumerate(found, start=1)
+    }
+    return Table(COLUMNS[:columns], groups)
+
+
+def _heading(a: Ablation) -> str:
+    text = (
+        f"{a.title} ({a.label}): {a.own:.2g} ns a block-step, {percent(a.own / a.everything)} % of "
+        f"{a.everything:.2g} ns with everything on; bare {a.bare:.2g} ns"
+    )
+    return f"{text}; jointed rock {a.rock:.2g} ns a freedom-step" if isfinite(a.rock) else text
+
+
+def _dearest(e: Effect) -> tuple[bool, float]:
+    return bool(e.reason), -e.cost if isfinite(e.cost) else 0
+
+
+def _cells(e: Effect) -> list[str]:
+    """Return an effect's numbers as text, under `COLUMNS`."""
+    if e.reason:
+        return [e.effect, *[""] * 6, e.reason]
+    return [
+        e.effect,
+        "0" if e.misfit == 0 else percent(e.misfit),
+        f"{100 * e.share:.2g}",
+        number(e.cost, "+.2g"),
+        number(e.alone, "+.2g"),
+        f"{e.steps:.3g}",
+        number(e.rock, "+.2g"),
+        "",
+    ]
+
+
+def sentences(found: list[Ablation]) -> list[str]:
+    """Return the extremes: of whole sets, of effects without influence, and of those with."""
+    said = [_of_sets(found)] if found else []
+    every = [(a, e) for a in found for e in a.effects if not e.reason]
+    idle = [(a, e) for a, e in every if e.misfit == 0]
+    active = [(a, e) for a, e in every if e.misfit > 0]
+    if idle:
+        a, e = max(idle, key=_share)
+        said.append(
+            f"The dearest effect that changes nothing of the result is the {e.effect}: "
+            f"{percent(e.share)} % of a step of {a.label}."
+        )
+    if active:
+        said.append(
+            f"Of those that change it, the dearest is {_of_effect(*max(active, key=_share))}; "
+            f"the most influential is {_of_effect(*max(active, key=_misfit))}; "
+            f"the least is {_of_effect(*min(active, key=_misfit))}."
+        )
+    return said
+
+
+def _share(pair: Pair) -> float:
+    return pair[1].share
+
+
+def _misfit(pair: Pair) -> float:
+    return pair[1].misfit
+
+
+def _of_sets(found: list[Ablation]) -> str:
+    parts = sorted((a.own / a.everything, a.label) for a in found)
+    ends = [f"{percent(share)} % ({label})" for share, label in (parts[0], parts[-1])]
+    return (
+        "With the effects that it calls for, a scene's block-step costs "
+        f"{' to '.join(dict.fromkeys(ends))} of one with everything on."
+    )
+
+
+def _of_effect(a: Ablation, e: Effect) -> str:
+    share = f"{percent(e.share)} % of a step" if e.share > RESOLVED else "nothing that shows"
+    return f"{e.effect} in {a.label} ({share}, misfit {percent(e.misfit)} % without)"

@@ -1,0 +1,126 @@
+"""The summary of the robustness suite: every row with its margin, the maps, the long energies."""
+
+from __future__ import annotations
+
+from math import inf
+from pathlib import Path
+
+import pandas as pd
+
+from compare.engines import Progress
+from compare.experiments.pool import Pool
+from compare.experiments.robustness.case import EQUIVALENT, JOINTED, LEAPFROG, Trial
+from compare.experiments.robustness.criteria.energies import Drift, drift
+from compare.experiments.robustness.diagram import draw
+from compare.experiments.robustness.linear_cases import MILLION
+from compare.experiments.robustness.map import StabilityMap
+from compare.experiments.robustness.row import FAILED, HELD, NONE, Row
+from compare.experiments.robustness.run import run, run_maps
+from compare.experiments.summary import Summary
+from compare.experiments.tables import frame, number, write_tables
+from compare.figures.export import save
+from compare.report.tables import Table
+
+NAME = "stability"
+TITLE = "Hard cases: what both engines are put to, and by what margin they hold"
+NOTE = (
+    "Above: stable and unstable cells as computed, under the line that theory draws. Below: "
+    "kinetic and elastic energy of undamped pillars over a million steps. The table has every hard "
+    "case on every engine and scheme; its margin is the bound over the value."
+)
+COLUMNS = ["engine and scheme", "value", "bound", "margin", ""]
+TEXTS = COLUMNS[-1:]
+
+
+def make_study(
+    out: Path, pool: Pool | None = None, slow: bool = True, progress: Progress | None = None
+) -> Summary:
+    """Run the suite, the maps and the long runs; write their tables and figure into `out`.
+
+    Rows and maps are saved in OUT/stability/. slow : also the rows that take long.
+    """
+    rows = run(pool, slow, progress, out / NAME)
+    maps = run_maps(pool, out / NAME)
+    figure = save(draw(maps, drifts()), out, NAME, TITLE)
+    files = [*write(out, rows, maps), figure.file("svg")]
+    said = sentences(rows, maps)
+    return Summary(
+        NAME,
+        TITLE,
+        table(rows),
+        said,
+        failures(rows),
+        files,
+        {"rows": rows, "sentences": said, "files": list(map(str, files))},
+        figure,
+        about=NOTE,
+    )
+
+
+def drifts() -> dict[str, Drift]:
+    """Return the energies over a million steps of the solvers that leapfrog's energy holds for."""
+    solvers = LEAPFROG, JOINTED, EQUIVALENT
+    return {s.name: drift(Trial(MILLION, s), 1_000_000) for s in solvers}
+
+
+def table(rows: list[Row]) -> Table:
+    """Return the rows under headings of case and criterion."""
+    groups: dict[str, list[list[str]]] = {}
+    for row in rows:
+        groups.setdefault(f"{row.case}: {row.criterion}", []).append(_cells(row))
+    return Table(COLUMNS, groups)
+
+
+def _cells(row: Row) -> list[str]:
+    name = f"{row.engine}, {row.scheme}"
+    if row.state == NONE:
+        return [name, "", "", "", f"{NONE}: {row.message}"]
+    margin = "all" if row.margin == inf else number(row.margin, ".3g")  # of a value of zero
+    said = row.message if row.state == HELD else f"failed: {row.message}"
+    return [name, number(row.value, ".3g"), number(row.bound, ".3g"), margin, said]
+
+
+def sentences(rows: list[Row], maps: list[StabilityMap]) -> list[str]:
+    """Return how many rows hold, the least margin, and the cells of maps that theory denies."""
+    held, failed, none = (
+        [row for row in rows if row.state == state] for state in (HELD, FAILED, NONE)
+    )
+    found = [
+        f"{len(held)} of {len(held) + len(failed)} rows hold; {len(none)} do not apply, each with "
+        "its reason."
+    ]
+    least = min(held, key=lambda row: row.margin, default=None)
+    if least is not None and least.margin < inf:
+        found.append(
+            f"The least margin is {least.margin:.3g}: {least.case}, {least.engine}, {least.scheme}."
+        )
+    return found + [
+        f"{m.engine}: {m.stable.size:,} cells, {int(m.wrong.sum())} on the wrong side of the line, "
+        f"{int(m.far.sum())} of them beyond one cell of it."
+        for m in maps
+    ]
+
+
+def failures(rows: list[Row]) -> list[str]:
+    """Return a line for each row that does not hold."""
+    return [
+        f"{row.case}, {row.engine}, {row.scheme}: {row.criterion}: {row.value:.3g} above "
+        f"{row.bound:.3g} {row.message}".rstrip()
+        for row in rows
+        if row.state == FAILED
+    ]
+
+
+def write(folder: Path, rows: list[Row], maps: list[StabilityMap]) -> list[Path]:
+    """Write stability.csv, a line a row, and stability-map.csv, a line a cell."""
+    names = ["damping ratio", "step over undamped critical step", "stable", "wrong side", "engine"]
+    cells = [
+        (ratio, step, m.stable[i, j], m.wrong[i, j], m.engine)
+        for m in maps
+        for j, ratio in enumerate(m.ratio)
+        for i, step in enumerate(m.step)
+    ]
+    return [
+        *write_tables(folder, NAME, frame(rows, Row)),
+        *write_tables(folder, f"{NAME}-map", pd.DataFrame(cells, columns=names)),
+    ]

@@ -1,0 +1,103 @@
+"""The summary of a study: its table, its orders of convergence, its findings, its files."""
+
+from pathlib import Path
+
+from compare.engines import Progress
+from compare.experiments.cost.machine import machine
+from compare.experiments.study.diagram import write_diagram
+from compare.experiments.study.findings import sentences
+from compare.experiments.study.measure import Row
+from compare.experiments.study.orders import Order, orders
+from compare.experiments.study.pareto import digits_per_second
+from compare.experiments.study.runner import run
+from compare.experiments.study.study import Study, load
+from compare.experiments.summary import Summary
+from compare.experiments.tables import frame, number, write_tables
+from compare.report.tables import Table
+
+#: The studies of the report, in its order.
+REPORTED = ("free-pillar", "convergence", "uniform-chain")
+CANCELS = "×"
+COLUMNS = [
+    *("point", "numerical, %", "modelling, %", "sum, %", "measured, %", "steps", "work", "kB"),
+    *("set-up, s", "compiling, s", "stepping, s", "±", "digits/s"),
+]
+LEGEND = (
+    "Sum: numerical and modelling error with what their references are not known to; it counts. "
+    f"Measured: from the finest physics; {CANCELS} where errors cancel, or a finer point is worse."
+)
+
+
+def summarise(folder: Path, name: str, study: Study, rows: list[Row]) -> Summary:
+    """Return the summary of a study; write NAME.csv, NAME.nc and the diagram into `folder`."""
+    table = frame(rows, Row)
+    data = table.rename_axis("point").to_xarray()
+    data = data.assign_attrs(title=study.title, study=study.model_dump_json(), **machine())
+    files = write_tables(folder, name, table, data)
+    figure = write_diagram(folder, name, study, rows)
+    files += [figure.file(kind) for kind in ("svg", "pdf", "png")] if figure else []
+    found = orders(study, rows)
+    groups: dict[str, list[list[str]]] = {}
+    for row in rows:
+        groups.setdefault(row.curve, []).append(cells(row))
+    return Summary(
+        name,
+        study.title,
+        Table(COLUMNS, groups),
+        sentences(study, rows) + [_of_order(order) for order in found],
+        [f"{_of_point(r)}: {r.message}" for r in rows if r.state == "failed"],
+        files,
+        {"rows": rows, "orders": found, "files": [str(file) for file in files]},
+        figure,
+        study.note,
+        LEGEND if any(row.total == row.total for row in rows) else "",
+        study.quantity or "",
+        study.timed,
+    )
+
+
+def reported(
+    out: Path, names: tuple[str, ...] = REPORTED, progress: Progress | None = None
+) -> list[Summary]:
+    """Run studies one after the other, here and alone; write figures and tables into `out`."""
+    found, folder = [], out / "studies"
+    for i, name in enumerate(names):
+        study = load(name)
+        found.append(summarise(folder, name, study, run(study, folder / name)))
+        if progress:
+            progress((i + 1) / len(names))
+    return found
+
+
+def cells(row: Row) -> list[str]:
+    """Return a row as text, under `COLUMNS`."""
+    return [
+        _settings(row) or "as it stands",
+        number(100 * row.numerical, ".3g"),
+        number(100 * row.modelling, ".3g"),
+        number(100 * row.total, ".3g"),
+        number(100 * row.measured, ".3g") + (f" {CANCELS}" if row.cancels else ""),
+        number(row.steps, ".0f"),
+        number(row.work, ".2e"),
+        number(row.bytes / 1e3, ".3g"),
+        number(row.setup, ".2g"),
+        number(row.compile, ".2g"),
+        number(row.seconds, ".3g"),
+        number(row.spread, ".1g"),
+        number(digits_per_second(row), ".3g"),
+    ]
+
+
+def _of_order(order: Order) -> str:
+    """Return a measured order beside that of theory."""
+    return (
+        f"{order.curve}: order {order.measured:.2f} with {order.key}, in theory {order.theory:g}."
+    )
+
+
+def _settings(row: Row) -> str:
+    return ", ".join(f"{k.rpartition('.')[2]} {v}" for k, v in row.settings.items())
+
+
+def _of_point(row: Row) -> str:
+    return ", ".join(filter(None, [row.curve, _settings(row)]))

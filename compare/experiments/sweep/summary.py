@@ -1,0 +1,106 @@
+"""The summary of a sweep: a tidy table, and a grid with the swept keys as dimensions."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import xarray as xr
+
+from compare.experiments.summary import Summary
+from compare.experiments.sweep.axis import Axis
+from compare.experiments.sweep.case import Case, Outcome
+from compare.experiments.tables import cell, number, write_tables
+from compare.misfit.metrics import Distance
+from compare.report.tables import Table
+
+NAME = "sweep"
+#: The numbers of a run, of a receiver of it, and of a pair of solutions at a receiver.
+OF_RUNS = ("steps", "freedoms", "seconds", "energy_residual")
+OF_RECEIVERS, OF_PAIRS = ("peak", "time_of_peak"), Distance._fields
+UNITS = {"y": "m", "time_of_peak": "s", "seconds": "s", "delay": "s"}
+#: Columns shown of runs and of comparisons: name, heading, and format of a number.
+SHOWN_OF_RUNS = (
+    ("peak", "peak, SI", ".4g"),
+    ("time_of_peak", "at, s", ".4g"),
+    ("steps", "steps", ",.0f"),
+    ("seconds", "stepping, s", ".2g"),
+    ("energy_residual", "energy residual", ".1e"),
+)
+SHOWN_OF_PAIRS = (
+    ("misfit", "misfit", ".3%"),
+    ("peak_ratio", "peak", ".4f"),
+    ("delay", "delay, s", "+.2e"),
+    ("envelope", "envelope", ".2%"),
+    ("phase", "phase", ".2%"),
+)
+
+
+def table(axes: list[Axis], wanted: list[Case], found: list[Outcome]) -> pd.DataFrame:
+    """Return one row for each receiver of each run or pair, or for each case that failed; SI."""
+    rows: list[dict[str, Any]] = []
+    for case, one in zip(wanted, found, strict=True):
+        point = {axis.key: cell(case.settings[axis.key]) for axis in axes}
+        about = {**point, "variant": case.variant, "state": one.state, "message": one.message}
+        rows += [{**about, **row} for row in one.rows or [{}]]
+    return pd.DataFrame(rows)
+
+
+def summarise(folder: Path | None, scene: str, axes: list[Axis], rows: pd.DataFrame) -> Summary:
+    """Return the summary of a sweep; write sweep.csv and, where anything is done, sweep.nc.
+
+    folder : None writes nothing.
+    """
+    done, failed = rows[rows.state == "done"], rows[rows.state == "failed"]
+    files: list[Path] = []
+    if folder is not None:
+        data = None if done.empty else grid(axes, done).assign_attrs(scene=scene)
+        files = write_tables(folder, NAME, rows, data)
+    columns = SHOWN_OF_PAIRS if "one" in rows else SHOWN_OF_RUNS
+    groups: dict[str, list[list[str]]] = {}
+    for row in done.to_dict("records"):
+        numbers = [number(float(row[name]), form, "-") for name, _, form in columns]
+        groups.setdefault(_heading(row), []).append([_point(axes, row), *numbers])
+    return Summary(
+        NAME,
+        scene,
+        Table([", ".join(a.key for a in axes), *(head for _, head, _ in columns)], groups),
+        [],
+        [f"{_point(axes, r)} {r['variant']}: {r['message']}" for r in failed.to_dict("records")],
+        files,
+        {"rows": json.loads(rows.to_json(orient="records")), "files": list(map(str, files))},
+    )
+
+
+def grid(axes: list[Axis], done: pd.DataFrame) -> xr.Dataset:
+    """Return rows on the grid of swept keys, variants, and engines or pairs; nan where none is."""
+    point = [*(axis.key for axis in axes), "variant"]
+    if "one" in done:
+        pairs = done.assign(pair=done["one"] + " ~ " + done["other"])
+        found = _on_grid(pairs, [*point, "pair", "quantity", "y"], OF_PAIRS)
+    else:
+        found = _on_grid(done, [*point, "engine", "quantity", "y"], OF_RECEIVERS)
+        runs = done.drop_duplicates([*point, "engine"])
+        found = found.merge(_on_grid(runs, [*point, "engine"], OF_RUNS))
+    found = found.reindex({axis.key: list(map(cell, axis.values)) for axis in axes})
+    for name in UNITS.keys() & found.variables.keys():
+        found[name].attrs["units"] = UNITS[name]
+    return found
+
+
+def _on_grid(rows: pd.DataFrame, index: list[str], numbers: Sequence[str]) -> xr.Dataset:
+    return rows.set_index(index)[list(numbers)].astype(float).to_xarray()
+
+
+def _heading(row: dict[str, Any]) -> str:
+    solved = f"{row['one']} ~ {row['other']}" if "one" in row else row["engine"]
+    place = f", {row['quantity']} at y = {row['y']:g} m" if row["quantity"] else ""
+    return f"{row['variant']}: {solved}{place}" if row["variant"] else f"{solved}{place}"
+
+
+def _point(axes: list[Axis], row: dict[str, Any]) -> str:
+    values = (row[axis.key] for axis in axes)
+    return ", ".join(f"{v:.6g}" if isinstance(v, float) else str(v) for v in values)

@@ -1,0 +1,1 @@
+"""The engines as entries of the registry, and the record that every solver has there."""

@@ -1,0 +1,107 @@
+"""The continuum engine as two entries of the registry, one for each model of the rock."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from cases.schema.scene import Scene
+from cases.size import estimates
+from compare.solvers.record import (
+    BAR,
+    JOINTED,
+    YES,
+    Answer,
+    Form,
+    Kind,
+    Line,
+    Prepared,
+    Rock,
+    Solver,
+    Words,
+    no,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def applies(scene: Scene, model: str) -> Answer:
+    """Return whether dolfinx is there and the model holds for the scene."""
+    try:
+        from continuum import applies as reason_against
+    except ImportError as error:
+        return no(f"dolfinx cannot be imported ({error})")
+    reason = reason_against(scene, model)
+    return no(reason) if reason else YES
+
+
+def run(scene: Scene, progress=None, comm=None, keeper=None, *, model: str) -> xr.Dataset:
+    """Return the result of a scene; comm : mpi4py's, of processes that share the run."""
+    from continuum import simulate
+
+    return simulate(scene, model=model, progress=progress, comm=comm, keeper=keeper)
+
+
+def prepare(scene: Scene, model: str) -> Prepared:
+    """Return the step and the size of a run; raises SceneError as the run would."""
+    from compare.runs.processes import started
+    from continuum.build import critical_step_of, discretise
+    from continuum.scheme import choose
+    from continuum.size import refuse_large_run
+
+    with estimates() as parts:
+        discrete = discretise(scene, model)
+        critical = critical_step_of(scene, discrete, model)
+        choice = choose(scene, discrete, critical)
+        refuse_large_run(scene, discrete.kinematics, choice.time)
+    settings = {
+        "scheme": choice.scheme,
+        "dim": discrete.kinematics.dim,
+        "cell": discrete.body.mesh.cell,
+        "order": scene.numerics.continuum.order,
+        "processes": started().size,
+    }
+    time, freedoms, size = choice.time, discrete.body.degrees_of_freedom, sum(parts.values())
+    return Prepared(choice.scheme, time.steps, time.dt, critical, freedoms, size, settings)
+
+
+def libraries() -> dict[str, str]:
+    """Return the version of dolfinx."""
+    from continuum import compat
+
+    return {"dolfinx": compat.VERSION}
+
+
+def _of(model: str, **about: Any) -> Solver:
+    return Solver(
+        name=f"continuum-{model}",
+        form=Form.RUN,
+        dimension=3,
+        applies=partial(applies, model=model),
+        run=partial(run, model=model),
+        prepare=partial(prepare, model=model),
+        engine="continuum",
+        model=model,
+        schemes=("explicit", "implicit"),
+        cost=("scheme", "dim", "cell", "order", "processes"),
+        shares=True,
+        libraries=libraries,
+        **about,
+    )
+
+
+JOINTED_ROCK = _of(
+    "jointed",
+    rock=Rock.JOINTED,
+    words=Words(JOINTED, "jointed rock", "节理岩体（有限元）", "continuum, every joint resolved"),
+    line=Line("#f0a030", 3.4, 1, printed=(3.5, 0.9), printed_width=2.2, ledger=(5, 2)),
+    distances={Kind.BETWEEN: ("dem", "continuum-equivalent")},
+)
+EQUIVALENT_ROCK = _of(
+    "equivalent",
+    rock=Rock.HOMOGENISED,
+    words=Words(BAR, "homogenised rock", "等效岩体（有限元）", "homogenised continuum"),
+    line=Line("#8fd4bd", 4.8, 0, printed=(1.1, 0.8), printed_width=2.9, ledger=(1.2, 1.6)),
+    distances={Kind.BETWEEN: ("dem",)},
+)

@@ -1,0 +1,75 @@
+"""The rigid-block engine as an entry of the registry."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cases.effects import is_spatial
+from cases.schema.scene import Scene
+from cases.size import estimates
+from compare.solvers.record import BLOCKS, YES, Form, Line, Prepared, Rock, Solver, Words
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from results.dataset import Fields
+
+
+def run(scene: Scene, progress=None, comm=None, keeper=None) -> xr.Dataset:
+    """Return the result of a scene; `comm` is unused, one process runs it."""
+    from dem import simulate
+
+    return simulate(scene, progress, keeper=keeper)
+
+
+def run_fields(scene: Scene, progress=None, comm=None, keeper=None) -> Fields:
+    """Return the result as plain arrays, without importing xarray."""
+    from dem import simulate_fields
+
+    return simulate_fields(scene, progress, keeper=keeper)
+
+
+def prepare(scene: Scene) -> Prepared:
+    """Return the step and the size of a run; raises SceneError as the run would."""
+    with estimates() as parts:
+        time, critical, freedoms, threads = (_spatial if is_spatial(scene) else _axial)(scene)
+    scheme = scene.numerics.dem.scheme
+    settings = {"scheme": scheme, "threads": threads}
+    size = sum(parts.values())
+    return Prepared(scheme, time.steps, time.dt, critical, freedoms, size, settings)
+
+
+def _axial(scene: Scene):
+    from dem.axial.simulate import scheme_of
+
+    _, _, time, critical = scheme_of(scene).build(scene)
+    return time, critical, scene.pillar.block_count, 1
+
+
+def _spatial(scene: Scene):
+    from dem.spatial import simulate
+    from dem.spatial.threads import thread_count
+
+    count = scene.pillar.block_count
+    freedoms = (3 if scene.motion.rotation == "none" else 6) * count
+    prepared = simulate.prepare(scene)
+    threads = thread_count(scene.numerics.dem.threads, count)
+    return prepared.time, prepared.critical, freedoms, threads
+
+
+DEM = Solver(
+    name="dem",
+    rock=Rock.RIGID_BLOCKS,
+    form=Form.RUN,
+    dimension=3,
+    words=Words(BLOCKS, "rigid blocks", "刚性块体（离散元）", "rigid blocks"),
+    line=Line("#56b4e9", 2.2, 2, printed_width=1.5),
+    applies=lambda scene: YES,
+    run=run,
+    fields=run_fields,
+    prepare=prepare,
+    engine="dem",
+    schemes=("leapfrog", "fourth-order"),
+    per_block=True,
+    cost=("scheme", "threads"),
+)

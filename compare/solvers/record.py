@@ -1,0 +1,213 @@
+"""The record of a solver: what the registry knows of an engine or of an exact solution."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from cases.schema.scene import Scene
+from cases.size import waveform_bytes
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from results.dataset import Fields
+
+
+class Rock(IntEnum):
+    """The rock mass as a solver resolves it, from the coarsest to the finest."""
+
+    ONE_BODY = 1
+    HOMOGENISED = 2
+    RIGID_BLOCKS = 3
+    JOINTED = 4
+
+    @property
+    def words(self) -> str:
+        """The rock in words."""
+        return _ROCK[self]
+
+
+_ROCK = {
+    Rock.ONE_BODY: "one rigid body",
+    Rock.HOMOGENISED: "homogenised rock",
+    Rock.RIGID_BLOCKS: "rigid blocks with every joint",
+    Rock.JOINTED: "deformable rock with every joint",
+}
+
+
+class Form(IntEnum):
+    """A solution is an engine's run, computed with a bound of its own error, or a formula."""
+
+    RUN = 1
+    COMPUTED = 2
+    CLOSED = 3
+
+
+class Kind(IntEnum):
+    """The meaning of the distance between two solvers."""
+
+    NUMERICAL = 1
+    MODELLING = 2
+    BETWEEN = 3
+
+    @property
+    def words(self) -> str:
+        """The meaning in words."""
+        return ("numerical error", "modelling error", "between engines")[self - 1]
+
+
+class Answer(NamedTuple):
+    """Yes, or the reason why not; true where the solver holds."""
+
+    yes: bool
+    reason: str = ""
+
+    def __bool__(self) -> bool:
+        return self.yes
+
+
+YES = Answer(True)
+
+
+def no(reason: str) -> Answer:
+    """Return the answer no, for this reason."""
+    return Answer(False, reason)
+
+
+class Words(NamedTuple):
+    """The names of a solver.
+
+    heading : of its group in a legend. english, chinese : its label in a figure for print.
+    sentence : of an engine, in the lead of the report.
+    """
+
+    heading: str
+    english: str
+    chinese: str
+    sentence: str = ""
+
+
+#: The headings of legends, in their order.
+BLOCKS, JOINTED, BAR, ALONE = HEADINGS = (
+    "Rigid blocks",
+    "Intact rock and joints",
+    "Homogenised bar",
+    "One mechanism alone",
+)
+
+
+class Line(NamedTuple):
+    """The curve of a solver; widths in points, dashes in line widths, empty: solid.
+
+    slot : the part of each period of dashes that an exact solution's line fills on a screen.
+    order : the largest is drawn on top. printed : dashes in print, no two alike. printed_width :
+    in print. ledger : dashes of an engine in the diagram of energies, whose colours are the terms'.
+    """
+
+    colour: str
+    width: float
+    order: int
+    slot: tuple[float, ...] = ()
+    printed: tuple[float, ...] = ()
+    printed_width: float = 0.8
+    ledger: tuple[float, ...] = ()
+
+
+def thin(colour: str, order: int, slot: tuple[float, ...], printed: tuple[float, ...]) -> Line:
+    """Return the line of an exact solution: thin and dashed, over those of the engines."""
+    return Line(colour, 1.1, order, slot, printed)
+
+
+class Prepared(NamedTuple):
+    """A run before its first step.
+
+    scheme : of time steps. steps : their number, 0 without any. dt, critical : the step and the
+    critical step of explicit ones, s. freedoms : of the blocks or the rock. bytes : of memory, of
+    solutions without steps the least, their waveforms. settings : what decides the cost of a step.
+    """
+
+    scheme: str
+    steps: int
+    dt: float
+    critical: float
+    freedoms: int
+    bytes: float
+    settings: Mapping[str, Any]
+
+
+def without_steps(scene: Scene) -> Prepared:
+    """Return what is known of an exact solution before it is computed."""
+    return Prepared("exact", 0, 0.0, 0.0, 0, waveform_bytes(scene), {})
+
+
+@dataclass(frozen=True)
+class Solver:
+    """An engine or an exact solution: what it resolves, its names and its line, and its functions.
+
+    Attributes
+    ----------
+    rock, form : how it resolves the rock mass, and how its solution is known.
+    dimension : 1 where it has no motion across the axis beside a plane wave.
+    discretised : whether an engine discretises this very model; a solution of one mechanism alone
+        leaves out what else the engines have.
+    applies : of (scene), to whether it holds for a scene.
+    run : of (scene), to its result; of an engine of (scene, progress, comm, keeper).
+    prepare : of (scene), to what is known before a run; raises SceneError as the run would.
+    distances : by kind, the names of the solvers whose distance from this one is measured.
+    arguments : names of the arguments that `run` takes beside the scene.
+    engine, model : as --engine and --model select it; `engine` of the engines is also their table
+        of [numerics].
+    schemes : of time steps. per_block : whether a step's cost is counted in blocks, else in
+        freedoms. cost : the settings of a run that decide what a step costs.
+    shares : whether several processes can share a run.
+    fields : of the arguments of an engine's `run`, to plain arrays, where that saves imports.
+    libraries : the versions that decide the bits of a result, beside those of numpy and numba.
+    """
+
+    name: str
+    rock: Rock
+    words: Words
+    line: Line
+    applies: Callable[[Scene], Answer]
+    run: Callable[..., xr.Dataset]
+    form: Form = Form.COMPUTED
+    dimension: int = 1
+    discretised: bool = True
+    prepare: Callable[[Scene], Prepared] = without_steps
+    distances: Mapping[Kind, tuple[str, ...]] | None = None
+    arguments: tuple[str, ...] = ()
+    engine: str = "exact"
+    model: str | None = None
+    schemes: tuple[str, ...] = ()
+    per_block: bool = False
+    cost: tuple[str, ...] = ()
+    shares: bool = False
+    fields: Callable[..., Fields] | None = None
+    libraries: Callable[[], dict[str, str]] = dict
+
+    @property
+    def is_engine(self) -> bool:
+        """Whether it steps through time, so that its error falls with its step."""
+        return self.form is Form.RUN
+
+    @property
+    def exact(self) -> bool:
+        """Whether it solves its model exactly, not by an engine's steps."""
+        return not self.is_engine
+
+    @property
+    def has_rigid_blocks(self) -> bool:
+        """Whether its blocks are rigid, so that it has no elements."""
+        return self.rock is Rock.RIGID_BLOCKS
+
+    @property
+    def unit(self) -> str:
+        """What the cost of its steps is counted in."""
+        return "blocks" if self.per_block else "freedoms"
+
+    def units(self, scene: Scene, freedoms: int) -> int:
+        """Return how many of them a run has."""
+        return scene.pillar.block_count if self.per_block else freedoms

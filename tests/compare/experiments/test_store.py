@@ -1,0 +1,124 @@
+"""The store of experiments: each point computed once, on any executor, saved as soon as done."""
+
+import os
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from math import inf, isnan, nan
+from multiprocessing import get_context
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from cases.errors import SceneError
+from compare.experiments.cost import timings
+from compare.experiments.store import Store, key, plain
+
+
+class Square(NamedTuple):
+    """A result with numbers that JSON does not have."""
+
+    number: int
+    square: float
+    root: float = nan
+
+
+def square(number):
+    return Square(number, float(number**2))
+
+
+def dies(number):
+    if number == 2:
+        os._exit(1)
+    return square(number)
+
+
+@pytest.fixture
+def store(tmp_path):
+    return Store(Square, tmp_path)
+
+
+def test_points_are_computed_once_in_their_order(store):
+    """Also one that is asked for twice; the second time all are read, NaN included."""
+    calls, fractions = [], []
+
+    def counted(number):
+        calls.append(number)
+        return square(number)
+
+    first = store.compute([3, 1, 3], str, counted, progress=fractions.append)
+    again = store.compute([1, 3], str, counted)
+    assert calls == [3, 1] and fractions == [0.5, 1.0]
+    assert [one.square for one in first] == [9.0, 1.0, 9.0]
+    assert [one.square for one in again] == [1.0, 9.0] and isnan(again[0].root)
+    assert store.has("1") and not store.has("2")
+
+
+def test_processes_give_what_one_gives(store):
+    pool = partial(ProcessPoolExecutor, 2, get_context("spawn"))
+    found = store.compute(range(5), str, square, pool)
+    assert [one.number for one in found] == list(range(5)) and store.has("4")
+
+
+def test_an_interrupted_experiment_has_saved_what_was_done(store):
+    def until_two(number):
+        if number == 2:
+            raise KeyboardInterrupt
+        return square(number)
+
+    with pytest.raises(KeyboardInterrupt):
+        store.compute(range(5), str, until_two)
+    assert [store.has(str(n)) for n in range(5)] == [True, True, False, False, False]
+
+
+def test_a_point_whose_process_dies_is_lost_and_not_saved(store):
+    """Where the experiment has a result for it; else that is an error."""
+    pool, lost = partial(ProcessPoolExecutor, 1, get_context("spawn")), Square(-1, nan)
+    found = store.compute([2], str, dies, pool, lost=lost)
+    assert found == [lost] and not store.has("2")
+    with pytest.raises(Exception, match="terminated abruptly"):
+        store.compute([2], str, dies, pool)
+
+
+def test_a_result_that_no_longer_holds_is_computed_anew(tmp_path):
+    Store(Square, tmp_path).save("1", square(5))
+    store = Store(Square, tmp_path, lambda one: one.number == 1)
+    assert store.has("1") and store.read("1") is None
+    assert store.compute([1], str, square)[0].square == 1.0
+    assert store.read("1").number == 1
+
+
+def test_without_a_folder_nothing_is_saved(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    store = Store(Square, None)
+    assert store.compute([2], str, square)[0].square == 4.0
+    assert store.file("2") is None and store.read("2") is None and not list(tmp_path.iterdir())
+
+
+def test_a_damaged_file_is_one_line_that_names_it(store):
+    store.file("1").write_text('{"number": "many"}')
+    with pytest.raises(SceneError, match=r"1\.json.*is damaged, remove it") as error:
+        store.compute([1], str, square)
+    assert "\n" not in str(error.value)
+
+
+def test_the_seconds_of_a_point_are_remembered_where_any_was_computed(store):
+    store.compute([1, 2], str, square, rate="square")
+    assert timings.whole("square") > 0
+    store.compute([1, 2], str, square, rate="none is new")
+    assert timings.whole("none is new") is None
+
+
+def test_keys_tell_all_that_decides_a_point_apart(monkeypatch):
+    """The program too, but not the order of settings."""
+    assert key("a", {"x": 1, "y": 2}) == key("a", {"y": 2, "x": 1})
+    assert len({key("a", 1), key("a", 2), key("b", 1), key("a", [1])}) == 4
+    before = key("a")
+    monkeypatch.setattr("compare.experiments.store.program", lambda: "another")
+    assert key("a") != before
+
+
+def test_results_are_plain_objects_lists_and_numbers():
+    found = plain({"rows": (Square(1, inf), square(2)), "array": np.array([[1.0], [2.0]])})
+    assert found["rows"][0]["square"] == inf and found["rows"][1]["number"] == 2
+    assert found["array"] == [[1.0], [2.0]]
