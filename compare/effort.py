@@ -8,8 +8,6 @@ from math import inf
 from pathlib import Path
 from time import perf_counter
 
-import numba
-
 import cases
 from cases.effects import is_spatial
 from cases.files import read_json
@@ -17,6 +15,7 @@ from cases.sampling import Clock
 from cases.scene import Scene
 from compare.engines import solve
 from compare.output import write_text
+from joints import jit
 
 PILLAR = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
 #: A function that takes some samples, and its number of block-steps.
@@ -117,18 +116,19 @@ def stretches(scene: Scene, guarded: tuple[bool, ...], threads: int = 1) -> list
 
 
 def _along_axis(scene: Scene, guarded: tuple[bool, ...]) -> list[Stretch]:
-    from dem.axial.record import room
+    from dem.axial.samples import buffers
     from dem.axial.simulate import scheme_of
     from joints.guard import guard
 
     scheme = scheme_of(scene)
     model, state, time, _ = scheme.build(scene)
     count = _samples(time, state.u.size)
-    samples, block_steps = room(model, state, count), count * time.stride * state.u.size
+    samples, block_steps = buffers(model, state, count), count * time.stride * state.u.size
+    run = scheme.runner(scene, time)
 
     def timed(held: bool) -> Stretch:
-        march = scheme.marcher(scene, model, state, samples, time, guard(inf) if held else None)
-        return lambda: march(0, count), block_steps
+        monitor = guard(inf) if held else None
+        return lambda: run(model, state, samples, time.stride, 0, count, monitor), block_steps
 
     return [timed(held) for held in guarded]
 
@@ -185,4 +185,4 @@ def _known() -> dict[str, float]:
 
 
 def _file() -> Path:
-    return Path(numba.config.CACHE_DIR) / "effort.json"
+    return jit.DIRECTORY / "effort.json"

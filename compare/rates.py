@@ -12,15 +12,13 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-import numba
-
-import joints.jit  # noqa: F401  it says where the kernels are
 from cases.effects import active_effects
 from cases.files import read_json
 from cases.result import scene_hash
 from cases.scene import Scene
 from compare.engines import ENGINES
 from compare.output import write_text
+from joints import jit
 
 LARGEST_FILE = 10_000_000  # bytes
 SHORTEST = 0.01  # s: what is over sooner tells too little to replace what is known
@@ -114,4 +112,4 @@ def _keep(key: str, value: float) -> None:
 
 
 def _file() -> Path:
-    return Path(numba.config.CACHE_DIR) / "rates.json"
+    return jit.DIRECTORY / "rates.json"

@@ -33,7 +33,7 @@ def test_scenes_in_turns_cost_what_they_cost_one_by_one():
 
 def test_everything_is_measured_once(tmp_path, monkeypatch):
     """The first call measures and keeps; later ones read; a broken file is measured again."""
-    monkeypatch.setattr(effort.numba.config, "CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(effort.jit, "DIRECTORY", tmp_path)
     measured = []
     monkeypatch.setattr(effort, "nanoseconds", lambda scene: measured.append(scene) or 42.0)
     assert whole(100) == whole(100) == 42.0

@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
+from dem.axial.motion import advanced
+from dem.axial.step import joint_force, march
 
 import dem
 from cases.calibrate import calibrate
 from cases.sampling import Clock
 from dem.axial.model import build, build_model
-from dem.axial.motion import advanced
 from dem.axial.state import state_at_rest
-from dem.axial.step import joint_force, march
 from joints.laws import Law
 
 COMPRESSION = {"load": {"shape": "step", "amplitude": 1e6}, "time__duration": 0.03}
@@ -67,7 +67,7 @@ def test_idle_quiet_end_changes_no_bit(pillar):
         if model.chain.end is not None:
             idle = model.chain.end._replace(viscosity=0.0)
             model = model._replace(chain=model.chain._replace(end=idle))
-        state = state_at_rest(model.chain, p.block_count, False)
+        state = state_at_rest(model.effects, p.block_count, False)
         march(model, state, 0, clock.steps)
         ends.append(state.u)
     assert (ends[0] == ends[1]).all()
