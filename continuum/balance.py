@@ -15,11 +15,11 @@ from continuum.record import (
     record_energy,
 )
 from continuum.tractions import at, elastic_slip, gap_at, load_joints, push, rate_at
-from joints.borrowed import borrowed
-from joints.jit import inlined, jitted
 from joints.laws import History, law_of
-from joints.optional import given
 from joints.tangent import tangent
+from numerics.borrowed import borrowed
+from numerics.jit import inlined, jitted
+from numerics.optional import given
 
 #: Rows of the tangents: t_n with the gap; t_x, t_z with it; t_x with x, either with the other, t_z
 #: with z.

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from cases.calibrate import Properties
+from cases.material.calibrate import Properties
 from cases.sampling import Clock
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from continuum.model import Model, State
 from continuum.team import Alone
-from joints.guard import speed_that
+from numerics.divergence import speed_that
 
 
 def highest_speed(

@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
-from cases.calibrate import Properties, calibrate
 from cases.errors import SceneError
+from cases.material.calibrate import Properties, calibrate
 from cases.sampling import Clock
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from continuum.body import Body, build_body, whole
 from continuum.critical import any_motion
 from continuum.elasticity import Material
@@ -24,7 +24,7 @@ from continuum.receivers import points, sections
 from continuum.record import TERMS
 from continuum.size import refuse_large_file, refuse_large_mesh
 from continuum.sparse import Rows, rows, sparse
-from joints.rows import zeros
+from numerics.aligned import zeros
 
 
 class Discrete(NamedTuple):

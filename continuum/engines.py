@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from continuum.body import Body
 from continuum.build import Discrete
 from continuum.model import Model, Samples, State

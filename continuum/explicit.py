@@ -12,17 +12,17 @@ numba removes the branch that would use it.
 from continuum.operator import multiply
 from continuum.record import book, record
 from continuum.tractions import load_joints, push
-from joints.borrowed import borrowed
-from joints.guard import EVERY, creates_energy, runs_away
-from joints.jit import inlined, jitted
-from joints.tiny import flush_tiny, restore_tiny
+from numerics.borrowed import borrowed
+from numerics.denormals import flush_tiny, restore_tiny
+from numerics.divergence import EVERY, creates_energy, runs_away
+from numerics.jit import inlined, jitted
 
 
 @jitted
 def run(model, state, samples, stride, first, last, guard=None):
     """Take steps first .. last - 1 and a sample at every step that `stride` divides.
 
-    guard : `joints.guard.Guard` that ends it where it runs out of bounds; None without.
+    guard : `numerics.divergence.Guard` that ends it where it runs out of bounds; None without.
     """
     old = flush_tiny()
     model, state, samples = borrowed(model), borrowed(state), borrowed(samples)

@@ -6,7 +6,6 @@ longer ones again, so that whole steps end on the clock.
 
 import numpy as np
 
-from cases.arrays import changed, copied, fill
 from cases.errors import StoppedError
 from continuum.balance import record_balanced, stiffen
 from continuum.implicit_step import Matrices, Moment, Stepper, joint_room
@@ -14,6 +13,7 @@ from continuum.model import Model, Samples, State
 from continuum.newton import Outcome
 from continuum.substeps import motion_at, pressure_at
 from continuum.watch import Watch
+from results.arrays import changed, copied, fill
 
 HALVINGS = 10
 WHOLE = 1 << HALVINGS

@@ -4,14 +4,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.calibrate import Properties
+from cases.material.calibrate import Properties
 from continuum.interface import Jumps
 from continuum.model import Interfaces, Measured, Memory, Tractions
 from continuum.runs import runs
 from continuum.sparse import rows
 from joints.laws import Law
-from joints.rows import zeros
 from joints.uniform import law
+from numerics.aligned import zeros
 
 #: Over an ordinary joint: the stiffness of one that differs from it in strength alone, where the
 #: homogenised bar holds it already. It makes the rock softer by a tenth of one joint.

@@ -12,8 +12,8 @@ from scipy.sparse import block_diag, csr_matrix
 
 from continuum.lanes import WIDTH, add_scaled, load, store, zero
 from continuum.sparse import Rows
-from joints.jit import inlined, jitted
-from joints.rows import zeros
+from numerics.aligned import zeros
+from numerics.jit import inlined, jitted
 
 TILE = 4  # registers wide; a part's blocks are dealt out evenly, so that tiles have 3 to 5
 ROUND_OFF = 1e-13  # of two diagonal entries: what quadrature leaves of entries that are zero

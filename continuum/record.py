@@ -6,10 +6,10 @@ from continuum.operator import multiply
 from continuum.sparse import row
 from continuum.tractions import at, elastic_slip, gap_at
 from joints.energy import elastic_energy, fracture_energy_spent
-from joints.jit import inlined
 from joints.laws import law_of
-from joints.optional import given
-from joints.sums import total
+from numerics.jit import inlined
+from numerics.optional import given
+from numerics.sums import total
 
 #: The rows of a ledger, in the order of `book` and `record_energy`.
 TERMS = ("kinetic", "elastic", "fracture", "gravity", "viscous", "friction", "boundary", "work")

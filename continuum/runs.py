@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, hstack
 
-from joints.jit import inlined, jitted
+from numerics.jit import inlined, jitted
 
 ROUND_OFF = 1e-11  # of coefficients, which are basis functions and of the order of 1
 

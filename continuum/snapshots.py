@@ -5,17 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from cases.result import Fields
-from cases.scene import Scene
-from cases.snapshots import (
-    Film,
-    Snapshots,
-    refuse_beyond_room,
-    samples_between,
-    snapshots,
-    with_snapshots,
-)
-from cases.subcells import KINDS, linear_cells
+from cases.schema.scene import Scene
 from continuum import compat
 from continuum.body import axis
 from continuum.build import Discrete
@@ -23,6 +13,16 @@ from continuum.model import State
 from continuum.places import at_reference, matrix_of
 from continuum.receivers import section_tractions
 from continuum.team import Pieces
+from results.dataset import Fields
+from results.snapshots import (
+    Film,
+    Snapshots,
+    refuse_beyond_room,
+    samples_between,
+    snapshots,
+    with_snapshots,
+)
+from results.subcells import KINDS, linear_cells
 
 
 class RockFilm(Film):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from joints.jit import inlined
+from numerics.jit import inlined
 
 
 class Rows(NamedTuple):

@@ -7,11 +7,11 @@ compression positive, on the far side), the joints' force on the freedoms is B^T
 from continuum.runs import add_runs, multiply_runs
 from continuum.sparse import row
 from joints.energy import friction_work
-from joints.jit import inlined
 from joints.laws import law_of, normal_traction, spring_traction
-from joints.optional import either, given
 from joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
 from joints.softening import update_opening
+from numerics.jit import inlined
+from numerics.optional import either, given
 
 
 @inlined

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from cases.runaway import Sighting, stopped
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from continuum.body import axis
 from continuum.bound import highest_speed
 from continuum.build import Discrete
 from continuum.model import Model, Samples, State
 from continuum.scheme import Choice
-from joints.guard import ENERGY, EVERY, audit, guard, look
+from numerics.divergence import ENERGY, EVERY, audit, guard, look
+from numerics.instability import Sighting, stopped
 
 
 class Watch:
@@ -17,7 +17,8 @@ class Watch:
 
     Attributes
     ----------
-    guard : `joints.guard.Guard`. energy : the whole ledger [term, sample], J; None when not kept.
+    guard : `numerics.divergence.Guard`. energy : the whole ledger [term, sample], J; None when not
+    kept.
     parts : arrays that change with the run. time : its clock.
     """
 

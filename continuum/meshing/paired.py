@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cases.calibrate import Properties
+from cases.material.calibrate import Properties
 from continuum.meshing import facets
 from continuum.meshing.description import Joints
 from continuum.meshing.facets import Facets

@@ -5,7 +5,7 @@ from math import ceil
 
 import numpy as np
 
-from cases.calibrate import Properties
+from cases.material.calibrate import Properties
 from continuum.meshing import facets
 from continuum.meshing.cells import KINDS
 from continuum.meshing.description import Mesh, Part

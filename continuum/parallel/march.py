@@ -6,10 +6,10 @@ once more when the shares are there.
 
 from continuum.explicit import accelerate, advance, forces
 from continuum.parallel.exchange import receive, send
-from joints.borrowed import borrowed
-from joints.guard import EVERY, runs_away
-from joints.jit import inlined, jitted
-from joints.tiny import flush_tiny, restore_tiny
+from numerics.borrowed import borrowed
+from numerics.denormals import flush_tiny, restore_tiny
+from numerics.divergence import EVERY, runs_away
+from numerics.jit import inlined, jitted
 
 
 @jitted

@@ -7,9 +7,9 @@ compression.
 from math import inf
 from typing import NamedTuple
 
-from cases.calibrate import Properties
+from cases.material.calibrate import Properties
 from joints.ends import HalfSpring, half_spring
-from joints.flat.formula import formula
+from numerics.formula import formula
 
 
 class End(NamedTuple):

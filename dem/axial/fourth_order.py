@@ -25,10 +25,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from cases.calibrate import calibrate
 from cases.loads import load_history
+from cases.material.calibrate import calibrate
 from cases.sampling import Clock, clock
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from dem.axial.model import Model, unloaded
 from dem.axial.samples import Samples, buffers, sample
 from dem.axial.springs import spring_forces
@@ -37,10 +37,10 @@ from dem.axial.state import State, state_at_rest
 from dem.size import refuse_large
 from joints.flat.energy import elastic_energy
 from joints.flat.law import law_of
-from joints.guard import EVERY, SPEED, Guard, guard, out_of_bounds
-from joints.jit import jitted
-from joints.sums import total_of
-from joints.tiny import flush_tiny, restore_tiny
+from numerics.denormals import flush_tiny, restore_tiny
+from numerics.divergence import EVERY, SPEED, Guard, guard, out_of_bounds
+from numerics.jit import jitted
+from numerics.sums import total_of
 
 XI, LAMBDA, CHI = 0.1786178958448091, -0.2123418310626054, -0.06626458266981849
 

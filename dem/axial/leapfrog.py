@@ -19,10 +19,10 @@ from joints.flat.energy import elastic_energy, fracture_energy_spent
 from joints.flat.law import law_of
 from joints.flat.normal import normal_traction, spring_traction
 from joints.flat.softening import strength_left
-from joints.guard import ENERGY, EVERY, SPEED, Guard, gains_energy, guard, out_of_bounds
-from joints.jit import jitted
-from joints.sums import total_of
-from joints.tiny import flush_tiny, restore_tiny
+from numerics.denormals import flush_tiny, restore_tiny
+from numerics.divergence import ENERGY, EVERY, SPEED, Guard, gains_energy, guard, out_of_bounds
+from numerics.jit import jitted
+from numerics.sums import total_of
 
 
 def run(
@@ -47,12 +47,18 @@ def march(model: Model, state: State, first: int, last: int) -> None:
 
 
 def _take(model, state, samples, monitor, first, last, index, stride):
+    loop = loop_for(model.effects._replace(ledger=state.work is not None))
+    loop(*arguments(model, state, samples, monitor), first, last, index, stride)
+
+
+def arguments(model: Model, state: State, samples: Samples, monitor: Guard | None) -> tuple:
+    """Return what a time loop takes, but for its steps and samples."""
     limits, every = (guard(0.0), 0) if monitor is None else (monitor, EVERY)
     limit = limits.limit.view(np.float64)[0]
-    loop_for(model.effects._replace(ledger=state.work is not None))(
+    return (
         model.chain, model.laws, model.load, model.base,
         *model.receivers.sections, *model.receivers.points, *state, *samples,
-        limit, limits.peak, limits.found, first, last, index, stride, every,
+        limit, limits.peak, limits.found, every,
     )  # fmt: skip
 
 
@@ -77,7 +83,7 @@ def loop_for(effects):
         u, v, force, gap_rate, opening, broke, start, end,
         work, last_force, viscous, behind, dashpot_force,
         stress, velocity, displacement, energy, v_before,
-        limit, peak, found, first, last, s, stride, every,
+        limit, peak, found, every, first, last, s, stride,
     ):  # fmt: skip
         tiny = flush_tiny()
         count, law, dt, x = u.size, law_of(laws, 0), c.dt, c.impulse_to_speed

@@ -6,8 +6,8 @@ import numpy as np
 
 from dem.axial.model import Effects, Model
 from dem.axial.state import State
-from joints.flat.formula import formula
-from joints.rows import zeros
+from numerics.aligned import zeros
+from numerics.formula import formula
 
 
 class Samples(NamedTuple):

@@ -9,14 +9,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cases.arrays import copied, size_of
-from cases.calibrate import Properties, calibrate
-from cases.keeper import Keeper
 from cases.loads import with_load_itself
-from cases.result import Fields, fields
-from cases.runaway import stopped
+from cases.material.calibrate import Properties, calibrate
 from cases.sampling import Clock, interpolation
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from dem import looks
 from dem.axial import leapfrog
 from dem.axial.bound import highest_speed
@@ -26,7 +22,11 @@ from dem.axial.start import start
 from dem.axial.state import State
 from dem.fragments import break_times, with_fragments
 from dem.static import since_prestress
-from joints.guard import guard, look
+from numerics.checkpoint import Keeper
+from numerics.divergence import guard, look
+from numerics.instability import stopped
+from results.arrays import copied, size_of
+from results.dataset import Fields, fields
 
 if TYPE_CHECKING:
     from dem.snapshots import BlockFilm

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import continuum
-from cases.snapshots import snapshots_of
-from compare.fieldfiles import read_pvd, write_pvd
+from compare.runs.field_files import read_pvd, write_pvd
+from results.snapshots import snapshots_of
 
 LENGTH, BLOCK, SIDE = 2.0, 0.5, 0.5
 SHORT = {

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from compare.exact.manufactured import Manufactured
+from compare.exact.solid.manufactured import Manufactured
 from continuum import compat
 from continuum.body import Body, build_body
 from continuum.elasticity import Material, Section, lame_constants

@@ -17,8 +17,8 @@ from kernels import ROUNDS, rate
 from plain_dolfinx import Pillar
 from rock import BLOCKS, CASES, SAME_STEPS, Engine, assert_same, engine_of, pillar_of
 
-from cases.arrays import size_of
 from continuum.operator import Operator, layout, multiply, operator, zeros
+from results.arrays import size_of
 
 
 class Contender(NamedTuple):

@@ -14,9 +14,9 @@ from statistics import median
 from kernels import SLIDES, rate
 from rock import Engine, engine_of
 
-from compare.effort import changed, stretches
+from compare.experiments.cost.step_cost import changed, stretches
 from continuum.explicit import run
-from joints.guard import Guard, guard
+from numerics.divergence import Guard, guard
 
 FREEDOM_STEPS = 5_000_000
 PROCESSES = 7

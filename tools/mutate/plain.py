@@ -8,24 +8,24 @@ from types import CodeType, ModuleType
 
 #: What stands for modules that only numba can compile.
 SOURCES = {
-    "joints.jit": """
+    "numerics.jit": """
 def jitted(function):
     return function
 
 apart = inlined = jitted
 """,
-    "joints.borrowed": """
+    "numerics.borrowed": """
 def borrowed(value):
     return value
 """,
-    "joints.tiny": """
+    "numerics.denormals": """
 def flush_tiny():
     return 0
 
 def restore_tiny(old):
     pass
 """,
-    "joints.atomic": """
+    "numerics.atomic": """
 def peek(counters, i):
     return counters[i]
 
@@ -53,7 +53,7 @@ def add_scaled(lanes, factor, other):
     return lanes + factor * other
 """,
 }
-PACKAGES = ("cases", "joints", "dem", "continuum", "compare")
+PACKAGES = ("cases", "results", "numerics", "joints", "dem", "continuum", "compare")
 
 
 class Finder(importlib.abc.MetaPathFinder):

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from cases.calibrate import calibrate
-from cases.result import imbalance
-from compare.exact import generalised_alpha as theory
+from cases.material.calibrate import calibrate
+from compare.exact.schemes import generalised_alpha as theory
 from continuum.generalised_alpha import scheme
 from continuum.record import TERMS
+from results.dataset import imbalance
 
 OBLIQUE = {"load__direction": [0.6, 0.8, 0.0]}
 ACROSS = OBLIQUE | {"motion__rotation": "none"}

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.calibrate import calibrate
+from cases.material.calibrate import calibrate
 from continuum.meshing.cells import DIMENSION, jacobians
 from continuum.meshing.given import given_mesh
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.calibrate import calibrate
+from cases.material.calibrate import calibrate
 from continuum.body import build_body
 from continuum.elasticity import Material, Section
 from continuum.meshing.description import Joints, Mesh, Part, Side

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_matrix, diags
 
-from cases.calibrate import calibrate
+from cases.material.calibrate import calibrate
 from continuum.body import build_body, whole
 from continuum.elasticity import Material, Section
 from continuum.interface import jumps
