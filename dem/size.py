@@ -5,7 +5,7 @@ from cases.schema.scene import Scene
 from cases.size import load_bytes, refuse_beyond_memory, snapshot_bytes, waveform_bytes
 
 #: Bytes a block, with all that makes the model and all that can be remembered of its joint.
-AXIAL, SPATIAL = 70, 200
+AXIAL, SPATIAL = 80, 200
 #: Bytes a block for each contact point of joints that open or slide.
 POINT = 60
 CORNERS = 8  # of a block, in snapshots

@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from numerics.jit import apart, inlined, jitted
+from numerics.formula import formula
+from numerics.jit import jitted
 
 EVERY = 96  # steps, at most, between two looks at the speeds
 RUNAWAY = 100.0  # times the speed that forces can cause: at the critical step leapfrog swings wide
@@ -64,42 +65,16 @@ def speed_that(*motions: float) -> float:
     return float(sum(abs(motion) for motion in motions))
 
 
-@inlined
-def next_look(guard, n, end):
-    """Return after which step, `end` at most, to look next."""
-    if guard is None:
-        return end
-    return min(n + EVERY, end)
+@formula
+def out_of_bounds(v, limit):
+    """Return whether a magnitude is above the limit, or NaN."""
+    found = 0
+    for i in range(v.size):
+        found += not abs(v[i]) <= limit
+    return found > 0
 
 
-@inlined
-def is_lost(guard, v, n, energy, s, stride):
-    """Return whether, after n steps, the speeds are out of bounds, or the last sample of a ledger,
-    s, of every stride-th step.
-
-    Both looks are functions of their own: the steps are compiled as they are without a guard.
-    """
-    if guard is None:
-        return False
-    if speeds_exceed(v, guard.limit[0]):
-        note(guard.found, n, SPEED, n - EVERY - 1)
-        return True
-    return ledger_creates(guard, energy, s, s * stride)
-
-
-@apart
-def speeds_exceed(v, limit):
-    """Return what `exceeds` does."""
-    return exceeds(v, limit)
-
-
-@apart
-def ledger_creates(guard, energy, s, n):
-    """Return what `creates_energy` does."""
-    return creates_energy(guard, energy, s, n)
-
-
-@inlined
+@formula
 def runs_away(guard, v, n):
     """Return whether, after n steps, a velocity is out of bounds or no number."""
     if guard is not None and exceeds(v, guard.limit[0]):
@@ -108,7 +83,7 @@ def runs_away(guard, v, n):
     return False
 
 
-@inlined
+@formula
 def exceeds(v, limit):
     """Return whether a magnitude is above the limit, given by its bits, or no number.
 
@@ -121,29 +96,31 @@ def exceeds(v, limit):
     return signs < 0
 
 
-@inlined
+@formula
 def creates_energy(guard, energy, s, n):
     """Return whether sample s, at step n, of a ledger [term, sample] holds energy from nowhere."""
-    if guard is not None and energy is not None:
-        return _creates(guard, energy, s, n)
-    return False
-
-
-@inlined
-def _creates(guard, energy, s, n):
-    work, created, most = energy.shape[0] - 1, 0.0, 0.0
-    for k in range(work + 1):
-        gained = energy[k, s] - energy[k, 0]
-        created += -gained if k == work else gained
-        guard.peak[0] = max(guard.peak[0], abs(gained))
-        most = max(most, abs(energy[k, s]))
-    if created > CREATED * guard.peak[0] + LAST_DIGITS * most:
+    if guard is not None and energy is not None and gains_energy(guard.peak, energy, s):
         note(guard.found, n, ENERGY, n - EVERY - 1)
         return True
     return False
 
 
-@inlined
+@formula
+def gains_energy(peak, energy, s):
+    """Return whether sample s of a ledger [term, sample] holds energy from nowhere.
+
+    peak : float array [1], the largest change of a term so far, J.
+    """
+    work, created, most = energy.shape[0] - 1, 0.0, 0.0
+    for k in range(work + 1):
+        gained = energy[k, s] - energy[k, 0]
+        created += -gained if k == work else gained
+        peak[0] = max(peak[0], abs(gained))
+        most = max(most, abs(energy[k, s]))
+    return created > CREATED * peak[0] + LAST_DIGITS * most
+
+
+@formula
 def note(found, n, what, sound):
     """Keep what was found first."""
     if found[0] < 0:

@@ -24,8 +24,9 @@ def widest_vectors() -> None:
 
 
 widest_vectors()
-numba.config.CACHE_DIR = str(cache_directory(Path(__file__).resolve().parent.parent))
-mark_used(Path(numba.config.CACHE_DIR))
+#: Where kernels are cached; numba forgets its own setting when one of its variables changes.
+DIRECTORY = cache_directory(Path(__file__).resolve().parent.parent)
+mark_used(DIRECTORY)
 
 
 def jitted(function: Callable) -> Callable:
@@ -56,6 +57,7 @@ def inlined(function: Callable) -> Callable:
 
 
 def _compiled(function: Callable, **options: bool) -> Callable:
+    numba.config.CACHE_DIR = str(DIRECTORY)
     common = {"forceinline": True, "nogil": True, "no_cfunc_wrapper": True}
     kernel = numba.njit(cache=True, fastmath=False, error_model="numpy", **(common | options))(
         function
@@ -73,9 +75,8 @@ def _one_at_a_time(save: Callable) -> Callable:
 
     @wraps(save)
     def alone(*arguments: Any) -> None:
-        directory = Path(numba.config.CACHE_DIR)
-        make(directory)
-        with (directory / "lock").open("w") as file:
+        make(DIRECTORY)
+        with (DIRECTORY / "lock").open("w") as file:
             fcntl.flock(file, fcntl.LOCK_EX)
             save(*arguments)
 

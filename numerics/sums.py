@@ -1,9 +1,9 @@
 """Sums over blocks or freedoms."""
 
-from numerics.jit import inlined
+from numerics.formula import formula
 
 
-@inlined
+@formula
 def total(x, y=None, z=None):
     """Return the sum of all x y z, factors that are None left out.
 
@@ -21,7 +21,22 @@ def total(x, y=None, z=None):
     return (a + b) + (c + d)
 
 
-@inlined
+@formula
+def total_of(x):
+    """Return the sum of all x, as `total` does."""
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    whole = x.size - x.size % 4
+    for i in range(0, whole, 4):
+        a += x[i]
+        b += x[i + 1]
+        c += x[i + 2]
+        d += x[i + 3]
+    for i in range(whole, x.size):
+        a += x[i]
+    return (a + b) + (c + d)
+
+
+@formula
 def factor(values, i):
     """Return the i-th of values; one where there are none."""
     if values is None:

@@ -9,8 +9,9 @@ from cases.errors import StoppedError
 from cases.material.calibrate import calibrate
 from continuum.simulate import steps_of
 from dem.axial.bound import highest_speed
+from dem.axial.leapfrog import run
 from dem.axial.model import build
-from dem.axial.record import room, run
+from dem.axial.samples import buffers
 from dem.axial.simulate import scheme_of
 from dem.spatial.simulate import critical_step_of
 from numerics.divergence import ENERGY, EVERY, RUNAWAY, SPEED, guard
@@ -78,14 +79,14 @@ def test_it_stops_within_so_many_steps_of_leaving_its_bounds(pillar):
     )
     model, state, time, _ = build(scene)
     speed = highest_speed(model, state, time)
-    samples, left = room(model, state, time.samples), None
+    samples, left = buffers(model, state, time.samples), None
     for n in range(time.steps):
         run(model, state, samples, 1, n, n + 1)
         if left is None and np.abs(state.v).max() > RUNAWAY * speed:
             left = n + 1
     model, state, time, _ = build(scene)
     held = guard(speed)
-    run(model, state, room(model, state, time.samples), 1, 0, time.samples, held)
+    run(model, state, buffers(model, state, time.samples), 1, 0, time.samples, held)
     assert left is not None and left <= held.found[0] < left + EVERY
     assert held.found[1] == SPEED
 
@@ -95,13 +96,11 @@ def test_a_chain_that_gains_energy_is_stopped_by_its_ledger(pillar):
     done the work. The run ends at the next look."""
     scene = pillar(**SMALL)
     model, state, time, _ = build(scene)
-    samples, held = room(model, state, time.samples), guard(np.inf)
+    samples, held = buffers(model, state, time.samples), guard(np.inf)
     half = int(0.008 / scene.interval)  # the pulse is within the pillar
     run(model, state, samples, time.stride, 0, half, held)
     assert held.found[0] == -1
-    law = model.chain.law
-    stiffer = law._replace(normal_stiffness=1.5 * law.normal_stiffness)
-    model = model._replace(chain=model.chain._replace(law=stiffer))
+    model.laws[0] *= 1.5
     run(model, state, samples, time.stride, half, time.samples, held)
     assert half * time.stride <= held.found[0] < half * time.stride + EVERY
     assert held.found[1] == ENERGY

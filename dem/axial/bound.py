@@ -1,4 +1,4 @@
-"""How fast a chain can become at most: what its run is held to."""
+"""A bound on the speed of a chain, which the divergence monitor compares its run with."""
 
 import numpy as np
 
@@ -11,24 +11,24 @@ from numerics.divergence import speed_that
 def highest_speed(model: Model, state: State, time: Clock) -> float:
     """Return a bound on the speed of any block, m/s.
 
-    What the load, the weight and a prestress can push into blocks of mass m, the way a base is
-    shaken, in whose frame all blocks are pushed, and what joints and ends store at the start.
+    What the load, the weight and a prestress can add to blocks of mass m, the motion of a base, in
+    whose frame all blocks are loaded, and what joints and ends store at the start.
     """
-    chain, blocks = model.chain, state.u.size
-    m, duration = chain.mass, time.dt * (time.steps + time.stride)
-    steady = np.abs(chain.steady).sum() if chain.steady else 0.0
+    c, blocks = model.chain, state.u.size
+    duration = time.dt * (time.steps + time.stride)
     with np.errstate(over="ignore"):
         return speed_that(
-            time.dt * (np.abs(model.load) / m).sum(),
-            duration * steady / m,
-            duration * np.sqrt(blocks) * (chain.weight or 0.0) / m,
+            time.dt * (np.abs(model.load) / c.mass).sum(),
+            duration * (abs(c.start_force) + abs(c.end_force)) / c.mass,
+            duration * np.sqrt(blocks) * c.weight / c.mass,
             np.sqrt(blocks) * shaking(model.base, time.dt),
-            stored(model, state) / np.sqrt(m),
+            stored(model, state) / np.sqrt(c.mass),
         )
 
 
 def shaking(base: np.ndarray | None, dt: float) -> float:
-    """Return the total variation of the velocity of a shaken base, m/s, given its steps (m)."""
+    """Return the total variation of the velocity of a shaken base, m/s, given its displacement
+    increments (m); 0 for none."""
     if base is None:
         return 0.0
     return float(np.abs(np.diff(base, prepend=0.0, append=0.0)).sum() / dt)
@@ -36,11 +36,10 @@ def shaking(base: np.ndarray | None, dt: float) -> float:
 
 def stored(model: Model, state: State) -> float:
     """Return the root of twice the energy in all springs, sqrt(J)."""
-    chain = model.chain
-    joints = np.sqrt(np.asarray(chain.law.normal_stiffness) * chain.area) * np.diff(state.u)
+    c, stiffness = model.chain, model.laws[0]
+    joints = np.sqrt(stiffness * c.area) * np.diff(state.u)
     ends = [
-        np.sqrt(end.stiffness) * kept[0]
-        for end, kept in ((chain.start, state.start), (chain.end, state.end))
-        if end is not None and end.stiffness is not None
+        np.sqrt(end.stiffness) * closure
+        for end, (closure, _) in ((c.start, state.start), (c.end, state.end))
     ]
     return float(np.hypot(np.linalg.norm(joints), np.linalg.norm(ends)))

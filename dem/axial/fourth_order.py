@@ -1,7 +1,14 @@
-"""Steps of fourth order of the undamped chain, each four of leapfrog's kicks and drifts.
+"""Steps of fourth order of the undamped chain: PEFRL, a symmetric composition of four kicks.
 
-`dem.axial.composition` has the weights. Displacement and velocity both live at whole steps. A stage
-is a step of leapfrog, `dem.axial.step`, whose kick and drift have lengths of their own.
+A step is D K D K D K D K D: drifts u += a dt v and kicks v += b dt F / m. The weights xi, lambda,
+chi are those of the position-extended Forest-Ruth-like scheme: Omelyan, Mryglod & Folk, Comput.
+Phys. Commun. 146 (2002), 188-202. Displacement and velocity both live at whole steps.
+
+Chosen by its error at equal work, measured on the paper's undamped pillar under a Ricker wavelet
+of T = 10 ms: relative L2 of the stress at y = 20 m, 0-0.12 s, at 240 forces per T. PEFRL 2.0e-6,
+the six-stage schemes of Blanes & Moan (J. Comput. Appl. Math. 142, 2002) 2.2e-6 (S6) and 2.4e-6
+(SRKN6b), VEFRL 2.8e-5, Suzuki's of five stages 1.5e-4 (at 200), Forest & Ruth (1990) 6.7e-4,
+leapfrog 2.5e-3.
 
 The load acts with its value at the time of each kick; a mean over the step, as leapfrog takes it,
 would leave second order. The order is four while the load is smooth within steps: a kink within a
@@ -12,96 +19,107 @@ The ledger closes to the fourth order, not to round-off: the map conserves an en
 from the true one by O(dt^4), and this difference stays bounded over any number of steps.
 """
 
-from collections.abc import Callable
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial import Polynomial
 
 from cases.loads import load_history
-from cases.material.calibrate import Properties, calibrate
+from cases.material.calibrate import calibrate
 from cases.sampling import Clock, clock
 from cases.schema.scene import Scene
-from dem.axial.composition import DRIFTS, EDGES, KICKS, stability_limit
-from dem.axial.model import Chain, Model, build_chain, receivers
-from dem.axial.motion import steady_at
-from dem.axial.record import Samples, sample_after, sample_before
+from dem.axial.model import Model, unloaded
+from dem.axial.samples import Samples, buffers, sample
+from dem.axial.springs import spring_forces
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State, state_at_rest
-from dem.axial.step import step
 from dem.size import refuse_large
-from numerics.borrowed import borrowed
+from joints.flat.energy import elastic_energy
+from joints.flat.law import law_of
 from numerics.denormals import flush_tiny, restore_tiny
-from numerics.divergence import Guard, is_lost, next_look
-from numerics.jit import inlined, jitted
+from numerics.divergence import EVERY, SPEED, Guard, guard, out_of_bounds
+from numerics.jit import jitted
+from numerics.sums import total_of
+
+XI, LAMBDA, CHI = 0.1786178958448091, -0.2123418310626054, -0.06626458266981849
+
+DRIFTS = (XI, CHI, 1 - 2 * (CHI + XI), CHI, XI)
+KICKS = ((1 - 2 * LAMBDA) / 2, LAMBDA, LAMBDA, (1 - 2 * LAMBDA) / 2)
+
+#: When drifts begin and end, and when kicks act, in steps from the start of the step.
+EDGES = np.array([0.0, XI, XI + CHI, 1 - XI - CHI, 1 - XI, 1.0])
+
+
+def half_trace() -> Polynomial:
+    """Return half the trace of one step of u'' = -omega^2 u, a polynomial in (omega dt)^2.
+
+    The step has determinant one: its eigenvalues lie on the unit circle where this is in [-1, 1].
+    Both diagonal entries of a symmetric step are alike, so one of them will do.
+    """
+    square, u, v = Polynomial([0.0, 1.0]), Polynomial([1.0]), Polynomial([0.0])
+    for drift, kick in zip(DRIFTS, (*KICKS, 0.0), strict=True):
+        u = u + drift * v
+        v = v - kick * square * u
+    return u
+
+
+def stability_limit() -> float:
+    """Return the omega dt up to which every mode is bounded: 2.98945, where leapfrog has 2.
+
+    Beyond it the first mode to grow alternates at every step: half the trace passes -1.
+    """
+    trace = half_trace()
+    squares = np.concatenate([(trace - 1).roots(), (trace + 1).roots()])
+    real = squares.real[np.abs(squares.imag) < 1e-9]
+    return float(np.sqrt(real[real > 1e-6].min()))
 
 
 class Composition(NamedTuple):
     """The constants of one step.
 
-    lead : of its first drift, before any kick. stages : of each kick and the drift after it.
+    drifts : float array [5], s; kicks : [4], s/kg, velocity for a unit of force.
     loads : float array [n, 4], N, at the kicks of every step, cut after the last that acts.
     impulses : float array [n, 5], N s, of the load during each drift, likewise.
-    stored : what the springs of fixed ends hold before the run, J.
     """
 
-    lead: Chain
-    stages: tuple[Chain, ...]
+    drifts: np.ndarray
+    kicks: np.ndarray
     loads: np.ndarray
     impulses: np.ndarray
-    stored: float
 
 
 def build(scene: Scene) -> tuple[Model, State, Clock, float]:
     """Return the model at an instant, the unloaded state, the clock and the critical step (s).
 
-    The model at an instant is leapfrog's with a step of no length and the load at whole steps.
+    The model at an instant has a step of no length, and the load at whole steps.
     """
-    p, ends, numerics = calibrate(scene), scene.ends, scene.numerics.dem
-    critical = stability_limit() / 2 * critical_chain_step(p, ends.start, ends.end)
+    p, numerics, ends = calibrate(scene), scene.numerics.dem, (scene.ends.start, scene.ends.end)
+    critical = stability_limit() / 2 * critical_chain_step(p, *ends)
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
     refuse_large(scene, time, stages=1 + len(EDGES))
     at_steps = time.dt * np.arange(time.steps + time.stride)
-    load = np.trim_zeros(_force(scene, p) * load_history(scene).value(at_steps), "b")
-    model = Model(_stage(scene, p, 0.0, 0.0), load, None, receivers(scene, p))
-    return model, state_at_rest(model.chain, p.block_count, scene.record.energy), time, critical
+    load = _unit_force(scene) * load_history(scene).value(at_steps)
+    model = unloaded(scene, p, 0.0, ends)._replace(load=np.trim_zeros(load, "b"))
+    state = state_at_rest(model.effects, p.block_count, scene.record.energy)
+    return model, state, time, critical
 
 
-def compose(scene: Scene, time: Clock, stored: float = 0.0) -> Composition:
-    """Return the constants of one step of this clock; stored in J."""
-    p, load, dt = calibrate(scene), load_history(scene), time.dt
+def compose(scene: Scene, time: Clock) -> Composition:
+    """Return the constants of one step of this clock."""
+    load, dt, force = load_history(scene), time.dt, _unit_force(scene)
     edges = dt * (np.arange(time.steps + time.stride)[:, None] + EDGES)
     return Composition(
-        lead=_stage(scene, p, 0.0, DRIFTS[0] * dt),
-        stages=tuple(
-            _stage(scene, p, kick * dt, drift * dt)
-            for kick, drift in zip(KICKS, DRIFTS[1:], strict=True)
-        ),
-        loads=_acting(_force(scene, p) * load.value(edges[:, 1:-1])),
-        impulses=_acting(_force(scene, p) * np.diff(load.impulse(edges), axis=1)),
-        stored=stored,
+        drifts=dt * np.array(DRIFTS),
+        kicks=dt * np.array(KICKS) / calibrate(scene).block_mass,
+        loads=_acting(force * load.value(edges[:, 1:-1])),
+        impulses=_acting(force * np.diff(load.impulse(edges), axis=1)),
     )
 
 
-def marcher(
-    scene: Scene, model: Model, state: State, samples: Samples, time: Clock, guard: Guard | None
-) -> Callable[[int, int], None]:
-    """Return a function of (first, last) that takes samples first .. last - 1."""
-    composition = compose(scene, time, held(model.chain, state))
-
-    def march(first: int, last: int) -> None:
-        run(composition, model, state, samples, time.stride, first, last, guard)
-
-    return march
-
-
-def _stage(scene: Scene, p: Properties, kick: float, drift: float) -> Chain:
-    chain = build_chain(scene, p, drift, (scene.ends.start, scene.ends.end))
-    return chain._replace(impulse_to_speed=kick / p.block_mass)
-
-
-def _force(scene: Scene, p: Properties) -> float:
+def _unit_force(scene: Scene) -> float:
     """Return the force of a unit of load, along y, m2."""
-    return scene.load.direction[1] * p.area
+    return scene.load.direction[1] * scene.pillar.area
 
 
 def _acting(values: np.ndarray) -> np.ndarray:
@@ -110,94 +128,117 @@ def _acting(values: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(values[: acting[-1] + 1 if acting.size else 0])
 
 
-@jitted
-def run(composition, model, state, samples, stride, first, last, guard=None):
+def run(
+    composition: Composition,
+    model: Model,
+    state: State,
+    samples: Samples,
+    stride: int,
+    first: int,
+    last: int,
+    monitor: Guard | None = None,
+) -> None:
     """Take samples first .. last - 1, `stride` steps apart, the steps after each included.
 
-    guard : `numerics.divergence.Guard` that ends it where it runs out of bounds; None without.
+    monitor : ends it where it runs out of bounds; None without.
     """
-    tiny = flush_tiny()
-    composition, model, state, samples = borrowed((composition, model, state, samples))
-    s, n, end = first, first * stride, last * stride
-    due = next_look(guard, n, end)
-    while n < end:
-        if n == s * stride:
-            book_ends(state.ledger, held(model.chain, state) - composition.stored)
-            sample_before(model, state, samples, s)
-            sample_after(model, state, samples, s, n)
-            s += 1
-        stop = min(s * stride, due)
-        march(composition, state, n, stop)
-        n = stop
-        if n == due:
-            if is_lost(guard, state.v, n, None, s - 1, stride):
-                break
-            due = next_look(guard, n, end)
-    restore_tiny(tiny)
+    _take(composition, model, state, samples, monitor, first * stride, last * stride, first, stride)
 
 
-@jitted
-def march(composition, state, first, last):
-    """Take steps first .. last - 1, each from u, v at its start to u, v at its end."""
-    u, v, start, end, ledger = state.u, state.v, state.start, state.end, state.ledger
-    lead, loads, impulses = composition.lead, composition.loads, composition.impulses
-    for n in range(first, last):
-        drift(lead, u, v, start, end)
-        book_work(lead, ledger, v, at(impulses, n, 0))
-        for k in range(loads.shape[1]):
-            chain, load = composition.stages[k], at(loads, n, k)
-            step(chain, u, v, None, None, None, start, end, None, n, load, None, None)
-            book_work(chain, ledger, v, at(impulses, n, k + 1))
+def march(composition: Composition, model: Model, state: State, first: int, last: int) -> None:
+    """Take steps first .. last - 1 without samples."""
+    _take(composition, model, state, buffers(model, state, 0), None, first, last, -1, 1)
 
 
-@inlined
-def at(values, n, k):
-    """Return what acts at stage k of step n; it is zero after the last that acts."""
-    return values[n, k] if n < values.shape[0] else 0.0
+def _take(composition, model, state, samples, monitor, first, last, index, stride):
+    limits, every = (guard(0.0), 0) if monitor is None else (monitor, EVERY)
+    loop_for(model.effects._replace(ledger=state.work is not None))(
+        model.chain, model.laws, *composition, model.load,
+        *model.receivers.sections, *model.receivers.points,
+        state.u, state.v, state.force, state.start, state.end, state.work, *samples,
+        limits.limit.view(np.float64)[0], limits.found, first, last, index, stride, every,
+    )  # fmt: skip
 
 
-@inlined
-def drift(chain, u, v, start, end):
-    """Move every block at its velocity, with the springs of fixed ends."""
-    for j in range(u.size):
-        u[j] += chain.dt * v[j]
-    _close(chain.start, start, -v[0])
-    _close(chain.end, end, v[-1])
+@cache
+def loop_for(effects):
+    """Return the time loop of chains with these effects: what they lack is not compiled.
 
-
-@inlined
-def _close(end, state, outward):
-    if end is not None:
-        state[0] += end.gain * outward
-
-
-@inlined
-def book_work(chain, ledger, v, impulse):
-    """Add the work of the load and of a prestress over a drift, of which the velocity is constant.
-
-    Booked so, it is one more displacement of the composition and has its order.
+    It takes steps first .. last - 1, and sample s at step s * stride. Every so many steps it looks
+    whether the speeds are within bounds.
     """
-    if ledger is not None:
-        start = impulse + chain.dt * steady_at(chain.steady, 0)
-        ledger.sums[1] += start * v[0] - chain.dt * steady_at(chain.steady, 1) * v[-1]
+    parts, gravity, ledger = effects.joints, effects.gravity, effects.ledger
+    varied, start_held, end_held = parts.varied, effects.start, effects.end
 
+    @jitted
+    def loop(
+        c, laws, drifts, kicks, loads, impulses, load, left, right, weight, before, after, share,
+        u, v, force, start, end, work, stress, velocity, displacement, energy, squares,
+        limit, found, first, last, s, stride, every,
+    ):  # fmt: skip
+        tiny = flush_tiny()
+        tail, law = u.size - 1, law_of(laws, 0)
+        due = min(first + every, last)
+        for n in range(first, last):
+            if n == s * stride:
+                spring_forces(parts, c.area, laws, u, force, force)
+                start[1], end[1] = c.start.stiffness * start[0], c.end.stiffness * end[0]
+                force[0] = (load[n] if n < load.size else 0.0) + c.start_force + start[1]
+                force[tail + 1] = end[1] + c.end_force
+                sample(
+                    s, c.area, force, u, v, left, right, weight, before, after, share,
+                    stress, velocity, displacement,
+                )  # fmt: skip
+                if ledger:
+                    in_ends = 0.5 * start[1] * start[0] + 0.5 * end[1] * end[0]
+                    if n == 0:
+                        work[0] = -in_ends
+                    energy[2, s], energy[3, s], energy[-1, s] = 0.0, in_ends + work[0], work[1]
+                    for j in range(tail + 1):
+                        squares[j] = v[j] * v[j]
+                    energy[0, s] = 0.5 * c.mass * total_of(squares)
+                    for j in range(tail):
+                        if varied:
+                            law = law_of(laws, j)
+                        squares[j] = elastic_energy(law, parts, u[j + 1] - u[j], 0.0, 0.0, 0.0)
+                    squares[tail] = 0.0
+                    energy[1, s] = c.area * total_of(squares)
+                    if gravity:
+                        energy[-2, s] = -c.weight * total_of(u)
+                s += 1
 
-@jitted
-def held(chain, state):
-    """Return what the springs of fixed ends store (J), and leave their reactions in the ends."""
-    return _held(chain.start, state.start) + _held(chain.end, state.end)
+            for k in range(drifts.size):
+                if k > 0:
+                    # Kick, by the forces at the time that the drifts have come to.
+                    spring_forces(parts, c.area, laws, u, force, force)
+                    force[0] = (loads[n, k - 1] if n < loads.shape[0] else 0.0) + c.start_force
+                    force[tail + 1] = c.end_force
+                    if start_held:
+                        force[0] += c.start.stiffness * start[0]
+                    if end_held:
+                        force[tail + 1] += c.end.stiffness * end[0]
+                    for j in range(tail + 1):
+                        f = force[j] - force[j + 1]
+                        if gravity:
+                            f += c.weight
+                        v[j] += kicks[k - 1] * f
+                # Drift, at constant velocities.
+                dt = drifts[k]
+                for j in range(tail + 1):
+                    u[j] += dt * v[j]
+                if start_held:
+                    start[0] -= dt * v[0]
+                if end_held:
+                    end[0] += dt * v[tail]
+                if ledger:
+                    # The load's work, as one more displacement of the composition, has its order.
+                    impulse = impulses[n, k] if n < impulses.shape[0] else 0.0
+                    work[1] += (impulse + dt * c.start_force) * v[0] - dt * c.end_force * v[tail]
+            if n + 1 == due:
+                if out_of_bounds(v, limit):
+                    found[0], found[1], found[2] = n + 1, SPEED, n - EVERY
+                    break
+                due = min(due + every, last)
+        restore_tiny(tiny)
 
-
-@inlined
-def _held(end, state):
-    if end is None:
-        return 0.0
-    state[1] = end.stiffness * state[0]
-    return 0.5 * state[1] * state[0]
-
-
-@inlined
-def book_ends(ledger, work):
-    """Set the work done on the ends since the start, J."""
-    if ledger is not None:
-        ledger.sums[0] = work
+    return loop

@@ -1,6 +1,6 @@
-"""The constants of a run, with absent parts None, and how they follow from a scene."""
+"""The constants of a run, and how they follow from a scene."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -8,11 +8,11 @@ from cases.loads import base_steps, load_history, step_means
 from cases.material.calibrate import Properties, calibrate
 from cases.sampling import Clock, Interpolation, clock, interpolation
 from cases.schema.scene import Scene
-from dem.axial.ends import build_end
+from dem.axial.ends import End, build_end
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State, state_at_rest
 from dem.size import refuse_large
-from joints.laws import Law
+from joints.flat.law import Law, Parts, parts_of, table_of
 from joints.uniform import law
 
 
@@ -23,42 +23,60 @@ class Receivers(NamedTuple):
     points: Interpolation
 
 
+class Effects(NamedTuple):
+    """What a chain has: the constants that its kernel is compiled for.
+
+    joints : parts of their law. start, end : whether these are held by a spring or a dashpot.
+    base : whether the start is shaken. ledger : whether energies are summed.
+    """
+
+    joints: Parts
+    start: bool = False
+    end: bool = False
+    base: bool = False
+    mass_damping: bool = False
+    local_damping: bool = False
+    gravity: bool = False
+    ledger: bool = False
+
+
 class Chain(NamedTuple):
-    """The constants of one step.
+    """The constants of one step; those of absent effects change nothing.
 
     dt : s; mass : of a block, kg; area : m2.
     impulse_to_speed : dt / m, s/kg, less by mass-proportional damping.
-    law : of the joints, per unit area; start, end : `dem.axial.ends.End` or None where free.
-    keep : what mass-proportional damping leaves of a velocity in a step; None without.
-    local : Cundall's damping; None without.
-    weight : m g along y, N; None without gravity.
-    steady : what a prestress always presses on the start and the end, N; None without.
+    keep : the share of a velocity that mass-proportional damping leaves in a step.
+    local : Cundall's damping. weight : m g along y, N.
+    start_force, end_force : of a prestress on the start and the end, N.
     """
 
     dt: float
     mass: float
     area: float
     impulse_to_speed: float
-    law: Law
-    start: Any
-    end: Any
-    keep: Any
-    local: Any
-    weight: Any
-    steady: Any
+    keep: float = 1.0
+    local: float = 0.0
+    weight: float = 0.0
+    start_force: float = 0.0
+    end_force: float = 0.0
+    start: End = End()
+    end: End = End()
 
 
 class Model(NamedTuple):
     """The constants of a run.
 
+    laws : of the joints, per unit area, as `joints.flat.law.table_of` returns them.
     load : float array, N, mean of the load over each step, cut after the last that acts.
-    base : float array, m, the way of a shaken base in each step, against y (outward), the first
-        the one before the run, cut after the last that moves; None where no base is shaken.
+    base : float array, m, the displacement increment of a shaken base in each step, against y
+        (outward), the first the one before the run, cut after the last that moves.
     """
 
+    effects: Effects
     chain: Chain
+    laws: np.ndarray
     load: np.ndarray
-    base: Any
+    base: np.ndarray
     receivers: Receivers
 
 
@@ -70,62 +88,70 @@ def build(scene: Scene) -> tuple[Model, State, Clock, float]:
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
     refuse_large(scene, time)
     model = build_model(scene, p, time)
-    return model, state_at_rest(model.chain, p.block_count, scene.record.energy), time, critical
+    return model, state_at_rest(model.effects, p.block_count, scene.record.energy), time, critical
 
 
 def build_model(scene: Scene, p: Properties, time: Clock) -> Model:
     """Return the constants of a scene for a given clock."""
     along, count = scene.load.direction[1], time.steps + time.stride
-    means, base = np.zeros(0), None
+    load = base = np.zeros(0)
     if scene.load.shakes_base:
-        base = _acting(np.append(0.0, -along * base_steps(scene, time.dt, count)))
+        base = np.append(0.0, -along * base_steps(scene, time.dt, count))
     else:
-        means = _acting(step_means(load_history(scene), time.dt, count))
-    chain = build_chain(scene, p, time.dt, (scene.ends.start, scene.ends.end))
-    return Model(chain, along * p.area * means, base, receivers(scene, p))
+        load = along * p.area * step_means(load_history(scene), time.dt, count)
+    model = unloaded(scene, p, time.dt, (scene.ends.start, scene.ends.end))
+    return model._replace(
+        effects=model.effects._replace(base=scene.load.shakes_base),
+        load=np.trim_zeros(load, "b"),
+        base=np.trim_zeros(base, "b"),
+    )
 
 
-def build_chain(scene: Scene, p: Properties, dt: float, ends: tuple[str, str]) -> Chain:
-    """Return the constants of one step dt (s) of blocks of these properties, held at these ends."""
-    alpha, gravity = p.mass_damping, scene.gravity
-    start, end = (build_end(kind, p, dt) for kind in ends)
+def unloaded(scene: Scene, p: Properties, dt: float, ends: tuple[str, str]) -> Model:
+    """Return the constants for steps dt (s) of blocks of these properties without a load, under
+    gravity and prestress, with ends of these kinds."""
+    alpha, gravity, joints = p.mass_damping, scene.gravity, law_of_joints(p)
+    force = scene.prestress.normal * p.area if scene.prestress else 0.0
+    start, end = ends
+    effects = Effects(
+        joints=parts_of(joints),
+        start=start != "free",
+        end=end != "free",
+        local_damping=p.local_damping is not None,
+        gravity=gravity is not None,
+    )
     chain = Chain(
         dt=dt,
         mass=p.block_mass,
         area=p.area,
         impulse_to_speed=dt / p.block_mass,
-        law=law(p.stiffness, p.joint_time_constant, p.tension, **p.strengths(shears=False)),
-        start=start,
-        end=end,
-        keep=None,
-        local=p.local_damping,
-        weight=p.block_mass * gravity.acceleration * gravity.direction[1] if gravity else None,
-        steady=_steady(scene, p),
+        local=p.local_damping or 0.0,
+        weight=p.block_mass * gravity.acceleration * gravity.direction[1] if gravity else 0.0,
+        start_force=0.0 if scene.ends.start == "fixed" else force,
+        end_force=0.0 if scene.ends.end == "fixed" else force,
+        start=build_end(start, p, dt),
+        end=build_end(end, p, dt),
     )
-    return chain if alpha is None else with_mass_damping(chain, alpha)
+    none = np.zeros(0)
+    model = Model(effects, chain, table_of(joints), none, none, receivers(scene, p))
+    return model if alpha is None else with_mass_damping(model, alpha)
 
 
-def with_mass_damping(chain: Chain, alpha: float) -> Chain:
-    """Return the chain under a force -alpha m v (1/s) on every block, v the mean over the step.
+def law_of_joints(p: Properties) -> Law:
+    """Return the law of the joints along the axis, per unit area."""
+    strengths = p.strengths(shears=False)
+    return Law(*law(p.stiffness, p.joint_time_constant, p.tension, **strengths))
+
+
+def with_mass_damping(model: Model, alpha: float) -> Model:
+    """Return the model under a force -alpha m v (1/s) on every block, v the mean over the step.
 
     v+ = ((1 - a) v- + (dt / m) F) / (1 + a), a = alpha dt / 2.
     """
-    a = alpha * chain.dt / 2
-    push = chain.dt / chain.mass / (1 + a)
-    return chain._replace(keep=(1 - a) / (1 + a), impulse_to_speed=push)
-
-
-def _steady(scene: Scene, p: Properties) -> tuple[float, float] | None:
-    if scene.prestress is None:
-        return None
-    force, ends = scene.prestress.normal * p.area, scene.ends
-    return 0.0 if ends.start == "fixed" else force, 0.0 if ends.end == "fixed" else force
-
-
-def _acting(values: np.ndarray) -> np.ndarray:
-    """Return values up to the last that is not zero."""
-    acting = np.flatnonzero(values)
-    return values[: acting[-1] + 1] if acting.size else np.zeros(0)
+    dt, mass = model.chain.dt, model.chain.mass
+    a = alpha * dt / 2
+    chain = model.chain._replace(keep=(1 - a) / (1 + a), impulse_to_speed=dt / mass / (1 + a))
+    return model._replace(chain=chain, effects=model.effects._replace(mass_damping=True))
 
 
 def receivers(scene: Scene, p: Properties) -> Receivers:

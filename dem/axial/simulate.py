@@ -3,70 +3,63 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from cases.loads import with_load_itself
-from cases.material.calibrate import calibrate
-from cases.sampling import Clock
+from cases.material.calibrate import Properties, calibrate
+from cases.sampling import Clock, interpolation
 from cases.schema.scene import Scene
+from dem import looks
+from dem.axial import leapfrog
 from dem.axial.bound import highest_speed
-from dem.axial.model import Model, build
-from dem.axial.record import Samples, room, run, terms
+from dem.axial.model import Model, Receivers, build
+from dem.axial.samples import buffers, terms
 from dem.axial.start import start
 from dem.axial.state import State
 from dem.fragments import break_times, with_fragments
-from dem.looks import Run, followed, sighting, versions
 from dem.static import since_prestress
 from numerics.checkpoint import Keeper
-from numerics.divergence import Guard, guard, look
+from numerics.divergence import guard, look
 from numerics.instability import stopped
-from results.arrays import size_of
+from results.arrays import copied, size_of
 from results.dataset import Fields, fields
 
 if TYPE_CHECKING:
     from dem.snapshots import BlockFilm
 
-
-March = Callable[[int, int], None]
-Marcher = Callable[[Scene, Model, State, Samples, Clock, Guard | None], March]
+#: Of (model, state, samples, stride, first, last, monitor): takes samples first .. last - 1.
+Run = Callable[..., None]
 
 
 class Scheme(NamedTuple):
     """How the chain is stepped.
 
-    build : of (scene), to the model that is recorded, the state, the clock and the critical step.
-    marcher : of (scene, model, state, samples, clock, guard), to what takes samples first ..
-        last - 1.
+    build : of (scene), to the model, the state, the clock and the critical step.
+    runner : of (scene, clock), to what takes samples.
     forces : how often a step computes the force of every joint.
     takes_means : whether the load is its mean over each step.
     """
 
     build: Callable[[Scene], tuple[Model, State, Clock, float]]
-    marcher: Marcher
+    runner: Callable[[Scene, Clock], Run]
     forces: int
     takes_means: bool
-
-
-def _leapfrog(
-    scene: Scene, model: Model, state: State, samples: Samples, time: Clock, guard: Guard | None
-) -> March:
-    def march(first: int, last: int) -> None:
-        run(model, state, samples, time.stride, first, last, guard)
-
-    return march
 
 
 def scheme_of(scene: Scene) -> Scheme:
     """Return how a scene's chain is stepped; a scheme that it does not name is not imported."""
     if scene.numerics.dem.scheme == "leapfrog":
-        return Scheme(build, _leapfrog, 1, True)
+        return Scheme(build, lambda scene, time: leapfrog.run, 1, True)
     from dem.axial import fourth_order
-    from dem.axial.composition import KICKS
 
-    return Scheme(fourth_order.build, fourth_order.marcher, len(KICKS), False)
+    def runner(scene: Scene, time: Clock) -> Run:
+        return partial(fourth_order.run, fourth_order.compose(scene, time))
+
+    return Scheme(fourth_order.build, runner, len(fourth_order.KICKS), False)
 
 
 def simulate_fields(
@@ -77,12 +70,17 @@ def simulate_fields(
     scheme = scheme_of(scene)
     model, state, time, critical = scheme.build(scene)
     rest = start(scene, model, state)
-    samples = room(model, state, time.samples)
-    held = guard(highest_speed(model, state, time))
-    march = scheme.marcher(scene, model, state, samples, time, held)
+    samples = buffers(model, state, time.samples)
+    monitor = guard(highest_speed(model, state, time))
+    run = scheme.runner(scene, time)
+
+    def march(first: int, last: int) -> None:
+        run(model, state, samples, time.stride, first, last, monitor)
+
     built = perf_counter()
     march(0, 0)
-    film = _film(scene, model, state, time.stride, time.dt if scheme.takes_means else None)
+    mean = time.dt if scheme.takes_means else None
+    film = _film(scene, run, model, state, time.stride, mean)
     compiled = perf_counter()
 
     def result(count: int) -> Fields:
@@ -99,7 +97,7 @@ def simulate_fields(
                 scene, calibrate(scene), samples.displacement[:, :count], model.receivers.points
             ),
             None if samples.energy is None else samples.energy[:, :count],
-            terms=terms(model),
+            terms=terms(model.effects),
             model="rigid blocks",
             scheme=scene.numerics.dem.scheme,
             dt=time.dt,
@@ -113,19 +111,19 @@ def simulate_fields(
             seconds_setup=built - began,
             seconds_compile=compiled - built,
             seconds_stepping=perf_counter() - compiled,
-            versions=versions(),
+            versions=looks.versions(),
         )
         return _with_breaks(found if film is None else film.developed(found), scene, state, time)
 
     def check(samples: int) -> None:
         speed = np.abs(state.v)
-        look(held, speed.max(), samples * time.stride)
-        seen = sighting(held, speed, calibrate(scene).spacing)
+        look(monitor, speed.max(), samples * time.stride)
+        seen = looks.sighting(monitor, speed, calibrate(scene).spacing)
         if seen is not None:
             raise stopped(scene, time, critical, seen)
 
-    run = Run(time, state.u.size, march, check, (state, samples, held))
-    return followed(run, result, progress, film, keeper)
+    whole = looks.Run(time, state.u.size, march, check, (state, samples, monitor))
+    return looks.followed(whole, result, progress, film, keeper)
 
 
 def _with_breaks(result: Fields, scene: Scene, state: State, time: Clock) -> Fields:
@@ -136,7 +134,7 @@ def _with_breaks(result: Fields, scene: Scene, state: State, time: Clock) -> Fie
 
 
 def _film(
-    scene: Scene, model: Model, state: State, stride: int, mean: float | None
+    scene: Scene, run: Run, model: Model, state: State, stride: int, mean: float | None
 ) -> BlockFilm | None:
     """Return what keeps snapshots; None, and nothing imported, where none are asked for.
 
@@ -144,8 +142,25 @@ def _film(
     """
     if scene.record.fields is None:
         return None
-    from dem.axial.snapshots import shooter
-    from dem.snapshots import BlockFilm
+    from dem.snapshots import BlockFilm, Shot
 
     p = calibrate(scene)
-    return BlockFilm(scene, p, shooter(p, model, state, stride), mean)
+    everywhere = model._replace(receivers=_everywhere(p))
+
+    def shoot(sample: int) -> Shot:
+        """Take a sample, and the step that it needs, of all contacts and blocks on a copy."""
+        now, twin = sample * stride, copied(state)
+        found = buffers(everywhere, twin, 1)
+        shifted = everywhere._replace(load=model.load[now:], base=model.base[now:])
+        run(shifted, twin, found, 1, 0, 1)
+        return Shot(found.stress[:, 0], found.displacement, found.velocity)
+
+    return BlockFilm(scene, p, shoot, mean)
+
+
+def _everywhere(p: Properties) -> Receivers:
+    contacts = p.spacing * np.arange(p.block_count + 1)
+    centres = contacts[1:] - p.spacing / 2
+    return Receivers(
+        interpolation(contacts, contacts.tolist()), interpolation(centres, centres.tolist())
+    )

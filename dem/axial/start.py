@@ -6,11 +6,11 @@ import numpy as np
 
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
-from dem.axial.ends import End
-from dem.axial.model import Chain, Model, build_chain, receivers, with_mass_damping
+from dem.axial.leapfrog import march
+from dem.axial.model import Model, unloaded, with_mass_damping
+from dem.axial.springs import spring_forces
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State
-from dem.axial.step import joint_stress, march
 from dem.static import Rest, settle
 from numerics.jit import jitted
 
@@ -28,12 +28,12 @@ def start(scene: Scene, model: Model, state: State) -> Rest | None:
     rest = None
     if static or scene.prestress is not None:
         system = Relaxation(scene, calibrate(scene), state, static)
-        system.place(system.chain.weight or 0.0)
+        system.place(system.chain.weight)
         if not system.is_at_rest(scene.numerics.dem.static_tolerance):
             system.place(0.0)
         rest = settle(scene, system)
         forget_steps(state)
-    if not static and model.chain.weight is not None:
+    if not static and model.effects.gravity:
         # Gravity from t = 0 on: the velocity at t = 0 is the mean of those half a step around it.
         state.v[:] = -0.5 * model.chain.dt * model.chain.weight / model.chain.mass
     return rest
@@ -53,37 +53,35 @@ class Relaxation:
 
     def __init__(self, scene: Scene, p: Properties, state: State, weighed: bool) -> None:
         p = _undamped(p)
-        held = [kind if kind == "fixed" else "free" for kind in (scene.ends.start, scene.ends.end)]
-        ends = held[0], held[1]
-        dt = STEP_FRACTION * critical_chain_step(p, *ends)
-        chain = build_chain(scene, p, dt, ends)
-        self.chain = chain if weighed else chain._replace(weight=None)
-        self.model = Model(self.chain, np.zeros(0), None, receivers(scene, p))
+        start, end = (
+            kind if kind == "fixed" else "free" for kind in (scene.ends.start, scene.ends.end)
+        )
+        dt = STEP_FRACTION * critical_chain_step(p, start, end)
+        model = unloaded(scene, p, dt, (start, end))
+        if not weighed:
+            model = model._replace(chain=model.chain._replace(weight=0.0))
+        self.model, self.chain, self.ends = model, model.chain, (start == "fixed", end == "fixed")
         self.state = state._replace(
-            gap_rate=None,
-            start=state.start if held[0] == "fixed" else None,
-            end=state.end if held[1] == "fixed" else None,
-            ledger=None,
+            gap_rate=None, work=None, last_force=None, viscous=None, behind=None, dashpot_force=None
         )
         self.prestress = scene.prestress.normal * p.area if scene.prestress else 0.0
         self.stiffness = p.stiffness * p.area
         self.mass = np.full(p.block_count, p.block_mass)
-        weight = abs(self.chain.weight or 0.0) * p.block_count
-        self.scale = max(weight, abs(self.prestress))
+        self.scale = max(abs(self.chain.weight) * p.block_count, abs(self.prestress))
         self.most_steps = 10_000 + 1000 * p.block_count
 
     def advance(self, steps: int, alpha: float) -> None:
         """Take steps under mass-proportional damping alpha, 1/s."""
-        march(self.model._replace(chain=with_mass_damping(self.chain, alpha)), self.state, 0, steps)
+        march(with_mass_damping(self.model, alpha), self.state, 0, steps)
 
     def unbalanced(self) -> np.ndarray:
         """Return the net force on every block [N], N."""
-        s, contacts = self.state, np.empty(len(self.mass) + 1)
-        steady = self.chain.steady or (0.0, 0.0)
-        contacts[0] = steady[0] + _held(self.chain.start, s.start)
-        contacts[-1] = steady[1] + _held(self.chain.end, s.end)
-        joint_forces(self.chain, s.u, s.v, s.opening, contacts)
-        return contacts[:-1] - contacts[1:] + (self.chain.weight or 0.0)
+        s, c, force = self.state, self.chain, np.empty(len(self.mass) + 1)
+        force[0] = c.start_force + c.start.stiffness * s.start[0]
+        force[-1] = c.end_force + c.end.stiffness * s.end[0]
+        opening = s.u if s.opening is None else s.opening
+        joint_forces(self.model.effects.joints, c.area, self.model.laws, s.u, opening, force)
+        return force[:-1] - force[1:] + c.weight
 
     def displacement(self) -> np.ndarray:
         """Return the displacement of every block [N], m."""
@@ -107,10 +105,10 @@ class Relaxation:
         gaps = -forces[1:-1] / self.stiffness
         u = np.append(0.0, np.cumsum(gaps))
         shift = -u.mean()
-        if self.chain.start is not None:
+        if self.ends[0]:
             s.start[0] = forces[0] / self.chain.start.stiffness
             shift = -s.start[0]
-        if self.chain.end is not None:
+        if self.ends[1]:
             s.end[0] = forces[-1] / self.chain.end.stiffness
             shift = s.end[0] - u[-1]
         s.u[:] = u + shift
@@ -121,12 +119,12 @@ class Relaxation:
         """Return the force of every contact [N + 1], N: all carry the prestress, and the weight
         goes to the fixed ends, between two of them as their springs share it."""
         steps = weight * np.arange(len(self.mass) + 1)
-        start, end = self.chain.start, self.chain.end
+        start, end = self.chain.start.stiffness, self.chain.end.stiffness
         first = 0.0
-        if start is not None and end is not None:
-            c = 1 / np.concatenate([[start.stiffness], self.stiffness, [end.stiffness]])
+        if all(self.ends):
+            c = 1 / np.concatenate([[start], self.stiffness, [end]])
             first = -float(c @ steps) / float(c.sum())
-        elif start is not None:
+        elif self.ends[0]:
             first = -steps[-1]
         return self.prestress + first + steps
 
@@ -137,12 +135,7 @@ def _undamped(p: Properties) -> Properties:
     )
 
 
-def _held(end: End | None, state: np.ndarray) -> float:
-    return 0.0 if end is None else end.stiffness * state[0]
-
-
 @jitted
-def joint_forces(chain: Chain, u, v, opening, contacts):
-    """Write the forces of all joints (N) between the first and the last of the contacts."""
-    for j in range(u.size - 1):
-        contacts[j + 1] = chain.area * joint_stress(chain, u, v, None, opening, j)
+def joint_forces(parts, area, laws, u, opening, force):
+    """Compute `spring_forces` for Python."""
+    spring_forces(parts, area, laws, u, opening, force)

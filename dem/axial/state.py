@@ -1,4 +1,4 @@
-"""What changes in a run; absent parts are None."""
+"""What changes in a run; the arrays of absent effects are None."""
 
 from __future__ import annotations
 
@@ -6,74 +6,68 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from dem.axial.ends import end_state
 from numerics.aligned import zeros
 
 if TYPE_CHECKING:
-    from dem.axial.model import Chain
-
-INNER = 1  # the first block, and joint, of the loop over all but the end blocks
-
-
-class Ledger(NamedTuple):
-    """Running sums of the work of every force that no potential gives, J.
-
-    sums : boundary and work, up to the last step.
-    forces : start, end and load force of the last step, N.
-    viscous : work against what damps each block and the joint behind it, up to the last step; None
-        without damping. A sum over all blocks would make each wait for the one before.
-    behind : what the damping of each block at the last step still does behind it; None without.
-    dashpots : each joint's dashpot force at the last step, N; None without dashpots.
-    """
-
-    sums: np.ndarray
-    forces: np.ndarray
-    viscous: Any
-    behind: Any
-    dashpots: Any
+    from dem.axial.model import Effects
 
 
 class State(NamedTuple):
-    """What changes: displacement u at the step, velocity v half a step before it.
+    """Displacement u [N] at a whole step, velocity v [N] half a step before it, and history.
 
-    gap_rate : each joint's one and a half steps before, m/s; None without dashpots.
+    force : of the contacts 0 .. N at the last step, N, compression positive.
+    gap_rate : of each joint one and a half steps before, m/s; None without dashpots.
     opening : each joint's largest gap so far, m; None without softening.
     broke : the step at which each joint lost its strength, -1 before; None without softening.
-    start, end : [closure, reaction] of the ends, None where free. ledger : None when not kept.
+    start, end : [closure (m), reaction at the last step (N)] of the ends; zero where free.
+
+    The ledger, None without: the work (J) of every force that no potential gives, up to the last
+    step.
+    work : [of the ends, of the load]. last_force : of start, end and load at the last step, N.
+    viscous : against the damping of each block and of the joint behind it; None without damping.
+    behind : of the damping of each block at the last step over the half step behind it; None
+        without damping of blocks.
+    dashpot_force : each joint's dashpot force at the last step, N; None without dashpots.
     """
 
     u: np.ndarray
     v: np.ndarray
+    force: np.ndarray
     gap_rate: Any
     opening: Any
     broke: Any
-    start: Any
-    end: Any
-    ledger: Any
+    start: np.ndarray
+    end: np.ndarray
+    work: Any
+    last_force: Any
+    viscous: Any
+    behind: Any
+    dashpot_force: Any
 
 
-def state_at_rest(chain: Chain, block_count: int, keep_ledger: bool) -> State:
-    """Return the state at rest, with no array for anything that the chain does not have."""
-    damped = chain.law.normal_viscosity is not None
-    softens = chain.law.tensile_strength is not None
+def state_at_rest(effects: Effects, block_count: int, ledger: bool) -> State:
+    """Return the state at rest, with no array for any effect that the chain does not have."""
+    damped, softens = effects.joints.dashpots, effects.joints.softening
+    damps_blocks = effects.mass_damping or effects.local_damping
+
+    def of_joints(present: bool) -> np.ndarray | None:
+        return zeros(block_count - 1) if present else None
+
+    def of_blocks(present: bool) -> np.ndarray | None:
+        return zeros(block_count) if present else None
+
     return State(
-        u=zeros(block_count, INNER),
-        v=zeros(block_count, INNER),
-        gap_rate=zeros(block_count - 1, INNER) if damped else None,
-        opening=zeros(block_count - 1, INNER) if softens else None,
+        u=zeros(block_count),
+        v=zeros(block_count),
+        force=zeros(block_count + 1, 1),
+        gap_rate=of_joints(damped),
+        opening=of_joints(softens),
         broke=np.full(block_count - 1, -1) if softens else None,
-        start=end_state(chain.start),
-        end=end_state(chain.end),
-        ledger=_ledger(chain, block_count, damped) if keep_ledger else None,
-    )
-
-
-def _ledger(chain: Chain, block_count: int, dashpots: bool) -> Ledger:
-    blocks = chain.keep is not None or chain.local is not None
-    return Ledger(
-        sums=np.zeros(2),
-        forces=np.zeros(3),
-        viscous=zeros(block_count, INNER) if blocks or dashpots else None,
-        behind=zeros(block_count, INNER) if blocks else None,
-        dashpots=zeros(block_count - 1, INNER) if dashpots else None,
+        start=np.zeros(2),
+        end=np.zeros(2),
+        work=np.zeros(2) if ledger else None,
+        last_force=np.zeros(3) if ledger else None,
+        viscous=of_blocks(ledger and (damped or damps_blocks)),
+        behind=of_blocks(ledger and damps_blocks),
+        dashpot_force=of_joints(ledger and damped),
     )

@@ -1,5 +1,5 @@
-"""Formulas that are plain Python, and that numba compiles into the kernels that call them."""
+"""`numerics.formula.formula`, by which the formulas of the law are declared."""
 
-from numba.extending import register_jitable
+from numerics.formula import formula
 
-formula = register_jitable(forceinline=True, error_model="numpy")
+__all__ = ["formula"]

@@ -28,7 +28,8 @@ def spring_traction(law, parts, gap, opening):
 def _cut(law, parts, t, gap, opening):
     if parts.softening:
         share = stiffness_left(law, opening) if gap > 0.0 else 1.0
-        t = max(share * t, -strength_left(law, opening))
+        t, most = share * t, -strength_left(law, opening)
+        t = most if t < most else t
     if parts.no_tension and not law.carries_tension:
-        t = max(t, 0.0) if gap <= 0.0 else 0.0
+        t = 0.0 if gap > 0.0 or t < 0.0 else t
     return t

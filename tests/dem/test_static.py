@@ -35,7 +35,7 @@ def slowest(system):
     """Return the lowest natural frequency (rad/s) of what is relaxed."""
     k, ends = system.stiffness, (system.chain.start, system.chain.end)
     diagonal = np.append(k, 0.0) + np.append(0.0, k)
-    diagonal[[0, -1]] += [0.0 if end is None else end.stiffness for end in ends]
+    diagonal[[0, -1]] += [end.stiffness for end in ends]
     return np.sqrt(eigvalsh_tridiagonal(diagonal, -k)[0] / system.mass[0])
 
 

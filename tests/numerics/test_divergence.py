@@ -13,10 +13,12 @@ from numerics.divergence import (
     RUNAWAY,
     SPEED,
     audit,
+    creates_energy,
     exceeds,
     guard,
-    is_lost,
     look,
+    out_of_bounds,
+    runs_away,
 )
 from numerics.jit import jitted
 
@@ -24,15 +26,22 @@ KINETIC, ELASTIC, VISCOUS, WORK = range(4)
 
 
 @jitted
-def beyond(v, limit):
-    """Return what `exceeds` does, for Python."""
-    return exceeds(v, limit)
+def both(v, bits, limit):
+    """Return what `exceeds` and `out_of_bounds` do, for Python."""
+    return exceeds(v, bits), out_of_bounds(v, limit)
+
+
+def beyond(v, bits):
+    """Return whether a magnitude is above the limit, given by its bits; both ways agree."""
+    one, other = both(v, bits, np.int64(bits).view(np.float64))
+    assert one == other
+    return one
 
 
 @jitted
 def lost(held, v, n, energy, s, stride):
-    """Return what `is_lost` does, for Python."""
-    return is_lost(held, v, n, energy, s, stride)
+    """Return whether speeds, after n steps, or the energies of sample s are out of bounds."""
+    return runs_away(held, v, n) or creates_energy(held, energy, s, s * stride)
 
 
 NUMBERS = st.floats(allow_nan=False)

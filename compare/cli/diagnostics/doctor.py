@@ -13,7 +13,6 @@ import sys
 from collections.abc import Callable
 from importlib.metadata import version
 from math import nan
-from pathlib import Path
 from shutil import which
 from typing import NamedTuple
 
@@ -151,7 +150,7 @@ def _cache() -> Part:
         import numerics.jit
     except Exception as error:
         return Part("machine", "kernel cache", "broken", f"numba cannot be imported: {error}")
-    folder = Path(numerics.jit.numba.config.CACHE_DIR).parent
+    folder = numerics.jit.DIRECTORY.parent
     files = [file for file in folder.rglob("*") if file.is_file()] if folder.is_dir() else []
     size = spoken(sum(file.stat().st_size for file in files))
     states = sum(place.is_dir() for place in folder.iterdir()) if folder.is_dir() else 0

@@ -113,18 +113,19 @@ def stretches(scene: Scene, guarded: tuple[bool, ...], threads: int = 1) -> list
 
 
 def _along_axis(scene: Scene, guarded: tuple[bool, ...]) -> list[Stretch]:
-    from dem.axial.record import room
+    from dem.axial.samples import buffers
     from dem.axial.simulate import scheme_of
     from numerics.divergence import guard
 
     scheme = scheme_of(scene)
     model, state, time, _ = scheme.build(scene)
     count = _samples(time, state.u.size)
-    samples, block_steps = room(model, state, count), count * time.stride * state.u.size
+    samples, block_steps = buffers(model, state, count), count * time.stride * state.u.size
+    run = scheme.runner(scene, time)
 
     def timed(held: bool) -> Stretch:
-        march = scheme.marcher(scene, model, state, samples, time, guard(inf) if held else None)
-        return lambda: march(0, count), block_steps
+        monitor = guard(inf) if held else None
+        return lambda: run(model, state, samples, time.stride, 0, count, monitor), block_steps
 
     return [timed(held) for held in guarded]
 

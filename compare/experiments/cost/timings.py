@@ -12,15 +12,13 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-import numba
-
-import numerics.jit  # noqa: F401  it says where the kernels are
 from cases.effects import active_effects
 from cases.files import read_json
 from cases.schema.scene import Scene
 from compare.engines import ENGINES
 from compare.runs.output import write_text
 from compare.solvers.dem import DEM
+from numerics import jit
 from results.dataset import scene_hash
 
 LARGEST_FILE = 10_000_000  # bytes
@@ -112,4 +110,4 @@ def _keep(key: str, value: float) -> None:
 
 
 def _file() -> Path:
-    return Path(numba.config.CACHE_DIR) / "rates.json"
+    return jit.DIRECTORY / "rates.json"

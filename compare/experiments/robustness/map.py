@@ -95,16 +95,16 @@ Growth = Callable[[float], float]
 
 def _blocks(scene: Scene) -> tuple[Growth, float]:
     """Return the growth of rigid blocks by the step (s), and their critical step, s."""
+    from dem.axial.leapfrog import march
     from dem.axial.model import build_model
     from dem.axial.stability import critical_chain_step
     from dem.axial.state import state_at_rest
-    from dem.axial.step import march
 
     p = calibrate(scene)
 
     def growth(dt: float) -> float:
         model = build_model(scene, p, Clock(dt, 1, 2))
-        state = state_at_rest(model.chain, p.block_count, False)
+        state = state_at_rest(model.effects, p.block_count, False)
         state.v[:] = _random(state.v.size)
         if state.gap_rate is not None:
             state.gap_rate[:] = np.diff(state.v)

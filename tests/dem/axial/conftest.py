@@ -5,9 +5,9 @@ import pytest
 
 from cases.material.calibrate import calibrate
 from cases.sampling import Clock
+from dem.axial.leapfrog import march
 from dem.axial.model import build_model
 from dem.axial.state import state_at_rest
-from dem.axial.step import march
 
 
 @pytest.fixture
@@ -20,26 +20,27 @@ def step_matrix():
     def matrix(scene, dt):
         p = calibrate(scene)
         model = build_model(scene, p, Clock(dt, 1, 1))._replace(load=np.zeros(0))
-        size = _packed(state_at_rest(model.chain, p.block_count, False)).size
+        effects = model.effects
+        size = _packed(state_at_rest(effects, p.block_count, False), effects).size
         step = np.zeros((size, size))
         for i, unit in enumerate(np.eye(size)):
-            state = state_at_rest(model.chain, p.block_count, False)
+            state = state_at_rest(model.effects, p.block_count, False)
             at = 0
-            for x in _parts(state):
+            for x in _parts(state, effects):
                 x[:] = unit[at : at + x.size]
                 at += x.size
             march(model, state, 0, 1)
-            step[:, i] = _packed(state)
+            step[:, i] = _packed(state, effects)
         return step
 
     return matrix
 
 
-def _parts(state):
-    kept = [state.u, state.v, state.gap_rate]
-    kept += [None if end is None else end[:1] for end in (state.start, state.end)]
+def _parts(state, effects):
+    held = ((effects.start, state.start), (effects.end, state.end))
+    kept = [state.u, state.v, state.gap_rate, *(end[:1] for is_held, end in held if is_held)]
     return [x for x in kept if x is not None]
 
 
-def _packed(state):
-    return np.concatenate(_parts(state))
+def _packed(state, effects):
+    return np.concatenate(_parts(state, effects))

@@ -9,9 +9,9 @@ from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from compare.exact.bar import images
 from compare.exact.schemes import leapfrog
+from dem.axial.leapfrog import march
 from dem.axial.model import build_model
 from dem.axial.state import state_at_rest
-from dem.axial.step import march
 
 
 def blocks_after(scene, clock, load=None):
@@ -20,7 +20,7 @@ def blocks_after(scene, clock, load=None):
     model = build_model(scene, p, clock)
     if load is not None:
         model = model._replace(load=load)
-    state = state_at_rest(model.chain, p.block_count, keep_ledger=False)
+    state = state_at_rest(model.effects, p.block_count, ledger=False)
     march(model, state, 0, clock.steps)
     return state.u, model.load
 

@@ -6,11 +6,13 @@ import pytest
 import dem
 from cases.material.calibrate import calibrate
 from cases.sampling import Clock
+from dem.axial.leapfrog import arguments, loop_for, march
 from dem.axial.model import build, build_model
-from dem.axial.motion import advanced
+from dem.axial.samples import buffers
 from dem.axial.state import state_at_rest
-from dem.axial.step import joint_force, march
-from joints.laws import Law
+from joints.flat.law import Law, Parts
+from numerics.divergence import out_of_bounds
+from numerics.jit import jitted
 
 COMPRESSION = {"load": {"shape": "step", "amplitude": 1e6}, "time__duration": 0.03}
 
@@ -64,10 +66,9 @@ def test_idle_quiet_end_changes_no_bit(pillar):
     ends = []
     for scene in (free, quiet):
         model = build_model(scene, p, clock)
-        if model.chain.end is not None:
-            idle = model.chain.end._replace(viscosity=0.0)
-            model = model._replace(chain=model.chain._replace(end=idle))
-        state = state_at_rest(model.chain, p.block_count, False)
+        idle = model.chain.end._replace(viscosity=0.0)
+        model = model._replace(chain=model.chain._replace(end=idle))
+        state = state_at_rest(model.effects, p.block_count, False)
         march(model, state, 0, clock.steps)
         ends.append(state.u)
     assert (ends[0] == ends[1]).all()
@@ -87,21 +88,25 @@ def test_idle_damping_of_blocks_changes_no_bit(pillar):
     scene = pillar(**COMPRESSION)
     p, clock = calibrate(scene), Clock(1e-5, 1, 2001)
     model, u = build_model(scene, p, clock), []
-    for chain in (model.chain, model.chain._replace(keep=1.0, local=0.0)):
-        state = state_at_rest(chain, p.block_count, True)
-        march(model._replace(chain=chain), state, 0, clock.steps)
+    damped = model.effects._replace(mass_damping=True, local_damping=True)
+    for effects in (model.effects, damped):
+        state = state_at_rest(effects, p.block_count, True)
+        march(model._replace(effects=effects), state, 0, clock.steps)
         u.append(state.u)
     assert (u[0] == u[1]).all()
 
 
 def test_absent_effects_leave_no_array(pillar):
-    """A plain chain holds two numbers a block and the load, nothing else."""
+    """A plain chain holds three numbers a block and the load, and one law for all joints."""
     model, state, _, _ = build(pillar(record__energy=False))
-    chain = model.chain
-    assert chain.law == Law(calibrate(pillar()).regular_stiffness)
-    assert (chain.start, chain.end, chain.keep, chain.local) == (None,) * 4
-    assert (chain.weight, chain.steady, model.base) == (None,) * 3
-    assert state[2:] == (None,) * 6
+    assert not any(model.effects.joints) and not any(model.effects[1:])
+    law = dict.fromkeys(Law._fields, 0.0)
+    law["normal_stiffness"] = calibrate(pillar()).regular_stiffness
+    assert model.laws.tolist() == [[value] for value in law.values()]
+    assert model.base.size == 0
+    present = {name for name, array in state._asdict().items() if array is not None}
+    assert present == {"u", "v", "force", "start", "end"}
+    assert state.start.tolist() == state.end.tolist() == [0.0, 0.0]
 
 
 @pytest.mark.parametrize(
@@ -115,52 +120,74 @@ def test_absent_effects_leave_no_array(pillar):
 )
 def test_the_ledger_keeps_what_damping_calls_for(pillar, damping, kept):
     _, state, _, _ = build(pillar(**damping))
-    ledger = state.ledger
-    rows = ledger.viscous, ledger.behind, ledger.dashpots
+    rows = state.viscous, state.behind, state.dashpot_force
     assert tuple(None if row is None else row.size for row in rows) == kept
 
 
 SOFTENING = {"joints__tensile_strength": 1e6, "joints__fracture_energy": 500.0}
+SHAKEN = {"load": {"shape": "step", "amplitude": 1.0, "quantity": "velocity"}}
+ADDED = {
+    "dashpots": ("fmul", {"joints__damping_ratio": 0.02}),
+    "no tension": ("fcmp", {"joints__tension": False}),
+    "softening": ("fdiv", SOFTENING),
+    "joints that differ": ("load", {"soft_layers": [{"y": 20.0, "spacing_stiffness": 4e8}]}),
+    "held start": ("fdiv", {"ends__start": "matched"}),
+    "held end": ("fdiv", {"ends__end": "quiet"}),
+    "mass damping": ("fmul", {"damping__mass_proportional": 10.0}),
+    "local damping": ("fcmp", {"damping__local": 0.5}),
+    "gravity": ("fadd", {"gravity": {"direction": [0, 1, 0], "static": False}}),
+    "ledger": ("fadd", {"record__energy": True}),
+}
 
 
-def test_absent_effects_leave_no_instruction_in_a_joint(pillar, instructions):
-    """One product for the traction and one for the force; each effect adds to what is there."""
-
-    def count(kind, **changes):
-        model, state, _, _ = build(pillar(**{"record__energy": False, **changes}))
-        memory = state.u, state.v, state.gap_rate, state.opening, state.broke, state.ledger
-        return instructions(joint_force, (model.chain, *memory, 0, 0), kind)
-
-    plain = {kind: count(kind) for kind in ("fmul", "fadd", "fdiv", "fcmp")}
-    assert plain["fadd"] == plain["fdiv"] == plain["fcmp"] == 0
-    assert plain["fmul"] < count("fmul", joints__damping_ratio=0.02)
-    assert count("fcmp", joints__tension=False) > 0
-    assert count("fdiv", **SOFTENING) > 0
-    assert count("fadd", joints__damping_ratio=0.02, record__energy=True) > 0
-    assert plain["fmul"] == count("fmul", damping__local=0.5, prestress={"normal": 1e6})
-
-
-def test_absent_effects_leave_no_instruction_in_a_block(pillar, instructions):
-    """One product and one sum for the velocity; each damping adds to them, the ledger nothing."""
+@pytest.fixture
+def counted(pillar, instructions):
+    """Return a function that counts one kind of instruction in the time loop of a chain."""
 
     def count(kind, **changes):
         model, state, _, _ = build(pillar(**{"record__energy": False, **changes}))
-        return instructions(advanced, (model.chain, state.ledger, 1, 1.0, 1.0), kind)
+        loop = loop_for(model.effects._replace(ledger=state.work is not None))
+        given = arguments(model, state, buffers(model, state, 1), None)
+        return instructions(loop, (*given, 0, 1, 0, 1), kind)
 
-    plain = {kind: count(kind) for kind in ("fmul", "fadd")}
-    assert count("fcmp") == count("fsub") == 0
-    assert plain == {kind: count(kind, record__energy=True) for kind in plain}
-    assert plain["fmul"] < count("fmul", damping__mass_proportional=10.0)
-    assert count("fcmp", damping__local=0.5) > 0
-    assert count("fsub", damping__mass_proportional=10.0, record__energy=True) > 0
+    return count
 
 
-def test_absent_effects_leave_no_instruction_in_the_loop(pillar, instructions):
-    """No comparison and no quotient in the whole loop of a plain chain."""
+@pytest.mark.parametrize(("kind", "changes"), ADDED.values(), ids=ADDED)
+def test_each_effect_adds_instructions(counted, kind, changes):
+    """So a chain without it has none of them."""
+    assert counted(kind) < counted(kind, **changes)
 
-    def count(kind, **changes):
-        model, state, _, _ = build(pillar(record__energy=False, **changes))
-        return instructions(march, (model, state, 0, 1), kind)
 
-    assert count("fcmp") == 0 < count("fcmp", joints__tension=False)
-    assert count("fdiv") == 0 < count("fdiv", ends__end="quiet")
+def test_a_shaken_base_adds_instructions(counted):
+    """To those of a fixed start: a quotient."""
+    assert counted("fdiv", ends__start="fixed") < counted("fdiv", ends__start="fixed", **SHAKEN)
+
+
+def test_a_plain_loop_compares_speeds_and_divides_stresses_alone(counted, instructions):
+    """No comparison but those of the divergence monitor, no quotient but that of a recorded
+    stress."""
+
+    @jitted
+    def beyond(v, limit):
+        return out_of_bounds(v, limit)
+
+    assert counted("fcmp") == instructions(beyond, (np.zeros(3), 1.0), "fcmp")
+    assert counted("fdiv") == 1
+
+
+def test_every_effect_is_a_flag(pillar):
+    """What a scene calls for is what its kernel is compiled for."""
+    scene = pillar(
+        **SOFTENING,
+        joints__damping_ratio=0.02,
+        joints__tension=True,
+        soft_layers=[{"y": 20.0, "tension": False}],
+        ends={"start": "fixed", "end": "quiet"},
+        damping={"mass_proportional": 1.0, "local": 0.1},
+        gravity={"direction": [0, 1, 0], "static": False},
+        **SHAKEN,
+    )
+    effects = build(scene)[0].effects
+    along = Parts(True, True, True, False, False, False, False, True)
+    assert effects == (along, True, True, True, True, True, True, False)

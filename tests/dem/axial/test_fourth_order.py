@@ -9,8 +9,15 @@ from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from compare.exact.blocks import lattice, no_tension
 from compare.misfit.metrics import misfit
-from dem.axial.composition import DRIFTS, KICKS, half_trace, stability_limit
-from dem.axial.fourth_order import build, compose, march
+from dem.axial.fourth_order import (
+    DRIFTS,
+    KICKS,
+    build,
+    compose,
+    half_trace,
+    march,
+    stability_limit,
+)
 from dem.axial.state import state_at_rest
 from results.dataset import energy_residual
 
@@ -50,18 +57,19 @@ def fourth(pillar):
 
 
 def stepped(scene, dt):
-    """Return an unloaded state at rest and a function that takes so many steps dt (s) of it."""
+    """Return a model, its unloaded state at rest and what takes so many steps dt (s) of it."""
     p, model = calibrate(scene), build(scene)[0]
-    state = state_at_rest(model.chain, p.block_count, False)
+    state = state_at_rest(model.effects, p.block_count, False)
     steps = compose(scene, Clock(dt, 1, 1))
     steps = steps._replace(loads=np.zeros((0, 4)), impulses=np.zeros((0, 5)))
-    return state, lambda count: march(steps, state, 0, count)
+    return model, state, lambda count: march(steps, model, state, 0, count)
 
 
 def step_matrix(scene, dt):
     """Return the matrix of one step: displacements and velocities dt, closures of fixed ends."""
-    state, advance = stepped(scene, dt)
-    ends = [end[:1] for end in (state.start, state.end) if end is not None]
+    model, state, advance = stepped(scene, dt)
+    held = (model.effects.start, state.start), (model.effects.end, state.end)
+    ends = [end[:1] for is_held, end in held if is_held]
     parts, scale = [state.u, state.v, *ends], [1.0, 1 / dt, *(1.0 for _ in ends)]
     columns = []
     for unit in np.eye(sum(x.size for x in parts)):
@@ -148,7 +156,7 @@ def test_energy_has_no_trend_in_a_hundred_thousand_steps(fourth):
 def test_reverses_in_time_to_round_off(fourth):
     """A thousand steps and, with all velocities turned, a thousand back."""
     scene = fourth(0.9, soft_layers=SOFT, ends={"start": "free", "end": "fixed"})
-    state, advance = stepped(scene, 0.9 * build(scene)[3])
+    _, state, advance = stepped(scene, 0.9 * build(scene)[3])
     random = np.random.default_rng(1)
     state.u[:], state.v[:] = random.normal(size=(2, state.u.size))
     state.v[:] *= 1e3

@@ -6,9 +6,9 @@ import pytest
 import dem
 from cases.material.calibrate import calibrate
 from compare.exact.bar.spall import lattice_spall
+from dem.axial.leapfrog import march, run
 from dem.axial.model import build
-from dem.axial.record import room, run, terms
-from dem.axial.step import march
+from dem.axial.samples import buffers, terms
 from results.dataset import energy_residual
 
 STRENGTH, ENERGY = 1e6, 500.0  # Pa, J/m2
@@ -49,13 +49,13 @@ def test_ledger_closes_but_for_the_corners_of_the_law(pillar, ratio):
     changes = {} if ratio is None else {"damping_ratio": ratio}
     scene = pillar(joints={"tensile_strength": STRENGTH / 2, "fracture_energy": 50.0, **changes})
     model, state, time, _ = build(scene)
-    samples, gaps = room(model, state, time.steps), np.zeros((time.steps, len(state.opening)))
+    samples, gaps = buffers(model, state, time.steps), np.zeros((time.steps, len(state.opening)))
     for n in range(time.steps):
         gaps[n] = np.diff(state.u)
         run(model, state, samples, 1, n, n + 1)
     kinetic, elastic, viscous, fracture, boundary, work = samples.energy
     lost = np.abs(kinetic + elastic + viscous + fracture + boundary - work).max()
-    assert terms(model) == ("kinetic", "elastic", "viscous", "fracture", "boundary", "work")
+    assert terms(model.effects) == ("kinetic", "elastic", "viscous", "fracture", "boundary", "work")
     assert fracture[-1] > 0.02 * work.max() and (state.broke >= 0).any()
     assert lost <= corner_cost(calibrate(scene), gaps) + 1e-10 * work.max()
 

@@ -6,8 +6,8 @@ import pytest
 from cases.loads import load_history
 from cases.material.calibrate import calibrate
 from compare.exact.bar.spall import lattice_spall, spall
+from dem.axial.leapfrog import march
 from dem.axial.model import build
-from dem.axial.step import march
 
 
 @pytest.mark.parametrize("strength", [5e5, 6e5, 8e5])  # the wavelet's own tension is 4.5e5

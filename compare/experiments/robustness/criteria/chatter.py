@@ -91,13 +91,13 @@ def _peaks(loose: Loose, stride: int) -> np.ndarray:
 
 def _blocks(scene: Scene, dt: float) -> Loose:
     """Return the middle one of three rigid blocks, at 1 m/s."""
+    from dem.axial.leapfrog import march
     from dem.axial.model import build_model
     from dem.axial.state import state_at_rest
-    from dem.axial.step import march
 
     p = calibrate(scene)
     model = build_model(scene, p, Clock(dt, 1, 2))
-    state = state_at_rest(model.chain, p.block_count, False)
+    state = state_at_rest(model.effects, p.block_count, False)
     state.v[1] = 1.0
     if state.gap_rate is not None:
         state.gap_rate[:] = np.diff(state.v)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -124,28 +125,32 @@ def _fine(trial: Trial) -> dict[str, Any]:
 @criterion("traction that should not be there, Pa")
 def one_ulp(trial: Trial) -> Finding:
     """A gap of the smallest number is open and carries nothing; the same closed pushes back."""
-    from joints.laws import normal_traction
-
-    law = _law(trial)
+    stiffness, traction = _normal_law(trial)
     least = float(np.finfo(float).tiny)
-    wrong = [normal_traction(law, least, 0.0)]
+    wrong = [traction(least, 0.0)]
     for closed in (-least, -1e-9, np.nextafter(-1e-9, 0.0)):
-        wrong.append(normal_traction(law, closed, 0.0) + law.normal_stiffness * closed)
-    wrong.append(normal_traction(law, least, -1e9))
+        wrong.append(traction(closed, 0.0) + stiffness * closed)
+    wrong.append(traction(least, -1e9))
     return Finding(float(np.abs(wrong).max()), 0.0, "Pa, of gaps of 2e-308 and 1e-9 m")
 
 
-def _law(trial: Trial):
-    """Return the law of the first joint, as the solver has it."""
-    from joints.laws import law_of
-
+def _normal_law(trial: Trial) -> tuple[float, Callable[[float, float], float]]:
+    """Return the stiffness (Pa/m) of the first joint, as the solver has it, and its traction (Pa)
+    at a gap (m) and its rate (m/s)."""
     scene = trial.scene()
     if trial.solver.is_rigid:
-        from dem.axial.model import build_chain
+        from dem.axial.model import law_of_joints
+        from joints.flat import law, normal
 
-        return law_of(build_chain(scene, calibrate(scene), 1e-6, ("free", "free")).law, 0)
+        joints = law_of_joints(calibrate(scene))
+        first, parts = law.law_of(law.table_of(joints), 0), law.parts_of(joints)
+        return first.normal_stiffness, lambda gap, rate: normal.normal_traction(
+            first, parts, gap, rate, 0.0
+        )
     from continuum.build import discretise
+    from joints.laws import law_of, normal_traction
 
-    joints = discretise(scene, str(JOINTED_ROCK.model)).joints
-    assert joints is not None
-    return law_of(joints.law, 0)
+    interface = discretise(scene, str(JOINTED_ROCK.model)).joints
+    assert interface is not None
+    own = law_of(interface.law, 0)
+    return own.normal_stiffness, lambda gap, rate: normal_traction(own, gap, rate)

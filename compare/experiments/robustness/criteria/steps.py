@@ -71,7 +71,7 @@ def _gain_of_composition(x: float, steps: int) -> float:
     M^j = [[cos jW, b s], [c s, cos jW]] with s = sin jW / sin W, at most j. A kick in the middle
     of a step leaves the step as w: |v_j| <= |w_v| + |c w_u s|.
     """
-    from dem.axial.composition import DRIFTS, KICKS, stability_limit
+    from dem.axial.fourth_order import DRIFTS, KICKS, stability_limit
 
     z = min(x, 1.0) * stability_limit()
     drifts = [np.array([[1.0, a * z], [0.0, 1.0]]) for a in DRIFTS]
@@ -126,7 +126,7 @@ def _growth(trial: Trial, x: float) -> float:
     """Return the logarithm of what a step at x of the critical one multiplies the mode by."""
     if trial.solver.scheme != "fourth-order":
         return 2 * acosh(x)
-    from dem.axial.composition import half_trace, stability_limit
+    from dem.axial.fourth_order import half_trace, stability_limit
 
     return acosh(abs(half_trace()((x * stability_limit()) ** 2)))
 

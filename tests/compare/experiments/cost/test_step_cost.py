@@ -31,8 +31,9 @@ def test_scenes_in_turns_cost_what_they_cost_one_by_one():
     assert 0 < 2 * cheap < dear
 
 
-def test_everything_is_measured_once(monkeypatch):
+def test_everything_is_measured_once(tmp_path, monkeypatch):
     """The first call measures and saves; later ones read; a broken file is measured again."""
+    monkeypatch.setattr(timings.jit, "DIRECTORY", tmp_path)
     measured = []
     monkeypatch.setattr(step_cost, "nanoseconds", lambda scene: measured.append(scene) or 42.0)
     assert [whole(100), whole(100)] == pytest.approx([42.0, 42.0])
