@@ -6,7 +6,7 @@ from cases.calibrate import Properties
 from cases.sampling import Clock
 from cases.scene import Scene
 from continuum.model import Model, State
-from continuum.team import Alone
+from continuum.parallel.serial import Alone
 from joints.guard import speed_that
 
 

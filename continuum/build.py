@@ -10,20 +10,20 @@ from cases.calibrate import Properties, calibrate
 from cases.errors import SceneError
 from cases.sampling import Clock
 from cases.scene import Scene
-from continuum.body import Body, build_body, whole
-from continuum.critical import any_motion
-from continuum.elasticity import Material
 from continuum.ends import build_ends, end_stiffness, held_ends
-from continuum.interface import Jumps, jumps
+from continuum.explicit.critical import any_motion
+from continuum.explicit.record import TERMS
+from continuum.joints import interfaces, joint_law, measured, memory, resolved_joints, tractions
 from continuum.kinematics import Kinematics, kinematics, layer_thickness, materials
-from continuum.laws import interfaces, joint_law, measured, memory, resolved_joints, tractions
-from continuum.meshing.description import Mesh
-from continuum.meshing.pillar import elements_in_block, pillar_mesh
+from continuum.mesh.description import Mesh
+from continuum.mesh.pillar import elements_in_block, pillar_mesh
 from continuum.model import Interfaces, Model, Receivers, Rock, Samples, State
-from continuum.receivers import points, sections
-from continuum.record import TERMS
 from continuum.size import refuse_large_file, refuse_large_mesh
-from continuum.sparse import Rows, rows, sparse
+from continuum.space.body import Body, build_body, whole
+from continuum.space.elasticity import Material
+from continuum.space.interface import Jumps, jumps
+from continuum.space.receivers import points, sections
+from continuum.space.sparse import Rows, rows, sparse
 from joints.rows import zeros
 
 
@@ -71,7 +71,7 @@ def mesh_of(scene: Scene, p: Properties, model: str, motion: Kinematics) -> Mesh
     """Return the mesh of a scene's pillar: its own file, or blocks by gmsh."""
     numerics = scene.numerics.continuum
     if numerics.mesh_path is not None:
-        from continuum.meshing.given import given_mesh
+        from continuum.mesh.given import given_mesh
 
         refuse_large_file(scene)
         return given_mesh(numerics.mesh_path, scene, p, motion.dim)

@@ -6,12 +6,12 @@ from cases.calibrate import Properties
 from cases.loads import base_steps, load_history, step_means
 from cases.sampling import Clock
 from cases.scene import Scene
-from continuum.body import Body, along
-from continuum.interface import Facets, facet_points
 from continuum.kinematics import impedances
-from continuum.meshing.description import Side
+from continuum.mesh.description import Side
 from continuum.model import Ends, HalfJoints, Held, Loaded, Quiet
-from continuum.places import Places, places_in
+from continuum.space.body import Body, along
+from continuum.space.evaluation import Places, places_in
+from continuum.space.interface import Facets, facet_points
 from joints.ends import HalfSpring, half_spring
 
 

@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cases.scene import Scene
-from continuum.body import Body
 from continuum.build import Discrete
 from continuum.model import Model, Samples, State
-from continuum.watch import Watch
+from continuum.monitor import Watch
+from continuum.space.body import Body
 
 IMPLICIT_WORK = 100  # some corrections, each a triangular solve and often a factorisation
 
@@ -70,8 +70,8 @@ def implicit_engine(
     scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, watch: Watch
 ) -> Engine:
     """Return the generalised-alpha method of the scene's spectral radius."""
-    from continuum.implicit import Implicit
-    from continuum.implicit_step import rock_matrices
+    from continuum.implicit.run import Implicit
+    from continuum.implicit.step import rock_matrices
 
     rho = scene.numerics.continuum.spectral_radius
     run = Implicit(model, state, rock_matrices(discrete.body), rho)

@@ -8,7 +8,7 @@ from cases.effects import is_spatial
 from cases.elastic import equivalent_modulus
 from cases.errors import SceneError
 from cases.scene import Scene
-from continuum.elasticity import Material, Section
+from continuum.space.elasticity import Material, Section
 
 MODELS = ("jointed", "equivalent")
 

@@ -1,7 +1,7 @@
 """The constants of a run in one, two or three dimensions, and what changes in it.
 
 Two objects; absent parts are None. A freedom is one component of the displacement of one node;
-where it stands in a vector, `continuum.operator.layout` says.
+where it stands in a vector, `continuum.space.operator.layout` says.
 
 Where several processes share a run, each holds part of the rock and of the joints. Every force,
 mass, viscosity and weight is then its own share, and `total` and `beta` are of all together.
@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from continuum.operator import Operator
-from continuum.sparse import Rows
+from continuum.space.operator import Operator
+from continuum.space.sparse import Rows
 from joints.laws import Law
 
 
@@ -215,7 +215,7 @@ class State(NamedTuple):
 class Samples(NamedTuple):
     """Room for what is recorded [row of the receivers' matrices, sample]; turn None without.
 
-    energy : [term, sample] in the order of `continuum.record.TERMS`, None when not kept.
+    energy : [term, sample] in the order of `continuum.explicit.record.TERMS`, None when not kept.
     """
 
     stress: np.ndarray

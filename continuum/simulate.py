@@ -16,7 +16,6 @@ from cases.errors import SceneError, StoppedError
 from cases.keeper import Keeper
 from cases.result import Fields, fields
 from cases.scene import Scene
-from continuum import compat
 from continuum.build import (
     Discrete,
     build_model,
@@ -27,12 +26,13 @@ from continuum.build import (
 )
 from continuum.engines import explicit_engine, implicit_engine
 from continuum.kinematics import refuse
-from continuum.looks import march_with_looks
 from continuum.model import Model, Samples, State
-from continuum.reach import applies
+from continuum.monitor import Watch
 from continuum.scheme import Choice, choose
 from continuum.size import refuse_large_run
-from continuum.watch import Watch
+from continuum.space import compat
+from continuum.time_loop import march_with_looks
+from continuum.validity import applies
 from continuum.waveforms import energy_terms, waveforms
 
 if TYPE_CHECKING:
@@ -166,7 +166,7 @@ def _at_rest(scene: Scene, built: Model, state: State, discrete: Discrete) -> di
     """Bring a scene's rock to rest under gravity, and return what a result says of that."""
     if scene.gravity is None or not scene.gravity.static:
         return {}
-    from continuum.static import settle_static
+    from continuum.implicit.static import settle_static
 
     return settle_static(scene, built, state, discrete.body).attributes
 

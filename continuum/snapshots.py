@@ -16,13 +16,13 @@ from cases.snapshots import (
     with_snapshots,
 )
 from cases.subcells import KINDS, linear_cells
-from continuum import compat
-from continuum.body import axis
 from continuum.build import Discrete
 from continuum.model import State
-from continuum.places import at_reference, matrix_of
-from continuum.receivers import section_tractions
-from continuum.team import Pieces
+from continuum.parallel.serial import Pieces
+from continuum.space import compat
+from continuum.space.body import axis
+from continuum.space.evaluation import at_reference, matrix_of
+from continuum.space.receivers import section_tractions
 
 
 class RockFilm(Film):

@@ -4,8 +4,8 @@ With the jump operators B (freedoms to gap and slip), the weights W and the trac
 compression positive, on the far side), the joints' force on the freedoms is B^T W t(B u).
 """
 
-from continuum.runs import add_runs, multiply_runs
-from continuum.sparse import row
+from continuum.space.sparse import row
+from continuum.space.stencils import add_runs, multiply_runs
 from joints.energy import friction_work
 from joints.jit import inlined
 from joints.laws import law_of, normal_traction, spring_traction

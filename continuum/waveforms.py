@@ -7,10 +7,10 @@ import numpy as np
 from cases.result import ALL_TERMS
 from cases.scene import Scene
 from continuum.build import Discrete
+from continuum.explicit.record import TERMS
 from continuum.model import Model, Samples
-from continuum.receivers import is_on_joint
-from continuum.record import TERMS
-from continuum.team import ALONE, Alone
+from continuum.parallel.serial import ALONE, Alone
+from continuum.space.receivers import is_on_joint
 from joints.laws import Law
 
 

@@ -27,7 +27,7 @@ from compare.keeping.watch import result_of
 from compare.output import read_kept
 from compare.processes import ALONE
 from compare.studies.measure import Row
-from continuum.meshing.tagged import read_tagged
+from continuum.mesh.tagged import read_tagged
 
 AT_ONCE = 200e6  # bytes: what reading a scene of ten million blocks takes, not one run refused here
 

@@ -57,7 +57,7 @@ def _scene(scene: Scene) -> str:
 def _versions(name: str) -> str:
     found = {package: version(package) for package in ("numpy", "numba")}
     if name.startswith("continuum-"):
-        from continuum import compat
+        from continuum.space import compat
 
         found["dolfinx"] = compat.VERSION
     return json.dumps(found)

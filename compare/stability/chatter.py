@@ -25,7 +25,7 @@ from cases.scene import Scene
 from compare.stability.case import STEP, Finding, Trial
 
 if TYPE_CHECKING:
-    from continuum.body import Body
+    from continuum.space.body import Body
 
 IMPACTS = 10_000
 SAMPLES = 16  # of the speed, from one impact to the next
@@ -106,7 +106,7 @@ def _blocks(scene: Scene, dt: float) -> Loose:
 def _rock(scene: Scene, dt: float, kind: str) -> Loose:
     """Return the middle one of three deformable blocks, at 1 m/s; its speed is that of its mass."""
     from continuum.build import build_model, discretise, room, state_at_rest
-    from continuum.explicit import run
+    from continuum.explicit.march import run
 
     discrete = discretise(scene, kind)
     model = build_model(scene, discrete, kind, Clock(dt, 1, 2))

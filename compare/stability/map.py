@@ -117,7 +117,7 @@ def _blocks(scene: Scene) -> tuple[Growth, float]:
 def _rock(kind: str) -> Callable[[Scene], tuple[Growth, float]]:
     """Return what gives the growth of rock by the step (s), and its critical step, s."""
     from continuum.build import build_model, critical_step_of, discretise, room, state_at_rest
-    from continuum.explicit import run
+    from continuum.explicit.march import run
 
     def prepare(scene: Scene) -> tuple[Growth, float]:
         discrete = discretise(scene, kind)

@@ -9,8 +9,8 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import LinearOperator
 
-from continuum.critical import critical_step
-from continuum.parallel.team import Team
+from continuum.explicit.critical import critical_step
+from continuum.parallel.communicator import Team
 
 STOP = -1.0
 

@@ -4,7 +4,7 @@ While shares of forces are on their way all freedoms are accelerated; those that
 once more when the shares are there.
 """
 
-from continuum.explicit import accelerate, advance, forces
+from continuum.explicit.march import accelerate, advance, forces
 from continuum.parallel.exchange import receive, send
 from joints.borrowed import borrowed
 from joints.guard import EVERY, runs_away

@@ -8,7 +8,6 @@ import pytest
 from cases.calibrate import calibrate
 from cases.sampling import Clock
 from cases.scene import Scene
-from continuum.body import build_body
 from continuum.build import (
     Discrete,
     build_model,
@@ -17,9 +16,10 @@ from continuum.build import (
     room,
     state_at_rest,
 )
-from continuum.elasticity import Material, Section
-from continuum.explicit import run
-from continuum.meshing.pillar import pillar_mesh
+from continuum.explicit.march import run
+from continuum.mesh.pillar import pillar_mesh
+from continuum.space.body import build_body
+from continuum.space.elasticity import Material, Section
 from continuum.waveforms import waveforms
 
 ROCK = Material(modulus=8.64e10, poisson=0.25, density=2400.0)

@@ -7,7 +7,7 @@ from cases.calibrate import calibrate
 from cases.errors import SceneError
 from continuum import applies, simulate
 from continuum.build import discretise, state_at_rest
-from continuum.explicit import absorb, accelerate, add, forces, hold, run
+from continuum.explicit.march import absorb, accelerate, add, forces, hold, run
 from continuum.model import Quiet
 from continuum.simulate import steps_of
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from compare.exact import generalised_alpha as theory
-from continuum.generalised_alpha import scheme
+from continuum.implicit.generalised_alpha import scheme
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse import csr_matrix, random
 
-from continuum.lanes import WIDTH
-from continuum.operator import (
+from continuum.space.lanes import WIDTH
+from continuum.space.operator import (
     layout,
     multiply,
     operator,

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.sparse import csr_matrix
 
-from continuum.runs import ROUND_OFF, add_runs, distinct, multiply_runs, runs
+from continuum.space.stencils import ROUND_OFF, add_runs, distinct, multiply_runs, runs
 
 
 def banded(rows: list[dict[int, float]], columns: int) -> csr_matrix:

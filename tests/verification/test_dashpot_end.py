@@ -7,7 +7,7 @@ from cases.loads import load_history
 from cases.sampling import clock
 from compare.exact import dashpot_end
 from continuum.build import build_model, critical_step_of, discretise, room, state_at_rest
-from continuum.explicit import run
+from continuum.explicit.march import run
 
 
 @pytest.mark.parametrize("beta", [0.5, 1.0, 2.0])

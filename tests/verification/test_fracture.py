@@ -5,9 +5,9 @@ import pytest
 
 from cases.sampling import Clock
 from continuum.build import build_model, critical_step_of, discretise, room, state_at_rest
-from continuum.explicit import run
+from continuum.explicit.march import run
+from continuum.explicit.record import TERMS
 from continuum.model import Held
-from continuum.record import TERMS
 
 STRENGTH, ENERGY, AREA = 5e5, 30.0, 0.25
 CRITICAL = 2 * ENERGY / STRENGTH

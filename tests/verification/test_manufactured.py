@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_matrix
 
-from continuum.body import whole
 from continuum.build import room, state_at_rest
-from continuum.critical import critical_time_step
-from continuum.explicit import run
-from continuum.implicit import Implicit
-from continuum.implicit_step import rock_matrices
+from continuum.explicit.critical import critical_time_step
+from continuum.explicit.march import run
+from continuum.implicit.run import Implicit
+from continuum.implicit.step import rock_matrices
 from continuum.model import Ends, Model, Receivers, Rock
-from continuum.operator import zeros
-from continuum.sparse import rows
+from continuum.space.body import whole
+from continuum.space.operator import zeros
+from continuum.space.sparse import rows
 
 #: Kind, order p, cells a side of the coarser mesh, and the order of convergence.
 MESHES = [

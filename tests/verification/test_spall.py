@@ -13,7 +13,7 @@ from compare.exact.jointed_spall import jointed_spall
 from compare.exact.spall import spall
 from compare.scenes import SHIPPED
 from continuum.build import build_model, critical_step_of, discretise, room, state_at_rest
-from continuum.explicit import run
+from continuum.explicit.march import run
 
 SAW_TOOTH = SHIPPED / "beyond" / "spall.toml"
 

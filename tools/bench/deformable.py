@@ -18,7 +18,7 @@ from plain_dolfinx import Pillar
 from rock import BLOCKS, CASES, SAME_STEPS, Engine, assert_same, engine_of, pillar_of
 
 from cases.arrays import size_of
-from continuum.operator import Operator, layout, multiply, operator, zeros
+from continuum.space.operator import Operator, layout, multiply, operator, zeros
 
 
 class Contender(NamedTuple):

@@ -15,7 +15,7 @@ from kernels import SLIDES, rate
 from rock import Engine, engine_of
 
 from compare.effort import changed, stretches
-from continuum.explicit import run
+from continuum.explicit.march import run
 from joints.guard import Guard, guard
 
 FREEDOM_STEPS = 5_000_000

@@ -9,7 +9,7 @@ from cases.sampling import Clock
 from cases.scene import Scene
 from compare.effort import changed
 from continuum.build import Discrete, build_model, discretise, room, state_at_rest
-from continuum.explicit import run
+from continuum.explicit.march import run
 from continuum.model import Model, Samples, State
 from continuum.simulate import steps_of
 

@@ -35,7 +35,7 @@ def post(counters, i, value):
 def give_way():
     pass
 """,
-    "continuum.lanes": """
+    "continuum.space.lanes": """
 import numpy as np
 
 WIDTH = 8

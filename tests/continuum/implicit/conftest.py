@@ -7,9 +7,9 @@ import pytest
 
 from cases.sampling import Clock
 from continuum.build import build_model, discretise, room, state_at_rest
-from continuum.implicit import Implicit
-from continuum.implicit_step import rock_matrices
-from continuum.record import TERMS
+from continuum.explicit.record import TERMS
+from continuum.implicit.run import Implicit
+from continuum.implicit.step import rock_matrices
 
 
 class Run(NamedTuple):

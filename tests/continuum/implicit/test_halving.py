@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from cases.errors import StoppedError, UnstableError
-from continuum import implicit_step, simulate
-from continuum.implicit import HALVINGS
-from continuum.substeps import end_resistance, shortened
+from continuum import simulate
+from continuum.implicit.run import HALVINGS
+from continuum.implicit import step as implicit_step
+from continuum.implicit.substeps import end_resistance, shortened
 from joints.ends import half_spring
 
 

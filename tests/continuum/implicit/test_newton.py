@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_matrix, random
 
-from continuum import implicit_step
-from continuum.newton import MOST_ITERATIONS, Factors, newton
-from continuum.pattern import pattern
-from continuum.sparse import sparse
+from continuum.implicit.newton import MOST_ITERATIONS, Factors, newton
+from continuum.implicit.pattern import pattern
+from continuum.implicit import step as implicit_step
+from continuum.space.sparse import sparse
 
 
 def roots_of_two(x):
