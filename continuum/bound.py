@@ -19,7 +19,7 @@ def highest_speed(
     any node at most 2 E. Of a node that several processes share, the shares of F^2 / m add up to no
     less than the whole: (a + b)^2 / (m + n) <= a^2 / m + b^2 / n.
     """
-    mass, loaded, held = model.rock.mass, model.ends.loaded, model.ends.held
+    mass, loaded, fixed = model.rock.mass, model.ends.loaded, model.ends.fixed
     rock = mass > 0
     least = np.sqrt(team.largest(1 / mass[rock].min()))
     duration, stored, weight = time.dt * (time.steps + time.stride), 0.0, 0.0
@@ -27,9 +27,9 @@ def highest_speed(
     if loaded is not None:
         drive = team.sum((loaded.share**2 / mass[loaded.freedom]).sum())
         pushed = (model.dt * np.abs(loaded.pressure) * np.sqrt(drive)).sum()
-    if held is not None and held.step is not None:
-        way = np.diff(held.step, prepend=0.0, append=0.0) / model.dt
-        shaken = np.abs(way).sum() * np.sqrt(team.sum(mass[rock].sum()))
+    if fixed is not None and fixed.step is not None:
+        speed = np.diff(fixed.step, prepend=0.0, append=0.0) / model.dt
+        shaken = np.abs(speed).sum() * np.sqrt(team.sum(mass[rock].sum()))
     if model.weight is not None:
         weight = np.sqrt(team.sum((model.weight[rock] ** 2 / mass[rock]).sum()))
         stored = np.sqrt(2 * abs(team.sum(model.weight @ state.u)))

@@ -1,4 +1,4 @@
-"""What acts on the two end faces: the load, what absorbs, and what is held."""
+"""What acts on the two end faces: the load, what absorbs, and what is fixed."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from cases.sampling import Clock
 from cases.scene import Scene
 from continuum.kinematics import impedances
 from continuum.mesh.description import Side
-from continuum.model import Ends, HalfJoints, Held, Loaded, Quiet
+from continuum.model import Ends, Fixed, HalfJoints, Loaded, Quiet
 from continuum.space.body import Body, along
 from continuum.space.evaluation import Places, places_in
 from continuum.space.interface import Facets, facet_points
@@ -22,7 +22,7 @@ def build_ends(
     return Ends(
         loaded=load_on(scene, p, body, time),
         quiet=quiet_ends(scene, p, body, model, time.dt, mass),
-        held=held_ends(scene, body, time),
+        fixed=fixed_ends(scene, body, time),
     )
 
 
@@ -138,9 +138,9 @@ def end_stiffness(scene: Scene, p: Properties, body: Body, model: str) -> np.nda
     return found
 
 
-def held_ends(scene: Scene, body: Body, time: Clock | None = None) -> Held | None:
+def fixed_ends(scene: Scene, body: Body, time: Clock | None = None) -> Fixed | None:
     """Return the freedoms of fixed ends, those of a shaken base with its motion; None without."""
-    freedoms, ways = [], []
+    freedoms, directions = [], []
     for place in ("start", "end"):
         if getattr(scene.ends, place) != "fixed":
             continue
@@ -149,14 +149,14 @@ def held_ends(scene: Scene, body: Body, time: Clock | None = None) -> Held | Non
             freedoms.append(np.flatnonzero(area))
             component = 1 if body.section.components == 1 else c
             shaken = place == "start" and scene.load.shakes_base
-            way = scene.load.direction[component] if shaken else 0.0
-            ways.append(np.full(freedoms[-1].size, way))
+            direction = scene.load.direction[component] if shaken else 0.0
+            directions.append(np.full(freedoms[-1].size, direction))
     if not freedoms:
         return None
     step = None
     if scene.load.shakes_base and time is not None:
         step = base_steps(scene, time.dt, time.steps + 1)
-    return Held(np.concatenate(freedoms), np.concatenate(ways).astype(float), step)
+    return Fixed(np.concatenate(freedoms), np.concatenate(directions).astype(float), step)
 
 
 def face_area(body: Body, side: Side) -> np.ndarray:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from cases.scene import Scene
 from continuum.build import Discrete
 from continuum.model import Model, Samples, State
@@ -38,13 +36,10 @@ def explicit_engine(
     scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, watch: Watch
 ) -> Engine:
     """Return leapfrog."""
-    team, held = discrete.body.team, model.ends.held
+    team = discrete.body.team
     if scene.gravity is not None and not scene.gravity.static:
         let_go(model, state, discrete.body)
-    run = team.stepping(np.zeros(0, dtype=np.int64) if held is None else held.freedom)
-
-    def march(first: int, last: int) -> None:
-        run(model, state, samples, watch.time.stride, first, last, watch.guard)
+    march = team.leapfrog(model, state, samples, watch.time.stride, watch.guard)
 
     def compile() -> None:
         with team.in_turn():
@@ -59,10 +54,10 @@ def let_go(model: Model, state: State, body: Body) -> None:
     At t = 0, in the middle of the first two, it is at rest.
     """
     fall = 0.5 * model.rock.step_over_mass * body.team.total(model.weight)
-    if model.rock.keep is not None:
-        fall *= 2 / (1 + model.rock.keep)  # step_over_mass is that of damped motion
-    if model.ends.held is not None:
-        fall[model.ends.held.freedom] = 0.0
+    if model.rock.decay is not None:
+        fall *= 2 / (1 + model.rock.decay)  # step_over_mass is that of damped motion
+    if model.ends.fixed is not None:
+        fall[model.ends.fixed.freedom] = 0.0
     state.v[:], state.v_before[:] = -fall, -3 * fall
 
 
@@ -70,8 +65,8 @@ def implicit_engine(
     scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, watch: Watch
 ) -> Engine:
     """Return the generalised-alpha method of the scene's spectral radius."""
+    from continuum.implicit.balance import rock_matrices
     from continuum.implicit.run import Implicit
-    from continuum.implicit.step import rock_matrices
 
     rho = scene.numerics.continuum.spectral_radius
     run = Implicit(model, state, rock_matrices(discrete.body), rho)

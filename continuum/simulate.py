@@ -11,7 +11,7 @@ import numba
 import numpy as np
 import xarray as xr
 
-from cases.arrays import size_of
+from cases.arrays import changed, size_of
 from cases.errors import SceneError, StoppedError
 from cases.keeper import Keeper
 from cases.result import Fields, fields
@@ -21,7 +21,7 @@ from continuum.build import (
     build_model,
     critical_step_of,
     discretise,
-    room,
+    empty_samples,
     state_at_rest,
 )
 from continuum.engines import explicit_engine, implicit_engine
@@ -75,7 +75,7 @@ def simulate(
     built = build_model(scene, discrete, model, time)
     state = state_at_rest(built, scene.record.energy)
     rest = _at_rest(scene, built, state, discrete)
-    samples = room(built, state, time.samples)
+    samples = empty_samples(built, state, time.samples)
     start = explicit_engine if choice.scheme == "explicit" else implicit_engine
     watch = Watch(scene, discrete, built, state, samples, choice, critical)
     engine = start(scene, discrete, built, state, samples, watch)
@@ -92,9 +92,9 @@ def simulate(
         }
         about = _about(scene, discrete, model, choice, critical) | rest | engine.attributes()
         about |= {"bytes": int(team.sum(size_of(built, state)))}
-        for wave in samples:
-            if wave is not None:
-                team.gather(wave)
+        for rows in (samples.waves, samples.energy):
+            if rows is not None:
+                team.gather(rows)
         found = _recorded(scene, discrete, built, samples, time.times[:count], about | seconds)
         return xr.Dataset(*(found if film is None else film.developed(found)))
 
@@ -127,8 +127,7 @@ def _recorded(
     about: dict[str, Any],
 ) -> Fields:
     """Return what was recorded at these times as a result, with attributes about the run."""
-    taken: list[Any] = [None if wave is None else wave[:, : times.size] for wave in samples]
-    until = Samples(*taken)
+    until = changed(samples, lambda rows: rows[:, : times.size])
     terms, energy = energy_terms(built, until.energy, discrete.body.team)
     return fields(
         scene,

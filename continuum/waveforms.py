@@ -7,11 +7,10 @@ import numpy as np
 from cases.result import ALL_TERMS
 from cases.scene import Scene
 from continuum.build import Discrete
-from continuum.explicit.record import TERMS
-from continuum.model import Model, Samples
+from continuum.model import TERMS, Model, Samples
 from continuum.parallel.serial import ALONE, Alone
 from continuum.space.receivers import is_on_joint
-from joints.laws import Law
+from joints.flat.law import Law
 
 
 def waveforms(scene: Scene, discrete: Discrete, samples: Samples) -> dict[str, Any]:
@@ -33,7 +32,7 @@ def waveforms(scene: Scene, discrete: Discrete, samples: Samples) -> dict[str, A
             for name, wave in motion.items()
         },
     }
-    if samples.turn is not None:
+    if samples.turn.size:
         found["rotation"] = np.moveaxis(_by_component(samples.turn, 3), 0, 2)
     return found
 

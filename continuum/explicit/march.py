@@ -1,208 +1,129 @@
-"""The compiled loop: leapfrog steps of jointed rock.
+"""A run by leapfrog: the arguments of its kernel, and how receivers read the state."""
 
-Displacements u live at whole steps, velocities v half a step before or after. Dashpots in rock
-and joints see the rate extrapolated to the whole step, 1.5 v[n-1/2] - 0.5 v[n-3/2], which keeps
-second order without an equation to solve; quiet ends and mass-proportional damping are centred
-implicitly on their freedom.
+from collections.abc import Callable
+from typing import Any
 
-Absent parts of a model or state are None. Each is handed on as an argument of its own, where
-numba removes the branch that would use it.
-"""
+import numpy as np
+from scipy.sparse import csr_matrix, diags, identity, kron
 
-from continuum.explicit.record import book, record
-from continuum.space.operator import multiply
-from continuum.tractions import load_joints, push
-from joints.borrowed import borrowed
-from joints.guard import EVERY, creates_energy, runs_away
-from joints.jit import inlined, jitted
-from joints.tiny import flush_tiny, restore_tiny
+from continuum.explicit.leapfrog import leapfrog_for
+from continuum.model import Model, Samples, State
+from joints.guard import Guard
 
 
-@jitted
-def run(model, state, samples, stride, first, last, guard=None):
-    """Take steps first .. last - 1 and a sample at every step that `stride` divides.
+def run(model: Model, state: State, samples: Samples, stride: int, first: int, last: int) -> None:
+    """Take steps first .. last - 1 and a sample at every step that `stride` divides, whatever comes
+    of them."""
+    march(model, state, samples, stride, None)(first, last)
 
-    guard : `joints.guard.Guard` that ends it where it runs out of bounds; None without.
+
+def march(
+    model: Model,
+    state: State,
+    samples: Samples,
+    stride: int,
+    limits: Guard | None,
+    link: Any = None,
+) -> Callable[[int, int], int]:
+    """Return a function of (first, last) that takes steps first .. last - 1, and a sample at every
+    step that `stride` divides; it returns MPI's error code, 0 without.
+
+    limits : end the run where it exceeds them; None without. link : `continuum.parallel.exchange.Link` to those
+        who share the run, who then go on to where all of them look.
     """
-    old = flush_tiny()
-    model, state, samples = borrowed(model), borrowed(state), borrowed(samples)
-    for n in range(first, last):
-        forces(model, state, n)
-        accelerate(model.rock, model.rock.keep, state)
-        advance(model, state, samples, stride, n)
-        if is_lost(guard, state, samples, stride, n):
-            break
-    restore_tiny(old)
+    joints = model.interfaces
+    constants = (None, None) if joints is None else (joints.parts, joints.directions)
+    kernel = leapfrog_for(*constants)
+    arrays = arguments(model, state, samples, limits, link)
+    return lambda first, last: kernel(first, last, stride, model.dt, *arrays)
 
 
-@inlined
-def is_lost(guard, state, samples, stride, n):
-    """Return whether a guard finds the run out of bounds at step n."""
-    if guard is None:
-        return False
-    lost = (n + 1) % EVERY == 0 and runs_away(guard, state.v, n + 1)
-    if n % stride == 0:
-        lost = creates_energy(guard, samples.energy, n // stride, n) or lost
-    return lost
+def arguments(
+    model: Model, state: State, samples: Samples, limits: Guard | None, link: Any
+) -> tuple[Any, ...]:
+    """Return the arguments of the kernel after the steps, in its order; None for what is absent."""
+    rock, joints, (loaded, quiet, fixed) = model.rock, model.interfaces, model.ends
+    tiles, *stiffness = rock.stiffness
+    springs = None if quiet is None else quiet.springs
+    jumps: tuple[Any, ...] = 8 * (None,)
+    if joints is not None:
+        along = int(np.searchsorted(joints.stencils.first, joints.area.size))
+        jumps = *joints.stencils, along, joints.table, joints.area, joints.prestress
+    return (
+        *(state.u, state.v, state.v_before, state.force, state.rate, state.drag),
+        *(tiles, *stiffness, *(3 * (None,) if rock.viscosity is None else rock.viscosity[1:])),
+        *(rock.step_over_mass, rock.mass, rock.decay, model.weight),
+        *(*jumps, state.jump, state.jump_rate, state.slip_rate),
+        *(state.opening, state.slide, state.cohesion),
+        *(state.loads, state.drags, _flat(state.jump), _flat(state.jump_rate)),
+        *(_flat(state.slip_rate), _flat(state.loads), _flat(state.drags)),
+        *(3 * (None,) if loaded is None else loaded),
+        *(3 * (None,) if quiet is None else quiet[:3]),
+        state.reaction,
+        *(3 * (None,) if springs is None else (springs.stiffness, springs.decay, springs.gain)),
+        state.closure,
+        *(3 * (None,) if fixed is None else fixed),
+        state.base_force,
+        *(state.fields, *readings(model, state), samples.waves),
+        *(state.ledger, samples.energy),
+        *(2 * (None,) if limits is None else (limits.limit.view(float)[0], limits.found)),
+        link,
+    )
 
 
-@inlined
-def forces(model, state, n):
-    """Set the force on every freedom at step n, from the displacements and rates there."""
-    interfaces, ends = model.interfaces, model.ends
-    deform(state.force, model.rock.stiffness, state.u)
-    extrapolate(state.rate, state.v, state.v_before)
-    damp(state.drag, model.rock.viscosity, state.rate)
-    load_joints(interfaces, state.u, state.v, state.rate, state.memory, state, model.dt)
-    push(interfaces, state.tractions, state.jumps, state.force, state.drag)
-    add(state.force, state.drag)
-    add(state.force, model.weight)
-    press(state.force, ends.loaded, n)
-    lean(state.force, ends.quiet, state.closure)
+def _flat(points: np.ndarray | None) -> np.ndarray | None:
+    return None if points is None else points.reshape(-1)
 
 
-@inlined
-def advance(model, state, samples, stride, n):
-    """Move on to the next step at the velocities that the forces of step n have given, but for what
-    absorbs or holds, and record step n."""
-    ends, dt = model.ends, model.dt
-    absorb(ends.quiet, state.reaction, state.closure, state.v, state.v_before)
-    hold(ends.held, model, state, n)
-    book(state.ledger, 0.5 * dt, model, state, n, state.v_before)
-    if n % stride == 0:
-        record(model, state, samples, n // stride)
-    book(state.ledger, 0.5 * dt, model, state, n, state.v)
-    for i in range(state.u.size):
-        state.u[i] += dt * state.v[i]
-    close(ends.quiet, state.closure, state.v)
+def readings(model: Model, state: State) -> tuple[np.ndarray, ...]:
+    """Return how the rows of `Samples.waves` follow from `State.fields`: start, column and value of
+    a sparse matrix, and what is added.
 
-
-@inlined
-def deform(force, stiffness, u):
-    """Set the elastic force (N) of the rock on every freedom."""
-    multiply(stiffness, u, force, -1.0)
-
-
-@inlined
-def extrapolate(rate, v, v_before):
-    """Set the rate of displacement at the whole step, second order."""
-    if rate is not None:
-        for i in range(rate.size):
-            rate[i] = 1.5 * v[i] - 0.5 * v_before[i]
-
-
-@inlined
-def damp(drag, viscosity, rate):
-    """Set the viscous force (N) of the rock on every freedom."""
-    if drag is not None:
-        drag[:] = 0.0
-        damp_rock(drag, viscosity, rate)
-
-
-@inlined
-def damp_rock(drag, viscosity, rate):
-    """Set the viscous force of rock that has Kelvin-Voigt dashpots."""
-    if viscosity is not None:
-        deform(drag, viscosity, rate)
-
-
-@inlined
-def add(force, more):
-    """Add other forces on every freedom, where there are any."""
-    if more is not None:
-        for i in range(force.size):
-            force[i] += more[i]
-
-
-@inlined
-def press(force, loaded, n):
-    """Add the load (N)."""
-    if loaded is not None:
-        for k in range(loaded.freedom.size):
-            force[loaded.freedom[k]] += loaded.share[k] * loaded.pressure[n]
-
-
-@inlined
-def lean(force, quiet, closure):
-    """Add the force (N) of the springs in front of dashpots."""
-    if closure is not None:
-        for k in range(closure.size):
-            force[quiet.freedom[k]] -= quiet.springs.stiffness[k] * closure[k]
-
-
-@inlined
-def accelerate(rock, keep, state):
-    """Advance every velocity by one step."""
-    v, v_before, force = state.v, state.v_before, state.force
-    if keep is None:
-        for i in range(v.size):
-            v_before[i] = v[i]
-            v[i] += rock.step_over_mass[i] * force[i]
-    else:
-        for i in range(v.size):
-            v_before[i] = v[i]
-            v[i] = keep * v[i] + rock.step_over_mass[i] * force[i]
-
-
-@inlined
-def absorb(quiet, reaction, closure, v, v_before):
-    """Slow quiet freedoms by their dashpots, centred: exactly the free motion where beta = 0.
-
-    What holds each of them back, spring and dashpot (N), is left in `reaction`.
+    Velocity at the step is the mean of those half a step before and after, acceleration their
+    difference over dt.
     """
-    if quiet is not None:
-        for k in range(quiet.freedom.size):
-            i, beta = quiet.freedom[k], quiet.beta[k]
-            v[i] = (v[i] - beta * v_before[i]) / (1.0 + beta)
-            reaction[k] = 0.5 * quiet.viscosity[k] * (v_before[i] + v[i])
-        add_springs(reaction, quiet.springs, closure)
+    r, at, dt = model.receivers, state.at, model.dt
+    alpha = mass_damping(model.rock.decay, dt)
+    sections, points = r.elastic.shape[0], r.point.shape[0]
+    contact, added = contact_rows(model)
+    entries = [
+        (0, r.elastic, at.u),
+        (0, r.viscous, at.rate),
+        (0, (alpha / 2 + 1 / dt) * r.inertia, at.v),
+        (0, (alpha / 2 - 1 / dt) * r.inertia, at.v_before),
+        (0, contact, at.loads),
+        (0, contact, at.drags),
+        (sections, 0.5 * r.point, at.v),
+        (sections, 0.5 * r.point, at.v_before),
+        (sections + points, r.point, at.u),
+        (sections + 2 * points, r.turn, at.u),
+    ]
+    parts = [
+        (first, matrix.tocoo(), place.start)
+        for first, matrix, place in entries
+        if matrix is not None and place is not None
+    ]
+    row = np.concatenate([first + part.row for first, part, _ in parts])
+    column = np.concatenate([begin + part.col for _, part, begin in parts])
+    value = np.concatenate([part.data for _, part, _ in parts])
+    count = sections + 2 * points + (0 if r.turn is None else r.turn.shape[0])
+    matrix = csr_matrix((value, (row, column)), (count, state.fields.size))
+    return matrix.indptr, matrix.indices, matrix.data, np.append(added, np.zeros(count - sections))
 
 
-@inlined
-def add_springs(reaction, springs, closure):
-    """Add the springs' part of the reactions."""
-    if closure is not None:
-        for k in range(closure.size):
-            reaction[k] += springs.stiffness[k] * closure[k]
+def contact_rows(model: Model) -> tuple[csr_matrix | None, np.ndarray]:
+    """Return how sections on joints read the joints' forces, and what is added to all sections."""
+    r, joints = model.receivers, model.interfaces
+    added = np.zeros(r.elastic.shape[0])
+    if r.weight is not None:
+        added += r.weight
+    if r.contact is None:
+        return None, added
+    normal = r.contact @ np.full(joints.area.size, joints.prestress or 0.0)
+    added[: normal.size] += normal
+    return kron(identity(joints.directions), r.contact @ diags(1 / joints.area)), added
 
 
-@inlined
-def close(quiet, closure, v):
-    """Advance the closure of the springs in front of dashpots."""
-    if closure is not None:
-        springs = quiet.springs
-        for k in range(closure.size):
-            closure[k] = springs.decay[k] * closure[k] + springs.gain[k] * v[quiet.freedom[k]]
-
-
-@inlined
-def hold(held, model, state, n):
-    """Give held freedoms their motion, at rest or that of a shaken base."""
-    if held is not None:
-        shake(held.step, held, model, state, n)
-
-
-@inlined
-def shake(step, held, model, state, n):
-    """Move held freedoms as the base does, and leave in `wall` what that takes (N)."""
-    if step is None:
-        for i in held.freedom:
-            state.v[i] = 0.0
-    else:
-        for k in range(held.freedom.size):
-            i = held.freedom[k]
-            moved = held.way[k] * step[n] / model.dt
-            state.wall[k] = (
-                model.rock.mass[i] * (moved - state.v_before[i]) / model.dt - state.force[i]
-            )
-            state.wall[k] += mass_damping(model.rock.keep, model, i, moved, state.v_before[i])
-            state.v[i] = moved
-
-
-@inlined
-def mass_damping(keep, model, i, v, v_before):
-    """Return the force (N) of mass-proportional damping on a freedom, zero without it."""
-    if keep is None:
-        return 0.0
-    alpha = 2.0 * (1.0 - keep) / (1.0 + keep) / model.dt
-    return alpha * model.rock.mass[i] * 0.5 * (v + v_before)
+def mass_damping(decay: float | None, dt: float) -> float:
+    """Return the alpha (1/s) of mass-proportional damping that `Rock.decay` stands for."""
+    return 0.0 if decay is None else 2 * (1 - decay) / (1 + decay) / dt

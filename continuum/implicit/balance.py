@@ -1,188 +1,216 @@
-"""What an implicit step has to balance: forces, tangents and samples of a trial state, compiled.
+"""The forces of a trial state that an implicit step has to balance, and the joints' tangents.
 
-The laws, and the order of what acts, are those of `continuum.explicit.march` and `continuum.tractions`.
-A trial starts from what the state `now` remembers, and changes nothing of it.
+A trial starts from what the state before the step remembers, and changes nothing of it. Rock and
+ends are linear, sums of arrays; the law of the joints is compiled.
 """
 
-from continuum.explicit.march import add, damp, deform
-from continuum.explicit.record import (
-    read,
-    read_braked,
-    read_damped,
-    read_joints,
-    read_turn,
-    read_weight,
-    record_energy,
-)
-from continuum.tractions import at, elastic_slip, gap_at, load_joints, push, rate_at
-from joints.borrowed import borrowed
-from joints.jit import inlined, jitted
-from joints.laws import History, law_of
-from joints.optional import given
-from joints.tangent import tangent
+from functools import cache
+from typing import NamedTuple
 
-#: Rows of the tangents: t_n with the gap; t_x, t_z with it; t_x with x, either with the other, t_z
-#: with z.
-NN, XN, ZN, XX, XZ, ZZ = range(6)
+import numpy as np
+from scipy.sparse import csr_matrix, diags
+
+from cases.arrays import fill
+from continuum.explicit.march import mass_damping
+from continuum.model import STATES, Model, Samples, State
+from continuum.parallel.serial import ALONE, Alone
+from continuum.space.body import Body, whole
+from continuum.tractions import joint_energy, joint_loads, joint_tangents
+from joints.jit import jitted
+from joints.tiny import flush_tiny, restore_tiny
 
 
-@jitted
-def settle(model, now, trial, pressure):
-    """Set the force on every freedom of a trial state, and what it would remember.
+class Matrices(NamedTuple):
+    """Of the rock, [n, n]: stiffness, N/m; viscosity, N s/m, None without dashpots; mass, kg,
+    diagonal or consistent. moves : bool array [n], false for padding. team : the processes that
+    share the rock, each with its share of the matrices."""
 
-    now : state at the beginning of the step; its `v_before` is not used.
-    trial : u, v and rate (v itself, None without dashpots) are given; v_before is set to the mean
-        velocity of the step, and the reactions of the ends count among the forces.
-    pressure : of the load, Pa.
+    stiffness: csr_matrix
+    viscosity: csr_matrix | None
+    mass: csr_matrix
+    moves: np.ndarray
+    team: Alone = ALONE
+
+
+def rock_matrices(body: Body) -> Matrices:
+    """Return the matrices of discretised rock."""
+    stiffness, viscosity = whole(body.layout, body.mesh, body.blocks), None
+    if body.viscous_blocks:
+        viscosity = whole(body.layout, body.mesh, body.viscous_blocks)
+    mass = csr_matrix(diags(body.mass)) if body.consistent is None else body.consistent
+    moves = body.team.total(stiffness.diagonal()) > 0
+    return Matrices(stiffness, viscosity, mass, moves, body.team)
+
+
+def empty_tangents(model: Model) -> np.ndarray:
+    """Return an array for how the joints resist displacement, [6, q], N/m."""
+    return np.zeros((6, 0 if model.interfaces is None else model.interfaces.area.size))
+
+
+def balance(
+    model: Model,
+    rock: Matrices,
+    now: State,
+    trial: State,
+    pressure: float,
+    r: float,
+    tangents: np.ndarray,
+) -> float:
+    """Set the forces of a trial state and what it would remember, and the joints' tangents.
+
+    now : state at the beginning of the step. trial : u and v are given; v_before is set to the
+    mean velocity of the step, and the reactions of the ends count among the forces.
+    pressure : of the load, Pa. r : rate factor, 1/s (`joints.flat.tangent`).
     Returns the largest force (N) that is summed up, of rock, dashpots, load and weight.
     """
-    model, now, trial = borrowed((model, now, trial))
-    for i in range(trial.u.size):
-        trial.v_before[i] = (trial.u[i] - now.u[i]) / model.dt
-    recall(now.memory, trial.memory)
-    copy(now.ledger, trial.ledger)
-    deform(trial.force, model.rock.stiffness, trial.u)
-    damp(trial.drag, model.rock.viscosity, trial.rate)
-    size = max(largest(trial.force), largest(trial.drag), largest(model.weight))
-    # A joint slides by what it slips in the step, whatever the velocity at the end of it.
-    way, rate, dt = trial.v_before, trial.rate, model.dt
-    load_joints(model.interfaces, trial.u, way, rate, trial.memory, trial, dt)
-    push(model.interfaces, trial.tractions, trial.jumps, trial.force, trial.drag)
-    add(trial.force, trial.drag)
-    add(trial.force, model.weight)
-    size = max(size, press_by(trial.force, model.ends.loaded, pressure))
-    brace(model.ends.quiet, now.closure, trial)
+    trial.v_before[:] = (trial.u - now.u) / model.dt
+    fill(_history(trial), _history(now))
+    if trial.ledger is not None:
+        trial.ledger[:] = now.ledger
+    force = -(rock.stiffness @ trial.u)
+    parts = [force]
+    if trial.rate is not None:
+        trial.rate[:] = trial.v
+        trial.drag[:] = 0.0 if rock.viscosity is None else -(rock.viscosity @ trial.v)
+        parts.append(trial.drag.copy())
+    if model.weight is not None:
+        parts.append(model.weight)
+    if model.ends.loaded is not None:
+        parts.append(model.ends.loaded.share * pressure)
+    size = max(float(np.abs(part).max(initial=0.0)) for part in parts)
+    trial.force[:] = force
+    if model.interfaces is not None:
+        _add_joint_forces(model, now, trial, r, tangents)
+    if trial.rate is not None:
+        trial.force[:] += trial.drag
+    if model.weight is not None:
+        trial.force[:] += model.weight
+    if model.ends.loaded is not None:
+        trial.force[model.ends.loaded.freedom] += parts[-1]
+    _add_ends(model, now, trial)
     return size
 
 
-@inlined
-def recall(kept, memory):
-    """Let the points of the joints remember what they did before the step."""
-    if memory is not None:
-        copy(kept.opening, memory.opening)
-        copy(kept.slide_x, memory.slide_x)
-        copy(kept.slide_z, memory.slide_z)
-        copy(kept.cohesion, memory.cohesion)
+def _history(state: State) -> tuple:
+    return state.opening, state.slide, state.cohesion
 
 
-@inlined
-def copy(kept, values):
-    """Copy an array, where there is one."""
-    if kept is not None:
-        for i in range(kept.size):
-            values[i] = kept[i]
+def _add_joint_forces(
+    model: Model, now: State, trial: State, r: float, tangents: np.ndarray
+) -> None:
+    """Add the forces of the joints, and set their tangents."""
+    joints, shape = model.interfaces, trial.jump.shape
+    # A joint slides by what it slips in the step, whatever the velocity at the end of it.
+    for jump, moved in (
+        (trial.jump, trial.u),
+        (trial.jump_rate, trial.rate),
+        (trial.slip_rate, trial.v_before),
+    ):
+        if jump is not None:
+            jump[:] = (joints.jump @ moved).reshape(shape)
+    work = joint_balance_for(joints.parts, joints.directions)(
+        joints.table, joints.area, joints.prestress,
+        trial.jump, trial.jump_rate, trial.slip_rate,
+        trial.opening, trial.slide, trial.cohesion, trial.loads, trial.drags, model.dt,
+        now.opening, now.slide, now.cohesion, r, tangents,
+    )  # fmt: skip
+    if trial.ledger is not None:
+        trial.ledger[1] += work
+    trial.force[:] += joints.jump.T @ trial.loads.ravel()
+    if trial.drags is not None:
+        trial.drag[:] += joints.jump.T @ trial.drags.ravel()
 
 
-@inlined
-def largest(values):
-    """Return the largest magnitude in an array, zero where there is none."""
-    found = 0.0
-    if values is not None:
-        for i in range(values.size):
-            found = max(found, abs(values[i]))
-    return found
-
-
-@inlined
-def press_by(force, loaded, pressure):
-    """Add the load (N) and return the largest of it."""
-    found = 0.0
-    if loaded is not None:
-        for k in range(loaded.freedom.size):
-            force[loaded.freedom[k]] += loaded.share[k] * pressure
-            found = max(found, abs(loaded.share[k] * pressure))
-    return found
-
-
-@inlined
-def brace(quiet, closure, trial):
-    """Set what absorbs at the ends, and count it among the forces."""
-    if quiet is not None:
-        for k in range(quiet.freedom.size):
-            trial.reaction[k] = quiet.viscosity[k] * trial.v[quiet.freedom[k]]
-        brace_springs(closure, quiet, trial)
-        for k in range(quiet.freedom.size):
-            trial.force[quiet.freedom[k]] -= trial.reaction[k]
-
-
-@inlined
-def brace_springs(closure, quiet, trial):
-    """Add the springs in front of dashpots, closed by the mean velocity of the step."""
-    if closure is not None:
+def _add_ends(model: Model, now: State, trial: State) -> None:
+    """Add what absorbs at the ends; springs in front of dashpots close by the mean velocity."""
+    quiet = model.ends.quiet
+    if quiet is None:
+        return
+    trial.reaction[:] = quiet.viscosity * trial.v[quiet.freedom]
+    if now.closure is not None:
         springs = quiet.springs
-        for k in range(closure.size):
-            way = trial.v_before[quiet.freedom[k]]
-            trial.closure[k] = springs.decay[k] * closure[k] + springs.gain[k] * way
-            trial.reaction[k] += springs.stiffness[k] * trial.closure[k]
+        moved = springs.gain * trial.v_before[quiet.freedom]
+        trial.closure[:] = springs.decay * now.closure + moved
+        trial.reaction[:] += springs.stiffness * trial.closure
+    np.subtract.at(trial.force, quiet.freedom, trial.reaction)
 
 
-@jitted
-def stiffen(model, now, trial, r, stiffness):
-    """Set how the joints resist displacement in the trial state: stiffness [6, q], N/m, the
-    tangents at every point less than zero, times its area.
+@cache
+def joint_balance_for(parts, directions):
+    """Return the kernel of the joints in a trial state, for a law with these parts and jumps in so
+    many directions."""
+    shears = True if directions != 1 else None
 
-    r : rate factor, 1/s (`joints.tangent`).
+    @jitted
+    def joint_balance(
+        table, area, prestress, jump, jump_rate, slip_rate, opening, slide, cohesion, loads, drags,
+        dt, opening_before, slide_before, cohesion_before, r, tangents,
+    ):  # fmt: skip
+        """Set forces, history and tangents of all points; return the work of sliding, J."""
+        flushing = flush_tiny()
+        joint_tangents(
+            parts, directions, shears, table, area, prestress, jump, jump_rate,
+            opening_before, slide_before, cohesion_before, r, tangents,
+        )  # fmt: skip
+        sliding = joint_loads(
+            parts, directions, shears, table, area, prestress,
+            jump, jump_rate, slip_rate, opening, slide, cohesion, loads, drags, dt,
+        )  # fmt: skip
+        restore_tiny(flushing)
+        return sliding
+
+    return joint_balance
+
+
+@cache
+def joint_energy_for(parts, directions):
+    """Return the kernel of `continuum.tractions.joint_energy`."""
+
+    @jitted
+    def energy(table, area, prestress, jump, opening, slide, loads):
+        """Return elastic energy and what opening has spent, J."""
+        return joint_energy(parts, directions, table, area, prestress, jump, opening, slide, loads)
+
+    return energy
+
+
+def record(
+    model: Model,
+    rock: Matrices,
+    contact: csr_matrix | None,
+    added: np.ndarray,
+    state: State,
+    acceleration: np.ndarray,
+    samples: Samples,
+    s: int,
+) -> None:
+    """Record sample s of a state in balance: receivers and ledger.
+
+    contact, added : of `continuum.explicit.march.contact_rows`. acceleration : m/s2.
     """
-    model, now, trial = borrowed((model, now, trial))
-    stiffen_joints(model.interfaces, now.memory, trial.u, trial.rate, r, stiffness)
-
-
-@inlined
-def stiffen_joints(interfaces, memory, u, rate, r, stiffness):
-    """Set the stiffness of every point, where there are joints; memory : before the step."""
-    if interfaces is not None:
-        for q in range(interfaces.area.size):
-            law, area = law_of(interfaces.law, q), interfaces.area[q]
-            gap = gap_at(interfaces.prestress, interfaces, law, u, q)
-            gap_rate = rate_at(rate, interfaces.opening, q)
-            rates = rate_at(rate, interfaces.slip_x, q), rate_at(rate, interfaces.slip_z, q)
-            # The whole elastic slip of the trial: what the step adds to the old one is in it.
-            x, z = trial_slip(law.shear_stiffness, interfaces, memory, u, q)
-            before = History(
-                given(memory.opening, at(memory.opening, q)),
-                given(law.shear_stiffness, x),
-                given(law.shear_stiffness, z),
-                given(memory.cohesion, at(memory.cohesion, q)),
-            )
-            found = tangent(law, gap, gap_rate, (0.0, 0.0), rates, before, r)
-            stiffness[NN, q] = -area * found.nn
-            keep_shear(found.xx, found, stiffness, q, area)
-
-
-@inlined
-def trial_slip(shear_stiffness, interfaces, memory, u, q):
-    """Return the trial elastic slips (m) of point q, as if nothing slid in the step."""
-    if shear_stiffness is None:
-        return 0.0, 0.0
-    x = elastic_slip(interfaces.slip_x, memory.slide_x, u, q)
-    z = elastic_slip(interfaces.slip_z, memory.slide_z, u, q)
-    return x, z
-
-
-@inlined
-def keep_shear(flag, found, stiffness, q, area):
-    """Set the entries of shear, where there is any."""
-    if flag is not None:
-        stiffness[XN, q], stiffness[ZN, q] = -area * found.xn, -area * found.zn
-        stiffness[XX, q], stiffness[XZ, q] = -area * found.xx, -area * found.xz
-        stiffness[ZZ, q] = -area * found.zz
-
-
-@jitted
-def record_balanced(model, state, acceleration, samples, s):
-    """Record motion of points, stress of sections and the ledger of a state that is in balance.
-
-    state : with v_before equal to v. acceleration : m/s2.
-    """
-    model, state, samples = borrowed((model, state, samples))
     receivers = model.receivers
-    read(samples.displacement, s, receivers.point, state.u, 1.0)
-    read(samples.velocity, s, receivers.point, state.v, 1.0)
-    read_turn(receivers.turn, samples.turn, s, state.u)
-    read(samples.stress, s, receivers.elastic, state.u, 1.0)
-    read_damped(receivers.viscous, samples.stress, s, state.rate)
-    read(samples.stress, s, receivers.inertia, acceleration, 1.0)
-    read_braked(model.rock.keep, receivers.inertia, samples.stress, s, state.v, 1.0, model.dt)
-    read_weight(receivers.weight, samples.stress, s)
-    read_joints(receivers.contact, samples.stress, s, state.tractions)
-    record_energy(samples.energy, model, state, s)
+    moving = acceleration + mass_damping(model.rock.decay, model.dt) * state.v
+    stress = receivers.elastic @ state.u + receivers.inertia @ moving + added
+    if receivers.viscous is not None:
+        stress += receivers.viscous @ state.rate
+    if contact is not None:
+        loads = state.loads if state.drags is None else state.loads + state.drags
+        stress[: contact.shape[0]] += contact @ loads.ravel()
+    motion = [receivers.point @ state.v, receivers.point @ state.u]
+    turn = [] if receivers.turn is None else [receivers.turn @ state.u]
+    samples.waves[:, s] = np.concatenate([stress, *motion, *turn])
+    if samples.energy is None:
+        return
+    stored, spent, joints = 0.0, 0.0, model.interfaces
+    if joints is not None:
+        stored, spent = joint_energy_for(joints.parts, joints.directions)(
+            joints.table, joints.area, joints.prestress,
+            state.jump, state.opening, state.slide, state.loads,
+        )  # fmt: skip
+    samples.energy[:STATES, s] = (
+        state.v @ (rock.mass @ state.v) / 2,
+        state.u @ (rock.stiffness @ state.u) / 2 + stored,
+        spent,
+        0.0 if model.weight is None else -(model.weight @ state.u),
+    )
+    samples.energy[STATES:, s] = state.ledger

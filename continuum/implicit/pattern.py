@@ -5,9 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from continuum.implicit.balance import NN, XN, XX, XZ, ZN, ZZ
 from continuum.model import Interfaces
-from continuum.space.sparse import Rows
+from continuum.tractions import NN, XN, XX, XZ, ZN, ZZ
 
 
 class Entries(NamedTuple):
@@ -22,7 +21,7 @@ class Pattern(NamedTuple):
     """The places that any of the matrices fills, CSR: start [n + 1], column [nnz].
 
     fixed : float array [matrices, nnz], each of the matrices on it.
-    joints : [nnz, 6 q], times the joints' stiffness of `balance.stiffen` [6 q] gives B^T D B on
+    joints : [nnz, 6 q], times the joints' stiffness of `balance.balance` [6 q] gives B^T D B on
         it.
     diagonal : int array [n], which of the places are on the diagonal.
     """
@@ -78,9 +77,9 @@ def _of_joints(interfaces: Interfaces | None) -> tuple[Entries, np.ndarray]:
     none = np.zeros(0, dtype=np.int64)
     found, sources = [Entries(none, none, np.zeros(0))], [none]
     if interfaces is not None:
-        y, x, z = interfaces.opening, interfaces.slip_x, interfaces.slip_z
-        if interfaces.law.shear_stiffness is None:
-            x = z = None
+        q = interfaces.area.size
+        of_direction = [interfaces.jump[d * q : (d + 1) * q] for d in range(interfaces.directions)]
+        y, x, z = (*of_direction, None, None)[:3]
         for kind, left, right in (
             (NN, y, y), (XN, x, y), (ZN, z, y), (XX, x, x), (XZ, x, z), (XZ, z, x), (ZZ, z, z),
         ):  # fmt: skip
@@ -92,12 +91,12 @@ def _of_joints(interfaces: Interfaces | None) -> tuple[Entries, np.ndarray]:
     return joined, np.concatenate(sources)
 
 
-def _products(left: Rows, right: Rows) -> tuple[Entries, np.ndarray]:
+def _products(left: csr_matrix, right: csr_matrix) -> tuple[Entries, np.ndarray]:
     """Return the entries of the outer products of every row with the same row of another matrix,
     and the row that each comes from."""
-    counts, others = np.diff(left.start), np.diff(right.start)
+    counts, others = np.diff(left.indptr), np.diff(right.indptr)
     row = np.repeat(np.arange(counts.size), counts)
     times = others[row]
     i = np.repeat(np.arange(row.size), times)
-    j = right.start[row[i]] + np.arange(i.size) - np.repeat(np.cumsum(times) - times, times)
-    return Entries(left.column[i], right.column[j], left.value[i] * right.value[j]), row[i]
+    j = right.indptr[row[i]] + np.arange(i.size) - np.repeat(np.cumsum(times) - times, times)
+    return Entries(left.indices[i], right.indices[j], left.data[i] * right.data[j]), row[i]

@@ -6,11 +6,12 @@ longer ones again, so that whole steps end on the clock.
 
 import numpy as np
 
-from cases.arrays import changed, copied, fill
+from cases.arrays import copied, fill
 from cases.errors import StoppedError
-from continuum.implicit.balance import record_balanced, stiffen
+from continuum.explicit.march import contact_rows
+from continuum.implicit.balance import Matrices, record
 from continuum.implicit.newton import Outcome
-from continuum.implicit.step import Matrices, Moment, Stepper, joint_room
+from continuum.implicit.step import Moment, Stepper
 from continuum.implicit.substeps import motion_at, pressure_at
 from continuum.model import Model, Samples, State
 from continuum.monitor import Watch
@@ -45,6 +46,7 @@ class Implicit:
         self.team, mass = matrices.team, matrices.team.total(model.rock.mass)
         self.mass = np.where(mass > 0, mass, np.inf)  # what no rock is part of does not move
         self.counts = np.array([0, -1])
+        self.contact = contact_rows(model)
         self.outcome: Outcome | None = None
         self.parts = self.now[1:], self.trial, self.counts, self.stepper.counts
 
@@ -72,12 +74,21 @@ class Implicit:
 
     def compile(self, samples: Samples) -> None:
         """Compile every kernel of the run, and change nothing."""
-        spare, state = Moment(copied(self.state), np.zeros(1), np.zeros(1)), self.state
-        one = changed(samples, lambda wave: np.zeros((len(wave), 1)))
+        spare = Moment(copied(self.state), np.zeros(1), np.zeros(1))
+        one = samples._replace(waves=samples.waves[:, :1].copy())
+        if samples.energy is not None:
+            one = one._replace(energy=samples.energy[:, :1].copy())
         with self.team.in_turn():
-            self.stepper.settle(self.model, self.now, spare, 0, 0.0)
-            stiffen(self.model, state, spare.state, 1.0, joint_room(self.model))
-            record_balanced(self.model, spare.state, np.zeros_like(state.u), one, 0)
+            self.stepper.set_forces(self.model, self.now, spare, 0, 0.0)
+            record(
+                self.model,
+                self.stepper.rock,
+                *self.contact,
+                spare.state,
+                np.zeros_like(self.state.u),
+                one,
+                0,
+            )
 
     def _begin(self) -> None:
         """Balance the forces of the first moment by its acceleration."""
@@ -86,7 +97,7 @@ class Implicit:
         for values, given in zip((now.state.u, now.state.v, now.acceleration), held, strict=True):
             values[stepper.wall.freedom] = given
         fill(trial.state, now.state)
-        stepper.settle(self.model, now, trial, 0, 0.0)
+        stepper.set_forces(self.model, now, trial, 0, 0.0)
         trial.acceleration[:] = now.acceleration
         stepper.balance(trial)
         self._accept(0, 0.0, 0.0)
@@ -156,6 +167,4 @@ class Implicit:
         state, held = self.now.state, self.stepper.wall.freedom
         balancing = self.team.total(state.force) / self.mass
         balancing[held] = self.now.acceleration[held]
-        record_balanced(self.model, state, balancing, samples, s)
-        if samples.energy is not None:  # of a mass that may be consistent
-            samples.energy[0, s] = state.v @ (self.stepper.mass @ state.v) / 2
+        record(self.model, self.stepper.rock, *self.contact, state, balancing, samples, s)

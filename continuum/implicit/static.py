@@ -13,12 +13,12 @@ import numpy as np
 from cases.arrays import copied, fill
 from cases.errors import SceneError
 from cases.scene import Scene
-from continuum.implicit.balance import NN, XX, ZZ, settle, stiffen
+from continuum.implicit.balance import balance, empty_tangents, rock_matrices
 from continuum.implicit.newton import Outcome, factors_of, newton
 from continuum.implicit.pattern import pattern
-from continuum.implicit.step import joint_room, rock_matrices
 from continuum.model import Model, State
 from continuum.space.body import Body
+from continuum.tractions import NN, XX, ZZ
 
 TOLERANCE = 1e-10  # what may be left of the largest force that is summed up
 LEAST_PART = 2.0**-10  # of the weight
@@ -71,17 +71,17 @@ class _Static:
     """
 
     def __init__(self, model: Model, state: State, body: Body) -> None:
-        matrices = rock_matrices(body)
+        self.rock = matrices = rock_matrices(body)
         self.model = model._replace(ends=model.ends._replace(quiet=None, loaded=None))
         self.state, self.trial, self.size = copied(state), copied(state), 0.0
         moves = matrices.moves.copy()
-        if model.ends.held is not None:
-            moves[model.ends.held.freedom] = False
+        if model.ends.fixed is not None:
+            moves[model.ends.fixed.freedom] = False
         self.free = np.flatnonzero(moves)
         self.pattern = pattern([matrices.stiffness], model.interfaces, self.free)
         self.team = body.team
         self.factors = factors_of(self.pattern.start, self.pattern.column, self.free, self.team)
-        self.joints = joint_room(model)
+        self.tangents = empty_tangents(model)
 
     def balance(self, share: float) -> Outcome:
         """Try to balance a share of the weight; what comes of it is kept where that succeeds."""
@@ -89,15 +89,13 @@ class _Static:
 
         def residual(u: np.ndarray) -> tuple[np.ndarray, float]:
             self.trial.u[self.free] = u
-            self.size = settle(model, self.state, self.trial, 0.0)
+            self.size = balance(model, self.rock, self.state, self.trial, 0.0, 0.0, self.tangents)
             return self.team.total(self.trial.force)[self.free], TOLERANCE * self.size
 
         def correction(rest: np.ndarray) -> np.ndarray:
-            if self.trial.u.any():
-                stiffen(model, self.state, self.trial, 0.0, self.joints)
-            else:
-                self._hold_joints()
-            of_joints = self.pattern.joints @ self.joints.ravel()
+            if not self.trial.u.any():
+                self._stick_joints()
+            of_joints = self.pattern.joints @ self.tangents.ravel()
             self.factors.factorise(self.pattern.fixed[0] + of_joints)
             return self.factors.solve(rest)
 
@@ -107,11 +105,11 @@ class _Static:
             fill(self.state, self.trial)
         return outcome
 
-    def _hold_joints(self) -> None:
+    def _stick_joints(self) -> None:
         """Give all joints their elastic stiffness: one that nothing presses has no friction, and
         rock at rest on such joints could be anywhere."""
         joints = self.model.interfaces
         if joints is not None:
-            self.joints[NN] = joints.area * joints.law.normal_stiffness
+            self.tangents[NN] = joints.area * joints.law.normal_stiffness
             shear = joints.law.shear_stiffness
-            self.joints[[XX, ZZ]] = 0.0 if shear is None else joints.area * shear
+            self.tangents[[XX, ZZ]] = 0.0 if shear is None else joints.area * shear

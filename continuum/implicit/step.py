@@ -12,48 +12,23 @@ factor r = gamma / (beta dt), and tangents of the joints; it is factorised only 
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csr_matrix, diags
 
-from continuum.implicit.balance import settle, stiffen
+from continuum.explicit.march import mass_damping
+from continuum.implicit.balance import Matrices, balance, empty_tangents
 from continuum.implicit.generalised_alpha import scheme
 from continuum.implicit.newton import Outcome, factors_of, newton
 from continuum.implicit.pattern import pattern
 from continuum.implicit.substeps import (
     end_resistance,
-    mass_damping,
     motion_at,
     pressure_at,
     shortened,
     wall,
 )
 from continuum.model import Model, State
-from continuum.parallel.serial import ALONE, Alone
-from continuum.space.body import Body, whole
 
 RESIDUAL = 1e-10  # what may be left, of the largest force that is summed up
 LAST_DIGITS = 8 * np.finfo(float).eps  # of a displacement: what they weigh cannot be balanced
-
-
-class Matrices(NamedTuple):
-    """Of the rock, [n, n]: stiffness, N/m; viscosity, N s/m, None without dashpots; mass, kg,
-    diagonal or consistent. moves : bool array [n], false for padding. team : the processes that
-    share the rock, each with its share of the matrices."""
-
-    stiffness: csr_matrix
-    viscosity: csr_matrix | None
-    mass: csr_matrix
-    moves: np.ndarray
-    team: Alone = ALONE
-
-
-def rock_matrices(body: Body) -> Matrices:
-    """Return the matrices of discretised rock."""
-    stiffness, viscosity = whole(body.layout, body.mesh, body.blocks), None
-    if body.viscous_blocks:
-        viscosity = whole(body.layout, body.mesh, body.viscous_blocks)
-    mass = csr_matrix(diags(body.mass)) if body.consistent is None else body.consistent
-    moves = body.team.total(stiffness.diagonal()) > 0
-    return Matrices(stiffness, viscosity, mass, moves, body.team)
 
 
 class Moment(NamedTuple):
@@ -65,11 +40,6 @@ class Moment(NamedTuple):
     state: State
     acceleration: np.ndarray
     size: np.ndarray
-
-
-def joint_room(model: Model) -> np.ndarray:
-    """Return room for the joints' stiffness in a step [6, q]."""
-    return np.zeros((6, 0 if model.interfaces is None else model.interfaces.area.size))
 
 
 class Length(NamedTuple):
@@ -96,9 +66,9 @@ class Stepper:
 
     def __init__(self, model: Model, matrices: Matrices, rho: float) -> None:
         self.model, self.scheme = model, scheme(rho)
-        self.mass, self.team = matrices.mass, matrices.team
-        self.mass_damping = mass_damping(model)
-        self.wall = wall(model.ends.held, model.dt)
+        self.rock, self.mass, self.team = matrices, matrices.mass, matrices.team
+        self.mass_damping = mass_damping(model.rock.decay, model.dt)
+        self.wall = wall(model.ends.fixed, model.dt)
         moves = matrices.moves.copy()
         moves[self.wall.freedom] = False
         self.free = np.flatnonzero(moves)
@@ -107,7 +77,7 @@ class Stepper:
         self._pattern = pattern(parts, model.interfaces, self.free)
         place = self._pattern.start, self._pattern.column, self.free
         self._factors = factors_of(*place, self.team)
-        self._joints = joint_room(model)
+        self._tangents = empty_tangents(model)
         self._factored: tuple[Length, np.ndarray] | None = None
         self._weight = np.zeros(self.free.size)
         self._lengths: dict[int, Length] = {}
@@ -127,7 +97,7 @@ class Stepper:
             a[free] = (moved - drift[free]) / (beta * dt**2)
             state.u[free] = old.u[free] + moved
             state.v[free] = (old.v + dt * ((1 - gamma) * now.acceleration + gamma * a))[free]
-            self.settle(length.model, now, trial, n, share)
+            self.set_forces(length.model, now, trial, n, share, length.r)
             inertia = self.mass @ a
             rest = (1 - alpha_f) * state.force + before - (1 - alpha_m) * inertia
             size = max(trial.size[0], now.size[0], np.abs(inertia).max())
@@ -135,19 +105,20 @@ class Stepper:
             return self.team.total(rest)[free], RESIDUAL * size + digits
 
         def correction(rest: np.ndarray) -> np.ndarray:
-            self._factorise(length, now, trial)
+            self._factorise(length)
             self.counts[0] += 1
             return self._factors.solve(rest)
 
         start = (drift + beta * dt**2 * now.acceleration)[free]
         return newton(residual, correction, start, self.team)
 
-    def settle(self, model: Model, now: Moment, trial: Moment, n: int, share: float) -> None:
-        """Set the forces of a trial moment whose displacement and velocity are given."""
-        state = trial.state
-        if state.rate is not None:
-            state.rate[:] = state.v
-        trial.size[0] = settle(model, now.state, state, pressure_at(self.model, n, share))
+    def set_forces(
+        self, model: Model, now: Moment, trial: Moment, n: int, share: float, r: float = 0.0
+    ) -> None:
+        """Set the forces and tangents of a trial moment whose displacement and velocity are given;
+        r : rate factor, 1/s."""
+        state, pressure = trial.state, pressure_at(self.model, n, share)
+        trial.size[0] = balance(model, self.rock, now.state, state, pressure, r, self._tangents)
         if self.mass_damping:
             state.force[:] -= self.mass_damping * (self.mass @ state.v)
 
@@ -183,18 +154,17 @@ class Stepper:
             np.add.at(forces, place, resistance)
         return Length(model, r, inertia + (1 - alpha_f) * forces, inertia)
 
-    def _factorise(self, length: Length, now: Moment, trial: Moment) -> None:
-        """Take the matrix of a trial moment, unless it is the last one."""
-        stiffen(length.model, now.state, trial.state, length.r, self._joints)
+    def _factorise(self, length: Length) -> None:
+        """Take the matrix of the last trial moment, unless it is that of the one before."""
         if self._factored is not None:
-            last, joints = self._factored
-            if last is length and self.team.all(np.array_equal(joints, self._joints)):
+            last, tangents = self._factored
+            if last is length and self.team.all(np.array_equal(tangents, self._tangents)):
                 return
-        of_joints = self._pattern.joints @ self._joints.ravel()
+        of_joints = self._pattern.joints @ self._tangents.ravel()
         values = length.fixed + (1 - self.scheme.alpha_f) * of_joints
         self._factors.factorise(values)
         self.counts[1] += 1
         diagonal = np.zeros(self.mass.shape[0])
         diagonal[self.free] = (values - length.inertia)[self._pattern.diagonal]
         self._weight = np.abs(self.team.total(diagonal)[self.free])
-        self._factored = length, self._joints.copy()
+        self._factored = length, self._tangents.copy()

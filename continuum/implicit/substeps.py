@@ -4,34 +4,34 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum.model import HalfJoints, Held, Model, Quiet
+from continuum.model import Fixed, HalfJoints, Model, Quiet
 
 
 class Wall(NamedTuple):
     """Freedoms that move as they are told.
 
-    freedom, way : [k]; all move by way times the same displacement (m), velocity and acceleration,
+    freedom, direction : [k]; all move by direction times the same displacement (m), velocity and acceleration,
     each float array [steps + 1] at whole steps; None where they stand still.
     """
 
     freedom: np.ndarray
-    way: np.ndarray
+    direction: np.ndarray
     motion: np.ndarray | None
 
 
-def wall(held: Held | None, dt: float) -> Wall:
-    """Return the motion of held freedoms; dt : of whole steps, s.
+def wall(fixed: Fixed | None, dt: float) -> Wall:
+    """Return the motion of fixed freedoms; dt : of whole steps, s.
 
     Displacements are sums of the given steps; velocity and acceleration are centred differences
     of them, of second order, with the wall at rest before t = 0.
     """
-    if held is None:
+    if fixed is None:
         return Wall(np.zeros(0, dtype=np.int64), np.zeros(0), None)
-    if held.step is None:
-        return Wall(held.freedom, held.way, None)
-    before = np.concatenate([[0.0], held.step[:-1]])
-    motion = [np.cumsum(before), (before + held.step) / (2 * dt), (held.step - before) / dt**2]
-    return Wall(held.freedom, held.way, np.array(motion))
+    if fixed.step is None:
+        return Wall(fixed.freedom, fixed.direction, None)
+    before = np.concatenate([[0.0], fixed.step[:-1]])
+    motion = [np.cumsum(before), (before + fixed.step) / (2 * dt), (fixed.step - before) / dt**2]
+    return Wall(fixed.freedom, fixed.direction, np.array(motion))
 
 
 def motion_at(wall: Wall, n: int, share: float) -> np.ndarray:
@@ -40,13 +40,7 @@ def motion_at(wall: Wall, n: int, share: float) -> np.ndarray:
         return np.zeros((3, wall.freedom.size))
     first = wall.motion[:, n]
     last = wall.motion[:, n + 1] if share else first
-    return np.outer((1 - share) * first + share * last, wall.way)
-
-
-def mass_damping(model: Model) -> float:
-    """Return the mass-proportional damping alpha, 1/s, that `rock.keep` stands for."""
-    keep = model.rock.keep
-    return 0.0 if keep is None else 2 * (1 - keep) / (1 + keep) / model.dt
+    return np.outer((1 - share) * first + share * last, wall.direction)
 
 
 def pressure_at(model: Model, n: int, share: float) -> float:

@@ -9,10 +9,10 @@ import numpy as np
 from mpi4py import MPI
 from scipy.sparse import csr_matrix
 
+from continuum.explicit.march import march
 from continuum.parallel.connection import TAG, connect, release
 from continuum.parallel.exchange import add_shares
 from continuum.parallel.identity import Border, joined
-from continuum.parallel.march import run_together
 from continuum.parallel.serial import Alone, Pieces, T
 from joints.guard import EVERY
 
@@ -111,20 +111,22 @@ class Team(Alone):
         with in_turn(self.comm):
             yield
 
-    def stepping(self, held: np.ndarray) -> Callable[..., None]:
-        """Return what takes the steps, as `explicit.run`; held : freedoms whose motion is given.
+    def leapfrog(self, model, state, samples, stride, limits) -> Callable[[int, int], None]:
+        """Return a function of (first, last) that takes steps, as `explicit.march.march` does.
 
-        These need no force, and keep their shares of it, which sum up to what holds them.
+        Freedoms whose motion is given need no force, and keep their shares of it, which sum up to
+        what moves them.
         """
-        connection = connect(self.comm, [f[~np.isin(f, held)] for f in self._common])
+        fixed = np.zeros(0) if model.ends.fixed is None else model.ends.fixed.freedom
+        connection = connect(self.comm, [f[~np.isin(f, fixed)] for f in self._common])
         weakref.finalize(self, release, connection)
+        steps = march(model, state, samples, stride, limits, connection.link)
 
-        def run(model, state, samples, stride, first, last, guard=None) -> None:
-            constant = connection.link, model, state, samples, stride
+        def run(first: int, last: int) -> None:
             for n in range(first, max(last, first + 1), EVERY):
-                _check(run_together(*constant, n, min(n + EVERY, last), guard))
+                _check(steps(n, min(n + EVERY, last)))
                 # No step is taken to compile, where processes come one after the other.
-                if guard is not None and last > first and self.any(bool(guard.found[0] >= 0)):
+                if limits is not None and last > first and self.any(bool(limits.found[0] >= 0)):
                     return
 
         return run

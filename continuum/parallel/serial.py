@@ -91,11 +91,11 @@ class Alone:
         """Let the first process of every machine compile: the others find it in the cache."""
         yield
 
-    def stepping(self, held: np.ndarray) -> Callable[..., None]:
-        """Return what takes the steps, as `explicit.run`; held : freedoms whose motion is given."""
-        from continuum.explicit.march import run
+    def leapfrog(self, model, state, samples, stride, limits) -> Callable[[int, int], None]:
+        """Return a function of (first, last) that takes steps, as `explicit.march.march` does."""
+        from continuum.explicit.march import march
 
-        return run
+        return march(model, state, samples, stride, limits)
 
 
 ALONE = Alone()

@@ -10,9 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import block_diag, csr_matrix
 
-from continuum.space.lanes import WIDTH, add_scaled, load, store, zero
-from continuum.space.sparse import Rows
-from joints.jit import inlined, jitted
+from continuum.space.simd import WIDTH, multiply_tile
+from joints.jit import jitted
 from joints.rows import zeros
 
 TILE = 4  # registers wide; a part's blocks are dealt out evenly, so that tiles have 3 to 5
@@ -39,18 +38,18 @@ class Layout(NamedTuple):
 
 
 class Operator(NamedTuple):
-    """A block-diagonal matrix on the vectors of a layout.
+    """A block-diagonal matrix on the vectors of a layout, for compiled code.
 
-    offset, width, size, row : int64 [tiles], a tile's first value, its lanes, the rows of its
-        matrix and the first of them in `rows`.
-    rows : the matrices of all parts, one below the other; columns are counted within a block.
+    tiles : int64 [tiles, 4], a tile's first value, its lanes, the first row of its matrix in the
+        CSR below, and how many it has.
+    start, column (uint32), value : CSR of the matrices of all parts, one below the other; columns
+        are counted within a block.
     """
 
-    offset: np.ndarray
-    width: np.ndarray
-    size: np.ndarray
-    row: np.ndarray
-    rows: Rows
+    tiles: np.ndarray
+    start: np.ndarray
+    column: np.ndarray
+    value: np.ndarray
 
 
 def layout(counts, sizes) -> Layout:
@@ -77,28 +76,28 @@ def tile_widths(count: int) -> np.ndarray:
     return WIDTH * (registers // tiles + (np.arange(tiles) < registers % tiles))
 
 
-def spread(places: Layout, values) -> np.ndarray:
+def spread(numbering: Layout, values) -> np.ndarray:
     """Return the vector with the same values [size] in all copies of a part, and in its padding.
 
     values : an array [size] for each part.
     """
-    vector = zeros(places.length)
-    for offset, width, part in zip(places.offset, places.width, places.part, strict=True):
+    vector = zeros(numbering.length)
+    for offset, width, part in zip(numbering.offset, numbering.width, numbering.part, strict=True):
         tile = np.repeat(values[part], width)
         vector[offset : offset + tile.size] = tile
     return vector
 
 
-def operator(places: Layout, matrices) -> Operator:
+def operator(numbering: Layout, matrices) -> Operator:
     """Return the operator of parts with these matrices of one block, [size, size] each."""
     whole = csr_matrix(block_diag([without_round_off(matrix) for matrix in matrices]))
     whole.sort_indices()
     size = np.array([matrix.shape[0] for matrix in matrices], dtype=np.int64)
     row = np.cumsum(size) - size
     column = whole.indices - np.repeat(np.repeat(row, size), np.diff(whole.indptr))
-    # Unsigned: compiled code need not ask whether an index counts from the end.
-    rows = Rows(whole.indptr.astype(np.uint32), column.astype(np.uint32), whole.data)
-    return Operator(places.offset, places.width, size[places.part], row[places.part], rows)
+    tiles = np.stack([numbering.offset, numbering.width, row[numbering.part], size[numbering.part]])
+    start, column = whole.indptr.astype(np.uint32), column.astype(np.uint32)
+    return Operator(np.ascontiguousarray(tiles.T), start, column, whole.data)
 
 
 def without_round_off(matrix: csr_matrix) -> csr_matrix:
@@ -113,53 +112,8 @@ def without_round_off(matrix: csr_matrix) -> csr_matrix:
 
 
 @jitted
-def multiply(operator, x, y, factor=1.0):
-    """Set y = factor K x, whole vectors of the layout; y is not x."""
-    for t in range(operator.offset.size):
-        multiply_tile(operator, t, x, y, factor)
-
-
-@inlined
-def multiply_tile(operator, t, x, y, factor):
-    """Set y = factor K x in tile t."""
-    rows, first, size = operator.rows, operator.row[t], operator.size[t]
-    width, at = operator.width[t], operator.offset[t]
-    if width == 1:
-        multiply_one(rows, first, size, x, y, at, factor)
-    elif width == 1 * WIDTH:
-        multiply_lanes(zero(1), WIDTH, rows, first, size, x, y, at, factor)
-    elif width == 2 * WIDTH:
-        multiply_lanes(zero(2), 2 * WIDTH, rows, first, size, x, y, at, factor)
-    elif width == 3 * WIDTH:
-        multiply_lanes(zero(3), 3 * WIDTH, rows, first, size, x, y, at, factor)
-    elif width == 4 * WIDTH:
-        multiply_lanes(zero(4), 4 * WIDTH, rows, first, size, x, y, at, factor)
-    else:
-        multiply_lanes(zero(5), 5 * WIDTH, rows, first, size, x, y, at, factor)
-
-
-@inlined
-def multiply_lanes(none, width, rows, first, size, x, y, at, factor):
-    """Set y = factor K x in a tile of this width at `at`; `none` is zero in as many registers."""
-    start, column, value = rows
-    k = start[first]
-    for i in range(size):
-        total, end = none, start[first + i + 1]
-        while k < end:
-            values = load(none, x, at + column[k] * width)
-            total = add_scaled(total, value[k], values)
-            k += 1
-        store(y, at + i * width, add_scaled(none, factor, total))
-
-
-@inlined
-def multiply_one(rows, first, size, x, y, at, factor):
-    """Set y = factor K x for one block at `at`."""
-    start, column, value = rows
-    k = start[first]
-    for i in range(size):
-        total, end = 0.0, start[first + i + 1]
-        while k < end:
-            total += value[k] * x[at + column[k]]
-            k += 1
-        y[at + i] = factor * total
+def multiply(tiles, start, column, value, x, y, factor):
+    """Set y = factor K x of an `Operator` K, whole vectors of the layout; y is not x."""
+    for t in range(tiles.shape[0]):
+        at, width, first, size = tiles[t, 0], tiles[t, 1], tiles[t, 2], tiles[t, 3]
+        multiply_tile(start, column, value, x, y, factor, at, width, first, size)

@@ -1,8 +1,9 @@
-"""Jump operators whose rows repeat: one place in the faces of blocks that stand in a tile.
+"""Jump operators whose rows repeat: one place in the faces of blocks that share a tile.
 
 Between alike blocks the jump at one place of their faces has the same coefficients at every joint,
-and the columns move on by one from a joint to the next. Such a run of rows is a few loops over
-neighbouring numbers, which the compiler vectorises. Rows that repeat nothing are runs of one.
+and the columns move on by one from a joint to the next. Such rows are one stencil, applied in a few
+loops over neighbouring numbers, which the compiler vectorises. A row that repeats nothing is a
+stencil of its own.
 """
 
 from typing import NamedTuple
@@ -10,16 +11,19 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, hstack
 
-from joints.jit import inlined, jitted
+from joints.jit import apart
 
+ONE, TWO = np.uint64(1), np.uint64(2)
 ROUND_OFF = 1e-11  # of coefficients, which are basis functions and of the order of 1
 
 
-class Runs(NamedTuple):
-    """A sparse matrix by runs of rows.
+class Stencils(NamedTuple):
+    """A sparse matrix as stencils, for compiled code.
 
-    Run r holds rows first[r] .. first[r + 1] - 1; row first[r] + i has the entries start[r] ..
-    start[r + 1] - 1, value in the columns column + i.
+    first : [stencils + 1]; stencil r makes rows first[r] .. first[r + 1] - 1.
+    start : [stencils + 1]; row first[r] + i has entries start[r] .. start[r + 1] - 1, `value`
+        in the columns `column` + i. All unsigned: compiled code need not ask whether an index
+        counts from the end, and so vectorises.
     """
 
     first: np.ndarray
@@ -28,8 +32,8 @@ class Runs(NamedTuple):
     value: np.ndarray
 
 
-def runs(matrix: csr_matrix) -> Runs:
-    """Return a sparse matrix by runs of neighbouring rows."""
+def stencils(matrix: csr_matrix) -> Stencils:
+    """Return a sparse matrix as stencils of neighbouring rows."""
     matrix = csr_matrix(matrix)
     matrix.sort_indices()
     begins = np.flatnonzero(_begins(matrix))
@@ -37,7 +41,8 @@ def runs(matrix: csr_matrix) -> Runs:
     start = np.concatenate([[0], np.cumsum(entries)])
     kept = np.repeat(matrix.indptr[begins] - start[:-1], entries) + np.arange(start[-1])
     first = np.append(begins, matrix.shape[0])
-    return Runs(first, start, matrix.indices[kept].astype(np.int64), matrix.data[kept])
+    indices = (part.astype(np.uint64) for part in (first, start, matrix.indices[kept]))
+    return Stencils(*indices, matrix.data[kept])
 
 
 def _begins(matrix: csr_matrix) -> np.ndarray:
@@ -72,41 +77,30 @@ def distinct(matrices: list[csr_matrix]) -> tuple[np.ndarray, np.ndarray]:
     return first, group.ravel()
 
 
-@jitted
-def multiply_runs(matrix, x, y):
-    """Set y = B x; y is not x."""
-    for r in range(matrix.first.size - 1):
-        out = y[matrix.first[r] : matrix.first[r + 1]]
-        k, end = matrix.start[r], matrix.start[r + 1]
-        if end - k == 2:
-            combine(matrix, k, x, out)
+@apart
+def multiply_stencils(first, start, column, value, x, y, begin):
+    """Set y = B x in the rows of stencils `begin` and after; y is not x."""
+    for r in range(begin, first.size - 1):
+        row, rows, k, end = first[r], first[r + 1] - first[r], start[r], start[r + 1]
+        if end - k == TWO:  # where nodes face each other
+            a, b, one, other = value[k], value[k + ONE], column[k], column[k + ONE]
+            for i in range(rows):
+                y[row + i] = a * x[one + i] + b * x[other + i]
         else:
-            out[:] = 0.0
+            for i in range(rows):
+                y[row + i] = 0.0
             for entry in range(k, end):
-                accumulate(out, matrix.value[entry], x[matrix.column[entry] :])
+                a, one = value[entry], column[entry]
+                for i in range(rows):
+                    y[row + i] += a * x[one + i]
 
 
-@inlined
-def combine(matrix, k, x, out):
-    """Set the rows of a run with two entries, as where nodes face each other."""
-    a, b = matrix.value[k], matrix.value[k + 1]
-    one, other = x[matrix.column[k] :], x[matrix.column[k + 1] :]
-    for i in range(out.size):
-        out[i] = a * one[i] + b * other[i]
-
-
-@jitted
-def add_runs(matrix, t, f):
+@apart
+def add_transposed(first, start, column, value, t, f):
     """Add B^T t to f."""
-    for r in range(matrix.first.size - 1):
-        part = t[matrix.first[r] : matrix.first[r + 1]]
-        for k in range(matrix.start[r], matrix.start[r + 1]):
-            column = matrix.column[k]
-            accumulate(f[column : column + part.size], matrix.value[k], part)
-
-
-@inlined
-def accumulate(out, a, x):
-    """Add a x to as many numbers as there are in `out`."""
-    for i in range(out.size):
-        out[i] += a * x[i]
+    for r in range(first.size - 1):
+        row, rows = first[r], first[r + 1] - first[r]
+        for k in range(start[r], start[r + 1]):
+            a, one = value[k], column[k]
+            for i in range(rows):
+                f[one + i] += a * t[row + i]

@@ -13,7 +13,7 @@ from continuum.build import (
     build_model,
     critical_step_of,
     discretise,
-    room,
+    empty_samples,
     state_at_rest,
 )
 from continuum.explicit.march import run
@@ -85,7 +85,7 @@ def ready():
             clock = Clock(fraction * critical_step_of(scene, discrete, model), 1, samples)
         built = build_model(scene, discrete, model, clock)
         state = state_at_rest(built, scene.record.energy)
-        return Run(scene, discrete, built, state, room(built, state, clock.samples), clock)
+        return Run(scene, discrete, built, state, empty_samples(built, state, clock.samples), clock)
 
     return prepared
 
