@@ -239,14 +239,13 @@ def _fields(
 ) -> tuple[np.ndarray, Places]:
     """Return the vectors that receivers read, each from a cache line on."""
     points = 0 if shape is None else shape[0] * shape[1]
-    sizes = [n, n, n, n * viscous, points, points * damped]
-    first = np.cumsum([0] + [-(-size // WIDTH) * WIDTH for size in sizes])
-    there = [True, True, True, viscous, shape is not None, damped]
-    places = [
-        slice(begin, begin + size) if here else None
-        for begin, size, here in zip(first.tolist(), sizes, there, strict=False)
-    ]
-    return zeros(int(first[-1])), Places(*places, shape)  # type: ignore[arg-type]
+    sizes = {"u": n, "v": n, "v_before": n, "rate": n * viscous}
+    sizes |= {"loads": points, "drags": points * damped}
+    places, begin = {}, 0
+    for name, size in sizes.items():
+        places[name] = slice(begin, begin + size) if size else None
+        begin += -(-size // WIDTH) * WIDTH
+    return zeros(begin), Places(**places, shape=shape)  # type: ignore[arg-type]
 
 
 def _points_at_rest(joints: Interfaces | None) -> dict[str, np.ndarray | None]:

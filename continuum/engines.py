@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from cases.scene import Scene
 from continuum.build import Discrete
 from continuum.model import Model, Samples, State
-from continuum.monitor import Watch
+from continuum.monitor import Monitor
 from continuum.space.body import Body
 
 IMPLICIT_WORK = 100  # some corrections, each a triangular solve and often a factorisation
@@ -33,19 +33,19 @@ class Engine(NamedTuple):
 
 
 def explicit_engine(
-    scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, watch: Watch
+    scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, monitor: Monitor
 ) -> Engine:
     """Return leapfrog."""
     team = discrete.body.team
     if scene.gravity is not None and not scene.gravity.static:
         let_go(model, state, discrete.body)
-    march = team.leapfrog(model, state, samples, watch.time.stride, watch.guard)
+    march = team.leapfrog(model, state, samples, monitor.time.stride, monitor.guard)
 
     def compile() -> None:
         with team.in_turn():
             march(0, 0)
 
-    return Engine(compile, march, watch.time.dt, dict)
+    return Engine(compile, march, monitor.time.dt, dict)
 
 
 def let_go(model: Model, state: State, body: Body) -> None:
@@ -62,7 +62,7 @@ def let_go(model: Model, state: State, body: Body) -> None:
 
 
 def implicit_engine(
-    scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, watch: Watch
+    scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, monitor: Monitor
 ) -> Engine:
     """Return the generalised-alpha method of the scene's spectral radius."""
     from continuum.implicit.balance import rock_matrices
@@ -81,7 +81,7 @@ def implicit_engine(
 
     return Engine(
         lambda: run.compile(samples),
-        lambda first, last: run.run(samples, watch.time.stride, first, last, watch),
+        lambda first, last: run.run(samples, monitor.time.stride, first, last, monitor),
         0.0,
         attributes,
         run.parts,

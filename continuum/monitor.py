@@ -1,18 +1,22 @@
-"""What holds a run in rock to its bounds, for all processes that share it."""
+"""The divergence monitor: how fast rock can become at most, and whether a run exceeds that.
+
+No node can be faster than all forces together can make it, and no energy come from nowhere."""
 
 import numpy as np
 
+from cases.calibrate import Properties
 from cases.runaway import Sighting, stopped
+from cases.sampling import Clock
 from cases.scene import Scene
-from continuum.bound import highest_speed
 from continuum.build import Discrete
 from continuum.model import Model, Samples, State
+from continuum.parallel.serial import Alone
 from continuum.scheme import Choice
 from continuum.space.body import axis
-from joints.guard import ENERGY, EVERY, audit, guard, look
+from joints.guard import CREATED, ENERGY, EVERY, LAST_DIGITS, guard, look, speed_that
 
 
-class Watch:
+class Monitor:
     """Looks at a run: kernels that run alone look by themselves at `guard`, and stop.
 
     Attributes
@@ -56,18 +60,28 @@ class Watch:
         return self.look(n) if n % EVERY == 0 else False
 
     def audit(self, first: int, last: int) -> None:
-        """Look at the ledger in samples first .. last - 1."""
-        if self.energy is None:
+        """Look for energy from nowhere in samples first .. last - 1 of the ledger."""
+        if self.energy is None or first == last:
             return
         if self.energy is not self.samples.energy:
             self.energy[:, first:last] = self.team.sum(self.samples.energy[:, first:last])
-        audit(self.guard, self.energy, first, last, self.time.stride)
+        energy, (_, peak, found), stride = self.energy[:, first:last], self.guard, self.time.stride
+        gained = energy - self.energy[:, :1]
+        largest = np.maximum.accumulate(np.abs(gained).max(axis=0))
+        created = gained[:-1].sum(axis=0) - gained[-1]
+        peaks = np.maximum(peak[0], largest)
+        allowed = CREATED * peaks + LAST_DIGITS * np.abs(energy).max(axis=0)
+        peak[0] = peaks[-1]
+        if (created > allowed).any():
+            n = (first + int((created > allowed).argmax())) * stride
+            if found[0] < 0 or n < found[0]:
+                found[:] = n, ENERGY, n - EVERY - 1
 
     def check(self, first: int, last: int) -> None:
         """Raise StoppedError where the run is lost when samples first .. last - 1 are taken, with
         what all processes saw."""
         n = (last - 1) * self.time.stride + 1
-        if self.explicit and self.team.size > 1:
+        if self.explicit:
             self.audit(first, last)
         if not self.look(n):
             return
@@ -90,3 +104,44 @@ class Watch:
         speed = np.nan_to_num(np.abs(self.state.v[freedoms]).max(axis=1), nan=np.inf)
         node = int(speed.argmax())
         return self.team.of_largest(float(speed[node]), float(body.x[node, axis(body.x.shape[1])]))
+
+
+def highest_speed(
+    scene: Scene, p: Properties, model: Model, state: State, time: Clock, team: Alone
+) -> float:
+    """Return a bound on the speed of any node, m/s.
+
+    Where forces F put energy in, d sqrt(2 E) / dt is at most |F| in the norm of 1 / m, and m v^2 of
+    any node at most 2 E. Of a node that several processes share, the shares of F^2 / m add up to no
+    less than the whole: (a + b)^2 / (m + n) <= a^2 / m + b^2 / n.
+    """
+    mass, loaded, fixed = model.rock.mass, model.ends.loaded, model.ends.fixed
+    rock = mass > 0
+    least = np.sqrt(team.largest(1 / mass[rock].min()))
+    duration, stored, weight = time.dt * (time.steps + time.stride), 0.0, 0.0
+    pushed = shaken = 0.0
+    if loaded is not None:
+        drive = team.sum((loaded.share**2 / mass[loaded.freedom]).sum())
+        pushed = (model.dt * np.abs(loaded.pressure) * np.sqrt(drive)).sum()
+    if fixed is not None and fixed.step is not None:
+        speed = np.diff(fixed.step, prepend=0.0, append=0.0) / model.dt
+        shaken = np.abs(speed).sum() * np.sqrt(team.sum(mass[rock].sum()))
+    if model.weight is not None:
+        weight = np.sqrt(team.sum((model.weight[rock] ** 2 / mass[rock]).sum()))
+        stored = np.sqrt(2 * abs(team.sum(model.weight @ state.u)))
+    with np.errstate(over="ignore"):
+        pressed = _prestressed(scene, p) + duration * least * _pressing(scene, p)
+        return least * speed_that(pushed, shaken, duration * weight, stored, pressed)
+
+
+def _prestressed(scene: Scene, p: Properties) -> float:
+    """Return the root of twice the energy that a prestress keeps in rock and joints, sqrt(J)."""
+    if scene.prestress is None:
+        return 0.0
+    softness = p.block_count * p.spacing / p.modulus + np.abs(p.excess_compliance).sum()
+    return abs(scene.prestress.normal) * np.sqrt(p.area * softness)
+
+
+def _pressing(scene: Scene, p: Properties) -> float:
+    """Return what prestressed rock can push with on the two sides of a joint that opens, N."""
+    return 0.0 if scene.prestress is None else 2 * abs(scene.prestress.normal) * p.area

@@ -27,7 +27,7 @@ from continuum.build import (
 from continuum.engines import explicit_engine, implicit_engine
 from continuum.kinematics import refuse
 from continuum.model import Model, Samples, State
-from continuum.monitor import Watch
+from continuum.monitor import Monitor
 from continuum.scheme import Choice, choose
 from continuum.size import refuse_large_run
 from continuum.space import compat
@@ -57,7 +57,7 @@ def simulate(
     progress : called with the finished fraction.
     comm : mpi4py's communicator of processes that share the run: all call this alike, each steps
         its part of the rock, and all get the whole result. None: this one alone.
-    keeper : watches over the run, `cases.keeper`; each process has its own.
+    keeper : keeps checkpoints, `cases.keeper`; each process has its own.
 
     Raises SceneError for what this model cannot simulate; StoppedError, an UnstableError with the
     result so far, when the motion leaves its bounds or implicit steps do not converge.
@@ -77,8 +77,8 @@ def simulate(
     rest = _at_rest(scene, built, state, discrete)
     samples = empty_samples(built, state, time.samples)
     start = explicit_engine if choice.scheme == "explicit" else implicit_engine
-    watch = Watch(scene, discrete, built, state, samples, choice, critical)
-    engine = start(scene, discrete, built, state, samples, watch)
+    monitor = Monitor(scene, discrete, built, state, samples, choice, critical)
+    engine = start(scene, discrete, built, state, samples, monitor)
     film = _film(scene, discrete, state, engine.ahead)
     ready = perf_counter()
     engine.compile()
@@ -98,10 +98,10 @@ def simulate(
         found = _recorded(scene, discrete, built, samples, time.times[:count], about | seconds)
         return xr.Dataset(*(found if film is None else film.developed(found)))
 
-    parts = state, samples, watch.parts, engine.parts
+    parts = state, samples, monitor.parts, engine.parts
     work = engine.work * int(team.largest(state.u.size))
     try:
-        march_with_looks(time, work, engine.march, watch.check, parts, progress, film, keeper)
+        march_with_looks(time, work, engine.march, monitor.check, parts, progress, film, keeper)
     except StoppedError as error:
         error.result = result(error.samples)
         raise

@@ -25,7 +25,8 @@ def joint_loads(
     """Set the forces W t (N) of all points, and what the points remember; return the work of
     sliding in this step, J.
 
-    parts, directions : constants of the caller. shears : None without shear. table, area, prestress : as in `Interfaces`.
+    parts, directions : constants of the caller; shears : None without shear.
+    table, area, prestress : as in `Interfaces`.
     jump, m; rate : of the jump, m/s; slip_rate : of the slip over the step, m/s.
     opening, slide, cohesion : history, replaced. loads : of the springs, prestress left out;
     drags : of the dashpots, None where loads have all.

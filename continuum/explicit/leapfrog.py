@@ -50,11 +50,10 @@ def leapfrog_for(parts, directions):
         for n in range(first, last):
             # Forces from the displacements and rates of step n.
             multiply(tiles, k_start, k_column, k_value, u, force, -1.0)
-            if energy is not None:
-                if n % stride == 0:
-                    elastic = 0.0
-                    for i in range(u.size):
-                        elastic -= 0.5 * u[i] * force[i]
+            if energy is not None and n % stride == 0:
+                elastic = 0.0
+                for i in range(u.size):
+                    elastic -= 0.5 * u[i] * force[i]
             if rate is not None:
                 for i in range(v.size):
                     rate[i] = 1.5 * v[i] - 0.5 * v_before[i]
@@ -155,16 +154,15 @@ def leapfrog_for(parts, directions):
                     closure[k] = closure_decay[k] * closure[k] + gain[k] * v[quiet[k]]
 
             # The divergence monitor; processes that share a run go on to where all look.
-            if limit is not None:
-                if (n + 1) % EVERY == 0:
-                    lost = False
-                    for i in range(v.size):
-                        lost |= not abs(v[i]) <= limit
-                    if lost:
-                        if found[0] < 0:
-                            found[0], found[1], found[2] = n + 1, SPEED, n - EVERY
-                        if link is None:
-                            break
+            if limit is not None and (n + 1) % EVERY == 0:
+                lost = False
+                for i in range(v.size):
+                    lost |= not abs(v[i]) <= limit
+                if lost:
+                    if found[0] < 0:
+                        found[0], found[1], found[2] = n + 1, SPEED, n - EVERY
+                    if link is None:
+                        break
         restore_tiny(flushing)
         return failed
 

@@ -28,8 +28,8 @@ def march(
     """Return a function of (first, last) that takes steps first .. last - 1, and a sample at every
     step that `stride` divides; it returns MPI's error code, 0 without.
 
-    limits : end the run where it exceeds them; None without. link : `continuum.parallel.exchange.Link` to those
-        who share the run, who then go on to where all of them look.
+    limits : end the run where it exceeds them; None without. link : to those who share the run,
+        `continuum.parallel.exchange.Link`, who then go on to where all of them look.
     """
     joints = model.interfaces
     constants = (None, None) if joints is None else (joints.parts, joints.directions)

@@ -14,7 +14,7 @@ from continuum.implicit.newton import Outcome
 from continuum.implicit.step import Moment, Stepper
 from continuum.implicit.substeps import motion_at, pressure_at
 from continuum.model import Model, Samples, State
-from continuum.monitor import Watch
+from continuum.monitor import Monitor
 
 HALVINGS = 10
 WHOLE = 1 << HALVINGS
@@ -56,11 +56,11 @@ class Implicit:
         return int(self.counts[0])
 
     def run(
-        self, samples: Samples, stride: int, first: int, last: int, watch: Watch | None = None
+        self, samples: Samples, stride: int, first: int, last: int, monitor: Monitor | None = None
     ) -> None:
         """Go from step first - 1 to each of first .. last - 1, and take a sample at every step that
-        `stride` divides. Raises StoppedError where a step does not converge; ends where what
-        watches finds the run out of bounds."""
+        `stride` divides. Raises StoppedError where a step does not converge; ends where the
+        monitor finds the run out of bounds."""
         for n in range(first, last):
             if n == 0:
                 self._begin()
@@ -69,7 +69,7 @@ class Implicit:
             self.counts[1] = n
             if n % stride == 0:
                 self._record(samples, n // stride)
-            if watch is not None and watch.finds(n):
+            if monitor is not None and monitor.finds(n):
                 break
 
     def compile(self, samples: Samples) -> None:

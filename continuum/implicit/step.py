@@ -1,6 +1,6 @@
 """One implicit step of jointed rock: generalised alpha in time, solved by Newton's method.
 
-At the end of a step the residual on the freedoms that move is (`continuum.implicit.generalised_alpha`)
+At the end of a step the residual on the freedoms that move is (`generalised_alpha`)
 
     (1 - alpha_f) G' + alpha_f G - M ((1 - alpha_m) a' + alpha_m a),
 

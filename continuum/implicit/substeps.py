@@ -10,8 +10,8 @@ from continuum.model import Fixed, HalfJoints, Model, Quiet
 class Wall(NamedTuple):
     """Freedoms that move as they are told.
 
-    freedom, direction : [k]; all move by direction times the same displacement (m), velocity and acceleration,
-    each float array [steps + 1] at whole steps; None where they stand still.
+    freedom, direction : [k]; all move by direction times the same displacement (m), velocity and
+    acceleration, each float array [steps + 1] at whole steps; None where they do not move.
     """
 
     freedom: np.ndarray

@@ -111,7 +111,7 @@ class Team(Alone):
         with in_turn(self.comm):
             yield
 
-    def leapfrog(self, model, state, samples, stride, limits) -> Callable[[int, int], None]:
+    def leapfrog(self, model, state, samples, stride, limits) -> Callable[[int, int], object]:
         """Return a function of (first, last) that takes steps, as `explicit.march.march` does.
 
         Freedoms whose motion is given need no force, and keep their shares of it, which sum up to

@@ -1,7 +1,7 @@
 """The processes that share a run, seen from one of them; here the only one there is.
 
-`continuum.parallel.communicator` has the same for several. What is called on one is called on all of them,
-in the same order.
+`continuum.parallel.communicator` has the same for several. What is called on one is called on all
+of them, in the same order.
 """
 
 from collections.abc import Callable, Iterator
@@ -91,7 +91,7 @@ class Alone:
         """Let the first process of every machine compile: the others find it in the cache."""
         yield
 
-    def leapfrog(self, model, state, samples, stride, limits) -> Callable[[int, int], None]:
+    def leapfrog(self, model, state, samples, stride, limits) -> Callable[[int, int], object]:
         """Return a function of (first, last) that takes steps, as `explicit.march.march` does."""
         from continuum.explicit.march import march
 

@@ -41,8 +41,8 @@ def stencils(matrix: csr_matrix) -> Stencils:
     start = np.concatenate([[0], np.cumsum(entries)])
     kept = np.repeat(matrix.indptr[begins] - start[:-1], entries) + np.arange(start[-1])
     first = np.append(begins, matrix.shape[0])
-    indices = (part.astype(np.uint64) for part in (first, start, matrix.indices[kept]))
-    return Stencils(*indices, matrix.data[kept])
+    first, start, column = (a.astype(np.uint64) for a in (first, start, matrix.indices[kept]))
+    return Stencils(first, start, column, matrix.data[kept])
 
 
 def _begins(matrix: csr_matrix) -> np.ndarray:
