@@ -25,7 +25,7 @@ class Engine(NamedTuple):
     """
 
     compile: Callable[[], None]
-    march: Callable[[int, int], None]
+    march: Callable[[int, int], object]
     ahead: float
     attributes: Callable[[], dict[str, Any]]
     parts: Any = ()

@@ -19,7 +19,7 @@ LEAST_LOOKS = 20  # however short the run
 def march_with_looks(
     time: Clock,
     work: int,
-    march: Callable[[int, int], None],
+    march: Callable[[int, int], object],
     check: Callable[[int, int], None],
     parts: Any,
     progress: Callable[[float], None] | None,

@@ -5,7 +5,7 @@ import pytest
 
 from cases.result import energy_residual, imbalance
 from continuum import simulate
-from continuum.explicit.record import TERMS
+from continuum.model import TERMS
 
 LAYER = {"soft_layers": [{"y": 20.0, "spacing_stiffness": 4.375e8}]}
 DAMPED = {"joints__damping_ratio": 0.05}

@@ -6,7 +6,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse import csr_matrix, random
 
-from continuum.space.simd import WIDTH
 from continuum.space.operator import (
     layout,
     multiply,
@@ -15,6 +14,7 @@ from continuum.space.operator import (
     tile_widths,
     without_round_off,
 )
+from continuum.space.simd import WIDTH
 from joints.rows import zeros
 
 COUNTS = (1, 2, 7, 8, 9, 17, 25, 33, 40, 41, 48, 100)  # every width of a tile, full and not

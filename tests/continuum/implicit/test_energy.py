@@ -6,8 +6,8 @@ import pytest
 from cases.calibrate import calibrate
 from cases.result import imbalance
 from compare.exact import generalised_alpha as theory
-from continuum.explicit.record import TERMS
 from continuum.implicit.generalised_alpha import scheme
+from continuum.model import TERMS
 
 OBLIQUE = {"load__direction": [0.6, 0.8, 0.0]}
 ACROSS = OBLIQUE | {"motion__rotation": "none"}

@@ -5,8 +5,8 @@ import pytest
 
 from cases.errors import StoppedError, UnstableError
 from continuum import simulate
-from continuum.implicit.run import HALVINGS
 from continuum.implicit import step as implicit_step
+from continuum.implicit.run import HALVINGS
 from continuum.implicit.substeps import end_resistance, shortened
 from joints.ends import half_spring
 

@@ -1,4 +1,4 @@
-"""Jump operators by runs of rows: the same matrix, in fewer words."""
+"""Jump operators as stencils: the same matrix, in fewer numbers."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.sparse import csr_matrix
 
-from continuum.space.stencils import ROUND_OFF, add_runs, distinct, multiply_runs, runs
+from continuum.space.stencils import (
+    ROUND_OFF,
+    add_transposed,
+    distinct,
+    multiply_stencils,
+    stencils,
+)
 
 
 def banded(rows: list[dict[int, float]], columns: int) -> csr_matrix:
@@ -26,9 +32,9 @@ ROWS = [
 ]
 
 
-def test_neighbouring_joints_of_alike_blocks_are_one_run():
+def test_neighbouring_joints_of_alike_blocks_are_one_stencil():
     """And nothing else is."""
-    matrix = runs(banded(ROWS, 40))
+    matrix = stencils(banded(ROWS, 40))
     assert matrix.first.tolist() == [0, 4, 5, 6, 8]
     assert matrix.column.tolist() == [3, 20, 0, 9, 30, 10, 27]
     assert matrix.value.tolist() == [-1.0, 1.0, 0.5, -2.0, 1.5, -1.0, 1.0]
@@ -37,17 +43,17 @@ def test_neighbouring_joints_of_alike_blocks_are_one_run():
 @pytest.mark.parametrize(
     "change", [{3: -1.0, 21: 1.0}, {4: -1.0, 21: 1.1}, {4: -1.0}, {4: -1.0, 21: 1.0, 30: 1.0}]
 )
-def test_a_run_ends_where_anything_differs(change):
+def test_a_stencil_ends_where_anything_differs(change):
     """A column that does not move on, another coefficient, an entry less or more."""
     same = [{3: -1.0, 20: 1.0}, {4: -1.0, 21: 1.0}]
-    assert runs(banded(same, 40)).first.tolist() == [0, 2]
-    assert runs(banded([same[0], change], 40)).first.tolist() == [0, 1, 2]
+    assert stencils(banded(same, 40)).first.tolist() == [0, 2]
+    assert stencils(banded([same[0], change], 40)).first.tolist() == [0, 1, 2]
 
 
-def test_round_off_does_not_end_a_run():
+def test_round_off_does_not_end_a_stencil():
     """Basis functions at nodes are 1 only to round-off, another one for each point."""
     rows = [{3 + i: 1.0 + 1e-15 * i} for i in range(5)]
-    assert runs(banded(rows, 8)).first.size == 2
+    assert stencils(banded(rows, 8)).first.size == 2
 
 
 entries = st.dictionaries(st.integers(0, 19), st.sampled_from([-1.0, 0.25, 1.0]), max_size=4)
@@ -58,14 +64,14 @@ def test_products_are_those_of_the_matrix(blocks):
     """B x and f + B^T t, whatever the rows; coefficients and numbers have exact products here."""
     rows = [{c + i: v for c, v in e.items()} for e, count in blocks for i in range(count)]
     dense = banded(rows, 40).toarray()
-    matrix = runs(csr_matrix(dense))
+    matrix = stencils(csr_matrix(dense))
     numbers = np.random.default_rng(len(rows))
     x, t, f = (numbers.integers(-99, 99, n).astype(float) for n in (40, len(rows), 40))
     y = np.full(len(rows), np.nan)
-    multiply_runs(matrix, x, y)
+    multiply_stencils(*matrix, x, y, 0)
     assert y.tolist() == (dense @ x).tolist()
     expected = f + dense.T @ t
-    add_runs(matrix, t, f)
+    add_transposed(*matrix, t, f)
     assert f.tolist() == expected.tolist()
 
 
@@ -84,6 +90,6 @@ def test_no_points_at_all():
     """A pillar without joints between its blocks."""
     kept, group = distinct([csr_matrix((0, 8))])
     assert kept.size == group.size == 0
-    matrix = runs(csr_matrix((0, 8)))
-    multiply_runs(matrix, np.zeros(8), np.zeros(0))
+    matrix = stencils(csr_matrix((0, 8)))
+    multiply_stencils(*matrix, np.zeros(8), np.zeros(0), 0)
     assert matrix.first.tolist() == [0]
