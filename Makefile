@@ -53,7 +53,7 @@ test-debian13:  ## make test in a fresh Debian 13, with newer dolfinx, numpy and
 
 clean:  ## remove reports and caches
 	rm -rf report site build *.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache
-	find cases joints dem continuum compare tests -name __pycache__ -prune -exec rm -rf {} +
+	find cases results numerics joints dem continuum compare tests -name __pycache__ -prune -exec rm -rf {} +
 
 distclean: clean  ## remove .venv, the other codes and the fuzzer too
 	rm -rf .venv .peers .fuzz

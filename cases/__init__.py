@@ -5,6 +5,6 @@
 
 from cases.errors import SceneError, UnstableError
 from cases.read import load, load_variant
-from cases.scene import Scene
+from cases.schema.scene import Scene
 
 __all__ = ["Scene", "SceneError", "UnstableError", "load", "load_variant"]

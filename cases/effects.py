@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from cases.calibrate import Properties, calibrate
-from cases.scene import Scene
+from cases.material.calibrate import Properties, calibrate
+from cases.schema.scene import Scene
 
 
 @dataclass(frozen=True)

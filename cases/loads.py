@@ -11,7 +11,7 @@ from math import pi
 import numpy as np
 
 from cases.sampling import Interpolation
-from cases.scene import Scene
+from cases.schema.scene import Scene
 
 
 @dataclass(frozen=True)

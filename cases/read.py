@@ -9,8 +9,8 @@ from pydantic import ValidationError
 
 from cases.errors import SceneError, nearest
 from cases.files import parse_toml, read_toml
-from cases.scene import Scene
-from cases.values import CONTROL
+from cases.schema.scene import Scene
+from cases.schema.values import CONTROL
 
 LARGEST_FILE = 10_000_000  # bytes; a scene is a page of text
 #: It names a folder, beside what the scene's own results are called.

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 from cases.errors import SceneError
 
 if TYPE_CHECKING:
-    from cases.scene import Scene
+    from cases.schema.scene import Scene
 
 LIMIT = "JOINTWAVE_MEMORY"  # GB, in the environment: a bound of the user's own
 LARGEST_VARIABLE = 2**31 - 4  # bytes, of a NetCDF 3 file

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.calibrate import Properties
 from cases.loads import LoadHistory, Recorded, Ricker, Sine, load_history
-from cases.scene import Scene
+from cases.material.calibrate import Properties
+from cases.schema.scene import Scene
 
 #: Of a load's energy, the integral of its square over time: what lies below its highest frequency.
 #: A single sine cycle ends at 1.50 / T, a Ricker wavelet at 1.67 / T.

@@ -8,10 +8,10 @@ from math import hypot, sqrt
 
 import numpy as np
 
-from cases.calibrate import Properties, calibrate
 from cases.effects import is_spatial
-from cases.plausible import implausible
-from cases.scene import Scene
+from cases.material.calibrate import Properties, calibrate
+from cases.schema.plausible import implausible
+from cases.schema.scene import Scene
 from cases.spectrum import ShortestWave, shortest_wave
 
 LEAST_BLOCKS = 10.0  # and elements, a wavelength

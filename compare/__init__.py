@@ -1,20 +1,20 @@
-"""How far apart the engines are, why, and what it costs: exact solutions, metrics, report.
+"""Comparison of the engines: exact solutions, misfits, experiments, figures and the report.
 
-`compare.compare(scene)` solves a scene by all that applies and measures every pair. What is named
-here is imported when it is first asked for: a run of the rigid blocks loads nothing of it.
+`compare.compare(scene)` solves a scene by all that applies and measures every pair. Each name is
+imported when it is first used: a run of the rigid blocks loads nothing of the rest.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from compare import curves, engines, metrics, pairs, planner, scenes
-    from compare.curves import read_curves
+    from compare import engines, scenes
     from compare.engines import applies, names, solve
-    from compare.fitting.fit import Fit, fit
-    from compare.metrics import distance, misfit
-    from compare.pairs import Comparison, compare, measure
-    from compare.planner import plan
+    from compare.experiments.fit.fit import Fit, fit
+    from compare.experiments.planner.planner import plan
+    from compare.misfit.external import read_curves
+    from compare.misfit.metrics import distance
+    from compare.misfit.pairs import Comparison, compare, measure
     from compare.scenes import find, shipped
 
 __all__ = [
@@ -22,18 +22,13 @@ __all__ = [
     "Fit",
     "applies",
     "compare",
-    "curves",
     "distance",
     "engines",
     "find",
     "fit",
     "measure",
-    "metrics",
-    "misfit",
     "names",
-    "pairs",
     "plan",
-    "planner",
     "read_curves",
     "scenes",
     "shipped",
@@ -42,12 +37,12 @@ __all__ = [
 
 #: By module, the functions and classes that are the package's own.
 _OWN = {
-    "curves": ("read_curves",),
     "engines": ("applies", "names", "solve"),
-    "fitting.fit": ("Fit", "fit"),
-    "metrics": ("distance", "misfit"),
-    "pairs": ("Comparison", "compare", "measure"),
-    "planner": ("plan",),
+    "experiments.fit.fit": ("Fit", "fit"),
+    "experiments.planner.planner": ("plan",),
+    "misfit.external": ("read_curves",),
+    "misfit.metrics": ("distance",),
+    "misfit.pairs": ("Comparison", "compare", "measure"),
     "scenes": ("find", "shipped"),
 }
 _MODULE_OF = {name: module for module, names in _OWN.items() for name in names}

@@ -1,6 +1,6 @@
 """`python -m compare` is the command `jointwave`."""
 
-from compare.start import main
+from compare.cli.start import main
 
 if __name__ == "__main__":
     main()

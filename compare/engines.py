@@ -6,10 +6,10 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from cases.errors import SceneError
-from cases.keeper import Keeper
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from cases.size import refuse_beyond_memory, waveform_bytes
 from compare.exact.answer import YES, Answer, Form, Resolves, Rock, no
+from numerics.checkpoint import Keeper
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
-from cases.calibrate import Properties, calibrate
 from cases.errors import SceneError
+from cases.material.calibrate import Properties, calibrate
 from cases.sampling import Clock
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from continuum.ends import build_ends, end_stiffness, fixed_ends
 from continuum.explicit.critical import any_motion
 from continuum.joints import interfaces, joint_law, resolved_joints
@@ -33,7 +33,7 @@ from continuum.space.elasticity import Material
 from continuum.space.interface import Jumps, jumps
 from continuum.space.receivers import points, sections
 from continuum.space.simd import WIDTH
-from joints.rows import zeros
+from numerics.aligned import zeros
 
 
 class Discrete(NamedTuple):

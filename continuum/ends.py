@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from cases.calibrate import Properties
 from cases.loads import base_steps, load_history, step_means
+from cases.material.calibrate import Properties
 from cases.sampling import Clock
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from continuum.kinematics import impedances
 from continuum.mesh.description import Side
 from continuum.model import Ends, Fixed, HalfJoints, Loaded, Quiet

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from continuum.build import Discrete
 from continuum.model import Model, Samples, State
 from continuum.monitor import Monitor

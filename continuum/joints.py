@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, vstack
 
-from cases.calibrate import Properties
+from cases.material.calibrate import Properties
 from continuum.model import Interfaces
 from continuum.space.interface import Jumps
 from continuum.space.stencils import stencils

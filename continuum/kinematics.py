@@ -3,11 +3,11 @@
 from math import sqrt
 from typing import NamedTuple
 
-from cases.calibrate import Properties
 from cases.effects import is_spatial
-from cases.elastic import equivalent_modulus
 from cases.errors import SceneError
-from cases.scene import Scene
+from cases.material.calibrate import Properties
+from cases.material.elastic import equivalent_modulus
+from cases.schema.scene import Scene
 from continuum.space.elasticity import Material, Section
 
 MODELS = ("jointed", "equivalent")

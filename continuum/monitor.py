@@ -4,16 +4,16 @@ No node can be faster than all forces together can make it, and no energy come f
 
 import numpy as np
 
-from cases.calibrate import Properties
-from cases.runaway import Sighting, stopped
+from cases.material.calibrate import Properties
 from cases.sampling import Clock
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from continuum.build import Discrete
 from continuum.model import Model, Samples, State
 from continuum.parallel.serial import Alone
 from continuum.scheme import Choice
 from continuum.space.body import axis
-from joints.guard import CREATED, ENERGY, EVERY, LAST_DIGITS, guard, look, speed_that
+from numerics.divergence import CREATED, ENERGY, EVERY, LAST_DIGITS, guard, look, speed_that
+from numerics.instability import Sighting, stopped
 
 
 class Monitor:
@@ -21,7 +21,8 @@ class Monitor:
 
     Attributes
     ----------
-    guard : `joints.guard.Guard`. energy : the whole ledger [term, sample], J; None when not kept.
+    guard : `numerics.divergence.Guard`. energy : the whole ledger [term, sample], J; None when not
+    kept.
     parts : arrays that change with the run. time : its clock.
     """
 

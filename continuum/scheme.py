@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from cases.errors import SceneError
 from cases.sampling import MOST_STEPS, Clock, clock, sample_times
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from continuum.build import Discrete, operators, resolved_period
 
 #: How many explicit steps one implicit step must replace before its cost is looked into: it solves

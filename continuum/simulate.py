@@ -11,11 +11,8 @@ import numba
 import numpy as np
 import xarray as xr
 
-from cases.arrays import changed, size_of
 from cases.errors import SceneError, StoppedError
-from cases.keeper import Keeper
-from cases.result import Fields, fields
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from continuum.build import (
     Discrete,
     build_model,
@@ -34,6 +31,9 @@ from continuum.space import compat
 from continuum.time_loop import march_with_looks
 from continuum.validity import applies
 from continuum.waveforms import energy_terms, waveforms
+from numerics.checkpoint import Keeper
+from results.arrays import changed, size_of
+from results.dataset import Fields, fields
 
 if TYPE_CHECKING:
     from continuum.snapshots import RockFilm
@@ -57,7 +57,7 @@ def simulate(
     progress : called with the finished fraction.
     comm : mpi4py's communicator of processes that share the run: all call this alike, each steps
         its part of the rock, and all get the whole result. None: this one alone.
-    keeper : keeps checkpoints, `cases.keeper`; each process has its own.
+    keeper : keeps checkpoints, `numerics.checkpoint`; each process has its own.
 
     Raises SceneError for what this model cannot simulate; StoppedError, an UnstableError with the
     result so far, when the motion leaves its bounds or implicit steps do not converge.

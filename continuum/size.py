@@ -1,7 +1,7 @@
 """What runs of deformable rock take of memory, told before any of it is made."""
 
 from cases.sampling import Clock
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from cases.size import load_bytes, refuse_beyond_memory, snapshot_bytes, waveform_bytes
 from continuum.kinematics import Kinematics
 

@@ -5,17 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from cases.result import Fields
-from cases.scene import Scene
-from cases.snapshots import (
-    Film,
-    Snapshots,
-    refuse_beyond_room,
-    samples_between,
-    snapshots,
-    with_snapshots,
-)
-from cases.subcells import KINDS, linear_cells
+from cases.schema.scene import Scene
 from continuum.build import Discrete
 from continuum.model import State
 from continuum.parallel.serial import Pieces
@@ -23,6 +13,16 @@ from continuum.space import compat
 from continuum.space.body import axis
 from continuum.space.evaluation import at_reference, matrix_of
 from continuum.space.receivers import section_tractions
+from results.dataset import Fields
+from results.snapshots import (
+    Film,
+    Snapshots,
+    refuse_beyond_room,
+    samples_between,
+    snapshots,
+    with_snapshots,
+)
+from results.subcells import KINDS, linear_cells
 
 
 class RockFilm(Film):

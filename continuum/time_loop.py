@@ -6,11 +6,11 @@ from collections.abc import Callable
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from cases.keeper import Keeper, begin, show
 from cases.sampling import Clock
+from numerics.checkpoint import Keeper, begin, show
 
 if TYPE_CHECKING:
-    from cases.snapshots import Film
+    from results.snapshots import Film
 
 FREEDOM_STEPS_BETWEEN_LOOKS = 10_000_000  # some 0.1 s: often enough for a progress bar
 LEAST_LOOKS = 20  # however short the run

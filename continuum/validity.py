@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from cases.calibrate import Properties, calibrate
-from cases.scene import Scene
+from cases.material.calibrate import Properties, calibrate
+from cases.schema.scene import Scene
 from continuum.joints import resolved_joints
 from continuum.kinematics import holds, kinematics
 

@@ -4,17 +4,17 @@ from typing import Any
 
 import numpy as np
 
-from cases.result import ALL_TERMS
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from continuum.build import Discrete
 from continuum.model import TERMS, Model, Samples
 from continuum.parallel.serial import ALONE, Alone
 from continuum.space.receivers import is_on_joint
 from joints.flat.law import Law
+from results.dataset import ALL_TERMS
 
 
 def waveforms(scene: Scene, discrete: Discrete, samples: Samples) -> dict[str, Any]:
-    """Return the recorded fields at the scene's receivers, as `cases.result.fields` takes them.
+    """Return the recorded fields at the scene's receivers, as `results.dataset.fields` takes them.
 
     What a mesh in two dimensions has no room for is zero.
     """

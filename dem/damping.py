@@ -2,7 +2,7 @@
 
 from math import copysign
 
-from joints.jit import inlined
+from numerics.jit import inlined
 
 
 @inlined

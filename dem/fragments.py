@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from cases.calibrate import Properties
-from cases.labels import label
-from cases.result import Fields
+from cases.material.calibrate import Properties
+from results.dataset import Fields
+from results.labels import label
 
 
 def fragments(p: Properties, broken: np.ndarray, velocity: np.ndarray) -> list[dict[str, Any]]:

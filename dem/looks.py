@@ -11,14 +11,14 @@ import numba
 import numpy as np
 
 from cases.errors import StoppedError
-from cases.keeper import Keeper, begin, show
-from cases.result import Fields
-from cases.runaway import Sighting
 from cases.sampling import Clock
-from joints.guard import ENERGY, Guard
+from numerics.checkpoint import Keeper, begin, show
+from numerics.divergence import ENERGY, Guard
+from numerics.instability import Sighting
+from results.dataset import Fields
 
 if TYPE_CHECKING:
-    from cases.snapshots import Film
+    from results.snapshots import Film
 
 BLOCK_STEPS_BETWEEN_LOOKS = 20_000_000  # some 10 ms to 1 s: often enough for a progress bar
 STEPS_BETWEEN_LOOKS = 64  # at least: threads that follow one another need some to share

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from cases.effects import is_spatial
 from cases.errors import StoppedError
-from cases.keeper import Keeper
-from cases.result import Fields
-from cases.scene import Scene
+from cases.schema.scene import Scene
+from numerics.checkpoint import Keeper
+from results.dataset import Fields
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -20,7 +20,8 @@ def simulate(
 ) -> xr.Dataset:
     """Simulate a scene with rigid blocks.
 
-    progress : called with the finished fraction. keeper : watches over the run, `cases.keeper`.
+    progress : called with the finished fraction. keeper : watches over the run,
+    `numerics.checkpoint`.
 
     Raises SceneError for a step that cannot be taken, a static state that does not exist and
     rotations too large for their kinematics; StoppedError, an UnstableError with the result so far,

@@ -1,7 +1,7 @@
 """What runs of rigid blocks take of memory, told before any of it is made."""
 
 from cases.sampling import Clock
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from cases.size import load_bytes, refuse_beyond_memory, snapshot_bytes, waveform_bytes
 
 #: Bytes a block, with all that makes the model and all that can be remembered of its joint.

@@ -7,12 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.calibrate import Properties
 from cases.loads import with_load_itself
-from cases.result import Fields
+from cases.material.calibrate import Properties
 from cases.sampling import interpolation
-from cases.scene import Scene
-from cases.snapshots import (
+from cases.schema.scene import Scene
+from dem.static import prestressed
+from results.dataset import Fields
+from results.snapshots import (
     Film,
     in_space,
     refuse_beyond_room,
@@ -20,8 +21,7 @@ from cases.snapshots import (
     snapshots,
     with_snapshots,
 )
-from cases.subcells import CORNERS
-from dem.static import prestressed
+from results.subcells import CORNERS
 
 CORNERS_OF_A_BLOCK = 8
 

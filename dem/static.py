@@ -15,10 +15,10 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from cases.calibrate import Properties
 from cases.errors import SceneError
+from cases.material.calibrate import Properties
 from cases.sampling import Interpolation
-from cases.scene import Scene
+from cases.schema.scene import Scene
 
 STEPS_BETWEEN_LOOKS = 10
 PATIENCE = 20  # a stall is a twentieth of the most steps without progress

@@ -1,7 +1,7 @@
 """What a joint stores and what it spends, per unit area (J/m2)."""
 
-from joints.jit import inlined, jitted
 from joints.normal import spring_traction
+from numerics.jit import inlined, jitted
 
 
 @jitted

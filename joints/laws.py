@@ -13,10 +13,10 @@ from typing import Any, NamedTuple
 from numba import types
 from numba.extending import overload
 
-from joints.jit import inlined, jitted
 from joints.normal import normal_traction, spring_traction
 from joints.shear import cohesion_left, shear_return, shear_strength
 from joints.softening import update_opening
+from numerics.jit import inlined, jitted
 
 __all__ = ["History", "Law", "law_of", "normal_traction", "pick", "spring_traction", "traction"]
 

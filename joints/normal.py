@@ -1,7 +1,7 @@
 """Normal traction of a joint: spring, dashpot, softening, no tension."""
 
-from joints.jit import inlined, jitted
 from joints.softening import stiffness_left, strength_left
+from numerics.jit import inlined, jitted
 
 
 @jitted

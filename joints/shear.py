@@ -8,8 +8,8 @@ and de/dt taken over the step, e is where spring and dashpot together carry exac
 
 from math import sqrt
 
-from joints.jit import inlined, jitted
 from joints.softening import is_broken, strength_left
+from numerics.jit import inlined, jitted
 
 # Pa; more than any joint carries, and still a number when squared.
 UNLIMITED = 1e100

@@ -9,7 +9,7 @@ Below k it unloads and reloads through the origin with the secant stiffness s(k)
 Hillerborg, Modeer & Petersson (1976); Camacho & Ortiz (1996).
 """
 
-from joints.jit import inlined, jitted
+from numerics.jit import inlined, jitted
 
 
 @jitted

@@ -12,10 +12,10 @@ closed, one at its largest opening unloads, shear on the strength has not slippe
 from math import sqrt
 from typing import Any, NamedTuple
 
-from joints.jit import inlined, jitted
 from joints.laws import normal_traction
 from joints.shear import UNLIMITED, shear_strength, shear_traction
 from joints.softening import stiffness_left, strength_left, update_opening
+from numerics.jit import inlined, jitted
 
 
 class Tangent(NamedTuple):

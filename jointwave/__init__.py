@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from xarray import Dataset
 
-    from cases.calibrate import Properties
-    from cases.scene import Scene
-    from compare.curves import Curves
-    from compare.fitting.fit import Fit
-    from compare.pairs import Comparison
-    from compare.planner import Plan
+    from cases.material.calibrate import Properties
+    from cases.schema.scene import Scene
+    from compare.experiments.fit.fit import Fit
+    from compare.experiments.planner.planner import Plan
+    from compare.misfit.external import Curves
+    from compare.misfit.pairs import Comparison
 
 __all__ = [
     "compare",
@@ -79,7 +79,7 @@ def shipped() -> list[str]:
 
 def properties(scene: Scene) -> Properties:
     """Return what follows from a scene: stiffnesses, speeds, impedance, damping, of every joint."""
-    from cases.calibrate import calibrate
+    from cases.material.calibrate import calibrate
 
     return calibrate(scene)
 
@@ -118,7 +118,7 @@ def compare(
 
     curves : of others, as `read_curves` returns them; align : whether their clocks are moved.
     """
-    from compare import pairs
+    from compare.misfit import pairs
 
     return pairs.compare(scene, progress, curves=curves, align=align)
 
@@ -126,7 +126,7 @@ def compare(
 def misfit(one: Dataset, other: Dataset) -> float:
     """Return the relative L2 misfit of two results of a scene: that of the waveform, one component
     of one quantity at one receiver less its static state, which is furthest off."""
-    from compare import metrics
+    from compare.misfit import metrics
 
     return metrics.misfit(one, other)
 
@@ -134,7 +134,7 @@ def misfit(one: Dataset, other: Dataset) -> float:
 def read_curves(files: Sequence[str], scenes: Sequence[Scene]) -> list[Curves]:
     """Return waveforms of another code, a figure or an experiment: FILE, FILE:stress@20 or
     FILE:COLUMN=stress@20 each, CSV or NetCDF."""
-    from compare import curves
+    from compare.misfit import external as curves
 
     return curves.read_curves(list(files), list(scenes))
 
@@ -153,7 +153,7 @@ def fit(
 
     Raises SceneError for what cannot be fitted, StoppedError where the search does not converge.
     """
-    from compare.fitting import fit as fitting
+    from compare.experiments.fit import fit as fitting
 
     return fitting.fit(scene, curves, free, solver, progress)
 
@@ -166,7 +166,7 @@ def plan(
 
     Raises SceneError where nothing exact is known of the scene, and no run converges in reach.
     """
-    from compare import planner
+    from compare.experiments.planner import planner
 
     return planner.plan(scene, misfit, seconds, progress)
 
@@ -182,8 +182,8 @@ def figure(
     columns : of the page, 1 or 2. style : "journal" or "screen".
     language : "en" or "zh". Raises SceneError where it would be taller than a page.
     """
-    from compare.papers.draw import draw
-    from compare.papers.look import LOOKS
+    from compare.figures.print.appearance import LOOKS
+    from compare.figures.print.draw import draw
 
     return draw(list(comparisons), LOOKS[style], columns, language)
 
@@ -201,7 +201,7 @@ def __getattr__(name: str) -> Any:
 
         return getattr(errors, name)
     if name == "Scene":
-        from cases.scene import Scene
+        from cases.schema.scene import Scene
 
         return Scene
     raise AttributeError(f"module 'jointwave' has no attribute {name!r}")

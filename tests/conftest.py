@@ -83,3 +83,16 @@ def _outside_mpi(environment):
     if "PMIX_RANK" not in environment:
         return environment
     return {k: v for k, v in environment.items() if not k.startswith(("OMPI_", "PMIX_"))}
+
+
+@pytest.fixture(scope="session")
+def paper_folder() -> Path:
+    """The scenes of the paper's figures."""
+    return PILLAR.parent
+
+
+@pytest.fixture(scope="session")
+def scene_with(paper_folder):
+    """A function of dotted keys: the undamped, free-ended pillar of figure 3 with them changed."""
+    alone = {"variants": []}  # each is validated, and some contradict some changes
+    return lambda **changes: cases.load(paper_folder / "fig-03.toml", alone | changes)[0]

@@ -1,4 +1,5 @@
-"""The direction of imports, as the house is built: compare -> dem, continuum -> joints -> cases."""
+"""The direction of imports, as the house is built: compare -> dem, continuum -> joints ->
+numerics -> results -> cases."""
 
 from importlinter.cli import EXIT_STATUS_SUCCESS, lint_imports
 

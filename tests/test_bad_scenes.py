@@ -14,7 +14,7 @@ from unittest.mock import patch
 import pytest
 
 from cases import load
-from compare.cli import main
+from compare.cli.program import main
 
 GOOD = """\
 title = "good"

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from compare import plan_families
-from compare.plan_reference import References
+from compare.experiments.planner import families
+from compare.experiments.planner.reference import References
 
 TOOLS = Path(__file__).parents[1] / "tools" / "plan"
 SHORT = {"pillar__length": 10.0, "time__duration": 0.03, "record__stress": [4.0]}
@@ -21,7 +21,7 @@ def tools(monkeypatch):
     monkeypatch.syspath_prepend(str(TOOLS))
     before = set(sys.modules)
     study = importlib.import_module("full_study")
-    monkeypatch.setattr(study, "FAMILIES", plan_families.FAMILIES[:4])
+    monkeypatch.setattr(study, "FAMILIES", families.FAMILIES[:4])
     yield importlib.import_module
     for name in set(sys.modules) - before:
         if str(getattr(sys.modules[name], "__file__", "")).startswith(str(TOOLS)):
@@ -58,9 +58,9 @@ def test_a_plan_that_is_the_studys_best_costs_as_much(tools, scene):
 
 
 def test_a_scene_that_cannot_be_planned_is_a_miss_with_its_reason(tools, scene, monkeypatch):
-    from compare import plan_reference
+    from compare.experiments.planner import reference
 
-    monkeypatch.setattr(plan_reference, "LEVELS", 1)
+    monkeypatch.setattr(reference, "LEVELS", 1)
     local = scene.model_copy(update={"damping": scene.damping.model_copy(update={"local": 0.5})})
     (row,) = tools("held").rows_of(local, [0.01], 3)
     assert not row["met"] and isnan(row["ratio"]) and "no exact solution" in row["message"]

@@ -11,11 +11,11 @@ import pytest
 
 import cases
 from cases.effects import is_spatial
-from cases.result import energy_residual
 from compare.engines import ENGINES, applies, names, solve
-from compare.exact import lattice
-from compare.metrics import misfit, relative_l2
+from compare.exact.blocks import lattice
+from compare.misfit.metrics import misfit, relative_l2
 from compare.scenes import SHIPPED, shipped
+from results.dataset import energy_residual, scene_hash
 
 REFEREES = {
     "dem": ("lattice", "no-tension-chain", "spatial-lattice"),
@@ -46,7 +46,7 @@ class _Scene:
 
     def __init__(self, scene):
         self.value = scene
-        self.digest = cases.result.scene_hash(scene)
+        self.digest = scene_hash(scene)
 
     def __hash__(self):
         return hash(self.digest)
@@ -63,7 +63,7 @@ def result_of(name, scene):
 
 def is_linear(scene):
     """Return whether every joint holds and carries tension."""
-    p = cases.calibrate.calibrate(scene)
+    p = cases.material.calibrate.calibrate(scene)
     limits = (p.friction, p.cohesion, p.tensile_strength)
     return bool(p.tension.all()) and all(limit is None for limit in limits)
 

@@ -8,15 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from cases.allowed import in_words
-from cases.keys import keys as all_keys
-from cases.meaning import field_comments
-from cases.scene import Scene
+from cases.schema.allowed import in_words
+from cases.schema.field_docs import field_comments
+from cases.schema.keys import keys as all_keys
+from cases.schema.scene import Scene
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 TOOLS = ROOT / "tools" / "docs"
-PACKAGES = ("cases", "joints", "dem", "continuum", "compare")
+PACKAGES = ("cases", "results", "numerics", "joints", "dem", "continuum", "compare")
 PAGES = sorted(DOCS.rglob("*.md"))
 BLOCK = re.compile(r"^```(\w+)(?: title=\"([^\"]+)\")?\n(.*?)^```", re.MULTILINE | re.DOTALL)
 #: Places that mean something on one machine alone, and words that a reader cannot act upon.
@@ -128,15 +128,16 @@ def test_every_exact_solution_is_explained():
 
 def test_every_term_and_quantity_of_a_result_is_explained():
     """The page on results names all terms of the ledger."""
-    from cases.result import ALL_TERMS
+    from results.dataset import ALL_TERMS
 
     page = (DOCS / "reference" / "result.md").read_text(encoding="utf-8")
     assert not [term for term in ALL_TERMS if f"`{term}`" not in page]
 
 
 RUN = """<testsuites><testsuite timestamp="2001-02-03T04:05:06.7+00:00">
-<testcase classname="tests.exact.test_images" name="test_one[a]" time="0.5"/>
-<testcase classname="tests.exact.test_images" name="test_one[b.c]" time="0.25"><failure/></testcase>
+<testcase classname="tests.compare.exact.test_images" name="test_one[a]" time="0.5"/>
+<testcase classname="tests.compare.exact.test_images" name="test_one[b.c]" time="0.25">
+<failure/></testcase>
 <testcase classname="cases.guo-li-2002.fig-03.toml" name="dem ~ lattice" time="1">
 <properties><property name="misfit" value="0.0013"/></properties></testcase>
 <testcase classname="cases.guo-li-2002.fig-03.toml" name="zeta 0.02: dem ~ lattice" time="1">
@@ -147,8 +148,8 @@ RUN = """<testsuites><testsuite timestamp="2001-02-03T04:05:06.7+00:00">
 def test_results_are_read_by_test_and_by_pair(tools, tmp_path):
     """Cases of one test are counted together; a pair has its misfit, or none where it failed so."""
     (tmp_path / "tests.xml").write_text(RUN)
-    found = tools("results").read(tmp_path / "tests.xml")
-    one = found.tests["tests/exact/test_images.py", "test_one"]
+    found = tools("outcomes").read(tmp_path / "tests.xml")
+    one = found.tests["tests/compare/exact/test_images.py", "test_one"]
     assert dict(one.counts) == {"passed": 1, "failed": 1} and one.seconds == 0.75
     file = "cases/guo-li-2002/fig-03.toml"
     assert found.pairs[file, "dem ~ lattice"] == (0.0013, True)

@@ -11,10 +11,10 @@ import pytest
 
 import dem
 from cases import SceneError
-from cases.snapshots import snapshots, snapshots_of
-from compare import fieldfiles
-from compare.fieldfiles import read_pvd, refuse_vtx, write_pvd, write_vtx
+from compare.runs import field_files
+from compare.runs.field_files import read_pvd, refuse_vtx, write_pvd, write_vtx
 from continuum.space import compat
+from results.snapshots import snapshots, snapshots_of
 
 SPALL = {
     "pillar__length": 8.0,
@@ -216,7 +216,7 @@ def test_vtx_gets_every_value_at_its_node(two_cells, kind, tmp_path, monkeypatch
             seen.append((time, at, *values))
 
     monkeypatch.setattr(compat, "vtx_writer", lambda: Recorder)
-    monkeypatch.setattr(fieldfiles, "write_folder", lambda path, save: save(tmp_path / "made"))
+    monkeypatch.setattr(field_files, "write_folder", lambda path, save: save(tmp_path / "made"))
     write_vtx(tmp_path / "dem.bp", found)
     assert [time for time, *_ in seen] == found.time.tolist()
     for i, (_, at, displacement, velocity) in enumerate(seen):

@@ -5,15 +5,15 @@ import pytest
 
 import continuum
 import dem
-from cases.calibrate import calibrate
 from cases.errors import StoppedError
+from cases.material.calibrate import calibrate
 from continuum.simulate import steps_of
 from dem.axial.bound import highest_speed
 from dem.axial.model import build
 from dem.axial.record import room, run
 from dem.axial.simulate import scheme_of
 from dem.spatial.simulate import critical_step_of
-from joints.guard import ENERGY, EVERY, RUNAWAY, SPEED, guard
+from numerics.divergence import ENERGY, EVERY, RUNAWAY, SPEED, guard
 
 ABOVE = 1.001  # of the critical step: (x + sqrt(x^2 - 1))^2 = 1.09 times as large in every step
 ACROSS = {"load__direction": [0.6, 0.8, 0.0], "joints__friction_angle": 30.0}

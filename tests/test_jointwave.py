@@ -9,8 +9,9 @@ import pytest
 import cases
 import compare
 import jointwave as jw
-from compare.curves import Curves, Place
-from compare.stability.linear_cases import SHORT
+from compare.experiments.robustness.linear_cases import SHORT
+from compare.misfit.external import Curves, Place
+from compare.misfit.metrics import misfit
 
 TABLES = {
     "title": "made of tables",
@@ -43,7 +44,7 @@ def test_a_scene_is_loaded_from_a_name_a_file_or_tables(tmp_path):
 def test_a_scene_is_solved_measured_and_drawn():
     scene = jw.load(TABLES)
     blocks, exact = jw.simulate(scene), jw.simulate(scene, "lattice")
-    assert jw.misfit(blocks, exact) == compare.misfit(blocks, exact) > 0
+    assert jw.misfit(blocks, exact) == misfit(blocks, exact) > 0
     assert jw.solvers(scene)["lattice"] == "" != jw.solvers(scene)["jointed-bar"]
     assert jw.properties(scene).block_count == 10
     found = jw.compare(scene)

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from compare.engines import solve
-from compare.exact.leapfrog import displacements, modes, of_modes
-from compare.metrics import relative_l2
+from compare.exact.schemes.leapfrog import displacements, modes, of_modes
+from compare.misfit.metrics import relative_l2
 
 TOOLS = Path(__file__).parents[1] / "tools" / "peers"
 #: Positions near 50 m are known to some 1e-14 m, their gaps of 1e-5 m to 1e-9; steps add to it.
@@ -190,7 +190,7 @@ def test_yade_contact_has_the_stiffness_of_the_joint(peers, pillar):
 
 
 def test_elements_are_stepped_below_their_critical_step(peers, pillar):
-    from compare.exact.lattice import frequencies
+    from compare.exact.blocks.lattice import frequencies
 
     for n in (1, 2, 4, 8):
         stride = peers("pillar").stride_for(pillar(), 0.5 / n, 1, 0.8)

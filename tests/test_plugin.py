@@ -48,7 +48,7 @@ def warm(tmp_path_factory):
     """Import what the engines need: pytester forgets after each run what was imported in it."""
     from cases import load
     from compare.engines import solve
-    from compare.metrics import misfit
+    from compare.misfit.metrics import misfit
 
     path = tmp_path_factory.mktemp("warm") / "scene.toml"
     path.write_text(scene() + VARIANT)
@@ -100,7 +100,7 @@ def test_a_scene_is_warned_of_and_refused_where_warnings_are_errors(run):
     result = run("-v", scene=late)
     result.assert_outcomes(passed=1, warnings=1)
     result.stdout.fnmatch_lines(["*SceneWarning: *scene.toml: load.period = 0.011 s is longer*"])
-    strict = "-W", "error::compare.pytest_plugin.SceneWarning"
+    strict = "-W", "error::compare.cli.pytest_plugin.SceneWarning"
     result = run(*strict, scene=late)
     result.assert_outcomes(failed=1)
     result.stdout.re_match_lines([r"\S+scene.toml: load.period = 0.011 s is longer"])
@@ -198,7 +198,7 @@ def test_a_run_without_scenes_imports_nothing_heavy(pytester):
         import sys
 
         def test_nothing_heavy_is_there():
-            assert "compare.pytest_plugin" in sys.modules
+            assert "compare.cli.pytest_plugin" in sys.modules
             heavy = {"numpy", "numba", "xarray", "pydantic", "dolfinx", "matplotlib", "cases"}
             assert not heavy & set(sys.modules)
         """

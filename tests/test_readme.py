@@ -8,10 +8,10 @@ import pytest
 
 import cases
 from compare.engines import solve
-from compare.metrics import misfit
-from compare.studies.orders import orders
-from compare.studies.runner import run
-from compare.studies.study import load
+from compare.experiments.study.orders import orders
+from compare.experiments.study.runner import run
+from compare.experiments.study.study import load
+from compare.misfit.metrics import misfit
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")

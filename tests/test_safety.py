@@ -21,17 +21,17 @@ import cases
 from cases.errors import SceneError, printable
 from cases.files import is_number
 from cases.read import load, load_variant
-from cases.values import CONTROL
-from compare import cli, start, terminal
-from compare.curvefiles import read_columns
-from compare.drawn import save
-from compare.jobs import plan
-from compare.keeping.lock import NAME, locked, opened
-from compare.output import refuse_foreign, write, write_csv, write_folder
-from compare.studies.study import load as load_study
+from cases.schema.values import CONTROL
+from compare.cli import program, start, terminal
+from compare.experiments.study.study import load as load_study
+from compare.figures.export import save
+from compare.misfit.external_files import read_columns
+from compare.runs.checkpoint.lock import NAME, locked, opened
+from compare.runs.jobs import plan
+from compare.runs.output import refuse_foreign, write, write_csv, write_folder
 
 ROOT = Path(cases.__file__).parents[1]
-PACKAGES = ("cases", "joints", "dem", "continuum", "compare")
+PACKAGES = ("cases", "results", "numerics", "joints", "dem", "continuum", "compare")
 SOURCES = [p for package in PACKAGES for p in sorted((ROOT / package).rglob("*.py"))]
 
 #: Calls that make code of data, and modules that do.
@@ -53,12 +53,19 @@ STEP = 'shape = "step", amplitude = 1.0'
 #: those that read the program's own files or the system's.
 READS = {"read_bytes", "read_text", "load_dataset", "open_dataset", "read_csv", "loadtxt"}
 DOORS = {
-    *("cases/files.py", "compare/netcdf.py"),  # the doors
-    *("cases/size.py", "compare/studies/table.py"),  # of the system
-    *("joints/cache.py", "compare/keeping/signature.py", "compare/starter.py"),  # of the program
-    *("compare/page/render.py", "compare/page/section.py"),  # what has just been written or read
-    "compare/peers.py",  # of a text in memory
-    "compare/pytest_plugin.py",  # once its size is known
+    *("cases/files.py", "results/netcdf.py"),  # the doors
+    *("cases/size.py", "compare/experiments/study/table.py"),  # of the system
+    *(
+        "numerics/cache.py",
+        "compare/runs/checkpoint/signature.py",
+        "compare/cli/new.py",
+    ),  # of the program
+    *(
+        "compare/report/render.py",
+        "compare/report/section.py",
+    ),  # what has just been written or read
+    "compare/report/peers.py",  # of a text in memory
+    "compare/cli/pytest_plugin.py",  # once its size is known
 }
 HISTORY = "0,0\n1,1\n"
 
@@ -234,7 +241,7 @@ def test_a_file_that_is_no_result_is_not_replaced(scene, tmp_path, kind):
 
 def test_a_result_and_a_link_are_replaced_but_not_what_it_leads_to(scene, tmp_path):
     """What is written goes to the name; a link there is replaced, and its target stays."""
-    from compare.output import write
+    from compare.runs.output import write
 
     diary, link = tmp_path / "diary", tmp_path / "dem.nc"
     diary.write_text("my diary")
@@ -315,10 +322,10 @@ def test_every_line_that_is_printed_was_made_printable():
 
 #: Modules that print what is safe already, and what it is.
 PRINTED = {
-    "compare/processes.py",  # a message of compare/cli.py, which made it printable
-    "compare/start.py",  # `fault`, in ASCII
-    "compare/terminal.py",  # JSON, dumped the line before
-    "compare/doctor.py",  # a number, in another process
+    "compare/runs/processes.py",  # a message of compare/cli/program.py, which made it printable
+    "compare/cli/start.py",  # `fault`, in ASCII
+    "compare/cli/terminal.py",  # JSON, dumped the line before
+    "compare/cli/diagnostics/doctor.py",  # a number, in another process
 }
 
 
@@ -398,7 +405,7 @@ def test_whatever_goes_wrong_is_one_line(monkeypatch, capfd, raised, code, words
     def app(**_):
         raise raised
 
-    monkeypatch.setattr(cli, "app", app)
+    monkeypatch.setattr(program, "app", app)
     found, out, error = told(monkeypatch, capfd, "list")
     assert found == code and not out and error.count("\n") == 1 and re.search(words, error)
     if code == 1:

@@ -16,17 +16,17 @@ import xarray as xr
 
 import cases
 from cases.errors import SceneError
-from cases.history import History
+from cases.schema.history import History
 from cases.size import LIMIT, memory, refuse_beyond_memory, waveform_bytes
-from compare import peers
-from compare.curvefiles import DIMENSIONS, read_columns
 from compare.engines import solve
-from compare.exact import images
-from compare.keeping.checkpoints import Checkpoints
-from compare.keeping.watch import result_of
-from compare.output import read_kept
-from compare.processes import ALONE
-from compare.studies.measure import Row
+from compare.exact.bar import images
+from compare.experiments.study.measure import Row
+from compare.misfit.external_files import DIMENSIONS, read_columns
+from compare.report import peers
+from compare.runs.checkpoint.files import Checkpoints
+from compare.runs.checkpoint.resume import result_of
+from compare.runs.output import read_kept
+from compare.runs.processes import ALONE
 from continuum.mesh.tagged import read_tagged
 
 AT_ONCE = 200e6  # bytes: what reading a scene of ten million blocks takes, not one run refused here
@@ -135,7 +135,7 @@ CHILD = """
 import sys
 from pathlib import Path
 import cases
-from compare.output import write_fields
+from compare.runs.output import write_fields
 from dem import simulate_fields
 
 

@@ -2,19 +2,9 @@
 
 from types import ModuleType
 
-from compare.exact import (
-    equivalent_bar,
-    images,
-    jointed_bar,
-    kelvin_voigt,
-    lattice,
-    no_tension,
-    one_joint,
-    series,
-    sliding_block,
-    sliding_joint,
-    spatial_lattice,
-)
+from compare.exact.bar import equivalent_bar, images, jointed_bar, kelvin_voigt, series
+from compare.exact.blocks import lattice, no_tension, sliding_block, spatial_lattice
+from compare.exact.joint import one_joint, sliding_joint
 
 #: Each module has NAME, RESOLVES, applies(scene) -> Answer and solve(scene) -> xarray.Dataset; what
 #: they need of scipy is imported only when they solve.

@@ -1,8 +1,8 @@
 """What the solutions ask of a scene before they hold."""
 
-from cases.calibrate import Properties, calibrate
 from cases.effects import is_spatial
-from cases.scene import Scene
+from cases.material.calibrate import Properties, calibrate
+from cases.schema.scene import Scene
 
 
 def beyond(scene: Scene, *held: str) -> str | None:

@@ -6,7 +6,7 @@ from typing import Protocol
 import numpy as np
 
 from cases.loads import LoadHistory, load_history
-from cases.scene import Scene
+from cases.schema.scene import Scene
 
 
 class Signal(Protocol):

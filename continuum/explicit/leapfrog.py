@@ -14,9 +14,9 @@ from continuum.space.operator import multiply
 from continuum.space.stencils import add_transposed, multiply_stencils
 from continuum.tractions import joint_energy, joint_loads
 from joints.flat.formula import formula
-from joints.guard import EVERY, SPEED
-from joints.jit import jitted
-from joints.tiny import flush_tiny, restore_tiny
+from numerics.denormals import flush_tiny, restore_tiny
+from numerics.divergence import EVERY, SPEED
+from numerics.jit import jitted
 
 
 @cache

@@ -8,7 +8,7 @@ from scipy.sparse import csr_matrix, diags, identity, kron
 
 from continuum.explicit.leapfrog import leapfrog_for
 from continuum.model import Model, Samples, State
-from joints.guard import Guard
+from numerics.divergence import Guard
 
 
 def run(model: Model, state: State, samples: Samples, stride: int, first: int, last: int) -> None:

@@ -10,14 +10,14 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
-from cases.arrays import fill
 from continuum.explicit.march import mass_damping
 from continuum.model import STATES, Model, Samples, State
 from continuum.parallel.serial import ALONE, Alone
 from continuum.space.body import Body, whole
 from continuum.tractions import joint_energy, joint_loads, joint_tangents
-from joints.jit import jitted
-from joints.tiny import flush_tiny, restore_tiny
+from numerics.denormals import flush_tiny, restore_tiny
+from numerics.jit import jitted
+from results.arrays import fill
 
 
 class Matrices(NamedTuple):

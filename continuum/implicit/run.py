@@ -6,7 +6,6 @@ longer ones again, so that whole steps end on the clock.
 
 import numpy as np
 
-from cases.arrays import copied, fill
 from cases.errors import StoppedError
 from continuum.explicit.march import contact_rows
 from continuum.implicit.balance import Matrices, record
@@ -15,6 +14,7 @@ from continuum.implicit.step import Moment, Stepper
 from continuum.implicit.substeps import motion_at, pressure_at
 from continuum.model import Model, Samples, State
 from continuum.monitor import Monitor
+from results.arrays import copied, fill
 
 HALVINGS = 10
 WHOLE = 1 << HALVINGS

@@ -10,15 +10,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cases.arrays import copied, fill
 from cases.errors import SceneError
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from continuum.implicit.balance import balance, empty_tangents, rock_matrices
 from continuum.implicit.newton import Outcome, factors_of, newton
 from continuum.implicit.pattern import pattern
 from continuum.model import Model, State
 from continuum.space.body import Body
 from continuum.tractions import NN, XX, ZZ
+from results.arrays import copied, fill
 
 TOLERANCE = 1e-10  # what may be left of the largest force that is summed up
 LEAST_PART = 2.0**-10  # of the weight

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from cases.calibrate import Properties
 from cases.errors import SceneError
-from cases.scene import Scene
+from cases.material.calibrate import Properties
+from cases.schema.scene import Scene
 from continuum.mesh import facets
 from continuum.mesh.cells import DIMENSION, FACETS, jacobians, oriented
 from continuum.mesh.cut import pieces, split

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cases.calibrate import Properties
+from cases.material.calibrate import Properties
 from continuum.mesh import facets
 from continuum.mesh.description import Joints
 from continuum.mesh.facets import Facets

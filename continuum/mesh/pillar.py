@@ -5,7 +5,7 @@ from math import ceil
 
 import numpy as np
 
-from cases.calibrate import Properties
+from cases.material.calibrate import Properties
 from continuum.mesh import facets
 from continuum.mesh.cells import KINDS
 from continuum.mesh.description import Mesh, Part

@@ -14,7 +14,7 @@ from continuum.parallel.connection import TAG, connect, release
 from continuum.parallel.exchange import add_shares
 from continuum.parallel.identity import Border, joined
 from continuum.parallel.serial import Alone, Pieces, T
-from joints.guard import EVERY
+from numerics.divergence import EVERY
 
 
 class Team(Alone):

@@ -12,7 +12,7 @@ import numpy as np
 from mpi4py import MPI
 from numba import types
 
-from joints.jit import inlined, jitted
+from numerics.jit import inlined, jitted
 
 
 def _from_mpi(name: str, signature):

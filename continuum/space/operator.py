@@ -11,8 +11,8 @@ import numpy as np
 from scipy.sparse import block_diag, csr_matrix
 
 from continuum.space.simd import WIDTH, multiply_tile
-from joints.jit import jitted
-from joints.rows import zeros
+from numerics.aligned import zeros
+from numerics.jit import jitted
 
 TILE = 4  # registers wide; a part's blocks are dealt out evenly, so that tiles have 3 to 5
 ROUND_OFF = 1e-13  # of two diagonal entries: what quadrature leaves of entries that are zero

@@ -5,7 +5,7 @@ import numpy as np
 from cases.sampling import Clock
 from dem.axial.model import Model
 from dem.axial.state import State
-from joints.guard import speed_that
+from numerics.divergence import speed_that
 
 
 def highest_speed(model: Model, state: State, time: Clock) -> float:

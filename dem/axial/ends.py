@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cases.calibrate import Properties
+from cases.material.calibrate import Properties
 from dem.axial.motion import advanced
 from dem.damping import kept
 from joints.ends import HalfSpring, half_spring
-from joints.jit import inlined
+from numerics.jit import inlined
 
 
 class End(NamedTuple):

@@ -17,10 +17,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.calibrate import Properties, calibrate
 from cases.loads import load_history
+from cases.material.calibrate import Properties, calibrate
 from cases.sampling import Clock, clock
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from dem.axial.composition import DRIFTS, EDGES, KICKS, stability_limit
 from dem.axial.model import Chain, Model, build_chain, receivers
 from dem.axial.motion import steady_at
@@ -29,10 +29,10 @@ from dem.axial.stability import critical_chain_step
 from dem.axial.state import State, state_at_rest
 from dem.axial.step import step
 from dem.size import refuse_large
-from joints.borrowed import borrowed
-from joints.guard import Guard, is_lost, next_look
-from joints.jit import inlined, jitted
-from joints.tiny import flush_tiny, restore_tiny
+from numerics.borrowed import borrowed
+from numerics.denormals import flush_tiny, restore_tiny
+from numerics.divergence import Guard, is_lost, next_look
+from numerics.jit import inlined, jitted
 
 
 class Composition(NamedTuple):
@@ -114,7 +114,7 @@ def _acting(values: np.ndarray) -> np.ndarray:
 def run(composition, model, state, samples, stride, first, last, guard=None):
     """Take samples first .. last - 1, `stride` steps apart, the steps after each included.
 
-    guard : `joints.guard.Guard` that ends it where it runs out of bounds; None without.
+    guard : `numerics.divergence.Guard` that ends it where it runs out of bounds; None without.
     """
     tiny = flush_tiny()
     composition, model, state, samples = borrowed((composition, model, state, samples))

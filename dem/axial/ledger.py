@@ -4,8 +4,8 @@ The work of a force from one whole step to the next is the mean of its two value
 With the kinetic energy m v[n-1/2] v[n+1/2] / 2 the sum is then exact at a step of any length.
 """
 
-from joints.jit import inlined
 from joints.laws import spring_traction
+from numerics.jit import inlined
 
 
 @inlined

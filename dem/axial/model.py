@@ -4,10 +4,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cases.calibrate import Properties, calibrate
 from cases.loads import base_steps, load_history, step_means
+from cases.material.calibrate import Properties, calibrate
 from cases.sampling import Clock, Interpolation, clock, interpolation
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from dem.axial.ends import build_end
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State, state_at_rest

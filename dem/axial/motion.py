@@ -2,7 +2,7 @@
 
 from dem.axial.ledger import book_damping
 from dem.damping import advanced as damped
-from joints.jit import inlined, jitted
+from numerics.jit import inlined, jitted
 
 
 @jitted

@@ -9,14 +9,14 @@ from dem.axial.model import Model
 from dem.axial.motion import steady_at
 from dem.axial.state import INNER, State
 from dem.axial.step import joint_stress, load_at, march, opened
-from joints.borrowed import borrowed
 from joints.energy import elastic_energy, fracture_energy_spent
-from joints.guard import is_lost, next_look
-from joints.jit import inlined, jitted
 from joints.laws import law_of
-from joints.rows import zeros
-from joints.sums import total
-from joints.tiny import flush_tiny, restore_tiny
+from numerics.aligned import zeros
+from numerics.borrowed import borrowed
+from numerics.denormals import flush_tiny, restore_tiny
+from numerics.divergence import is_lost, next_look
+from numerics.jit import inlined, jitted
+from numerics.sums import total
 
 
 class Samples(NamedTuple):
@@ -58,7 +58,7 @@ def room(model: Model, state: State, samples: int) -> Samples:
 def run(model, state, samples, stride, first, last, guard=None):
     """Take samples first .. last - 1, `stride` steps apart, the steps after each included.
 
-    guard : `joints.guard.Guard` that ends it where it runs out of bounds; None without.
+    guard : `numerics.divergence.Guard` that ends it where it runs out of bounds; None without.
     """
     tiny = flush_tiny()
     model, state, samples = borrowed((model, state, samples))

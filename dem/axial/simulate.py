@@ -8,14 +8,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cases.arrays import size_of
-from cases.calibrate import calibrate
-from cases.keeper import Keeper
 from cases.loads import with_load_itself
-from cases.result import Fields, fields
-from cases.runaway import stopped
+from cases.material.calibrate import calibrate
 from cases.sampling import Clock
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from dem.axial.bound import highest_speed
 from dem.axial.model import Model, build
 from dem.axial.record import Samples, room, run, terms
@@ -24,7 +20,11 @@ from dem.axial.state import State
 from dem.fragments import break_times, with_fragments
 from dem.looks import Run, followed, sighting, versions
 from dem.static import since_prestress
-from joints.guard import Guard, guard, look
+from numerics.checkpoint import Keeper
+from numerics.divergence import Guard, guard, look
+from numerics.instability import stopped
+from results.arrays import size_of
+from results.dataset import Fields, fields
 
 if TYPE_CHECKING:
     from dem.snapshots import BlockFilm

@@ -4,17 +4,17 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cases.arrays import copied
-from cases.calibrate import Properties
+from cases.material.calibrate import Properties
 from cases.sampling import interpolation
 from dem.axial.model import Model, Receivers
 from dem.axial.record import room, sample_after, sample_before
 from dem.axial.state import State
 from dem.axial.step import march
 from dem.snapshots import Shot
-from joints.borrowed import borrowed
-from joints.jit import jitted
-from joints.tiny import flush_tiny, restore_tiny
+from numerics.borrowed import borrowed
+from numerics.denormals import flush_tiny, restore_tiny
+from numerics.jit import jitted
+from results.arrays import copied
 
 
 def shooter(p: Properties, model: Model, state: State, stride: int) -> Callable[[int], Shot]:

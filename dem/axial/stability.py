@@ -10,7 +10,7 @@ from math import cos, pi, sqrt
 
 import numpy as np
 
-from cases.calibrate import Properties
+from cases.material.calibrate import Properties
 from dem.axial.ends import end_stiffness
 from joints.stability import critical_step, critical_step_of_modes
 

@@ -4,15 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from cases.calibrate import Properties, calibrate
-from cases.scene import Scene
+from cases.material.calibrate import Properties, calibrate
+from cases.schema.scene import Scene
 from dem.axial.ends import End
 from dem.axial.model import Chain, Model, build_chain, receivers, with_mass_damping
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State
 from dem.axial.step import joint_stress, march
 from dem.static import Rest, settle
-from joints.jit import jitted
+from numerics.jit import jitted
 
 STEP_FRACTION = 0.9  # of the critical step: only where it ends counts
 

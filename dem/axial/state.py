@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from dem.axial.ends import end_state
-from joints.rows import zeros
+from numerics.aligned import zeros
 
 if TYPE_CHECKING:
     from dem.axial.model import Chain

@@ -9,9 +9,9 @@ step, which keeps second order.
 from dem.axial.ends import advance_end, reaction
 from dem.axial.ledger import book_dashpot, book_ends
 from dem.axial.motion import advanced, steady_at, weighed
-from joints.jit import inlined, jitted
 from joints.laws import law_of, normal_traction, update_opening
 from joints.softening import is_broken
+from numerics.jit import inlined, jitted
 
 
 @jitted

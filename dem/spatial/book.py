@@ -7,7 +7,7 @@ apart: at a sample only the first half has been done.
 
 from dem.spatial.layout import LANES
 from dem.spatial.layout import STRIDE as R
-from joints.jit import inlined
+from numerics.jit import inlined
 
 VISCOUS, BOUNDARY, WORK, FRICTION = 0, 1, 2, 3  # running sums, up to the step
 AFTER = 4

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from cases.calibrate import Properties
+from cases.material.calibrate import Properties
 from cases.sampling import Clock
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from dem.axial.bound import shaking
 from dem.spatial.layout import STRIDE, unpacked
 from dem.spatial.model import Model, State
-from joints.guard import speed_that
+from numerics.divergence import speed_that
 
 
 def highest_speeds(

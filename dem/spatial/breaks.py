@@ -1,10 +1,10 @@
 """Which joints a spatial run has broken, and how fast its blocks are at the end."""
 
-from cases.calibrate import Properties
-from cases.result import Fields
+from cases.material.calibrate import Properties
 from dem.fragments import with_fragments
 from dem.spatial.layout import LANES, STRIDE, unpacked
 from dem.spatial.model import Model, State
+from results.dataset import Fields
 
 
 def with_breaks(result: Fields, p: Properties, model: Model, state: State) -> Fields:

@@ -4,11 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from cases.calibrate import Properties
 from cases.loads import base_steps, load_history, step_means
-from cases.result import ALL_TERMS
+from cases.material.calibrate import Properties
 from cases.sampling import Clock, Interpolation, interpolation
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from dem.spatial import scratch
 from dem.spatial.book import ACCOUNT_OF, ACCOUNTS, AFTER
 from dem.spatial.contact import Contact
@@ -18,10 +17,11 @@ from dem.spatial.layout import LANES, STRIDE, Layout, layout, packed, tile_count
 from dem.spatial.model import Load, Model, Receivers, Room, Samples, State
 from dem.spatial.motion import Motion
 from dem.spatial.section import contact_points, face_of, section
-from joints.guard import Guard
 from joints.laws import Law
-from joints.rows import zeros
 from joints.uniform import law
+from numerics.aligned import zeros
+from numerics.divergence import Guard
+from results.dataset import ALL_TERMS
 
 DEPTH = 8  # steps a tile takes while it is in the cache
 

@@ -18,9 +18,9 @@ from dem.spatial.layout import LANES as L
 from dem.spatial.layout import STRIDE as R
 from dem.spatial.points import NO_FORCE, every_point, plus
 from dem.spatial.scratch import DRAG, SLID
-from joints.jit import inlined
 from joints.laws import Law
-from joints.optional import either, given
+from numerics.jit import inlined
+from numerics.optional import either, given
 
 
 class Points(NamedTuple):

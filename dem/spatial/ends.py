@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cases.calibrate import Properties
+from cases.material.calibrate import Properties
 from dem.spatial.motion import (
     Motion,
 )

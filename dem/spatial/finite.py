@@ -30,7 +30,7 @@ from dem.spatial.vectors import (
     turned,
     turned_back,
 )
-from joints.jit import inlined
+from numerics.jit import inlined
 
 SCALAR = 12 * R  # place of the quaternions' scalar part in the motion
 

@@ -12,8 +12,8 @@ from dem.spatial.motion import (
     turns,
 )
 from dem.spatial.scratch import LEFT
-from joints.jit import inlined
-from joints.optional import either
+from numerics.jit import inlined
+from numerics.optional import either
 
 
 @inlined

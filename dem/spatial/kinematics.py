@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 from dem.spatial.layout import LANES as L
 from dem.spatial.layout import STRIDE as R
 from dem.spatial.layout import velocities
-from joints.jit import inlined
-from joints.optional import given
+from numerics.jit import inlined
+from numerics.optional import given
 
 
 @inlined

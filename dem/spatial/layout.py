@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from joints.jit import inlined, jitted
-from joints.rows import zeros
+from numerics.aligned import zeros
+from numerics.jit import inlined, jitted
 
 LANES = 64  # blocks in a tile
 STRIDE = 72  # lanes in a row of motion: the tile's own, the next one's first, whole cache lines

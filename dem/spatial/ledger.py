@@ -15,8 +15,8 @@ from dem.spatial.outside import book_base, book_end, book_load
 from dem.spatial.scratch import BEFORE, MOMENTA
 from dem.spatial.vectors import dot
 from dem.spatial.viscous import book_viscous
-from joints.jit import inlined
-from joints.optional import either
+from numerics.jit import inlined
+from numerics.optional import either
 
 
 @inlined

@@ -91,7 +91,8 @@ class Room(NamedTuple):
     scratch : float array [slots, scratch rows * STRIDE]. carry : [slots, 12], the force of a tile's
     last joint on its way to the next tile. books : [slots, ACCOUNTS * STRIDE], None without ledger.
     depth : steps taken in one pass over the tiles by one thread.
-    guard : `joints.guard.Guard` that ends a run out of bounds, a limit for each row of velocities;
+    guard : `numerics.divergence.Guard` that ends a run out of bounds, a limit for each row of
+    velocities;
         None without.
     """
 

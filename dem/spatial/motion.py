@@ -14,8 +14,8 @@ from dem.spatial.layout import STRIDE as R
 from dem.spatial.layout import velocities
 from dem.spatial.scratch import LEFT
 from dem.spatial.vectors import columns_less_one, dot, normalised, product, times, turn_by
-from joints.jit import inlined
-from joints.optional import either
+from numerics.jit import inlined
+from numerics.optional import either
 
 
 class Motion(NamedTuple):

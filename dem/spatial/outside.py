@@ -11,8 +11,8 @@ from dem.spatial.layout import STRIDE as R
 from dem.spatial.motion import angular_velocity, spin_of
 from dem.spatial.scratch import BEFORE
 from dem.spatial.vectors import dot
-from joints.jit import inlined
-from joints.optional import either
+from numerics.jit import inlined
+from numerics.optional import either
 
 NO_SPIN = (0.0, 0.0, 0.0)
 

@@ -7,10 +7,10 @@ from dem.spatial.kinematics import gap_at, slip_at
 from dem.spatial.layout import LANES as L
 from dem.spatial.layout import first_cohesion, first_opening, first_slide
 from joints.energy import friction_work
-from joints.jit import inlined
 from joints.laws import normal_traction, spring_traction
-from joints.optional import either, given
 from joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
+from numerics.jit import inlined
+from numerics.optional import either, given
 
 WRITTEN_OUT = 9  # points at most: 3 x 3
 NO_FORCE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

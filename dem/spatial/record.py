@@ -1,7 +1,7 @@
 """What a tile leaves of itself at a sample: forces of contacts, motion of blocks."""
 
 from dem.spatial.layout import STRIDE as R
-from joints.jit import inlined
+from numerics.jit import inlined
 
 
 @inlined

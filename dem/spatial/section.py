@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cases.face import face_points
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from dem.spatial.contact import Points, Section
 
 

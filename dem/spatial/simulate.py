@@ -8,15 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from cases.arrays import changed, size_of
-from cases.calibrate import Properties, calibrate
 from cases.errors import SceneError
-from cases.keeper import Keeper
 from cases.loads import with_load_itself
-from cases.result import Fields, fields
-from cases.runaway import stopped
+from cases.material.calibrate import Properties, calibrate
 from cases.sampling import Clock, Interpolation, clock
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from dem.looks import Run, followed, sighting, versions
 from dem.size import refuse_large
 from dem.spatial.bound import highest_speeds
@@ -37,7 +33,11 @@ from dem.spatial.stability import critical_spatial_step
 from dem.spatial.start import start
 from dem.spatial.threads import marcher, thread_count
 from dem.static import since_prestress
-from joints.guard import guard, look
+from numerics.checkpoint import Keeper
+from numerics.divergence import guard, look
+from numerics.instability import stopped
+from results.arrays import changed, size_of
+from results.dataset import Fields, fields
 
 if TYPE_CHECKING:
     from dem.snapshots import BlockFilm
@@ -139,7 +139,8 @@ def _film(
 
 
 def waveforms(scene: Scene, p: Properties, samples: Samples, time: Clock) -> dict[str, Any]:
-    """Return the recorded fields at the scene's receivers, as `cases.result.fields` takes them."""
+    """Return the recorded fields at the scene's receivers, as `results.dataset.fields` takes
+    them."""
     sections, points = receivers(scene, p)
     force, velocity = between(samples.force, sections), between(samples.velocity, points)
     times = time.times[: force.shape[-1]]

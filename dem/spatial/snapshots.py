@@ -4,13 +4,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cases.arrays import copied
-from cases.calibrate import Properties
+from cases.material.calibrate import Properties
 from cases.sampling import Interpolation
 from dem.snapshots import Shot
 from dem.spatial.build import build_receivers, room_for, samples_for
 from dem.spatial.model import Model, State
 from dem.spatial.threads import marcher
+from results.arrays import copied
 
 
 def shooter(p: Properties, model: Model, state: State, threads: int) -> Callable[[int], Shot]:

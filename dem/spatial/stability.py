@@ -11,7 +11,7 @@ import numpy as np
 from scipy import sparse
 from scipy.linalg import LinAlgError, cholesky_banded
 
-from cases.calibrate import Properties
+from cases.material.calibrate import Properties
 from dem.spatial.ends import end_springs, face_stiffness, lever_matrix
 from dem.spatial.section import Face
 from joints.stability import critical_step

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from cases.calibrate import Properties
+from cases.material.calibrate import Properties
 from cases.sampling import Clock
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from dem.spatial.build import build_model, room_for, samples_for, state_at_rest
 from dem.spatial.layout import LANES, STRIDE, freedoms, packed, unpacked
 from dem.spatial.model import Model, State

@@ -17,13 +17,13 @@ from dem.spatial.motion import advance
 from dem.spatial.record import sample_after, sample_before
 from dem.spatial.scratch import DRAG, LEFT
 from dem.spatial.stored import book_states
-from joints.atomic import give_way, peek, post
-from joints.borrowed import borrowed
-from joints.guard import EVERY, SPEED, creates_energy, exceeds, note
-from joints.jit import inlined, jitted
 from joints.laws import pick
-from joints.optional import either, given
-from joints.tiny import flush_tiny, restore_tiny
+from numerics.atomic import give_way, peek, post
+from numerics.borrowed import borrowed
+from numerics.denormals import flush_tiny, restore_tiny
+from numerics.divergence import EVERY, SPEED, creates_energy, exceeds, note
+from numerics.jit import inlined, jitted
+from numerics.optional import either, given
 
 RUN = 16  # tiles between two looks at the others' progress; more than the steps of a pass
 LOOK = 64  # steps between two looks at a tile's speeds: others run ahead of it by some more

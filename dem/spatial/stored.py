@@ -18,8 +18,8 @@ from dem.spatial.layout import STRIDE as R
 from dem.spatial.layout import first_opening, first_slide
 from dem.spatial.points import whole_area
 from joints.energy import elastic_energy, fracture_energy_spent
-from joints.jit import inlined
-from joints.optional import either, given
+from numerics.jit import inlined
+from numerics.optional import either, given
 
 
 @inlined

@@ -1,6 +1,6 @@
 """Vectors, rotation matrices and unit quaternions as tuples of numbers, for use in kernels."""
 
-from joints.jit import inlined
+from numerics.jit import inlined
 
 
 @inlined

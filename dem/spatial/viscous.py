@@ -12,8 +12,8 @@ from dem.spatial.layout import STRIDE as R
 from dem.spatial.motion import finite_moment, net_force, net_moment, spin_of
 from dem.spatial.scratch import BEFORE, DRAG, MOMENTA
 from dem.spatial.vectors import dot, less, sum_of, times
-from joints.jit import inlined
-from joints.optional import either
+from numerics.jit import inlined
+from numerics.optional import either
 
 
 @inlined

@@ -11,16 +11,16 @@ import numpy as np
 import pytest
 
 from cases import SceneError
-from cases.calibrate import calibrate
-from cases.damping import Rayleigh
-from cases.elastic import modulus_from_speeds, speeds_from_modulus
 from cases.face import face_points
-from cases.history import History
-from cases.loading import Load
 from cases.loads import Recorded, Ricker, Sine, Step, base_steps, load_history, step_means
+from cases.material.calibrate import calibrate
+from cases.material.elastic import modulus_from_speeds, speeds_from_modulus
 from cases.sampling import clock, interpolation, sample_times
-from cases.scene import Scene
-from cases.subcells import linear_cells
+from cases.schema.damping import Rayleigh
+from cases.schema.history import History
+from cases.schema.loading import Load
+from cases.schema.scene import Scene
+from results.subcells import linear_cells
 
 ROCK = {
     "density": 2000.0,

@@ -6,7 +6,7 @@ import pytest
 import dem
 from cases.errors import SceneError
 from cases.loads import load_history
-from compare.exact import images
+from compare.exact.bar import images
 
 
 @pytest.mark.parametrize("amplitude", [1e-300, -1e200, 1e300])

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 import cases
-from cases.history import History
 from cases.loads import Recorded, Ricker, Sine, Step, base_steps, load_history, step_means
+from cases.schema.history import History
 
 amplitudes = st.floats(-1e7, 1e7).filter(lambda a: abs(a) > 1.0)
 periods = st.floats(1e-4, 1.0)

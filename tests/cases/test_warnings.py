@@ -10,8 +10,8 @@ from scipy.integrate import quad
 from scipy.special import gammaincinv
 
 import cases
-from cases.calibrate import calibrate
 from cases.errors import SceneError
+from cases.material.calibrate import calibrate
 from cases.spectrum import SHARE, highest_frequency, shortest_wave
 from cases.warnings import LEAST_BLOCKS, MOST_REFLECTED, SHORTENED, warnings
 from compare.scenes import find, shipped

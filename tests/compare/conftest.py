@@ -6,14 +6,14 @@ from itertools import combinations
 import pytest
 from matplotlib.text import Text
 
-from compare import rates
+from compare.experiments.cost import timings
 
 
 @pytest.fixture(autouse=True)
 def own_rates(tmp_path_factory, monkeypatch):
     """Keep what is measured here apart: `--dry-run` foretells from what the machine has done."""
     file = tmp_path_factory.mktemp("rates") / "rates.json"
-    monkeypatch.setattr(rates, "_file", lambda: file)
+    monkeypatch.setattr(timings, "_file", lambda: file)
 
 
 @pytest.fixture(scope="session")

@@ -1,4 +1,4 @@
-"""What `import compare` offers: functions and modules by name, imported when they are asked for."""
+"""The names of `import compare`: functions and modules, imported when they are asked for."""
 
 import subprocess
 import sys
@@ -6,12 +6,13 @@ import sys
 import pytest
 
 import compare
-from compare import engines, metrics, pairs
+from compare import engines
+from compare.misfit import metrics, pairs
 
 
 def test_functions_are_those_of_their_modules():
-    assert compare.compare is pairs.compare and compare.misfit is metrics.misfit
-    assert compare.solve is engines.solve and compare.metrics is metrics
+    assert compare.compare is pairs.compare and compare.distance is metrics.distance
+    assert compare.solve is engines.solve and compare.misfit.metrics is metrics
 
 
 def test_every_name_is_there_and_listed():

@@ -5,9 +5,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from cases.calibrate import calibrate
+from cases.material.calibrate import calibrate
 from cases.sampling import Clock
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from continuum.build import (
     Discrete,
     build_model,
@@ -54,7 +54,7 @@ class Run(NamedTuple):
 
     @property
     def waves(self) -> dict[str, np.ndarray]:
-        """What has been recorded, as `cases.result` takes it."""
+        """What has been recorded, as `results.dataset` takes it."""
         return waveforms(self.scene, self.discrete, self.samples)
 
 

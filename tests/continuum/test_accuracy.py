@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compare.exact import equivalent_bar, images, jointed_bar
+from compare.exact.bar import equivalent_bar, images, jointed_bar
 from continuum import simulate
 
 LAYER = {"soft_layers": [{"y": 20.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.02}]}

@@ -8,7 +8,7 @@ and steps of 0.01 s, of which the first sees half the load.
 import numpy as np
 
 import continuum
-from cases.scene import Scene
+from cases.schema.scene import Scene
 
 
 def run(model, **tables):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cases.calibrate import calibrate
 from cases.errors import SceneError, UnstableError
+from cases.material.calibrate import calibrate
 from continuum import simulate
 from continuum.simulate import steps_of
 

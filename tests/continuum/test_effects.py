@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cases.calibrate import calibrate
 from cases.errors import SceneError
+from cases.material.calibrate import calibrate
 from continuum import applies, simulate
 from continuum.build import discretise, state_at_rest
 from continuum.explicit.leapfrog import leapfrog_for

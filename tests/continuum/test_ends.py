@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.calibrate import calibrate
+from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from continuum.build import discretise
 from continuum.ends import end_stiffness, fixed_ends, load_on, quiet_ends

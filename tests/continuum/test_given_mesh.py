@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.calibrate import calibrate
+from cases.material.calibrate import calibrate
 from continuum.build import mesh_of
 from continuum.kinematics import kinematics
 from continuum.mesh.export import export

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import cases
-from cases.result import energy_residual
 from compare.scenes import SHIPPED
 from continuum import applies, simulate
+from results.dataset import energy_residual
 
 SAMPLES = 30
 INTACT = 8.64e10  # Pa, for scenes that say nothing of the rock in the blocks

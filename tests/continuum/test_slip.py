@@ -4,8 +4,8 @@ import numpy as np
 
 import cases
 import dem
-from compare.exact import sliding_joint
-from compare.metrics import relative_l2
+from compare.exact.joint import sliding_joint
+from compare.misfit.metrics import relative_l2
 from compare.scenes import SHIPPED
 from continuum import simulate
 

@@ -10,7 +10,7 @@ from math import sqrt
 import numpy as np
 
 import dem
-from cases.scene import Scene
+from cases.schema.scene import Scene
 
 TERMS = ("kinetic", "elastic", "viscous", "boundary", "work")
 

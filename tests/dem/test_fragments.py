@@ -8,9 +8,9 @@ import pytest
 
 import cases
 import dem
-from cases.calibrate import calibrate
 from cases.loads import load_history
-from compare.exact.spall import lattice_spall
+from cases.material.calibrate import calibrate
+from compare.exact.bar.spall import lattice_spall
 from compare.scenes import SHIPPED
 from dem.fragments import fragments
 

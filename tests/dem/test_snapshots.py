@@ -8,7 +8,7 @@ import pytest
 
 import dem
 from cases import SceneError
-from cases.snapshots import snapshots_of
+from results.snapshots import snapshots_of
 
 BLOCKS, SPACING, SIDE = 16, 0.5, 0.5
 CENTRES = [SPACING * (i + 0.5) for i in range(BLOCKS)]
@@ -206,11 +206,11 @@ def test_too_many_snapshots_of_too_many_blocks_are_refused(pillar, monkeypatch):
 def test_a_run_without_snapshots_imports_nothing_for_them(tmp_path):
     code = (
         "import sys; sys.argv = ['jointwave', 'run', '%s', '--out', %r, %s]\n"
-        "from compare.cli import main\n"
+        "from compare.cli.program import main\n"
         "try: main()\n"
         "except SystemExit as end: assert end.code == 0, end.code\n"
-        "mine = {'cases.snapshots', 'cases.subcells', 'dem.snapshots', 'dem.axial.snapshots',\n"
-        "        'compare.fieldfiles', 'meshio'}\n"
+        "mine = {'results.snapshots', 'results.subcells', 'dem.snapshots', 'dem.axial.snapshots',\n"
+        "        'compare.runs.field_files', 'meshio'}\n"
         "print(sorted(mine & set(sys.modules)))"
     )
     scene = "guo-li-2002/fig-03"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigvalsh_tridiagonal
 
-from cases.calibrate import calibrate
+from cases.material.calibrate import calibrate
 from dem.axial.model import build
 from dem.axial.start import Relaxation
 from dem.static import relax

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import cases
-from compare.studies.study import SHIPPED as STUDIES
+from compare.experiments.study.study import SHIPPED as STUDIES
 
 SCENES = [
     p.read_text(encoding="utf-8") for p in sorted(Path(cases.__file__).parent.glob("*/*.toml"))

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from joints.jit import jitted
 from joints.laws import Law, law_of, normal_traction
 from joints.shear import cohesion_left, shear_return, shear_strength
 from joints.softening import update_opening
+from numerics.jit import jitted
 
 PARTS = {
     "normal_stiffness": 9e9,

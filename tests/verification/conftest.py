@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from compare.exact.manufactured import Manufactured
+from compare.exact.solid.manufactured import Manufactured
 from continuum.ends import on_freedoms
 from continuum.mesh.cells import CORNERS, DIMENSION, oriented
 from continuum.mesh.description import Joints, Mesh, Part, Side

@@ -6,8 +6,8 @@ import pytest
 import cases
 import continuum
 from cases.loads import load_history
-from compare.exact import sliding_joint
-from compare.metrics import relative_l2
+from compare.exact.joint import sliding_joint
+from compare.misfit.metrics import relative_l2
 from compare.scenes import SHIPPED
 
 SCENE = SHIPPED / "beyond" / "slip-three-cohesions.toml"

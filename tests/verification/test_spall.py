@@ -5,15 +5,15 @@ import pytest
 
 import cases
 import continuum
-from cases.calibrate import calibrate
 from cases.loads import load_history
-from cases.result import energy_residual
+from cases.material.calibrate import calibrate
 from cases.sampling import clock
-from compare.exact.jointed_spall import jointed_spall
-from compare.exact.spall import spall
+from compare.exact.bar.jointed_spall import jointed_spall
+from compare.exact.bar.spall import spall
 from compare.scenes import SHIPPED
 from continuum.build import build_model, critical_step_of, discretise, empty_samples, state_at_rest
 from continuum.explicit.march import march
+from results.dataset import energy_residual
 
 SAW_TOOTH = SHIPPED / "beyond" / "spall.toml"
 

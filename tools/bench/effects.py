@@ -1,6 +1,6 @@
 """What each effect costs: ns per block-step, alone on top of the plain kernel, then all."""
 
-from compare.effort import ACROSS, EVERYTHING, changed, nanoseconds
+from compare.experiments.cost.step_cost import ACROSS, EVERYTHING, changed, nanoseconds
 
 PLAIN = {"record.energy": False}
 LEDGER = {"record.energy": True}

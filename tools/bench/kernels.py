@@ -7,8 +7,8 @@ from time import perf_counter
 import bare
 import numpy as np
 
-from cases.calibrate import calibrate
-from compare.effort import changed, stretch
+from cases.material.calibrate import calibrate
+from compare.experiments.cost.step_cost import changed, stretch
 
 ROUNDS = 9
 SHORTEST = 0.03  # s

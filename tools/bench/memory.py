@@ -5,7 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from compare.effort import changed, nanoseconds
+from compare.experiments.cost.step_cost import changed, nanoseconds
 
 MOST = 1_000_000
 

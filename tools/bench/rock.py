@@ -6,8 +6,8 @@ import numpy as np
 from plain_dolfinx import Pillar, Steps, in_order
 
 from cases.sampling import Clock
-from cases.scene import Scene
-from compare.effort import changed
+from cases.schema.scene import Scene
+from compare.experiments.cost.step_cost import changed
 from continuum.build import Discrete, build_model, discretise, empty_samples, state_at_rest
 from continuum.explicit.march import run
 from continuum.model import Model, Samples, State

@@ -6,9 +6,9 @@ from typing import Any, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from cases.allowed import in_words, model_in
-from cases.keys import TableOf, default_of, tables
-from cases.meaning import field_comments
+from cases.schema.allowed import in_words, model_in
+from cases.schema.field_docs import field_comments
+from cases.schema.keys import TableOf, default_of, tables
 
 HEAD = "| key | allowed | default | meaning |\n| --- | --- | --- | --- |"
 

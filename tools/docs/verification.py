@@ -5,19 +5,19 @@ from collections.abc import Iterator
 from datetime import datetime
 from pathlib import Path
 
-from results import Measured, Outcome, Results, read
+from outcomes import Measured, Outcome, Results, read
 
 import cases
 from compare.scenes import SHIPPED, shipped
 
 #: Folders of tests that hold physics to something exact, and what they hold.
 FOLDERS = {
-    "exact": "Exact solutions, against one another and known values",
+    "compare/exact": "Exact solutions, against one another and known values",
     "verification": "The continuum against closed forms",
     "joints": "The joint law",
     "dem": "Rigid blocks",
     "continuum": "The continuum",
-    "stability": "Hard cases",
+    "compare/experiments/robustness": "Hard cases",
 }
 NOT_RUN = "not run"
 
@@ -48,7 +48,7 @@ def _about(found: Results | None, tests: Path) -> str:
 
 def _newest(root: Path) -> float:
     """Return when a source that decides the results last changed, s since 1970."""
-    folders = ("cases", "joints", "dem", "continuum", "compare", "tests")
+    folders = ("cases", "results", "numerics", "joints", "dem", "continuum", "compare", "tests")
     files = (f for name in folders for s in ("py", "toml") for f in (root / name).rglob(f"*.{s}"))
     return max(file.stat().st_mtime for file in files)
 

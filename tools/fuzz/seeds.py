@@ -29,15 +29,19 @@ def seeds(target: str) -> list[bytes]:
     if target == "curve":
         own = b"time [ms], stress@20 [MPa], -velocity_x@20.25 [mm/s]\n0,0,1\n1,2,3\n2,1e-3,0\n"
         return [own, own.replace(b",", b";"), *seeds("load"), result()]
-    where = {"scene": "cases/*/*.toml", "load": "cases/*/*.csv", "study": "compare/studies/*.toml"}
+    where = {
+        "scene": "cases/*/*.toml",
+        "load": "cases/*/*.csv",
+        "study": "compare/experiments/study/*.toml",
+    }
     return [path.read_bytes() for path in sorted(ROOT.glob(where[target]))]
 
 
 def result() -> bytes:
     """Return a short result as NetCDF."""
     import cases
-    from compare.exact import series
-    from compare.output import fields_of, write_fields
+    from compare.exact.bar import series
+    from compare.runs.output import fields_of, write_fields
 
     changes = {"variants": [], "time.duration": 2e-3}
     scene = cases.load_variant(ROOT / "cases" / "guo-li-2002" / "fig-03.toml", "", changes)

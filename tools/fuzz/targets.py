@@ -20,19 +20,19 @@ from unittest.mock import patch
 import numpy as np
 
 import cases
-from cases.calibrate import calibrate
 from cases.effects import active_effects, is_spatial
 from cases.errors import SceneError, UnstableError
-from cases.history import History
 from cases.loads import Recorded, load_history, step_means
-from cases.result import scene_hash
-from cases.scene import Scene
+from cases.material.calibrate import calibrate
+from cases.schema.history import History
+from cases.schema.scene import Scene
 from cases.warnings import warnings
-from compare import cli
-from compare.curvefiles import read_columns
+from compare.cli import program
 from compare.engines import applies, names
-from compare.studies.runner import key
-from compare.studies.study import load as load_study
+from compare.experiments.study.runner import key
+from compare.experiments.study.study import load as load_study
+from compare.misfit.external_files import read_columns
+from results.dataset import scene_hash
 
 SECONDS = 5  # of the processor, for one input
 MEMORY = "0.2"  # GB that a run may take here
@@ -166,18 +166,18 @@ def mesh(data: bytes, folder: Path) -> str:
 
 #: What would solve something: a command that gets so far has read all that it was given.
 SOLVERS = (
-    "compare.runs.execute",
-    "compare.pairs.compare",
-    "compare.sweeps.runner.run",
-    "compare.worth_study.run",
-    "compare.planner.plan",
-    "compare.studies.runner.run",
-    "compare.stability.section.make_study",
-    "compare.report.build",
-    "compare.papers.make.make",
-    "compare.moving.shots.take",
-    "compare.explain.explanation",
-    "compare.doctor.examine",
+    "compare.runs.run.execute",
+    "compare.misfit.pairs.compare",
+    "compare.experiments.sweep.runner.run",
+    "compare.experiments.ablation.runner.run",
+    "compare.experiments.planner.planner.plan",
+    "compare.experiments.study.runner.run",
+    "compare.experiments.robustness.section.make_study",
+    "compare.report.report.build",
+    "compare.figures.print.make.make",
+    "compare.figures.animation.snapshots.take",
+    "compare.cli.explain.explanation",
+    "compare.cli.diagnostics.doctor.examine",
 )
 
 
@@ -211,7 +211,7 @@ def _status(arguments: list[str]) -> int:
         for name in SOLVERS:
             stack.enter_context(patch(name, _stop))
         try:
-            cli.main()
+            program.main()
         except SystemExit as end:
             return end.code if isinstance(end.code, int) else 0
     return 0

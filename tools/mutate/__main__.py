@@ -19,8 +19,10 @@ ROOT = Path(__file__).parents[2]
 #: The tests of each package, as plain Python in a few minutes.
 TESTS = {
     "cases": ["tests/cases", "tests/test_bad_scenes.py", "tests/test_bad_continuum.py"],
-    "joints": ["tests/joints"],
-    "compare/exact": ["tests/exact"],
+    "results": ["tests/results"],
+    "numerics": ["tests/numerics"],
+    "joints": ["tests/joints", "tests/numerics"],
+    "compare/exact": ["tests/compare/exact"],
     "dem": ["tests/dem"],
     "continuum": ["tests/continuum"],
 }

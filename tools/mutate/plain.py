@@ -8,24 +8,24 @@ from types import CodeType, ModuleType
 
 #: What stands for modules that only numba can compile.
 SOURCES = {
-    "joints.jit": """
+    "numerics.jit": """
 def jitted(function):
     return function
 
 apart = inlined = jitted
 """,
-    "joints.borrowed": """
+    "numerics.borrowed": """
 def borrowed(value):
     return value
 """,
-    "joints.tiny": """
+    "numerics.denormals": """
 def flush_tiny():
     return 0
 
 def restore_tiny(old):
     pass
 """,
-    "joints.atomic": """
+    "numerics.atomic": """
 def peek(counters, i):
     return counters[i]
 
@@ -35,25 +35,19 @@ def post(counters, i, value):
 def give_way():
     pass
 """,
-    "continuum.space.lanes": """
-import numpy as np
-
+    "continuum.space.simd": """
 WIDTH = 8
 
-def zero(n):
-    return np.zeros(WIDTH * n)
-
-def load(like, x, i):
-    return x[i : i + like.size].copy()
-
-def store(x, i, lanes):
-    x[i : i + lanes.size] = lanes
-
-def add_scaled(lanes, factor, other):
-    return lanes + factor * other
+def multiply_tile(start, column, value, x, y, factor, at, width, first, size):
+    for i in range(size):
+        total = 0.0
+        for k in range(start[first + i], start[first + i + 1]):
+            here = at + int(column[k]) * width
+            total = total + value[k] * x[here : here + width]
+        y[at + i * width : at + (i + 1) * width] = factor * total
 """,
 }
-PACKAGES = ("cases", "joints", "dem", "continuum", "compare")
+PACKAGES = ("cases", "results", "numerics", "joints", "dem", "continuum", "compare")
 
 
 class Finder(importlib.abc.MetaPathFinder):

@@ -16,10 +16,10 @@ from environment import Place
 from job import Job
 
 import cases
-from cases.scene import Scene
-from compare.drawn import save
-from compare.effort import PILLAR
-from compare.peers_diagram import draw
+from cases.schema.scene import Scene
+from compare.experiments.cost.step_cost import PILLAR
+from compare.figures.export import save
+from compare.figures.peers_diagram import draw
 
 
 class Peer(NamedTuple):

@@ -12,11 +12,11 @@ from job import Job, Reading, Twin, folder_of
 from pillar import pillar
 
 import cases
-from cases.result import scene_hash
-from cases.scene import Scene
-from compare.effort import PILLAR
+from cases.schema.scene import Scene
 from compare.engines import solve
-from compare.output import write
+from compare.experiments.cost.step_cost import PILLAR
+from compare.runs.output import write
+from results.dataset import scene_hash
 
 #: A blow so close to the axis that it turns nothing, yet calls for all six freedoms.
 IN_SPACE = {"load.at": [1e-12, 0.0]}

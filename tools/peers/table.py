@@ -7,8 +7,8 @@ import os
 import platform
 from pathlib import Path
 
-from compare.output import write_text
-from compare.studies.table import processor
+from compare.experiments.study.table import processor
+from compare.runs.output import write_text
 
 #: The columns that all studies share, then those of the peers.
 COLUMNS = (

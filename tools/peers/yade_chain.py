@@ -11,7 +11,7 @@ from environment import Place
 from job import Job, Twin, folder_of, read_driven, write_json
 from pillar import Pillar, pillar
 
-from cases.scene import Scene
+from cases.schema.scene import Scene
 
 STRIDES = (1, 2, 4, 16)
 

@@ -18,11 +18,11 @@ from held import rows_of
 from table import show, write
 
 import cases
-from cases.result import scene_hash
-from cases.scene import Scene
-from compare.keeping.signature import program
-from compare.output import write_text
+from cases.schema.scene import Scene
+from compare.runs.checkpoint.signature import program
+from compare.runs.output import write_text
 from compare.scenes import shipped
+from results.dataset import scene_hash
 
 
 def kept(path: Path, scene: Scene, misfits: list[float], rounds: int, folder: Path) -> list[dict]:

@@ -8,10 +8,11 @@ from collections.abc import Iterator
 from math import inf
 
 from cases.errors import SceneError
-from cases.scene import Scene
-from compare.plan_families import FAMILIES, Family, effort
-from compare.plan_reference import Own, References
-from compare.plan_trials import (
+from cases.schema.scene import Scene
+from compare.experiments.planner.families import FAMILIES, Family, effort
+from compare.experiments.planner.planner import FAILURES, furthest_off, reason_of, too_far
+from compare.experiments.planner.reference import Own, References
+from compare.experiments.planner.trials import (
     FINEST,
     Choice,
     Trial,
@@ -21,7 +22,6 @@ from compare.plan_trials import (
     steps,
     trial_at,
 )
-from compare.planner import FAILURES, furthest_off, reason_of, too_far
 
 #: A family ends where a run takes so many times the seconds of the cheapest that does, as finer
 #: steps cost more. It is not begun where it would even at half the seconds that a freedom-step has

@@ -5,12 +5,12 @@ from statistics import median
 
 from full_study import Study
 
-from cases.scene import Scene
+from cases.schema.scene import Scene
 from compare.engines import solve
-from compare.plan_families import configured
-from compare.plan_reference import References
-from compare.plan_trials import Choice
-from compare.planner import FAILURES, Plan, options_of, plan, reason_of
+from compare.experiments.planner.families import configured
+from compare.experiments.planner.planner import FAILURES, Plan, options_of, plan, reason_of
+from compare.experiments.planner.reference import References
+from compare.experiments.planner.trials import Choice
 
 RIVALS = 4  # of the study: the cheapest by their own timing, which is noise for short runs
 SHORT = 0.05  # s: the longest run that takes part in all rounds; three are enough above

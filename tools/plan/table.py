@@ -4,7 +4,7 @@ import csv
 import io
 from pathlib import Path
 
-from compare.output import write_text
+from compare.runs.output import write_text
 
 WITHIN = 1.5  # times the cheapest of the study
 COLUMNS = (

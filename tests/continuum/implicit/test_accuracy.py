@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from cases.calibrate import calibrate
-from compare.exact import generalised_alpha as theory
-from compare.exact import images, jointed_bar
+from cases.material.calibrate import calibrate
+from compare.exact.bar import images, jointed_bar
+from compare.exact.schemes import generalised_alpha as theory
 from continuum.build import critical_step_of, discretise, operators
 from continuum.explicit.march import run as run_explicit
 from continuum.implicit.generalised_alpha import scheme

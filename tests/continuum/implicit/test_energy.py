@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from cases.calibrate import calibrate
-from cases.result import imbalance
+from cases.material.calibrate import calibrate
 from compare.exact import generalised_alpha as theory
 from continuum.implicit.generalised_alpha import scheme
 from continuum.model import TERMS
+from results.dataset import imbalance
 
 OBLIQUE = {"load__direction": [0.6, 0.8, 0.0]}
 ACROSS = OBLIQUE | {"motion__rotation": "none"}

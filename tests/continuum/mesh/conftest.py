@@ -6,7 +6,7 @@ from math import factorial
 import numpy as np
 import pytest
 
-from cases.calibrate import calibrate
+from cases.material.calibrate import calibrate
 from continuum.mesh.cells import DIMENSION, jacobians
 from continuum.mesh.description import Mesh
 from continuum.mesh.session import gmsh_session

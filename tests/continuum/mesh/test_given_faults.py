@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cases.calibrate import calibrate
 from cases.errors import SceneError
+from cases.material.calibrate import calibrate
 from continuum.mesh.given import given_mesh
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.calibrate import calibrate
+from cases.material.calibrate import calibrate
 from continuum.mesh.description import Joints, Mesh, Part, Side
 from continuum.mesh.pillar import pillar_mesh
 from continuum.parallel.identity import border, joined

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from cases.result import energy_residual
-from cases.snapshots import snapshots_of
+from results.dataset import energy_residual
+from results.snapshots import snapshots_of
 
 SCENE = "guo-li-2002/fig-03"
 SAME = 1e-10  # of the largest value of a waveform

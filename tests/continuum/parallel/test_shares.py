@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_matrix, diags
 
-from cases.calibrate import calibrate
+from cases.material.calibrate import calibrate
 from continuum.mesh.pillar import pillar_mesh
 from continuum.parallel.body import held_share
 from continuum.parallel.partition import ranks_of_cells, restrict

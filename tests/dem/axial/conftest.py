@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.calibrate import calibrate
+from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from dem.axial.model import build_model
 from dem.axial.state import state_at_rest

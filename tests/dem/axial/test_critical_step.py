@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import dem
-from cases.calibrate import calibrate
 from cases.errors import SceneError, UnstableError
+from cases.material.calibrate import calibrate
 from dem.axial.stability import critical_chain_step
 
 CHAINS = {

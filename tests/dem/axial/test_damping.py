@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import dem
-from cases.calibrate import calibrate
-from compare.exact.lattice import frequencies
+from cases.material.calibrate import calibrate
+from compare.exact.blocks.lattice import frequencies
 
 
 def decay_rates(matrix, dt, omega):

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 import dem
-from cases.calibrate import calibrate
 from cases.loads import load_history
+from cases.material.calibrate import calibrate
 from cases.sampling import Clock
-from compare.exact import images, leapfrog
+from compare.exact.bar import images
+from compare.exact.schemes import leapfrog
 from dem.axial.model import build_model
 from dem.axial.state import state_at_rest
 from dem.axial.step import march

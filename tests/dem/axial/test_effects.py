@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import dem
-from cases.calibrate import calibrate
+from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from dem.axial.model import build, build_model
 from dem.axial.motion import advanced

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import dem
-from cases.calibrate import calibrate
+from cases.material.calibrate import calibrate
 
 RAMP, STEADY = 40, 60  # periods: a slow start excites nothing near the cut-off of the chain
 

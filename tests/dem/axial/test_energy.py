@@ -3,7 +3,7 @@
 import pytest
 
 import dem
-from cases.result import energy_residual
+from results.dataset import energy_residual
 
 DOWN = {"direction": [0, 1, 0]}
 SHAKEN = {"shape": "sine", "amplitude": 1.0, "period": 0.01, "quantity": "velocity"}

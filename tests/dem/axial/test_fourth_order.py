@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 import dem
-from cases.calibrate import calibrate
 from cases.errors import SceneError
-from cases.result import energy_residual
+from cases.material.calibrate import calibrate
 from cases.sampling import Clock
-from compare.exact import lattice, no_tension
-from compare.metrics import misfit
+from compare.exact.blocks import lattice, no_tension
+from compare.misfit.metrics import misfit
 from dem.axial.composition import DRIFTS, KICKS, half_trace, stability_limit
 from dem.axial.fourth_order import build, compose, march
 from dem.axial.state import state_at_rest
+from results.dataset import energy_residual
 
 RICKER = {"shape": "ricker", "amplitude": 1e6, "period": 0.01}
 SOFT = [{"y": 20.0, "spacing_stiffness": 4.375e8}]

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import dem
-from cases.calibrate import calibrate
-from cases.result import energy_residual
-from compare.exact.spall import lattice_spall
+from cases.material.calibrate import calibrate
+from compare.exact.bar.spall import lattice_spall
 from dem.axial.model import build
 from dem.axial.record import room, run, terms
 from dem.axial.step import march
+from results.dataset import energy_residual
 
 STRENGTH, ENERGY = 1e6, 500.0  # Pa, J/m2
 

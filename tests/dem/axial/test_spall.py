@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from cases.calibrate import calibrate
 from cases.loads import load_history
-from compare.exact.spall import lattice_spall, spall
+from cases.material.calibrate import calibrate
+from compare.exact.bar.spall import lattice_spall, spall
 from dem.axial.model import build
 from dem.axial.step import march
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import dem
-from cases.calibrate import calibrate
 from cases.errors import SceneError
+from cases.material.calibrate import calibrate
 
 G = 9.81
 DOWN = {"direction": [0, 1, 0]}

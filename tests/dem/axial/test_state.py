@@ -2,10 +2,10 @@
 
 import pytest
 
-from cases.arrays import arrays
-from cases.calibrate import calibrate
+from cases.material.calibrate import calibrate
 from dem.axial.model import build
-from joints.rows import CACHE_LINE
+from numerics.aligned import CACHE_LINE
+from results.arrays import arrays
 
 EFFECTS = {"joints__damping_ratio": 0.1, "joints__tensile_strength": 1e5}
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from cases.calibrate import Properties
+from cases.material.calibrate import Properties
 from cases.sampling import Clock
 from dem.spatial.build import build_model, room_for, samples_for, state_at_rest
 from dem.spatial.layout import LANES, STRIDE, packed, unpacked

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import dem
-from cases.calibrate import calibrate
-from compare.exact import cantilever, leapfrog, spatial
+from cases.material.calibrate import calibrate
+from compare.exact.blocks import cantilever, spatial
+from compare.exact.schemes import leapfrog
 
 FACES = {
     "2 x 2 midpoint": ({"contact_points": 2}, 3 / 4),

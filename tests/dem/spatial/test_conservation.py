@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cases.loads import load_history
-from compare.exact.spatial_lattice import drive_vector
+from compare.exact.blocks.spatial_lattice import drive_vector
 
 JOINTS = {
     "elastic": {},

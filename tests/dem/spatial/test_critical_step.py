@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import dem
-from cases.calibrate import calibrate
 from cases.errors import SceneError, UnstableError
+from cases.material.calibrate import calibrate
 from dem.spatial.simulate import critical_step_of
 
 SOFT = [{"y": 2.0, "spacing_stiffness": 4e8, "shear_stiffness": 5e8, "damping_ratio": 0.3}]

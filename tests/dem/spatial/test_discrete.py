@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 import dem
-from cases.calibrate import calibrate
 from cases.loads import load_history, step_means
-from compare.exact import leapfrog, spatial
-from compare.exact.spatial_lattice import drive_vector
+from cases.material.calibrate import calibrate
+from compare.exact.blocks import spatial
+from compare.exact.blocks.spatial_lattice import drive_vector
+from compare.exact.schemes import leapfrog
 
 TWO_TILES = {"pillar__length": 50.0, "time__duration": 0.05}
 BLOWS = {

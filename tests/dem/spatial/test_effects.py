@@ -6,7 +6,7 @@ import pytest
 import dem
 from dem.spatial.build import room_for
 from dem.spatial.step import march
-from joints.rows import CACHE_LINE
+from numerics.aligned import CACHE_LINE
 
 FIELDS = ("stress", "shear", "velocity", "displacement", "rotation")
 SQRT = r"(?:tail )?call \S+ @llvm\.sqrt\S*"

@@ -5,12 +5,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import dem
-from cases.calibrate import calibrate
-from cases.result import energy_residual
+from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from dem.spatial.build import build_model, room_for, samples_for, state_at_rest
 from dem.spatial.layout import LANES, STRIDE
 from dem.spatial.step import march
+from results.dataset import energy_residual
 
 DT = 2e-5
 BLOW = {

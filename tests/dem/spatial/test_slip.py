@@ -5,8 +5,9 @@ import pytest
 
 import dem
 from cases.errors import SceneError
-from compare.exact import sliding_block, sliding_joint
-from compare.metrics import relative_l2
+from compare.exact.blocks import sliding_block
+from compare.exact.joint import sliding_joint
+from compare.misfit.metrics import relative_l2
 
 PERIOD = 0.04  # s: 64 blocks a wavelength
 WAVE = {

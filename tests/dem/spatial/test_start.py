@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import dem
-from cases.calibrate import calibrate
+from cases.material.calibrate import calibrate
 
 SLIP = {"friction_angle": 30.0}
 UNLOADED = {"load": {"shape": "step", "amplitude": 0.0, "direction": [1, 0, 0]}}

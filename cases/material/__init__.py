@@ -1,0 +1,1 @@
+"""Calibration: stiffness, damping and strength of every joint, and the blocks' inertia."""

@@ -1,0 +1,159 @@
+"""The numbers of a scene: every joint's stiffness, damping and strength, the blocks' inertia."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cases.material.dashpots import dashpots
+from cases.material.elastic import joint_stiffness
+from cases.material.stiffness import rock_mass, stiffness
+from cases.material.strength import strength
+
+if TYPE_CHECKING:
+    from cases.schema.scene import Scene
+
+
+@dataclass(frozen=True)
+class Properties:
+    """The numbers of a scene that both engines and all exact solutions start from.
+
+    Attributes
+    ----------
+    block_count : number of blocks N.
+    spacing, side, area : block thickness (m), side (m) and area (m2) of the section.
+    density, block_mass : kg/m3, kg.
+    inertia_across, inertia_along : of a block about x or z, and about y, kg m2.
+    modulus, poisson : Young's modulus (Pa) and Poisson's ratio of the homogenised rock mass.
+    shear_modulus : G of the homogenised rock mass, Pa.
+    intact_modulus : Pa, or None where the scene does not give it.
+    bar_speed, shear_speed : sqrt(modulus / density), sqrt(shear_modulus / density), m/s.
+    impedance, shear_impedance : density times these speeds, Pa s/m, also of the quiet ends.
+    time_constant : Kelvin-Voigt eta of rock and ordinary joints, s; None without dashpots.
+    mass_damping : alpha of a force -alpha m v on every block, 1/s; None without.
+    local_damping : Cundall's factor, 0 to 1; None without.
+    joint_y : float array [N - 1], m.
+    stiffness, shear_stiffness : float arrays [N - 1], K'_n, K'_s between rigid blocks, Pa/m.
+    own_stiffness, own_shear_stiffness : float arrays [N - 1], the joints' own K_n and K_s, Pa/m;
+        None without intact_modulus; K_s infinite where intact rock alone is too soft in shear.
+    joint_time_constant : float array [N - 1], eta of each joint, s; None without any dashpot.
+    tension : bool array [N - 1], whether a joint carries tension.
+    friction, cohesion, residual_cohesion, tensile_strength, critical_opening : float arrays
+        [N - 1], each None where no joint has it; see `cases.material.strength.Strength`.
+    soft : int array, indices of the joints that [[soft_layers]] changes.
+    """
+
+    block_count: int
+    spacing: float
+    side: float
+    area: float
+    density: float
+    block_mass: float
+    inertia_across: float
+    inertia_along: float
+    modulus: float
+    poisson: float
+    shear_modulus: float
+    intact_modulus: float | None
+    bar_speed: float
+    shear_speed: float
+    impedance: float
+    shear_impedance: float
+    time_constant: float | None
+    mass_damping: float | None
+    local_damping: float | None
+    joint_y: np.ndarray
+    stiffness: np.ndarray
+    shear_stiffness: np.ndarray
+    own_stiffness: np.ndarray | None
+    own_shear_stiffness: np.ndarray | None
+    joint_time_constant: np.ndarray | None
+    tension: np.ndarray
+    friction: np.ndarray | None
+    cohesion: np.ndarray | None
+    residual_cohesion: np.ndarray | None
+    tensile_strength: np.ndarray | None
+    critical_opening: np.ndarray | None
+    soft: np.ndarray
+
+    @property
+    def regular_stiffness(self) -> float:
+        """K'_n of an ordinary joint, Pa/m."""
+        return self.modulus / self.spacing
+
+    @property
+    def regular_shear_stiffness(self) -> float:
+        """K'_s of an ordinary joint, Pa/m."""
+        return self.shear_modulus / self.spacing
+
+    @property
+    def regular_own_stiffness(self) -> float:
+        """K_n of an ordinary joint itself, Pa/m, by (4); needs intact_modulus."""
+        assert self.intact_modulus is not None
+        return joint_stiffness(self.modulus, self.intact_modulus, self.spacing)
+
+    @property
+    def regular_own_shear_stiffness(self) -> float:
+        """K_s of an ordinary joint itself, Pa/m; needs intact_modulus."""
+        assert self.own_shear_stiffness is not None
+        ordinary = np.setdiff1d(np.arange(self.block_count - 1), self.soft)
+        return float(self.own_shear_stiffness[ordinary[0] if ordinary.size else 0])
+
+    @property
+    def excess_compliance(self) -> np.ndarray:
+        """What each joint adds to the homogenised bar, which holds an ordinary one there, m/Pa.
+
+        1/K = 1/K'_n - 1/K'_n(regular) [N - 1]; exactly zero for a joint as stiff as the others.
+        """
+        same = np.isclose(self.stiffness, self.regular_stiffness, rtol=1e-9, atol=0)
+        return np.where(same, 0.0, 1 / self.stiffness - 1 / self.regular_stiffness)
+
+    @property
+    def damps_alone(self) -> np.ndarray:
+        """Whether a joint as stiff as the others has a dashpot of its own, bool array [N - 1].
+
+        The homogenised bar has no place for such a dashpot.
+        """
+        if self.joint_time_constant is None:
+            return np.zeros_like(self.tension)
+        differs = self.joint_time_constant != (self.time_constant or 0.0)
+        return differs & (self.excess_compliance == 0)
+
+
+def calibrate(scene: Scene) -> Properties:
+    """Return the properties of a scene: every joint's stiffness, damping, tension and strength."""
+    pillar, density = scene.pillar, scene.rock.density
+    count, spacing = pillar.block_count, pillar.length / pillar.block_count
+    block_mass, mass = density * pillar.area * spacing, rock_mass(scene, spacing)
+    soft = np.array([round(layer.y / spacing) - 1 for layer in scene.soft_layers], dtype=np.int64)
+    springs = stiffness(scene, soft, spacing, mass)
+    tension = np.full(count - 1, scene.joints.tension is not False)
+    tension[soft] = [layer.tension is not False for layer in scene.layers]
+    speed, shear_speed = sqrt(mass.modulus / density), sqrt(mass.shear_modulus / density)
+    return Properties(
+        block_count=count,
+        spacing=spacing,
+        side=pillar.side,
+        area=pillar.area,
+        density=density,
+        block_mass=block_mass,
+        inertia_across=block_mass * (pillar.side**2 + spacing**2) / 12,
+        inertia_along=block_mass * pillar.side**2 / 6,
+        intact_modulus=scene.rock.intact_modulus,
+        bar_speed=speed,
+        shear_speed=shear_speed,
+        impedance=density * speed,
+        shear_impedance=density * shear_speed,
+        mass_damping=scene.damping.alpha,
+        local_damping=scene.damping.local or None,
+        joint_y=spacing * np.arange(1, count),
+        tension=tension,
+        soft=soft,
+        **mass._asdict(),
+        **springs._asdict(),
+        **dashpots(scene, soft, mass.modulus / spacing, springs.stiffness)._asdict(),
+        **strength(scene, soft)._asdict(),
+    )

@@ -1,0 +1,240 @@
+"""What the tables of a scene must not contradict in each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import ceil, floor, log10
+from typing import TYPE_CHECKING
+
+from pydantic_core import PydanticCustomError
+
+from cases.errors import SceneError
+from cases.material.calibrate import calibrate
+from cases.material.stiffness import equivalent_constants
+from cases.schema.discretisation import check_discretisation
+from cases.schema.joint import JointLaw
+from cases.schema.plausible import INTACT, meant
+from cases.schema.scheme import check_scheme
+from cases.schema.values import contradiction, is_extreme
+
+if TYPE_CHECKING:
+    from cases.schema.scene import Scene
+
+MOST_SAMPLES = 10_000_000  # 80 MB for each section, point and energy term
+MOST_SNAPSHOTS = 10_000
+SNAP = 1 + 1e-6  # how far the fracture energy must stay from a vertical softening line
+
+
+def check(scene: Scene) -> None:
+    """Raise the first contradiction of a scene whose tables are each right."""
+    _check_layers(scene)
+    _check_receivers(scene)
+    _check_rock(scene)
+    _check_time(scene)
+    _check_fields(scene)
+    _check_lever(scene)
+    _check_extreme(scene)
+    _check_ends(scene)
+    _check_damping(scene)
+    _check_strength("joints", scene.joints)
+    for i, layer in enumerate(scene.layers):
+        _check_strength(f"soft_layers[{i}]", layer)
+    _check_fracture(scene)
+    check_discretisation(scene)
+    check_scheme(scene)
+
+
+def checked(scene: Scene) -> Scene:
+    """Return a scene whose tables were changed in memory; raises SceneError where they do not fit
+    together any more."""
+    try:
+        check(scene)
+    except PydanticCustomError as error:
+        about = error.context or {}
+        key, found, allowed = about.get("key", ""), about.get("found"), error.message()
+        raise SceneError(scene.where, key, found, allowed) from None
+    return scene
+
+
+def _check_layers(scene: Scene) -> None:
+    pillar, seen = scene.pillar, set()
+    for i, layer in enumerate(scene.soft_layers):
+        joint = layer.y / pillar.block
+        if abs(joint - round(joint)) > 1e-6 or not 1 <= round(joint) < pillar.block_count:
+            last = pillar.length - pillar.block
+            raise contradiction(
+                f"soft_layers[{i}].y",
+                layer.y,
+                f"must be on a joint: a multiple of {pillar.block:g} "
+                f"from {pillar.block:g} to {last:g}",
+            )
+        if round(joint) in seen:
+            raise contradiction(f"soft_layers[{i}].y", layer.y, "has a soft layer already")
+        seen.add(round(joint))
+
+
+def _check_receivers(scene: Scene) -> None:
+    if not scene.record.stress and not scene.record.velocity:
+        raise contradiction("record", None, "give at least one of record.stress and velocity")
+    for key in ("stress", "velocity"):
+        places = getattr(scene.record, key)
+        for y in places:
+            if y > scene.pillar.length:
+                raise contradiction(
+                    f"record.{key}", y, f"must lie between 0 and {scene.pillar.length:g} m"
+                )
+        if len(set(places)) < len(places):
+            raise contradiction(f"record.{key}", places, "must not name a place twice")
+
+
+def _check_rock(scene: Scene) -> None:
+    intact, (modulus, _) = scene.rock.intact_modulus, equivalent_constants(scene.rock)
+    if intact is not None and intact <= modulus:
+        raise contradiction(
+            "rock.intact_modulus",
+            intact,
+            f"must exceed the rock mass's equivalent modulus {modulus:.4g}{meant(intact, INTACT)}",
+        )
+
+
+def _check_time(scene: Scene) -> None:
+    interval, duration = scene.interval, scene.time.duration
+    if interval > duration:
+        raise contradiction(
+            "record.interval", interval, f"must not exceed time.duration = {duration:g}"
+        )
+    if duration / interval > MOST_SAMPLES:
+        raise contradiction(
+            "record.interval", interval, f"must give at most {MOST_SAMPLES:,} samples"
+        )
+
+
+def _check_fields(scene: Scene) -> None:
+    fields, interval, duration = scene.record.fields, scene.interval, scene.time.duration
+    if fields is None:
+        return
+    if not interval * (1 - 1e-9) <= fields <= duration:
+        raise contradiction(
+            "record.fields",
+            fields,
+            f"must lie between the sampling interval {interval:g} s and time.duration = "
+            f"{duration:g}",
+        )
+    if duration / fields > MOST_SNAPSHOTS:
+        raise contradiction(
+            "record.fields", fields, f"must give at most {MOST_SNAPSHOTS:,} snapshots"
+        )
+
+
+def _check_lever(scene: Scene) -> None:
+    load, half = scene.load, scene.pillar.side / 2
+    if max(map(abs, load.at)) > half:
+        raise contradiction("load.at", load.at, f"must lie on the face, within {half:g} m")
+    if scene.motion.rotation == "none" and (load.is_eccentric or load.arm is not None):
+        key, value = ("at", load.at) if load.arm is None else ("arm", load.arm)
+        raise contradiction(
+            f"load.{key}", value, "turns the blocks, which motion.rotation = 'none' forbids"
+        )
+
+
+def _check_extreme(scene: Scene) -> None:
+    """An extreme load is scaled, and so must be all that it does."""
+    if not is_extreme(scene.load.amplitude):
+        return
+    for key, value, wrong in _beyond_scaling(scene):
+        if wrong:
+            allowed = "needs a load.amplitude between 1e-30 and 1e30 in size: it does not scale"
+            raise contradiction(key, value, allowed)
+    if scene.record.energy and not 1e-150 <= abs(scene.load.amplitude) <= 1e150:
+        allowed = "must be false: energies of such a load.amplitude are no numbers"
+        raise contradiction("record.energy", True, allowed)
+
+
+def _beyond_scaling(scene: Scene) -> Iterator[tuple[str, object, bool]]:
+    """Yield what a load beyond all sizes must not meet: key, value, and whether it is there."""
+    load, record = scene.load, scene.record
+    yield "gravity", None, scene.gravity is not None
+    yield "prestress", None, scene.prestress is not None
+    yield "record.fields", record.fields, record.fields is not None
+    yield "load.direction", load.direction, load.is_across
+    yield "load.at", load.at, load.is_eccentric
+    yield "load.arm", load.arm, load.arm is not None
+    yield "load.file", load.file, load.file is not None
+    laws: dict[str, JointLaw] = {"joints": scene.joints}
+    laws |= {f"soft_layers[{i}]": layer for i, layer in enumerate(scene.soft_layers)}
+    for table, law in laws.items():
+        for key in ("tensile_strength", "cohesion"):
+            yield f"{table}.{key}", getattr(law, key), getattr(law, key) is not None
+
+
+def _check_ends(scene: Scene) -> None:
+    load, ends, gravity = scene.load, scene.ends, scene.gravity
+    if load.shakes_base and ends.start != "fixed":
+        raise contradiction(
+            "load.quantity", load.quantity, "moves the wall of ends.start = 'fixed'"
+        )
+    if ends.start == "fixed" and not load.shakes_base and load.amplitude:
+        raise contradiction(
+            "ends.start", ends.start, "needs load.quantity 'velocity' or 'acceleration', or no load"
+        )
+    if gravity is not None and gravity.static and "fixed" not in (ends.start, ends.end):
+        raise contradiction("gravity.static", True, "needs a fixed end, or gravity.static = false")
+
+
+def _check_damping(scene: Scene) -> None:
+    if scene.damping.rayleigh is None:
+        return
+    named = {"joints": scene.joints} | {
+        f"soft_layers[{i}]": layer for i, layer in enumerate(scene.soft_layers)
+    }
+    for table, law in named.items():
+        if law.damping_ratio is not None:
+            raise contradiction(
+                f"{table}.damping_ratio",
+                law.damping_ratio,
+                "damping.rayleigh defines the dashpots already: give one of them",
+            )
+
+
+def _check_strength(table: str, law: JointLaw) -> None:
+    pair = ("tensile_strength", "fracture_energy")
+    for key, other in (pair, pair[::-1]):
+        if getattr(law, key) is None and getattr(law, other) is not None:
+            raise contradiction(f"{table}.{key}", None, f"is needed with {table}.{other}")
+    if law.tension is not None and law.tensile_strength is not None:
+        raise contradiction(
+            f"{table}.tension", law.tension, "tensile_strength says otherwise: give one of them"
+        )
+    residual, cohesion = law.residual_cohesion, law.cohesion
+    if residual is not None and (cohesion is None or residual > cohesion):
+        allowed = (
+            "needs a cohesion" if cohesion is None else f"at most the cohesion {cohesion:g} Pa"
+        )
+        raise contradiction(f"{table}.residual_cohesion", residual, allowed)
+
+
+def _check_fracture(scene: Scene) -> None:
+    """A joint whose stress falls faster than it can unload would snap back."""
+    laws = [scene.joints, *scene.layers]
+    if all(law.tensile_strength is None for law in laws):
+        return
+    p = calibrate(scene)
+    for i, (law, stiffness) in enumerate(
+        zip(laws, [p.regular_stiffness, *p.stiffness[p.soft]], strict=True)
+    ):
+        if law.tensile_strength is None or law.fracture_energy is None:
+            continue
+        least = SNAP * law.tensile_strength**2 / (2 * stiffness)
+        if law.fracture_energy < least:
+            raise contradiction(
+                f"soft_layers[{i - 1}].fracture_energy" if i else "joints.fracture_energy",
+                law.fracture_energy,
+                "must exceed tensile_strength^2 / (2 K'_n), or the joint snaps back: "
+                f"at least {_rounded_up(least):.4g} J/m2",
+            )
+
+
+def _rounded_up(x: float) -> float:
+    """Return the next number of four digits."""
+    digit = 10.0 ** (floor(log10(x)) - 3)
+    return ceil(x / digit) * digit

@@ -1,0 +1,71 @@
+"""What joints can do: the law of all of them, and of single ones that differ."""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from cases.schema.values import NonNegative, Positive, Table, contradiction
+
+OF_ALL_JOINTS = ("contact_points", "point_rule")
+
+
+class JointLaw(Table):
+    """What one joint can do. Keys that are absent leave their effect out of the computation."""
+
+    normal_stiffness: Positive | None = None  #: Pa/m, the joint's own K_n; absent: from (4)
+    shear_stiffness: Positive | None = None  #: Pa/m, the joint's own K_s; absent: from (7)
+    tension: bool | None = None  #: False: a joint that would be pulled apart carries nothing (10)
+    damping_ratio: NonNegative | None = None  #: zeta; dashpot c_n = 2 zeta sqrt(m k_n)
+    friction_angle: Annotated[float, Field(ge=0, lt=90)] | None = None  #: degrees (3)
+    cohesion: NonNegative | None = None  #: Pa (3)
+    residual_cohesion: NonNegative | None = None  #: Pa, what a point keeps after its first slip
+    tensile_strength: Positive | None = None  #: Pa
+    fracture_energy: Positive | None = None  #: J/m2
+
+
+class Joints(JointLaw):
+    """The law of every joint, and how forces are spread over its face."""
+
+    contact_points: Annotated[int, Field(ge=1, le=8)] = 2  #: n x n a face, written out
+    #: midpoint: centres of equal cells, 1 - 1/n^2 of the face's bending stiffness; gauss: all of it
+    point_rule: Literal["midpoint", "gauss"] = "midpoint"
+
+
+class SoftLayer(JointLaw):
+    """One joint under a law of its own; keys that are absent are those of [joints]."""
+
+    y: Positive  #: m, on a joint
+    spacing_stiffness: Positive | None = None  #: S K_n, Pa; absent: as stiff as the other joints
+    thickness: Positive | None = None  #: m
+
+    @model_validator(mode="before")
+    @classmethod
+    def _points_are_alike(cls, table: Any) -> Any:
+        for key in OF_ALL_JOINTS:
+            if isinstance(table, dict) and key in table:
+                raise contradiction(
+                    f"soft_layers.{key}", table[key], f"is for all joints: give joints.{key}"
+                )
+        return table
+
+    @model_validator(mode="after")
+    def _one_stiffness(self) -> "SoftLayer":
+        if self.spacing_stiffness is not None and self.normal_stiffness is not None:
+            raise contradiction(
+                "soft_layers.spacing_stiffness",
+                self.spacing_stiffness,
+                "give this or normal_stiffness, not both",
+            )
+        return self
+
+    def own_stiffness(self, spacing: float) -> float | None:
+        """K_n that the layer itself gives, Pa/m; None where it is as stiff as the other joints."""
+        if self.spacing_stiffness is not None:
+            return self.spacing_stiffness / spacing
+        return self.normal_stiffness
+
+    def under(self, joints: JointLaw) -> "SoftLayer":
+        """Return the layer with what it leaves out taken from [joints], but for its K_n."""
+        absent = [key for key in JointLaw.model_fields if getattr(self, key) is None]
+        absent = [key for key in absent if key != "normal_stiffness"]
+        return self.model_copy(update={key: getattr(joints, key) for key in absent})

@@ -1,0 +1,67 @@
+"""What the constants of rock are like, and the unit that one far from it was likely meant in."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from cases.schema.scene import Scene
+
+#: Units that values are met in, other than those of a scene file, and what makes SI of them.
+Units = tuple[tuple[str, float], ...]
+OF_STRESS: Units = (("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3))
+OF_STIFFNESS: Units = (("GPa/m", 1e9), ("MPa/m", 1e6), ("kPa/m", 1e3))
+OF_SPEED: Units = (("km/s", 1e3), ("mm/s", 1e-3))
+OF_DENSITY: Units = (("g/cm3", 1e3), ("kN/m3", 1e3 / 9.81), ("g/m3", 1e-3))
+
+
+class Usual(NamedTuple):
+    """What a quantity is in rock: its unit, what it usually is, and what is far outside."""
+
+    unit: str
+    low: float
+    high: float
+    least: float
+    most: float
+    others: Units
+
+
+DENSITY = Usual("kg/m3", 1e3, 6e3, 500.0, 2e4, OF_DENSITY)
+SPEED = Usual("m/s", 50.0, 9e3, 20.0, 2e4, OF_SPEED)
+INTACT = Usual("Pa", 1e9, 3e11, 1e8, 3e12, OF_STRESS)
+MASS = Usual("Pa", 1e8, 3e11, 1e7, 3e12, OF_STRESS)
+LAYER = Usual("Pa", 1e7, 3e11, 1e5, 1e17, OF_STRESS)  # S K_n, of joints that may be all but rigid
+JOINT = Usual("Pa/m", 1e8, 5e12, 1e4, 1e17, OF_STIFFNESS)
+
+OF_ROCK = {
+    "density": DENSITY,
+    "p_speed": SPEED,
+    "s_speed": SPEED,
+    "equivalent_modulus": MASS,
+    "intact_modulus": INTACT,
+}
+OF_JOINTS = {"normal_stiffness": JOINT, "shear_stiffness": JOINT, "spacing_stiffness": LAYER}
+
+
+def implausible(scene: Scene) -> Iterator[str]:
+    """Yield a line for each constant of rock or joints that lies far outside rock's."""
+    tables = {"rock": (scene.rock, OF_ROCK), "joints": (scene.joints, OF_JOINTS)}
+    tables |= {f"soft_layers[{i}]": (s, OF_JOINTS) for i, s in enumerate(scene.soft_layers)}
+    for table, (holder, known) in tables.items():
+        for key, usual in known.items():
+            value = getattr(holder, key, None)
+            if value is not None and not usual.least <= value <= usual.most:
+                side = "below" if value < usual.least else "above"
+                yield (
+                    f"{table}.{key} = {value:g} {usual.unit} is far {side} that of rock"
+                    f"{meant(value, usual)}"
+                )
+
+
+def meant(value: float, usual: Usual) -> str:
+    """Return what a value is in the unit in which it would be rock's; nothing where in none."""
+    for unit, factor in usual.others:
+        if usual.low <= value * factor <= usual.high:
+            return f": {value:g} {unit} is {value * factor:.4g} {usual.unit}"
+    return ""

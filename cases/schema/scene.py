@@ -1,0 +1,94 @@
+"""The scene vocabulary: everything that can be said about a jointed rock pillar and its load.
+
+One pydantic model per TOML table. SI units throughout; y runs along the pillar from the loaded
+end, x and z across. The reference scene is that of Guo & Li (2002), Chin. J. Rock Mech. Eng.
+21(8), 1124-1129.
+"""
+
+from pydantic import PrivateAttr, model_validator
+
+from cases.schema.consistency import check
+from cases.schema.damping import Damping, Rayleigh
+from cases.schema.joint import JointLaw, Joints, SoftLayer
+from cases.schema.loading import NO_LOAD, Load
+from cases.schema.tables import (
+    ContinuumNumerics,
+    DemNumerics,
+    Ends,
+    Gravity,
+    Motion,
+    Numerics,
+    Pillar,
+    Prestress,
+    Record,
+    Rock,
+    Time,
+)
+from cases.schema.values import Pair, Positive, Table, Words
+
+__all__ = [
+    "ContinuumNumerics",
+    "Damping",
+    "DemNumerics",
+    "Ends",
+    "Gravity",
+    "JointLaw",
+    "Joints",
+    "Load",
+    "Motion",
+    "Numerics",
+    "Pillar",
+    "Prestress",
+    "Rayleigh",
+    "Record",
+    "Rock",
+    "Scene",
+    "SoftLayer",
+    "Time",
+]
+
+
+class Scene(Table):
+    """A whole scene: one pillar, its joints, its load, and what is recorded."""
+
+    title: Words  #: what tables and figures call it
+    source: Words | None = None  #: where it is from
+    pillar: Pillar
+    rock: Rock
+    motion: Motion = Motion()
+    joints: Joints = Joints()
+    soft_layers: list[SoftLayer] = []
+    load: Load = NO_LOAD
+    ends: Ends = Ends()
+    damping: Damping = Damping()
+    gravity: Gravity | None = None
+    prestress: Prestress | None = None
+    time: Time
+    numerics: Numerics = Numerics()
+    record: Record
+    expect: dict[Pair, Positive] = {}  #: bounds on the relative L2 misfit of pairs
+    name: str = ""  #: of the variant; empty for the scene as it stands
+
+    _where: str = PrivateAttr(default="")
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> "Scene":
+        check(self)
+        return self
+
+    @property
+    def where(self) -> str:
+        """The file and variant that the scene was read from, else its title: for messages."""
+        return self._where or self.title
+
+    @property
+    def interval(self) -> float:
+        """Time between samples, s."""
+        return self.record.interval or (
+            self.load.period / 200 if self.load.period else self.time.duration / 2000
+        )
+
+    @property
+    def layers(self) -> list[SoftLayer]:
+        """The soft layers, each with what it leaves out taken from [joints], but for its K_n."""
+        return [layer.under(self.joints) for layer in self.soft_layers]

@@ -1,0 +1,194 @@
+"""The small tables of a scene: the pillar, its rock, what holds and fills it, what is recorded."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
+
+from cases.files import beside
+from cases.schema.values import (
+    Direction,
+    NonNegative,
+    Number,
+    Poisson,
+    Positive,
+    Table,
+    contradiction,
+)
+
+MOST_BLOCKS = 10_000_000  # about 0.4 kB a block: what one machine holds
+
+
+class Pillar(Table):
+    """A square rock pillar cut by joints into one row of equal blocks (section 3.1)."""
+
+    length: Positive  #: m
+    side: Positive  #: m, side of the square section
+    block: Positive  #: m, block thickness d = joint spacing S
+
+    @model_validator(mode="after")
+    def _whole_blocks(self) -> "Pillar":
+        count = self.length / self.block
+        if not 1.5 < count <= MOST_BLOCKS:
+            raise contradiction(
+                "pillar.block", self.block, f"must give 2 to {MOST_BLOCKS:,} blocks, not {count:g}"
+            )
+        if abs(count - round(count)) > 1e-9 * count:
+            raise contradiction(
+                "pillar.block",
+                self.block,
+                f"must divide pillar.length = {self.length:g} into a whole number of blocks",
+            )
+        return self
+
+    @property
+    def block_count(self) -> int:
+        """Number of blocks N = length / block."""
+        return round(self.length / self.block)
+
+    @property
+    def area(self) -> float:
+        """Section area A, m2."""
+        return self.side**2
+
+
+class Rock(Table):
+    """The rock mass by its two wave speeds or by its two elastic constants, and the intact rock."""
+
+    density: Positive  #: kg/m3
+    p_speed: Positive | None = None  #: m/s, unbounded rock mass
+    s_speed: Positive | None = None  #: m/s
+    equivalent_modulus: Positive | None = None  #: Pa, E_eq of the rock mass
+    equivalent_poisson: Poisson | None = None  #: of the rock mass
+    intact_modulus: Positive | None = None  #: Pa, E of the blocks; needed for the jointed continuum
+    intact_poisson: Poisson = 0.25  #: of the blocks
+
+    @model_validator(mode="after")
+    def _one_pair(self) -> "Rock":
+        pairs = ("p_speed", "s_speed"), ("equivalent_modulus", "equivalent_poisson")
+        given = [[key for key in pair if getattr(self, key) is not None] for pair in pairs]
+        if sorted(map(len, given)) != [0, 2]:
+            raise contradiction(
+                "rock",
+                given[0] + given[1],
+                "give exactly one pair: p_speed and s_speed, "
+                "or equivalent_modulus and equivalent_poisson",
+            )
+        if self.p_speed and self.s_speed and self.p_speed**2 <= 4 / 3 * self.s_speed**2:
+            raise contradiction(
+                "rock.p_speed",
+                self.p_speed,
+                f"must exceed sqrt(4/3) times s_speed = {self.s_speed:g} (positive bulk modulus)",
+            )
+        return self
+
+
+class Motion(Table):
+    """How blocks may move where the scene calls for motion across the axis."""
+
+    #: none: they translate only, as in a plane wave through rock of large extent; small: rotation
+    #: vectors; finite: quaternions
+    rotation: Literal["none", "small", "finite"] = "small"
+
+
+class Ends(Table):
+    """What holds the two ends: matched, a dashpot behind the end block's half-block spring,
+    reflects least; quiet, (9), has the dashpot on the end block; fixed has the spring and a wall.
+    """
+
+    start: Literal["free", "quiet", "matched", "fixed"] = "free"  #: at y = 0
+    end: Literal["free", "quiet", "matched", "fixed"] = "free"  #: at y = length
+
+
+class Gravity(Table):
+    """A body force."""
+
+    direction: Direction  #: x, y, z
+    acceleration: NonNegative = 9.81  #: m/s2
+    static: bool = True  #: the scene starts in equilibrium; False: gravity acts suddenly at t = 0
+
+
+class Prestress(Table):
+    """Normal stress that the joints carry before the load; ends that give way carry it on."""
+
+    normal: Number  #: Pa, compression positive
+
+
+class Time(Table):
+    """How long the scene lasts."""
+
+    duration: Positive  #: s
+
+
+class Record(Table):
+    """What is kept of a run."""
+
+    stress: list[NonNegative] = Field(default_factory=list)  #: m, sections
+    velocity: list[NonNegative] = Field(default_factory=list)  #: m, points
+    interval: Positive | None = None  #: s; default a 200th of the period, or duration / 2000
+    fields: Positive | None = None  #: s between snapshots of the whole pillar; absent: none
+    energy: bool = True  #: keep the energy ledger
+
+
+class DemNumerics(Table):
+    """How the rigid blocks are stepped; the default step is for accuracy, not only stability."""
+
+    step_fraction: Positive = 0.05  #: of the scheme's own critical step
+    #: fourth-order: four forces a step (PEFRL), for axial motion without any damping
+    scheme: Literal["leapfrog", "fourth-order"] = "leapfrog"
+    allow_unstable: bool = False  #: go on with a step above the critical one
+    static_tolerance: Positive = 1e-8  #: out-of-balance force ratio that ends the static state
+    threads: Annotated[int, Field(ge=1, le=1024)] | None = None  #: absent: by the number of blocks
+
+
+class ContinuumNumerics(Table):
+    """How the deformable rock is discretised and stepped."""
+
+    #: 1: the bar; 2: plane stress; 3: the square column; absent: the least that the scene needs
+    dim: Annotated[int, Field(ge=1, le=3)] | None = None
+    order: Annotated[int, Field(ge=1, le=4)] = 2  #: of the elements; at most 2 for simplices
+    cell: Literal["hexahedron", "simplex"] = "hexahedron"  #: quadrilateral and triangle in dim 2
+    mass: Literal["lumped", "consistent"] = "lumped"  #: consistent: simplices, implicit steps
+    #: absent: as many as the load needs, see continuum.mesh.pillar.elements_in_block
+    elements_per_block: Annotated[int, Field(ge=1, le=1000)] | None = None
+    elements_across: Annotated[int, Field(ge=1, le=100)] = 1  #: in each direction of the section
+    mesh: str | None = None  #: a gmsh file (.msh) of the pillar, with its rock and joints tagged
+    scheme: Literal["auto", "explicit", "implicit"] = "auto"  #: auto: whichever costs less
+    step_fraction: Positive = 0.2  #: of the critical step, explicit
+    steps_per_period: Positive = 200  #: implicit; of the load, or of a tenth of the duration
+    spectral_radius: Annotated[float, Field(ge=0, le=1)] = 0.9  #: implicit, of infinite frequency
+    allow_unstable: bool = False  #: go on with an explicit step above the critical one
+
+    _mesh_path: Path | None = PrivateAttr(default=None)
+
+    @model_validator(mode="after")
+    def _find_mesh(self, info: ValidationInfo) -> "ContinuumNumerics":
+        if self.mesh is not None:
+            key, context = "numerics.continuum.mesh", info.context or {}
+            anywhere = key in context.get("asked", ())
+            try:
+                path = beside(context.get("folder", "."), self.mesh, anywhere)
+                if not path.is_file():
+                    found = path.exists()
+                    raise ValueError(
+                        "must be a gmsh file" if found else "cannot be read: no such file"
+                    )
+            except OSError as error:
+                fault = f"cannot be read: {error.strerror}"
+                raise contradiction(key, self.mesh, fault) from None
+            except ValueError as error:
+                raise contradiction(key, self.mesh, str(error)) from None
+            self._mesh_path = path
+        return self
+
+    @property
+    def mesh_path(self) -> Path | None:
+        """The file `mesh`, found relative to the scene's; None where the mesh is built."""
+        return self._mesh_path
+
+
+class Numerics(Table):
+    """How, not what: every key has a default that is chosen for accuracy."""
+
+    dem: DemNumerics = DemNumerics()
+    continuum: ContinuumNumerics = ContinuumNumerics()

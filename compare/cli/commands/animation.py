@@ -1,0 +1,154 @@
+"""Commands that show the wave: as an animation, and in three dimensions."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cases.errors import SceneError
+from cases.schema.scene import Scene
+from compare.cli.options import JsonOption, SceneArgument, SetOption, StrictOption, app, load
+
+ScaleOption = Annotated[
+    float | None,
+    typer.Option(metavar="X", help="Of displacements; without it one that can be seen."),
+]
+OneVariantOption = Annotated[str, typer.Option(help="This variant in place of the scene itself.")]
+FRAMES, SECONDS = 201, 10.0
+
+
+@app.command()
+def animate(
+    scene: SceneArgument,
+    changes: SetOption = [],  # noqa: B006
+    variant: OneVariantOption = "",
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help=".mp4 or .gif; without it SCENE.mp4 here.")
+    ] = None,
+    scale: ScaleOption = None,
+    frames: Annotated[int, typer.Option(min=2, max=5000, help="From start to end.")] = FRAMES,
+    seconds: Annotated[float, typer.Option(help="That the animation lasts.")] = SECONDS,
+    strict: StrictOption = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Write how the blocks move, by both engines, with the wave on them, as MP4 or GIF.
+
+    Displacements are exaggerated; the picture says how much. The rock is that with every joint,
+    where that applies, else the homogenised one; where neither does, the picture says why.
+    """
+    _require_positive("--scale", scale)
+    _require_positive("--seconds", seconds)
+    from compare.cli import terminal
+    from compare.figures.animation import video
+
+    (one,) = load(scene, changes, variant, strict)
+    path = out or Path(f"{_name(scene, one)}.mp4")
+    video.refuse(path, frames)
+    with terminal.progress("both engines") as advance:
+        from compare.figures.animation.snapshots import take
+
+        shots = take(one, frames, advance)
+    with terminal.progress("pictures") as advance:
+        from compare.figures.animation.frame import Frame
+        from compare.figures.animation.view_settings import look_at
+
+        look = look_at(shots.scene, shots.found, scale)
+        frame = Frame(shots, look, video.DOTS[path.suffix])
+        video.write_video(path, frame.image, frames, seconds, advance)
+    _show(path, list(shots.found), shots.reasons, look.scale, as_json)
+
+
+def _require_positive(key: str, value: float | None) -> None:
+    if value is not None and not 0 < value < float("inf"):
+        raise SceneError(key, "", None, f"must be a positive number, not {value:g}")
+
+
+def _name(scene: str, one: Scene) -> str:
+    """Return what a scene's files are called where the user does not say."""
+    return "-".join([Path(scene).stem, *one.name.split()])
+
+
+def _show(
+    path: Path, engines: list[str], reasons: dict[str, str], scale: float, as_json: bool
+) -> None:
+    from compare.cli.terminal import print_json, say
+
+    if as_json:
+        facts = {"file": str(path), "engines": engines, "not_shown": reasons, "scale": scale}
+        print_json(facts)
+        return
+    say(f"{path}: {' and '.join(engines)}, displacements × {scale:,g}")
+    for name, reason in reasons.items():
+        say(f"{name} is not shown: {reason}")
+
+
+@app.command()
+def view(
+    scene: SceneArgument,
+    changes: SetOption = [],  # noqa: B006
+    variant: OneVariantOption = "",
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write this .png; open no window.")
+    ] = None,
+    time: Annotated[
+        float | None, typer.Option(metavar="T", help="s; without it the middle of the scene.")
+    ] = None,
+    scale: ScaleOption = None,
+    strict: StrictOption = False,
+) -> None:
+    """Show the pillars of both engines in three dimensions, displaced and coloured by the wave.
+
+    Opens a window with a slider over time; with --out, or where there is no display, writes a
+    picture instead, of the time T. Needs PyVista.
+    """
+    _require_positive("--scale", scale)
+    _require_pyvista()
+    from compare.figures.animation.offscreen import has_display
+
+    (one,) = load(scene, changes, variant, strict)
+    at = one.time.duration / 2 if time is None else time
+    if not 0 < at <= one.time.duration:
+        allowed = f"must be greater than 0 and at most time.duration = {one.time.duration:g} s"
+        raise SceneError("--time", "", None, f"{allowed}, not {at:g}")
+    if out is None and has_display():
+        _open(one, at, scale)
+    else:
+        _write_picture(out or Path(f"{_name(scene, one)}.png"), one, at, scale)
+
+
+def _require_pyvista() -> None:
+    from importlib.util import find_spec
+
+    if find_spec("pyvista") is None:
+        raise SceneError("view", "", None, "needs PyVista: pip install 'jointwave[view]'")
+
+
+def _open(scene: Scene, time: float, scale: float | None) -> None:
+    from compare.cli import terminal
+    from compare.figures.animation.snapshots import take
+    from compare.figures.animation.view3d import Stage
+    from compare.figures.animation.view_settings import look_at
+
+    with terminal.progress("both engines") as advance:
+        shots = take(scene, FRAMES, advance)
+    look = look_at(shots.scene, shots.found, scale)
+    stage = Stage(shots, look, window=True)
+    stage.add_slider(round(time / scene.time.duration * (FRAMES - 1)))
+    stage.open()
+
+
+def _write_picture(path: Path, scene: Scene, time: float, scale: float | None) -> None:
+    from compare.cli import terminal
+    from compare.figures.animation.offscreen import draw
+    from compare.figures.animation.snapshots import take, until
+    from compare.figures.animation.view_settings import look_at
+    from compare.runs.output import refuse_foreign, write
+
+    if path.suffix != ".png":
+        raise SceneError("--out", str(path), None, "must end in .png")
+    refuse_foreign(path, (b"\x89PNG",))
+    with terminal.progress("both engines") as advance:
+        shots = take(until(scene, time), 2, advance)
+    look = look_at(shots.scene, shots.found, scale)
+    write(path, lambda new: draw(new, shots, look, 1))
+    _show(path, list(shots.found), shots.reasons, look.scale, False)

@@ -1,0 +1,49 @@
+"""Commands around the work: begin a scene, look the installation over."""
+
+from typing import Annotated
+
+import typer
+
+from compare.cli import completion
+from compare.cli.options import JsonOption, app
+
+
+@app.command()
+def new(
+    name: Annotated[str, typer.Argument(help="Of the file, with or without .toml.")],
+    source: Annotated[
+        str | None,
+        typer.Option(
+            "--from",
+            metavar="SCENE",
+            help="Copy this scene, its comments and files.",
+            autocompletion=completion.scenes,
+        ),
+    ] = None,
+) -> None:
+    """Write a scene to begin with: NAME.toml, every key explained, ready to run.
+
+    Nothing that is there already is replaced.
+    """
+    from compare.cli import new as starter
+    from compare.cli import terminal
+
+    for path in starter.write_new(name, source):
+        terminal.say(f"wrote {path}")
+
+
+@app.command()
+def doctor(as_json: JsonOption = False) -> None:
+    """Say what is installed and what is not, and check both engines against exact solutions.
+
+    Exit code 0 where both engines give what they should, else 1; a part that is missing or broken
+    is a line. The first time kernels are compiled, which takes up to a minute.
+    """
+    from compare.cli import terminal
+    from compare.cli.diagnostics.doctor import examine
+    from compare.cli.diagnostics.show import show_health
+
+    with terminal.progress("looking") as advance:
+        found = examine(advance)
+    show_health(found, as_json)
+    raise typer.Exit(0 if found.is_well else 1)

@@ -1,0 +1,130 @@
+"""Commands about one scene: what it is, its runs, and how far apart its solutions are.
+
+Heavy packages are imported by the command that needs them, so a run of the rigid blocks starts
+without dolfinx and matplotlib.
+"""
+
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import cases
+from compare.cli.options import (
+    CORES,
+    DryOption,
+    Engine,
+    EngineOption,
+    JsonOption,
+    ModelOption,
+    OutOption,
+    SceneArgument,
+    SetOption,
+    StrictOption,
+    SweepOption,
+    VariantOption,
+    WorkersOption,
+    app,
+    load,
+)
+from compare.runs.checkpoint.lock import locked
+from compare.runs.checkpoint.signals import watched
+from compare.runs.processes import started
+from compare.scenes import shipped
+
+
+@app.command("list")
+def list_scenes(as_json: JsonOption = False) -> None:
+    """List the shipped scenes and their variants."""
+    from compare.cli import views
+
+    rows = [(path, cases.load(path)) for path in shipped()]
+    views.show_scenes(rows, as_json)
+
+
+@app.command()
+def run(
+    scene: SceneArgument,
+    engine: EngineOption = [Engine.dem],  # noqa: B006
+    model: ModelOption = None,
+    changes: SetOption = [],  # noqa: B006
+    variant: VariantOption = None,
+    swept: SweepOption = [],  # noqa: B006
+    out: OutOption = Path("results"),
+    vtx: Annotated[
+        bool, typer.Option("--vtx", help="Also write the snapshots of record.fields as VTX (.bp).")
+    ] = False,
+    every: Annotated[
+        float,
+        typer.Option(
+            "--checkpoint-every", metavar="SECONDS", min=0.0, help="Of wall time; 0: none are kept."
+        ),
+    ] = 60.0,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on where an earlier run of the same has stopped.")
+    ] = False,
+    workers: WorkersOption = CORES,
+    dry: DryOption = False,
+    strict: StrictOption = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Simulate a scene and write each result as DIR/[variant/]ENGINE[-MODEL].nc.
+
+    With record.fields also its snapshots, as a .pvd file for ParaView. Under mpiexec the processes
+    share each run of the continuum; everything else is done by the first of them.
+
+    A run that is killed goes on from its last checkpoint with --resume, to the same bits as if it
+    had not been; results that are whole already are kept. Ctrl-C keeps what is there.
+
+    --sweep runs every value of a key, DIR/KEY=VALUE/... each, in several processes; points that are
+    done are not run again, those that fail are listed.
+    """
+    from compare.cli import terminal, views
+    from compare.runs import jobs
+    from compare.runs import run as runs
+    from compare.runs.checkpoint.resume import Keeping
+
+    wanted = jobs.wanted([e.value for e in engine], model or [])
+    if swept:
+        from compare.experiments.sweep import command
+        from compare.experiments.sweep.case import Running
+
+        asked_for = command.ask(scene, changes, variant, swept, out)
+        command.sweep(asked_for, Running(wanted, vtx), workers, dry, as_json, strict)
+        return
+    scenes = load(scene, changes, variant, strict)
+    asked = jobs.plan(scenes, wanted, out)
+    if dry:
+        from compare.experiments.cost import dry_run
+
+        dry_run.show_runs([(job.scene, job.name) for job in asked], as_json)
+        return
+    processes = started()
+    folders, keeping = {job.path.parent for job in asked}, Keeping(every, resume, watched())
+    with ExitStack() as held, terminal.progress(f"{len(asked)} runs") as advance:
+        processes.by_first(lambda: held.enter_context(locked(out, *folders)))
+        done = runs.execute(asked, advance, vtx, processes, keeping)
+    processes.by_first(lambda: views.show_runs(done, as_json))
+
+
+@app.command()
+def explain(
+    scene: SceneArgument,
+    changes: SetOption = [],  # noqa: B006
+    variant: VariantOption = None,
+    strict: StrictOption = False,
+    measured: Annotated[
+        bool,
+        typer.Option("--measure", help="Time a rigid block's step; may compile for a minute."),
+    ] = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Say what a scene calls for, its critical steps, which exact solutions hold, and which of them
+    is the reference."""
+    from compare.cli import views
+    from compare.cli.explain import explanation
+
+    scenes = load(scene, changes, variant if variant is not None else "", strict)
+    for one in scenes:
+        views.show_explanation(explanation(one, measured), as_json)

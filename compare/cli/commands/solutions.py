@@ -1,0 +1,179 @@
+"""Commands that put the solutions of a scene side by side: as distances, or drawn."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+import cases
+from cases.errors import SceneError
+from compare.cli.options import (
+    CORES,
+    DryOption,
+    EngineOption,
+    JsonOption,
+    ModelOption,
+    SceneArgument,
+    SetOption,
+    StrictOption,
+    SweepOption,
+    VariantOption,
+    WithOption,
+    WorkersOption,
+    app,
+    load,
+)
+
+
+@app.command()
+def compare(
+    scene: SceneArgument,
+    changes: SetOption = [],  # noqa: B006
+    variant: VariantOption = None,
+    out: Annotated[Path | None, typer.Option(help="Also write tables, curves and figure.")] = None,
+    spectral: Annotated[
+        bool, typer.Option(help="Add envelope and phase misfit (Kristekova et al. 2006).")
+    ] = True,
+    given: WithOption = [],  # noqa: B006
+    align: Annotated[
+        bool, typer.Option("--align", help="Move the clock of each --with by cross-correlation.")
+    ] = False,
+    swept: SweepOption = [],  # noqa: B006
+    workers: WorkersOption = CORES,
+    dry: DryOption = False,
+    strict: StrictOption = False,
+    every: Annotated[
+        bool, typer.Option("--all", help="Also every distance, and why a solution is missing.")
+    ] = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Solve a scene by all that applies, and say how far each engine is from the finest of it.
+
+    A line an engine: its worst misfit and where, the solution that it is held against, its own
+    numerical error, the time of its steps, and the verdict. --all adds every distance of every
+    pair; of curves of others, data over model.
+
+    --with puts a waveform of another code, figure or experiment beside them: a CSV file with a
+    header such as "time [ms], stress@20 [MPa]" (# starts a comment; commas, semicolons or tabs),
+    or a NetCDF file of jointwave run or with time and stress(time). A label names the only curve
+    of a file without names, or takes one out of several: curve.csv:stress@20,
+    "run.nc:-velocity@20.25 [mm/s]", and with a column's header in front it takes that column:
+    "gauge.csv:CH 3=stress@20 [MPa]", "gauge.csv:t=time [ms]". A comparison.csv that --out has
+    written is read as it is, variant by variant, or one solution of it: comparison.csv:dem. Empty
+    cells are left out. Without a unit, SI. Stress is positive in compression; a minus
+    sign says that the file has the negative. Only the overlap in time is compared, at the times of
+    whichever has fewer samples there, the other interpolated linearly; amplitudes are never scaled,
+    and clocks never moved without --align.
+
+    --sweep compares every value of a key, in several processes, and gives one table of all.
+    """
+    from compare.cli import comparison_view, terminal
+    from compare.misfit import pairs
+
+    if swept:
+        from compare.experiments.sweep import command
+        from compare.experiments.sweep.case import Comparing
+
+        asked = command.ask(scene, changes, variant, swept, out)
+        swept_scenes = [case.scene for case in asked.cases if case.scene is not None]
+        curves = _read_curves(given, swept_scenes, align)
+        work = Comparing(spectral, curves, align, out is not None)
+        command.sweep(asked, work, workers, dry, as_json, strict)
+        return
+    scenes = load(scene, changes, variant, strict)
+    curves = _read_curves(given, scenes, align)
+    if dry:
+        from compare.experiments.cost import dry_run
+
+        dry_run.show_all(scenes, as_json)
+        return
+    found = []
+    for one in scenes:
+        with terminal.progress(one.name or one.title) as advance:
+            found.append(pairs.compare(one, advance, spectral, curves, align))
+    if out is not None:
+        from compare.report.report import write_comparisons
+
+        write_comparisons(found, out)
+    comparison_view.show_comparisons(found, every, as_json)
+
+
+class Style(StrEnum):
+    """Where a figure will stand."""
+
+    journal = "journal"
+    screen = "screen"
+
+
+class Format(StrEnum):
+    """What a figure can be written as."""
+
+    pdf = "pdf"
+    svg = "svg"
+    png = "png"
+
+
+class Language(StrEnum):
+    """What a figure can be labelled in."""
+
+    en = "en"
+    zh = "zh"
+
+
+@app.command()
+def figure(
+    scene: SceneArgument,
+    out: Annotated[Path, typer.Option(help="The file: .pdf, .svg or .png.")],
+    engine: EngineOption = [],  # noqa: B006
+    model: ModelOption = None,
+    changes: SetOption = [],  # noqa: B006
+    variant: VariantOption = None,
+    given: WithOption = [],  # noqa: B006
+    style: Annotated[Style, typer.Option(help="For print, or for slides.")] = Style.journal,
+    columns: Annotated[
+        int, typer.Option(min=1, max=2, help="Of the page: 90 or 190 mm in print.")
+    ] = 1,
+    kind: Annotated[
+        Format | None, typer.Option("--format", help="Absent: what the file's name says.")
+    ] = None,
+    language: Annotated[
+        Language, typer.Option(help="Of the labels; zh needs a font that has it.")
+    ] = Language.en,
+    strict: StrictOption = False,
+) -> None:
+    """Draw the waveforms of a scene as a figure for a paper.
+
+    A panel for each variant and receiver, 90 or 190 mm wide, in letters of 7.5 and 8 points. PDF
+    and SVG hold their fonts. Each solution has the colour that it has everywhere, and dashes that
+    tell it from others without colour. Without --engine, all that apply are drawn.
+    """
+    from compare.cli import terminal
+    from compare.figures.print.make import Asked, make
+    from compare.runs import jobs
+
+    scenes = load(scene, changes, variant, strict)
+    runs = jobs.wanted([e.value for e in engine], model or []) if engine or model else []
+    curves = _read_curves(given, scenes, False)
+    asked = Asked(style.value, columns, kind.value if kind else None, language.value, out)
+    with terminal.progress(scenes[0].title) as advance:
+        path = make(scenes, runs, curves, asked, advance)
+    terminal.say(f"wrote {path}")
+
+
+def _read_curves(given: list[str], scenes: list[cases.Scene], align: bool) -> list[Any]:
+    """Read what `--with` names; what is wrong with it is said before anything is solved."""
+    if not given:
+        if align:
+            raise SceneError("--align", "", None, "needs --with: there is no clock to move")
+        return []
+    from compare.misfit.alignment import common_times
+    from compare.misfit.external import read_curves
+
+    curves = read_curves(given, scenes)
+    if not align:
+        for scene in scenes:
+            for one in curves:
+                if one.holds_for(scene):
+                    common_times(one, scene)
+    return curves

@@ -1,0 +1,166 @@
+"""What `jointwave doctor` looks at, one part after the other, in a process that may break.
+
+`python -m compare.cli.diagnostics.components NAME ...` prints a line of JSON for each: what is
+found, or why it is not. A library that ends the process takes only its own line with it, see
+`compare.cli.diagnostics.doctor`.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import sys
+from collections.abc import Callable
+from importlib import import_module
+from importlib.metadata import version
+
+CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+
+
+class Missing(Exception):
+    """A part that is not there, which is no fault of what is."""
+
+
+def _imported(module: str, package: str | None = None) -> Callable[[], str]:
+    """Return what imports a module and says the version of its package."""
+
+    def probe() -> str:
+        if module.split(".")[0] not in sys.modules and not _is_there(module):
+            raise Missing("is not installed")
+        import_module(module)
+        return version(package or module)
+
+    return probe
+
+
+def _is_there(module: str) -> bool:
+    from importlib.util import find_spec
+
+    return find_spec(module.split(".")[0]) is not None
+
+
+def _threads() -> str:
+    import numba
+    from numba import threading_layer
+
+    import numerics.jit  # noqa: F401  where kernels get their options
+
+    @numba.njit(parallel=True)
+    def count(n):
+        found = 0
+        for _ in numba.prange(n):
+            found += 1
+        return found
+
+    assert count(100) == 100
+    return f"{numba.get_num_threads()} of numba, by {threading_layer()}"
+
+
+def _petsc() -> str:
+    _imported("petsc4py")()
+    from petsc4py import PETSc
+
+    return f"{'.'.join(map(str, PETSc.Sys.getVersion()))}, {PETSc.ScalarType.__name__}"
+
+
+def _mpi() -> str:
+    own = _imported("mpi4py.MPI", "mpi4py")()
+    from mpi4py import MPI
+
+    library = MPI.Get_library_version().replace("\0", "").splitlines()[0].split(", package")[0]
+    return f"{library}, mpi4py {own}"
+
+
+def _dolfinx() -> str:
+    if not _is_there("dolfinx"):
+        raise Missing("is not installed")
+    import dolfinx
+
+    return dolfinx.__version__
+
+
+def _gmsh() -> str:
+    if not _is_there("gmsh"):
+        raise Missing("is not installed")
+    import gmsh
+
+    return gmsh.__version__
+
+
+def _adios() -> str:
+    _dolfinx()
+    from continuum.space.compat import vtx_writer
+
+    if vtx_writer() is None:
+        raise Missing("dolfinx is built without it")
+    return "there: snapshots can be written as VTX (--vtx)"
+
+
+def _ffmpeg() -> str:
+    found = shutil.which("ffmpeg")
+    if found is None and _is_there("imageio_ffmpeg"):
+        found = import_module("imageio_ffmpeg").get_ffmpeg_exe()
+    if found is None:
+        raise Missing("is not on the PATH")
+    return found
+
+
+def _chromium() -> str:
+    found = next((place for name in CHROMIUM if (place := shutil.which(name))), None)
+    if found is None:
+        raise Missing("is not on the PATH")
+    return found
+
+
+def _font() -> str:
+    from compare.figures.fonts import chinese_font
+
+    font = chinese_font()
+    if font is None:
+        raise Missing("is not installed")
+    return f"{font.name}, {font.fname}"
+
+
+#: By name; each returns what is found, and raises Missing or whatever goes wrong.
+PROBES: dict[str, Callable[[], str]] = {
+    **{
+        name: _imported(name)
+        for name in ("numpy", "numba", "scipy", "pydantic", "xarray", "matplotlib", "obspy")
+    },
+    "threads": _threads,
+    "dolfinx": _dolfinx,
+    "PETSc": _petsc,
+    "MPI": _mpi,
+    "gmsh": _gmsh,
+    "ADIOS2": _adios,
+    "pyvista": _imported("pyvista"),
+    "ffmpeg": _ffmpeg,
+    "Chinese font": _font,
+    "chromium": _chromium,
+}
+
+
+def probe(name: str) -> dict[str, str]:
+    """Return the state of a part, "found", "missing" or "broken", and what there is to say."""
+    try:
+        return {"part": name, "state": "found", "found": PROBES[name]()}
+    except Missing as reason:
+        return {"part": name, "state": "missing", "found": str(reason)}
+    except BaseException as error:
+        text = " ".join(f"{type(error).__name__}: {error}".split())
+        return {"part": name, "state": "broken", "found": text[:300]}
+
+
+def main() -> None:
+    """Print a line for each part that is named; what libraries print goes elsewhere."""
+    lines = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)
+    for name in sys.argv[1:]:
+        print(json.dumps(probe(name)), file=lines, flush=True)
+    lines.flush()
+    os._exit(0)  # what breaks while libraries are taken down is of no interest
+
+
+if __name__ == "__main__":
+    main()

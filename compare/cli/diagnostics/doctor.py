@@ -1,0 +1,198 @@
+"""What there is of jointwave on this machine, and whether both engines give what they should.
+
+Libraries are looked at in processes of their own: one that breaks is a line of the report.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import subprocess
+import sys
+from collections.abc import Callable
+from importlib.metadata import version
+from math import nan
+from pathlib import Path
+from shutil import which
+from typing import NamedTuple
+
+from compare.cli.diagnostics.accuracy import PAIRS, Check, bound_of
+
+PATIENCE = 120.0  # s, for what only looks
+COMPILING = 1200.0  # s, for the self-check, which compiles where the cache is empty
+MOST_RANKS = 16  # that are tried
+COUNT_RANKS = """
+from mpi4py import MPI
+ranks = MPI.COMM_WORLD.allreduce(1)
+if MPI.COMM_WORLD.rank == 0:  # one speaks: lines of several ranks may run into each other
+    print(ranks)
+"""
+
+GROUPS = {
+    "program": ("numpy", "numba", "scipy", "pydantic", "xarray", "matplotlib", "obspy"),
+    "continuum": ("dolfinx", "PETSc", "gmsh", "MPI", "ADIOS2"),
+    "machine": ("threads",),
+    "optional": ("pyvista", "ffmpeg", "Chinese font", "chromium"),
+}
+
+#: How to get what is not there.
+HINTS = {
+    "dolfinx": "make setup; or apt install python3-dolfinx; or fenics-dolfinx of conda-forge",
+    "PETSc": "comes with dolfinx",
+    "gmsh": "pip install gmsh; only meshes in two and three dimensions need it",
+    "MPI": "comes with dolfinx; or pip install mpi4py",
+    "ADIOS2": "only --vtx needs it; dolfinx of conda-forge has it",
+    "mpiexec": "apt install openmpi-bin; or conda install -c conda-forge mpich",
+    "pyvista": "pip install pyvista",
+    "ffmpeg": "apt install ffmpeg; or pip install imageio-ffmpeg",
+    "Chinese font": "apt install fonts-wqy-microhei (or fonts-noto-cjk, for SVG and PNG)",
+    "chromium": "apt install chromium; only tests of the page need it",
+}
+
+
+class Part(NamedTuple):
+    """A line of the report: "found", "missing" or "broken", and what to do about it."""
+
+    group: str
+    part: str
+    state: str
+    found: str
+    hint: str = ""
+
+
+class Health(NamedTuple):
+    """Everything that `jointwave doctor` says."""
+
+    parts: list[Part]
+    checks: list[Check]
+
+    @property
+    def is_well(self) -> bool:
+        """Whether both engines give what they should."""
+        return all(check.holds for check in self.checks)
+
+
+def examine(progress: Callable[[float], None]) -> Health:
+    """Look at everything; `progress` is called with the finished fraction."""
+    parts = [_program(), *_libraries()]
+    progress(0.3)
+    parts += [_mpiexec(), *_machine(), _cache()]
+    progress(0.5)
+    checks = []
+    for i, pair in enumerate(PAIRS):
+        checks.append(_check(pair))
+        progress(0.5 + 0.5 * (i + 1) / len(PAIRS))
+    order = list(GROUPS)
+    return Health(sorted(parts, key=lambda part: order.index(part.group)), checks)
+
+
+def _program() -> Part:
+    python = f"Python {platform.python_version()} ({sys.executable})"
+    return Part("program", "jointwave", "found", f"{version('jointwave')}, {python}")
+
+
+def _libraries() -> list[Part]:
+    """Return what the probes find; one that ends its process is broken, and the next go on."""
+    group_of = {name: group for group, names in GROUPS.items() for name in names}
+    left, parts = list(group_of), []
+    while left:
+        done = _run([sys.executable, "-m", "compare.cli.diagnostics.components", *left], PATIENCE)
+        found = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
+        if len(found) < len(left):
+            found.append({"part": left[len(found)], "state": "broken", "found": _end(done)})
+        for one in found:
+            hint = HINTS.get(one["part"], "") if one["state"] != "found" else ""
+            parts.append(Part(group_of[one["part"]], **one, hint=hint))
+        left = left[len(found) :]
+    return parts
+
+
+def _mpiexec() -> Part:
+    """Return how many processes the launcher starts that see each other."""
+    launcher, cores = which("mpiexec"), min(_cores(), MOST_RANKS)
+    if launcher is None:
+        return Part("continuum", "mpiexec", "missing", "is not on the PATH", HINTS["mpiexec"])
+    for ranks in sorted({cores, min(2, cores), 1}, reverse=True):
+        done = _run([launcher, "-n", str(ranks), sys.executable, "-c", COUNT_RANKS], PATIENCE)
+        if done.stdout.strip() == str(ranks):
+            most = " or more" if ranks == MOST_RANKS else ""
+            found = f"{launcher}: {ranks}{most} ranks on {_cores()} cores"
+            return Part("continuum", "mpiexec", "found", found)
+    if os.geteuid() == 0 and "run-as-root" in done.stderr.lower().replace(" ", "-"):
+        hint = "set OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1"
+        return Part("continuum", "mpiexec", "broken", f"{launcher} starts nothing for root", hint)
+    found = f"{launcher} starts no ranks: {_end(done)}"
+    return Part("continuum", "mpiexec", "broken", found, "mpi4py may belong to another MPI")
+
+
+def _machine() -> list[Part]:
+    from cases.errors import SceneError
+    from cases.size import LIMIT, memory, spoken
+
+    try:
+        size = Part("machine", "memory", "found", f"{spoken(memory())} for a run")
+    except SceneError as error:
+        size = Part("machine", "memory", "broken", str(error), f"unset {LIMIT}")
+    cores = f"{_cores()} of {os.cpu_count()}, {platform.machine()}, {platform.platform()}"
+    return [Part("machine", "cores", "found", cores), size]
+
+
+def _cores() -> int:
+    """Return how many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _cache() -> Part:
+    """Return where compiled kernels are kept, and how large that has grown."""
+    from cases.size import spoken
+
+    try:
+        import numerics.jit
+    except Exception as error:
+        return Part("machine", "kernel cache", "broken", f"numba cannot be imported: {error}")
+    folder = Path(numerics.jit.numba.config.CACHE_DIR).parent
+    files = [file for file in folder.rglob("*") if file.is_file()] if folder.is_dir() else []
+    size = spoken(sum(file.stat().st_size for file in files))
+    states = sum(place.is_dir() for place in folder.iterdir()) if folder.is_dir() else 0
+    found = f"{folder}: {size} of {states} states of the program; `rm -r {folder}` clears it"
+    place = next(place for place in (folder, *folder.parents) if place.exists())
+    if not os.access(place, os.W_OK):
+        hint = "set NUMBA_CACHE_DIR to a folder that can be written, or every run compiles"
+        return Part("machine", "kernel cache", "broken", f"{folder} cannot be written", hint)
+    return Part("machine", "kernel cache", "found", found)
+
+
+def _check(pair: str) -> Check:
+    done = _run([sys.executable, "-m", "compare.cli.diagnostics.accuracy", pair], COMPILING)
+    try:
+        return Check(**json.loads(done.stdout.splitlines()[-1]))
+    except (ValueError, IndexError, TypeError):
+        return Check(pair, nan, bound_of(pair), nan, _end(done))
+
+
+def _run(command: list[str], seconds: float) -> subprocess.CompletedProcess[str]:
+    """Return a process that has ended, by itself or because its time was up.
+
+    What a library has put into this process's own environment, as MPI does, is not passed on.
+    """
+    try:
+        return subprocess.run(
+            command,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=seconds,
+            env=dict(os.environ),
+        )
+    except subprocess.TimeoutExpired as error:
+        said = error.stdout or b""
+        text = said.decode(errors="replace") if isinstance(said, bytes) else said
+        return subprocess.CompletedProcess(command, 1, text, f"took more than {seconds:g} s")
+
+
+def _end(done: subprocess.CompletedProcess[str]) -> str:
+    """Return in one line how a process has ended that did not do its work."""
+    lines = [line.strip() for line in done.stderr.splitlines() if any(map(str.isalnum, line))]
+    how = f"signal {-done.returncode}" if done.returncode < 0 else f"exit code {done.returncode}"
+    return f"{lines[-1][:300]} ({how})" if lines else f"ended with {how}"

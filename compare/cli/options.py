@@ -1,0 +1,157 @@
+"""The program `jointwave`, what its commands take, and how they read scenes."""
+
+import os
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import cases
+from cases.errors import SceneError, printable
+from compare.cli import completion
+from compare.runs.processes import started
+from compare.scenes import find
+
+app = typer.Typer(
+    epilog="Start with: jointwave list, jointwave compare guo-li-2002/fig-03, jointwave report",
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+SceneArgument = Annotated[
+    str,
+    typer.Argument(
+        help="A scene file, or a shipped scene such as guo-li-2002/fig-03.",
+        autocompletion=completion.scenes,
+    ),
+]
+
+
+class Engine(StrEnum):
+    """What can simulate or solve a scene."""
+
+    dem = "dem"
+    continuum = "continuum"
+    exact = "exact"
+
+
+EngineOption = Annotated[list[Engine], typer.Option(help="May be given more than once.")]
+ModelOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="Of the continuum (jointed, equivalent) or an exact solution's name.",
+        autocompletion=completion.models,
+    ),
+]
+SetOption = Annotated[
+    list[str],
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change one key, for every variant.",
+        autocompletion=completion.settings,
+    ),
+]
+SweepOption = Annotated[
+    list[str],
+    typer.Option(
+        "--sweep",
+        metavar="KEY=VALUES",
+        help="Every value of a key: FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C; more than once: "
+        "all combinations. A folder for each, and a table, sweep.csv and sweep.nc.",
+        autocompletion=completion.settings,
+    ),
+]
+VariantOption = Annotated[
+    str | None,
+    typer.Option(
+        help="Only this variant; '' is the scene as it stands.", autocompletion=completion.variants
+    ),
+]
+OutOption = Annotated[Path, typer.Option(help="Folder for the results.")]
+WithOption = Annotated[
+    list[str],
+    typer.Option(
+        "--with",
+        metavar="FILE[:COLUMN][=][LABEL]",
+        help="Curves of others: FILE, FILE:stress@20, FILE:COLUMN=stress@20; more than once.",
+    ),
+]
+WorkersOption = Annotated[int, typer.Option(min=1, help="Processes, where nothing is timed.")]
+DryOption = Annotated[
+    bool,
+    typer.Option("--dry-run", help="Only say what would run, how long, and how much memory."),
+]
+StrictOption = Annotated[
+    bool, typer.Option("--strict", help="Refuse a scene that would be warned of.")
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON for a machine to read.")]
+
+CORES = os.cpu_count() or 1
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        print(f"jointwave {version('jointwave')}")
+        raise typer.Exit
+
+
+@app.callback()
+def root(
+    context: typer.Context,
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version."),
+    ] = False,
+) -> None:
+    """Stress waves in jointed rock: rigid blocks and continuum, refereed by exact solutions."""
+    command = context.invoked_subcommand
+    if command not in ("run", "study") and started().comm is not None:
+        allowed = f"jointwave {command} works in one process; only run and study share their work"
+        raise SceneError("mpiexec", "", None, allowed)
+
+
+def load(
+    scene: str, changes: list[str], variant: str | None, strict: bool = False
+) -> list[cases.Scene]:
+    """Return a file's variants, or the one that is named, with `--set` applied, warned of."""
+    from cases.read import parse_override
+
+    overrides = dict(parse_override(text) for text in changes)
+    path = find(scene)
+    if variant is None:
+        found = cases.load(path, overrides)
+    else:
+        found = [cases.load_variant(path, variant, overrides)]
+    warn(found, strict)
+    return found
+
+
+def warn(scenes: list[cases.Scene], strict: bool = False) -> None:
+    """Print what scenes say but hardly mean, a line each; strict : it is an error.
+
+    Raises SceneError of the first line, with the number of the others.
+    """
+    from cases.warnings import warnings
+
+    found: dict[str, list[cases.Scene]] = {}
+    for scene in scenes:
+        for line in warnings(scene):
+            found.setdefault(line, []).append(scene)
+    lines = [f"{line}{_whose(said, scenes)}" for line, said in found.items()]
+    if strict and lines:
+        more = f" (and {len(lines) - 1} more)" if len(lines) > 1 else ""
+        raise SceneError(scenes[0].where, "", None, f"{lines[0]}{more}, refused by --strict")
+    for line in lines:
+        print(f"jointwave: warning: {printable(line)}", file=sys.stderr)
+
+
+def _whose(said: list[cases.Scene], scenes: list[cases.Scene]) -> str:
+    """Return which variants say what is warned of, where not all do."""
+    if len(said) == len(scenes):
+        return ""
+    return f" [{', '.join(scene.name or 'without a variant' for scene in said)}]"

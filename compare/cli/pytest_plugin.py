@@ -1,0 +1,151 @@
+"""Scene files as tests: each *.toml with an [expect] table, one test per variant and pair.
+
+`pytest my-scenes/` collects them. This module is loaded by every pytest run of the environment, so
+it imports nothing heavy before a scene is met; any other TOML file is left alone.
+"""
+
+import shlex
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from warnings import warn
+
+import pytest
+
+#: Results of this session by (scene hash, name).
+RESULTS = pytest.StashKey[dict]()
+
+
+LARGEST_FILE = 10_000_000  # bytes, as of any scene
+
+
+class SceneWarning(UserWarning):
+    """What a scene says but hardly means."""
+
+
+class Misfit(Exception):
+    """A pair that is further apart than its scene expects, or that cannot be measured."""
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "SceneFile | None":
+    """Collect a TOML file that describes a scene and says what it expects."""
+    if file_path.suffix != ".toml" or not _is_scene(file_path):
+        return None
+    return SceneFile.from_parent(parent, path=file_path)
+
+
+def _is_scene(path: Path) -> bool:
+    """Return whether a file reads like a scene with an [expect] table, its own or a variant's.
+
+    Broken TOML is told by its lines, so that a typing error does not remove a scene from the tests.
+    """
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            return False
+        text = path.read_text(encoding="utf-8-sig")
+        table = tomllib.loads(text)
+    except (OSError, UnicodeDecodeError):
+        return False
+    except (ValueError, RecursionError):
+        return {"[pillar]", "[expect]"} <= {
+            line.split("#")[0].strip() for line in text.splitlines()
+        }
+    variants = table.get("variants", [])
+    tables = [table, *(variants if isinstance(variants, list) else [])]
+    return "pillar" in table and any("expect" in t for t in tables if isinstance(t, dict))
+
+
+class SceneFile(pytest.File):
+    """One scene file; its tests are the pairs of [expect] in each variant that they apply to."""
+
+    def collect(self) -> Iterator["PairItem"]:
+        from cases import SceneError, load
+
+        try:
+            scenes = load(self.path)
+        except SceneError as error:
+            yield PairItem.from_parent(self, name="scene", reason=str(error))
+            return
+        for scene in scenes:
+            for pair, bound in scene.expect.items():
+                if not _reason(pair, scene):
+                    name = f"{scene.name}: {pair}" if scene.name else pair
+                    yield PairItem.from_parent(self, name=name, scene=scene, pair=pair, bound=bound)
+        yield from self._never(scenes)
+
+    def _never(self, scenes) -> Iterator["PairItem"]:
+        """Yield a failing test for each pair that applies to no variant."""
+        for pair in dict.fromkeys(pair for scene in scenes for pair in scene.expect):
+            reasons = [_reason(pair, scene) for scene in scenes if pair in scene.expect]
+            if all(reasons):
+                reason = f"{pair} applies to no variant: {reasons[0]}"
+                yield PairItem.from_parent(self, name=pair, reason=reason)
+
+
+class PairItem(pytest.Item):
+    """The misfit of one pair in one variant, held to its bound."""
+
+    def __init__(self, *, scene=None, pair="", bound=0.0, reason="", **kwargs) -> None:
+        super().__init__(**kwargs)
+        self.scene, self.pair, self.bound, self.reason = scene, pair, bound, reason
+
+    def runtest(self) -> None:
+        """Measure the pair; raises Misfit with all that the user needs to know."""
+        if self.reason:
+            raise Misfit(self.reason)
+        self._warn()
+        from cases.errors import SceneError, UnstableError
+        from compare.misfit.metrics import worst
+
+        try:
+            one, other = (self._solved(name) for name in self.pair.split(" ~ "))
+        except (SceneError, UnstableError) as error:
+            raise Misfit(f"{self.pair}: {error}") from None
+        found = worst(one, other)
+        self.user_properties.append(("misfit", float(found.misfit)))
+        if not found.misfit <= self.bound:
+            far = f"misfit {found.misfit:.3g} of {found.where} exceeds the bound {self.bound:g}"
+            raise Misfit(f"{self.pair}: {far}\n{self._command()}")
+        if not found.judged <= self.bound:
+            least = f"the reference itself errs by {found.floor:.2g}, a tenth of what it can judge"
+            raise Misfit(f"{self.pair}: {least}; the bound is {self.bound:g}")
+
+    def _warn(self) -> None:
+        """Warn of what the scene hardly means; an error where pytest takes warnings for errors."""
+        from cases.warnings import warnings
+
+        for line in warnings(self.scene):
+            warn(SceneWarning(f"{self.scene.where}: {line}"), stacklevel=1)
+
+    def _solved(self, name: str):
+        """Return a result; each engine runs once in a session for the same scene."""
+        from compare.engines import solve
+        from results.dataset import scene_hash
+
+        results = self.session.stash.setdefault(RESULTS, {})
+        key = scene_hash(self.scene), name
+        if key not in results:
+            results[key] = solve(name, self.scene)
+        return results[key]
+
+    def _command(self) -> str:
+        variant = ["--variant", self.scene.name]
+        return shlex.join(["jointwave", "compare", str(self.path), *variant, "--out", "misfit"])
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style=None):
+        """Return the message alone: a traceback would say nothing about the scene."""
+        if isinstance(excinfo.value, Misfit | SceneWarning):
+            return str(excinfo.value)
+        return super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[Path, None, str]:
+        """Return where the test stands."""
+        return self.path, None, self.name
+
+
+def _reason(pair: str, scene) -> str:
+    """Return why a pair does not apply to a scene, or nothing."""
+    from compare.engines import applies
+
+    answers = {name: applies(name, scene) for name in pair.split(" ~ ")}
+    return "; ".join(f"{name}: {answer.reason}" for name, answer in answers.items() if not answer)

@@ -1,0 +1,167 @@
+"""What each command shows: its findings as tables, or the same facts as JSON."""
+
+from pathlib import Path
+from typing import Any
+
+from cases.schema.scene import Scene
+from compare.cli.terminal import print_json, say, show_numbers, show_table
+
+MOST_PIECES = 8  # in a line
+
+
+def show_scenes(rows: list[tuple[Path, list[Scene]]], as_json: bool) -> None:
+    """Print the shipped scenes."""
+    facts: list[dict[str, Any]] = [
+        {
+            "scene": f"{path.parent.name}/{path.stem}",
+            "title": scenes[0].title,
+            "variants": [s.name for s in scenes[1:]],
+        }
+        for path, scenes in rows
+    ]
+    if as_json:
+        print_json(facts)
+        return
+    cells = [[f["scene"], f["title"], ", ".join(f["variants"])] for f in facts]
+    show_table(["scene", "title", "variants"], cells)
+
+
+def show_runs(done: list[Any], as_json: bool) -> None:
+    """Print what was run, what it cost and where it is."""
+    facts = [
+        {
+            "variant": d.job.scene.name,
+            "engine": d.job.name,
+            "steps": d.steps,
+            "seconds_stepping": d.seconds,
+            "energy_residual": d.residual,
+            "file": str(d.job.path),
+            "fragments": d.fragments,
+            "static_out_of_balance": d.out_of_balance,
+            "fields": [str(path) for path in d.fields],
+        }
+        for d in done
+    ]
+    if as_json:
+        print_json(facts)
+        return
+    columns = ["variant", "engine", "steps", "stepping, s", "energy residual", "file"]
+    show_table(columns, [_run_cells(d) for d in done])
+    for d in done:
+        name = d.job.scene.name or d.job.name
+        if d.out_of_balance is not None:
+            say(f"{name}: starts at rest, out-of-balance force ratio {d.out_of_balance:.1e}")
+        if d.fragments is not None:
+            say(f"{name}: {_what_broke(d.fragments)}")
+        for path in d.fields:
+            say(f"{name}: snapshots for ParaView, {path}")
+        if d.job.scene.record.fields is not None and not d.fields:
+            say(f"{name}: no snapshots, its solution is known at the receivers only")
+
+
+def _what_broke(fragments: list[dict[str, Any]]) -> str:
+    """Return in one line how many joints broke, and the pieces between them."""
+    count = len(fragments) - 1
+    if not count:
+        return "no joint broke"
+    broke = f"{count} joint{'s' * (count > 1)} broke; fragments: "
+    pieces = [_piece(f) for f in fragments[:MOST_PIECES]]
+    left_out = [f"{len(fragments) - MOST_PIECES} more"] if len(fragments) > MOST_PIECES else []
+    return broke + ", ".join(pieces + left_out)
+
+
+def _piece(fragment: dict[str, Any]) -> str:
+    v = fragment["velocity"]
+    speed = f"{v:.3g}" if isinstance(v, float) else f"({', '.join(f'{x:.3g}' for x in v)})"
+    return f"{fragment['from_y']:g} to {fragment['to_y']:g} m at {speed} m/s"
+
+
+def _run_cells(done: Any) -> list[str]:
+    stepped = done.steps > 0
+    return [
+        done.job.scene.name or "-",
+        done.job.name,
+        f"{done.steps:,}" if stepped else "-",
+        f"{done.seconds:.2g}" if stepped else "-",
+        "-" if done.residual is None else f"{done.residual:.1e}",
+        str(done.job.path),
+    ]
+
+
+def show_explanation(found: Any, as_json: bool) -> None:
+    """Print what a scene calls for, its steps, and what can solve it."""
+    if as_json:
+        print_json(_explanation_facts(found))
+        return
+    p = found.properties
+    say(f"{found.scene.title} {found.scene.name}", "bold")
+    say(
+        f"{p.block_count} blocks of {p.spacing:g} m; E_eq {p.modulus:.4g} Pa, Poisson "
+        f"{p.poisson:.4g}, bar speed {p.bar_speed:.5g} m/s, K'_n {p.regular_stiffness:.4g} Pa/m"
+    )
+    effects = [[e.name, "yes" if e.active else "left out", e.reason] for e in found.effects]
+    show_table(["effect", "computed", "because"], effects)
+    steps = [
+        [s.engine, f"{s.critical:.4g}", f"{s.dt:.4g}", f"{s.dt / s.critical:.3g}", f"{s.steps:,}"]
+        for s in found.steps
+    ]
+    show_table(["engine", "critical step, s", "step, s", "fraction", "steps"], steps)
+    say(_cost_sentence(found.cost))
+    answers = [[k, "yes" if a else "no", a.reason] for k, a in found.answers.items()]
+    show_table(["solution", "applies", "why not"], answers)
+    for engine, reference in found.references.items():
+        held = "not checked independently: no other solution leaves out less"
+        if reference is not None:
+            held = f"held against {reference.name}: {reference.reason}"
+        say(f"{engine} is {held}")
+
+
+def _cost_sentence(cost: Any) -> str:
+    """Return what a step costs, as far as it is known."""
+    if cost.own is None:
+        return "what a step of a rigid block takes here is known after a run, or by --measure"
+    own = f"a step of a rigid block takes {cost.own:.2g} ns here"
+    if cost.everything is None:
+        return own
+    share = 100 * cost.own / cost.everything
+    return f"{own}, {share:.2g} % of the {cost.everything:.2g} ns with every effect"
+
+
+def _explanation_facts(found: Any) -> dict[str, Any]:
+    p = found.properties
+    return {
+        "title": found.scene.title,
+        "variant": found.scene.name,
+        "blocks": p.block_count,
+        "bar_speed": p.bar_speed,
+        "equivalent_modulus": p.modulus,
+        "poisson": p.poisson,
+        "effects": {e.name: {"active": e.active, "why": e.reason} for e in found.effects},
+        "steps": [s.__dict__ for s in found.steps],
+        "nanoseconds_per_block_step": found.cost.own,
+        "nanoseconds_with_everything": found.cost.everything,
+        "references": {k: r._asdict() if r else None for k, r in found.references.items()},
+        "solutions": {k: {"applies": a.yes, "why_not": a.reason} for k, a in found.answers.items()},
+    }
+
+
+def show_report(found: Any, as_json: bool) -> None:
+    """Print the report's summary and where the page is."""
+    if as_json:
+        print_json({"page": str(found.page), "columns": found.columns, "rows": found.rows})
+        return
+    for engine, sentence in found.overview.lead:
+        say(f"{engine} {sentence}")
+    if found.about:
+        say(f"\n{found.about.sentence}")
+    say("\nLargest relative L2 misfit over the variants of each scene, in %:")
+    groups = {
+        kind: [[cell.replace("< ", "<") for cell in row] for row in rows]
+        for kind, rows in found.summary.groups.items()
+    }
+    show_numbers(found.summary.header, groups)
+    findings = [finding for group in found.findings.values() for finding in group]
+    if findings:
+        holding = sum(finding.holds for finding in findings)
+        say(f"{holding} of {len(findings)} claims that the paper's figures make hold.")
+    say(f"report: {found.page}")

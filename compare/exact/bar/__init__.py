@@ -1,0 +1,1 @@
+"""Bars of deformable rock, homogenised or with every joint resolved."""

@@ -1,0 +1,110 @@
+"""Undamped homogenised bar by images (d'Alembert; Graff, Wave Motion in Elastic Solids, 1975).
+
+The end stress f enters with amplitude g and runs up and down the bar, multiplied at each end by
+that end's reflection coefficient of stress: R = -1 free, +1 fixed, 0 quiet or matched.
+
+    sigma = g sum_k (R_start R_end)^k [f(t - (2kL + y)/c) + R_end f(t - (2(k+1)L - y)/c)]
+    v = (g/Z) sum_k (R_start R_end)^k [f(t - (2kL + y)/c) - R_end f(t - (2(k+1)L - y)/c)]
+
+g = 1 at a free start; behind a dashpot Z (quiet or matched start) half the stress goes into the
+dashpot, g = 1/2. Displacement is v with the load's impulse in place of f.
+
+Holds for any load; no dashpots, no soft layers, every joint carries tension.
+"""
+
+from collections.abc import Callable
+from math import floor
+
+import numpy as np
+import xarray as xr
+
+from cases.loads import load_history
+from cases.material.calibrate import calibrate
+from cases.sampling import sample_times
+from cases.schema.scene import Scene
+from compare.exact.answer import YES, Answer, Form, Resolves, Rock, no
+from compare.exact.conditions import (
+    bars_tension,
+    beyond,
+    has_interfaces,
+    joints_are_damped,
+    static_stress,
+)
+from results.dataset import dataset
+
+NAME = "images"
+RESOLVES = Resolves(Rock.HOMOGENISED, Form.CLOSED)
+MOST_TRIPS = 1_000_000  # through the bar and back
+
+#: Reflection coefficient of stress at an end of the bar.
+REFLECTION = {"free": -1.0, "fixed": 1.0, "quiet": 0.0, "matched": 0.0}
+#: Share of the end stress that enters the bar.
+ENTERS = {"free": 1.0, "quiet": 0.5, "matched": 0.5}
+
+
+def applies(scene: Scene) -> Answer:
+    """Return whether images are the exact solution of the scene's homogenised bar."""
+    p = calibrate(scene)
+    if reason := beyond(scene, "prestress"):
+        return no(reason)
+    if bars_tension(p):
+        return no("a joint bars tension")
+    if joints_are_damped(p):
+        return no("the joints are damped")
+    if has_interfaces(p):
+        return no("a soft layer reflects within the bar")
+    if scene.ends.start not in ENTERS:
+        return no("the loaded end is fixed")
+    if p.bar_speed * scene.time.duration > 2 * scene.pillar.length * MOST_TRIPS:
+        return no(f"the wave runs through the bar more than {MOST_TRIPS:,} times")
+    return YES
+
+
+def solve(scene: Scene) -> xr.Dataset:
+    """Return stress, velocity and displacement of the scene's homogenised bar."""
+    p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
+    ends = scene.ends.start, scene.ends.end
+
+    def waves(signal: Callable, places: list[float]) -> tuple[np.ndarray, np.ndarray]:
+        start, end = (REFLECTION[kind] for kind in ends)
+        return images(signal, places, times, scene.pillar.length, p.bar_speed, start, end)
+
+    enters = ENTERS[scene.ends.start]
+    there, back = waves(load.value, scene.record.stress)
+    stress = enters * (there + back)
+    there, back = waves(load.value, scene.record.velocity)
+    velocity = enters * (there - back) / p.impedance
+    there, back = waves(load.impulse, scene.record.velocity)
+    displacement = enters * (there - back) / p.impedance
+    return dataset(scene, NAME, times, stress + static_stress(scene), velocity, displacement)
+
+
+def images(
+    signal: Callable[[np.ndarray], np.ndarray],
+    places: list[float] | np.ndarray,
+    times: np.ndarray,
+    length: float,
+    speed: float,
+    start: float = -1.0,
+    end: float = -1.0,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the waves that run from the start and back to it, each [places, times].
+
+    Stress is their sum, particle velocity their difference over the impedance.
+
+    Parameters
+    ----------
+    signal : what enters at y = 0, a function of time (s), zero before t = 0.
+    places, times : m and s.
+    length, speed : of the bar, m and m/s.
+    start, end : reflection coefficients of stress at the two ends.
+    """
+    y, t = np.asarray(places, dtype=float)[:, None], np.asarray(times, dtype=float)
+    there, back = np.zeros((2, len(y), len(t)))
+    for k in range(floor(speed * t[-1] / (2 * length)) + 1):
+        trips = (start * end) ** k
+        if trips:
+            there += trips * signal(t - (2 * k * length + y) / speed)
+        if trips * end:
+            back += trips * end * signal(t - (2 * (k + 1) * length - y) / speed)
+    return there, back

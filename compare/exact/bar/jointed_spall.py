@@ -1,0 +1,31 @@
+"""Where and when a pulse first pulls one of the joints of deformable jointed rock apart.
+
+Until then the rock is linear: the first failure is that of the stress at all joints of
+`jointed_bar`, to the scene's interval between samples. Of the homogenised bar and of rigid blocks
+see `spall`.
+"""
+
+import numpy as np
+
+from cases.loads import load_history
+from cases.material.calibrate import calibrate
+from cases.sampling import sample_times
+from cases.schema.scene import Scene
+from compare.exact.bar.jointed_bar import bar
+from compare.exact.bar.laplace import response
+from compare.exact.bar.spall import Spall
+
+
+def jointed_spall(scene: Scene) -> Spall | None:
+    """Return the first failure of the scene's jointed rock, None where there is none."""
+    p, times = calibrate(scene), sample_times(scene)
+    if p.tensile_strength is None:
+        raise ValueError("no joint has a tensile strength")
+    load, period = load_history(scene), scene.load.period
+    stress, _, _ = response(bar(scene), load, times, p.joint_y.tolist(), [], period)
+    fails = stress <= -p.tensile_strength[:, None]
+    if not fails.any():
+        return None
+    first = int(np.argmax(fails.any(axis=0)))
+    joint = int(np.argmin(stress[:, first] / p.tensile_strength))
+    return Spall(float(scene.pillar.length - p.joint_y[joint]), float(times[first]))

@@ -1,0 +1,137 @@
+"""Modes of the damped free-free bar, sigma = E (strain + eta strain rate), under a sine.
+
+    q_n'' + eta omega_n^2 q_n' + omega_n^2 q_n = f(t),   omega_n = n pi c / L,   x = y / L,
+    u = (1/(rho L)) [int int f + 2 sum_n cos(n pi x) q_n]
+    sigma = (2 c / L) sum_n sin(n pi x) omega_n (q_n + eta q_n')
+
+The modal damping ratio is eta omega_n / 2 (Graff, Wave Motion in Elastic Solids, 1975); above 1
+the roots r of r^2 + eta omega_n^2 r + omega_n^2 are real. q_n follows from
+C(r) = int_0^t f(s) e^{r (t - s)} ds. What high modes tend to, q_n = w / omega_n^2 with
+w + eta w' = f, is summed in closed form: sigma = f (1 - x) and
+u = (L / E)(1/3 - x + x^2/2) w. What is left converges as 1/n^3 and 1/n^4.
+
+Holds for shape "sine", free ends, dashpots, no soft layers, every joint carrying tension.
+
+A harmonic wave in this rock has the modulus E (1 + i omega eta), hence attenuation and dispersion.
+"""
+
+from math import pi
+
+import numpy as np
+import xarray as xr
+
+from cases.loads import Sine, load_history
+from cases.material.calibrate import calibrate
+from cases.sampling import sample_times
+from cases.schema.scene import Scene
+from compare.exact.answer import YES, Answer, Resolves, Rock, no
+from compare.exact.bar.series import rigid
+from compare.exact.conditions import (
+    bars_tension,
+    beyond,
+    has_interfaces,
+    rock_is_damped,
+    static_stress,
+)
+from results.dataset import dataset
+
+NAME = "kelvin-voigt"
+RESOLVES = Resolves(Rock.HOMOGENISED)
+SAFETY = 2.0
+ROUND_OFF = 1e-9  # of a waveform's peak
+SPLIT = 1e-5  # least distance of a mode's roots: q_n is even in it, so it costs 1e-10
+
+
+def applies(scene: Scene) -> Answer:
+    """Return whether the scene's homogenised bar is damped, free, uniform, and under a sine."""
+    p = calibrate(scene)
+    if reason := beyond(scene, "prestress"):
+        return no(reason)
+    if bars_tension(p):
+        return no("a joint bars tension")
+    if not rock_is_damped(p):
+        return no("the rock is not damped")
+    if has_interfaces(p):
+        return no("a soft layer reflects within the bar")
+    if (scene.ends.start, scene.ends.end) != ("free", "free"):
+        return no("an end is not free")
+    return YES if scene.load.shape == "sine" else no("the load is not a sine")
+
+
+def solve(scene: Scene, n_terms: int = 500) -> xr.Dataset:
+    """Return stress, velocity and displacement of the damped bar."""
+    p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
+    assert isinstance(load, Sine) and p.time_constant is not None
+    length, record, eta = scene.pillar.length, scene.record, p.time_constant
+    sections, points = np.array(record.stress), np.array(record.velocity)
+    f, x = load.value(times), points / length
+    w = _convolution(-1 / eta, load, times).real / eta
+    w_rate = (f - w) / eta
+    stress = np.outer(1 - sections / length, f)
+    static = (length / p.bar_speed) ** 2 * (1 / 3 - x + x**2 / 2)
+    rigid_velocity, rigid_displacement = rigid(load, times)
+    velocity = rigid_velocity + np.outer(static, w_rate)
+    displacement = rigid_displacement + np.outer(static, w)
+    found = {"stress": stress, "velocity": velocity, "displacement": displacement}
+    half = {}
+    for n in range(1, n_terms + 1):
+        mode, shape = n * pi * p.bar_speed / length, 2 * np.cos(n * pi * x)
+        q, rate = response(mode, eta, load, times)
+        excess = 2 * p.bar_speed / length * (mode * (q + eta * rate) - f / mode)
+        found["stress"] += np.outer(np.sin(n * pi * sections / length), excess)
+        found["velocity"] += np.outer(shape, rate - w_rate / mode**2)
+        found["displacement"] += np.outer(shape, q - w / mode**2)
+        if n == n_terms // 2:
+            half = {name: waves.copy() for name, waves in found.items()}
+    errors = {}
+    for name, waves in found.items():
+        if name != "stress":
+            waves /= p.density * length
+            half[name] /= p.density * length
+        errors[name] = _left_out(waves, half[name])
+    found["stress"] += static_stress(scene)
+    return dataset(scene, NAME, times, **found, errors=errors)
+
+
+def _left_out(waves: np.ndarray, half: np.ndarray) -> np.ndarray:
+    """Return the bound of the errors of sums of modes [receivers, n] by the sums of half of them.
+
+    The second half of terms that fall as 1/n^2 is as large as what is left out, of 1/n^3 thrice.
+    """
+    from scipy.ndimage import maximum_filter1d
+
+    last = maximum_filter1d(np.abs(waves - half), 3, axis=1)
+    peak = np.abs(waves).max(axis=1, initial=0.0)
+    return SAFETY * np.sqrt(np.mean(last**2, axis=1)) + ROUND_OFF * peak
+
+
+def response(
+    mode: float, eta: float, load: Sine, times: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return q_n (Pa s2) and its rate (Pa s) for a mode (rad/s) and a time constant (s)."""
+    ratio = eta * mode / 2
+    split = np.sqrt(complex(ratio**2 - 1))
+    if abs(split) < SPLIT:
+        split = complex(SPLIT)
+    fast = -mode * (ratio + split)
+    slow = mode**2 / fast if abs(ratio**2 - 1) >= SPLIT**2 else -mode * (ratio - split)
+    a, b = _convolution(slow, load, times), _convolution(fast, load, times)
+    q, rate = (a - b) / (slow - fast), (slow * a - fast * b) / (slow - fast)
+    return q.real, rate.real
+
+
+def _convolution(root: complex, load: Sine, times: np.ndarray) -> np.ndarray:
+    """Return C(r) = int_0^t f(s) e^{r (t - s)} ds at `times`."""
+    omega, t, end = 2 * pi / load.period, np.maximum(times, 0.0), load.end
+    forced = omega * np.cos(omega * t) + root * np.sin(omega * t)
+    after = omega * np.exp(root * np.maximum(t - end, 0.0))
+    tail = np.where(t < end, forced, after)
+    return load.amplitude * (omega * np.exp(root * t) - tail) / (root**2 + omega**2)
+
+
+def wavenumber(omega: np.ndarray | float, speed: float, eta: float) -> np.ndarray:
+    """Return k (1/m) of e^{i(omega t - k y)}: k = omega / (c sqrt(1 + i omega eta)).
+
+    The phase speed is omega / Re k and the attenuation -Im k, about omega^2 eta / 2c.
+    """
+    return np.asarray(omega / (speed * np.sqrt(1 + 1j * np.asarray(omega) * eta)))

@@ -1,0 +1,1 @@
+"""Rows of rigid blocks, exact in time."""

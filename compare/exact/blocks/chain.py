@@ -1,0 +1,189 @@
+"""The chain of rigid blocks in continuous time, which `lattice` and `no_tension` integrate.
+
+Blocks of mass m, joints k_j and dashpots c_j between them, gap g_j = u_{j+1} - u_j:
+
+    m v_j' = F_{j-1} - F_j (+ load on block 1),   F_j = P - k_j g_j - c_j g_j'
+
+and where tension is barred F_j = max(F_j, 0), nothing while P < k_j g_j (Guo & Li 2002, equation
+10). F_0 and F_N are P and the reactions of the ends: none (free), dashpot Z A on the block (quiet,
+equation 9), dashpot Z A on a massless face behind the half-block spring 2k (matched), or that
+spring to a wall (fixed), which a load that is a motion moves. Each block also feels its weight and
+the damping -alpha m v_j. States count displacement from the prestressed state.
+
+A state is an array whose last axis holds w u of the N blocks (m/s), their N velocities (m/s) and
+w times the displacement of the two faces; w = 2 sqrt(k/m) makes its parts equally large.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import sqrt
+
+import numpy as np
+
+from cases.material.calibrate import Properties, calibrate
+from cases.sampling import interpolation
+from cases.schema.scene import Scene
+
+
+@dataclass(frozen=True)
+class Chain:
+    """What the equations of motion hold: forces in N, not tractions.
+
+    Attributes
+    ----------
+    mass : of one block, kg.
+    area : of the section, m2.
+    spacing : block thickness, m.
+    stiffness, viscosity : float arrays [N - 1], N/m and N s/m.
+    tension : bool array [N - 1], whether a joint carries tension.
+    ends : what holds the start and the end.
+    half_stiffness, half_viscosity : of the half block behind an end, N/m and N s/m.
+    dashpot : Z A of a quiet or matched end, N s/m.
+    prestress : N, compression positive.
+    gravity : its component along y, m/s2.
+    mass_damping : alpha, 1/s.
+    shaken : whether the drive is the velocity of the fixed start's wall (m/s), else a force (N).
+    gain : the drive by the scene's `drive` signal: the area (m2) or 1, along y.
+    """
+
+    mass: float
+    area: float
+    spacing: float
+    stiffness: np.ndarray
+    viscosity: np.ndarray
+    tension: np.ndarray
+    ends: tuple[str, str]
+    half_stiffness: float
+    half_viscosity: float
+    dashpot: float
+    prestress: float
+    gravity: float
+    mass_damping: float
+    shaken: bool
+    gain: float
+
+    @cached_property
+    def block_count(self) -> int:
+        """Number of blocks N."""
+        return len(self.stiffness) + 1
+
+    @cached_property
+    def rate(self) -> float:
+        """2 sqrt(k/m) of an ordinary joint, rad/s: the largest frequency of a long chain."""
+        return 2 * sqrt(self.half_stiffness / 2 / self.mass)
+
+    @property
+    def size(self) -> int:
+        """Length of a state."""
+        return 2 * self.block_count + 2
+
+    @cached_property
+    def bars_tension(self) -> bool:
+        """Whether any joint carries no tension."""
+        return not bool(self.tension.all())
+
+
+def chain(scene: Scene) -> Chain:
+    """Return the scene's chain of rigid blocks."""
+    p, gravity, ends = calibrate(scene), scene.gravity, (scene.ends.start, scene.ends.end)
+    half = 2 * p.regular_stiffness * p.area
+    prestress = scene.prestress.normal * p.area if scene.prestress else 0.0
+    return Chain(
+        mass=p.block_mass,
+        area=p.area,
+        spacing=p.spacing,
+        stiffness=p.stiffness * p.area,
+        viscosity=_viscosity(p),
+        tension=p.tension,
+        ends=ends,
+        half_stiffness=half,
+        half_viscosity=half * (p.time_constant or 0.0),
+        dashpot=p.impedance * p.area,
+        prestress=prestress,
+        gravity=gravity.acceleration * gravity.direction[1] if gravity else 0.0,
+        mass_damping=p.mass_damping or 0.0,
+        shaken=scene.load.shakes_base,
+        gain=scene.load.direction[1] * (1.0 if scene.load.shakes_base else p.area),
+    )
+
+
+def _viscosity(p: Properties) -> np.ndarray:
+    etas = p.joint_time_constant
+    return np.zeros_like(p.stiffness) if etas is None else p.stiffness * p.area * etas
+
+
+def rates(chain: Chain, state: np.ndarray, drive: float = 0.0) -> np.ndarray:
+    """Return the time derivative of states [..., size] under a drive (N, or m/s if shaken)."""
+    n, w = chain.block_count, chain.rate
+    forces, faces = contact_forces(chain, state, drive)
+    v = state[..., n : 2 * n]
+    slope = np.empty_like(state)
+    slope[..., :n] = w * v
+    slope[..., n : 2 * n] = (forces[..., :-1] - forces[..., 1:]) / chain.mass
+    slope[..., n : 2 * n] += chain.gravity - chain.mass_damping * v
+    slope[..., -2], slope[..., -1] = w * faces[0], w * faces[1]
+    return slope
+
+
+def split(chain: Chain, state: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return displacements (m), velocities (m/s) of the blocks and displacements of the faces."""
+    n, w = chain.block_count, chain.rate
+    return state[..., :n] / w, state[..., n : 2 * n], state[..., 2 * n :] / w
+
+
+def contact_forces(
+    chain: Chain, state: np.ndarray, drive: np.ndarray | float = 0.0
+) -> tuple[np.ndarray, tuple]:
+    """Return the forces [..., N + 1] (N, compression positive) of the start, the joints and the
+    end, and the velocities [...] of the start's and the end's face.
+
+    The drive [...] is an end force (N), part of the start's force, or the velocity of the start's
+    wall (m/s).
+    """
+    push, wall = (0.0, drive) if chain.shaken else (drive, 0.0)
+    u, v, faces = split(chain, state)
+    forces = np.empty((*state.shape[:-1], chain.block_count + 1))
+    gap, rate = u[..., 1:] - u[..., :-1], v[..., 1:] - v[..., :-1]
+    spring = chain.prestress - chain.stiffness * gap
+    force = spring - chain.viscosity * rate
+    if chain.bars_tension:
+        force[~chain.tension & ((spring < 0) | (force < 0))] = 0.0
+    forces[..., 1:-1] = force
+    start, first = reaction(chain, chain.ends[0], u[..., 0], v[..., 0], faces[..., 0], wall)
+    end, last = reaction(chain, chain.ends[1], u[..., -1], v[..., -1], faces[..., 1])
+    forces[..., 0], forces[..., -1] = chain.prestress + push - start, chain.prestress + end
+    return forces, (first, last)
+
+
+def reaction(chain: Chain, kind: str, u, v, face, wall=0.0):
+    """Return what an end takes from its block (N) and the velocity of its face (m/s)."""
+    if kind == "free":
+        return 0.0, 0.0
+    if kind == "quiet":
+        return chain.dashpot * v, 0.0
+    spring = chain.half_stiffness * (u - face) + chain.half_viscosity * (v - wall)
+    if kind == "fixed":
+        return spring, wall
+    rate = spring / (chain.dashpot + chain.half_viscosity)
+    return chain.dashpot * rate, rate
+
+
+def receivers(
+    scene: Scene, chain: Chain, state: np.ndarray, drive: np.ndarray | float = 0.0
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return stress (Pa), velocity (m/s) and displacement (m), each [..., receivers].
+
+    Stress is interpolated between the start, the contacts and the end; velocity and displacement
+    between the block centres.
+    """
+    n, d = chain.block_count, chain.spacing
+    u, v, _ = split(chain, state)
+    forces, _ = contact_forces(chain, state, drive)
+
+    def read(values: np.ndarray, nodes: np.ndarray, places: list[float]) -> np.ndarray:
+        left, right, weight = interpolation(nodes, places)
+        return (1 - weight) * values[..., left] + weight * values[..., right]
+
+    centres, points = d * (np.arange(n) + 0.5), scene.record.velocity
+    stress = read(forces / chain.area, d * np.arange(n + 1), scene.record.stress)
+    return stress, read(v, centres, points), read(u, centres, points)

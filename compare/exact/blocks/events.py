@@ -1,0 +1,264 @@
+"""The motion of a chain whose joints open and close, from one event to the next.
+
+While no joint opens or closes the chain is linear, and from rest under static gravity and prestress
+its motion is a Taylor series of x' = A x + b f(t): at steps of STEP over the norm of A the term of
+order ORDER is below round-off. The force of a joint and its spring's are polynomials then, and
+the roots at which they change sign come from their Bernstein coefficients (`bernstein`), of which
+none can be missed. At the first of them the step ends, the joint opens or closes, and the series
+starts anew.
+
+A joint that bars tension is closed where neither its spring nor spring and dashpot together pull.
+Damped, it opens where the two together vanish, its spring being compressed still, and closes where
+the gap does, at once with the force of its dashpot.
+"""
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial.chebyshev import chebpts1
+
+from cases.size import require
+from compare.exact.blocks.bernstein import of_powers, sign_changes
+from compare.exact.blocks.chain import Chain, contact_forces, rates, reaction
+from compare.exact.drive import Signal
+
+ORDER = 24
+STEP = 2.0  # over the norm of A: the last term is 2^24 / 24! = 3e-17
+LOAD_STEP = 1 / 24  # of the load's period: its interpolation is off by less than 1e-15
+SETTLED = 4.0  # periods, after which a Ricker wavelet is below 1e-26
+LEAST = 1e-6  # of a step: how soon a joint may change again that has changed back and forth at once
+
+_NODES = (1 + chebpts1(10)) / 2
+_POWERS = np.vander(_NODES, increasing=True)
+_BERNSTEIN = of_powers(ORDER)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A chain's states since it was at rest, and its events.
+
+    states : float array [n, size], `chain.split` tells what it holds. events : number of openings
+    and closings. steps : number of Taylor series.
+    """
+
+    states: np.ndarray
+    events: int
+    steps: int
+
+
+@dataclass
+class _Contacts:
+    """The joints that bar tension: which are closed, and which have only just changed.
+
+    index, closed : of the chain's joints, int and bool arrays [barred].
+    spring : force of each at rest, N.
+    changed : how often each has changed since time has gone on.
+    zero : bool arrays [2, barred], whose spring, and spring with dashpot, has just passed zero.
+    """
+
+    index: np.ndarray
+    closed: np.ndarray
+    spring: np.ndarray
+    changed: np.ndarray
+    zero: np.ndarray
+
+
+def integrate(
+    chain: Chain,
+    load: Signal,
+    times: np.ndarray,
+    rest: np.ndarray | None = None,
+    period: float | None = None,
+    noise: float = 0.0,
+    seed: int = 0,
+) -> Motion:
+    """Return what the chain moves by since it was in the state `rest` [size], absent: zero.
+
+    Parameters
+    ----------
+    times : increasing, s; the chain is at rest at the first.
+    period : of the load (s), if it has one.
+    noise : of round-off: every step is perturbed at random by so much of what it adds up; the
+        motion's type of floating-point number is that of `times`.
+    """
+    require(3 * 8.0 * len(times) * chain.size, f"{len(times):,} states of {chain.size:,} numbers")
+    walk = _Walk(chain, load, times, rest, period, noise, seed)
+    breaks = [t for t in load.breaks if times[0] < t < times[-1]]
+    for start, end in pairwise([times[0], *breaks, times[-1]]):
+        walk.to(start, end)
+    return Motion(walk.states, walk.events, walk.steps)
+
+
+class _Walk:
+    """The state of an integration: time, motion and contacts."""
+
+    def __init__(self, chain, load, times, rest, period, noise, seed) -> None:
+        rest = np.zeros(chain.size) if rest is None else rest
+        standing = bool(rest.any())
+        self.chain = replace(chain, gravity=0.0) if standing else chain
+        self.load, self.times, self.noise = load, times, noise
+        self.random = np.random.default_rng(seed)
+        self.states = np.zeros((len(times), chain.size), dtype=times.dtype)
+        self.x = np.zeros(chain.size, dtype=times.dtype)
+        self.known, self.events, self.steps = 1, 0, 0
+        self.longest = STEP / _norm(chain) * (1.0 if noise == 0 else 0.77)
+        self.pulse = (0.0, 0.0)
+        if period is not None:
+            self.pulse = (period * LOAD_STEP, max(load.breaks[-1], SETTLED * period))
+        elastic = replace(chain, tension=np.ones_like(chain.tension))
+        forces, _ = contact_forces(elastic, rest)
+        index = np.flatnonzero(~chain.tension)
+        none = np.zeros((2, len(index)), dtype=bool)
+        spring = forces[1:-1][index]
+        self.contacts = _Contacts(index, spring >= 0, spring, np.zeros(len(index), int), none)
+
+    def to(self, start: float, end: float) -> None:
+        """Go on from `start` to `end` (s), between which the load is smooth."""
+        t = start
+        while t < end:
+            longest = self.longest
+            if t < self.pulse[1]:
+                longest = min(longest, self.pulse[0])
+            remaining = end - t
+            h = remaining / max(1, int(np.ceil(remaining / longest * (1 - 1e-9))))
+            last = h == remaining
+            share = self._step(t, h, end if last else t + h)
+            t = end if last and share == 1 else t + h * share
+
+    def _step(self, t: float, h: float, end: float) -> float:
+        """Take one series, up to its end or the first event; return the share of the step."""
+        X = self._series(t, h)
+        first, event = self._first_event(X)
+        until = end if event is None else t + h * first
+        more = int(np.searchsorted(self.times, until, side="right"))
+        if more > self.known:
+            at = (self.times[self.known : more] - t) / h
+            self.states[self.known : more] = np.vander(at, ORDER + 1, increasing=True) @ X
+            self.known = more
+        powers = first ** np.arange(ORDER + 1)
+        self.x = powers @ X
+        if self.noise:
+            drawn = self.random.uniform(-1, 1, len(self.x))
+            self.x += self.noise * np.finfo(float).eps * drawn * (powers @ np.abs(X))
+        self.steps += 1
+        self._change(first, event)
+        return first
+
+    def _series(self, t: float, h: float) -> np.ndarray:
+        """Return the state's series [ORDER + 1, size] in powers of the share of a step."""
+        chain, n = self.chain, self.chain.block_count
+        drive = np.linalg.solve(_POWERS, self.load.value(t + h * _NODES).astype(float)) * chain.gain
+        drive = np.pad(drive, (0, ORDER + 1 - len(drive)))
+        held = np.ones(n - 1)
+        held[self.contacts.index[~self.contacts.closed]] = 0.0
+        stiffness = held * chain.stiffness / chain.rate / chain.mass
+        viscosity = held * chain.viscosity / chain.mass
+        X = np.zeros((ORDER + 1, chain.size), dtype=self.x.dtype)
+        X[0] = self.x
+        force = np.zeros(n + 1, dtype=self.x.dtype)
+        for k in range(ORDER):
+            u, v = X[k, :n], X[k, n : 2 * n]
+            force[1:-1] = stiffness * (u[:-1] - u[1:]) + viscosity * (v[:-1] - v[1:])
+            first, last = self._ends(force, X[k], drive[k])
+            slope = force[:-1] - force[1:]
+            if k == 0:
+                slope += chain.gravity
+                self._without_open(slope)
+            if chain.mass_damping:
+                slope -= chain.mass_damping * v
+            scale = h / (k + 1)
+            X[k + 1, :n] = scale * chain.rate * v
+            X[k + 1, n : 2 * n] = scale * slope
+            X[k + 1, -2], X[k + 1, -1] = scale * chain.rate * first, scale * chain.rate * last
+        return X
+
+    def _without_open(self, slope: np.ndarray) -> None:
+        """Take from the accelerations what open joints no longer carry of the force at rest."""
+        is_open = ~self.contacts.closed
+        lost = self.contacts.spring[is_open] / self.chain.mass
+        at = self.contacts.index[is_open]
+        np.add.at(slope, at, lost)
+        np.add.at(slope, at + 1, -lost)
+
+    def _ends(self, force: np.ndarray, x: np.ndarray, drive: float) -> tuple[float, float]:
+        """Set the forces over the mass at both ends; return the velocities of their faces."""
+        chain, n, w = self.chain, self.chain.block_count, self.chain.rate
+        push, wall = (0.0, drive) if chain.shaken else (drive, 0.0)
+        start, first = reaction(chain, chain.ends[0], x[0] / w, x[n], x[-2] / w, wall)
+        end, last = reaction(chain, chain.ends[1], x[n - 1] / w, x[2 * n - 1], x[-1] / w)
+        force[0], force[-1] = (push - start) / chain.mass, end / chain.mass
+        return first, last
+
+    def _first_event(self, X: np.ndarray) -> tuple[float, tuple[int, int] | None]:
+        """Return the share of the step until a joint changes, which one and by which force."""
+        contacts, n = self.contacts, self.chain.block_count
+        j = contacts.index
+        gap, rate = (X[:, a + j + 1] - X[:, a + j] for a in (0, n))
+        spring = -self.chain.stiffness[j] / self.chain.rate * gap
+        spring[0] += contacts.spring
+        whole = spring - self.chain.viscosity[j] * rate
+        spring[0, contacts.zero[0]] = 0.0
+        whole[0, contacts.zero[1]] = 0.0
+        forces = np.array([spring, whole])
+        bounds = _BERNSTEIN @ forces  # [2, ORDER + 1, barred]
+        stays = np.where(
+            contacts.closed, (bounds >= 0).all(axis=(0, 1)), (bounds <= 0).all(axis=1).any(axis=0)
+        )
+        best, event = 1.0, None
+        for i in np.flatnonzero(~stays):
+            least = LEAST if contacts.changed[i] > 1 else 0.0
+            now = contacts.closed[i]
+            found = _change_of(forces[:, :, i], bounds[:, :, i], now, least, best)
+            if found is not None and (found[0] < best or event is None):
+                best, event = found[0], (int(i), found[1])
+        return best, event
+
+    def _change(self, share: float, event: tuple[int, int] | None) -> None:
+        """Open or close the joint of an event, and forget what has only just changed before."""
+        contacts = self.contacts
+        if share > 0:
+            contacts.changed[:] = 0
+            contacts.zero[:] = False
+        if event is not None:
+            i, kind = event
+            contacts.closed[i] = not contacts.closed[i]
+            contacts.changed[i] += 1
+            contacts.zero[kind, i] = True
+            self.events += 1
+
+
+def _change_of(
+    forces: np.ndarray, bounds: np.ndarray, closed: bool, least: float, up_to: float
+) -> tuple[float, int] | None:
+    """Return when a joint changes first, before `up_to`, and by which of its forces: 0 that of the
+    spring, 1 that of spring and dashpot together."""
+    powers = [p.tolist() for p in forces]
+    roots = [(r, kind) for kind in (0, 1) for r in sign_changes(bounds[kind], powers[kind], up_to)]
+    edges = sorted([(0.0, -1), *roots])
+    for (a, kind), b in zip(edges, [*(r for r, _ in edges[1:]), up_to], strict=True):
+        values = [_value(p, (a + b) / 2) for p in powers]
+        holds = min(values) >= 0
+        if b > least and holds != closed:
+            a = max(a, least)
+            return a, kind if kind >= 0 else int(values[1] < values[0])
+    return None
+
+
+def _value(powers: list, x: float) -> float:
+    value = 0.0
+    for c in reversed(powers):
+        value = value * x + c
+    return value
+
+
+def _norm(chain: Chain) -> float:
+    """Return the largest row sum of the state matrix of the chain, all joints closed, 1/s."""
+    linear = replace(chain, tension=np.ones_like(chain.tension))
+    standing = np.zeros(chain.size)
+    still = rates(linear, standing)
+    sums = np.zeros(chain.size)
+    for start in range(0, chain.size, 512):
+        some = np.eye(chain.size)[start : start + 512]
+        sums += np.abs(rates(linear, some) - still).sum(axis=0)
+    return float(sums.max())

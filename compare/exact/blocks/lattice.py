@@ -1,0 +1,99 @@
+"""The chain of rigid blocks, exact in time: what the rigid-block engine discretises.
+
+x' = A x + b f(t) with the state matrix of `chain`, solved by matrix exponentials. Without
+dashpots and with free ends its modes are omega_n = 2 sqrt(k/m) sin(n pi / 2N) of shape
+cos(n pi (j - 1/2) / N), j = 1..N; Kelvin-Voigt dashpots are proportional and damp each mode at the
+rate eta omega_n^2 / 2 (Brillouin, Wave Propagation in Periodic Structures, 1946).
+
+Its error is that of round-off, and bounded by what a twin of the solution shows (`linear`).
+
+The solution is a sum: what the drive does from rest, the static state under gravity (or what
+gravity does that acts suddenly), and the prestress.
+
+Holds for any load or shaken base, soft layers, dashpots, mass-proportional damping, ends, gravity
+along the axis and prestress; every joint carries tension.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from cases.loads import Step
+from cases.material.calibrate import calibrate
+from cases.sampling import sample_times
+from cases.schema.scene import Scene
+from compare.exact.answer import YES, Answer, Resolves, Rock, no
+from compare.exact.blocks.chain import Chain, chain, rates, receivers
+from compare.exact.conditions import bars_tension, beyond
+from compare.exact.drive import drive
+from compare.exact.linear import bound, twins
+from results.dataset import dataset
+
+NAME = "lattice"
+RESOLVES = Resolves(Rock.RIGID_BLOCKS)
+MOST_BLOCKS = 2000
+HELD = ("reversed load", "gravity", "prestress", "mass damping")
+
+
+def applies(scene: Scene) -> Answer:
+    """Return whether the scene's chain of rigid blocks is linear and not too long."""
+    if reason := beyond(scene, *HELD):
+        return no(reason)
+    if bars_tension(calibrate(scene)):
+        return no("a joint bars tension")
+    if scene.pillar.block_count > MOST_BLOCKS:
+        return no(f"more than {MOST_BLOCKS:,} blocks: the matrix exponential is dense")
+    return YES
+
+
+def solve(scene: Scene) -> xr.Dataset:
+    """Return stress, velocity and displacement of the scene's rigid-block chain."""
+    model, signal, times = chain(scene), drive(scene), sample_times(scene)
+    matrix, vector = state_space(model)
+    standing, rest = np.zeros(model.size), at_rest(scene, model)
+    alone = np.concatenate(receivers(scene, model, standing))
+    output = np.concatenate(receivers(scene, model, np.eye(model.size)), axis=1).T - alone[:, None]
+    out = twins(matrix, vector, output, signal, times) + output @ rest + alone
+    if model.gravity and not rest.any():
+        out += twins(matrix, rates(model, standing), output, Step(1.0), times)
+    direct = receivers(scene, model, standing, model.gain)[0] - alone[: len(scene.record.stress)]
+    out[..., : len(direct)] += np.outer(signal.value(times), direct)
+    cuts = np.cumsum([len(scene.record.stress), len(scene.record.velocity)])
+    found, twin = (np.split(x.T, cuts) for x in out)
+    bounds = [bound(a, b) for a, b in zip(found, twin, strict=True)]
+    errors = dict(zip(("stress", "velocity", "displacement"), bounds, strict=True))
+    return dataset(scene, NAME, times, *found, errors=errors)
+
+
+def state_space(model: Chain) -> tuple[np.ndarray, np.ndarray]:
+    """Return A [size, size] (1/s) and b [size] of x' = A x + b f, f the scene's `drive` signal."""
+    standing = np.zeros(model.size)
+    still = rates(model, standing)
+    matrix = (rates(model, np.eye(model.size)) - still).T
+    return matrix, rates(model, standing, model.gain) - still
+
+
+def at_rest(scene: Scene, model: Chain) -> np.ndarray:
+    """Return the state [size] that the chain starts from: at rest, under static gravity if any.
+
+    Every joint is taken to carry tension; faces that no equation moves stay at zero.
+    """
+    state = np.zeros(model.size)
+    if scene.gravity is None or not scene.gravity.static:
+        return state
+    linear = replace(model, tension=np.ones_like(model.tension))
+    matrix, _ = state_space(linear)
+    moves = matrix.any(axis=1)
+    weight = rates(linear, state)[moves]
+    state[moves] = np.linalg.solve(matrix[np.ix_(moves, moves)], -weight)
+    return state
+
+
+def frequencies(stiffness: float, mass: float, block_count: int) -> np.ndarray:
+    """Return the chain's N natural frequencies (rad/s), undamped, free ends; the first is rigid.
+
+    stiffness in N/m, mass in kg; or of torsion in N m and kg m2.
+    """
+    n = np.arange(block_count)
+    return 2 * np.sqrt(stiffness / mass) * np.sin(n * np.pi / (2 * block_count))

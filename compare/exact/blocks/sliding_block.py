@@ -1,0 +1,99 @@
+"""A rigid block that slides on a slope under its weight: Coulomb friction alone.
+
+Of two blocks the second stands on a wall, and gravity g presses the first onto it at the slope
+angle beta from the axis. The joint carries N = m g cos beta and at most N tan phi, so
+
+    v = max(0, g (sin beta - cos beta tan phi)) t   down the slope,
+
+the shear force is m g sin beta where that is less. Springs and dashpots, which let the blocks
+settle at first, are left out.
+
+Holds for two blocks, a free start, a fixed end, no load, gravity that acts suddenly and presses the
+joint, friction without cohesion, and blocks that do not topple.
+"""
+
+from math import hypot
+
+import numpy as np
+import xarray as xr
+
+from cases.face import face_points
+from cases.material.calibrate import calibrate
+from cases.sampling import interpolation, sample_times
+from cases.schema.scene import Scene
+from compare.exact.answer import YES, Answer, Form, Resolves, Rock, no
+from compare.exact.conditions import beyond
+from results.dataset import dataset
+
+NAME = "sliding-block"
+RESOLVES = Resolves(Rock.ONE_BODY, Form.CLOSED, dimension=3, discretised=False)
+
+
+def applies(scene: Scene) -> Answer:
+    """Return whether one rigid block slides or rests on another."""
+    p, gravity = calibrate(scene), scene.gravity
+    if scene.pillar.block_count != 2:
+        return no("there are not two blocks")
+    if gravity is None or gravity.static or gravity.direction[1] <= 0:
+        return no("no sudden gravity presses the joint")
+    if reason := beyond(scene, "spatial motion", "gravity"):
+        return no(reason)
+    if scene.load.amplitude:
+        return no("a load acts")
+    if (scene.ends.start, scene.ends.end) != ("free", "fixed"):
+        return no("the block is not free, or its base not fixed")
+    if p.friction is None or p.cohesion is not None:
+        return no("the joint does not slip by friction alone")
+    return no("the block topples") if _topples(scene, float(p.friction[0])) else YES
+
+
+def _topples(scene: Scene, friction: float) -> bool:
+    """Return whether what the joint carries leaves the square of its contact points."""
+    if scene.motion.rotation == "none":
+        return False
+    x, _, _ = face_points(scene.pillar.side, scene.joints.contact_points, scene.joints.point_rule)
+    across, along = _gravity(scene)
+    share = min(1.0, friction * along / hypot(*across)) if across.any() else 0.0
+    lever = share * np.abs(across) / along * scene.pillar.block / 2
+    return bool((lever > x.max()).any())
+
+
+def solve(scene: Scene) -> xr.Dataset:
+    """Return stress, shear, velocity and displacement of the block and its base."""
+    p, times, record = calibrate(scene), sample_times(scene), scene.record
+    assert p.friction is not None
+    across, along = _gravity(scene)
+    total = hypot(*across)
+    held = min(total, float(p.friction[0]) * along)
+    down = across / total if total else across
+    contacts, centres = p.spacing * np.arange(3), p.spacing * np.array([0.5, 1.5])
+    weight = p.block_mass / p.area
+    normal = _read(contacts, record.stress, weight * along * np.arange(3))
+    shear = _read(contacts, record.stress, weight * np.array([0.0, held, held + total]))
+    first = _read(centres, record.velocity, np.array([1.0, 0.0]))
+    axis = np.array([down[0], 0.0, down[1]])
+    fall = (total - held) * first[:, None] * np.array([times, times**2 / 2])[:, None]
+    velocity, displacement = fall[..., None] * axis
+    still = np.ones_like(times)
+    return dataset(
+        scene,
+        NAME,
+        times,
+        np.outer(normal, still),
+        velocity,
+        displacement,
+        shear=np.outer(shear, still)[..., None] * down,
+        rotation=np.zeros_like(velocity),
+    )
+
+
+def _gravity(scene: Scene) -> tuple[np.ndarray, float]:
+    """Return gravity's components across the axis, [x, z], and along it, m/s2."""
+    assert scene.gravity is not None
+    g = scene.gravity.acceleration * np.array(scene.gravity.direction)
+    return g[[0, 2]], float(g[1])
+
+
+def _read(nodes: np.ndarray, places: list[float], values: np.ndarray) -> np.ndarray:
+    left, right, weight = interpolation(nodes, places)
+    return (1 - weight) * values[left] + weight * values[right]

@@ -1,0 +1,162 @@
+"""The row of rigid blocks in space, exact in time: what the rigid-block engine discretises.
+
+Stretching, torsion and the two bendings of `spatial`, as first-order systems (`spatial_system`) by
+matrix exponentials. The solution is a sum: what the load does from rest, the static state under
+gravity (or what gravity does that acts suddenly), and the state under the prestress. Only the
+planes that something drives are solved.
+
+Holds for loads of any direction, eccentricity or couple, shaken bases, soft layers, dashpots,
+mass-proportional damping, any ends, gravity and prestress; every joint carries tension and holds.
+"""
+
+import numpy as np
+import xarray as xr
+
+from cases.effects import is_spatial
+from cases.loads import Step
+from cases.material.calibrate import calibrate
+from cases.sampling import interpolation, sample_times
+from cases.schema.scene import Scene
+from compare.exact.answer import YES, Answer, Resolves, Rock, no
+from compare.exact.blocks.lattice import HELD
+from compare.exact.blocks.spatial import PLANES, plane, row
+from compare.exact.blocks.spatial_system import System, at_rest, system
+from compare.exact.conditions import bars_tension, beyond
+from compare.exact.drive import drive
+from compare.exact.linear import bound, twins
+from results.dataset import dataset
+
+NAME = "spatial-lattice"
+RESOLVES = Resolves(Rock.RIGID_BLOCKS, dimension=3)
+MOST_BLOCKS = 500
+
+
+def applies(scene: Scene) -> Answer:
+    """Return whether the scene's row of blocks is spatial, linear and not too long."""
+    p = calibrate(scene)
+    if not is_spatial(scene):
+        return no("the motion is axial: see lattice")
+    if reason := beyond(scene, "spatial motion", *HELD):
+        return no(reason)
+    if bars_tension(p):
+        return no("a joint bars tension")
+    if p.friction is not None or p.cohesion is not None:
+        return no("a joint can slip")
+    if scene.motion.rotation == "finite":
+        return no("rotations are finite")
+    if scene.pillar.block_count > MOST_BLOCKS:
+        return no(f"more than {MOST_BLOCKS:,} blocks: the matrix exponential is dense")
+    return YES
+
+
+def solve(scene: Scene) -> xr.Dataset:
+    """Return stress, shear, velocity, displacement and rotation of the scene's row of blocks."""
+    times, record = sample_times(scene), scene.record
+    area, blocks = scene.pillar.area, row(scene)
+    push, fall, base = drive_vector(scene), falling(scene), _base(scene)
+    forces = np.zeros((2, len(record.stress), 6, len(times)))
+    motion, rate = np.zeros((2, 2, len(record.velocity), 6, len(times)))
+    for freedoms in PLANES[scene.motion.rotation]:
+        own = list(freedoms)
+        if not (push[own].any() or fall[own].any() or (base is not None and base[own].any())):
+            continue
+        shaken = None if base is None else base[own]
+        parts = system(plane(blocks, freedoms), push[own], fall[own], shaken)
+        found = _receivers(scene, parts, len(own), times)
+        for field, part in zip((forces, motion, rate), found, strict=True):
+            field[:, :, own] = part
+    tractions, turns, moves, rates = (
+        forces / area,
+        motion[:, :, 3:],
+        motion[:, :, :3],
+        rate[:, :, :3],
+    )
+    waves = {
+        "stress": tractions[:, :, 1],
+        "shear": tractions[:, :, [0, 2]],
+        "velocity": rates,
+        "displacement": moves,
+        "rotation": turns,
+    }
+    stress = tractions[0, :, 1]
+    if scene.prestress is not None:
+        stress += scene.prestress.normal
+    fields = {name: x[0].swapaxes(-1, -2) for name, x in waves.items() if name != "stress"}
+    errors = {name: bound(*pair) for name, pair in waves.items()}
+    return dataset(scene, NAME, times, stress, **fields, errors=errors)
+
+
+def drive_vector(scene: Scene) -> np.ndarray:
+    """Return the force and moment [6] at the start face's centre by an end stress of 1 Pa."""
+    load, vector = scene.load, np.zeros(6)
+    if load.shakes_base:
+        return vector
+    if load.arm:
+        vector[3:] = load.arm * np.array(load.direction)
+    else:
+        vector[:3] = load.direction
+        vector[3:] = np.cross([load.at[0], 0.0, load.at[1]], load.direction)
+    return scene.pillar.area * vector
+
+
+def falling(scene: Scene) -> np.ndarray:
+    """Return the acceleration of gravity in all six freedoms, m/s2."""
+    gravity, vector = scene.gravity, np.zeros(6)
+    if gravity is not None:
+        vector[:3] = gravity.acceleration * np.array(gravity.direction)
+    return vector
+
+
+def _base(scene: Scene) -> np.ndarray | None:
+    """Return the velocity [6] of the start's held face by a unit drive, None where it stands."""
+    load = scene.load
+    return np.array([*load.direction, 0.0, 0.0, 0.0]) if load.shakes_base else None
+
+
+def _receivers(scene: Scene, parts: System, c: int, times: np.ndarray) -> list[np.ndarray]:
+    """Return the forces, displacements and velocities [2, receivers, c, n] of one plane and of its
+    twin."""
+    signal, gravity = drive(scene), scene.gravity
+    rows, counts = _rows(scene, parts, c)
+    out = np.zeros((2, len(times), len(rows)))
+    if parts.load.any():
+        out += twins(parts.matrix, parts.load, rows, signal, times)
+        sections = _read(_contacts(scene), scene.record.stress, c)
+        out[..., : counts[0]] += np.outer(signal.value(times), sections @ parts.direct)
+    if parts.gravity.any() and gravity is not None:
+        if gravity.static:
+            out += rows @ at_rest(parts)
+        else:
+            out += twins(parts.matrix, parts.gravity, rows, Step(1.0), times)
+    fields = np.split(out, np.cumsum(counts), axis=2)
+    return [part.reshape(2, len(times), -1, c).transpose(0, 2, 3, 1) for part in fields]
+
+
+def _rows(scene: Scene, parts: System, c: int) -> tuple[np.ndarray, tuple[int, int]]:
+    """Return what the receivers read of a state, and how many rows are forces and displacements."""
+    record = scene.record
+    points = _read(_centres(scene), record.velocity, c)
+    sections = _read(_contacts(scene), record.stress, c) @ parts.forces
+    rows = [sections, points @ parts.displacement, points @ parts.velocity]
+    return np.concatenate(rows), (len(sections), len(points))
+
+
+def _contacts(scene: Scene) -> np.ndarray:
+    """Return where the N + 1 contacts lie, m."""
+    count = scene.pillar.block_count
+    return scene.pillar.length / count * np.arange(count + 1)
+
+
+def _centres(scene: Scene) -> np.ndarray:
+    """Return where the centroids of the N blocks lie, m."""
+    contacts = _contacts(scene)
+    return (contacts[1:] + contacts[:-1]) / 2
+
+
+def _read(nodes: np.ndarray, places: list[float], c: int) -> np.ndarray:
+    """Return the linear interpolation from nodes to places as a matrix, for c values a node."""
+    left, right, weight = interpolation(nodes, places)
+    matrix, i = np.zeros((len(places), len(nodes))), np.arange(len(places))
+    matrix[i, left] += 1 - weight
+    matrix[i, right] += weight
+    return np.kron(matrix, np.eye(c))

@@ -1,0 +1,1 @@
+"""One joint, or parallel joints, between two half-spaces of rock."""

@@ -1,0 +1,172 @@
+"""One linear joint between two half-spaces of rock of impedance Z.
+
+Harmonic, kappa = K/(Z omega): |T| = 2 kappa/sqrt(4 kappa^2 + 1), |R| = 1/sqrt(4 kappa^2 + 1); a
+dashpot c_j takes K to K + i omega c_j (Schoenberg, JASA 68, 1980; Pyrak-Nolte, Myer & Cook, JGR
+95, 1990). In time (Z/2K) sigma_T' + sigma_T = sigma_I, sigma_R = sigma_T - sigma_I. A dashpot of
+time constant eta passes the share eta/tau at once and smooths the rest with tau = eta + Z/2K:
+
+    sigma_T = (eta/tau) sigma_I + (1 - eta/tau) s,   tau s' + s = sigma_I
+
+Holds for the homogenised bar without rock damping, one soft layer, a quiet or matched far end;
+behind a quiet or matched start for all times, behind a free one until a wave reflected by the
+layer has been back to the start and reached a receiver again. On the layer itself velocity is the
+mean of both sides.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from cases.loads import LoadHistory, load_history
+from cases.material.calibrate import Properties, calibrate
+from cases.sampling import sample_times
+from cases.schema.scene import Scene
+from compare.exact.answer import YES, Answer, Resolves, Rock, no
+from compare.exact.bar.images import ENTERS
+from compare.exact.conditions import (
+    bars_tension,
+    beyond,
+    has_thick_layer,
+    rock_is_damped,
+    static_stress,
+)
+from compare.exact.linear import bound, twins
+from results.dataset import dataset
+
+NAME = "one-joint"
+RESOLVES = Resolves(Rock.HOMOGENISED)
+
+
+class Joint(NamedTuple):
+    """A joint: y (m), stiffness K (Pa/m) and time constant eta (s)."""
+
+    y: float
+    stiffness: float
+    time_constant: float
+
+
+def applies(scene: Scene) -> Answer:
+    """Return whether one joint is all that the waves meet within the scene's duration."""
+    p = calibrate(scene)
+    compliance = p.excess_compliance
+    if reason := beyond(scene, "prestress"):
+        return no(reason)
+    if has_thick_layer(scene):
+        return no("a soft layer has a thickness")
+    if bars_tension(p):
+        return no("a joint bars tension")
+    if rock_is_damped(p):
+        return no("the rock is damped")
+    if np.count_nonzero(compliance) != 1:
+        return no("not exactly one joint differs in stiffness")
+    if compliance.min() < 0:
+        return no("the layer is stiffer than the ordinary joints")
+    if scene.ends.end not in ("quiet", "matched"):
+        return no("the far end reflects")
+    return _start_stays_silent(scene, p)
+
+
+def _start_stays_silent(scene: Scene, p: Properties) -> Answer:
+    if scene.ends.start == "fixed":
+        return no("the loaded end is fixed")
+    nearest = min([*scene.record.stress, *scene.record.velocity])
+    back = (2 * the_joint(p).y + nearest) / p.bar_speed
+    if scene.ends.start == "free" and back < scene.time.duration:
+        return no(f"the free start sends the reflection back, to a receiver at {back:.4g} s")
+    return YES
+
+
+def solve(scene: Scene) -> xr.Dataset:
+    """Return stress, velocity and displacement on both sides of the scene's soft layer."""
+    p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
+    joint, enters, places = the_joint(p), ENTERS[scene.ends.start], scene.record
+
+    def waveforms(which: int) -> list[np.ndarray]:
+        def passed(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            return _transmitted(joint, p.impedance, load, at, which)
+
+        def waves(y: list[float]) -> np.ndarray:
+            return enters * around(joint.y, p.bar_speed, passed, load, times, y)
+
+        there, back = waves(places.stress)
+        stress = there[0] + back[0] + static_stress(scene)
+        there, back = waves(places.velocity)
+        return [stress, *((there - back) / p.impedance)]
+
+    found, twin = waveforms(0), waveforms(1)
+    bounds = [bound(a, b) for a, b in zip(found, twin, strict=True)]
+    errors = dict(zip(("stress", "velocity", "displacement"), bounds, strict=True))
+    return dataset(scene, NAME, times, *found, errors=errors)
+
+
+def around(
+    joint_y: float,
+    speed: float,
+    passed: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]],
+    load: LoadHistory,
+    times: np.ndarray,
+    places: list[float],
+) -> np.ndarray:
+    """Return the waves around a joint between half-spaces, in front of it, on it and behind it.
+
+    passed : sigma_T (Pa) and its impulse (Pa s) at equally spaced times at the joint (s), by the
+        incident stress `load`; joint_y, places in m, speed in m/s.
+    The result is [there and back, stress and impulse, place, time].
+    """
+    found = [_at(y, joint_y, speed, passed, load, times) for y in places]
+    return np.array(found).reshape(-1, 2, 2, len(times)).transpose(1, 2, 0, 3)
+
+
+def _at(y, joint_y, speed, passed, load, times) -> np.ndarray:
+    """Return [there and back, stress and impulse, time] at y (m)."""
+    after = np.array(passed(times - max(y, joint_y) / speed))
+    behind = np.array([after, np.zeros_like(after)])
+    if y > joint_y + 1e-9:
+        return behind
+    at, later = times - y / speed, times - (2 * joint_y - y) / speed
+    there = load.value(at), load.impulse(at)
+    before = np.array([there, passed(later) - np.array([load.value(later), load.impulse(later)])])
+    return (before + behind) / 2 if abs(y - joint_y) <= 1e-9 else before
+
+
+def the_joint(p: Properties) -> Joint:
+    """Return the only joint whose stiffness differs from the ordinary ones."""
+    compliance = p.excess_compliance
+    j = int(np.flatnonzero(compliance)[0])
+    eta = 0.0 if p.joint_time_constant is None else float(p.joint_time_constant[j])
+    return Joint(float(p.joint_y[j]), 1 / compliance[j], eta)
+
+
+def coefficients(
+    omega: np.ndarray | float, stiffness: float, impedance: float, viscosity: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the complex T and R of stress at omega (rad/s).
+
+    stiffness K in Pa/m, impedance Z in Pa s/m, viscosity c_j = K eta in Pa s/m.
+    """
+    omega = np.asarray(omega)
+    transmitted = 1 / (1 + 1j * omega * impedance / (2 * (stiffness + 1j * omega * viscosity)))
+    return transmitted, transmitted - 1
+
+
+def transmitted(
+    joint: Joint, impedance: float, load: LoadHistory, times: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return sigma_T (Pa) and its impulse (Pa s) at the joint for the incident stress `load`.
+
+    `times` are equally spaced and begin before the load does.
+    """
+    return _transmitted(joint, impedance, load, times, 0)
+
+
+def _transmitted(joint, impedance, load, times, which) -> tuple[np.ndarray, np.ndarray]:
+    """Return what `transmitted` does, or its twin (`linear.twins`) where `which` is 1."""
+    tau = joint.time_constant + impedance / (2 * joint.stiffness)
+    share = joint.time_constant / tau
+    rate, one = np.array([[-1 / tau]]), np.ones(1)
+    smooth = twins(rate, one / tau, one[None], load, times)[which, :, 0]
+    stress = share * load.value(times) + (1 - share) * smooth
+    impulse = load.impulse(times) - (1 - share) * tau * smooth
+    return stress, impulse

@@ -1,0 +1,218 @@
+"""One joint that slips between two half-spaces of rock, under a plane shear wave.
+
+The joint carries the shear stress s up to its strength tau. With the incident stress sigma_I, the
+shear impedance Z and the compliance 1/K that the joint adds to the rock
+
+    (Z / 2K) s' = sigma_I - s while |s| < tau or |s| is about to fall,   s' = 0 while it slips;
+    sigma_T = s,   sigma_R = s - sigma_I,   slip rate 2 (sigma_I - s) / Z
+
+and a joint as stiff as the others is rigid before it slips: s = sigma_I, cut off at +-tau (Miller,
+Bull. Seism. Soc. Am. 68, 1978, for the harmonic wave). s leaves the linear solution only where it
+reaches tau while |sigma_I| > tau, once between two crossings of sigma_I with +-tau, and clings to
+tau up to the next; from crossing to crossing it is integrated exactly.
+
+Holds for blocks that do not turn, a load across the axis, ends that absorb, one joint with cohesion
+or with friction under the prestress, and all else elastic and undamped.
+"""
+
+from functools import cache
+from itertools import pairwise
+from math import asin, ceil, cos, exp, pi, sin, sqrt
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.polynomial.legendre import leggauss
+
+from cases.loads import LoadHistory, load_history
+from cases.material.calibrate import Properties, calibrate
+from cases.material.strength import UNLIMITED
+from cases.sampling import sample_times
+from cases.schema.scene import Scene
+from compare.exact.answer import YES, Answer, Resolves, Rock, no
+from compare.exact.bar.images import ENTERS
+from compare.exact.conditions import bars_tension, beyond, joints_are_damped
+from compare.exact.joint.one_joint import around
+from compare.exact.linear import bound
+from results.dataset import dataset
+
+NAME = "slip-joint"
+RESOLVES = Resolves(Rock.HOMOGENISED, discretised=False)
+_gauss = cache(leggauss)
+ROUND_OFF = 1e-11  # of the largest waveform: the roots' tolerance
+FORGOTTEN = 40.0  # time constants after which exp has lost all digits
+
+
+class SlipJoint(NamedTuple):
+    """A joint: y (m), the compliance 1/K that it adds (m/Pa) and its strength tau (Pa)."""
+
+    y: float
+    compliance: float
+    strength: float
+
+
+def applies(scene: Scene) -> Answer:
+    """Return whether a plane shear wave meets one joint that can slip, and nothing else."""
+    p, load = calibrate(scene), scene.load
+    if not load.is_across or load.direction[1] or load.arm or scene.motion.rotation != "none":
+        return no("there is no plane shear wave: a load across, on blocks that do not turn")
+    if reason := beyond(scene, "spatial motion", "prestress"):
+        return no(reason)
+    if bars_tension(p):
+        return no("a joint bars tension")
+    if joints_are_damped(p):
+        return no("the joints are damped")
+    if not {scene.ends.start, scene.ends.end} <= {"quiet", "matched"}:
+        return no("an end reflects")
+    if np.count_nonzero(_slips(p)) != 1:
+        return no("not exactly one joint can slip")
+    if p.residual_cohesion is not None:
+        return no("slip weakens the joint")
+    compliance = _excess_compliance(p)
+    if compliance[~_slips(p)].any():
+        return no("a joint that cannot slip differs in stiffness")
+    return no("the joint is stiffer than the others") if compliance.min() < 0 else YES
+
+
+def solve(scene: Scene) -> xr.Dataset:
+    """Return shear, velocity and displacement on both sides of the joint that slips."""
+    p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
+    joint, enters = the_joint(scene, p), ENTERS[scene.ends.start]
+    scaled = joint._replace(strength=joint.strength / enters)  # slip is positively homogeneous
+
+    def waveforms(parts: int) -> dict[str, np.ndarray]:
+        def passed(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            stress, impulse = transmitted(scaled, p.shear_impedance, load, _finer(at, parts))
+            return stress[::parts], impulse[::parts]
+
+        def waves(places: list[float]) -> np.ndarray:
+            return enters * around(joint.y, p.shear_speed, passed, load, times, places)
+
+        (there, _), (back, _) = waves(scene.record.stress)
+        shear = (there + back)[..., None] * load_axis(scene)[[0, 2]]
+        there, back = waves(scene.record.velocity)
+        velocity, displacement = (there - back)[..., None] / p.shear_impedance * load_axis(scene)
+        return {"shear": shear, "velocity": velocity, "displacement": displacement}
+
+    found, twin = waveforms(1), waveforms(2)
+    errors = {name: _bound(found[name], twin[name]) for name in found}
+    normal = scene.prestress.normal if scene.prestress else 0.0
+    stress = np.full((len(scene.record.stress), len(times)), normal)
+    rotation = np.zeros_like(found["velocity"])
+    return dataset(scene, NAME, times, stress, **found, rotation=rotation, errors=errors)
+
+
+def _finer(times: np.ndarray, parts: int) -> np.ndarray:
+    """Return equally spaced times with each interval cut into so many parts."""
+    count = parts * (len(times) - 1) + 1
+    return times[0] + (times[1] - times[0]) / parts * np.arange(count)
+
+
+def _bound(one: np.ndarray, twin: np.ndarray) -> np.ndarray:
+    """Return the bound of the error of waveforms [receiver, n, axis] whose twin has half as long
+    intervals, in which it integrates and seeks where the joint begins and ends to slip."""
+    peak = np.abs(one).max(initial=0.0)
+    return bound(one.swapaxes(1, 2), twin.swapaxes(1, 2)) + ROUND_OFF * peak
+
+
+def load_axis(scene: Scene) -> np.ndarray:
+    """Return the unit vector along which the load acts, float array [3]."""
+    return np.array(scene.load.direction)
+
+
+def the_joint(scene: Scene, p: Properties) -> SlipJoint:
+    """Return the only joint that can slip; its strength is Mohr-Coulomb's under the prestress."""
+    j = int(np.flatnonzero(_slips(p))[0])
+    normal = scene.prestress.normal if scene.prestress else 0.0
+    cohesion = 0.0 if p.cohesion is None else float(p.cohesion[j])
+    friction = 0.0 if p.friction is None else float(p.friction[j])
+    strength = max(cohesion + friction * normal, 0.0)
+    return SlipJoint(float(p.joint_y[j]), float(_excess_compliance(p)[j]), strength)
+
+
+def _slips(p: Properties) -> np.ndarray:
+    if p.cohesion is not None:
+        return p.cohesion < UNLIMITED
+    return np.full(len(p.stiffness), p.friction is not None)
+
+
+def _excess_compliance(p: Properties) -> np.ndarray:
+    regular = p.regular_shear_stiffness
+    same = np.isclose(p.shear_stiffness, regular, rtol=1e-9, atol=0)
+    return np.where(same, 0.0, 1 / p.shear_stiffness - 1 / regular)
+
+
+def coefficients(a: float) -> tuple[float, float, float]:
+    """Return T, R and A of a harmonic wave at a joint rigid before slip, a = tau / (Z V) <= 1.
+
+    Root mean squares of the transmitted and reflected stress over that of the incident one, and
+    A^2 = 1 - T^2 - R^2, the share of the energy that goes into friction. With s = asin a
+
+        T^2 = (2/pi)(s - a sqrt(1 - a^2) + a^2 (pi - 2 s))
+        R^2 = (4/pi)((pi/2 - s)/2 + sin(2 s)/4 - 2 a cos s + a^2 (pi/2 - s))
+    """
+    s = asin(a)
+    T2 = 2 / pi * (s - a * sqrt(1 - a**2) + a**2 * (pi - 2 * s))
+    R2 = 4 / pi * ((pi / 2 - s) / 2 + sin(2 * s) / 4 - 2 * a * cos(s) + a**2 * (pi / 2 - s))
+    return sqrt(T2), sqrt(max(R2, 0.0)), sqrt(max(1 - T2 - R2, 0.0))
+
+
+def transmitted(
+    joint: SlipJoint, impedance: float, load: LoadHistory, times: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return sigma_T (Pa) and its impulse (Pa s) at the joint for the incident stress `load`.
+
+    `times` increase and begin before the load does; between two of them it crosses each of +-tau
+    at most once.
+    """
+    tau, relaxation = joint.strength, impedance * joint.compliance / 2
+    nodes = _nodes(load, times, tau)
+    middle = load.value((nodes[1:] + nodes[:-1]) / 2)
+    limits = np.where(np.abs(middle) > tau, np.copysign(tau, middle), np.nan)
+    if relaxation == 0:
+        growth = np.where(np.isnan(limits), np.diff(load.impulse(nodes)), limits * np.diff(nodes))
+        impulse = np.concatenate([[0.0], np.cumsum(growth)])
+        return np.clip(load.value(times), -tau, tau), impulse[np.searchsorted(nodes, times)]
+    found = [(0.0, 0.0)]
+    for (start, end), limit in zip(pairwise(nodes.tolist()), limits.tolist(), strict=True):
+        found.append(_advance(load, relaxation, limit, start, end, *found[-1]))
+    stress, impulse = np.array(found)[np.searchsorted(nodes, times)].T
+    return stress, impulse
+
+
+def _nodes(load: LoadHistory, times: np.ndarray, tau: float) -> np.ndarray:
+    """Return the times, the breaks of the load, and where it crosses +-tau, in order."""
+    from scipy.optimize import brentq
+
+    smooth = np.unique([*times, *(t for t in load.breaks if times[0] < t < times[-1])])
+    inside = 1e-9 * np.diff(smooth)
+    left, right, crossings = smooth[:-1] + inside, smooth[1:] - inside, []
+    for level in (-tau, tau):
+        crosses = (load.value(left) < level) != (load.value(right) < level)
+        for i in np.flatnonzero(crosses):
+            excess = lambda t, level=level: float(load.value(t)) - level  # noqa: E731
+            crossings.append(brentq(excess, left[i], right[i], xtol=1e-15))
+    return np.unique([*smooth, *crossings])
+
+
+def _advance(load, relaxation, limit, start, end, stress, impulse) -> tuple[float, float]:
+    """Return s and its impulse at `end` from those at `start`; limit is nan while |load| <= tau."""
+    from scipy.optimize import brentq
+
+    later, slipping = stress, start
+    if stress != limit:
+        slipping, later = end, _relaxed(load, relaxation, stress, start, end)
+        if abs(later) > abs(limit):
+            miss = lambda t: _relaxed(load, relaxation, stress, start, t) - limit  # noqa: E731
+            slipping, later = brentq(miss, start, end, xtol=1e-15), limit
+    sticking = float(load.impulse(slipping) - load.impulse(start)) - relaxation * (later - stress)
+    return later, impulse + sticking + later * (end - slipping)
+
+
+def _relaxed(load: LoadHistory, relaxation: float, s: float, start: float, end: float) -> float:
+    """Return the solution of T s' = sigma_I - s, T the relaxation time (s), at `end`."""
+    width = min(end - start, FORGOTTEN * relaxation)
+    x, weights = _gauss(16 + ceil(width / relaxation))
+    before = width * (1 - x) / 2
+    kernel = weights * width / 2 * np.exp(-before / relaxation) / relaxation
+    return s * exp((start - end) / relaxation) + float(kernel @ load.value(end - before))

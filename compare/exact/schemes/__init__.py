@@ -1,0 +1,1 @@
+"""Time integration schemes on linear systems, in closed form."""

@@ -1,0 +1,1 @@
+"""Elastic bodies in two or three dimensions: beam, column, manufactured motion."""

@@ -1,0 +1,1 @@
+"""Ablation: the cost of every effect, and its influence on the result."""

@@ -1,0 +1,157 @@
+"""What every effect of a scene costs, and what it is worth: how far the answer is without it.
+
+Cost is that of a step of one rigid block, and of one freedom of the jointed rock where that
+applies; worth is the relative L2 misfit of the rigid blocks with the effect left out, against those
+of the scene as it stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import nan
+from typing import Any, NamedTuple
+
+import dem
+from cases.effects import active_effects
+from cases.errors import SceneError, UnstableError
+from cases.schema.scene import Scene
+from compare.engines import applies, solve
+from compare.experiments.ablation.variants import left_out, only
+from compare.experiments.cost.step_cost import everything, freedoms_in_turns, in_turns, stretch
+from compare.misfit.metrics import misfit
+
+FAILURES = (SceneError, UnstableError)  # of a scene that cannot be so
+ROCK = "continuum-jointed"
+OWN = "own"  # the scene as it stands, among those without one of its effects
+
+
+class Dropped(NamedTuple):
+    """The answer without an effect.
+
+    misfit : from the answer with it. steps : of the scene over those without it, where the effect
+    shortens the step. alone : whether the scene can have it without the others. rock : whether the
+    jointed rock can be without it. reason : why it cannot be left out; empty where it can.
+    """
+
+    effect: str
+    misfit: float
+    steps: float
+    alone: bool
+    rock: bool
+    reason: str
+
+
+class Worth(NamedTuple):
+    """One effect of a scene; numbers that there are not are nan.
+
+    alone : ns of a block-step that it adds to the scene without any other. cost : ns that it adds
+    to the scene's own set. share : of the scene's own step. steps, misfit, reason : as in
+    `Dropped`. rock : ns that it adds to a step of one freedom of the jointed rock.
+    """
+
+    effect: str
+    alone: float
+    cost: float
+    share: float
+    steps: float
+    rock: float
+    misfit: float
+    reason: str
+
+
+class Balance(NamedTuple):
+    """All effects of a scene.
+
+    scene, title, variant : its names. bare, own, everything : ns of a block-step with what the
+    scene cannot be without, with its own set, and with every effect in as many blocks. rock : ns of
+    a freedom-step of the jointed rock with the scene's own set, nan where that does not apply.
+    """
+
+    scene: str
+    title: str
+    variant: str
+    bare: float
+    own: float
+    everything: float
+    rock: float
+    effects: list[Worth]
+
+    @property
+    def label(self) -> str:
+        """The scene's name and its variant's."""
+        return f"{self.scene}, {self.variant}" if self.variant else self.scene
+
+
+def prepare(scene: Scene) -> list[Dropped]:
+    """Return what leaving out each effect does to the answer, and compile all that is timed."""
+    answer = dem.simulate(scene)
+    dropped = [_drop(scene, name, answer) for name in active_effects(scene)]
+    _step(only(scene, None))
+    _runs(lambda: solve(ROCK, scene))
+    return dropped
+
+
+def _drop(scene: Scene, name: str, answer: Any) -> Dropped:
+    try:
+        one = left_out(scene, name)
+        without = dem.simulate(one)
+    except FAILURES as error:
+        return Dropped(name, nan, nan, False, False, getattr(error, "allowed", str(error)))
+    steps = answer.attrs["steps"] / without.attrs["steps"]
+    alone, rock = _runs(lambda: _step(only(scene, name))), _runs(lambda: solve(ROCK, one))
+    return Dropped(name, misfit(without, answer), float(steps), alone, rock, "")
+
+
+def _step(scene: Scene) -> None:
+    stretch(scene)[0]()
+
+
+def _runs(work: Callable[[], object]) -> bool:
+    try:
+        work()
+    except FAILURES:
+        return False
+    return True
+
+
+def balance(name: str, scene: Scene, dropped: list[Dropped]) -> Balance:
+    """Return what every effect that a scene calls for costs and is worth.
+
+    name : of the scene, as its user knows it. dropped : what `prepare` returned.
+    """
+    alone = {one.effect: only(scene, one.effect) for one in dropped if one.alone}
+    without = _without(scene, dropped)
+    first = [everything(scene.pillar.block_count), only(scene, None), scene]
+    full, bare, own, *rest = in_turns([*first, *alone.values(), *without.values()])
+    ns_alone = dict(zip(alone, rest, strict=False))
+    ns_without = dict(zip(without, rest[len(alone) :], strict=True))
+    rock = _ns_in_rock(scene, dropped)
+    found = [
+        Worth(
+            one.effect,
+            ns_alone.get(one.effect, nan) - bare,
+            (cost := own - ns_without.get(one.effect, nan)),
+            cost / own,
+            one.steps,
+            rock.get(OWN, nan) - rock.get(one.effect, nan),
+            one.misfit,
+            one.reason,
+        )
+        for one in dropped
+    ]
+    return Balance(name, scene.title, scene.name, bare, own, full, rock.get(OWN, nan), found)
+
+
+def _without(scene: Scene, dropped: list[Dropped]) -> dict[str, Scene]:
+    """Return the scene without each effect that can be left out."""
+    return {one.effect: left_out(scene, one.effect) for one in dropped if not one.reason}
+
+
+def _ns_in_rock(scene: Scene, dropped: list[Dropped]) -> dict[str, float]:
+    """Return the ns of a freedom-step of jointed rock, as the scene stands and without each effect;
+    empty where that rock does not apply."""
+    if not applies(ROCK, scene):
+        return {}
+    others = _without(scene, dropped)
+    timed = {OWN: scene} | {one.effect: others[one.effect] for one in dropped if one.rock}
+    return dict(zip(timed, freedoms_in_turns(ROCK, list(timed.values())), strict=True))

@@ -1,0 +1,1 @@
+"""The cost model: time and memory of steps, runs and experiments."""

@@ -1,0 +1,104 @@
+"""The command `jointwave fit`."""
+
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cases.errors import SceneError
+from cases.schema.scene import Scene
+from compare.cli.options import (
+    Engine,
+    JsonOption,
+    ModelOption,
+    SceneArgument,
+    SetOption,
+    StrictOption,
+    VariantOption,
+    WithOption,
+    app,
+    load,
+)
+
+
+@app.command()
+def fit(
+    scene: SceneArgument,
+    given: WithOption,
+    free: Annotated[
+        list[str],
+        typer.Option(
+            "--free",
+            metavar="KEY",
+            help="A key of the scene, or clock; more than once, or parted by commas.",
+        ),
+    ],
+    engine: Annotated[
+        Engine | None, typer.Option(help="What solves the scene; absent: rigid blocks.")
+    ] = None,
+    model: ModelOption = None,
+    changes: SetOption = [],  # noqa: B006
+    variant: VariantOption = "",
+    out: Annotated[
+        Path | None, typer.Option(help="Also write table, fitted scene, curves and figure.")
+    ] = None,
+    strict: StrictOption = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Fit keys of a scene to measured waveforms by least squares, with 95 % intervals.
+
+    --free names keys by their dotted path, joints.normal_stiffness or
+    soft_layers.0.spacing_stiffness, each with a start or bounds of its own if they are not those of
+    the scene: KEY=START, KEY=LOW:HIGH or KEY=LOW:START:HIGH. clock is what is added to the times of
+    the files, s, found by cross-correlation first. --with is that of compare: quantity, place, sign
+    and unit of every column; noise needs no removal, amplitudes are never scaled.
+
+    Without --engine the scene is solved by rigid blocks, exactly in time (lattice) where that
+    holds and the chain is short. Intervals take account of residuals that are alike from one sample
+    to the next; what the waveforms do not tell apart, and keys that stop at a bound, are named. A
+    search that does not converge ends with exit code 3.
+
+    --out writes fit.csv, fit.json, fitted.toml, a scene that runs, and fit-waveforms as SVG, PDF,
+    PNG and CSV, with what is left below each waveform.
+    """
+    from compare.cli import terminal
+    from compare.experiments.fit.fit import fit as fitted
+    from compare.experiments.fit.show import facts_of, show_fit
+    from compare.misfit.external import read_curves
+    from compare.runs.checkpoint.lock import locked
+
+    (one,) = load(scene, changes, variant or "", strict)
+    curves = read_curves(given, [one])
+    solver = _solver(one, engine, model)
+    with ExitStack() as held:
+        if out is not None:
+            held.enter_context(locked(out))
+        with terminal.progress(one.name or one.title) as advance:
+            found = fitted(one, curves, free, solver, advance)
+        files = []
+        if out is not None:
+            from compare.experiments.fit.files import write_fit
+
+            files = write_fit(found, one, out)
+    if as_json:
+        terminal.print_json(facts_of(found, files))
+    else:
+        show_fit(found, scene, one.name, files)
+
+
+def _solver(scene: Scene, engine: Engine | None, models: list[str] | None) -> str | None:
+    """Return the one solution that --engine and --model name; None without them."""
+    from compare.runs import jobs
+
+    if engine is None and not models:
+        return None
+    if engine is None:
+        names = jobs.CONTINUUM_MODELS
+        engine = Engine.continuum if (models or [""])[0] in names else Engine.exact
+    ((of, model), *more) = jobs.wanted([engine.value], models or [])
+    found = jobs.names_of(of, model, scene)
+    if more or len(found) > 1:
+        allowed = f"must be one of {', '.join(found)}" if not more else "must be given once"
+        raise SceneError("--model", "", None, allowed)
+    return found[0]

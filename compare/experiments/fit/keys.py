@@ -1,0 +1,215 @@
+"""The keys that a fit may change: where each begins, and between which bounds it stays."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from math import exp, inf, isfinite, log, nextafter
+from types import UnionType
+from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
+
+from cases.errors import SceneError
+from cases.schema.allowed import model_in
+from cases.schema.consistency import checked
+from cases.schema.field_docs import field_comments
+from cases.schema.scene import Scene
+
+CLOCK = "clock"  # what is added to the times of the files, s
+DECADES = 3.0  # that a key on a logarithmic scale may change without bounds of its own
+#: What says how a scene is cut, solved and recorded: no number that can change by a little.
+FIXED = ("pillar.length", "pillar.block", "soft_layers.*.y", "time", "record", "numerics", "expect")
+FORMS = "must be KEY, KEY=START, KEY=LOW:HIGH or KEY=LOW:START:HIGH"
+UNIT = re.compile(r"(?<![\w/])(Pa/m|Pa|kg/m3|m/s2|m/s|J/m2|degrees|s|m)(?![\w/])")
+LOADS = {"stress": "Pa", "velocity": "m/s", "acceleration": "m/s2"}  # by load.quantity
+
+
+class Free(NamedTuple):
+    """A key that is fitted. start : None where it is to be found, of the clock alone.
+
+    low, high : bounds. logarithmic : whether it is positive and sought on such a scale. unit : ""
+    of a ratio.
+    """
+
+    key: str
+    start: float | None
+    low: float
+    high: float
+    logarithmic: bool
+    unit: str
+
+    @property
+    def size(self) -> float:
+        """What a change of 1 in the unknown of the search is, on a linear scale."""
+        return abs(self.start or 0.0) or (self.high - self.low if isfinite(self.high) else 1.0)
+
+    def unknown(self, value: float) -> float:
+        """Return the number of the search that stands for a value."""
+        start = self.start or 0.0
+        return log(value / start) if self.logarithmic else (value - start) / self.size
+
+    def value(self, unknown: float) -> float:
+        """Return the value that a number of the search stands for."""
+        start = self.start or 0.0
+        found = start * exp(unknown) if self.logarithmic else start + self.size * unknown
+        return min(max(found, self.low), self.high)
+
+
+def free_keys(texts: list[str], scene: Scene) -> list[Free]:
+    """Return what `--free` names, several in one text parted by commas; raises SceneError."""
+    found: list[Free] = []
+    for text in [part for given in texts for part in given.split(",")]:
+        key, numbers = _parsed(text)
+        if any(key == other.key for other in found):
+            raise SceneError("--free", key, None, "must be given once only")
+        found.append(_free(key, numbers, scene))
+    return found
+
+
+def changed(scene: Scene, values: Mapping[str, float]) -> Scene:
+    """Return a scene with dotted keys set; raises SceneError where it cannot have them so."""
+    try:
+        for key, value in values.items():
+            scene = _with(scene, key.split("."), value)
+    except ValidationError as error:
+        allowed = str(error.errors()[0]["msg"]).lower()
+        raise SceneError(scene.where, key, value, allowed) from None
+    return checked(scene)
+
+
+def _with(table: Any, parts: list[str], value: float) -> Any:
+    name, *rest = parts
+    if not rest:
+        new = table.model_copy(update={name: value})
+        # A load keeps the history that it has read.
+        return new if getattr(new, "file", None) else type(new).model_validate(dict(new))
+    old = getattr(table, name)
+    if isinstance(old, list):
+        i = int(rest[0])
+        return table.model_copy(
+            update={name: [*old[:i], _with(old[i], rest[1:], value), *old[i + 1 :]]}
+        )
+    if old is None:
+        made = model_in(type(table).model_fields[name].annotation)
+        assert made is not None
+        return table.model_copy(update={name: made.model_validate({rest[0]: value})})
+    return table.model_copy(update={name: _with(old, rest, value)})
+
+
+def _parsed(text: str) -> tuple[str, list[float]]:
+    key, equals, numbers = (part.strip() for part in text.partition("="))
+    try:
+        found = [float(part) for part in numbers.split(":")] if equals else []
+    except ValueError:
+        raise SceneError("--free", text, None, f"{FORMS}, of numbers") from None
+    if not key or len(found) > 3 or not all(map(isfinite, found)):
+        raise SceneError("--free", text, None, FORMS)
+    if len(found) > 1 and not all(a < b for a, b in pairwise(found)):
+        raise SceneError("--free", text, None, "must have its bounds in order, LOW first")
+    return key, found
+
+
+def _free(key: str, numbers: list[float], scene: Scene) -> Free:
+    """Return a key with its start and bounds: given, else of the scene and its models."""
+    if key == CLOCK:
+        start, low, high = _three(numbers, None, -inf, inf)
+        return Free(key, start, low, high, False, "s")
+    field, model, old = _find(key, scene)
+    if not _is_number(field.annotation) or any(_matches(key, fixed) for fixed in FIXED):
+        raise SceneError("--free", key, None, "must be a number that can change by a little")
+    least, most, logarithmic = _bounds(field)
+    if old is None and not numbers:
+        allowed = f"is not in {scene.where}: give a start, --free {key}=START"
+        raise SceneError("--free", key, None, allowed)
+    start, low, high = _three(numbers, old, least, most)
+    if start is None:
+        start = (low * high) ** 0.5 if logarithmic and low > 0 else (low + high) / 2
+    if not (least <= low and high <= most and low <= start <= high):
+        allowed = f"must start and stay within {max(low, least):.6g} to {min(high, most):.6g}"
+        raise SceneError("--free", key, start, allowed)
+    if logarithmic:
+        low, high = max(low, start * 10**-DECADES), min(high, start * 10**DECADES)
+    return Free(key, start, low, high, logarithmic, _unit(key, model, scene))
+
+
+def _unit(key: str, model: type[BaseModel], scene: Scene) -> str:
+    """Return the unit of a key, as the comment of its field begins; "" of a ratio."""
+    if key == "load.amplitude":
+        return "" if scene.load.file else LOADS[scene.load.quantity]
+    about = field_comments(model).get(key.rpartition(".")[2], "")
+    found = UNIT.search(re.split(r"[;(]", about)[0])
+    return found[0] if found else ""
+
+
+def _three(
+    numbers: list[float], start: float | None, low: float, high: float
+) -> tuple[float | None, float, float]:
+    """Return start and bounds as given, or what holds without."""
+    if len(numbers) == 1:
+        return numbers[0], low, high
+    if len(numbers) == 2:
+        inside = start is not None and numbers[0] <= start <= numbers[1]
+        return start if inside else None, numbers[0], numbers[1]
+    return (numbers[1], numbers[0], numbers[2]) if numbers else (start, low, high)
+
+
+def _find(key: str, scene: Scene) -> tuple[FieldInfo, type[BaseModel], Any]:
+    """Return the field of a dotted key, its model, and its value, None where it is absent."""
+    table: Any = scene
+    model: type[BaseModel] | None = Scene
+    field, owner, parts = None, None, key.split(".")
+    for i, part in enumerate(parts):
+        if model is None or part not in model.model_fields:
+            known = f"; allowed: {', '.join(model.model_fields)}" if model else ""
+            raise SceneError("--free", key, None, f"is no key of a scene{known}")
+        field, owner = model.model_fields[part], model
+        model, table = model_in(field.annotation), getattr(table, part, None)
+        if isinstance(table, list) and model is not None and i + 1 < len(parts):
+            number = parts.pop(i + 1)
+            if not number.isdecimal() or int(number) >= len(table):
+                allowed = f"must be {part}.0 to {part}.{len(table) - 1}" if table else "has none"
+                raise SceneError("--free", key, None, f"{part}: {allowed}")
+            table = table[int(number)]
+    assert field is not None and owner is not None
+    return field, owner, table
+
+
+def _matches(key: str, fixed: str) -> bool:
+    parts, wanted = key.split("."), fixed.split(".")
+    return len(parts) >= len(wanted) and all(
+        w in ("*", p) for p, w in zip(parts, wanted, strict=False)
+    )
+
+
+def _is_number(kind: Any) -> bool:
+    if get_origin(kind) in (Annotated, Union, UnionType):
+        return any(_is_number(part) for part in get_args(kind))
+    return kind is float
+
+
+def _bounds(field: FieldInfo) -> tuple[float, float, bool]:
+    """Return the least and largest value that a field allows, and whether it is above zero."""
+    low, high, logarithmic = -inf, inf, False
+    for one in _constraints(field.annotation, field.metadata):
+        if (least := getattr(one, "gt", None)) is not None:
+            low, logarithmic = nextafter(least, inf), least == 0
+        if (least := getattr(one, "ge", None)) is not None:
+            low = least
+        if (most := getattr(one, "lt", None)) is not None:
+            high = nextafter(most, -inf)
+        if (most := getattr(one, "le", None)) is not None:
+            high = most
+    return low, high, logarithmic
+
+
+def _constraints(kind: Any, metadata: Any) -> Iterator[Any]:
+    for one in metadata:
+        yield from one.metadata if isinstance(one, FieldInfo) else [one]
+    if get_origin(kind) is Annotated:
+        yield from _constraints(get_args(kind)[0], get_args(kind)[1:])
+    elif get_origin(kind) in (Union, UnionType):
+        for part in get_args(kind):
+            yield from _constraints(part, ())

@@ -1,0 +1,159 @@
+"""What a fit compares: the waveforms of a solution at the times of measured ones, key by key."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from cases.errors import SceneError, UnstableError
+from cases.schema.scene import Scene
+from compare.engines import applies, solve
+from compare.experiments.fit.keys import CLOCK, changed
+from compare.experiments.planner.families import COARSEST, blocks_of
+from compare.misfit.alignment import INSTANT, static_level
+from compare.misfit.external import Curves, Place, is_recorded
+
+SHORT = 200  # blocks, up to which matrix exponentials cost little
+FINER = 4  # samples of the solution to one of the scene, where the clock is free
+EXACT_STEP, COMPUTED_STEP = 1e-4, 1e-3  # of an unknown, for differences
+
+
+class Measured(NamedTuple):
+    """One measured waveform [n] at times [n] in s on its file's own clock, SI; `static` is what the
+    solution holds there before its load acts."""
+
+    name: str
+    place: Place
+    time: np.ndarray
+    values: np.ndarray
+    static: float
+
+    @property
+    def size(self) -> float:
+        """Root mean square of the motion."""
+        return float(np.sqrt(np.mean((self.values - self.static) ** 2))) or 1.0
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A scene, what solves it, and the waveforms that it is fitted to.
+
+    scene : sampled and lasting as the fit needs it. steps : of rigid blocks per sample, the same in
+    every trial, so that a waveform changes smoothly with a key; 0 where the solution has no step.
+    """
+
+    scene: Scene
+    solver: str
+    measured: list[Measured]
+    steps: int = 0
+
+    def waveforms(self, values: Mapping[str, float]) -> list[np.ndarray]:
+        """Return the solution at the measured times [n] of each waveform; raises SceneError and
+        UnstableError where there is none for these values."""
+        from scipy.interpolate import CubicSpline
+
+        clock = values.get(CLOCK, 0.0)
+        scene = changed(self.scene, {k: v for k, v in values.items() if k != CLOCK})
+        result = solve(self.solver, self._stepped(scene))
+        time, found = result.time.values, []
+        for one in self.measured:
+            ours = one.place.waveform(result)
+            assert ours is not None
+            # At rest before its first sample.
+            at = np.clip(one.time + clock, time[0], time[-1])
+            found.append(CubicSpline(time, ours)(at))
+        return found
+
+    def residual(self, values: Mapping[str, float]) -> list[np.ndarray] | None:
+        """Return solution less measured [n] of each waveform; None where there is no solution."""
+        try:
+            found = self.waveforms(values)
+        except (SceneError, UnstableError):
+            return None
+        return [f - one.values for f, one in zip(found, self.measured, strict=True)]
+
+    @property
+    def step(self) -> float:
+        """The change of an unknown that a difference takes."""
+        return COMPUTED_STEP if self.steps or self.solver.startswith("continuum") else EXACT_STEP
+
+    def _stepped(self, scene: Scene) -> Scene:
+        if not self.steps:
+            return scene
+        fraction = scene.interval / self.steps / blocks_of(scene)[1]
+        if fraction > COARSEST:
+            raise UnstableError("beyond the critical step, with the steps of where the fit began")
+        step = {"step_fraction": fraction * (1 + 1e-6)}  # or rounding makes it one step more
+        dem = scene.numerics.dem.model_copy(update=step)
+        return scene.model_copy(update={"numerics": scene.numerics.model_copy(update={"dem": dem})})
+
+
+def solver_of(scene: Scene, asked: str | None) -> str:
+    """Return what solves every trial: what is asked for, else rigid blocks, exact in time where
+    they are linear and few; raises SceneError where it does not apply."""
+    if asked is None:
+        few = scene.pillar.block_count <= SHORT
+        return "lattice" if few and applies("lattice", scene) else "dem"
+    answer = applies(asked, scene)
+    if not answer:
+        raise SceneError(scene.where, "", None, f"{asked} does not apply: {answer.reason}")
+    return asked
+
+
+def problem_of(
+    scene: Scene, solver: str, curves: list[Curves], clock: float | None, reach: float
+) -> Problem:
+    """Return what a fit compares. clock : the shift that it begins with, s; None: it stays.
+
+    reach : how far the clock may move later, s, so long does the solution last beyond the scene.
+    Raises SceneError where a curve shares fewer samples with the scene than a fit takes.
+    """
+    moves, shift = clock is not None, clock or 0.0
+    interval = scene.interval / (FINER if moves else 1)
+    record = scene.record.model_copy(update={"interval": interval, "energy": False, "fields": None})
+    time = scene.time.model_copy(update={"duration": scene.time.duration + reach})
+    base = scene.model_copy(update={"record": record, "time": time, "expect": {}})
+    result = solve(solver, base)
+    found = []
+    for one in curves:
+        own = one.time + shift
+        inside = (own >= -INSTANT) & (own <= scene.time.duration + 1e-6 * scene.interval)
+        for place, values in one.waveforms.items():
+            if not is_recorded(place, scene) or place.waveform(result) is None:
+                continue
+            level = static_level(place, result)
+            found.append(Measured(one.name, place, one.time[inside], values[inside], level))
+    _require_samples(found, curves, scene)
+    if solver != "dem":
+        return Problem(base, solver, found)
+    return Problem(base, solver, found, round(interval / float(result.attrs["dt"])))
+
+
+def _require_samples(found: list[Measured], curves: list[Curves], scene: Scene) -> None:
+    if not found:
+        raise SceneError(curves[0].file, "", None, "has no waveform where the scene has one")
+    for one in found:
+        if len(one.time) < 10:
+            allowed = (
+                f"must share at least 10 samples with the scene, 0 to {scene.time.duration:g} s, "
+                f"not {len(one.time)}; --free clock moves a clock of its own"
+            )
+            raise SceneError(one.name, str(one.place), None, allowed)
+
+
+def started_clock(scene: Scene, solver: str, curves: list[Curves]) -> float:
+    """Return the shift of the first file's clock that correlates best with the solution, s."""
+    from compare.misfit.alignment import lay_beside
+
+    results: dict[str, xr.Dataset] = {solver: solve(solver, scene)}
+    shift = lay_beside(curves[0], scene, results, align=True).shift
+    return shift.seconds if shift else 0.0
+
+
+def clock_reach(scene: Scene) -> float:
+    """Return how far a clock may move from where the fit began, s: a period of the load."""
+    return scene.load.period or scene.time.duration / 10

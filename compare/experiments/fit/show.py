@@ -1,0 +1,72 @@
+"""What `jointwave fit` prints."""
+
+from __future__ import annotations
+
+import math
+import shlex
+from pathlib import Path
+from typing import Any
+
+from compare.cli.terminal import say, show_numbers
+from compare.experiments.fit.fit import Estimate, Fit
+
+
+def show_fit(found: Fit, scene: str, variant: str, files: list[Path]) -> None:
+    """Print values with intervals, correlations, misfits, and the command that goes on."""
+    from compare.experiments.fit.files import settings
+
+    worst = max(found.waveforms, key=lambda one: one.after)
+    say(
+        f"{found.scene.title} {found.scene.name}".strip() + f", fitted by {found.solver} in "
+        f"{found.trials} solutions",
+        "bold",
+    )
+    say(
+        f"misfit {found.before:.3%} before, {found.after:.3%} after"
+        + (f"; worst {worst.name}, {worst.place}" if len(found.waveforms) > 1 else "")
+    )
+    show_numbers(
+        ["key", "value", "from", "to", "", "began at"],
+        {"values, with intervals of 95 %": [_cells(e) for e in found.estimates]},
+    )
+    if len(found.estimates) > 1:
+        names = [e.key for e in found.estimates]
+        rows = [
+            [name, *(f"{c:+.3f}" for c in row)]
+            for name, row in zip(names, found.correlation, strict=True)
+        ]
+        show_numbers(["", *names], {"correlations": rows})
+    for note in found.notes:
+        say(f"note: {note}")
+    say(
+        "The intervals hold if the model is right: jointwave compare says how far models are apart."
+    )
+    arguments = ["jointwave", "compare", scene, *(["--variant", variant] if variant else [])]
+    for setting in settings(found):
+        arguments += ["--set", setting]
+    say(f"run it: {shlex.join(arguments)}")
+    for path in files:
+        say(f"wrote {path}")
+
+
+def _cells(e: Estimate) -> list[str]:
+    ends = ["-" if not math.isfinite(x) else _digits(x, e) for x in (e.low, e.high)]
+    if not math.isfinite(e.high):
+        ends = ["not", "determined"]
+    return [e.key, _digits(e.value, e), *ends, e.unit, f"{e.start:.6g}"]
+
+
+def _digits(value: float, e: Estimate) -> str:
+    """Return a value with as many digits as its interval bears, and two more."""
+    width = abs(e.high - e.low) / 2
+    if not math.isfinite(width) or width == 0 or value == 0:
+        return f"{value:.6g}"
+    digits = math.ceil(math.log10(max(abs(value), width) / width)) + 2
+    return f"{value:.{min(max(digits, 3), 10)}g}"
+
+
+def facts_of(found: Fit, files: list[Path]) -> dict[str, Any]:
+    """Return the same for a machine."""
+    from compare.experiments.fit.files import facts
+
+    return {**facts(found), "files": [str(path) for path in files]}

@@ -1,0 +1,244 @@
+"""The cheapest way to solve a scene within a misfit: predicted from a few cheap runs, then run.
+
+What must be met is the sum of two errors: the numerical one, of a configuration from its engine's
+own model, and the modelling one, of that model from the finest physics. So an error that happens to
+cancel the other is no accuracy.
+
+Families of configurations are tried from coarse elements to fine ones, each from its coarsest step
+on until finer steps can be predicted (see `plan_trials`). What by its freedom-steps would cost more
+than what is known to meet the misfit is not tried at all, nor what its modelling error bars.
+"""
+
+from __future__ import annotations
+
+from math import inf
+from time import perf_counter
+from typing import NamedTuple
+
+from cases.errors import SceneError, StoppedError, UnstableError
+from cases.schema.scene import Scene
+from compare.engines import Progress
+from compare.experiments.planner.families import (
+    FAMILIES,
+    Effort,
+    Family,
+    configured,
+    effort,
+    is_finer,
+)
+from compare.experiments.planner.reference import Own, Reference, References
+from compare.experiments.planner.trials import (
+    FINEST,
+    LONGEST,
+    Choice,
+    Trial,
+    first_trial,
+    is_trusted,
+    measured,
+    predicted,
+    timed,
+    trial_at,
+)
+from compare.misfit.metrics import misfit as misfit_of
+
+#: A family is not tried where it would be too dear at this share of the least seconds that a
+#: freedom-step has taken so far.
+SAFETY = 0.5
+#: What is only predicted must be below this part of the misfit: two steps leave the next term of
+#: the error.
+MARGIN = 0.95
+DEAR = "would cost more than what is known to do"
+FAILURES = (SceneError, UnstableError, StoppedError)
+
+
+class Plan(NamedTuple):
+    """What was chosen, and what came of it.
+
+    reference : the finest physics, and the reason why it is that. trials : runs that were made to
+    predict; planning : s that all of the planning took, the references and compiling included.
+    chosen : None where nothing is predicted to do. own : what its numerical error is from.
+    obtained : the configuration as it was run; None without.
+    skipped : families that could not or need not be run, with their reason.
+    """
+
+    scene: Scene
+    reference: Reference
+    reason: str
+    trials: int
+    planning: float
+    skipped: dict[str, str]
+    chosen: Choice | None = None
+    own: Reference | None = None
+    obtained: Choice | None = None
+
+    @property
+    def misfit(self) -> float:
+        """Numerical and modelling error that were obtained together; inf without."""
+        return inf if self.obtained is None else self.obtained.misfit
+
+    @property
+    def seconds(self) -> float:
+        """Seconds of stepping that were obtained; 0 without."""
+        return 0.0 if self.obtained is None else self.obtained.seconds
+
+
+class Search:
+    """Trials so far of one scene, and the choices that they leave."""
+
+    def __init__(
+        self, scene: Scene, references: References, misfit: float, seconds: float | None
+    ) -> None:
+        self.scene, self.references = scene, references
+        self.misfit, self.seconds = misfit, seconds
+        self.choices: list[Choice] = []
+        self.dear: list[Family] = []
+        self.rates: dict[str, float] = {}
+        self.trials = 0
+
+    @property
+    def limit(self) -> float:
+        """Seconds from which a run is of no use."""
+        best = cheapest(self.choices, self.misfit, None)
+        known = inf if best is None else best.seconds
+        return known if self.seconds is None else min(known, self.seconds)
+
+    def try_family(self, family: Family) -> None:
+        """Run a family until it meets the misfit, is predicted, or costs too much."""
+        if any(is_finer(family, other) for other in self.dear):
+            raise SceneError(self.scene.where, "", None, DEAR)
+        asked = effort(self.scene, family)
+        if SAFETY * self._rate(family) * asked.work > self.limit:
+            self.dear.append(family)
+            raise SceneError(self.scene.where, "", None, DEAR)
+        own = self.references.own(family.name)
+        if own.least >= self.misfit and self.seconds is None:
+            raise SceneError(self.scene.where, "", None, too_far(family, own))
+        trials = self._run(family, asked, own)
+        self.choices += [measured(self.scene, family, trial, own) for trial in trials]
+        if len(trials) > 1:
+            self.choices += predicted(self.scene, family, trials, own)
+
+    def _run(self, family: Family, asked: Effort, own: Own) -> list[Trial]:
+        trials = [first_trial(self.scene, family, own)]
+        while not self._is_enough(family, trials, self.misfit - own.least):
+            finer = 2 * trials[-1].per_sample
+            trials.append(trial_at(self.scene, family, finer, trials[0], own))
+        self.trials += len(trials)
+        rates = [t.seconds / (asked.work * t.per_sample / asked.least) for t in trials]
+        self.rates[family.name] = min(*rates, self.rates.get(family.name, inf))
+        return trials
+
+    def obtain(self, choice: Choice) -> Choice:
+        """Return a choice with what a run of it gives."""
+        family, own = choice.family, self.references.own(choice.family.name).reference
+        asked = configured(self.scene, family, choice.settings)
+        result, seconds = timed(family.name, asked)
+        numerical = misfit_of(result, own.result) + own.error
+        return choice._replace(numerical=numerical, seconds=seconds, measured=True)
+
+    def _rate(self, family: Family) -> float:
+        """Return the least seconds of a freedom-step so far, of this engine where it has run."""
+        return self.rates.get(family.name, min(self.rates.values(), default=0.0))
+
+    def _is_enough(self, family: Family, trials: list[Trial], asked: float) -> bool:
+        """Return whether no finer trial is needed; asked : the largest numerical error.
+
+        A trial that comes within it is not the last before one of half its step does too.
+        """
+        last, meets = trials[-1], trials[-1].misfit <= asked
+        if meets and len(trials) == 1:
+            return False
+        return (
+            meets
+            or last.seconds >= min(self.limit, LONGEST)
+            or last.per_sample >= FINEST * trials[0].per_sample
+            or is_trusted(trials, family.order, asked)
+        )
+
+
+def too_far(family: Family, own: Own) -> str:
+    """Return why no step of a family comes within a misfit below its modelling error."""
+    return f"the modelling error of {family.name} alone is {100 * own.least:.3g} %"
+
+
+def plan(
+    scene: Scene, misfit: float, seconds: float | None = None, progress: Progress | None = None
+) -> Plan:
+    """Return the cheapest configuration predicted to meet a misfit, run.
+
+    seconds : instead the best misfit within so many s of stepping, where `misfit` costs more.
+    Raises SceneError where nothing exact is known of it, and no run converges in reach.
+    """
+    began = perf_counter()
+    references = References(scene, misfit)
+    search = Search(scene, references, misfit, seconds)
+    skipped = _tried(search, progress)
+    chosen, obtained = _run_cheapest(search)
+    spent = perf_counter() - began
+    found = Plan(scene, references.finest, references.reason, search.trials, spent, skipped)
+    if chosen is None:
+        return found
+    own = references.own(chosen.family.name).reference
+    return found._replace(chosen=chosen, own=own, obtained=obtained)
+
+
+def _run_cheapest(search: Search) -> tuple[Choice | None, Choice | None]:
+    """Return the cheapest choice and what came of it; one that is not what was predicted of it
+    counts as a trial, and the next is run."""
+    chosen = obtained = None
+    while (best := cheapest(search.choices, search.misfit, search.seconds)) is not None:
+        chosen, obtained = best, search.obtain(best)
+        if best.measured or obtained.misfit <= max(search.misfit, best.misfit / MARGIN):
+            break
+        search.trials += 1
+        search.choices = [c for c in search.choices if c is not best] + [obtained]
+    return chosen, obtained
+
+
+def _tried(search: Search, progress: Progress | None) -> dict[str, str]:
+    """Try all families; return the reasons of those that were not run."""
+    skipped = {}
+    for i, family in enumerate(FAMILIES):
+        try:
+            search.try_family(family)
+        except FAILURES as error:
+            skipped[family.label] = reason_of(error)
+        if progress:
+            progress((i + 1) / (len(FAMILIES) + 1))
+    return skipped
+
+
+def reason_of(error: Exception) -> str:
+    """Return why something could not be run, without where."""
+    return getattr(error, "allowed", str(error))
+
+
+def cheapest(choices: list[Choice], misfit: float, seconds: float | None) -> Choice | None:
+    """Return the cheapest that meets the misfit; else, or where it costs more, the best in time.
+
+    One meets it where all finer steps of its family do, as far as they are known or predicted.
+    """
+    meets = [c for c in choices if _meets(c, misfit) and furthest_off(c, choices) <= misfit]
+    best = min(meets, key=lambda c: c.seconds, default=None)
+    if seconds is None or (best is not None and best.seconds <= seconds):
+        return best
+    in_time = [c for c in choices if c.seconds <= seconds]
+    return min(in_time, key=lambda c: furthest_off(c, choices), default=None)
+
+
+def _meets(choice: Choice, misfit: float) -> bool:
+    margin = 1.0 if choice.measured else MARGIN
+    return choice.numerical <= margin * (misfit - choice.modelling)
+
+
+def furthest_off(choice: Choice, choices: list[Choice]) -> float:
+    """Return the largest misfit of a choice and of the finer steps of its family."""
+    return max(
+        c.misfit for c in choices if c.family == choice.family and c.per_sample >= choice.per_sample
+    )
+
+
+def options_of(choice: Choice) -> list[str]:
+    """Return the `--set` options that make a configuration."""
+    found = {**choice.family.changes, **choice.settings}
+    return [f"numerics.{choice.family.engine}.{key}={value}" for key, value in found.items()]

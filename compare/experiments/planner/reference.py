@@ -1,0 +1,166 @@
+"""What a plan measures errors from: the finest physics of a scene, and each engine's own model.
+
+Either is an exact solution that knows itself well enough, or a run that has converged to itself.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from math import inf
+from typing import Any, NamedTuple
+
+import xarray as xr
+
+from cases.errors import SceneError
+from cases.schema.scene import Scene
+from compare.engines import ENGINES, solve
+from compare.experiments.planner.families import Family, configured, plain, settings
+from compare.misfit import ranking
+from compare.misfit.metrics import JUDGED, misfit, worst
+
+SHARE = 1 / JUDGED  # of the misfit asked for, that a reference may be wrong itself
+LONGEST = 20.0  # s of stepping of the finest run
+LEVELS = 10
+
+
+class Reference(NamedTuple):
+    """What errors are from; settings : of an engine's run, "" where the solution is exact.
+
+    error : relative, of the reference itself: the bound that a computed solution gives; of a run,
+    how far it is from the one before; 0 of a closed form.
+    """
+
+    name: str
+    result: xr.Dataset
+    settings: str = ""
+    error: float = 0.0
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether it is an exact solution."""
+        return not self.settings
+
+
+class Own(NamedTuple):
+    """The model of one engine.
+
+    reference : what its numerical errors are from. modelling : how far that is at most from the
+    finest physics, the error of the latter included; 0 where it is the finest physics itself.
+    """
+
+    reference: Reference
+    modelling: float
+
+    @property
+    def least(self) -> float:
+        """What no step reduces: modelling error, and what the own reference is not known to."""
+        return self.modelling + self.reference.error
+
+
+class References:
+    """The references of one scene, good enough for the misfit that is asked for.
+
+    finest : that of the physics which leaves out the least; reason : why it is that one.
+    Raises SceneError where nothing exact is known of it and no run in reach has converged.
+    """
+
+    def __init__(self, scene: Scene, asked: float) -> None:
+        self.scene, self.asked = scene, asked
+        self._own: dict[str, Own] = {}
+        found = ranking.finest(self._names, scene)
+        if found is None:
+            raise SceneError(scene.where, "", None, "nothing here resolves all that the scene has")
+        self.finest, self.reason = self._reference(found.name), found.reason
+
+    @cached_property
+    def _names(self) -> list[str]:
+        return [name for name, answer in ranking.applicable(self.scene).items() if answer]
+
+    def own(self, engine: str) -> Own:
+        """Return the model of an engine; raises SceneError where no run of it has converged."""
+        if engine not in self._own:
+            self._own[engine] = self._find_own(engine)
+        return self._own[engine]
+
+    def _find_own(self, engine: str) -> Own:
+        exact = ranking.own_exact(engine, self._names, self.scene)
+        if self.finest.name in (engine, exact):
+            return Own(self.finest, 0.0)
+        reference = (
+            self._reference(exact)
+            if exact
+            else _converged(self.scene, engine, self.asked, self.finest.result)
+        )
+        apart = misfit(reference.result, self.finest.result)
+        return Own(reference, apart + self.finest.error)
+
+    def _reference(self, name: str) -> Reference:
+        """Return an exact solution, or the run of an engine that has converged."""
+        if name in ENGINES:
+            return _converged(self.scene, name, self.asked)
+        result = solve(name, plain(self.scene))
+        error = worst(result, result).floor
+        if error > SHARE * self.asked:
+            raise SceneError(
+                self.scene.where,
+                "",
+                None,
+                f"{name} knows itself to {100 * error:.2g} %, not to "
+                f"{100 * SHARE * self.asked:.2g} %: ask for a larger --misfit",
+            )
+        return Reference(name, result, "", error)
+
+
+def _converged(
+    scene: Scene, name: str, asked: float, finest: xr.Dataset | None = None
+) -> Reference:
+    """Return an engine's run that differs from the one before by little enough.
+
+    Each has at most half the step, and half the elements' size, of the one before. Its error is at
+    most the difference where the error falls at least in proportion to the step. A run is fine
+    enough, too, once its model is certain to be further from the finest physics than is asked for.
+    """
+    before, apart = None, inf
+    for level in range(LEVELS):
+        family = _family(name, level)
+        numerics, result = _at_most(scene, family, _half(before))
+        apart = inf if before is None else misfit(before, result)
+        is_far = finest is not None and misfit(result, finest) - apart > asked
+        if apart < SHARE * asked or is_far:
+            made = ", ".join(f"{k} {v}" for k, v in (family.changes | numerics).items())
+            return Reference(name, result, made, apart)
+        before = result
+        if float(result.attrs["seconds_stepping"]) * 4 > LONGEST:
+            break
+    raise SceneError(
+        scene.where,
+        "",
+        None,
+        f"no exact solution to plan by, and {name} within {LONGEST:g} s a run converges to "
+        f"{100 * apart:.2g} %, not to {100 * SHARE * asked:.2g} %: ask for a larger --misfit",
+    )
+
+
+def _half(before: xr.Dataset | None) -> float:
+    return inf if before is None else float(before.attrs["dt"]) / 2
+
+
+def _family(name: str, level: int) -> Family:
+    if name == "dem":
+        return Family(name, "dem", {"scheme": "leapfrog"}, 2)
+    changes = {"scheme": "explicit", "order": 2, "elements_per_block": 2**level}
+    return Family(name, "continuum", changes, 2)
+
+
+def _at_most(scene: Scene, family: Family, dt: float) -> tuple[dict[str, Any], xr.Dataset]:
+    """Return the numerics and the result of steps of 0.4 critical ones, or dt (s) if that is less.
+
+    The step divides the sampling interval, so that a part of the critical one may be no other.
+    """
+    numerics = {"step_fraction": 0.4}
+    result = solve(family.name, configured(scene, family, numerics))
+    if float(result.attrs["dt"]) > dt * (1 + 1e-9):
+        per_sample, critical = round(scene.interval / dt), float(result.attrs["critical_dt"])
+        numerics = settings(scene, family, per_sample, critical)
+        result = solve(family.name, configured(scene, family, numerics))
+    return numerics, result

@@ -1,0 +1,1 @@
+"""The robustness suite: hard cases, each held to a criterion from theory."""

@@ -1,0 +1,120 @@
+"""Criteria of accuracy: how far a scheme of second order may be from the exact solution.
+
+Near a critical step, beside stiff joints or at a resonance an unstable scheme is wrong without
+being infinite. So every such run is held to the error that a stable one can have.
+"""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+import numpy as np
+import xarray as xr
+
+from cases.material.calibrate import calibrate
+from compare.engines import applies, solve
+from compare.experiments.robustness.case import Finding, Trial
+from compare.misfit.metrics import misfit
+
+#: Exact solutions of the models that the engines discretise, the first that applies counts.
+REFEREES = {
+    "dem": ("lattice", "no-tension-chain", "spatial-lattice"),
+    "continuum-jointed": ("jointed-bar",),
+    "continuum-equivalent": ("equivalent-bar",),
+}
+
+#: Root mean squares of f^3 and f^5 over the spectrum of a Ricker wavelet, f^2 exp(-f^2) with its
+#: peak at f = 1: sqrt of Gamma(11/2) / Gamma(5/2) / 2^3 and Gamma(15/2) / Gamma(5/2) / 2^5.
+CUBES, FIFTHS = 2.22, 6.64
+#: Relative error of a frequency over (omega dt)^2. Leapfrog: sin(W dt/2) = omega dt / 2. Trapezoid:
+#: tan(W dt/2) = omega dt/2; generalised alpha lags a little more.
+ERROR = {"leapfrog": 1 / 24, "fourth-order": 1 / 24, "explicit": 1 / 24, "implicit": 1 / 6}
+REFEREE = 5e-6  # of the exact bars: their inversion takes the mean load of steps, 6e-7 at the peak
+EPS = 2.2e-16
+
+
+def phase_error(trial: Trial, result: xr.Dataset) -> float:
+    """Return the misfit that the steps of a second-order scheme leave at the end of a run.
+
+    A relative error e of the frequency omega is the phase e omega t at time t, and a wave that is
+    wrong by a small phase is wrong by as much relative to itself: C (omega dt)^2 omega t, in the
+    mean over the spectrum.
+    """
+    scene = trial.scene()
+    omega = peak(trial)
+    step = omega * float(result.attrs["dt"])
+    return ERROR[trial.solver.scheme] * step**2 * CUBES * omega * scene.time.duration
+
+
+def element_error(trial: Trial) -> float:
+    """Return the misfit that quadratic GLL elements leave at the end of a run; none in blocks.
+
+    Their phase speed is wrong by (omega tau)^4 / 2880, tau the time through an element (Ainsworth &
+    Wajid, SIAM J. Numer. Anal. 47, 2009). The traction of a joint that is recorded is known to the
+    round-off of its gap, eps K u, with u no more than 2 p t / Z under a stress p; ten operations of
+    this are allowed.
+    """
+    if trial.solver.engine == "dem":
+        return 0.0
+    scene, omega = trial.scene(), peak(trial)
+    p, t = calibrate(scene), scene.time.duration
+    phase = (omega * time_of_element(trial)) ** 4 / 2880 * FIFTHS * omega * t
+    own = p.own_stiffness if trial.solver.engine == "continuum-jointed" else p.stiffness
+    assert own is not None
+    read = own[np.rint(np.array(scene.record.stress) / p.spacing).astype(int) - 1]
+    return phase + 10 * EPS * float(read.max()) * 2 * t / p.impedance
+
+
+def corner_error(trial: Trial, result: xr.Dataset) -> float:
+    """Return the misfit from the two corners of a sine that starts and ends; none of a wavelet.
+
+    A change of slope s has the spectrum s / omega^2; what of it is beyond the w of `lost_after` is
+    lost: by Parseval s^2 (4 + 1/5) / (3 pi w^3), against cycles T / 2 of the sine.
+    """
+    load, omega = trial.scene().load, peak(trial)
+    if load.shape != "sine":
+        return 0.0
+    w = 1 / lost_after(trial, result)
+    square = 2 * omega**2 * 4.2 / (3 * pi * w**3)
+    return sqrt(square / ((load.cycles or 1) * (load.period or 0.0) / 2))
+
+
+def lost_after(trial: Trial, result: xr.Dataset) -> float:
+    """Return 1 / w (s): frequencies beyond w have lost their phase by the end of a run.
+
+    That of the steps is C (w dt)^2 w t = 1, that of elements (w tau)^4 w t / 2880 = 1.
+    """
+    t, dt = trial.scene().time.duration, float(result.attrs["dt"])
+    lost = (ERROR[trial.solver.scheme] * dt**2 * t) ** (1 / 3)
+    if trial.solver.engine == "dem":
+        return lost
+    return lost + (time_of_element(trial) ** 4 * t / 2880) ** (1 / 5)
+
+
+def peak(trial: Trial) -> float:
+    """Return the angular frequency of the peak of the load's spectrum, rad/s."""
+    scene = trial.scene()
+    return 2 * pi / (scene.load.period or scene.time.duration)
+
+
+def time_of_element(trial: Trial) -> float:
+    """Return how long a wave takes through an element of the rock, s."""
+    from continuum.build import elements_for
+
+    scene, model = trial.scene(), trial.solver.engine.removeprefix("continuum-")
+    p = calibrate(scene)
+    modulus = p.intact_modulus if model == "jointed" else p.modulus
+    count = scene.numerics.continuum.elements_per_block or elements_for(scene, p, model)
+    return p.spacing / count / sqrt((modulus or p.modulus) / p.density)
+
+
+def near_exact(trial: Trial) -> Finding:
+    """The misfit from the exact solution is at most the scheme's phase error (and elements')."""
+    result, scene = trial.run(), trial.scene()
+    names = [name for name in REFEREES[trial.solver.engine] if applies(name, scene)]
+    if not names:
+        raise LookupError(f"no exact solution applies to {trial.case.name}")
+    found = misfit(result, solve(names[0], scene))
+    bound = phase_error(trial, result) + element_error(trial) + REFEREE
+    bound += corner_error(trial, result)
+    return Finding(found, bound, f"misfit from {names[0]}")

@@ -1,0 +1,144 @@
+"""Criteria for joints at the edge of opening, sliding and breaking."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from cases.material.calibrate import calibrate
+from compare.experiments.robustness.case import STEP, Finding, Trial
+from compare.experiments.robustness.criteria.accuracy import EPS
+from compare.experiments.robustness.criteria.energies import ROUND_OFF, SPENT
+from compare.misfit.metrics import relative_l2
+
+#: Of the work put in. Where a joint opens within a step the trapezoid of its force is off by
+#: K (v dt)^2 / 8 at most; at a twentieth of the critical step that is 3e-4 of m v^2 / 2.
+KINKS = 1e-3
+
+
+def every_step(trial: Trial) -> dict[str, Any]:
+    """Return the changes that record every joint at every step."""
+    scene = trial.scene()
+    dt = trial.case.changes[STEP] * trial.critical
+    joints = calibrate(scene).joint_y
+    return {"record__interval": dt, "record__stress": joints.tolist(), "record__velocity": []}
+
+
+def just_closed(trial: Trial) -> Finding:
+    """A prestress of just the largest tension of the wave leaves every joint closed.
+
+    The elastic pillar under the same prestress, p, tells that tension; joints that bar tension meet
+    it with a traction of zero, to round-off, and do what elastic ones do.
+    """
+    clock = every_step(trial)
+    free = trial.run(**clock, joints__tension=True, prestress__normal=0.0)
+    p = -float(free["stress"].values.min())
+    bound, barred = (
+        trial.run(**clock, joints__tension=tension, prestress__normal=p)["stress"].values
+        for tension in (True, False)
+    )
+    steps = float(free.attrs["steps"])
+    return Finding(relative_l2(barred, bound), 10 * EPS * steps, f"misfit at {p:.3g} Pa")
+
+
+def scales_by_two(trial: Trial) -> Finding:
+    """Joints that bar tension know no scale: a load smaller by a power of two does the same in
+    every digit, with gaps down to 1e-40 m that open and close as those of a large one do."""
+    small = 2.0**-99
+    one, other = (trial.run(load__amplitude=a) for a in (1.0, small))
+    found = relative_l2(other["stress"].values / small, one["stress"].values)
+    return Finding(found, 0.0, f"misfit; smallest load {small:.2g} Pa")
+
+
+def ledger(trial: Trial) -> Finding:
+    """No energy is made or lost where joints open, close, slide and break."""
+    from results.dataset import energy_residual
+
+    result = trial.run()
+    return Finding(energy_residual(result), KINKS, _spent(result))
+
+
+def _spent(result: xr.Dataset) -> str:
+    """Return what was spent on what, in words."""
+    terms = {str(t): float(result["energy"].sel(term=t)[-1]) for t in result["term"].values}
+    work = max(abs(float(x)) for x in result["energy"].sel(term="work").values) or 1.0
+    parts = [f"{t} {terms[t] / work:.2g}" for t in SPENT if t in terms]
+    return f"of the work; spent: {', '.join(parts)}"
+
+
+def whole_joints(trial: Trial) -> Finding:
+    """Breaking costs each joint its fracture energy, G_c times the section, and no more.
+
+    Just short of a snap-back a joint softens over a thousandth of its opening, so none is caught on
+    the way and the energy is that of a whole number of joints, of which there are N - 1.
+    """
+    result, scene = trial.run(), trial.scene()
+    p, energy = calibrate(scene), scene.joints.fracture_energy or 0.0
+    joints = float(result["energy"].sel(term="fracture").values[-1]) / (energy * p.area)
+    if not 0.5 < joints < p.block_count - 0.5:
+        return Finding(float("inf"), KINKS, f"{joints:.3g} of {p.block_count - 1} joints")
+    return Finding(abs(joints - round(joints)), KINKS, f"of a joint; {round(joints)} broke")
+
+
+def just_held(trial: Trial) -> Finding:
+    """At a cohesion of just the largest shear a joint holds, just below it slides.
+
+    A joint of any cohesion tells the largest shear; at that and an eps each step the run is the
+    same and friction has done no work. At a thousandth less it has. Implicit steps are the same to
+    round-off: an iterate on the way may slide where the step does not.
+    """
+    (layer,) = trial.scene().soft_layers
+
+    def run(cohesion: float) -> xr.Dataset:
+        layers = [{"y": layer.y, "cohesion": cohesion}]
+        return trial.run(soft_layers=layers, record__stress=[layer.y], **_fine(trial))
+
+    free = run(1e12)
+    peak = float(np.abs(free["shear"].values).max())
+    held, slid = run(peak * (1 + KEEP)), run(peak * (1 - 1e-3))
+    work = [float(r["energy"].sel(term="friction").values[-1]) for r in (held, slid)]
+    found = relative_l2(held["shear"].values, free["shear"].values)
+    if not (work[0] == 0 and work[1] > 0):
+        return Finding(float("inf"), 0.0, f"friction work {work[0]:.3g} and {work[1]:.3g} J")
+    bound = ROUND_OFF * float(held.attrs["steps"]) if trial.solver.scheme == "implicit" else 0.0
+    return Finding(found, bound, f"misfit; a thousandth below it friction takes {work[1]:.2g} J")
+
+
+KEEP = 1e-12
+
+
+def _fine(trial: Trial) -> dict[str, Any]:
+    """Return the changes that record the joint at every step, whatever that is."""
+    dt = float(trial.run().attrs["dt"])
+    return {"record__interval": dt, STEP: 1.0}
+
+
+def one_ulp(trial: Trial) -> Finding:
+    """A gap of the smallest number is open and carries nothing; the same closed pushes back."""
+    from joints.laws import normal_traction
+
+    law = _law(trial)
+    least = float(np.finfo(float).tiny)
+    wrong = [normal_traction(law, least, 0.0)]
+    for closed in (-least, -1e-9, np.nextafter(-1e-9, 0.0)):
+        wrong.append(normal_traction(law, closed, 0.0) + law.normal_stiffness * closed)
+    wrong.append(normal_traction(law, least, -1e9))
+    return Finding(float(np.abs(wrong).max()), 0.0, "Pa, of gaps of 2e-308 and 1e-9 m")
+
+
+def _law(trial: Trial):
+    """Return the law of the first joint, as the solver has it."""
+    from joints.laws import law_of
+
+    scene = trial.scene()
+    if trial.solver.engine == "dem":
+        from dem.axial.model import build_chain
+
+        return law_of(build_chain(scene, calibrate(scene), 1e-6, ("free", "free")).law, 0)
+    from continuum.build import discretise
+
+    joints = discretise(scene, "jointed").joints
+    assert joints is not None
+    return law_of(joints.law, 0)

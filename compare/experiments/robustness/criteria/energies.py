@@ -1,0 +1,93 @@
+"""Criteria of energy over very many steps: no drift, no trend, never more than there was."""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from compare.experiments.robustness.case import STEP, Finding, Trial
+
+EPS = 2.2e-16
+SAMPLES = 1000
+
+
+class Drift(NamedTuple):
+    """Kinetic and elastic energy over the mean, less one [n], after so many steps [n]."""
+
+    steps: np.ndarray
+    energy: np.ndarray
+
+
+def drift(trial: Trial, steps: int) -> Drift:
+    """Return the energy of an undamped pillar over so many steps, from the end of its load on."""
+    result = trial.run(**_clock(trial, steps))
+    energy = result["energy"].sel(term=["kinetic", "elastic"]).sum("term").values
+    until = 3 * (trial.scene().load.period or 0.0)
+    after = result["time"].values > until
+    mean = energy[after].mean()
+    return Drift(result["time"].values[after] / float(result.attrs["dt"]), energy[after] / mean - 1)
+
+
+def _clock(trial: Trial, steps: int) -> dict:
+    """Return the changes for so many steps at the fraction of the critical step, in samples."""
+    dt, stride = trial.case.changes[STEP] * trial.critical, steps // SAMPLES
+    found = {"record__interval": stride * dt, "time__duration": steps * dt * (1 + 1e-9)}
+    if trial.solver.scheme == "implicit":
+        period = trial.scene().load.period or 0.0
+        found["numerics__continuum__steps_per_period"] = period / dt
+        found.pop(STEP, None)
+    return found
+
+
+def no_trend(steps: int):
+    """Return the criterion that the energy of an undamped pillar has no trend over these steps.
+
+    Leapfrog conserves its discrete energy exactly, the composition of fourth order and the
+    trapezoidal rule likewise an energy near it: what is recorded may swing, by what each sample
+    shows, but not drift. Each step rounds velocities and displacements by half an eps, at random: a
+    walk of sqrt(N) steps of eps at most, of which four standard deviations are allowed. A linear
+    trend through n samples that swing by s is uncertain by sqrt(12 / n) s; four of these too.
+    Implicit steps solve with factors of a matrix that is wrong by an eps, the same in every step:
+    theirs may add up to eps a step.
+    """
+
+    def judge(trial: Trial) -> Finding:
+        found = drift(trial, steps)
+        x = found.steps / found.steps[-1]
+        slope = np.polynomial.Polynomial.fit(x, found.energy, 1)
+        swing = float(np.std(found.energy - slope(x)))
+        trend = abs(float(slope(1.0) - slope(0.0)))
+        walk = EPS * (steps if trial.solver.scheme == "implicit" else 4 * sqrt(steps))
+        bound = walk + 4 * sqrt(12 / len(x)) * swing
+        return Finding(trend, bound, f"of the energy over {steps:,} steps; swing {swing:.1e}")
+
+    return judge
+
+
+def passive(trial: Trial) -> Finding:
+    """What is dissipated never comes back, and energy is neither made nor lost.
+
+    Of the second law: what sliding and opening have taken, and all that is spent (viscous,
+    friction, fracture), fall by no more than round-off of the work put in. The viscous term alone
+    may: where a joint slides, a dashpot whose spring unloads pushes the slide on, at the cost of
+    friction. The boundary term is left out where springs hold the ends.
+    """
+    result = trial.run()
+    return Finding(largest_fall(result), ROUND_OFF * float(result.attrs["steps"]), "of the work")
+
+
+ROUND_OFF = 1e-15
+SPENT = ("viscous", "friction", "fracture")
+
+
+def largest_fall(result: xr.Dataset) -> float:
+    """Return the largest fall of what only grows, over the largest work put in."""
+    energy, terms = result["energy"].values, [str(t) for t in result["term"].values]
+    work = float(np.abs(energy[terms.index("work")]).max())
+    spent = {t: energy[terms.index(t)] for t in SPENT if t in terms}
+    rows = [sum(spent.values()), *(row for t, row in spent.items() if t != "viscous")]
+    falls = [float((np.maximum.accumulate(row) - row).max()) for row in rows if np.ndim(row)]
+    return max(falls, default=0.0) / work if work else 0.0

@@ -1,0 +1,121 @@
+"""Criteria for loads, sizes and shapes at the edge of what numbers and elements can hold."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+import numpy as np
+import xarray as xr
+
+from cases.errors import SceneError
+from cases.material.calibrate import calibrate
+from compare.engines import applies, solve
+from compare.exact.bar import equivalent_bar, jointed_bar
+from compare.experiments.robustness.case import Finding, Trial
+from compare.experiments.robustness.criteria.accuracy import (
+    CUBES,
+    REFEREE,
+    REFEREES,
+    element_error,
+    lost_after,
+    peak,
+    phase_error,
+)
+from compare.misfit.metrics import misfit, relative_l2
+
+
+def shock(trial: Trial) -> Finding:
+    """A jump in stress is as wrong as the dispersion of steps and elements makes it.
+
+    The spectrum of a jump is 1 / omega. A frequency beyond the w of `lost_after` is lost (twice its
+    amplitude at worst), one below it is wrong by its phase: as this grows as the third power or
+    more, Parseval gives the square of the error as (4 + 1/5) / (pi w). That of the signal is at
+    least t / 4: each
+    section is under stress for a quarter of the time or more.
+    """
+    result, scene = trial.run(), trial.scene()
+    names = [name for name in REFEREES[trial.solver.engine] if applies(name, scene)]
+    lost = lost_after(trial, result)
+    return Finding(
+        misfit(result, solve(names[0], scene)),
+        sqrt(4.2 / pi * lost / (scene.time.duration / 4)),
+        f"misfit from {names[0]}",
+    )
+
+
+def in_space(trial: Trial) -> Finding:
+    """Stress, motion and rotation of a row of blocks in space are within the phase error of the
+    exact row, whatever the inertia of the blocks: each apart, as they differ in size."""
+    result, scene = trial.run(), trial.scene()
+    exact = solve("spatial-lattice", scene)
+    found = {
+        name: relative_l2(result[name].values, exact[name].values)
+        for name in ("stress", "shear", "velocity", "rotation")
+        if exact[name].values.any()
+    }
+    worst = max(found, key=lambda name: found[name])
+    return Finding(found[worst], phase_error(trial, result), f"misfit of the {worst}")
+
+
+def nothing(trial: Trial) -> Finding:
+    """Without a load nothing moves: every number of the result is zero, not merely small."""
+    result = trial.run()
+    found = [np.abs(v.values).max() for v in result.data_vars.values() if v.dtype.kind == "f"]
+    return Finding(float(max(found)), 0.0, "largest number of the result")
+
+
+def scaled(trial: Trial) -> Finding:
+    """What is linear scales with its load: over the amplitude, the result is that of 1 Pa.
+
+    Only the factor rounds, at the load and at the result, by an eps each; every step keeps its
+    relative error, which a sum over steps multiplies by at most their number.
+    """
+    one = trial.run(load__amplitude=1.0)
+    result, amplitude = trial.run(), trial.scene().load.amplitude
+    found = max(
+        relative_l2(result[name].values / amplitude, one[name].values)
+        for name in ("stress", "velocity")
+    )
+    return Finding(found, 2.2e-16 * (2 + float(one.attrs["steps"])), "misfit over the amplitude")
+
+
+def refused(trial: Trial) -> Finding:
+    """What cannot be computed is refused in one line that names the key."""
+    try:
+        trial.run()
+    except SceneError as error:
+        wrong = "\n" in str(error) or not error.key
+        return Finding(float(wrong), 0.0, f"{error.key}: {error.allowed}")
+    return Finding(1.0, 0.0, "was not refused")
+
+
+def untouched_far_end(trial: Trial) -> Finding:
+    """What no wave has reached does not matter: a long pillar's first blocks do what those of a
+    short one do, bit by bit in explicit steps, which pass on one block a step."""
+    long = trial.run()
+    short = trial.run(pillar__length=500.0)
+    assert long.attrs["dt"] == short.attrs["dt"]
+    found = relative_l2(long["stress"].values, short["stress"].values)
+    return Finding(found, 0.0, f"misfit of {long.attrs['degrees_of_freedom']:,} freedoms")
+
+
+def as_bar(trial: Trial) -> Finding:
+    """A slender column of solid elements is a bar, whatever the shape of its elements.
+
+    Elements that lock are too stiff, and a poor condition shows as noise. Love's correction for the
+    square section, nu^2 k^2 a^2 / 12 of the speed, is all that theory allows beside the steps'.
+    """
+    result, scene = trial.run(), trial.scene()
+    exact = _bar(trial, scene)
+    p = calibrate(scene)
+    omega = peak(trial)
+    poisson = max(p.poisson, scene.rock.intact_poisson)
+    love = (poisson * omega / p.bar_speed * p.side) ** 2 / 12 * CUBES * omega * scene.time.duration
+    bound = phase_error(trial, result) + element_error(trial) + REFEREE + love
+    return Finding(relative_l2(result["stress"].values, exact["stress"].values), bound, "misfit")
+
+
+def _bar(trial: Trial, scene) -> xr.Dataset:
+    """Return the exact bar of a scene whose section is solid."""
+    exact = jointed_bar if trial.solver.engine == "continuum-jointed" else equivalent_bar
+    return exact.solve(scene)

@@ -1,0 +1,74 @@
+"""What a study may say beyond the types of its keys: methods that are there, points in number."""
+
+from __future__ import annotations
+
+from math import prod
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from cases.errors import SceneError
+from compare.engines import names
+from compare.experiments.study.methods.catalogue import METHODS
+
+if TYPE_CHECKING:
+    from compare.experiments.study.study import Curve, Reference, Study
+
+MOST_POINTS = 10_000
+#: Settings that are no keys of a scene, and the methods that take them.
+ARGUMENTS = {"n_terms": ("series", "kelvin-voigt"), "rtol": ("solve-ivp",)}
+LARGEST_ARGUMENT = 1e9
+
+
+def plain(value: Any) -> Any:
+    """Refuse what no key of a scene takes and no table of a study can hold: dates, huge numbers."""
+    parts = value.values() if isinstance(value, dict) else value
+    if isinstance(value, dict | list):
+        for part in parts:
+            plain(part)
+    elif isinstance(value, int) and value.bit_length() > 64:
+        raise ValueError("must be a number of at most 64 bits")
+    elif not isinstance(value, int | float | str):
+        raise ValueError("must be a number, a text, or true or false")
+    return value
+
+
+def refuse_senseless(path: Path, study: Study) -> None:
+    """Raise SceneError for what no point could be made of, or too many."""
+    count = sum(prod(len(values) for values in curve.vary.values()) for curve in study.curves)
+    if count > MOST_POINTS:
+        raise SceneError(
+            str(path), "curves", None, f"give {count:.6g} points, at most {MOST_POINTS}"
+        )
+    solvers = names()
+    _refuse_unknown(path, "finest", study.finest, (*solvers, "none"))
+    for i, curve in enumerate(study.curves):
+        key = f"curves[{i}]"
+        _refuse_unknown(path, f"{key}.method", curve.method, (*solvers, *METHODS))
+        _refuse_unknown(path, f"{key}.own", curve.own, (*solvers, "finest", "none"))
+        _refuse_arguments(path, key, curve)
+
+
+def _refuse_unknown(
+    path: Path, key: str, named: str | Reference | None, known: tuple[str, ...]
+) -> None:
+    """Raise SceneError for what solves nothing: a name, or the method of a fine run."""
+    method = named if named is None or isinstance(named, str) else named.method
+    if method is not None and method not in known:
+        raise SceneError(str(path), key, method, f"must be one of {', '.join(known)}")
+
+
+def _refuse_arguments(path: Path, key: str, curve: Curve) -> None:
+    """Raise SceneError for arguments that a curve's method does not take."""
+    given = [(name, [value]) for name, value in curve.changes.items()] + [*curve.vary.items()]
+    for name, values in given:
+        takers = ARGUMENTS.get(name)
+        if takers is None:
+            continue
+        if curve.method not in takers:
+            allowed = f"is an argument of {', '.join(takers)}"
+            raise SceneError(str(path), f"{key}.{name}", None, allowed)
+        for value in values:
+            kind = int if name == "n_terms" else float
+            if type(value) is not kind or not 0 < value < LARGEST_ARGUMENT:
+                allowed = f"must be {'a whole number' if kind is int else 'a number'} above 0"
+                raise SceneError(str(path), f"{key}.{name}", value, allowed)

@@ -1,0 +1,156 @@
+"""One point of a study, measured: its errors, what was counted, and what it took."""
+
+import math
+from collections.abc import Callable
+from statistics import median
+from time import perf_counter
+from typing import Any, NamedTuple
+
+import xarray as xr
+
+from cases.errors import SceneError, StoppedError, UnstableError
+from cases.schema.scene import Scene
+from compare.engines import applies, solve
+from compare.exact.answer import Answer
+from compare.experiments.study.methods.catalogue import METHODS
+from compare.experiments.study.reference import UNKNOWN, error, finest_of, known, own_of
+from compare.experiments.study.study import Point
+
+LONG = 0.5  # s: a run that takes as long, its set-up included, is timed once more at most
+
+
+class Row(NamedTuple):
+    """What a study's table holds of one point; numbers that a method does not have are nan.
+
+    state : "done" or "failed", with the reason in `message`.
+    numerical : misfit from the exact solution of the method's own model; modelling : of that from
+        the finest physics; total : both together, with their floors: what is certain. measured :
+        from the finest physics, where the two may cancel.
+    numerical_floor, total_floor : below which they are not known, 0 against closed forms.
+    held : the largest total of this and all finer points of the curve, or numerical error where no
+        total is known: what the point counts for. cancels : whether it measures less than that.
+    steps : of time. work : freedoms times evaluations of all forces, which are
+        degree-of-freedom-steps where a step takes one. bytes : of the model and its state.
+    seconds, spread : stepping, median and half the range of the repeats; setup, compile : of the
+        first run.
+    """
+
+    curve: str
+    method: str
+    settings: dict[str, Any]
+    state: str
+    message: str
+    numerical: float
+    modelling: float
+    total: float
+    measured: float
+    numerical_floor: float
+    total_floor: float
+    dt: float
+    steps: float
+    freedoms: float
+    work: float
+    bytes: float
+    seconds: float
+    spread: float
+    setup: float
+    compile: float
+    held: float
+    cancels: bool
+
+
+TIMED = ("seconds", "spread", "setup", "compile")  # all other columns are the same in every run
+
+
+def measure(point: Point) -> Row:
+    """Run a point and return its row; what cannot be run is a row that says why."""
+    try:
+        return _measured(point)
+    except (SceneError, UnstableError, StoppedError) as error:
+        return _row(point, "failed", str(error))
+
+
+def _measured(point: Point) -> Row:
+    scene, study = point.scene, point.study
+    run = runner(point, scene)
+    result = run()
+    first = result.attrs
+    seconds = [float(first.get("seconds_stepping", math.nan))]
+    if study.timed:
+        seconds = _repeated(run, study.repeats)
+    own = known(own_of(point), study, point.physics)
+    finest = known(finest_of(study), study, {})
+    numerical = error(result, own, study)
+    modelling = UNKNOWN if own is None else error(own.result, finest, study)
+    floor = numerical.floor + modelling.floor
+    steps, freedoms = first.get("steps", math.nan), first.get("degrees_of_freedom", math.nan)
+    return _row(
+        point,
+        "done",
+        "",
+        numerical=numerical.misfit,
+        modelling=modelling.misfit,
+        total=numerical.misfit + modelling.misfit + floor,
+        measured=error(result, finest, study).misfit,
+        numerical_floor=numerical.floor,
+        total_floor=floor,
+        dt=float(first.get("dt", math.nan)),
+        steps=float(steps),
+        freedoms=float(freedoms),
+        work=_evaluations(first) * float(freedoms),
+        bytes=float(first.get("bytes", math.nan)),
+        seconds=median(seconds),
+        spread=(max(seconds) - min(seconds)) / 2,
+        setup=float(first.get("seconds_setup", math.nan)),
+        compile=float(first.get("seconds_compile", math.nan)),
+    )
+
+
+def _evaluations(attributes: dict[str, Any]) -> float:
+    """Return how often all forces were evaluated: in stages, by Newton's method, once a step."""
+    names = ("force_evaluations", "newton_iterations", "steps")
+    return float(next((attributes[name] for name in names if name in attributes), math.nan))
+
+
+def runner(point: Point, scene: Scene) -> Callable[[], xr.Dataset]:
+    """Return the function that solves a point once."""
+    method, arguments = point.curve.method, point.arguments
+    if not (answer := method_applies(point, scene)):
+        raise SceneError(scene.title, "", None, f"{method} does not apply: {answer.reason}")
+    if method in METHODS:
+        return lambda: METHODS[method].solve(scene, **arguments)
+    if arguments:
+        from compare.exact.catalogue import CATALOGUE
+
+        return lambda: _timed(lambda: CATALOGUE[method].solve(scene, **arguments))
+    return lambda: _timed(lambda: solve(method, scene))
+
+
+def method_applies(point: Point, scene: Scene) -> Answer:
+    """Return whether a point's method holds for its scene, or the reason why not."""
+    method = point.curve.method
+    return METHODS[method].applies(scene) if method in METHODS else applies(method, scene)
+
+
+def _timed(run: Callable[[], xr.Dataset]) -> xr.Dataset:
+    """Return a result that says what it took, exact solutions included."""
+    began = perf_counter()
+    result = run()
+    result.attrs.setdefault("seconds_stepping", perf_counter() - began)
+    return result
+
+
+def _repeated(run: Callable[[], xr.Dataset], repeats: int) -> list[float]:
+    """Return the stepping seconds of repeats, now that everything is compiled."""
+    found: list[float] = []
+    began = perf_counter()
+    while len(found) < repeats and perf_counter() - began < LONG:
+        found.append(float(run().attrs["seconds_stepping"]))
+    return found
+
+
+def _row(point: Point, state: str, message: str, **numbers: float) -> Row:
+    about = (point.curve.label, point.curve.method, point.settings, state, message)
+    names = Row._fields[len(about) : -2]  # what is judged is known once the curve is
+    values = (numbers.get(name, math.nan) for name in names)
+    return Row._make((*about, *values, math.nan, False))

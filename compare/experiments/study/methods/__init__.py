@@ -1,0 +1,1 @@
+"""Alternative methods, timed beside the engines."""

@@ -1,0 +1,69 @@
+"""The chain of rigid blocks by scipy's adaptive integrator, as one would write it in an afternoon.
+
+The equations are those of `compare.exact.blocks.chain`; steps are chosen by the integrator's own
+estimate of its error, whatever the load's corners.
+"""
+
+from time import perf_counter
+
+import xarray as xr
+
+from cases.sampling import sample_times
+from cases.schema.scene import Scene
+from compare.exact.answer import YES, Answer, no
+from compare.exact.blocks.chain import chain, rates, receivers
+from compare.exact.blocks.lattice import HELD, at_rest
+from compare.exact.conditions import beyond
+from compare.exact.drive import drive
+from results.dataset import dataset
+
+NAME = "solve-ivp"
+ENGINE = "dem"
+
+
+def applies(scene: Scene) -> Answer:
+    """Return whether the scene is a chain of rigid blocks that moves along the axis."""
+    reason = beyond(scene, *HELD)
+    return no(reason) if reason else YES
+
+
+def solve(scene: Scene, rtol: float = 1e-6, method: str = "DOP853") -> xr.Dataset:
+    """Return what `scipy.integrate.solve_ivp` makes of a scene's chain of rigid blocks.
+
+    rtol : relative tolerance; the absolute one is that of the speed that the load can cause. The
+    attribute `steps` counts the evaluations of all forces.
+    """
+    from scipy.integrate import solve_ivp
+
+    began = perf_counter()
+    model, signal, times = chain(scene), drive(scene), sample_times(scene)
+    rest, speed = at_rest(scene, model), _speed(scene, model)
+    ready = perf_counter()
+    solution = solve_ivp(
+        lambda t, x: rates(model, x, float(signal.value(t)) * model.gain),
+        (times[0], times[-1]),
+        rest,
+        method=method,
+        t_eval=times,
+        rtol=rtol,
+        atol=rtol * speed,
+    )
+    driven = signal.value(times) * model.gain
+    waves = (wave.T for wave in receivers(scene, model, solution.y.T, driven))
+    return dataset(
+        scene,
+        NAME,
+        times,
+        *waves,
+        rtol=rtol,
+        steps=int(solution.nfev),
+        degrees_of_freedom=model.block_count,
+        seconds_setup=ready - began,
+        seconds_stepping=perf_counter() - ready,
+    )
+
+
+def _speed(scene: Scene, model) -> float:
+    """Return a speed (m/s) of the size of what happens."""
+    size = scene.load.amplitude / scene.load.scale
+    return abs(size * model.gain) / (1.0 if model.shaken else model.dashpot) or 1.0

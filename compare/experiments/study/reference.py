@@ -1,0 +1,115 @@
+"""What errors are measured against: exact solutions, or fine runs whose own error is bounded."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from cases.schema.scene import Scene
+from cases.schema.tables import Numerics
+from compare.engines import ENGINES, applies, exact_names, solve
+from compare.experiments.study.methods.catalogue import METHODS
+from compare.experiments.study.study import FINEST, NONE, Point, Reference, Study
+from compare.misfit.metrics import Pairing, pairings, relative_l2, worst
+from compare.misfit.ranking import applicable, finest, own_exact
+from results.dataset import scene_hash
+
+
+class Error(NamedTuple):
+    """A misfit, and the floor below which it is not known: 0 against a closed form."""
+
+    misfit: float
+    floor: float
+
+
+UNKNOWN = Error(math.nan, math.nan)
+
+
+class Known(NamedTuple):
+    """What errors are from, and its own relative error."""
+
+    result: xr.Dataset
+    error: float
+
+
+def finest_of(study: Study) -> str | Reference | None:
+    """Return what total errors are from: as the study says, else the finest exact solution; None
+    where the finest that applies is an engine, whose fine run the study does not give."""
+    if study.finest is not None:
+        return None if study.finest == NONE else study.finest
+    scene = study.base
+    found = finest([name for name, answer in applicable(scene).items() if answer], scene)
+    return None if found is None or found.name in ENGINES else found.name
+
+
+def own_of(point: Point) -> str | Reference | None:
+    """Return what a point's numerical error is from: as its curve says, else the exact solution of
+    its own model, else a run of its engine as fine as the study's fine run; None without."""
+    own, study = point.curve.own, point.study
+    if own is not None:
+        return finest_of(study) if own == FINEST else None if own == NONE else own
+    scene, method = point.scene, point.curve.method
+    engine = METHODS[method].ENGINE if method in METHODS else method
+    exact = own_exact(engine, [n for n in exact_names() if applies(n, scene)], scene)
+    return exact or _as_fine(engine, study.finest)
+
+
+def _as_fine(engine: str, finest: str | Reference | None) -> Reference | None:
+    """Return the run of an engine at the numerics of a fine run, where those are its own too."""
+    if not isinstance(finest, Reference):
+        return None
+    alike = engine.partition("-")[0] == finest.method.partition("-")[0]
+    return finest.model_copy(update={"method": engine}) if alike else None
+
+
+def known(against: str | Reference | None, study: Study, physics: dict[str, Any]) -> Known | None:
+    """Return a reference of the study's scene with some physics changed; None without."""
+    if against is None:
+        return None
+    if isinstance(against, str):
+        exact = reference(against, study.changed(physics))
+        return Known(exact, worst(exact, exact).floor)
+    changes = physics | against.changes
+    fine = _solved(against.method, study.changed(changes))
+    coarse = _solved(against.method, study.changed(changes | against.coarser))
+    return Known(fine, _misfit(coarse, fine, study))
+
+
+def error(result: xr.Dataset, against: Known | None, study: Study) -> Error:
+    """Return the error of a result, over the quantity of the study; 0 of a reference itself,
+    unknown without one."""
+    if against is None:
+        return UNKNOWN
+    if result is against.result:
+        return Error(0.0, 0.0)
+    return Error(_misfit(result, against.result, study), against.error)
+
+
+def reference(name: str, scene: Scene) -> xr.Dataset:
+    """Return an exact solution, whatever the scene's numerics; solved once a process."""
+    return _solved(name, scene.model_copy(update={"numerics": Numerics(), "expect": {}}))
+
+
+def _solved(name: str, scene: Scene) -> xr.Dataset:
+    key = name, scene_hash(scene)
+    if key not in _known:
+        _known[key] = solve(name, scene)
+    return _known[key]
+
+
+_known: dict[tuple[str, str], xr.Dataset] = {}
+
+
+def _misfit(one: xr.Dataset, other: xr.Dataset, study: Study) -> float:
+    """Return the misfit of the waveform that is furthest off; of one quantity, the relative L2 norm
+    over time and all its receivers, of the component that is furthest off."""
+    if study.quantity is None:
+        return worst(one, other).misfit
+    found = [p for p in pairings(one, other) if p.place.quantity == study.quantity]
+    axes = {p.place.axis: [q for q in found if q.place.axis == p.place.axis] for p in found}
+    return max((_norm(pairs) for pairs in axes.values()), default=math.nan)
+
+
+def _norm(pairs: list[Pairing]) -> float:
+    return relative_l2(np.array([p.one for p in pairs]), np.array([p.other for p in pairs]))

@@ -1,0 +1,173 @@
+"""What a study is: a scene, curves of what is varied, and what errors are measured against."""
+
+from collections.abc import Iterator
+from itertools import product
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+
+import cases
+from cases.errors import SceneError, nearest
+from cases.files import read_toml
+from cases.schema.scene import Scene
+from compare.experiments.study.check import ARGUMENTS, plain, refuse_senseless
+from compare.scenes import find
+
+LARGEST_FILE = 1_000_000  # bytes
+SHIPPED = Path(__file__).parent
+FINEST, NONE = "finest", "none"  # what errors may be measured against besides solutions
+
+
+Value = Annotated[Any, AfterValidator(plain)]
+Values = Annotated[list[Value], Field(min_length=1)]
+
+
+class Table(BaseModel):
+    """A table of a study's file; unknown keys are errors."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Reference(Table):
+    """What errors are measured against where there is no exact solution: an engine's fine run.
+
+    changes : of the scene, its numerics above all. coarser : changes on top of these; how far that
+        run is from this one is the floor below which errors are not known.
+    """
+
+    method: str
+    changes: dict[str, Value] = Field(default_factory=dict)
+    coarser: dict[str, Value]
+
+
+class Curve(Table):
+    """One way to solve the scene, with what of it is varied.
+
+    method : an engine, an exact solution, or a method of
+    `compare.experiments.study.methods.catalogue`.
+    vary : dotted keys and their values, all combinations; `terms` is an exact series' own.
+    own : the exact solution of the curve's own model, or a fine run of it, for its numerical
+        error; "finest": that of the study; "none"; absent: the exact one that ranks highest
+        (`compare.misfit.ranking`), else a run of its engine at the numerics of the study's fine
+        run.
+    order : in theory, of the numerical error, with the first varied key or, where that falls as
+        its value grows (elements, steps per period), with its inverse.
+    """
+
+    label: str
+    method: str
+    changes: dict[str, Value] = Field(default_factory=dict)
+    vary: dict[str, Values] = Field(default_factory=dict)
+    own: str | Reference | None = None
+    order: float | None = None
+
+    def settings(self) -> Iterator[dict[str, Any]]:
+        """Yield the varied keys of every point."""
+        for values in product(*self.vary.values()):
+            yield dict(zip(self.vary, values, strict=True))
+
+
+class Study(Table):
+    """A scene, the finest physics that it is known by, and curves.
+
+    finest : what modelling errors are measured against: an exact solution or a fine run; "none";
+        absent: the exact solution that ranks highest (`compare.misfit.ranking`).
+    quantity : whose relative L2 norm over time and all its receivers is the misfit, as orders are
+        of in theory; absent: the misfit of the waveform that is furthest off.
+    note : what to know when reading it.
+    timed : whether seconds count: points are then run one at a time, `repeats` times each.
+    """
+
+    title: str
+    scene: str
+    variant: str = ""
+    changes: dict[str, Value] = Field(default_factory=dict)
+    finest: str | Reference | None = None
+    quantity: Literal["stress", "velocity", "displacement"] | None = None
+    note: str = ""
+    timed: bool = False
+    repeats: Annotated[int, Field(ge=1, le=100)] = 3
+    curves: Annotated[list[Curve], Field(min_length=1)]
+
+    @property
+    def base(self) -> Scene:
+        """The scene without what curves change."""
+        return self.changed({})
+
+    def changed(self, changes: dict[str, Any]) -> Scene:
+        """Return the scene with changes; raises SceneError where there is none."""
+        changes = self.changes | changes | {"expect": {}}
+        return cases.load_variant(find(self.scene), self.variant, changes, asked=False)
+
+    def points(self) -> list["Point"]:
+        """Return all points, curve by curve."""
+        return [
+            Point(study=self, curve=curve, settings=settings)
+            for curve in self.curves
+            for settings in curve.settings()
+        ]
+
+
+class Point(Table):
+    """One run of a study: a curve with one value of each varied key."""
+
+    study: Study
+    curve: Curve
+    settings: dict[str, Any]
+
+    @property
+    def scene(self) -> Scene:
+        """The scene that is solved; raises SceneError where there is none."""
+        changes = self.curve.changes | self.settings
+        return self.study.changed({k: v for k, v in changes.items() if k not in ARGUMENTS})
+
+    @property
+    def physics(self) -> dict[str, Any]:
+        """What the point changes of the scene besides its numerics."""
+        changes = self.curve.changes | self.settings
+        return {
+            key: value
+            for key, value in changes.items()
+            if key not in ARGUMENTS and not key.startswith("numerics.")
+        }
+
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """What is varied beside the scene's keys, such as the terms of a series."""
+        everything = self.curve.changes | self.settings
+        return {key: value for key, value in everything.items() if key in ARGUMENTS}
+
+
+def shipped() -> dict[str, Path]:
+    """Return the shipped studies by name."""
+    return {path.stem: path for path in sorted(SHIPPED.glob("*.toml"))}
+
+
+def load(name: str) -> Study:
+    """Read a shipped study or a study's file, whose scene may be named by its place beside it.
+
+    Raises SceneError, in one line.
+    """
+    path = shipped().get(name, Path(name))
+    if not path.is_file():
+        known = ", ".join(shipped()) + nearest(name, shipped())
+        raise SceneError(name, "", None, f"is no file, nor one of {known}")
+    try:
+        table = read_toml(path, LARGEST_FILE)
+    except ValueError as error:
+        raise SceneError(str(path), "", None, str(error)) from None
+    try:
+        study = Study.model_validate(table)
+    except ValidationError as error:
+        raise _study_error(path, error) from None
+    refuse_senseless(path, study)
+    beside = path.parent / study.scene
+    return study.model_copy(update={"scene": str(beside)}) if beside.is_file() else study
+
+
+def _study_error(path: Path, error: ValidationError) -> SceneError:
+    first = error.errors()[0]
+    key = ".".join(str(part) for part in first["loc"])
+    value = None if isinstance(first["input"], dict) else first["input"]
+    return SceneError(str(path), key, value, first["msg"].lower())

@@ -1,0 +1,184 @@
+"""One variant at one point of a sweep, and what is made of it: its runs, or its comparison."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from math import nan
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from cases.errors import InterruptedRun, SceneError, UnstableError
+from cases.schema.scene import Scene
+from compare.runs.checkpoint.signature import program
+from results.dataset import scene_hash
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from compare.misfit.external import Curves
+
+Rows = list[dict[str, Any]]
+
+
+class Case(NamedTuple):
+    """A scene with its swept keys set. folder : for its files; variants have their own in it.
+
+    scene : None where there is none, for the reason in `message`.
+    """
+
+    settings: dict[str, Any]
+    folder: Path
+    scene: Scene | None
+    message: str = ""
+
+    @property
+    def variant(self) -> str:
+        """The variant's name."""
+        return "" if self.scene is None else self.scene.name
+
+
+class Outcome(NamedTuple):
+    """What came of a case: "done" with its rows, or "failed" with the reason."""
+
+    state: str
+    message: str
+    rows: Rows
+
+
+class Running(NamedTuple):
+    """Run a case as `jointwave run` does. runs : (engine, model) each, see `compare.runs.jobs`."""
+
+    runs: list[tuple[str, str | None]]
+    vtx: bool
+
+    @property
+    def about(self) -> list[Any]:
+        """What decides a row beside the scene."""
+        return [self.runs, self.vtx]
+
+    def solvers(self, case: Case) -> list[str]:
+        """Return the names of what would solve a case."""
+        from compare.runs import jobs
+
+        assert case.scene is not None
+        return [job.name for job in jobs.plan([case.scene], self.runs, case.folder)]
+
+    def __call__(self, case: Case) -> Rows:
+        """Write the results of a case and return a row for each receiver of each."""
+        from compare.runs import jobs
+        from compare.runs import run as runs
+
+        assert case.scene is not None
+        asked = jobs.plan([case.scene], self.runs, case.folder)
+        return [row for done in runs.execute(asked, _silent, self.vtx) for row in _of_run(done)]
+
+
+class Comparing(NamedTuple):
+    """Compare a case as `jointwave compare` does. writes : also figure, curves and distances."""
+
+    spectral: bool
+    curves: list[Curves]
+    align: bool
+    writes: bool
+
+    @property
+    def about(self) -> list[Any]:
+        """What decides a row beside the scene and the samples of the curves."""
+        named = [[c.file, c.name, c.variant, list(map(str, c.waveforms))] for c in self.curves]
+        return [self.spectral, self.align, self.writes, named]
+
+    def solvers(self, case: Case) -> list[str]:
+        """Return the names of what would solve a case."""
+        from compare.engines import applies, names
+
+        assert case.scene is not None
+        return [name for name in names() if applies(name, case.scene)]
+
+    def __call__(self, case: Case) -> Rows:
+        """Return a row for each distance."""
+        from compare.misfit import pairs
+
+        assert case.scene is not None
+        found = pairs.compare(case.scene, None, self.spectral, self.curves, self.align)
+        if self.writes:
+            from compare.report.report import write_comparisons
+
+            write_comparisons([found], case.folder / case.variant)
+        rows = [
+            {**r.pair._asdict(), "quantity": r.quantity, "y": r.y, **r.distance._asdict()}
+            for r in found.rows
+        ]
+        return [{k: v if isinstance(v, str) else _real(v) for k, v in row.items()} for row in rows]
+
+
+Work = Running | Comparing
+
+
+def outcome(case: Case, work: Work) -> Outcome:
+    """Return what comes of a case; what cannot be solved is an outcome that says why."""
+    if case.scene is None:
+        return Outcome("failed", case.message, [])
+    try:
+        return Outcome("done", "", work(case))
+    except InterruptedRun:
+        raise
+    except (SceneError, UnstableError, MemoryError) as error:
+        return Outcome("failed", str(error) or "not enough memory", [])
+
+
+def key(case: Case, work: Work) -> str:
+    """Return what tells cases apart: everything that decides a row, this program included."""
+    assert case.scene is not None
+    about = [str(case.folder), scene_hash(case.scene), type(work).__name__, program(), work.about]
+    digest = hashlib.sha256(json.dumps(about).encode())
+    for curve in work.curves if isinstance(work, Comparing) else []:
+        for values in (curve.time, *curve.waveforms.values()):
+            digest.update(np.ascontiguousarray(values).tobytes())
+    return digest.hexdigest()[:16]
+
+
+def _of_run(done: Any) -> Rows:
+    """Return a row for each receiver of a result, with the peak there."""
+    from results.netcdf import load_netcdf
+
+    result = load_netcdf(done.job.path)
+    about = {
+        "engine": done.job.name,
+        "steps": int(done.steps),
+        "freedoms": float(result.attrs.get("degrees_of_freedom", nan)),
+        "seconds": float(done.seconds),
+        "energy_residual": _real(done.residual),
+        "file": str(done.job.path),
+    }
+    peaks = [*_peaks(result, "stress"), *_peaks(result, "velocity")]
+    nowhere = [{"quantity": "", "y": nan, "peak": nan, "time_of_peak": nan}]
+    return [{**about, **peak} for peak in peaks or nowhere]
+
+
+def _real(value: float | None) -> float:
+    return nan if value is None else float(value)
+
+
+def _peaks(result: xr.Dataset, quantity: str) -> Rows:
+    """Return the value that is largest in size at each receiver, with its sign and time (SI).
+
+    Of a velocity in space the speed, which has no sign.
+    """
+    rows = []
+    for y, wave in zip(result[f"{quantity}_y"].values, result[quantity].values, strict=True):
+        values = wave if wave.ndim == 1 else wave[:, 0] if wave.shape[1] == 1 else _speed(wave)
+        at = int(np.argmax(np.abs(values)))
+        peak, time = float(values[at]), float(result.time.values[at])
+        rows.append({"quantity": quantity, "y": float(y), "peak": peak, "time_of_peak": time})
+    return rows
+
+
+def _speed(wave: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(wave, axis=1)
+
+
+def _silent(fraction: float) -> None:
+    """Tell nobody: the sweep tells of whole cases."""

@@ -1,0 +1,1 @@
+"""Figures of scenes and results, for print and for the screen."""

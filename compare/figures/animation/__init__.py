@@ -1,0 +1,1 @@
+"""Animations and three-dimensional views of the pillars."""

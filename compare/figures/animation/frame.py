@@ -1,0 +1,216 @@
+"""One picture of an animation: the pillars, what the wave is along them, and the clock."""
+
+from functools import cached_property
+from math import ceil, log10
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.text import Text
+from matplotlib.ticker import MaxNLocator
+
+from compare.figures import fonts
+from compare.figures.animation.snapshots import Shots
+from compare.figures.animation.view_settings import Look, caption
+from compare.figures.animation.wave import Wave
+from compare.figures.print.layout import wrapped
+from compare.figures.snapshots import COLOURS
+from compare.figures.style import RC, in_order, style
+from compare.figures.subplots import UNITS, Panel, panels
+from compare.figures.units import unit_for
+from compare.misfit.pairs import Comparison
+
+SIZE = 12.8, 7.2  # inches
+LEFT, RIGHT = 0.85, 0.25  # inches beside the axes
+HEAD, NAME, GAP, FOOT = 0.85, 0.28, 0.5, 0.5  # inches above all, a strip, the diagrams; below all
+LINE, CLOCK = 0.2, 2.0  # inches of one more line of text, and of the clock
+HIGHEST = {1: 2.4, 2: 1.2}  # inches of a strip, by their number
+MARGIN = 0.03  # of a strip's extent, around it
+DENSE = 2.5  # points: edges closer than that would hide the colours
+EDGE = "#333333"
+
+
+class Frame:
+    """The picture of every instant, as pixels; what does not move is drawn once."""
+
+    def __init__(self, shots: Shots, look: Look, dots: int = 100) -> None:
+        self.shots, self.look = shots, look
+        side = shots.scene.pillar.side
+        self.waves = {n: Wave(shots.found[n], look, side) for n in in_order(set(shots.found))}
+        self.time = next(iter(shots.found.values())).time
+        peak = max(float(np.abs(w.profile).max()) for w in self.waves.values())
+        self.peak = peak * look.quantity.factor or 1.0
+        self.colour = ScalarMappable(Normalize(-self.peak, self.peak), COLOURS)
+        with matplotlib.rc_context(RC | {"font.size": 10.0, "font.family": fonts.families()}):
+            self.figure = Figure(figsize=SIZE, dpi=dots)
+            self.canvas = FigureCanvasAgg(self.figure)
+            self._lay_out()
+        self.canvas.draw()
+        self.still = self.canvas.copy_from_bbox(self.figure.bbox)
+
+    def show(self, i: int) -> None:
+        """Move all that moves to instant i."""
+        for name, wave in self.waves.items():
+            polygons, faces, edges = wave.drawn(i)
+            values = self.look.quantity.factor * wave.values[i, faces]
+            self.faces[name].set_verts(list(polygons))
+            self.faces[name].set_array(values)
+            self.edges[name].set_segments(list(edges))
+            self.profiles[name].set_ydata(self.look.quantity.factor * wave.profile[i])
+        until = self.time[i] * (1 + 1e-9)
+        for name, curve in self.heard.items():
+            shown = curve[curve.index <= until]
+            self.traces[name].set_data(1e3 * shown.index, shown.values)
+        self.cursor.set_xdata([1e3 * self.time[i]] * 2)
+        self.clock.set_text(f"t = {1e3 * self.time[i]:.{self.decimals}f} ms")
+
+    def image(self, i: int) -> np.ndarray:
+        """Return the picture of instant i, uint8 array [height, width, 4]."""
+        self.show(i)
+        self.canvas.restore_region(self.still)
+        for artist in self.moving:
+            (artist.axes or self.figure).draw_artist(artist)
+        return np.array(self.canvas.buffer_rgba())
+
+    @property
+    def moving(self) -> list[Artist]:
+        """What is drawn anew for each instant, in order."""
+        lines = sorted([*self.profiles.values(), *self.traces.values()], key=Line2D.get_zorder)
+        return [*self.faces.values(), *self.edges.values(), *lines, self.cursor, self.clock]
+
+    def _lay_out(self) -> None:
+        (low, high), width = self._extent(), SIZE[0] - LEFT - RIGHT
+        reach = high - low
+        height = min(width * self.look.stretch * reach[1] / reach[0], HIGHEST[len(self.waves)])
+        width = height * reach[0] / reach[1] / self.look.stretch
+        place = LEFT + (SIZE[0] - LEFT - RIGHT - width) / 2, width
+        top = SIZE[1] - self._add_head()
+        self.faces: dict[str, PolyCollection] = {}
+        self.edges: dict[str, LineCollection] = {}
+        for name in self.waves:
+            top -= NAME + height
+            ax = self._axes(*place, top, height)
+            ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+            self._add_strip(ax, name, 72 * width / reach[0])
+        for name, reason in self.shots.reasons.items():
+            words = self._in_lines(f"{name} does not apply: {reason}", SIZE[0] - LEFT - RIGHT, 10.0)
+            top -= NAME + LINE * words.count("\n")
+            self._say(LEFT, top + 0.05, words, color="#555555")
+        rest = top - FOOT - 2 * GAP
+        self._add_profile(self._axes(*place, top - GAP / 2 - 0.55 * rest, 0.55 * rest), low, high)
+        self._add_waveform(self._axes(LEFT, SIZE[0] - LEFT - RIGHT, FOOT, 0.45 * rest))
+
+    def _extent(self) -> tuple[np.ndarray, np.ndarray]:
+        reaches = [wave.reach() for wave in self.waves.values()]
+        low = np.min([r[0] for r in reaches], axis=0)
+        high = np.max([r[1] for r in reaches], axis=0)
+        margin = MARGIN * (high - low) * [0.3, 1]
+        return low - margin, high + margin
+
+    def _axes(self, left: float, width: float, bottom: float, height: float) -> Axes:
+        """Return axes at a place in inches."""
+        across, up = SIZE
+        return self.figure.add_axes((left / across, bottom / up, width / across, height / up))
+
+    def _say(self, x: float, y: float, text: str, **look) -> Text:
+        """Write at a place in inches; a dollar sign is one."""
+        return self.figure.text(x / SIZE[0], y / SIZE[1], text, parse_math=False, **look)
+
+    def _add_strip(self, ax: Axes, name: str, points_per_metre: float) -> None:
+        ax.set_axis_off()
+        ax.set_title(name, color=style(name).colour, pad=2, **_bold(name))
+        spacing = self.shots.scene.pillar.block * points_per_metre
+        width = 0.5 if spacing > DENSE else 0.0
+        self.faces[name] = PolyCollection(
+            [],
+            edgecolors="face",
+            linewidths=0.3,
+            cmap=COLOURS,
+            norm=self.colour.norm,
+            animated=True,
+        )
+        self.edges[name] = LineCollection(
+            [], colors=EDGE, linewidths=width, animated=True, snap=False
+        )
+        ax.add_collection(self.faces[name], autolim=False)
+        ax.add_collection(self.edges[name], autolim=False)
+
+    def _add_profile(self, ax: Axes, low: np.ndarray, high: np.ndarray) -> None:
+        self.profiles: dict[str, Line2D] = {}
+        for name, wave in self.waves.items():
+            look = style(name).of_line()
+            (line,) = ax.plot(wave.y, np.zeros_like(wave.y), label=name, animated=True, **look)
+            self.profiles[name] = line
+        for layer in self.shots.scene.soft_layers:
+            ax.axvline(layer.y, color="#999999", linewidth=0.8, linestyle=":")
+        ax.axvline(self.panel.y, color="#444444", linewidth=0.8, linestyle="--")
+        ax.set(xlim=(low[0], high[0]), ylim=(-1.08 * self.peak, 1.08 * self.peak))
+        ax.set_xlabel("y (m)" + "; dotted: soft layers" * bool(self.shots.scene.soft_layers))
+        ax.set_ylabel(f"{self.look.quantity.name}\n({self.look.quantity.unit})")
+
+    def _add_waveform(self, ax: Axes) -> None:
+        """Add the first receiver's waveform as it was recorded, to be drawn up to each instant."""
+        first, curves = self.panel, self.panel.curves
+        peak = max(float(np.abs(curve.values).max()) for curve in curves.values())
+        unit = unit_for(UNITS[first.quantity], 1.001 * peak)
+        self.heard = {name: curve / unit.size for name, curve in curves.items()}
+        self.traces: dict[str, Line2D] = {}
+        for name in self.heard:
+            (self.traces[name],) = ax.plot([], [], animated=True, **style(name).of_line())
+        self.cursor = ax.axvline(0.0, color="#000000", linewidth=1.2, animated=True)
+        reach = 1.08 * peak / unit.size or 1.0
+        ax.set(xlim=1e3 * self.time[[0, -1]], ylim=(-reach, reach))
+        ax.set_ylabel(f"{first.quantity} {first.axis}".rstrip() + f"\n({unit.name})")
+        ax.set_xlabel(f"time (ms); at y = {first.y:g} m, where the line above is dashed")
+
+    @cached_property
+    def panel(self) -> Panel:
+        """The component that moves most at the first receiver."""
+        return panels([Comparison(self.shots.scene, self.shots.results)])[0][0]
+
+    def _in_lines(self, text: str, width: float, size: float, **look) -> str:
+        """Return a text in lines of at most so many inches; size : of its letters, points."""
+        measure = self.figure.text(0, 0, "", fontsize=size, parse_math=False, **look)
+
+        def fits(line: str) -> bool:
+            measure.set_text(line)
+            return bool(measure.get_window_extent().width <= width * self.figure.dpi)
+
+        lines = wrapped(text, fits)
+        measure.remove()
+        return "\n".join(lines)
+
+    def _add_head(self) -> float:
+        """Add title, clock and colours; return their height, inches."""
+        scene, (across, up) = self.shots.scene, SIZE
+        title = ", ".join(t for t in (scene.title, scene.name) if t)
+        bold = _bold(title)
+        title = self._in_lines(title, across - LEFT - RIGHT - CLOCK, 12.0, **bold)
+        self._say(LEFT, up - 0.15, title, fontsize=12, va="top", **bold)
+        height = HEAD + LINE * title.count("\n")
+        low = up - height
+        self._say(LEFT, low + 0.23, caption(scene, self.look), color="#333333")
+        step = 1e3 * (self.time[1] - self.time[0])
+        self.decimals = max(0, ceil(-log10(step)) + 1)
+        place = {"ha": "right", "fontsize": 14, "animated": True, **_bold("t = 0")}
+        self.clock = self._say(across - RIGHT, up - 0.36, "", **place)
+        bar = self._axes(across - RIGHT - 3.2, 3.2, low + 0.2, 0.13)
+        few = MaxNLocator(5)
+        self.figure.colorbar(self.colour, cax=bar, orientation="horizontal", ticks=few)
+        self._say(across - RIGHT - 3.45, low + 0.2, self.look.quantity.label, ha="right")
+        return height
+
+
+def _bold(text: str) -> dict[str, Any]:
+    """Return how a text is set in bold, which the fonts of other than Latin letters may lack."""
+    if fonts.missing(fonts.file_of(fonts.LATIN), text):
+        return {}
+    return {"fontweight": "bold", "fontfamily": fonts.LATIN}

@@ -1,0 +1,71 @@
+"""A picture in three dimensions where there may be no display: drawn by a process of its own.
+
+VTK ends a process in which it finds no way to draw; this one is left with a message instead.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from concurrent.futures.process import BrokenProcessPool
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cases.errors import SceneError
+from compare.runs.workers import Workers
+
+if TYPE_CHECKING:
+    from compare.figures.animation.snapshots import Shots
+    from compare.figures.animation.view_settings import Look
+
+#: On Linux, in order of preference: VTK's window, and the libraries that it works with.
+WINDOWS = {
+    "vtkEGLRenderWindow": ("libEGL.so.1",),
+    "vtkOSOpenGLRenderWindow": ("libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"),
+}
+CHOICE = "VTK_DEFAULT_OPENGL_WINDOW"  # in the environment
+NEEDED = "VTK can draw nothing here: it needs EGL or OSMesa (apt install libegl1, or libosmesa6)"
+
+
+def has_display() -> bool:
+    """Return whether a window can be opened."""
+    if not sys.platform.startswith("linux"):
+        return True
+    return any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY"))
+
+
+def draw(path: Path, shots: Shots, look: Look, i: int) -> None:
+    """Write the pillars at instant i as PNG; raises SceneError where VTK cannot draw."""
+    with Workers(1) as pool:
+        try:
+            pool.submit(_draw, str(path), shots, look, i).result()
+        except BrokenProcessPool:
+            raise SceneError("view", "", None, NEEDED) from None
+
+
+def _draw(path: str, shots: Shots, look: Look, i: int) -> None:
+    if sys.platform.startswith("linux"):
+        os.environ.setdefault(CHOICE, _window())
+    from vtkmodules.vtkCommonCore import vtkLogger
+
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    from compare.figures.animation.view3d import Stage
+
+    Stage(shots, look).picture(path, i)
+
+
+def _window() -> str:
+    """Return the first of VTK's windows whose library is here; raises SceneError without any."""
+    for window, libraries in WINDOWS.items():
+        if any(_loads(library) for library in libraries):
+            return window
+    raise SceneError("view", "", None, NEEDED)
+
+
+def _loads(library: str) -> bool:
+    try:
+        ctypes.CDLL(library)
+    except OSError:
+        return False
+    return True

@@ -1,0 +1,89 @@
+"""Both engines' snapshots of one scene, at the instants that a picture or an animation shows."""
+
+from __future__ import annotations
+
+from math import ceil
+from typing import TYPE_CHECKING, NamedTuple
+
+from cases.errors import SceneError
+from cases.schema.consistency import checked
+from cases.schema.scene import Scene
+from cases.schema.tables import Time
+from compare.engines import ENGINES, Progress, applies, solve
+from compare.figures.subplots import UNITS
+from results.snapshots import Snapshots, snapshots_of
+
+if TYPE_CHECKING:
+    import numpy as np
+    import xarray as xr
+
+
+class Shots(NamedTuple):
+    """One scene as each engine sees it.
+
+    scene : with the instants in its record. found : by engine, all at the same instants.
+    reasons : by engine, why one has none. results : by engine, with the waveforms as recorded.
+    """
+
+    scene: Scene
+    found: dict[str, Snapshots]
+    reasons: dict[str, str]
+    results: dict[str, xr.Dataset]
+
+
+def at_instants(scene: Scene, count: int) -> Scene:
+    """Return the scene with `count` snapshots, the first at t = 0 and the last at its end.
+
+    The waveforms are sampled at least as often as before.
+    """
+    between = scene.time.duration / (count - 1)
+    interval = between / max(1, ceil(between / scene.interval - 1e-9))
+    changes = {"fields": between, "interval": interval}
+    return checked(scene.model_copy(update={"record": scene.record.model_copy(update=changes)}))
+
+
+def until(scene: Scene, time: float) -> Scene:
+    """Return the scene as far as `time`, s."""
+    return checked(scene.model_copy(update={"time": Time(duration=time)}))
+
+
+def take(scene: Scene, count: int, progress: Progress | None = None) -> Shots:
+    """Simulate a scene with both engines and return `count` snapshots of each.
+
+    Their stress is that of the motion, less the static state. The rock is jointed where that
+    applies, else homogenised. Raises SceneError and UnstableError as the engines do.
+    """
+    if count < 2:
+        raise SceneError("snapshots", "", count, "must be at least 2")
+    asked, chosen, reasons = at_instants(scene, count), ["dem"], {}
+    for name in list(ENGINES)[1:]:
+        answer = applies(name, asked)
+        if answer:
+            chosen.append(name)
+            break
+        reasons[name] = answer.reason
+    found, results = {}, {}
+    for i, name in enumerate(chosen):
+        result = solve(name, asked, _part(progress, i, len(chosen)))
+        taken = snapshots_of(result)
+        assert taken is not None
+        found[name] = taken._replace(stress=_less_static(result, taken.stress))
+        results[name] = result[[q for q in UNITS if q in result]]
+    return Shots(asked, found, {} if len(found) > 1 else reasons, results)
+
+
+def _less_static(result: xr.Dataset, stress: np.ndarray | None) -> np.ndarray | None:
+    """Return the axial stress of the motion, as `compare.misfit.metrics.motion` does for
+    waveforms."""
+    if stress is None:
+        return None
+    if result.attrs.get("starts") == "at rest under gravity":
+        return stress - stress[:1]
+    return stress - result.attrs.get("prestress", 0.0)
+
+
+def _part(progress: Progress | None, i: int, count: int) -> Progress | None:
+    """Return what is told the progress of the i-th of so many runs."""
+    if progress is None:
+        return None
+    return lambda fraction: progress((i + fraction) / count)

@@ -1,0 +1,107 @@
+"""What of a pillar's cells can be seen: the faces on the outside of its blocks, and their edges."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from compare.figures.snapshots import FACES
+from results.snapshots import Snapshots
+
+SHARP = 0.9  # cosine of the angle between two faces below which their edge is drawn
+Y = np.array([0.0, 1.0, 0.0])
+
+
+class Surface(NamedTuple):
+    """The outside of all blocks.
+
+    faces : int array [faces, corners], nodes, anticlockwise from outside. cells : int array
+    [faces], the cell behind each. edges : int array [edges, 2], nodes of what bounds a block.
+    beside : int array [edges, 2], the faces on both sides of an edge, twice the same at a rim.
+    flat : whether the cells are faces themselves, which are seen from both sides.
+    """
+
+    faces: np.ndarray
+    cells: np.ndarray
+    edges: np.ndarray
+    beside: np.ndarray
+    flat: bool
+
+
+def solid(s: Snapshots, side: float) -> Snapshots:
+    """Return snapshots whose lines along y and flat quadrilaterals are hexahedra of the section.
+
+    side : of the section, m. Whatever has its full width already is returned as it is.
+    """
+    if s.kind == "line":
+        s = _thick(s, 0, side, "quad")
+    return _thick(s, 2, side, "hexahedron") if s.kind == "quad" else s
+
+
+def _thick(s: Snapshots, axis: int, side: float, kind: str) -> Snapshots:
+    """Return cells stretched by half a side to both sides along an axis; all of it moves alike."""
+    half, nodes = np.zeros(3), len(s.points)
+    half[axis] = side / 2
+    cells = s.cells, s.cells + nodes
+    if kind == "quad":  # its corners go around, anticlockwise as seen from z
+        cells = cells[1], cells[0][:, ::-1]
+    return s._replace(
+        kind=kind,
+        points=np.concatenate([s.points - half, s.points + half]),
+        cells=np.concatenate(cells, axis=1),
+        displacement=np.concatenate([s.displacement, s.displacement], axis=1),
+        velocity=np.concatenate([s.velocity, s.velocity], axis=1),
+    )
+
+
+def surface_of(s: Snapshots) -> Surface:
+    """Return the outside of the blocks of snapshots, whatever kind their cells are of."""
+    rings = np.array(FACES[s.kind])
+    faces = s.cells[:, rings].reshape(-1, rings.shape[1])
+    cells = np.repeat(np.arange(len(s.cells)), len(rings))
+    _, which, times = np.unique(
+        np.sort(faces, axis=1), axis=0, return_inverse=True, return_counts=True
+    )
+    outside = times[which.ravel()] == 1
+    faces, cells = faces[outside], cells[outside]
+    normals = _normals(s.points[faces])
+    outwards = s.points[faces].mean(axis=1) - s.points[s.cells].mean(axis=1)[cells]
+    inside_out = (normals * outwards).sum(axis=1) < 0
+    faces[inside_out], normals[inside_out] = faces[inside_out, ::-1], -normals[inside_out]
+    return Surface(faces, cells, *_edges(faces, normals), flat=len(rings) == 1)
+
+
+def _normals(corners: np.ndarray) -> np.ndarray:
+    """Return unit normals [faces, 3] of flat faces [faces, corners, 3]."""
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, -1] - corners[:, 0])
+    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+
+def _edges(faces: np.ndarray, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the edges at which faces end or bend, and the faces beside them."""
+    pairs = np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1).reshape(-1, 2)
+    owner = np.repeat(np.arange(len(faces)), faces.shape[1])
+    edges, which = np.unique(np.sort(pairs, axis=1), axis=0, return_inverse=True)
+    which = which.ravel()
+    beside = np.empty((len(edges), 2), dtype=int)
+    beside[which, 0] = owner  # of the two the last that is written
+    beside[which[::-1], 1] = owner[::-1]
+    cosine = (normals[beside[:, 0]] * normals[beside[:, 1]]).sum(axis=1)
+    drawn = (cosine < SHARP) | (beside[:, 0] == beside[:, 1])
+    return edges[drawn], beside[drawn]
+
+
+def seen(points: np.ndarray, up: np.ndarray) -> np.ndarray:
+    """Return points [..., 3] (m) as seen with y to the right and the unit vector `up` upwards:
+    to the right, up, and towards the viewer."""
+    return points @ np.stack([Y, up, np.cross(Y, up)], axis=-1)
+
+
+def in_front(surface: Surface, points: np.ndarray) -> np.ndarray:
+    """Return the faces that are turned to the viewer, the farthest first; points [nodes, 3] as
+    `seen` gives them."""
+    corners = points[surface.faces]
+    x, y, depth = np.moveaxis(corners, 2, 0)
+    area = (x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)).sum(axis=1)
+    area = np.abs(area) if surface.flat else area
+    front = np.flatnonzero(area > 1e-6 * np.abs(area).max())
+    return front[np.argsort(depth[front].mean(axis=1), kind="stable")]

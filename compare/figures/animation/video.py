@@ -1,0 +1,91 @@
+"""Pictures one after the other as a file, MP4 or GIF, by ffmpeg, which imageio-ffmpeg brings."""
+
+from collections.abc import Callable, Generator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cases.errors import SceneError
+from compare.engines import Progress
+from compare.runs.output import refuse_foreign, write
+
+#: How our files begin, by their ending: MP4 with the size of its first box, `ftyp`.
+BEGINS = {
+    ".mp4": tuple(bytes([0, 0, 0, size]) + b"ftyp" for size in (0x14, 0x18, 0x1C, 0x20, 0x24)),
+    ".gif": (b"GIF87a", b"GIF89a"),
+}
+DOTS = {".mp4": 100, ".gif": 75}  # pixels an inch; every size is even, as H.264 with 4:2:0 needs
+
+#: What ffmpeg is asked for. H.264 in 4:2:0 is what every player shows, its index first, so that it
+#: begins before all of it is there; a GIF has one palette, made from all of its pictures.
+ENCODING: dict[str, dict[str, Any]] = {
+    ".mp4": {
+        "codec": "libx264",
+        "pix_fmt_out": "yuv420p",
+        "output_params": ["-crf", "20", "-movflags", "+faststart"],
+    },
+    ".gif": {
+        "codec": "gif",
+        "pix_fmt_out": "pal8",
+        "output_params": [
+            "-filter_complex",
+            "split[a][b];[a]palettegen=reserve_transparent=0[p];[b][p]paletteuse=dither=none",
+        ],
+    },
+}
+
+MOST_OF_A_GIF = 400  # pictures, 2.3 MB each
+
+Picture = Callable[[int], np.ndarray]
+
+
+def refuse(path: Path, count: int = 0) -> None:
+    """Raise SceneError where `path` can be no animation of ours of so many pictures."""
+    if path.suffix not in BEGINS:
+        raise SceneError("--out", str(path), None, f"must end in {' or '.join(BEGINS)}")
+    if path.suffix == ".gif" and count > MOST_OF_A_GIF:
+        allowed = f"at most {MOST_OF_A_GIF} for a GIF, whose pictures must all fit the memory"
+        raise SceneError("--frames", "", None, f"{allowed}, not {count:,}; .mp4 takes more")
+    refuse_foreign(path, BEGINS[path.suffix])
+
+
+def write_video(
+    path: Path, picture: Picture, count: int, seconds: float, progress: Progress | None = None
+) -> Path:
+    """Write `count` pictures, uint8 arrays [height, width, 4], that last so many seconds.
+
+    The ending says how: .mp4 is H.264, of even sizes; .gif goes round and round.
+    """
+    refuse(path, count)
+
+    def save(new: Path) -> None:
+        film = _film(new, picture(0).shape, count / seconds)
+        try:
+            for i in range(count):
+                film.send(picture(i))
+                if progress is not None:
+                    progress((i + 1) / count)
+        finally:
+            film.close()
+
+    return write(path, save)
+
+
+def _film(path: Path, shape: tuple[int, ...], rate: float) -> Generator[None, np.ndarray, None]:
+    """Return what writes each picture that it is sent; `rate` of them a second."""
+    from imageio_ffmpeg import write_frames
+
+    height, width, _ = shape
+    film = write_frames(
+        str(path),
+        (width, height),
+        fps=rate,
+        pix_fmt_in="rgba",
+        quality=None,
+        macro_block_size=2,
+        ffmpeg_log_level="error",
+        **ENCODING[path.suffix],
+    )
+    film.send(None)
+    return film

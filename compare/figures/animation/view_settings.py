@@ -1,0 +1,139 @@
+"""How a scene is looked at: from which side, how much exaggerated, and what its colours say."""
+
+from math import floor, log10
+from typing import NamedTuple
+
+import numpy as np
+
+from cases.effects import is_spatial
+from cases.material.calibrate import calibrate
+from cases.schema.scene import Scene
+from results.snapshots import Snapshots
+
+#: The largest that is drawn: of a block's thickness two neighbours may come closer; of the pillar's
+#: length a node may move along, and aside; of half a block's largest side a corner may turn away.
+CLOSER, FARTHER, ASIDE, TURNED = 0.8, 0.1, 0.04, 0.35
+THIN, THIN_IN_SPACE = 0.045, 0.03  # height of the picture over its length that can be seen well
+SILENT = 0.1  # axial stress over what the motion would give in a plane wave, that is no wave
+
+
+class Quantity(NamedTuple):
+    """What the colours show: its name, and the factor from SI to the unit that is written."""
+
+    name: str
+    unit: str
+    factor: float
+
+    @property
+    def label(self) -> str:
+        """The title of the colours."""
+        sign = ", compression positive" if self == STRESS else ", upwards positive"
+        return f"{self.name} ({self.unit}){sign}"
+
+
+STRESS = Quantity("axial stress", "MPa", 1e-6)
+VELOCITY = Quantity("velocity across", "m/s", 1.0)
+
+
+class Look(NamedTuple):
+    """How a scene is drawn.
+
+    up : unit vector [3], what is upwards in the picture; y is to the right. scale : of the
+    displacements. stretch : of all that is upwards. quantity : what the colours show.
+    """
+
+    up: np.ndarray
+    scale: float
+    stretch: float
+    quantity: Quantity
+
+
+def caption(scene: Scene, look: Look) -> str:
+    """Return what is said of a picture: how much is exaggerated, and what its stress is less."""
+    parts = [f"displacements × {look.scale:,g}"]
+    if look.stretch != 1:
+        parts.append(f"thickness × {look.stretch:g}")
+    if look.quantity == STRESS and scene.gravity is not None:
+        parts.append("stress less its static state")
+    elif look.quantity == STRESS and scene.prestress is not None and scene.prestress.normal:
+        parts.append(f"stress less the prestress of {scene.prestress.normal / 1e6:g} MPa")
+    return ", ".join(parts)
+
+
+def look_at(scene: Scene, found: dict[str, Snapshots], scale: float | None = None) -> Look:
+    """Return how snapshots by engine are drawn; `scale` (of displacements) in place of our own.
+
+    A row of blocks is seen from the side to which nothing drives it: its motion along and across
+    its axis lies in the plane of the picture.
+    """
+    thin = THIN_IN_SPACE if is_spatial(scene) else THIN
+    ratio = scene.pillar.side / scene.pillar.length
+    wanted = max(1.0, thin / ratio)
+    stretch = next(f * d for d in 10.0 ** np.arange(12) for f in (1, 2, 5) if f * d >= wanted)
+    if scale is None:
+        largest = min(_largest_scale(scene, s, float(stretch)) for s in found.values())
+        scale = max(1.0, round_down(largest))
+    return Look(_upwards(scene), scale, float(stretch), _quantity(scene, found))
+
+
+def _upwards(scene: Scene) -> np.ndarray:
+    """Return the direction across the axis in which the scene is driven; x where it is in none."""
+    load = scene.load
+    drives = [np.array(load.direction), np.array([load.at[0], 0.0, load.at[1]])]
+    if load.arm is not None:  # blocks bend across the axis of the couple
+        drives = [np.cross(load.direction, [0.0, 1.0, 0.0])]
+    if scene.gravity is not None:
+        drives.append(np.array(scene.gravity.direction))
+    for drive in drives:
+        across = drive * [1, 0, 1]
+        if (size := np.linalg.norm(across)) > 1e-9:
+            return across / size
+    return np.array([1.0, 0.0, 0.0])
+
+
+def round_down(value: float) -> float:
+    """Return the largest of 1, 2 or 5 times a power of ten that is at most `value`."""
+    if not 0 < value < np.inf:
+        return 1.0
+    power = 10.0 ** floor(log10(value))
+    return power * max(k for k in (1, 2, 5) if k * power <= value * (1 + 1e-12))
+
+
+def _largest_scale(scene: Scene, s: Snapshots, stretch: float) -> float:
+    """Return by what displacements can be multiplied before the picture is no pillar any more."""
+    p, length = calibrate(scene), scene.pillar.length
+    centres, spread = _by_block(s)
+    limits = [
+        (-np.diff(centres[..., 1], axis=1), CLOSER * p.spacing),
+        (np.abs(s.displacement[..., 1]), FARTHER * length),
+        (np.abs(s.displacement[..., [0, 2]]), ASIDE * length / stretch),
+        (spread, TURNED * max(p.spacing, p.side) / 2),
+    ]
+    return min((bound / x.max() for x, bound in limits if x.size and x.max() > 0), default=np.inf)
+
+
+def _by_block(s: Snapshots) -> tuple[np.ndarray, np.ndarray]:
+    """Return the mean displacement of every block [snapshots, blocks, 3], and how far the nodes are
+    from it [snapshots, nodes], m."""
+    owner = np.zeros(len(s.points), dtype=int)
+    owner[s.cells] = s.block[:, None]
+    count = np.bincount(owner)
+    order = np.argsort(owner, kind="stable")
+    starts = np.concatenate([[0], np.cumsum(count)[:-1]])
+    present = count > 0
+    sums = np.add.reduceat(s.displacement[:, order], starts[present], axis=1)
+    means = np.zeros((len(s.time), len(count), 3))
+    means[:, present] = sums / count[present][:, None]
+    return means, np.linalg.norm(s.displacement - means[:, owner], axis=2)
+
+
+def _quantity(scene: Scene, found: dict[str, Snapshots]) -> Quantity:
+    """Return the axial stress, or the motion across where that is what makes the wave."""
+    if not is_spatial(scene):
+        return STRESS
+    impedance = calibrate(scene).impedance
+    for s in found.values():
+        stress = 0.0 if s.stress is None else float(np.abs(s.stress).max())
+        if stress < SILENT * impedance * float(np.abs(s.velocity).max()):
+            return VELOCITY
+    return STRESS

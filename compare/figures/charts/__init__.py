@@ -1,0 +1,1 @@
+"""Charts of a scene's results: waveforms, spectra, space-time diagrams, energy."""

@@ -1,0 +1,53 @@
+"""A scene solved at places all along the pillar, for space-time diagrams."""
+
+import xarray as xr
+
+from cases.schema.scene import Scene
+from compare.engines import ENGINES, applies, names, solve
+from compare.misfit.ranking import own_exact
+
+SECTIONS, TIMES = 60, 240  # at most so many intervals between the sections and samples kept
+FEWEST = 8  # blocks; in fewer there is no wave to be seen
+
+
+def along_pillar(scene: Scene) -> dict[str, xr.Dataset]:
+    """Return results by name at joints or blocks all along the pillar, at some 240 times.
+
+    Those of the engines, each run as in the comparison, and of the exact solution of each one's own
+    model. Empty where the pillar has too few blocks for a wave to be seen.
+    Raises what `compare.engines.solve` does.
+    """
+    if scene.pillar.block_count < FEWEST:
+        return {}
+    wide = recorded_along(scene)
+    every = [name for name in names() if applies(name, wide)]
+    engines = [name for name in every if name in ENGINES]
+    exact = [own for name in engines if (own := own_exact(name, every, wide))]
+    return {name: _thinned(solve(name, wide)) for name in dict.fromkeys([*engines, *exact])}
+
+
+def sections(scene: Scene) -> list[float]:
+    """Return y of the start, every k-th joint and the end, m."""
+    count = scene.pillar.block_count
+    places = [*range(0, count, -(-count // SECTIONS)), count]
+    return [scene.pillar.block * i for i in places]
+
+
+def recorded_along(scene: Scene) -> Scene:
+    """Return the scene with receivers along the pillar; samples and steps stay as they are.
+
+    Of a scene that records velocities alone these are the centres of blocks, else sections.
+    """
+    places = sections(scene)
+    # A couple about the axis strains no section; what it turns is recorded with the velocity.
+    points = places if scene.load.arm is not None else []
+    if scene.record.velocity and not scene.record.stress:
+        points, places = [y + scene.pillar.block / 2 for y in places[:-1]], []
+    record = scene.record.model_copy(update={"stress": places, "velocity": points, "fields": None})
+    return scene.model_copy(update={"record": record})
+
+
+def _thinned(result: xr.Dataset) -> xr.Dataset:
+    """Return a result at every k-th sample, in memory of its own."""
+    step = max(1, -(-(result.sizes["time"] - 1) // TIMES))
+    return result.isel(time=slice(None, None, step)).copy(deep=True)

@@ -1,0 +1,81 @@
+"""Frequencies that a scene is known by: of its load, pillar, blocks and joints."""
+
+from math import cos, isfinite, pi, sin
+from typing import NamedTuple
+
+from cases.material.calibrate import Properties, calibrate
+from cases.schema.scene import Scene
+from compare.figures.subplots import Panel
+
+
+class Mark(NamedTuple):
+    """A frequency (Hz) and what it is, short and in words."""
+
+    name: str
+    frequency: float
+    words: str
+
+
+def marks_of(panel: Panel) -> list[Mark]:
+    """Return the marks of a panel's scene for the waves along it or, where blocks do not turn,
+    across it; in order of frequency. None but the load's for other motion, which disperses."""
+    scene = panel.comparison.scene
+    found = _of_load(scene)
+    p = calibrate(scene)
+    if panel.component is None or (panel.quantity == "velocity" and panel.component == 1):
+        found += _of_waves(scene, p, p.bar_speed) + _of_layers(p) + _of_joints(p)
+    elif scene.motion.rotation == "none" and panel.quantity != "rotation":
+        found += _of_waves(scene, p, p.shear_speed)
+    return sorted(found, key=lambda mark: mark.frequency)
+
+
+def _of_load(scene: Scene) -> list[Mark]:
+    period = scene.load.period
+    return [Mark("load", 1 / period, "1/T of the load")] if period else []
+
+
+def _of_waves(scene: Scene, p: Properties, speed: float) -> list[Mark]:
+    """Return the cut-off of the chain, omega = 2 sqrt(k/m) = 2 c/d (Brillouin 1946), and the first
+    mode of a pillar whose ends both reflect."""
+    marks = [Mark("chain cut-off", speed / (pi * p.spacing), "cut-off of the chain of blocks")]
+    ends = {scene.ends.start, scene.ends.end}
+    if ends <= {"free", "fixed"}:
+        waves = 2 if len(ends) == 1 else 4  # pillars in a wave
+        length = p.spacing * p.block_count
+        marks.append(Mark("first mode", speed / (waves * length), "first mode of the pillar"))
+    return marks
+
+
+def _of_layers(p: Properties) -> list[Mark]:
+    """Return where a soft layer passes half the energy, kappa = K / (Z omega) = 1/2 (Pyrak-Nolte,
+    Myer & Cook 1990)."""
+    compliances = {c for c in p.excess_compliance[p.soft].tolist() if c > 0}
+    return [
+        Mark("soft layer", 1 / (pi * p.impedance * c), "half energy through the soft layer")
+        for c in compliances
+    ]
+
+
+def _of_joints(p: Properties) -> list[Mark]:
+    """Return where the first pass band of equal joints in elastic rock ends."""
+    if p.intact_modulus is None or not isfinite(p.regular_own_stiffness):
+        return []
+    speed = (p.intact_modulus / p.density) ** 0.5
+    edge = band_edge(p.density * speed, p.regular_own_stiffness, p.spacing / speed)
+    return [Mark("joints' band edge", edge, "end of the first pass band of joints in rock")]
+
+
+def band_edge(impedance: float, stiffness: float, crossing: float) -> float:
+    """Return the frequency (Hz) where the first pass band of equal joints ends.
+
+    impedance : of the rock, Pa s/m. stiffness : of a joint, Pa/m. crossing : of the rock between
+    two joints, s. There cos(phi) = cos(theta) - sin(theta) / (2 kappa) is -1, as in
+    `compare.exact.joint.parallel_joints`; divided by 2 cos(theta/2), which vanishes at the band's
+    other edge, this is cos(theta/2) = sin(theta/2) / (2 kappa).
+    """
+    from scipy.optimize import brentq
+
+    def bloch(theta: float) -> float:
+        return cos(theta / 2) - sin(theta / 2) * theta * impedance / (2 * stiffness * crossing)
+
+    return float(brentq(bloch, 0.0, pi, xtol=1e-14) / (2 * pi * crossing))

@@ -1,0 +1,192 @@
+"""Space-time diagrams: y along the pillar over time, the motion as colour."""
+
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from cases.schema.scene import Scene
+from compare.figures.charts import interactive
+from compare.figures.charts.spacetime_data import Diagram, Diagrams
+from compare.figures.figure import Picture
+from compare.figures.style import RC, WIDTH
+
+COLOURS = 96  # of an image in print
+FINER = 2  # rows of it
+STOPS = 17  # of a colour scale on the page
+LAYER: dict[str, Any] = {"color": "#111111", "linewidth": 1.1, "linestyle": (0, (4, 3))}
+NAMED: dict[str, Any] = {
+    "xycoords": ("axes fraction", "data"),
+    "xytext": (0, 2),
+    "textcoords": "offset points",
+    "ha": "right",
+    "fontsize": 7,
+}
+
+
+def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> Picture:
+    """Return the picture of diagrams of one variant; those of numerical errors are folded.
+
+    name : unique on the page. variant : its name there.
+    """
+    words = f"{shown.quantity.words} along the pillar over time, {variant}"
+    title = f"Numerical error of {words}" if shown.exact else f"{words[0].upper()}{words[1:]}"
+    return Picture(
+        name,
+        "space-time",
+        title,
+        _caption(scene, variant, shown),
+        _figure(scene, shown),
+        shown.table(),
+        _plot(scene, shown),
+        shown.exact,
+    )
+
+
+def _caption(scene: Scene, variant: str, shown: Diagrams) -> str:
+    """Say what the colours are, and where and when they were computed."""
+    sign = "Compression is red, tension blue. " if shown.quantity.variable == "stress" else ""
+    layers = " Dashed: the soft layer." if scene.soft_layers else ""
+    if shown.exact:
+        sign = "Each engine less the exact solution of its own model. "
+    return (
+        f"{sign}Drawn from {len(shown.y)} places and {len(shown.time)} times of the variant "
+        f"{variant!r}, less its static state; a difference has colours of its own, whose ends are "
+        f"its largest value.{layers}"
+    )
+
+
+def _figure(scene: Scene, shown: Diagrams) -> Figure:
+    count = len(shown.diagrams)
+    with matplotlib.rc_context(RC):
+        figure = Figure(figsize=(WIDTH, 3.1), layout="constrained")
+        FigureCanvasAgg(figure)
+        axes = figure.subplots(1, max(count, 2), sharex=True, sharey=True, squeeze=False)[0]
+        for ax, diagram in zip(axes, shown.diagrams, strict=False):
+            _draw(ax, diagram, shown, scene)
+            _settle(ax)
+        for ax in axes[count:]:
+            ax.set_visible(False)
+        for layer in scene.soft_layers:
+            axes[0].annotate("soft layer", (0.99, layer.y), **NAMED)
+        axes[0].set_ylabel("y (m)")
+    return figure
+
+
+def _draw(ax: Axes, diagram: Diagram, shown: Diagrams, scene: Scene) -> None:
+    time, y, values = evenly(1e3 * shown.time, shown.y, diagram.values)
+    image = ax.imshow(
+        values,
+        # A palette, and only the points there are: files take a twentieth of the room.
+        cmap=matplotlib.colormaps[diagram.colours].resampled(COLOURS),
+        interpolation="none",
+        vmin=-diagram.limit,
+        vmax=diagram.limit,
+        extent=(time[0], time[-1], y[0], y[-1]),
+        origin="lower",
+        aspect="auto",
+    )
+    for layer in scene.soft_layers:
+        ax.axhline(layer.y, **LAYER)
+    ax.set_title(diagram.heading, pad=4)
+    ax.set_xlabel("time (ms)")
+    bar = ax.figure.colorbar(image, ax=ax, location="bottom", aspect=40, pad=0.03)
+    bar.outline.set_linewidth(0.5)
+
+
+def evenly(
+    time: np.ndarray, y: np.ndarray, values: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return times, places and values [place, time] as an image needs them: `FINER` rows for every
+    distance between places, all even."""
+    places = np.linspace(y[0], y[-1], FINER * (len(y) - 1) + 1)
+    columns = [np.interp(places, y, column) for column in values.T]
+    return time, places, np.stack(columns, axis=1)
+
+
+def _plot(scene: Scene, shown: Diagrams) -> dict[str, Any]:
+    panels = [
+        interactive.Panel(diagram.heading, "y (m)", axis={"matches": "y"} if i else None)
+        for i, diagram in enumerate(shown.diagrams)
+    ]
+    layout = interactive.layout(panels, {"title": {"text": "time (ms)"}}, 0)
+    layout["margin"]["r"] = 62
+    layout["shapes"] = [
+        _layer(layer.y, i) for layer in scene.soft_layers for i in range(len(panels))
+    ]
+    domains = [layout[interactive.axis_key(i)]["domain"] for i in range(len(panels))]
+    traces = [
+        _trace(i, diagram, shown, domain)
+        for i, (diagram, domain) in enumerate(zip(shown.diagrams, domains, strict=True))
+    ]
+    return {"data": traces, "layout": layout}
+
+
+def _trace(i: int, diagram: Diagram, shown: Diagrams, domain: list[float]) -> dict[str, Any]:
+    place = f"{diagram.unit.name} at y = %{{y:.4~g}} m, %{{x:.2f}} ms"
+    return {
+        "type": "heatmap",
+        "name": diagram.name,
+        **interactive.places("x", 1e3 * shown.time),
+        **interactive.places("y", shown.y),
+        "z": interactive.packed(diagram.values),
+        "yaxis": interactive.axis_of(i),
+        "zsmooth": "best",
+        "zmin": -diagram.limit,
+        "zmax": diagram.limit,
+        "colorscale": _colourscale(diagram.colours),
+        "colorbar": _key(domain),
+        "hovertemplate": f"%{{z:.4~g}} {place}<extra>{diagram.name}</extra>",
+    }
+
+
+def _key(domain: list[float]) -> dict[str, Any]:
+    """Return the key of a diagram's colours, as high as the diagram, to its right."""
+    return {
+        "x": 1.01,
+        "xpad": 2,
+        "y": sum(domain) / 2,
+        "ypad": 0,
+        "len": domain[1] - domain[0],
+        "thickness": 10,
+        "outlinewidth": 0,
+        "nticks": 4,
+        "tickfont": {"size": 11},
+    }
+
+
+def _colourscale(name: str) -> list[list[Any]]:
+    at = np.linspace(0, 1, STOPS)
+    return [[float(x), to_hex(c)] for x, c in zip(at, matplotlib.colormaps[name](at), strict=True)]
+
+
+def _layer(y: float, panel: int) -> dict[str, Any]:
+    """Return the line of a soft layer through a diagram."""
+    return {
+        "type": "line",
+        "xref": "paper",
+        "yref": interactive.axis_of(panel),
+        "x0": 0,
+        "x1": 1,
+        "y0": y,
+        "y1": y,
+        "line": {"color": "#333333", "width": 1, "dash": "4px,3px"},
+    }
+
+
+def _settle(ax: Axes) -> None:
+    """Put the points of an image where they are, as its extent counts to the edges of its pixels,
+    and few numbers on its key, so that long ones do not meet."""
+    (image,) = ax.images
+    rows, columns = np.asarray(image.get_array()).shape
+    left, right, bottom, top = image.get_extent()
+    x, y = (right - left) / (columns - 1) / 2, (top - bottom) / (rows - 1) / 2
+    image.set_extent((left - x, right + x, bottom - y, top + y))
+    ax.set(xlim=(left, right), ylim=(bottom, top))
+    assert image.colorbar is not None
+    image.colorbar.set_ticks(MaxNLocator(4, symmetric=True))

@@ -1,0 +1,81 @@
+"""What acts on the pillar, in the drawing of its side: load, gravity, prestress."""
+
+from matplotlib.axes import Axes
+
+from cases.schema.scene import Gravity, Scene
+from compare.figures.drawing import symbols
+from compare.figures.drawing.frame import HEIGHT, WIDTH, Frame
+from compare.figures.drawing.symbols import CHARACTER, SOFT
+from compare.figures.units import unit_for
+
+LENGTH, GRAVITY = 0.42, 0.3  # inches of arrows
+LEVEL = HEIGHT - 0.1  # inches of a prestress
+ASIDE = GRAVITY / 2 + 0.05  # inches from the arrow of gravity to its number
+
+
+def draw_load(ax: Axes, scene: Scene, place: Frame) -> None:
+    """Draw the load on the start: arrows over its face, one where it is eccentric or across; a
+    double arrow along the axis of a couple, and one beside a base that moves."""
+    load, start = scene.load, place.x(0)
+    if not load.amplitude:
+        return
+    across, along, depth = load.direction
+    if load.shakes_base:
+        x, reach = start - 0.35, 0.2
+        ends = [(x + s * reach * along, place.middle + s * reach * across) for s in (-1, 1)]
+        symbols.arrow(ax, ends[0], ends[1], style="<|-|>")
+        return
+    if load.arm is not None:
+        level = place.middle + 0.36 * place.thick
+        for tip in (0.14, 0.05):
+            symbols.arrow(ax, (start - 0.5, level), (start - tip, level))
+        return
+    # z points into the drawing; what acts across ends as far over the axis as it began below it.
+    if load.is_eccentric or abs(along) < 0.3:
+        over = load.at[0] / scene.pillar.side * place.thick
+        over += 0.0 if load.is_eccentric else LENGTH / 2 * across
+        at = (start - 0.08 * (1 - abs(along)), place.middle + over)
+        symbols.along_or_across(ax, at, (along, across), -depth, LENGTH)
+        return
+    held = scene.ends.start in ("quiet", "matched")
+    for level in (-0.36, 0.36) if held else (-0.36, 0.0, 0.36):
+        at = (start, place.middle + level * place.thick)
+        symbols.along_or_across(ax, at, (along, across), -depth, LENGTH)
+
+
+def draw_forces(ax: Axes, scene: Scene, place: Frame) -> None:
+    """Draw gravity beside the pillar, and a prestress above it and what is written there."""
+    if scene.gravity is not None and scene.gravity.acceleration:
+        _draw_gravity(ax, scene.gravity, gravity_at(scene, place))
+    if scene.prestress is not None and scene.prestress.normal:
+        _draw_prestress(ax, scene.prestress.normal, place.x(scene.pillar.length / 2), LEVEL)
+
+
+def gravity_at(scene: Scene, place: Frame) -> float:
+    """Return where the arrow of gravity stands, inches."""
+    return min(place.x(scene.pillar.length) + 1.5, WIDTH - 0.3)
+
+
+def _draw_gravity(ax: Axes, gravity: Gravity, x: float) -> None:
+    across, along, depth = gravity.direction
+    level = LEVEL - GRAVITY / 2
+    tip = (x + GRAVITY / 2 * along, level + GRAVITY / 2 * across)
+    symbols.along_or_across(ax, tip, (along, across), -depth, GRAVITY)
+    ax.text(x - ASIDE, level, gravity_words(gravity), ha="right", va="center", fontsize=8)
+
+
+def gravity_words(gravity: Gravity) -> str:
+    """Return what is written beside the arrow of gravity."""
+    return f"{gravity.acceleration:g} m/s²"
+
+
+def _draw_prestress(ax: Axes, normal: float, x: float, level: float) -> None:
+    """Draw two arrows, towards each other in compression, beside the number."""
+    unit = unit_for("Pa", abs(normal))
+    words = f"prestress {normal / unit.size:g} {unit.name}"
+    ax.text(x, level, words, ha="center", va="center", fontsize=8)
+    inner = CHARACTER * len(words) / 2 + 0.1
+    for side in (-1, 1):
+        far, near = (x + side * (inner + 0.4), level), (x + side * inner, level)
+        tail, tip = (far, near) if normal > 0 else (near, far)
+        symbols.arrow(ax, tail, tip, SOFT)

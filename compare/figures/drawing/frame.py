@@ -1,0 +1,44 @@
+"""Where the pillar stands in its drawing, whose unit is the inch."""
+
+from typing import NamedTuple
+
+from cases.schema.scene import Scene
+
+WIDTH, HEIGHT = 7.3, 1.82  # inches of the drawing
+SIDES = 0.95  # inches beside the pillar: its load and what holds it
+THICK, SQUAT = 0.42, 0.6  # inches across the pillar: at least, and at most
+BASE = 0.6  # inches under the pillar: its scale
+
+
+class Frame(NamedTuple):
+    """Where the pillar is: x of its start (inches), inches a metre along it, inches across."""
+
+    start: float
+    scale: float
+    thick: float
+
+    def x(self, y: float) -> float:
+        """Return where a section is."""
+        return self.start + self.scale * y
+
+    @property
+    def bottom(self) -> float:
+        """The lower side."""
+        return BASE
+
+    @property
+    def middle(self) -> float:
+        """The axis."""
+        return BASE + self.thick / 2
+
+    @property
+    def top(self) -> float:
+        """The upper side."""
+        return BASE + self.thick
+
+
+def frame(scene: Scene) -> Frame:
+    """Return where a pillar is drawn: to scale in both directions where that leaves it visible."""
+    room, pillar = WIDTH - 2 * SIDES, scene.pillar
+    scale = min(room / pillar.length, SQUAT / pillar.side)
+    return Frame(SIDES, scale, max(THICK, scale * pillar.side))

@@ -1,0 +1,156 @@
+"""The scene as a textbook draws it: the pillar from the side, its section, its load over time."""
+
+from itertools import pairwise
+
+import matplotlib
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from cases.loads import load_history
+from cases.schema.scene import Scene
+from compare.figures.drawing import section, side
+from compare.figures.drawing.frame import HEIGHT, WIDTH
+from compare.figures.drawing.symbols import LOAD
+from compare.figures.figure import Picture
+from compare.figures.style import RC
+from compare.figures.subplots import variant_names
+from compare.figures.units import unit_for
+from compare.misfit.pairs import Comparison
+
+SAMPLES = 400  # of the load
+MOST = 4  # drawings of one scene
+UNITS = {"stress": "Pa", "velocity": "m/s", "acceleration": "m/s²"}
+GAP, LOAD_WIDTH = 0.45, 1.75  # inches before and of the load over time
+HEADING = 0.22  # inches of a heading
+SEEN = ("pillar", "soft_layers", "load", "ends", "gravity", "prestress", "record", "motion")
+
+
+def scene_picture(name: str, comparisons: list[Comparison]) -> Picture:
+    """Return the picture of a scene; variants that look alike share a drawing."""
+    groups = _groups(comparisons)
+    return Picture(
+        f"{name}-scene",
+        "scene",
+        "The scene",
+        _caption(groups),
+        _figure(groups),
+        pd.concat([_table(scene, words) for words, scene in groups], ignore_index=True),
+        None,
+    )
+
+
+def _groups(comparisons: list[Comparison]) -> list[tuple[str, Scene]]:
+    """Return names of variants and their scene, one entry for each that looks different."""
+    seen: dict[str, tuple[list[str], Scene]] = {}
+    for words, comparison in zip(variant_names(comparisons), comparisons, strict=True):
+        scene = comparison.scene
+        look = str([getattr(scene, key) for key in SEEN] + [scene.joints.contact_points])
+        seen.setdefault(look, ([], scene))[0].append(words)
+    return [(", ".join(names), scene) for names, scene in list(seen.values())[:MOST]]
+
+
+def _caption(groups: list[tuple[str, Scene]]) -> str:
+    scene = groups[0][1]
+    rock, joints = scene.rock, scene.joints
+    if rock.p_speed is not None:
+        speeds = f"waves of {rock.p_speed:g} and {rock.s_speed:g} m/s"
+    else:
+        speeds = f"a modulus of {(rock.equivalent_modulus or 0) / 1e9:.3g} GPa"
+    law = [
+        f"damping ratio {joints.damping_ratio:g}" if joints.damping_ratio else "",
+        "no tension" if joints.tension is False else "",
+        f"friction {joints.friction_angle:g}°" if joints.friction_angle is not None else "",
+        f"tensile strength {joints.tensile_strength / 1e6:g} MPa"
+        if joints.tensile_strength
+        else "",
+    ]
+    words = ", ".join(part for part in law if part) or "elastic"
+    return (
+        f"Drawn from the scene: rock mass of {rock.density:g} kg/m³ with {speeds}; "
+        f"joints: {words}. Triangles: sections whose stress is recorded; circles: points whose "
+        "velocity is."
+    )
+
+
+def _figure(groups: list[tuple[str, Scene]]) -> Figure:
+    heading = HEADING if len(groups) > 1 else 0.0
+    width = WIDTH + section.WIDTH + GAP + LOAD_WIDTH
+    height = len(groups) * (HEIGHT + heading)
+    with matplotlib.rc_context(RC):
+        figure = Figure(figsize=(width, height))
+        FigureCanvasAgg(figure)
+        above = None
+        for i, (words, scene) in enumerate(groups):
+            bottom = height - (i + 1) * (HEIGHT + heading)
+            _draw_row(figure, scene, above, bottom)
+            if heading:
+                text = f"({chr(97 + i)})  {words}"
+                figure.text(0.08 / width, (bottom + HEIGHT) / height, text, va="bottom")
+            above = scene
+    return figure
+
+
+def _draw_row(figure: Figure, scene: Scene, above: Scene | None, bottom: float) -> None:
+    """Draw the pillar, and section and load where they differ from the scene above."""
+    width, height = figure.get_size_inches()
+
+    def axes(left: float, across: float, low: float = 0.0, high: float = HEIGHT) -> Axes:
+        size = across / width, (high - low) / height
+        return figure.add_axes((left / width, (bottom + low) / height, *size))
+
+    side.draw_strip(axes(0, WIDTH), scene)
+    if above is None or section.look(scene) != section.look(above):
+        section.draw_section(axes(WIDTH, section.WIDTH), scene)
+    if scene.load.amplitude and (above is None or _history(scene) != _history(above)):
+        left = WIDTH + section.WIDTH + GAP
+        _draw_history(axes(left, LOAD_WIDTH - 0.18, 0.45, 1.4), scene)
+
+
+def _history(scene: Scene) -> dict[str, object]:
+    """Return what decides the load over time."""
+    return scene.load.model_dump(exclude={"direction", "at", "arm"})
+
+
+def _draw_history(ax: Axes, scene: Scene) -> None:
+    """Draw the load over time, to a little after its end."""
+    time, values = load_curve(scene)
+    unit = unit_for(UNITS[scene.load.quantity], 1.001 * float(np.abs(values).max()))
+    ax.axhline(0, color="#bbbbbb", linewidth=0.6)
+    ax.plot(1e3 * time, values / unit.size, color=LOAD, linewidth=1.3)
+    ax.set_xlabel("time (ms)", labelpad=1)
+    ax.set_title(f"load, {scene.load.shape} ({unit.name})", pad=4)
+    ax.margins(x=0)
+
+
+def load_curve(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """Return times (s) and the load at them, SI, from its start to a little after its end."""
+    history, duration = load_history(scene), scene.time.duration
+    last = max(history.breaks) if len(history.breaks) > 1 else 0.0
+    if scene.load.shape == "ricker" and scene.load.period:
+        last = 3 * scene.load.period
+    end = min(duration, 1.25 * last) if last else duration
+    time = np.linspace(0, end, SAMPLES)
+    return time, scene.load.scale * np.asarray(history.value(time))
+
+
+def _table(scene: Scene, variant: str) -> pd.DataFrame:
+    """Return every part that is drawn, from y to y."""
+    pillar = scene.pillar
+    edges = side.block_edges(scene)
+    rows = [("block", a, b, "") for a, b in pairwise(edges)]
+    rows += [("joint", y, y, "") for y in edges[1:-1]]
+    rows += [
+        ("soft layer", x.y, x.y, f"thickness {x.thickness or 0:g} m") for x in scene.soft_layers
+    ]
+    rows += [
+        ("end", 0.0, 0.0, scene.ends.start),
+        ("end", pillar.length, pillar.length, scene.ends.end),
+    ]
+    rows += [("receiver", y, y, "stress") for y in scene.record.stress]
+    rows += [("receiver", y, y, "velocity") for y in scene.record.velocity]
+    table = pd.DataFrame(rows, columns=["part", "from y (m)", "to y (m)", "what"])
+    table.insert(0, "variant", variant)
+    return table

@@ -1,0 +1,87 @@
+"""The section of the pillar at its start, true to shape: contact points and where the load acts."""
+
+from matplotlib.axes import Axes
+from matplotlib.patches import Rectangle
+
+from cases.effects import is_spatial
+from cases.face import face_points
+from cases.schema.scene import Scene
+from compare.figures.drawing import symbols
+from compare.figures.drawing.symbols import EDGE, INK, ROCK, SOFT
+
+SIZE = 0.8  # inches of a side
+WIDTH, HEIGHT = 1.5, 1.68  # inches of the drawing
+MIDDLE = 0.75, 0.87
+
+
+def look(scene: Scene) -> tuple[object, ...]:
+    """Return all that the drawing of a scene's section shows."""
+    joints = scene.joints.contact_points, scene.joints.point_rule
+    return (*joints, scene.pillar.side, scene.load.model_dump(), is_spatial(scene))
+
+
+def draw_section(ax: Axes, scene: Scene) -> None:
+    """Draw the section seen against y, x up and z to the right, in axes of WIDTH x HEIGHT inches.
+
+    Contact points, one part each of the SVG's group `contacts`, only where the scene moves in
+    space: along the axis all points of a face do the same.
+    """
+    ax.set(xlim=(0, WIDTH), ylim=(0, HEIGHT), aspect="equal")
+    ax.axis("off")
+    left, bottom = MIDDLE[0] - SIZE / 2, MIDDLE[1] - SIZE / 2
+    ax.add_patch(Rectangle((left, bottom), SIZE, SIZE, facecolor=ROCK, edgecolor=INK, linewidth=1))
+    if is_spatial(scene):
+        _draw_contacts(ax, scene)
+    _draw_load(ax, scene)
+    ax.annotate(
+        "",
+        (left, bottom - 0.14),
+        (left + SIZE, bottom - 0.14),
+        arrowprops={
+            "arrowstyle": "<->",
+            "color": SOFT,
+            "linewidth": 0.8,
+            "shrinkA": 0,
+            "shrinkB": 0,
+        },
+    )
+    ax.text(MIDDLE[0], bottom - 0.2, f"{scene.pillar.side:g} m", ha="center", va="top", fontsize=8)
+    ax.text(
+        MIDDLE[0],
+        bottom + SIZE + 0.1,
+        "start, seen against y",
+        ha="center",
+        va="bottom",
+        fontsize=8,
+        color=SOFT,
+    )
+    ax.text(left - 0.06, bottom + SIZE, "x", ha="right", va="top", fontsize=8, style="italic")
+    ax.text(left + SIZE + 0.05, bottom, "z", ha="left", va="bottom", fontsize=8, style="italic")
+
+
+def _at(scene: Scene, x: float, z: float) -> tuple[float, float]:
+    scale = SIZE / scene.pillar.side
+    return MIDDLE[0] + scale * z, MIDDLE[1] + scale * x
+
+
+def _draw_contacts(ax: Axes, scene: Scene) -> None:
+    """Draw each contact point as large as its share of the face."""
+    joints, side = scene.joints, scene.pillar.side
+    x, z, area = face_points(side, joints.contact_points, joints.point_rule)
+    places = [_at(scene, a, b) for a, b in zip(x.tolist(), z.tolist(), strict=True)]
+    across, up = zip(*places, strict=True)
+    points = ax.scatter(across, up, s=120 * area / side**2 + 4, color=EDGE, zorder=3)
+    points.set_gid("contacts")
+
+
+def _draw_load(ax: Axes, scene: Scene) -> None:
+    load = scene.load
+    if not load.amplitude:
+        return
+    across, along, depth = load.direction
+    if load.arm is not None:
+        symbols.couple(ax, MIDDLE, 0.22)
+        return
+    at = MIDDLE if load.shakes_base else _at(scene, *load.at)
+    # The tail where nothing points at the reader, else the tip.
+    symbols.along_or_across(ax, at, (depth, across), along, 0.5)

@@ -1,0 +1,108 @@
+"""The pillar from the side, drawn from its scene: blocks, joints, layers, ends, load, receivers.
+
+y is to the right and x up, so that z points into the drawing. The unit of the drawing is the inch;
+along the pillar it is to scale, across where there is room.
+"""
+
+from itertools import pairwise
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
+
+from cases.schema.scene import Scene
+from compare.figures.drawing import symbols
+from compare.figures.drawing.actions import draw_forces, draw_load
+from compare.figures.drawing.frame import HEIGHT, WIDTH, Frame, frame
+from compare.figures.drawing.labels import draw_receivers, draw_scale, ticks
+from compare.figures.drawing.symbols import CHARACTER, EDGE, INK, LAYER, ROCK
+
+MOST = 400  # blocks that are drawn one by one
+ROOM = 0.5  # inches of what stands beyond an end
+
+
+def draw_strip(ax: Axes, scene: Scene) -> None:
+    """Draw a scene into axes of WIDTH x HEIGHT inches.
+
+    Groups of the SVG and their parts: `blocks`, `joints`, `layers`, `stress` and `velocity`, one a
+    receiver.
+    """
+    ax.set(xlim=(0, WIDTH), ylim=(0, HEIGHT), aspect="equal")
+    ax.axis("off")
+    place = frame(scene)
+    _draw_rock(ax, scene, place)
+    _draw_layers(ax, scene, place)
+    for end, outward in ((scene.ends.start, -1), (scene.ends.end, 1)):
+        _draw_end(ax, end, place, place.x(0 if outward < 0 else scene.pillar.length), outward)
+        _name_end(ax, end, scene, place, outward)
+    draw_load(ax, scene, place)
+    draw_forces(ax, scene, place)
+    draw_receivers(ax, scene, place)
+    draw_scale(ax, scene, place)
+
+
+def block_edges(scene: Scene) -> list[float]:
+    """Return y of the edges of the blocks that are drawn, m: all, or one for a pillar of many."""
+    count, length = scene.pillar.block_count, scene.pillar.length
+    return np.linspace(0, length, (count if count <= MOST else 1) + 1).tolist()
+
+
+def _draw_rock(ax: Axes, scene: Scene, place: Frame) -> None:
+    edges = [place.x(y) for y in block_edges(scene)]
+    corners = [
+        [(a, place.bottom), (b, place.bottom), (b, place.top), (a, place.top)]
+        for a, b in pairwise(edges)
+    ]
+    blocks = PolyCollection(corners, facecolors=ROCK, edgecolors="none", zorder=1, gid="blocks")
+    ax.add_collection(blocks, autolim=False)
+    lines = [[(x, place.bottom), (x, place.top)] for x in edges[1:-1]]
+    width = min(0.8, 40 / len(edges))
+    joints = LineCollection(lines, colors=EDGE, linewidths=width, zorder=2, gid="joints")
+    ax.add_collection(joints, autolim=False)
+    outline = [(edges[0], place.bottom), (edges[-1], place.bottom), (edges[-1], place.top)]
+    outline += [(edges[0], place.top), (edges[0], place.bottom)]
+    ax.plot(*zip(*outline, strict=True), color=INK, linewidth=1.0, zorder=4)
+
+
+def _draw_layers(ax: Axes, scene: Scene, place: Frame) -> None:
+    for i, layer in enumerate(scene.soft_layers):
+        width = max(0.045, place.scale * (layer.thickness or 0.0))
+        x, over = place.x(layer.y), 0.05
+        (patch,) = ax.fill(
+            [x - width / 2, x + width / 2, x + width / 2, x - width / 2],
+            [place.bottom - over, place.bottom - over, place.top + over, place.top + over],
+            color=LAYER,
+            zorder=5,
+        )
+        patch.set_gid(f"layer-{i}")
+
+
+def _draw_end(ax: Axes, end: str, place: Frame, x: float, outward: int) -> None:
+    """Draw what holds an end."""
+    far, middle = x + outward * ROOM, (x, place.middle)
+    half = (x + outward * ROOM / 2, place.middle)
+    if end == "fixed":
+        symbols.wall(ax, x, place.middle, place.thick + 0.25, outward)
+    elif end == "quiet":
+        symbols.dashpot(ax, middle, (far, place.middle))
+    elif end == "matched":
+        symbols.spring(ax, middle, half)
+        symbols.dashpot(ax, half, (far, place.middle))
+    if end in ("quiet", "matched"):
+        symbols.wall(ax, far, place.middle, 0.3, outward)
+
+
+def _name_end(ax: Axes, end: str, scene: Scene, place: Frame, outward: int) -> None:
+    """Write what holds an end below it, beside the wall and the number of the scale there."""
+    y = 0.0 if outward < 0 else ticks(scene, place)[-1]
+    number = place.x(y) + outward * CHARACTER * (len(f"{y:g}") + 1) / 2
+    x = place.x(0.0 if outward < 0 else scene.pillar.length) + outward * 0.1
+    x = min(x, number) if outward < 0 else max(x, number)
+    ax.text(
+        x,
+        place.bottom - 0.21,
+        f"{end} {'start' if outward < 0 else 'end'}",
+        ha="right" if outward < 0 else "left",
+        va="top",
+        fontsize=8,
+    )

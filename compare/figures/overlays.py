@@ -1,0 +1,193 @@
+"""Waveforms in one pair of axes, and under them on a scale of its own what each leaves from its
+reference: by solution in one variant, or by variant of one engine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from cases.schema.scene import Scene
+from compare.engines import ENGINES
+from compare.figures.style import GIVEN, MARKERS, Style, in_order, style
+from compare.figures.subplots import UNITS as SI
+from compare.figures.subplots import Panel, panels
+from compare.figures.units import Unit, unit_for
+from compare.misfit.pairs import Comparison
+
+#: Factor from SI to the unit that is drawn, and that unit.
+UNITS = {
+    "stress": (1e-6, "MPa"),
+    "shear": (1e-6, "MPa"),
+    "velocity": (1.0, "m/s"),
+    "rotation": (1e3, "mrad"),
+}
+#: Of a scene what does not change its physics, or changes how it is solved alone.
+ASIDE = {"title", "source", "name", "expect", "numerics", "record", "where"}
+MOST = 6  # variants in one pair of axes
+SECTIONS = 3  # receivers, from which on they are stacked
+MOST_MARKS = 150  # samples of a curve that are marked one by one
+REFERENCE = "reference"
+#: Colours of variants, light to dark: of up to four, then of up to six.
+VARIANTS = (
+    *("#9ad14b", "#e0559f", "#3b6fd4", "#1b0c3f"),
+    *("#a5d65a", "#e68ab8", "#3f8fd6", "#b5432e", "#4b3fa8", "#000000"),
+)
+DOTS = Style("#000000", 0.9, (0, (1.0, 2.0)), 12)  # of references under variants
+
+
+class Trace(NamedTuple):
+    """A waveform over time (s), SI: its entry in the legend, how it is drawn, and what it leaves
+    from its reference; None where it is that, or has none.
+
+    part : what its part of the SVG is called. marker : of its samples, where they are few.
+    """
+
+    name: str
+    look: Style
+    curve: pd.Series
+    residual: pd.Series | None = None
+    part: str = ""
+    marker: str = ""
+
+
+class Overlay(NamedTuple):
+    """Waveforms of one quantity at one place. at_rest : SI, the static state taken from them.
+
+    reference : what residuals are from, in words.
+    """
+
+    heading: str
+    quantity: str
+    at_rest: float
+    traces: list[Trace]
+    reference: str
+
+    @property
+    def label(self) -> str:
+        """Of the ordinate, with the static state that is not drawn."""
+        factor, unit = UNITS[self.quantity]
+        rest = f"\nless {factor * self.at_rest:.4g} at rest" if self.at_rest else ""
+        return f"{self.quantity} ({unit}){rest}"
+
+    @property
+    def factor(self) -> float:
+        """From SI to the unit that is drawn."""
+        return UNITS[self.quantity][0]
+
+    @property
+    def unit_name(self) -> str:
+        """The unit that is drawn."""
+        return UNITS[self.quantity][1]
+
+    @property
+    def residuals(self) -> list[Trace]:
+        """The traces that have one."""
+        return [trace for trace in self.traces if trace.residual is not None]
+
+    @property
+    def unit(self) -> Unit:
+        """What residuals are drawn in."""
+        return unit_for(SI[self.quantity], self._largest)
+
+    @property
+    def _largest(self) -> float:
+        residuals = (t.residual for t in self.traces)
+        return max((float(np.abs(r).max()) for r in residuals if r is not None), default=0.0)
+
+    @property
+    def residual_heading(self) -> str:
+        """What residuals are, and how large beside the waveforms."""
+        if not self.residuals:
+            return "no other solution to hold it against"
+        peak = max(float(t.curve.abs().max()) for t in self.traces)
+        share = f", at most {100 * self._largest / peak:.2g} % of the peak" if peak else ""
+        return f"less {self.reference} ({self.unit.name}){share}"
+
+
+def by_solution(panel: Panel) -> Overlay:
+    """Return every solution of one variant at one receiver."""
+    residuals = panel.residuals
+    traces = [Trace(n, style(n), c, residuals.get(n), n) for n, c in panel.curves.items()]
+    given = panel.given
+    for k, beside in enumerate(panel.comparison.besides):
+        if beside.curves.name in given:
+            marker = MARKERS[k % len(MARKERS)] if len(beside.time) <= MOST_MARKS else ""
+            curve, look = given[beside.curves.name], GIVEN[k % len(GIVEN)]
+            traces.append(Trace(beside.curves.name, look, curve, None, f"given-{k}", marker))
+    heading = f"{panel.place}, {panel.variant}"
+    return Overlay(heading, panel.quantity, panel.at_rest, traces, panel.reference)
+
+
+def by_variant(comparisons: list[Comparison]) -> list[list[Overlay]]:
+    """Return the variants of each engine in one pair of axes, engines across and receivers down.
+
+    Empty where variants differ by more than one key, in what they record, or in what moves most.
+    """
+    if not 2 <= len(comparisons) <= MOST or changed_key(comparisons) is None:
+        return []
+    rows = [list(row) for row in zip(*panels(comparisons), strict=False)]
+    if any(len({(p.quantity, p.y, p.component) for p in row}) > 1 for row in rows):
+        return []
+    return [[_of_engine(engine, row) for engine in _engines(comparisons)] for row in rows]
+
+
+def changed_key(comparisons: list[Comparison]) -> str | None:
+    """Return the one key that makes the variants of a scene, "joints.damping_ratio"; None where
+    they differ in none or in several."""
+    base, *variants = (_flat(comparison.scene) for comparison in comparisons)
+    changed = {k for v in variants for k in base.keys() | v.keys() if base.get(k) != v.get(k)}
+    return changed.pop() if len(changed) == 1 else None
+
+
+def variant_styles(count: int) -> list[Style]:
+    """Return how variants are drawn over each other: the first wide and light, the last thin and
+    dark, so that each is seen where they coincide."""
+    few = VARIANTS[:4] if count <= 4 else VARIANTS[4:]
+    at = np.linspace(0, len(few) - 1, count).round().astype(int)
+    widths = np.linspace(3.4, 1.0, count).round(2).tolist()
+    return [Style(few[k], w, "-", i) for i, (k, w) in enumerate(zip(at, widths, strict=True))]
+
+
+def _engines(comparisons: list[Comparison]) -> list[str]:
+    solved = {name for comparison in comparisons for name in comparison.results}
+    return [name for name in in_order(solved) if name in ENGINES]
+
+
+def _of_engine(engine: str, row: list[Panel]) -> Overlay:
+    """Return an engine's waveform in every variant, and under dots what each is held against."""
+    looks = variant_styles(len(row))
+    traces, references = [], set[str]()
+    for k, (panel, look) in enumerate(zip(row, looks, strict=True)):
+        curves, known = panel.curves, panel.reference
+        if engine not in curves:
+            continue
+        residual = panel.residuals.get(engine)
+        traces.append(Trace(panel.variant, look, curves[engine], residual, f"variant-{k}"))
+        if known != engine and known in curves:
+            references.add(known)
+            traces.append(Trace(REFERENCE, DOTS, curves[known], None, f"reference-{k}"))
+    rest = {panel.at_rest for panel in row}
+    at_rest = rest.pop() if len(rest) == 1 else 0.0
+    known = references.pop() if len(references) == 1 else f"the {REFERENCE}"
+    return Overlay(f"{engine}, {row[0].place}", row[0].quantity, at_rest, traces, known)
+
+
+def _flat(scene: Scene) -> dict[str, object]:
+    """Return what decides a scene's physics, by dotted key."""
+    found: dict[str, object] = {}
+    for name, value in scene.model_dump(exclude=ASIDE).items():
+        if isinstance(value, dict):
+            found |= {f"{name}.{key}": part for key, part in value.items()}
+        else:
+            found[name] = value
+    return found
+
+
+def legend_of(overlays: Iterable[Overlay]) -> dict[str, Style]:
+    """Return the entries of a legend, each once, references last."""
+    found = {t.name: t.look for overlay in overlays for t in overlay.traces}
+    return dict(sorted(found.items(), key=lambda entry: entry[0] == REFERENCE))

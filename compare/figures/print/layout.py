@@ -1,0 +1,165 @@
+"""Where the parts of a figure for a paper stand: its panels, its titles, its legend."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from itertools import groupby
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.text import Text
+from matplotlib.ticker import MaxNLocator
+
+from compare.figures.print.appearance import MM, POINT, Look
+
+SPACELESS = "\u2e80-\u9fff\uac00-\ud7a3\uf900-\ufaff\uff00-\uffef"  # scripts without spaces
+#: What stays together: a word or a letter of such a script, with the space or bracket before it
+#: and the stops behind it. A no-break space is no space.
+PIECE = re.compile(f"[ \t\n]*[（《「]*(?:[{SPACELESS}]|[^ \t\n{SPACELESS}]+)[，。、；：）》」]*")
+LETTER, LINE = 0.62, 1.25  # width of a letter on average, and height of a line, over its size
+FREE = 2  # lines more of a title that take the place of times below
+HANDLE, APART = 0.5, 1.2  # in a legend, letters from a line to its text, and between columns
+BESIDE = 14.0  # mm beside a panel for its ordinate
+TICK = 10.0  # mm along the axis of times for each of its numbers, at least
+
+Cell = tuple[int, int]
+
+
+def cells(titles: Sequence[Sequence[str]], look: Look, columns: int, legend: float) -> list[Cell]:
+    """Return the row and column of every panel, those of a variant one after the other.
+
+    titles : of the panels of each variant. columns : of the page. legend : mm above the panels. As
+    few panels stand beside each other as fit the page's height. Each variant begins a row where it
+    fills one and all of them fit. Empty where they do not.
+    """
+    counts = [len(group) for group in titles]
+    longest = max((title for group in titles for title in group), key=_letters)
+    for across in range(min(columns, sum(counts)), look.most[columns - 1] + 1):
+        letters = (look.widths[columns - 1] / across - BESIDE) / (LETTER * look.text * POINT)
+        more = max(0, int(_letters(longest) / letters) - FREE)
+        height = look.least + more * LINE * look.text * POINT
+        for groups in (counts, [sum(counts)]) if min(counts) >= across else ([sum(counts)],):
+            if sum(-(-count // across) for count in groups) * height <= look.tallest - legend:
+                return _filled(groups, across)
+    return []
+
+
+def _letters(text: str) -> int:
+    """Return how long a text is; a letter of a script without spaces is as wide as two."""
+    return len(text) + len(re.findall(f"[{SPACELESS}]", text))
+
+
+def _filled(groups: Sequence[int], across: int) -> list[Cell]:
+    found: list[Cell] = []
+    for count in groups:
+        row = found[-1][0] + 1 if found else 0
+        found += [(row + i // across, i % across) for i in range(count)]
+    return found
+
+
+def add_axes(figure: Figure, places: list[Cell]) -> list[Axes]:
+    """Add axes at cells, and none at the others of their rows and columns."""
+    rows, across = (max(place) + 1 for place in zip(*places, strict=True))
+    grid = figure.subplots(rows, across, squeeze=False)
+    for cell in {(i, j) for i in range(rows) for j in range(across)} - set(places):
+        grid[cell].remove()
+    return [grid[cell] for cell in places]
+
+
+def set_titles(axes: list[Axes], titles: list[str]) -> None:
+    """Put titles over panels, in as many lines as each needs, and as many times as fit below."""
+    for ax, title in zip(axes, titles, strict=True):
+        width = ax.get_window_extent().width
+        drawn = ax.set_title("", pad=3)
+        drawn.set_text(_in_lines(title, drawn, width))
+        count = int(width / ax.figure.dpi / MM / TICK)
+        ax.xaxis.set_major_locator(MaxNLocator(max(1, min(count, 8)), steps=[1, 2, 2.5, 5, 10]))
+
+
+def add_legend(figure: Figure, entries: list[Line2D], look: Look) -> float:
+    """Put the legend above the panels, as wide as fits; return its height, mm."""
+    letter = look.small / 72 * figure.dpi  # pixels
+    width, beside = 0.98 * figure.bbox.width, (look.handle + HANDLE) * letter
+    measure, widths = figure.text(0, 0, "", fontsize=look.small), []
+    for entry in entries:
+        entry.set_label(_in_lines(str(entry.get_label()), measure, width - beside - letter))
+        measure.set_text(entry.get_label())
+        widths.append(measure.get_window_extent().width + beside)
+    measure.remove()
+    legend = figure.legend(
+        handles=entries,
+        ncols=_columns(widths, APART * letter, width - letter),
+        loc="upper center",
+        bbox_to_anchor=(0.5, 1.0),
+        frameon=False,
+        handlelength=look.handle,
+        handletextpad=HANDLE,
+        columnspacing=APART,
+        labelspacing=0.3,
+        borderpad=0.1,
+        borderaxespad=0.2,
+    )
+    return float(legend.get_window_extent().height) / figure.dpi / MM
+
+
+def _columns(widths: list[float], apart: float, room: float) -> int:
+    """Return in how many columns, `apart` from each other, entries of some widths fit."""
+
+    def width(count: int) -> float:
+        return sum(column.max() + apart for column in np.array_split(widths, count)) - apart
+
+    return next((n for n in range(len(widths), 1, -1) if width(n) <= room), 1)
+
+
+def arrange(
+    figure: Figure, look: Look, axes: list[Axes], places: list[Cell], legend: float
+) -> None:
+    """Give the figure its height and the panels their places below the legend of so many mm."""
+    rows = 1 + max(row for row, _ in places)
+    lines = [ax.get_title(loc="left").count("\n") for ax in axes]
+    by_row = groupby(zip(places, lines, strict=True), key=lambda one: one[0][0])
+    extra = sum(max(n for _, n in row) for _, row in by_row) * LINE * look.text * POINT
+    legend += look.small * POINT / 2
+    panels = min(rows * look.panel + extra, look.tallest - legend)
+    figure.set_figheight((panels + legend) * MM)
+    place(figure, panels, legend)
+
+
+def place(figure: Figure, panels: float, legend: float) -> None:
+    """Put the panels below the legend; both heights in mm."""
+    top = panels / (panels + legend)
+    figure.tight_layout(rect=(0, 0, 1, top), pad=0.3, h_pad=0.6, w_pad=0.8)
+
+
+def _in_lines(text: str, drawn: Text, width: float) -> str:
+    """Return a text in lines no wider than `width` pixels as `drawn` writes them; a dollar sign
+    begins no formula."""
+
+    def fits(line: str) -> bool:
+        drawn.set_text(_plain(line))
+        return float(drawn.get_window_extent().width) <= width
+
+    return _plain("\n".join(wrapped(text, fits)))
+
+
+def _plain(text: str) -> str:
+    return text.replace("$", r"\$")
+
+
+def wrapped(text: str, fits: Callable[[str], bool]) -> list[str]:
+    """Return lines that fit, broken at spaces or beside a Chinese letter, within a word where it
+    alone is too long for a line."""
+    lines = [""]
+    for piece in PIECE.findall(text):
+        if fits((lines[-1] + piece).lstrip()):
+            lines[-1] = (lines[-1] + piece).lstrip()
+            continue
+        lines.append("")
+        for letter in piece.lstrip():
+            if lines[-1] and not fits(lines[-1] + letter):
+                lines.append("")
+            lines[-1] += letter
+    return [line for line in lines if line]

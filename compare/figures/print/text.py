@@ -1,0 +1,116 @@
+"""What the figures for papers say, in English and in Chinese."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from compare.figures.subplots import UNITS, Panel
+from compare.figures.units import unit_for
+
+
+class Words(NamedTuple):
+    """The words of one language.
+
+    solutions, quantities : by name. place : with {quantity} and {y}. static : with {value}, what a
+    waveform is drawn without. parts : of the variants' names that are ours; those of the user stay
+    as they are. comma : between place and variant.
+    """
+
+    solutions: dict[str, str]
+    quantities: dict[str, str]
+    place: str
+    static: str
+    time: str
+    parts: dict[str, str]
+    comma: str
+
+    def solution(self, name: str) -> str:
+        """Return what a legend calls an engine or exact solution."""
+        return self.solutions.get(name, name)
+
+    def axis(self, panel: Panel, unit: str) -> str:
+        """Return the label of a panel's ordinate."""
+        return f"{self.quantities[panel.quantity]} ({unit})"
+
+    def title(self, panel: Panel) -> str:
+        """Return what stands over a panel."""
+        quantity = " ".join([self.quantities[panel.quantity], panel.axis]).strip()
+        parts = [self.parts.get(part, part) for part in panel.variant.split(", ")]
+        place = [self.place.format(quantity=quantity, y=f"{panel.y:g}")]
+        if rest := panel.at_rest:
+            unit = unit_for(UNITS[panel.quantity], abs(rest))
+            place.append(self.static.format(value=f"{rest / unit.size:.4g}\u00a0{unit.name}"))
+        return self.comma.join([*place, *parts])
+
+
+ENGLISH = Words(
+    solutions={
+        "dem": "rigid blocks",
+        "continuum-jointed": "jointed rock",
+        "continuum-equivalent": "homogenised rock",
+        "lattice": "rigid blocks, exact",
+        "no-tension-chain": "no-tension chain, exact",
+        "spatial-lattice": "blocks in space, exact",
+        "jointed-bar": "jointed bar, exact",
+        "one-joint": "one joint, exact",
+        "equivalent-bar": "homogenised bar, exact",
+        "images": "homogenised bar, images",
+        "kelvin-voigt": "Kelvin-Voigt bar, exact",
+        "series": "homogenised bar, series",
+        "slip-joint": "sliding joint, exact",
+        "sliding-block": "sliding block, exact",
+    },
+    quantities={
+        "stress": "stress",
+        "shear": "shear stress",
+        "velocity": "velocity",
+        "rotation": "rotation",
+    },
+    place="{quantity} at y\u00a0=\u00a0{y}\u00a0m",
+    static="less the static {value}",
+    time="time (ms)",
+    parts={},
+    comma=", ",
+)
+
+CHINESE = Words(
+    solutions={
+        "dem": "刚性块体（离散元）",
+        "continuum-jointed": "节理岩体（有限元）",
+        "continuum-equivalent": "等效岩体（有限元）",
+        "lattice": "块体链（精确解）",
+        "no-tension-chain": "无拉力块体链（精确解）",
+        "spatial-lattice": "空间块体列（精确解）",
+        "jointed-bar": "节理杆（精确解）",
+        "one-joint": "单节理（精确解）",
+        "equivalent-bar": "等效杆（精确解）",
+        "images": "等效杆（镜像法）",
+        "kelvin-voigt": "黏弹性杆（精确解）",
+        "series": "等效杆（级数解）",
+        "slip-joint": "滑动节理（精确解）",
+        "sliding-block": "滑动块体（精确解）",
+    },
+    quantities={"stress": "应力", "shear": "剪应力", "velocity": "速度", "rotation": "转角"},
+    place="{quantity}，y\u00a0=\u00a0{y}\u00a0m",
+    static="减去静态值 {value}",
+    time="时间 (ms)",
+    parts={
+        "undamped": "无阻尼",
+        "soft layer": "含软弱层",
+        "no soft layer": "无软弱层",
+        "no tension": "不抗拉",
+        "tension": "抗拉",
+        "as it stands": "原场景",
+        "free start": "起端自由",
+        "quiet start": "起端吸收",
+        "matched start": "起端匹配",
+        "fixed start": "起端固定",
+        "free": "自由端",
+        "quiet": "吸收端",
+        "matched": "匹配端",
+        "fixed": "固定端",
+    },
+    comma="，",
+)
+
+WORDS = {"en": ENGLISH, "zh": CHINESE}

@@ -1,0 +1,197 @@
+"""What the panels of a figure show: at each receiver the component that moves most, less its
+static state; and the table of every waveform in them, as it was recorded.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from cases.schema.scene import Scene
+from compare.figures.style import in_order
+from compare.misfit.external import Place
+from compare.misfit.metrics import motion
+from compare.misfit.pairs import Comparison
+from compare.misfit.ranking import finest
+
+#: SI units of what panels show.
+UNITS = {"stress": "Pa", "shear": "Pa", "velocity": "m/s", "rotation": "rad"}
+
+FORCES, MOTION = ("stress", "shear"), ("velocity",)
+
+
+class Panel(NamedTuple):
+    """One panel: the receiver-th place (at y, m) of a quantity in one variant.
+
+    component : the index of the one that is shown, None where the quantity has only one.
+    """
+
+    comparison: Comparison
+    variant: str
+    quantity: str
+    receiver: int
+    y: float
+    component: int | None = None
+
+    @property
+    def place(self) -> str:
+        """Quantity, component and receiver, in words."""
+        return f"{self.quantity} {self.axis}".rstrip() + f" at y = {self.y:.12g} m"
+
+    @property
+    def given(self) -> dict[str, pd.Series]:
+        """The curves of others here: their own samples while the scene lasts, by their file."""
+        axis = self.axis or ("" if self.quantity in FORCES else "y")
+        place = Place(self.quantity, axis, self.y)
+        return {
+            beside.curves.name: beside.series(place)
+            for beside in self.comparison.besides
+            if place in beside.curves.waveforms
+        }
+
+    @property
+    def axis(self) -> str:
+        """The component that is shown: x, y or z; empty where the quantity has only one."""
+        if self.component is None:
+            return ""
+        return "xz"[self.component] if self.quantity == "shear" else "xyz"[self.component]
+
+    @property
+    def recorded(self) -> dict[str, pd.Series]:
+        """Every waveform of the panel in SI over time in s, by its solution, in drawing order."""
+        return {name: self._waveform(name, False) for name in self._names}
+
+    @property
+    def curves(self) -> dict[str, pd.Series]:
+        """The same waveforms less their static state: the motion, which is what is drawn."""
+        return {name: self._waveform(name, True) for name in self._names}
+
+    @property
+    def at_rest(self) -> float:
+        """The static state that is taken from the first of them, SI; 0 where there is none."""
+        first = self._names[0]
+        return float((self._waveform(first, False) - self._waveform(first, True)).iloc[0])
+
+    @property
+    def reference(self) -> str:
+        """The solution that the others are held against, "" where none resolves the scene."""
+        found = finest(self._names, self.comparison.scene)
+        return found.name if found else ""
+
+    @property
+    def residuals(self) -> dict[str, pd.Series]:
+        """Each of `curves` less that of the reference, which has none itself."""
+        curves = self.curves
+        if self.reference not in curves:
+            return {}
+        known = curves[self.reference]
+        return {name: c - known for name, c in curves.items() if name != self.reference}
+
+    @property
+    def _names(self) -> list[str]:
+        results = self.comparison.results
+        return [name for name in in_order(set(results)) if self.quantity in results[name]]
+
+    def _waveform(self, name: str, moving: bool) -> pd.Series:
+        result = self.comparison.results[name]
+        found = motion(result, self.quantity) if moving else result[self.quantity].values
+        values = found[self.receiver]
+        values = values.ravel() if self.component is None else values[:, self.component]
+        return pd.Series(values, np.round(result.time.values, 12))
+
+
+def panels(comparisons: list[Comparison]) -> list[list[Panel]]:
+    """Return the panels of every variant, a row each.
+
+    Of a spatial scene each shows the largest component: of stress and shear, of velocity, and of
+    rotation where nothing is displaced.
+    """
+    rows = []
+    for comparison, name in zip(comparisons, variant_names(comparisons), strict=True):
+        record = comparison.scene.record
+        rows.append(
+            [_panel(comparison, name, FORCES, i, y) for i, y in enumerate(record.stress)]
+            + [_panel(comparison, name, MOTION, i, y) for i, y in enumerate(record.velocity)]
+        )
+    return rows
+
+
+def in_page(rows: list[list[Panel]]) -> list[list[Panel]]:
+    """Return the panels of variants as they fit a page's width: at most two beside each other.
+
+    Variants down and receivers across; of more than two receivers the other way round, or in turn.
+    """
+    if max(map(len, rows)) <= 2:
+        return rows
+    every = [panel for row in rows for panel in row]
+    if len(rows) == 1 or any(len(row) != len(rows[0]) for row in rows):
+        return [[panel] for panel in every]
+    if len(rows) == 2:
+        return [list(column) for column in zip(*rows, strict=True)]
+    return [every[i : i + 2] for i in range(0, len(every), 2)]
+
+
+def _panel(
+    comparison: Comparison, name: str, quantities: tuple[str, ...], receiver: int, y: float
+) -> Panel:
+    """Return the panel of the quantity and component with the largest peak at a receiver."""
+    first = comparison.results[in_order(set(comparison.results))[0]]
+    found = {q: _peaks(first, q, receiver) for q in quantities if q in first}
+    if not any(peaks.any() for peaks in found.values()) and "rotation" in first:
+        found = {"rotation": _peaks(first, "rotation", receiver)}
+    quantity = max(found, key=lambda q: found[q].max())
+    component = int(found[quantity].argmax()) if len(found[quantity]) > 1 else None
+    return Panel(comparison, name, quantity, receiver, y, component)
+
+
+def _peaks(result: xr.Dataset, quantity: str, receiver: int) -> np.ndarray:
+    """Return the largest magnitude of the motion of every component."""
+    values = np.abs(motion(result, quantity)[receiver])
+    return values.reshape(len(values), -1).max(axis=0)
+
+
+def variant_names(comparisons: list[Comparison]) -> list[str]:
+    """Return the variants' names; the scene itself is named by what its variants change."""
+    base, *variants = (comparison.scene for comparison in comparisons)
+    names = [base.name or _base_name(base, variants), *(variant.name for variant in variants)]
+    return [name.replace("zeta ", "ζ = ") for name in names]
+
+
+def _base_name(base: Scene, variants: list[Scene]) -> str:
+    ratio = base.joints.damping_ratio
+    words = {
+        "damping": "undamped" if ratio is None else f"ζ = {ratio:g}",
+        "start": f"{base.ends.start} start",
+        "end": base.ends.end,
+        "layers": "soft layer" if base.soft_layers else "no soft layer",
+        "tension": "no tension" if base.joints.tension is False else "tension",
+    }
+    changed = {key for v in variants for key in words if _part(v, key) != _part(base, key)}
+    unknown = "as it stands" if variants else words["damping"]
+    return ", ".join(words[key] for key in words if key in changed) or unknown
+
+
+def _part(scene: Scene, key: str) -> object:
+    return {
+        "damping": scene.joints.damping_ratio,
+        "start": scene.ends.start,
+        "end": scene.ends.end,
+        "layers": len(scene.soft_layers),
+        "tension": scene.joints.tension is not False,
+    }[key]
+
+
+def curve_table(comparisons: list[Comparison]) -> pd.DataFrame:
+    """Return every drawn waveform as it was recorded, its static state included, in SI: time first,
+    one column a curve, its unit in the header.
+
+    Variants may be sampled at different times; where one has no sample its cell is empty.
+    """
+    columns = {}
+    for row in panels(comparisons):
+        for panel in row:
+            unit = UNITS[panel.quantity]
+            for name, curve in [*panel.recorded.items(), *panel.given.items()]:
+                columns[f"{name} | {panel.place} | {panel.variant} ({unit})"] = curve
+    return pd.DataFrame(columns).rename_axis("time (s)")

@@ -1,1 +1,0 @@
-"""Runs that lose nothing: checkpoints, signals, and one run at a time in a folder."""

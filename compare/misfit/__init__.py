@@ -1,0 +1,1 @@
+"""The distance between waveforms: metrics, pairs of solutions, external data."""

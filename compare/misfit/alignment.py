@@ -1,0 +1,236 @@
+"""Curves of others beside our solutions, on the same times, by stated rules.
+
+Overlap: only times that both have are compared. Times: those of whichever has fewer samples in the
+overlap, the curve's own where both have as many; the other is interpolated linearly, with error at
+most h^2 / 8 max |s''| for its sampling interval h. Nothing is filtered first: straight lines
+neither ring nor spread at the kinks of a load, as band-limited interpolation does. What the coarser
+times cannot show is measured instead (`missed`). Clock: moved only when asked, as a whole for all
+curves of a file, by the cross-correlation with the solution that then fits best. Amplitudes: never
+scaled.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import nan
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from scipy.optimize import minimize_scalar
+
+from cases.errors import SceneError
+from cases.sampling import sample_times
+from cases.schema.scene import Scene
+from compare.misfit.external import Curves, Place
+from compare.misfit.external_files import LEAST_SAMPLES
+from compare.misfit.metrics import Distance, delay, distance, relative_l2, static_state
+
+MOST_SAMPLES = 4_000_000  # of a curve at a scene's interval, when its clock is moved
+INSTANT = 1e-12  # s; times are told apart from there on, in the tables too
+UNEVEN = 0.01  # of the sampling interval: what the rounding of printed times amounts to
+
+Results = dict[str, xr.Dataset]
+
+
+@dataclass(frozen=True)
+class Shift:
+    """What was added to a curve's times, s; the solution that it fits then, and how well.
+
+    onto : empty where nothing could be correlated, and nothing is moved. correlation : normalised,
+    over the overlap, 1 for the same shape.
+    """
+
+    seconds: float = 0.0
+    onto: str = ""
+    correlation: float = nan
+
+
+@dataclass(frozen=True)
+class Beside:
+    """A file's curves beside the solutions of one scene.
+
+    curves : at their own samples, on the moved clock. shift : None where none was asked for.
+    time : [n] s, where both are compared. own_times : whether these are the curves' own.
+    outside : the part of the curves' duration that lies outside the overlap.
+    missed : relative L2 of what straight lines between `time` leave out of the finer waveforms, the
+    largest. left_out : places that the scene has no waveform at.
+    """
+
+    curves: Curves
+    shift: Shift | None
+    time: np.ndarray
+    own_times: bool
+    outside: float
+    missed: float
+    left_out: list[Place]
+
+    def series(self, place: Place) -> pd.Series:
+        """Return the curve at a place in SI over time in s, its own samples in the overlap."""
+        own, values = self.curves.time, self.curves.waveforms[place]
+        inside = (own >= self.time[0] - INSTANT) & (own <= self.time[-1] + INSTANT)
+        found = pd.Series(values[inside], np.round(own[inside], 12))
+        return found[~found.index.duplicated()]
+
+
+def lay_beside(curves: Curves, scene: Scene, results: Results, align: bool) -> Beside:
+    """Return a file's curves beside all results of a scene; `align` moves their clock.
+
+    Raises SceneError where curve and scene share fewer than three samples.
+    """
+    shift = _shift(curves, scene, results) if align else None
+    moved = _moved(curves, shift.seconds) if shift else curves
+    time, own_times = common_times(moved, scene)
+    outside = 1 - (time[-1] - time[0]) / (moved.time[-1] - moved.time[0])
+    missed, known = 0.0, set()
+    for _, place, values, our_time, ours in _waveforms(moved, results):
+        finer = (our_time, ours) if own_times else (moved.time, values)
+        missed = max(missed, _missed(*finer, time))
+        known.add(place)
+    left_out = [place for place in moved.waveforms if place not in known]
+    return Beside(moved, shift, time, own_times, max(0.0, outside), missed, left_out)
+
+
+def distances(
+    beside: Beside, results: Results, spectral: bool = False
+) -> Iterator[tuple[str, Place, Distance]]:
+    """Yield the distance of every curve from every solution that has a waveform at its place."""
+    curves, time = beside.curves, beside.time
+    for name, place, values, our_time, ours in _waveforms(curves, results):
+        pair = np.interp(time, curves.time, values), np.interp(time, our_time, ours)
+        yield name, place, distance_at(time, *pair, spectral)
+
+
+def common_times(curves: Curves, scene: Scene) -> tuple[np.ndarray, bool]:
+    """Return the times [n] at which a curve is compared, s, and whether they are its own.
+
+    Raises SceneError where they are fewer than three.
+    """
+    ours = sample_times(scene)
+    start, end = max(curves.time[0], ours[0]), min(curves.time[-1], ours[-1])
+    slack = 1e-6 * scene.interval  # the same instant as two files print it
+    own, ours = (t[(t >= start - slack) & (t <= end + slack)] for t in (curves.time, ours))
+    if min(len(own), len(ours)) < LEAST_SAMPLES:
+        raise SceneError(
+            curves.file,
+            "time",
+            f"{curves.time[0]:.6g} to {curves.time[-1]:.6g} s",
+            f"must share at least {LEAST_SAMPLES} samples of either with the scene, 0 to "
+            f"{scene.time.duration:g} s; a header such as time [ms] gives the unit, --align moves "
+            "a clock of its own",
+        )
+    return (own, True) if len(own) <= len(ours) else (ours, False)
+
+
+def distance_at(
+    time: np.ndarray, one: np.ndarray, other: np.ndarray, spectral: bool = False
+) -> Distance:
+    """Return all distances of two waveforms [n] at times [n], which may be spaced unevenly.
+
+    Misfit and peaks are then of the samples, each weighed by the time it stands for (trapezoidal
+    rule); the rest is of both waveforms at as many even times, interpolated linearly.
+    """
+    even = np.linspace(time[0], time[-1], len(time))
+    dt = even[1] - even[0]
+    if np.abs(time - even).max() <= UNEVEN * dt:
+        return distance(one, other, dt, spectral)
+    found = distance(np.interp(even, time, one), np.interp(even, time, other), dt, spectral)
+    half = np.diff(time) / 2
+    weight = np.sqrt(np.append(half, 0) + np.append(0, half))
+    peaks = np.abs(one).max(), np.abs(other).max()
+    ratio = float(peaks[0] / peaks[1]) if peaks[1] > 0 else found.peak_ratio
+    return found._replace(misfit=relative_l2(weight * one, weight * other), peak_ratio=ratio)
+
+
+def _waveforms(
+    curves: Curves, results: Results
+) -> Iterator[tuple[str, Place, np.ndarray, np.ndarray, np.ndarray]]:
+    """Yield solution, place, the curve's values, and the solution's times and values there.
+
+    Both less what the solution holds before its load acts: a prestress is no part of the motion.
+    """
+    for name, result in results.items():
+        for place, values in curves.waveforms.items():
+            ours = place.waveform(result)
+            if ours is not None:
+                static = static_level(place, result)
+                yield name, place, values - static, result.time.values, ours - static
+
+
+def static_level(place: Place, result: xr.Dataset) -> float:
+    """Return what a solution holds at a place before its load acts, SI."""
+    found = result[place.quantity]
+    still = np.broadcast_to(static_state(result, place.quantity), found.shape)
+    level = place.waveform(result.assign({place.quantity: (found.dims, still)}))
+    return 0.0 if level is None else float(level[0])
+
+
+def _missed(t: np.ndarray, values: np.ndarray, time: np.ndarray) -> float:
+    """Return the relative L2 of what straight lines between `time` leave out of a waveform."""
+    inside = (t >= time[0]) & (t <= time[-1])
+    lines = np.interp(t[inside], time, np.interp(time, t, values))
+    return relative_l2(lines, values[inside])
+
+
+def _shift(curves: Curves, scene: Scene, results: Results) -> Shift:
+    """Return the shift onto the solution whose cross-correlation leaves the best fit."""
+    count = (curves.time[-1] - curves.time[0]) / scene.interval
+    if count > MOST_SAMPLES:
+        allowed = f"must last at most {MOST_SAMPLES:,} intervals of the scene to be aligned"
+        raise SceneError(curves.file, "time", f"{curves.time[-1]:.6g} s", allowed)
+    found = [_shift_onto(name, curves, scene, {name: r}) for name, r in results.items()]
+    fitting = [shift for shift in found if shift is not None]
+    return max(fitting, key=lambda shift: shift.correlation, default=Shift())
+
+
+def _shift_onto(name: str, curves: Curves, scene: Scene, result: Results) -> Shift | None:
+    """Return the shift onto one solution; None where either has nothing but zeros.
+
+    All places count alike, each waveform divided by the solution's norm.
+    """
+    dt = scene.interval
+    span = curves.time[-1] - curves.time[0]
+    even = curves.time[0] + dt * np.arange(int(span / dt + 1e-6) + 1)
+    ones, others = [], []
+    for _, _, values, time, ours in _waveforms(curves, result):
+        scale = np.linalg.norm(ours) or np.inf
+        # Behind each waveform as much silence as the other lasts: places do not run together.
+        ones.append(np.pad(np.interp(even, curves.time, values) / scale, (0, len(time))))
+        others.append(np.pad(ours / scale, (0, len(even))))
+    if not ones:
+        return None
+    seconds = -delay(np.concatenate(ones), np.concatenate(others), dt) - even[0]
+    try:
+        return None if np.isnan(seconds) else _refined(seconds, name, curves, scene, result)
+    except SceneError:  # so moved they meet nowhere
+        return None
+
+
+def _refined(seconds: float, name: str, curves: Curves, scene: Scene, result: Results) -> Shift:
+    """Return the shift near `seconds` where the correlation at the samples themselves is largest.
+
+    Straight lines between few and uneven samples have moved the peak by a part of their distance.
+    """
+    reach = max(scene.interval, float(np.diff(curves.time).mean()))
+    near = _moved(curves, seconds)  # the search is as fine as its variable is small
+    found = minimize_scalar(
+        lambda s: -_correlation(_moved(near, s), scene, result),
+        bounds=(-reach, reach),
+        method="bounded",
+        options={"xatol": 1e-4 * scene.interval},
+    )
+    return Shift(seconds + float(found.x), name, -float(found.fun))
+
+
+def _moved(curves: Curves, seconds: float) -> Curves:
+    return replace(curves, time=curves.time + seconds)
+
+
+def _correlation(curves: Curves, scene: Scene, result: Results) -> float:
+    """Return the normalised correlation of all places together, over the overlap."""
+    time, _ = common_times(curves, scene)
+    products = np.zeros(3)
+    for _, _, values, our_time, ours in _waveforms(curves, result):
+        a, b = np.interp(time, curves.time, values), np.interp(time, our_time, ours)
+        products += np.array([a @ b, a @ a, b @ b]) / (ours @ ours or np.inf)
+    scale = np.sqrt(products[1] * products[2])
+    return float(products[0] / scale) if scale > 0 else 0.0

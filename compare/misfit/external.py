@@ -1,0 +1,288 @@
+"""Waveforms of others, as `jointwave compare --with` names them: quantity, place, sign and unit.
+
+A column is called [-]QUANTITY[_AXIS]@Y [UNIT]: `stress@20`, `-stress@20 [MPa]`,
+`velocity_x@20.25 [mm/s]`; velocity and displacement are along y where no axis is named. Stress is
+positive in compression and motion along +x, +y, +z; a minus sign says that the column holds the
+negative, as where tension is positive. Without a unit, SI. A column with another header is taken by
+COLUMN=LABEL, and one of a table of `jointwave compare --out` by its solution
+(`compare.misfit.external_columns`).
+"""
+
+import re
+from collections import Counter
+from dataclasses import dataclass
+from math import pi
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from cases.errors import SceneError
+from cases.schema.scene import Scene
+from compare.engines import names
+from compare.misfit.external_columns import Asked, asked, base_of, exported, listed
+from compare.misfit.external_files import (
+    DIMENSIONS,
+    LEAST_SAMPLES,
+    Column,
+    Columns,
+    read_columns,
+    split_unit,
+)
+
+MICRO = ("u", "µ", "μ")  # as typed, the micro sign, and the Greek letter
+
+TIME = {"s": 1.0, "ms": 1e-3, "ns": 1e-9} | {f"{u}s": 1e-6 for u in MICRO}
+# What xarray calls the units of its own durations.
+TIME |= {"seconds": 1.0, "milliseconds": 1e-3, "microseconds": 1e-6, "nanoseconds": 1e-9}
+STRESS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9}
+LENGTH = {"m": 1.0, "cm": 1e-2, "mm": 1e-3} | {f"{u}m": 1e-6 for u in MICRO}
+SPEED = {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3}
+ANGLE = {"rad": 1.0, "mrad": 1e-3, "deg": pi / 180} | {f"{u}rad": 1e-6 for u in MICRO}
+
+#: By quantity: its units, each with its factor to SI, and its axes.
+UNITS = {
+    "stress": STRESS,
+    "shear": STRESS,
+    "velocity": SPEED,
+    "displacement": LENGTH,
+    "rotation": ANGLE,
+}
+AXES = {
+    "stress": ("",),
+    "shear": ("x", "z"),
+    "velocity": ("x", "y", "z"),
+    "displacement": ("x", "y", "z"),
+    "rotation": ("x", "y", "z"),
+}
+
+LABEL = re.compile(r"(-?)\s*([A-Za-z]+)(?:_([xyz]))?\s*@\s*([0-9.eE+-]+)(?:\s*m)?")
+EXAMPLES = "stress@20, -stress@20 [MPa] or velocity_x@20.25 [mm/s]"
+
+
+class Place(NamedTuple):
+    """What a waveform is: the quantity, its axis (empty for stress), and y of its receiver, m."""
+
+    quantity: str
+    axis: str
+    y: float
+
+    def __str__(self) -> str:
+        return f"{self.quantity}{'_' * bool(self.axis)}{self.axis}@{self.y:.12g}"
+
+    @property
+    def key(self) -> str:
+        """The key of [record] that asks for it."""
+        return "stress" if DIMENSIONS[self.quantity][0] == "stress_y" else "velocity"
+
+    def waveform(self, result: xr.Dataset) -> np.ndarray | None:
+        """Return this waveform of a result [n] in SI; None where the result does not have it."""
+        receivers, components = DIMENSIONS[self.quantity]
+        if self.quantity not in result:
+            return None
+        found = result[self.quantity]
+        at = np.flatnonzero(_same(found[receivers].values, self.y))
+        axes = [str(a) for a in found[components].values] if components in found.dims else [""]
+        if not len(at) or self.axis not in axes:
+            return None
+        values = found.values[at[0]]
+        return values if axes == [""] else values[:, axes.index(self.axis)]
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Waveforms of one file over one time.
+
+    name : what tables call it. file : the path, as it was given. time : [n] s, strictly increasing.
+    waveforms : [n] by place, SI, compression positive. variant : of the scene that it is of, ""
+    the scene as it stands; None: of every variant.
+    """
+
+    name: str
+    file: str
+    time: np.ndarray
+    waveforms: dict[Place, np.ndarray]
+    variant: str | None = None
+
+    def holds_for(self, scene: Scene) -> bool:
+        """Return whether it is to be put beside this variant of a scene."""
+        return self.variant is None or self.variant == scene.name
+
+
+class _Label(NamedTuple):
+    place: Place
+    negative: bool
+    unit: str
+
+
+class _Found(NamedTuple):
+    """A column, what it holds, and whose it is in a table of ours."""
+
+    column: Column
+    label: _Label
+    solution: str = ""
+    variant: str = ""
+
+
+def read_curves(texts: list[str], scenes: list[Scene]) -> list[Curves]:
+    """Read what `--with` names, each FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL.
+
+    FILE is NetCDF (.nc), as `jointwave run` writes it or any that has `time` and, say, `stress`; or
+    CSV: comma, semicolon or tab, # comments, a header `time [ms], stress@20 [MPa]` or two bare
+    columns, time in s first; or a table of `jointwave compare --out`. LABEL takes one curve out of
+    several, or names the only one; COLUMN is a header, or a solution or variant of such a table.
+    Empty cells are left out. One entry a file; where a file holds several solutions, variants, or
+    columns of different times, one for each. Raises SceneError for a file that cannot be read, is
+    not as stated, or has no curve at a receiver that one of the scenes records.
+    """
+    every = [asked(text, lambda label: _parse(*split_unit(label)) is not None) for text in texts]
+    files = dict.fromkeys(str(one.path) for one in every)
+    short = Counter(Path(file).name for file in files) + Counter(names())
+    found: list[Curves] = []
+    for file in files:
+        name = Path(file).name
+        mine = [one for one in every if str(one.path) == file]
+        found += _of_file(name if short[name] == 1 else file, mine)
+    for one in found:
+        _require_recorded(one, [s for s in scenes if one.holds_for(s)])
+    return [one for one in found if any(map(one.holds_for, scenes))]
+
+
+def is_recorded(place: Place, scene: Scene) -> bool:
+    """Return whether a scene has a receiver at this place."""
+    return bool(_same(np.array(getattr(scene.record, place.key), dtype=float), place.y).any())
+
+
+def _require_recorded(curves: Curves, scenes: list[Scene]) -> None:
+    if not scenes or any(is_recorded(p, scene) for p in curves.waveforms for scene in scenes):
+        return
+    place = next(iter(curves.waveforms))
+    recorded = ", ".join(f"{y:g}" for y in getattr(scenes[0].record, place.key)) or "nowhere"
+    allowed = (
+        f"must be where the scene records: {place.key} at {recorded} m; "
+        f"record.{place.key} in the scene, or --set, adds a receiver"
+    )
+    raise SceneError(curves.file, str(place), None, allowed)
+
+
+def _of_file(name: str, every: list[Asked]) -> list[Curves]:
+    """Return the curves that are asked for of one file, called by this name."""
+    path = every[0].path
+    times = [one for one in every if one.is_time]
+    table = read_columns(path, times[0].column if times else "time")
+    unit = split_unit(times[0].label)[1] if times else ""
+    seconds = _factor(path, "time", unit or table.time.unit, TIME) * table.time.values
+    wanted = [one for one in every if not one.is_time] or [Asked(str(path), path)]
+    found = [one for choice in wanted for one in _fitting(table, choice)]
+    groups: dict[tuple, dict[Place, _Found]] = {}
+    for one in found:
+        there = b"" if one.column.empty is None else one.column.empty.tobytes()
+        group = groups.setdefault((one.solution, one.variant, there), {})
+        if one.label.place in group:
+            raise SceneError(str(path), "", None, f"{one.label.place} must be given once only")
+        group[one.label.place] = one
+    several = len({solution for solution, *_ in groups}) > 1
+    named: Counter[tuple] = Counter()
+    curves = []
+    for (solution, variant, _), group in groups.items():
+        called = f"{name}:{solution}" if several else name
+        named[called, variant] += 1
+        if named[called, variant] > 1:  # the same at other times
+            called = f"{called}:{next(iter(group))}"
+        whose = variant if len({v for _, v, _ in groups}) > 1 else None
+        curves.append(_curves(called, path, seconds, list(group.values()), whose))
+    return curves
+
+
+def _curves(
+    name: str, path: Path, seconds: np.ndarray, found: list[_Found], variant: str | None
+) -> Curves:
+    """Return columns that have the same empty cells as curves in SI."""
+    empty = found[0].column.empty
+    there = np.ones(len(seconds), bool) if empty is None else ~empty
+    if there.sum() < LEAST_SAMPLES:
+        allowed = f"must hold at least {LEAST_SAMPLES} samples, not {there.sum()}"
+        raise SceneError(str(path), found[0].column.name, None, allowed)
+    waveforms = {}
+    for column, label, *_ in found:
+        factor = _factor(path, column.name, label.unit, UNITS[label.place.quantity])
+        waveforms[label.place] = (-factor if label.negative else factor) * column.values[there]
+    return Curves(name, str(path), seconds[there], waveforms, variant)
+
+
+def _fitting(table: Columns, choice: Asked) -> list[_Found]:
+    """Return the columns of a file that one argument asks for, with what each of them holds."""
+    wanted = _parse(*split_unit(choice.label)) if choice.label else None
+    named = [c for c in table.rest if not choice.column or choice.fits(c)]
+    alone = len(table.rest) == 1 or bool(choice.column and len(named) == 1)
+    found, base = [], base_of(table.rest)
+    for column in named:
+        ours = exported(column.name)
+        own = _parse(ours.label if ours else column.name, column.unit)
+        label = own if wanted is None else _as_wanted(column, own, wanted, alone)
+        if label is not None and ours:
+            variant = "" if ours.variant == base else ours.variant
+            found.append(_Found(column, label, ours.solution, variant))
+        elif label is not None:
+            found.append(_Found(column, label))
+        elif wanted is None:
+            raise _without_place(column, choice, table)
+    if not found:
+        raise _not_there(choice, table)
+    return found
+
+
+def _as_wanted(column: Column, own: _Label | None, wanted: _Label, alone: bool) -> _Label | None:
+    """Return what a column holds that may have a label of its own; None where another is wanted."""
+    unit = wanted.unit or column.unit
+    if own is not None:
+        (*what, y), (*wanted_what, wanted_y) = own.place, wanted.place
+        fits = what == wanted_what and bool(_same(np.array(y), wanted_y))
+        return _Label(own.place, own.negative or wanted.negative, unit) if fits else None
+    bare = column.name.lower()
+    fits = bare == wanted.place.quantity or (alone and bare not in UNITS)
+    return wanted._replace(unit=unit) if fits else None
+
+
+def _without_place(column: Column, choice: Asked, table: Columns) -> SceneError:
+    which = f"{column.name}=" if column.name else ""
+    allowed = (
+        f"must be called as {EXAMPLES}, or its place be given as {choice.path}:{which}stress@20; "
+        f"the file holds {listed(table.rest)}"
+    )
+    return SceneError(str(choice.path), column.name or "second column", None, allowed)
+
+
+def _not_there(choice: Asked, table: Columns) -> SceneError:
+    held = f"{choice.path} holds {listed(table.rest)}"
+    if choice.column:
+        allowed = f"must be a label, such as {EXAMPLES}, a column or COLUMN=LABEL; {held}"
+        return SceneError("--with", choice.text, None, f"{choice.column!r} {allowed}")
+    label = _parse(*split_unit(choice.label))
+    wanted = label.place if label else "a label"
+    return SceneError("--with", choice.text, None, f"{held}; {wanted} must be one of them")
+
+
+def _parse(name: str, unit: str) -> _Label | None:
+    """Return [-]QUANTITY[_AXIS]@Y as a label; None where the name is none."""
+    match = LABEL.fullmatch(name.strip())
+    if match is None or match[2].lower() not in UNITS:
+        return None
+    quantity = match[2].lower()
+    axis = match[3] or ("y" if quantity in ("velocity", "displacement") else "")
+    try:
+        place = Place(quantity, axis, float(match[4]))
+    except ValueError:
+        return None
+    return _Label(place, bool(match[1]), unit) if axis in AXES[quantity] else None
+
+
+def _factor(path: Path, name: str, unit: str, allowed: dict[str, float]) -> float:
+    if unit and unit not in allowed:
+        raise SceneError(str(path), f"unit of {name}", unit, f"must be {', '.join(allowed)}")
+    return allowed.get(unit, 1.0)
+
+
+def _same(places: np.ndarray, y: float) -> np.ndarray:
+    return np.isclose(places, y, rtol=1e-9, atol=1e-9)

@@ -1,0 +1,100 @@
+"""Which column `--with` means: FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL.
+
+COLUMN is a header of the file, or in a table of `jointwave compare --out`, whose headers are
+`solution | place | variant (unit)`, one or more of these parts.
+"""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from compare.misfit.external_files import Column, split_unit
+
+PART = " | "  # between what a header of ours is made of
+PLACE = re.compile(r"([a-z]+)(?: ([xyz]))? at y = (\S+) m")
+TIME = "time"
+
+
+class Asked(NamedTuple):
+    """One argument of `--with`: column and label are empty where they are not given."""
+
+    text: str
+    path: Path
+    column: str = ""
+    label: str = ""
+
+    @property
+    def is_time(self) -> bool:
+        """Whether it says which column the times are."""
+        return split_unit(self.label)[0].lower() == TIME
+
+    def fits(self, column: Column) -> bool:
+        """Return whether a column is called as this asks for."""
+        if self.column in (column.name, f"{column.name} [{column.unit}]"):
+            return True
+        if split_unit(self.column) == (column.name, column.unit):
+            return True
+        parts = parts_of(column.name)
+        return len(parts) > 1 and set(parts_of(self.column)) <= set(parts)
+
+
+class Exported(NamedTuple):
+    """What a header of ours says: solution, place as a label, and variant."""
+
+    solution: str
+    label: str
+    variant: str
+
+
+def asked(text: str, is_label: Callable[[str], bool]) -> Asked:
+    """Return what an argument asks for; a file that is not there takes a label alone."""
+    if Path(text).exists():
+        return Asked(text, Path(text))
+    colons = [i for i, letter in enumerate(text) if letter == ":"]
+    found = next((i for i in colons if Path(text[:i]).is_file()), None)
+    if found is None:
+        file, colon, label = text.rpartition(":")
+        return Asked(text, Path(file), "", label) if colon and "@" in label else _only(text)
+    path, which = Path(text[:found]), text[found + 1 :].strip()
+    if is_label(which):
+        return Asked(text, path, "", which)
+    column, equals, label = which.rpartition("=")
+    if equals and (is_label(label) or split_unit(label)[0].lower() == TIME):
+        return Asked(text, path, _unquoted(column), label.strip())
+    return Asked(text, path, _unquoted(which))
+
+
+def exported(name: str) -> Exported | None:
+    """Return what a header of ours says; None where it is none."""
+    parts = parts_of(name)
+    place = PLACE.fullmatch(parts[1]) if len(parts) == 3 else None
+    if place is None:
+        return None
+    quantity, axis, y = place.groups()
+    return Exported(parts[0], f"{quantity}{'_' + axis if axis else ''}@{y}", parts[2])
+
+
+def base_of(columns: list[Column]) -> str:
+    """Return what a table of ours calls the scene as it stands, its first variant; else ""."""
+    found = (exported(column.name) for column in columns)
+    return next((one.variant for one in found if one is not None), "")
+
+
+def parts_of(name: str) -> list[str]:
+    """Return the parts of a header, variants as scenes name them."""
+    return [part.strip().replace("ζ = ", "zeta ") for part in name.split(PART.strip(), 2)]
+
+
+def listed(columns: list[Column]) -> str:
+    """Return the names of columns, as a message lists them."""
+    return ", ".join(column.name or "one column without a name" for column in columns)
+
+
+def _only(text: str) -> Asked:
+    return Asked(text, Path(text))
+
+
+def _unquoted(text: str) -> str:
+    text = text.strip()
+    return text[1:-1] if len(text) > 1 and text[0] == text[-1] and text[0] in "\"'" else text

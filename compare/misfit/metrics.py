@@ -1,0 +1,300 @@
+"""The distance of one waveform from another, and of one result from another.
+
+A waveform is one component of one quantity at one receiver, less its static state: what a scene
+holds before its load acts is not part of the motion. Nothing is pooled: the misfit of two results
+is that of the waveform which is furthest off. Every function takes a waveform or result first and
+its reference second, equally sampled.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy.signal import correlate, correlation_lags
+
+from compare.misfit.external import Place
+from compare.misfit.external_files import DIMENSIONS
+
+#: Quantities of one unit, loudest first judged beside each other.
+UNITS = (("stress", "shear"), ("velocity",), ("displacement",), ("rotation",))
+QUANTITIES = tuple(quantity for unit in UNITS for quantity in unit)
+#: A waveform whose root mean square stays below this part of the loudest one of its unit, in both
+#: results, is listed and does not decide a misfit.
+FAINT = 0.01
+ROUND_OFF = 1e-9  # of the loudest displacement (m): rotations (rad) below are none
+JUDGED = 10.0  # times its own error: the least misfit that a reference can tell
+
+
+class Distance(NamedTuple):
+    """All distances of one waveform from its reference; nan where one has no meaning.
+
+    misfit : relative L2. peak_ratio : of the largest magnitudes. delay : s, positive when late.
+    period_ratio : of the mean periods. envelope, phase : single-valued misfits, None if not asked.
+    """
+
+    misfit: float
+    peak_ratio: float
+    delay: float
+    period_ratio: float
+    envelope: float | None = None
+    phase: float | None = None
+
+
+def distance(one: np.ndarray, other: np.ndarray, dt: float, spectral: bool = False) -> Distance:
+    """Return all distances of `one` from `other`; `spectral` adds envelope and phase misfit."""
+    envelope, phase = envelope_phase_misfit(one, other, dt) if spectral else (None, None)
+    return Distance(
+        relative_l2(one, other),
+        _ratio(np.abs(one).max(), np.abs(other).max()),
+        delay(one, other, dt),
+        _ratio(mean_period(one, dt), mean_period(other, dt)),
+        envelope,
+        phase,
+    )
+
+
+def relative_l2(one: np.ndarray, other: np.ndarray) -> float:
+    """Return ||one - other|| / ||other|| over all samples."""
+    difference = float(np.linalg.norm(np.ravel(one - other)))
+    return 0.0 if difference == 0 else _ratio(difference, float(np.linalg.norm(np.ravel(other))))
+
+
+class Pairing(NamedTuple):
+    """One waveform [n] of a result beside that of its reference, both less their static state.
+
+    error : bound of the reference's own root-mean-square error, 0 of a closed form.
+    faint : whether both are too weak to decide a misfit.
+    """
+
+    place: Place
+    one: np.ndarray
+    other: np.ndarray
+    error: float
+    faint: bool
+
+    @property
+    def misfit(self) -> float:
+        """Relative L2 distance."""
+        return relative_l2(self.one, self.other)
+
+    @property
+    def floor(self) -> float:
+        """Relative error of the reference itself."""
+        return 0.0 if self.error == 0 else _ratio(self.error, rms(self.other))
+
+
+class Worst(NamedTuple):
+    """The waveform of two results that is furthest off; `place` is None where nothing moves."""
+
+    misfit: float
+    place: Place | None = None
+    floor: float = 0.0
+
+    @property
+    def judged(self) -> float:
+        """What is certain: the misfit, but not less than ten times the reference's own error."""
+        return max(self.misfit, JUDGED * self.floor)
+
+    @property
+    def where(self) -> str:
+        """Quantity and receiver in words."""
+        return in_words(self.place) if self.place else "nowhere"
+
+
+def in_words(place: Place) -> str:
+    """Return a place as "shear x at 15 m"."""
+    return f"{place.quantity} {place.axis}".rstrip() + f" at {place.y:g} m"
+
+
+def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
+    """Return the relative L2 misfit of the waveform of two results that is furthest off."""
+    return worst(one, other).misfit
+
+
+def worst(one: xr.Dataset, other: xr.Dataset) -> Worst:
+    """Return the waveform of two results that is furthest off, faint ones left out."""
+    found = [Worst(p.misfit, p.place, p.floor) for p in pairings(one, other) if not p.faint]
+    return max(found, key=lambda w: w.judged, default=Worst(0.0))
+
+
+def pairings(one: xr.Dataset, other: xr.Dataset) -> list[Pairing]:
+    """Return every waveform that both results have, up to when the reference is known.
+
+    Those that are zero in both are left out.
+    """
+    found = _shared(one, other)
+    loudest = _loudest(found)
+    return [
+        p._replace(faint=max(rms(p.one), rms(p.other)) < loudest[p.place.quantity])
+        for p in found
+        if p.one.any() or p.other.any()
+    ]
+
+
+def _shared(one: xr.Dataset, other: xr.Dataset) -> list[Pairing]:
+    n = _known_samples(other)
+    return [
+        Pairing(place, a[:n], b[:n], error_of(other, place), False)
+        for (place, a), (_, b) in zip(waveforms(one, other), waveforms(other, one), strict=True)
+    ]
+
+
+class Stack(NamedTuple):
+    """All waveforms of a result [waveform, n] and of its reference, less their static states.
+
+    least : root mean square [waveform] below which one decides nothing, where it is in both.
+    """
+
+    one: np.ndarray
+    other: np.ndarray
+    least: np.ndarray
+
+    @property
+    def misfits(self) -> np.ndarray:
+        """Relative L2 distance of each waveform, 0 of those that are faint in both."""
+        return self.distances(self.one, self.other)
+
+    def distances(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+        """Return ||one - other|| / ||reference|| of each waveform, 0 of those that are faint."""
+        goal = np.linalg.norm(self.other, axis=1)
+        loudest = np.maximum(np.linalg.norm(self.one, axis=1), goal)
+        loud = loudest / np.sqrt(max(self.one.shape[1], 1)) >= self.least
+        difference = np.where(loud, np.linalg.norm(one - other, axis=1), 0.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(difference > 0, difference / goal, 0.0)
+
+
+def stacked(one: xr.Dataset, reference: xr.Dataset) -> Stack:
+    """Return the waveforms of a result beside those of its reference, for arithmetic on all."""
+    found = _shared(one, reference)
+    loudest = _loudest(found)
+    least = np.array([loudest[p.place.quantity] for p in found])
+    return Stack(np.array([p.one for p in found]), np.array([p.other for p in found]), least)
+
+
+def waveforms(result: xr.Dataset, like: xr.Dataset) -> Iterator[tuple[Place, np.ndarray]]:
+    """Yield the motion of a result [n] at every place that it shares with another result."""
+    for quantity in QUANTITIES:
+        if quantity not in result or quantity not in like:
+            continue
+        values = motion(result, quantity)
+        places, axes = _places(result, quantity)
+        others, other_axes = _places(like, quantity)
+        for i in (i for i, y in enumerate(places) if y in others):
+            for k in (k for k, axis in enumerate(axes) if axis in other_axes):
+                wave = values[i] if values.ndim == 2 else values[i, :, k]
+                named = axes[k] if len(axes) > 1 else ""
+                yield Place(quantity, named, float(places[i])), wave
+
+
+def _places(result: xr.Dataset, quantity: str) -> tuple[list[float], list[str]]:
+    """Return the y of the receivers (m) and the axes of a quantity, "y" where it has no others."""
+    receivers, components = DIMENSIONS[quantity]
+    found = result[quantity]
+    axes = [str(a) for a in found[components].values] if components in found.dims else ["y"]
+    return found[receivers].values.tolist(), axes
+
+
+def motion(result: xr.Dataset, quantity: str) -> np.ndarray:
+    """Return a quantity less its static state [place, time] or [place, time, component].
+
+    The prestress of a section; all of the first sample where gravity's static state is there.
+    """
+    values = result[quantity].values
+    return values - static_state(result, quantity)
+
+
+def static_state(result: xr.Dataset, quantity: str) -> np.ndarray:
+    """Return what a quantity holds before the load acts, of a shape that broadcasts over time."""
+    values = result[quantity].values
+    if result.attrs.get("starts") == "at rest under gravity":
+        return values[:, :1]
+    prestress = float(result.attrs.get("prestress", 0.0)) if quantity == "stress" else 0.0
+    return np.full_like(values[:, :1], prestress)
+
+
+def error_of(result: xr.Dataset, place: Place) -> float:
+    """Return the bound of a result's own root-mean-square error at a place, 0 of a closed form."""
+    name = f"{place.quantity}_error"
+    if name not in result:
+        return 0.0
+    places, axes = _places(result, place.quantity)
+    error = result[name].values[places.index(place.y)]
+    return float(
+        error if np.ndim(error) == 0 else error[axes.index(place.axis) if place.axis else 0]
+    )
+
+
+def _known_samples(reference: xr.Dataset) -> int:
+    """Return how many samples a reference knows: all, or those before it turns chaotic."""
+    until = reference.attrs.get("known_until")
+    times = reference["time"].values
+    return len(times) if until is None else int(np.searchsorted(times, until, side="right"))
+
+
+def _loudest(found: list[Pairing]) -> dict[str, float]:
+    """Return by quantity the root mean square below which a waveform is faint.
+
+    Of a unit in which the reference stands still while something else moves, all are.
+    """
+    loud = {
+        quantity: max((rms(p.other) for p in found if p.place.quantity in unit), default=0.0)
+        for unit in UNITS
+        for quantity in unit
+    }
+    still = np.inf if any(loud.values()) else 0.0
+    least = {quantity: FAINT * value or still for quantity, value in loud.items()}
+    least["rotation"] = max(least["rotation"], ROUND_OFF * loud["displacement"])
+    return least
+
+
+def rms(waveform: np.ndarray) -> float:
+    """Return the root mean square of a waveform [n]."""
+    return float(np.linalg.norm(waveform) / np.sqrt(max(waveform.size, 1)))
+
+
+def delay(one: np.ndarray, other: np.ndarray, dt: float) -> float:
+    """Return by how much `one` arrives later, s: the peak of the cross-correlation.
+
+    A parabola through the three largest values resolves a fraction of a sample.
+    """
+    if not one.any() or not other.any():
+        return np.nan
+    c = correlate(one, other)
+    i = int(np.argmax(c))
+    shift = 0.0
+    if 0 < i < len(c) - 1:
+        left, top, right = c[i - 1 : i + 2]
+        shift = 0.5 * (left - right) / (left - 2 * top + right)
+    return float((correlation_lags(len(one), len(other))[i] + shift) * dt)
+
+
+def mean_period(waveform: np.ndarray, dt: float) -> float:
+    """Return 2 pi ||s|| / ||ds/dt||, s: the period of a sine, the mean period of any other wave.
+
+    This is 2 pi sqrt(m0 / m2) of the spectral moments, T_m02 of wave statistics.
+    """
+    rate = np.linalg.norm(np.gradient(waveform, dt))
+    return float(2 * np.pi * np.linalg.norm(waveform) / rate) if rate > 0 else np.nan
+
+
+def envelope_phase_misfit(one: np.ndarray, other: np.ndarray, dt: float) -> tuple[float, float]:
+    """Return the single-valued envelope and phase misfits of Kristekova et al. (2006), by ObsPy.
+
+    Bull. Seism. Soc. Am. 96, 1836-1850; over the band that holds the reference's energy. A
+    reference that stands still, or swings more slowly than the record lasts, has no such band.
+    """
+    from obspy.signal.tf_misfit import em, pm
+
+    period = mean_period(other, dt)
+    if not one.any() or not period < dt * len(other):
+        return np.nan, np.nan
+    coarse = max(1, int(period / (40 * dt)))  # 40 samples a period: far above the band's end
+    band = {"dt": dt * coarse, "fmin": 0.25 / period, "fmax": 4 / period, "nf": 24}
+    pair = one[::coarse], other[::coarse]
+    return float(em(*pair, **band)), float(pm(*pair, **band))
+
+
+def _ratio(a: float, b: float) -> float:
+    return float(a / b) if b > 0 else np.inf if a > 0 else np.nan

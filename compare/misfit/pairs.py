@@ -1,0 +1,144 @@
+"""A scene solved by all that applies to it, and how far apart the solutions are, pair by pair."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from cases.schema.scene import Scene
+from compare.engines import Progress, applies, names, solve
+from compare.experiments.cost import timings
+from compare.misfit.alignment import Beside, distances, lay_beside
+from compare.misfit.external import Curves
+from compare.misfit.metrics import Distance, distance, pairings
+
+
+class Pair(NamedTuple):
+    """A result, what it is held against, and what their distance means."""
+
+    one: str
+    other: str
+    kind: str
+
+
+NUMERICAL = "numerical error"
+MODELLING = "modelling error"
+BETWEEN = "between engines"
+GIVEN = "given curves"  # those of others
+PAIRS = (
+    # Against the exact solution of the very model that the engine discretises.
+    Pair("dem", "lattice", NUMERICAL),
+    Pair("dem", "no-tension-chain", NUMERICAL),
+    Pair("dem", "spatial-lattice", NUMERICAL),
+    Pair("continuum-jointed", "jointed-bar", NUMERICAL),
+    Pair("continuum-equivalent", "equivalent-bar", NUMERICAL),
+    Pair("continuum-equivalent", "images", NUMERICAL),
+    Pair("continuum-equivalent", "kelvin-voigt", NUMERICAL),
+    Pair("series", "images", NUMERICAL),
+    # Against the exact solution of a model that resolves more, or homogenises more.
+    Pair("dem", "jointed-bar", MODELLING),
+    Pair("dem", "equivalent-bar", MODELLING),
+    Pair("continuum-equivalent", "jointed-bar", MODELLING),
+    # Against one mechanism alone.
+    Pair("dem", "slip-joint", MODELLING),
+    Pair("continuum-equivalent", "slip-joint", MODELLING),
+    Pair("dem", "sliding-block", MODELLING),
+    Pair("dem", "continuum-jointed", BETWEEN),
+    Pair("dem", "continuum-equivalent", BETWEEN),
+    Pair("continuum-equivalent", "continuum-jointed", BETWEEN),
+)
+
+
+class Row(NamedTuple):
+    """The distance of one pair at one receiver.
+
+    quantity : with the component, where there are several. floor : relative error of the second
+    solution itself, below ten times which nothing is judged. faint : too weak to decide a misfit.
+    """
+
+    pair: Pair
+    quantity: str
+    y: float
+    distance: Distance
+    floor: float = 0.0
+    faint: bool = False
+
+
+@dataclass
+class Comparison:
+    """One variant of a scene, everything that solved it, and why the rest did not.
+
+    results : by name. reasons : name to reason, of what does not apply. rows : the distances.
+    besides : the curves of others, a file each.
+    """
+
+    scene: Scene
+    results: dict[str, xr.Dataset] = field(default_factory=dict)
+    reasons: dict[str, str] = field(default_factory=dict)
+    rows: list[Row] = field(default_factory=list)
+    besides: list[Beside] = field(default_factory=list)
+
+
+def compare(
+    scene: Scene,
+    progress: Progress | None = None,
+    spectral: bool = False,
+    curves: Sequence[Curves] = (),
+    align: bool = False,
+) -> Comparison:
+    """Solve a scene by everything that applies to it and measure every pair.
+
+    `progress` is called with the finished fraction; `spectral` adds envelope and phase misfits;
+    `curves` of others are held against every solution, their clocks moved onto it by `align`.
+    """
+    comparison, everything = Comparison(scene), names()
+    for i, name in enumerate(everything):
+        answer = applies(name, scene)
+        if answer:
+            began = perf_counter()
+            comparison.results[name] = solve(name, scene)
+            timings.note(name, scene, comparison.results[name].attrs, perf_counter() - began)
+        else:
+            comparison.reasons[name] = answer.reason
+        if progress:
+            progress((i + 1) / len(everything))
+    comparison.rows = measure(comparison.results, spectral)
+    for one in (curve for curve in curves if curve.holds_for(scene)):
+        beside = lay_beside(one, scene, comparison.results, align)
+        comparison.besides.append(beside)
+        comparison.rows += measure_curves(beside, comparison.results, spectral)
+    return comparison
+
+
+def measure(results: dict[str, xr.Dataset], spectral: bool = False) -> list[Row]:
+    """Return the distances of every pair that is there, of every waveform that both have.
+
+    Envelope and phase misfits are those of stress, shear, velocity and rotation that are not faint.
+    """
+    rows = []
+    for pair in PAIRS:
+        if pair.one not in results or pair.other not in results:
+            continue
+        one, other = results[pair.one], results[pair.other]
+        dt = float(other.time[1] - other.time[0])
+        for p in pairings(one, other):
+            spectra = spectral and not p.faint and p.place.quantity != "displacement"
+            found = distance(p.one, p.other, dt, spectra)
+            quantity = f"{p.place.quantity} {p.place.axis}".rstrip()
+            rows.append(Row(pair, quantity, p.place.y, found, p.floor, p.faint))
+    return rows
+
+
+def measure_curves(
+    beside: Beside, results: dict[str, xr.Dataset], spectral: bool = False
+) -> list[Row]:
+    """Return the distances of a file's curves from every solution that has a waveform there."""
+    rows = []
+    for name, place, found in distances(beside, results, spectral):
+        spatial = place.axis and np.size(results[name].get("axis", "y")) > 1
+        quantity = f"{place.quantity} {place.axis}" if spatial else place.quantity
+        rows.append(Row(Pair(beside.curves.name, name, GIVEN), quantity, place.y, found))
+    return rows

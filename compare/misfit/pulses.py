@@ -1,0 +1,118 @@
+"""Reading pulses off waveforms: where each passage is, how high, how long, how late.
+
+A waveform is a pandas Series over time in s; stress in Pa, compression positive, or velocity in
+m/s. Passages are those of the homogenised bar: the wave runs from the loaded end at the bar speed
+c and back from the other end.
+"""
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from cases.loads import load_history
+from cases.material.calibrate import calibrate
+from cases.schema.scene import Scene
+from compare.figures.style import in_order, is_engine
+from compare.misfit.metrics import mean_period
+from compare.misfit.pairs import Comparison
+
+
+def waveforms(comparison: Comparison, quantity: str, index: int) -> dict[str, pd.Series]:
+    """Return each engine's waveform at the index-th receiver of a quantity, along y."""
+    return {
+        name: _along_axis(comparison.results[name], quantity, index)
+        for name in in_order(set(comparison.results))
+        if is_engine(name)
+    }
+
+
+def _along_axis(result: xr.Dataset, quantity: str, index: int) -> pd.Series:
+    waveform = result[quantity][index]
+    if "axis" in waveform.dims:
+        waveform = waveform.sel(axis="y")
+    return pd.Series(waveform.values, result.time.values)
+
+
+def arrivals(scene: Scene, y: float) -> list[float]:
+    """Return when the incident, first and second reflected pulse reach y (m), s."""
+    length, c = scene.pillar.length, calibrate(scene).bar_speed
+    return [y / c, (2 * length - y) / c, (2 * length + y) / c]
+
+
+def period(scene: Scene) -> float:
+    """Return the load's period, s; a quarter of the record for a load that has none."""
+    return scene.load.period or scene.time.duration / 4
+
+
+def span(waveform: pd.Series, start: float, stop: float) -> pd.Series:
+    """Return the part from start to stop, s."""
+    return waveform[(waveform.index >= start) & (waveform.index < stop)]
+
+
+def passage(waveform: pd.Series, scene: Scene, y: float, n: int) -> pd.Series:
+    """Return the n-th passage at y: from the middle of the rest before it to that after it."""
+    due, whole = [-np.inf, *arrivals(scene, y)], period(scene)
+    rests = [due[i] - due[i - 1] - whole for i in range(1, len(due))]
+    early = np.clip(np.array(rests) / 2, whole / 4, whole)
+    starts = [*(np.array(due[1:]) - early), due[-1] + 2 * whole]
+    return span(waveform, starts[n], starts[n + 1])
+
+
+def peak(waveform: pd.Series) -> float:
+    """Return the largest magnitude; 0 of an empty waveform."""
+    return float(waveform.abs().max()) if len(waveform) else 0.0
+
+
+def first_swing(waveform: pd.Series) -> float:
+    """Return the sign of the first half-cycle that passes 0.3 of the peak; 0 of silence."""
+    loud = waveform[waveform.abs() > 0.3 * peak(waveform)]
+    return float(np.sign(loud.iloc[0])) if len(loud) else 0.0
+
+
+def half_cycles(waveform: pd.Series) -> tuple[float, float]:
+    """Return the largest positive value and the largest negative one after it, both positive."""
+    top = waveform.idxmax()
+    return float(waveform.max()), float(-waveform[waveform.index >= top].min())
+
+
+def pulse_period(waveform: pd.Series) -> float:
+    """Return the mean period, s."""
+    return mean_period(waveform.values, sampling(waveform))
+
+
+def sampling(waveform: pd.Series) -> float:
+    """Return the time between samples, s."""
+    return float(waveform.index[1] - waveform.index[0])
+
+
+def load_waveform(scene: Scene, like: pd.Series) -> pd.Series:
+    """Return the end stress (Pa) at the times of a waveform."""
+    return pd.Series(load_history(scene).value(like.index.values), like.index)
+
+
+def quiet_share(waveform: pd.Series, scene: Scene) -> pd.Series:
+    """Return what the quiet end (9) of the rigid chain makes of a pulse off its free end.
+
+    With the wave exp(i omega t - i theta j) in blocks of mass m, z = exp(-i theta), k* = k (1 +
+    i omega eta) and Z = rho c A: z + 1/z = 2 - m omega^2/k*; the dashpot on the full-mass end block
+    reflects -(k* (z - 1) + i omega Z)/(k* (1/z - 1) + i omega Z), the free end z. Undamped, their
+    ratio has the magnitude tan(theta/4).
+    """
+    p = calibrate(scene)
+    size = 2 * len(waveform)
+    omega = 2 * np.pi * np.fft.rfftfreq(size, sampling(waveform))[1:]
+    k = p.regular_stiffness * p.area * (1 + 1j * omega * (p.time_constant or 0.0))
+    half = 1 - p.block_mass * omega**2 / (2 * k)
+    z = half - 1j * np.sqrt(1 - half**2)  # of the two roots the one that runs or decays forwards
+    z = np.where(np.abs(z) > 1 + 1e-12, 1 / z, z)
+    dashpot = 1j * omega * p.impedance * p.area
+    ratio = -(k * (z - 1) + dashpot) / (k * (1 / z - 1) + dashpot) / z
+    share = np.fft.irfft(np.r_[0, ratio] * np.fft.rfft(waveform.values, size), size)
+    return pd.Series(share[: len(waveform)], waveform.index)
+
+
+def quiet_harmonic(scene: Scene) -> float:
+    """Return |R| = tan(k d / 4) of the quiet end for a harmonic of the load's period, undamped."""
+    p = calibrate(scene)
+    theta = 2 * np.arcsin(min(1.0, np.pi * p.spacing / (p.bar_speed * period(scene))))
+    return float(np.tan(theta / 4))

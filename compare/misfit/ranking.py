@@ -1,0 +1,96 @@
+"""What every solution of a scene resolves, and the one that the others are held against.
+
+The reference of a scene is the solution that leaves out the least: the finest rock first, then an
+exact one before a computed one. A solution that lacks an effect of the scene is never a reference.
+What no solution at least as fine has checked independently is "not checked".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from cases.material.calibrate import calibrate
+from cases.schema.scene import Scene
+from compare.engines import ENGINES, applies, names
+from compare.exact.answer import WORDS, Answer, Resolves, Rock
+from compare.exact.conditions import has_thick_layer
+
+
+class Reference(NamedTuple):
+    """What a scene's solutions are held against, and why in words."""
+
+    name: str
+    reason: str
+
+
+NOT_CHECKED = "not checked independently"
+
+
+def resolves(name: str) -> Resolves:
+    """Return what an engine or exact solution resolves."""
+    if name in ENGINES:
+        return ENGINES[name]
+    from compare.exact.catalogue import CATALOGUE
+
+    return CATALOGUE[name].RESOLVES
+
+
+def lacks(name: str, scene: Scene) -> str:
+    """Return the effect of a scene that a solution which applies to it leaves out, "" where none.
+
+    The thickness of a soft layer: rigid blocks take it for a joint. The inertia across the axis of
+    a column of two or three dimensions: a bar has none.
+    """
+    of = resolves(name)
+    if has_thick_layer(scene) and of.rock is Rock.RIGID_BLOCKS:
+        return "the thickness of a soft layer"
+    dim, free_sides = scene.numerics.continuum.dim or 1, scene.motion.rotation != "none"
+    if dim > 1 and of.dimension == 1 and free_sides and of.rock in (Rock.JOINTED, Rock.HOMOGENISED):
+        poisson = scene.rock.intact_poisson if of.rock is Rock.JOINTED else calibrate(scene).poisson
+        return "the inertia across the axis" if poisson else ""
+    return ""
+
+
+def finest(names: Iterable[str], scene: Scene) -> Reference | None:
+    """Return the solution among `names` that leaves out the least; None where none is complete."""
+    complete = [name for name in names if not lacks(name, scene)]
+    if not complete:
+        return None
+    name = max(complete, key=_fineness)
+    of = resolves(name)
+    how = "exact" if of.exact else "computed, with no exact solution of this scene to check it"
+    return Reference(name, f"{WORDS[of.rock]}, {how}")
+
+
+def reference_of(name: str, names: Iterable[str], scene: Scene) -> Reference | None:
+    """Return what one solution is held against: the finest of the others.
+
+    None where none of them is finer, or as fine and exact: it is not checked independently.
+    """
+    found = finest([other for other in names if other != name], scene)
+    if found is None:
+        return None
+    return found if _fineness(found.name) > _fineness(name) else None
+
+
+def own_exact(name: str, names: Iterable[str], scene: Scene) -> str | None:
+    """Return the exact solution of an engine's own model among `names`, what its numerical error is
+    measured from; None where there is none."""
+    rock, own = resolves(name).rock, []
+    for other in names:
+        of = resolves(other)
+        if other != name and of.rock is rock and of.exact and of.discretised:
+            own.append(other)
+    found = finest(own, scene)
+    return found.name if found else None
+
+
+def _fineness(name: str) -> tuple[int, int]:
+    of = resolves(name)
+    return int(of.rock), int(of.form)
+
+
+def applicable(scene: Scene) -> dict[str, Answer]:
+    """Return of every engine and exact solution whether it applies to a scene."""
+    return {name: applies(name, scene) for name in names()}

@@ -1,1 +1,0 @@
-"""The wave seen: both engines' pillars as an animation, and in three dimensions."""

@@ -1,0 +1,51 @@
+"""The pillar as it moves: snapshots of one scene in space."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+import cases
+from cases.material.calibrate import calibrate
+from compare.figures.export import Drawn, save
+from compare.scenes import find
+from results.snapshots import Snapshots, snapshots_of
+
+MOVING = "beyond/eccentric-blow"  # the scene that is shown as a whole, and with which changes
+CHANGES = {"record.fields": 5e-3, "time.duration": 0.035, "record.energy": False}
+
+
+class Motion(NamedTuple):
+    """Snapshots of a whole pillar; file : shows them in ParaView. bar_speed : m/s."""
+
+    title: str
+    figure: Drawn
+    file: Path
+    bar_speed: float
+
+
+def make_motion(out: Path) -> Motion:
+    """Simulate the moving pillar, write its snapshots, and draw them as they are read back."""
+    import dem
+    from compare.figures.snapshots import draw_snapshots
+    from compare.runs.field_files import read_pvd, write_pvd
+
+    scene = cases.load_variant(find(MOVING), "", CHANGES)
+    found = snapshots_of(dem.simulate_fields(scene))
+    assert found is not None
+    file = write_pvd(out / "fields" / "dem.pvd", found)
+    shown = read_pvd(file).since(1)
+    figure = draw_snapshots("snapshots", {"dem": shown})
+    drawn = save(figure, out / "figures", "snapshots", scene.title, _table(shown))
+    return Motion(scene.title, drawn, file, calibrate(scene).bar_speed)
+
+
+def _table(s: Snapshots) -> pd.DataFrame:
+    """Return where each block's centre is, and its axial stress, at every instant."""
+    assert s.stress is not None
+    moved = (s.points + s.displacement)[:, s.cells].mean(axis=2)  # [instant, cell, 3]
+    count, cells = s.stress.shape
+    columns = {"time (s)": np.repeat(s.time, cells), "block": np.tile(s.block, count)}
+    columns |= {f"{axis} (m)": moved[..., k].ravel() for k, axis in enumerate("xyz")}
+    return pd.DataFrame(columns | {"axial stress (Pa)": s.stress.ravel()})

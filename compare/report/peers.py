@@ -1,0 +1,164 @@
+"""Other codes beside ours on the free pillar: the table that `make bench-peers` writes, as curves,
+cells and sentences.
+
+Every row is a run of a whole process on one core; ours are among them, taken in turns with theirs.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+from math import isfinite
+from pathlib import Path
+from typing import NamedTuple
+
+import pandas as pd
+
+from cases.errors import SceneError
+from cases.files import read_text
+from compare.figures.export import Drawn, save
+from compare.figures.peers_diagram import draw
+from compare.report.tables import Table, percent
+from compare.runs.output import write_csv
+
+PLACE = Path("out/peers/points.csv")  # where `make bench-peers` writes
+NAME = "peers"
+TEXTS = ("curve", "settings", "state", "message", "solves", "beside")
+NUMBERS = (
+    *("misfit", "total_misfit", "seconds", "whole", "rate", "work"),
+    *("stepping_over_ours", "whole_over_ours"),
+)
+NEEDED = (*TEXTS, *NUMBERS)
+LARGEST_FILE = 1_000_000  # bytes; the table has a row for each run
+HEADER = [
+    "point",
+    "own model, %",
+    "finest physics, %",
+    "stepping over ours",
+    "whole process over ours",
+    "stepping (s)",
+    "whole process (s)",
+    "freedom-steps a second",
+]
+
+
+class PeersSection(NamedTuple):
+    """The report's section: diagram, table, what it says, what is missing, and the machine."""
+
+    figure: Drawn
+    sentences: list[str]
+    table: Table
+    missing: list[str]
+    machine: str
+
+
+def read(file: Path | None) -> pd.DataFrame | None:
+    """Return the table of a file, or of where it is written; None where there is none.
+
+    Raises SceneError where the file that is named cannot be read or is no such table.
+    """
+    path = file or PLACE
+    if file is None and not path.is_file():
+        return None
+    try:
+        table = pd.read_csv(io.StringIO(read_text(path, LARGEST_FILE)))
+    except ValueError as error:
+        raise SceneError(str(path), "", None, f"cannot be read: {error}") from error
+    if fault := _fault(table):
+        raise SceneError(str(path), "", None, f"is no table of make bench-peers: {fault}")
+    return table
+
+
+def _fault(table: pd.DataFrame) -> str:
+    """Return what is wrong with a table, or nothing."""
+    for name in NEEDED:
+        if name not in table:
+            return f"it has no column {name}"
+    for name in NUMBERS:
+        if not pd.api.types.is_numeric_dtype(table[name]):
+            return f"its column {name} does not hold numbers"
+    for row in table[table["state"] == "done"].to_dict("records"):
+        try:
+            dict(json.loads(row["settings"]))
+        except (TypeError, ValueError, RecursionError):
+            return f"its settings {str(row['settings'])[:60]!r} are no JSON object"
+        if not all(isinstance(row[name], str) for name in ("curve", "solves")):
+            return "a run has no curve or does not say what it solves"
+    return ""
+
+
+def write_section(folder: Path, found: pd.DataFrame) -> PeersSection:
+    """Write peers.csv and the diagram into `folder`; return the section."""
+    write_csv(folder / f"{NAME}.csv", found)
+    title = "The free pillar in other codes"
+    figure = save(draw(NAME, title, found.to_dict("records")), folder, NAME, title)
+    missing = [
+        f"{row['curve']} ({row['solves']}): {row['state']}, {row['message']}"
+        for row in found.to_dict("records")
+        if row["state"] != "done"
+    ]
+    machines = found["machine"].dropna().unique() if "machine" in found else []
+    machine = "; ".join(machines) or "a machine that the table does not name"
+    return PeersSection(figure, sentences(found), table(found), missing, machine)
+
+
+def table(found: pd.DataFrame) -> Table:
+    """Return every run, those of a curve under what it solves; a missing peer says why."""
+    groups: dict[str, list[list[str]]] = {}
+    for row in found.to_dict("records"):
+        group = groups.setdefault(f"{row['curve']}: {row['solves']}", [])
+        group.append(_cells(row) if row["state"] == "done" else _undone(row))
+    return Table(HEADER, groups)
+
+
+def _undone(row: dict) -> list[str]:
+    return [f"{row['state']}: {row['message']}", *[""] * (len(HEADER) - 1)]
+
+
+def _cells(row: dict) -> list[str]:
+    settings = ", ".join(f"{k} {v}" for k, v in json.loads(row["settings"]).items())
+    return [
+        settings.replace("_", " "),
+        percent(row["misfit"]),
+        percent(row["total_misfit"]),
+        _ratio(row, "stepping"),
+        _ratio(row, "whole"),
+        f"{row['seconds']:.2g}",
+        f"{row['whole']:.2g}",
+        f"{row['rate']:.2g}",
+    ]
+
+
+def _ratio(row: dict, kind: str) -> str:
+    value = row[f"{kind}_over_ours"]
+    if not isfinite(value):
+        return ""
+    least, most = row.get(f"{kind}_over_ours_least"), row.get(f"{kind}_over_ours_most")
+    spread = "" if least is None or most is None else f" ({least:.3g} to {most:.3g})"
+    return f"{value:.3g}{spread}"
+
+
+def sentences(found: pd.DataFrame) -> list[str]:
+    """Return over all peers, then for each, how many times as long as ours they take."""
+    held = found[(found["state"] == "done") & found["stepping_over_ours"].notna()]
+    if held.empty:
+        return ["No other code ran: there is nothing to hold ours beside."]
+    over = held["stepping_over_ours"]
+    low, high = held.loc[over.idxmin()], held.loc[over.idxmax()]
+    whole = held["whole_over_ours"]
+    said = [
+        f"On the same chain or mesh, at the same step, stepping takes {over.min():.3g} "
+        f"({low['curve']}) to {over.max():.3g} times ({high['curve']}) as long as here; the whole "
+        f"process, start-up included, {whole.min():.2g} to {whole.max():.2g} times."
+    ]
+    for curve, rows in held.groupby("curve", sort=False):
+        said.append(
+            f"{curve} beside {rows['beside'].iloc[0]}: stepping {_span(rows['stepping_over_ours'])}"
+            f" times, whole process {_span(rows['whole_over_ours'])} times as long."
+        )
+    return said
+
+
+def _span(values: pd.Series) -> str:
+    low, high = (f"{x:.3g}" if x >= 100 else f"{x:.2g}" for x in (values.min(), values.max()))
+    return low if low == high else f"{low} to {high}"

@@ -1,0 +1,175 @@
+"""The report: the figures of Guo & Li (2002), or scenes of one's own, as one page."""
+
+import shlex
+from collections.abc import Sequence
+from concurrent.futures import Executor, Future
+from dataclasses import dataclass, replace
+from pathlib import Path
+from time import perf_counter
+
+from pandas import DataFrame
+
+from compare.engines import Progress
+from compare.experiments.ablation import runner as ablation_runs
+from compare.experiments.ablation import section as ablation_section
+from compare.experiments.pool import Lent, Pool
+from compare.experiments.robustness.section import make_section as make_hard_section
+from compare.experiments.study.runner import alone
+from compare.experiments.study.section import REPORTED, make_sections, measured_on
+from compare.figures.export import save
+from compare.figures.overlay_figures import draw
+from compare.figures.subplots import curve_table
+from compare.misfit.pairs import Comparison
+from compare.report import peers, tables
+from compare.report.cost import seconds
+from compare.report.findings import Finding
+from compare.report.findings.overview import mostly_dispersion
+from compare.report.motion import make_motion
+from compare.report.overview import Overview, Ranked, overview
+from compare.report.render import Page, render
+from compare.report.scenes import Solved, asked_for, solve
+from compare.report.versions import versions
+from compare.runs.output import write_csv, write_text
+from compare.runs.workers import Workers
+
+FREE_PILLAR = "fig-03"  # the scene that says what the paper's own comparison is made of
+PAPERS = (
+    "Figures 2 to 10 of Guo & Li (2002), Chin. J. Rock Mech. Eng. 21(8), 1124–1129, by rigid "
+    "blocks, by a deformable continuum and by exact solutions"
+)
+
+
+@dataclass(frozen=True)
+class Report:
+    """What the report says in short.
+
+    page : the HTML file. overview : where each engine stands on each scene. summary : largest
+    misfit in % by pair and scene. about : what the distance to the homogenised bar is made of;
+    None of scenes other than the paper's. findings : by name of the scene. seconds : it took.
+    """
+
+    page: Path
+    overview: Overview
+    summary: tables.Table
+    about: Finding | None
+    findings: dict[str, list[Finding]]
+    seconds: float
+
+    @property
+    def columns(self) -> list[str]:
+        """The summary's columns: kind of distance, pair, then the scenes."""
+        return ["what", *self.summary.header]
+
+    @property
+    def rows(self) -> list[list[str]]:
+        """The summary's rows, in %."""
+        return [[kind, *row] for kind, rows in self.summary.groups.items() for row in rows]
+
+
+def build(
+    out: Path,
+    progress: Progress | None = None,
+    workers: int = 2,
+    scenes: Sequence[str] = (),
+    studies: tuple[str, ...] = REPORTED,
+    peers_table: Path | None = None,
+    hard: bool = True,
+) -> Report:
+    """Solve scenes by all that applies, and write their pictures, tables and `out`/index.html.
+
+    `scenes` are files or names of shipped ones; without any, the page has the paper's figures and
+    after them the studies. `progress` is called with the finished fraction.
+    `peers_table` is what `make bench-peers` wrote; None: where it writes, if it did.
+    `hard` : also put both engines to the hard cases, except those that take long.
+    Raises SceneError and UnstableError, as `compare` does; the page is then not written.
+    """
+    began = perf_counter()
+    with Workers(workers) as executor:
+        if scenes:
+            page = _of_scenes(Path(out), scenes, progress, lambda: Lent(executor))
+        else:
+            others = peers.read(peers_table)
+            page = _of_paper(Path(out), progress, lambda: Lent(executor))
+            page = _with_hard_cases(page, Path(out), lambda: Lent(executor)) if hard else page
+            page = _with_studies(page, Path(out), studies, others)
+    file = write_text(Path(out) / "index.html", render(page, Path(out)))
+    found = {section.name: section.findings for section in page.sections}
+    taken = perf_counter() - began
+    return Report(file, page.overview, page.summary, page.about, found, taken)
+
+
+def _of_scenes(out: Path, scenes: Sequence[str], progress: Progress | None, pool: Pool) -> Page:
+    """Return the page of some scenes alone."""
+    solved = solve(out / "figures", asked_for(scenes), progress, pool)
+    count = len(solved.sections)
+    about = solved.sections[0].title if count == 1 else f"{count} scenes"
+    return _page(solved, about, shlex.join(["jointwave", "report", *scenes, "--out", "DIR"]))
+
+
+def _of_paper(out: Path, progress: Progress | None, pool: Pool) -> Page:
+    """Return the page of the paper's figures, and prepare the effects that it weighs."""
+    kept, moving = out / "effects", []
+    weighed = ablation_runs.unprepared(ablation_runs.reported(), kept)
+
+    def besides(executor: Executor) -> list[Future]:
+        moving.append(executor.submit(make_motion, out))
+        return [*moving, *ablation_runs.submit(executor, weighed, kept)]
+
+    solved = solve(out / "figures", asked_for(()), progress, pool, besides)
+    page = _page(solved, PAPERS, "jointwave report --out DIR")
+    about = mostly_dispersion(solved.comparisons[FREE_PILLAR][0])
+    return replace(page, about=about, motion=moving[0].result())
+
+
+def _page(solved: Solved, subtitle: str, command: str) -> Page:
+    sections = solved.sections
+    return Page(
+        subtitle,
+        overview(_ranked(solved)),
+        tables.summary_table({s.label: solved.comparisons[s.name] for s in sections}),
+        sections,
+        command,
+        measured_on(),
+        versions(solved.comparisons.values()),
+    )
+
+
+def _ranked(solved: Solved) -> list[Ranked]:
+    """Return where engines stand on each scene, and what a run of theirs takes, timed alone."""
+    with alone():
+        return [
+            Ranked(s.name, s.label, s.title, s.standings, seconds(solved.comparisons[s.name][0]))
+            for s in solved.sections
+        ]
+
+
+def _with_hard_cases(page: Page, out: Path, pool: Pool) -> Page:
+    return replace(page, stability=make_hard_section(out, pool))
+
+
+def _with_studies(
+    page: Page, out: Path, studies: tuple[str, ...], others: DataFrame | None
+) -> Page:
+    """Return the page with what was measured: the seconds after everything else, and alone."""
+    measured = make_sections(out, studies)
+    balances = ablation_runs.complete(ablation_runs.reported(), out / "effects")
+    return replace(
+        page,
+        studies=measured,
+        effects=ablation_section.write_section(out / "effects", balances),
+        peers=None if others is None else peers.write_section(out / "studies", others),
+        peers_file=str(peers.PLACE),
+    )
+
+
+def write_comparisons(comparisons: list[Comparison], out: Path) -> None:
+    """Write the figure, the curves and the distances of one scene's variants into a folder.
+
+    With curves of others also how they were aligned, as comparison-alignment.csv.
+    """
+    folder, name = Path(out), "comparison"
+    curves = curve_table(comparisons).reset_index()
+    save(draw(name, comparisons), folder, name, comparisons[0].scene.title, curves)
+    write_csv(folder / f"{name}-misfits.csv", tables.distance_frame(comparisons))
+    if any(comparison.besides for comparison in comparisons):
+        write_csv(folder / f"{name}-alignment.csv", tables.alignment_frame(comparisons))

@@ -1,0 +1,145 @@
+"""One scene of the page: what is drawn of it, its distances, and what it shows."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from hashlib import sha256
+from pathlib import Path
+from typing import NamedTuple
+
+import xarray as xr
+
+import cases
+from compare.figures.export import Drawn, save
+from compare.figures.figure import Picture
+from compare.figures.scene_figures import pictures_of
+from compare.misfit.pairs import Comparison
+from compare.report import tables
+from compare.report.findings import Finding, findings
+from compare.report.verdict import Standing, standings
+from compare.runs.output import write_csv
+
+PAPER = Path(cases.__file__).parent / "guo-li-2002"
+Fields = list[dict[str, xr.Dataset]]
+#: What two drawings of the same may differ by: the names of their parts, and their titles.
+NAMES = re.compile(r"<title>.*?</title>|(?:\bid=\"|url\(#|href=\"#)[^\")]*", re.DOTALL)
+
+
+class Asked(NamedTuple):
+    """A scene of the report: its file, how its user calls it, and its name on the page."""
+
+    file: Path
+    called: str
+    name: str
+
+    @property
+    def number(self) -> int | None:
+        """Of the paper's figure that the scene is; None for any other scene."""
+        found = re.fullmatch(r"fig-(\d+)", self.file.stem)
+        return int(found[1]) if found and self.file.resolve().parent == PAPER.resolve() else None
+
+    @property
+    def label(self) -> str:
+        """What a column or a link calls it."""
+        return f"fig. {self.number}" if self.number else self.name
+
+
+class Shown(NamedTuple):
+    """A picture as it stands on the page.
+
+    folded : whether it stands in a fold. marks : what no other picture of the page shares. place,
+    words : the id and the words of the same picture further up, which is linked to in its place.
+    """
+
+    drawn: Drawn
+    folded: bool
+    marks: frozenset[str]
+    place: str = ""
+    words: str = ""
+
+
+class Section(NamedTuple):
+    """One scene of the page; `toml` is its file's text, `command` what makes the same again."""
+
+    name: str
+    label: str
+    number: int | None
+    title: str
+    source: str
+    toml: str
+    command: str
+    figures: list[Shown]
+    distances_file: Path
+    findings: list[Finding]
+    misfits: tables.Table
+    distances: tables.Table
+    runs: tables.Table
+    reasons: tables.Table
+    standings: dict[str, Standing]
+
+    @property
+    def heading(self) -> str:
+        """What stands above it."""
+        return f"Figure {self.number}. {self.title}" if self.number else self.title
+
+
+def make_section(
+    folder: Path, asked: Asked, comparisons: list[Comparison], fields: Fields
+) -> Section:
+    """Draw all pictures of a scene's variants, write their files into `folder`, return its section.
+
+    fields : each variant's results all along the pillar, for space-time diagrams.
+    """
+    scene = comparisons[0].scene
+    pictures = pictures_of(asked.name, comparisons, fields)
+    distances = folder / f"{asked.name}-misfits.csv"
+    return Section(
+        asked.name,
+        asked.label,
+        asked.number,
+        scene.title,
+        scene.source or "",
+        asked.file.read_text(encoding="utf-8-sig"),
+        shlex.join(["jointwave", "report", asked.called, "--out", asked.name]),
+        [draw(folder, picture) for picture in pictures],
+        write_csv(distances, tables.distance_frame(comparisons)),
+        findings(asked.number, comparisons) if asked.number else [],
+        tables.misfit_table(comparisons),
+        tables.distance_table(comparisons),
+        tables.run_table(comparisons),
+        tables.reason_table(comparisons),
+        standings(comparisons),
+    )
+
+
+def draw(folder: Path, picture: Picture) -> Shown:
+    """Write a picture's files: those that the page offers."""
+    p = picture
+    drawn = save(p.static, folder, p.name, p.title, p.table, p.caption, p.plot, png=False)
+    numbers = drawn.file("csv").read_bytes()
+    seen = NAMES.sub("", drawn.svg)
+    return Shown(
+        drawn, p.folded, frozenset(sha256(x).hexdigest() for x in (seen.encode(), numbers))
+    )
+
+
+def linked(sections: list[Section]) -> list[Section]:
+    """Return sections in which no picture stands twice: a later one is a link to the first, and its
+    files are removed. One is the same where its drawing is, or its numbers are."""
+    known: dict[str, tuple[str, str]] = {}
+    found = []
+    for section in sections:
+        figures = []
+        for shown in section.figures:
+            first = next((known[mark] for mark in shown.marks if mark in known), None)
+            if first is None:
+                words = f"{section.label}: {shown.drawn.title}"
+                known |= dict.fromkeys(shown.marks, (f"{shown.drawn.name}-figure", words))
+                figures.append(shown)
+                continue
+            for kind in ("svg", "pdf", "csv"):
+                shown.drawn.file(kind).unlink(missing_ok=True)
+            figures.append(shown._replace(place=first[0], words=first[1]))
+        found.append(section._replace(figures=figures))
+    return found

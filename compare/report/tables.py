@@ -1,0 +1,248 @@
+"""The tables of the report, as plain text in rows."""
+
+from collections.abc import Callable, Iterable
+from math import isfinite
+from typing import NamedTuple
+
+import pandas as pd
+
+from compare.figures.subplots import variant_names
+from compare.misfit.metrics import misfit
+from compare.misfit.pairs import GIVEN, PAIRS, Comparison, Pair, Row
+from results.dataset import energy_residual
+
+#: What each pair's distance is made of.
+MEANING = {
+    "dem ~ lattice": "time stepping of the rigid blocks",
+    "dem ~ no-tension-chain": "time stepping of the rigid blocks that open and close",
+    "dem ~ spatial-lattice": "time stepping of the rigid blocks in space",
+    "continuum-jointed ~ jointed-bar": "elements and time stepping of the jointed rock",
+    "continuum-equivalent ~ equivalent-bar": "elements and time stepping of the homogenised bar",
+    "continuum-equivalent ~ images": "the same, against d'Alembert's images",
+    "continuum-equivalent ~ kelvin-voigt": "the same, against the damped modes",
+    "series ~ images": "the paper's series, cut after its last term",
+    "dem ~ jointed-bar": "rigid instead of deformable blocks",
+    "dem ~ equivalent-bar": "the paper's own comparison: discrete blocks against a smooth bar",
+    "continuum-equivalent ~ jointed-bar": "joints smeared out over the bar",
+    "dem ~ slip-joint": "discrete blocks around the joint that slips",
+    "dem ~ sliding-block": "blocks on springs, which settle first",
+    "dem ~ continuum-jointed": "engine against engine, same joints",
+    "dem ~ continuum-equivalent": "engine against engine, joints against none",
+    "continuum-equivalent ~ continuum-jointed": "one engine, with and without joints",
+}
+
+
+class Table(NamedTuple):
+    """Column names, and rows of cells in groups: a heading, then its rows."""
+
+    header: list[str]
+    groups: dict[str, list[list[str]]]
+
+
+def title(pair: Pair) -> str:
+    """Return a pair as scene files write it."""
+    return f"{pair.one} ~ {pair.other}"
+
+
+def percent(x: float) -> str:
+    """Return a ratio in percent to three digits; below 0.001 % only that it is."""
+    if not isfinite(x):
+        return "–"
+    if 0 < x < 1e-5:
+        return "< 0.001"
+    return f"{100 * x:#.3g}".rstrip(".")
+
+
+def misfit_table(comparisons: list[Comparison]) -> Table:
+    """Return the relative L2 misfits in %: one row a pair, one column a variant and receiver.
+
+    Faint waveforms and displacements, which are velocities once more, are in `distance_table`.
+    """
+    names = variant_names(comparisons)
+    rows = [row for c in comparisons for row in c.rows if _is_shown(row)]
+    places = list(dict.fromkeys((row.quantity, row.y) for row in rows))
+    cells: dict[Pair, dict[tuple, str]] = {}
+    for name, comparison in zip(names, comparisons, strict=True):
+        for row in filter(_is_shown, comparison.rows):
+            where = (name, row.quantity, row.y)
+            cells.setdefault(row.pair, {})[where] = percent(row.distance.misfit)
+    columns = [(name, *place) for name in names for place in places]
+    header = ["pair", "what it is made of"]
+    header += [f"{name}, {y:g} m" if len(places) > 1 else name for name, _, y in columns]
+
+    def line(pair: Pair) -> list[str]:
+        found = [cells[pair].get(column, "") for column in columns]
+        return [title(pair), MEANING.get(title(pair), ""), *found]
+
+    return Table(
+        header, _by_kind(lambda pair: [line(pair)] if pair in cells else [], given(comparisons))
+    )
+
+
+def _is_shown(row: Row) -> bool:
+    return not (row.faint or row.quantity.startswith("displacement"))
+
+
+def given(comparisons: list[Comparison]) -> list[Pair]:
+    """Return the pairs of others' curves, a file after the other."""
+    rows = [row for comparison in comparisons for row in comparison.rows]
+    return list(dict.fromkeys(row.pair for row in rows if row.pair.kind == GIVEN))
+
+
+def _by_kind(
+    lines: Callable[[Pair], list[list[str]]], more: Iterable[Pair] = ()
+) -> dict[str, list[list[str]]]:
+    groups: dict[str, list[list[str]]] = {}
+    for pair in (*PAIRS, *more):
+        if found := lines(pair):
+            groups.setdefault(pair.kind, []).extend(found)
+    return groups
+
+
+DISTANCE_HEADER = [
+    "pair",
+    "variant",
+    "receiver",
+    "relative L2 (%)",
+    "peak ratio",
+    "delay (ms)",
+    "period ratio",
+    "envelope misfit (%)",
+    "phase misfit (%)",
+]
+
+
+def distance_table(comparisons: list[Comparison]) -> Table:
+    """Return every distance of every pair at every receiver of every variant."""
+    names = variant_names(comparisons)
+
+    def lines(pair: Pair) -> list[list[str]]:
+        return [
+            [title(pair), name, f"{row.quantity} at {row.y:g} m", *_distances(row)]
+            for name, comparison in zip(names, comparisons, strict=True)
+            for row in comparison.rows
+            if row.pair == pair
+        ]
+
+    return Table(DISTANCE_HEADER, _by_kind(lines, given(comparisons)))
+
+
+def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
+    """Return the same as numbers, SI, for a machine to read."""
+    return pd.DataFrame(
+        {
+            "kind": row.pair.kind,
+            "pair": title(row.pair),
+            "variant": name,
+            "quantity": row.quantity,
+            "y (m)": row.y,
+            "relative L2": row.distance.misfit,
+            "own error of the reference": row.floor,
+            "faint": row.faint,
+            "peak ratio": row.distance.peak_ratio,
+            "delay (s)": row.distance.delay,
+            "period ratio": row.distance.period_ratio,
+            "envelope misfit": row.distance.envelope,
+            "phase misfit": row.distance.phase,
+        }
+        for name, comparison in zip(variant_names(comparisons), comparisons, strict=True)
+        for row in comparison.rows
+    )
+
+
+def alignment_frame(comparisons: list[Comparison]) -> pd.DataFrame:
+    """Return how each file of others' curves was put beside each variant, SI."""
+    return pd.DataFrame(
+        {
+            "file": beside.curves.name,
+            "variant": name,
+            "samples": len(beside.time),
+            "times": "file" if beside.own_times else "scene",
+            "start (s)": beside.time[0],
+            "end (s)": beside.time[-1],
+            "outside": beside.outside,
+            "missed": beside.missed,
+            "moved by (s)": beside.shift.seconds if beside.shift else 0.0,
+            "onto": beside.shift.onto if beside.shift else "",
+            "correlation": beside.shift.correlation if beside.shift else None,
+        }
+        for name, comparison in zip(variant_names(comparisons), comparisons, strict=True)
+        for beside in comparison.besides
+    )
+
+
+def _distances(row: Row) -> list[str]:
+    d = row.distance
+    rest = (
+        (f"{d.peak_ratio:.4f}", d.peak_ratio),
+        (f"{1e3 * d.delay:+.3f}", d.delay),
+        (f"{d.period_ratio:.4f}", d.period_ratio),
+    )
+    shown = [text if isfinite(x) else "–" for text, x in rest]
+    spectral = ["" if x is None else percent(x) for x in (d.envelope, d.phase)]
+    return [percent(d.misfit), *shown, *spectral]
+
+
+RUN_HEADER = [
+    "variant",
+    "degrees of freedom",
+    "steps",
+    "step (µs)",
+    "of the critical step",
+    "stepping (s)",
+    "energy residual",
+]
+
+
+def run_table(comparisons: list[Comparison]) -> Table:
+    """Return what each engine's run took, and how well its energy ledger closes."""
+    groups: dict[str, list[list[str]]] = {}
+    for variant, comparison in zip(variant_names(comparisons), comparisons, strict=True):
+        for name, result in comparison.results.items():
+            a = result.attrs
+            if "steps" not in a:
+                continue
+            residual = f"{energy_residual(result):.1e}" if "energy" in result else "not kept"
+            groups.setdefault(name, []).append(
+                [
+                    variant,
+                    str(a["degrees_of_freedom"]),
+                    str(a["steps"]),
+                    f"{1e6 * a['dt']:.3g}",
+                    f"{a['dt'] / a['critical_dt']:.3f}",
+                    f"{a['seconds_stepping']:.3f}",
+                    residual,
+                ]
+            )
+    return Table(RUN_HEADER, groups)
+
+
+def reason_table(comparisons: list[Comparison]) -> Table:
+    """Return why the solutions that are not drawn do not apply."""
+    found: dict[tuple[str, str], list[str]] = {}
+    for variant, comparison in zip(variant_names(comparisons), comparisons, strict=True):
+        for name, reason in comparison.reasons.items():
+            found.setdefault((name, reason), []).append(variant)
+    rows = [
+        [name, "all" if len(variants) == len(comparisons) else "; ".join(variants), reason]
+        for (name, reason), variants in sorted(found.items())
+    ]
+    return Table(["solution", "variants", "why it does not apply"], {"": rows} if rows else {})
+
+
+def summary_table(figures: dict[str, list[Comparison]]) -> Table:
+    """Return the largest misfit in % of each pair over the variants of each figure.
+
+    Of the waveform that is furthest off, as `[expect]` bounds it.
+    """
+
+    def worst(pair: Pair, comparisons: list[Comparison]) -> str:
+        pairs = [(c.results.get(pair.one), c.results.get(pair.other)) for c in comparisons]
+        found = [misfit(a, b) for a, b in pairs if a is not None and b is not None]
+        return percent(max(found)) if found else ""
+
+    def lines(pair: Pair) -> list[list[str]]:
+        cells = [worst(pair, comparisons) for comparisons in figures.values()]
+        return [[title(pair), *cells]] if any(cells) else []
+
+    return Table(["pair", *figures], _by_kind(lines))

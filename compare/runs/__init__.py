@@ -1,0 +1,1 @@
+"""Execution of runs: jobs, processes, checkpoints and files."""

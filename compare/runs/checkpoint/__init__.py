@@ -1,0 +1,1 @@
+"""Checkpoints, signals, and one run at a time in a folder."""

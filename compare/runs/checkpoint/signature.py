@@ -1,0 +1,63 @@
+"""What decides the bits of a result: the scene, what computes it, and on how many processes."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+import cases
+from cases.schema.scene import Scene
+from results.dataset import scene_hash
+
+Signature = dict[str, str]
+
+
+def signature(scene: Scene, name: str, processes: int) -> Signature:
+    """Return what must be the same for a run to go on, or its result to be taken for this one.
+
+    name : of what solves the scene.
+    """
+    return {
+        "scene": _scene(scene),
+        "engine": name,
+        "number of processes": str(processes),
+        "program": program(),
+        "version of numpy, numba or dolfinx": _versions(name),
+    }
+
+
+def differences(one: Signature, other: Signature) -> list[str]:
+    """Return what two signatures do not share."""
+    return [key for key in one if other.get(key) != one[key]]
+
+
+@cache
+def program() -> str:
+    """Return a hash of all that computes."""
+    digest, root = hashlib.sha256(), Path(cases.__file__).parent.parent
+    for package in ("cases", "results", "numerics", "joints", "dem", "continuum", "compare"):
+        for source in sorted((root / package).rglob("*.py")):
+            digest.update(source.read_bytes())
+    return digest.hexdigest()
+
+
+def _scene(scene: Scene) -> str:
+    """Return a hash of a scene, the mesh that it names included."""
+    mesh = scene.numerics.continuum.mesh_path
+    # One that cannot be read is refused, in its own words, by what would use it.
+    if mesh is None or not Path(mesh).is_file():
+        return scene_hash(scene)
+    with Path(mesh).open("rb") as file:
+        return f"{scene_hash(scene)} {hashlib.file_digest(file, 'sha256').hexdigest()[:16]}"
+
+
+def _versions(name: str) -> str:
+    found = {package: version(package) for package in ("numpy", "numba")}
+    if name.startswith("continuum-"):
+        from continuum.space import compat
+
+        found["dolfinx"] = compat.VERSION
+    return json.dumps(found)

@@ -1,0 +1,234 @@
+"""The only place that writes files: each under a temporary name first, then renamed."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from errno import EIO
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+
+from cases.errors import SceneError, printable
+from cases.files import is_number, read_json
+from results.dataset import Fields
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+
+T = TypeVar("T")
+
+LARGEST_ROW = 100_000_000  # bytes, of what a study, a sweep or the battery keeps of a point
+FORMULA = ("=", "+", "-", "@")  # how what a spreadsheet computes begins
+UNFINISHED = ".unfinished-"  # in the names of files that are being written, which begin with a dot
+
+
+def write(path: Path, save: Callable[[Path], object]) -> Path:
+    """Let `save` write a file and put it at `path` only when it is whole, and safe on the disk.
+
+    What stood at `path` before stays untouched until then, and for good when `save` fails.
+    Raises OSError, which names `path`, where it cannot be written.
+    """
+    with _names(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        prefix = f".{path.stem.lstrip('.')}{UNFINISHED}"
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=prefix, suffix=path.suffix)
+        os.close(handle)
+        temporary = Path(name)
+        try:
+            save(temporary)
+            temporary.chmod(0o644)
+            _to_disk(temporary)
+            temporary.replace(path)
+        finally:
+            temporary.unlink(missing_ok=True)
+    return path
+
+
+def create(path: Path, content: bytes) -> Path:
+    """Write a file where none is; raises SceneError where anything is, OSError as `write` does."""
+
+    def save(temporary: Path) -> None:
+        temporary.write_bytes(content)
+        try:
+            os.link(temporary, path)  # unlike renaming, this never replaces
+        except FileExistsError:
+            raise SceneError(str(path), "", None, "is there already, and is not replaced") from None
+
+    return write(path, save)
+
+
+def _to_disk(path: Path) -> None:
+    """Wait until a file has got through all buffers: a full disk may show only now."""
+    with path.open("rb") as file:
+        os.fsync(file.fileno())
+
+
+@contextmanager
+def _names(path: Path) -> Iterator[None]:
+    """Let an OSError name a file, not the temporary one in its place."""
+    try:
+        yield
+    except OSError as error:
+        if UNFINISHED not in str(error.filename or UNFINISHED):
+            raise
+        # Some libraries say in words of their own that a disk is full.
+        raise OSError(error.errno or EIO, error.strerror or str(error), str(path)) from None
+
+
+def sweep(folder: Path) -> None:
+    """Remove what a process that was killed has left unfinished in a folder."""
+    for left in folder.glob(f".*{UNFINISHED}*"):
+        if left.is_dir():
+            shutil.rmtree(left, ignore_errors=True)
+        else:
+            left.unlink(missing_ok=True)
+
+
+#: How a result begins: in NetCDF 3, or 4 by others' hands, or is empty.
+NETCDF = (b"CDF", b"\x89HDF")
+
+
+def refuse_foreign(path: Path, begins: tuple[bytes, ...] = NETCDF) -> None:
+    """Raise SceneError where what stands at the place of a file of ours does not begin like one.
+
+    A link there is replaced, and what it leads to stays.
+    """
+    if path.is_symlink() or not path.exists():
+        return
+    found = "is a folder" if path.is_dir() else "is not a result"
+    if not path.is_file() or not _begins(path, begins):
+        raise SceneError(
+            str(path), "", None, f"{found} and would be replaced: choose another --out"
+        )
+
+
+def _begins(path: Path, begins: tuple[bytes, ...]) -> bool:
+    with path.open("rb") as file:
+        head = file.read(8)
+    return not head or head.startswith(begins)
+
+
+def _refuse_foreign_folder(path: Path, new: Path) -> None:
+    """Raise SceneError where a folder holds any file of which the new one has not the like."""
+    kinds = {file.suffix for file in new.iterdir()} if new.is_dir() else set()
+    if path.is_symlink() or not path.exists():
+        return
+    foreign = [path] if path.is_file() else [f for f in path.iterdir() if f.suffix not in kinds]
+    if foreign:
+        allowed = "is not a result and would be replaced: choose another --out"
+        raise SceneError(str(min(foreign)), "", None, allowed)
+
+
+def write_folder(path: Path, save: Callable[[Path], object]) -> Path:
+    """Let `save` make and fill a folder, and put it at `path` only when it is whole.
+
+    A folder that stood at `path` before is replaced by it, and stays as it is when `save` fails.
+    Raises SceneError where it holds other files.
+    """
+    with _names(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        prefix = f".{path.stem.lstrip('.')}{UNFINISHED}"
+        with tempfile.TemporaryDirectory(dir=path.parent, prefix=prefix) as place:
+            new, old = Path(place, path.name), Path(place, "old")
+            save(new)
+            _refuse_foreign_folder(path, new)
+            if path.exists() or path.is_symlink():
+                path.replace(old)
+            new.replace(path)
+    return path
+
+
+def write_csv(path: Path, table: pd.DataFrame, digits: int = 9) -> Path:
+    """Write a table without its index; text in it is as `csv_cell` has it."""
+    safe = table.rename(columns=csv_cell)
+    texts = [i for i, kind in enumerate(safe.dtypes) if kind.kind not in "biuf"]
+    for i in texts:
+        safe.isetitem(i, [csv_cell(value) for value in safe.iloc[:, i]])
+    return write(path, lambda file: safe.to_csv(file, float_format=f"%.{digits}g", index=False))
+
+
+def csv_cell(value: object) -> object:
+    """Return a cell that a spreadsheet takes for what it is; what is no text stays.
+
+    Text of others might begin a formula, and is put behind an apostrophe then.
+    """
+    if not isinstance(value, str):
+        return value
+    text = printable(value)
+    return f"'{text}" if text.startswith(FORMULA) and not is_number(text) else text
+
+
+def write_text(path: Path, text: str) -> Path:
+    """Write text as UTF-8."""
+    return write(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+
+
+def read_kept(path: Path, form: type[T]) -> T:
+    """Return what `write_text` has kept as JSON, of a form: a NamedTuple, a list of them.
+
+    Raises SceneError where the file is not of that form.
+    """
+    from pydantic import TypeAdapter
+
+    try:
+        return TypeAdapter(form).validate_python(read_json(path, LARGEST_ROW))
+    except ValueError as error:  # pydantic's are of several lines
+        reason = str(error).partition("\n")[0]
+        raise SceneError(str(path), "", None, f"is damaged, remove it: {reason}") from None
+
+
+def fields_of(result: xr.Dataset) -> Fields:
+    """Return a result as plain arrays."""
+    variables = {
+        str(name): (tuple(map(str, v.dims)), v.values, dict(v.attrs))
+        for name, v in result.variables.items()
+    }
+    return Fields(variables, {}, dict(result.attrs))
+
+
+def write_fields(path: Path, fields: Fields) -> Path:
+    """Write a result as NetCDF 3 by scipy, just as xarray would but without importing it."""
+    from scipy.io import netcdf_file
+
+    refuse_foreign(path)
+
+    def save(temporary: Path) -> None:
+        with netcdf_file(str(temporary), "w", version=2) as file:
+            _write_attributes(file, fields.attributes)
+            for name, (dimensions, values, attributes) in {
+                **fields.coords,
+                **fields.variables,
+            }.items():
+                _write_variable(file, name, dimensions, values, attributes)
+
+    return write(path, save)
+
+
+def _write_variable(file, name: str, dimensions: tuple, values: np.ndarray, attributes: dict):
+    if values.dtype.kind == "U":  # the format holds characters only, in a dimension of their own
+        encoded = np.char.encode(values, "utf-8")
+        values = encoded.view("S1").reshape(*values.shape, encoded.dtype.itemsize)
+        dimensions = (*dimensions, f"string{encoded.dtype.itemsize}")
+        attributes = {**attributes, "_Encoding": "utf-8"}
+    for dimension, length in zip(dimensions, values.shape, strict=True):
+        if dimension not in file.dimensions:
+            file.createDimension(dimension, length)
+    variable = file.createVariable(name, values.dtype, dimensions)
+    variable[:] = values
+    _write_attributes(variable, attributes)
+
+
+def _write_attributes(target, attributes: dict) -> None:
+    for key, value in attributes.items():
+        # A bare Python number would be stored in single precision; the format knows no int64.
+        number = isinstance(value, int | float | np.number)
+        whole = isinstance(value, int | np.integer) and abs(int(value)) < 2**31
+        kind = np.int32 if whole else np.float64
+        setattr(target, key, np.array(value, dtype=kind) if number else value.encode())

@@ -1,0 +1,198 @@
+"""The jobs of `jointwave run`: watched over, executed, each file whole."""
+
+import json
+import os
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+from cases.errors import SceneError, StoppedError
+from compare.engines import Progress, solve
+from compare.experiments.cost import timings
+from compare.runs.checkpoint.resume import Keeping, Watch, result_of, watch
+from compare.runs.checkpoint.schedule import RunKeeper
+from compare.runs.jobs import Job
+from compare.runs.output import fields_of, write_fields
+from compare.runs.processes import ALONE, Processes
+from results.dataset import Fields, imbalance
+
+
+class Done(NamedTuple):
+    """One result that was made, with what it cost.
+
+    fragments : the pieces between broken joints, see `dem.fragments`; None where none can break.
+    out_of_balance : force ratio of the static state that it started from; None where from none.
+    fields : the files that show its snapshots; none where it has no snapshots.
+    """
+
+    job: Job
+    steps: int
+    seconds: float
+    residual: float | None
+    fragments: list[dict] | None
+    out_of_balance: float | None
+    fields: list[Path]
+
+
+def execute(
+    jobs: list[Job],
+    progress: Progress,
+    vtx: bool = False,
+    processes: Processes = ALONE,
+    keeping: Keeping | None = None,
+) -> list[Done]:
+    """Run the jobs one after the other and write each result; `vtx`: snapshots as VTX too.
+
+    processes : share the runs of the continuum. The first of them makes the others, writes all
+    files, and alone returns what was done.
+    keeping : how the runs are kept on their way; None: they are not.
+    Raises SceneError where a run cannot be made, its file or a VTX file not be written, or it
+    cannot go on from its checkpoint; Interrupted where a signal has stopped one.
+    """
+    done: list[Done] = []
+    if vtx:
+        _refuse_vtx(jobs)
+    watches = [_watch(job, keeping, processes) for job in jobs]
+
+    def part_of(i: int) -> Progress:
+        return lambda fraction: progress((i + fraction) / len(jobs))
+
+    for i, (job, watched) in enumerate(zip(jobs, watches, strict=True)):
+        done += _made(job, watched, part_of(i), vtx, processes)
+        progress((i + 1) / len(jobs))
+        if keeping is not None and processes.is_first:
+            keeping.signals.act()
+    return done
+
+
+def _watch(job: Job, keeping: Keeping | None, processes: Processes) -> Watch | None:
+    """Return a job watched over by those who share it; None on processes that have no part in it.
+
+    Raises SceneError where its result could not be written in the end.
+    """
+
+    def by(who: Processes) -> Watch:
+        if job.path.is_dir():
+            raise SceneError(str(job.path), "", None, "is a folder, must be a file")
+        if job.path.exists() and not os.access(job.path, os.W_OK):
+            raise SceneError(str(job.path), "", None, "is protected from being written")
+        return watch(job.scene, job.name, job.path, keeping, who)
+
+    return by(processes) if _is_shared(job) else processes.by_first(lambda: by(ALONE))
+
+
+def _is_shared(job: Job) -> bool:
+    """Return whether several processes run a job together."""
+    return job.name.startswith("continuum-")
+
+
+def _made(
+    job: Job, watched: Watch | None, progress: Progress, vtx: bool, processes: Processes
+) -> list[Done]:
+    """Run a job and write its result; return what was done, nothing but on the first process."""
+    if watched is None:  # the first process alone runs it
+        done = processes.by_first(lambda: None)
+    elif watched.is_made:
+        done = processes.by_first(lambda: _finished(job, watched, vtx))
+    elif _is_shared(job):
+        result = _run(job, watched, progress, processes)
+        done = processes.by_first(lambda: _written(job, watched, result, vtx))
+    else:
+        done = processes.by_first(
+            lambda: _written(job, watched, _run(job, watched, progress, ALONE), vtx)
+        )
+    return [] if done is None else [done]
+
+
+def _run(job: Job, watched: Watch, progress: Progress, processes: Processes) -> Fields:
+    try:
+        return _solve(job, progress, processes.comm, watched.keeper)
+    except StoppedError as error:
+        processes.by_first(partial(_keep, job, error))
+        raise
+
+
+def _keep(job: Job, error: StoppedError) -> None:
+    """Write what a run had computed when it stopped, beside where its result would be."""
+    result, error.result = error.result, None
+    if result is None:
+        return
+    path = _stopped(job)
+    try:
+        write_fields(path, result if isinstance(result, Fields) else fields_of(result))
+    except OSError as problem:
+        error.args = (f"{error}; {path} cannot be written: {problem.strerror}",)
+    else:
+        error.args = (f"{error}; what was computed is in {path}",)
+
+
+def _stopped(job: Job) -> Path:
+    return job.path.with_suffix(".stopped.nc")
+
+
+def _written(job: Job, watched: Watch, result: Fields, vtx: bool) -> Done:
+    """Write a result with its snapshots; what was kept of the run on its way is needed no more."""
+    signed = watched.signed(result)
+    write_fields(job.path, signed)
+    if watched.keeper is not None and watched.keeper.done:
+        _stopped(job).unlink(missing_ok=True)
+    else:
+        timings.note(job.name, job.scene, result.attributes)
+    return _finished(job, watched, vtx, signed)
+
+
+def _finished(job: Job, watched: Watch, vtx: bool, result: Fields | None = None) -> Done:
+    """Write the snapshots of a result, that of an earlier command if none is given."""
+    if result is None:
+        result = result_of(job.path, watched.signature)
+        if result is None:
+            raise SceneError(str(job.path), "", None, "has changed since this command began")
+    done = Done(
+        job,
+        int(result.attributes.get("steps", 0)),
+        float(result.attributes.get("seconds_stepping", 0.0)),
+        _residual(result),
+        json.loads(result.attributes.get("fragments", "null")),
+        result.attributes.get("static_out_of_balance"),
+        _write_snapshots(job, result, vtx),
+    )
+    watched.checkpoints.remove()
+    return done
+
+
+def _refuse_vtx(jobs: list[Job]) -> None:
+    from compare.runs.field_files import refuse_vtx
+
+    for job in jobs:
+        if job.scene.record.fields is None:
+            raise SceneError(job.scene.where, "record.fields", None, "is required by --vtx")
+    refuse_vtx()
+
+
+def _write_snapshots(job: Job, result: Fields, vtx: bool) -> list[Path]:
+    """Write a result's snapshots beside it, where it has any; return the files to open."""
+    if job.scene.record.fields is None:
+        return []
+    from compare.runs.field_files import write_pvd, write_vtx
+    from results.snapshots import snapshots_of
+
+    found = snapshots_of(result)
+    if found is None:
+        return []
+    files = [write_pvd(job.path.with_suffix(".pvd"), found)]
+    return [*files, write_vtx(job.path.with_suffix(".bp"), found)] if vtx else files
+
+
+def _residual(result: Fields) -> float | None:
+    if "energy" not in result.variables:
+        return None
+    terms = {**result.variables, **result.coords}["term"][1]
+    return imbalance(result.variables["energy"][1], terms.tolist())
+
+
+def _solve(job: Job, progress: Progress, comm, keeper: RunKeeper | None) -> Fields:
+    if job.name == "dem":
+        from dem import simulate_fields
+
+        return simulate_fields(job.scene, progress, keeper=keeper)
+    return fields_of(solve(job.name, job.scene, progress, comm, keeper))

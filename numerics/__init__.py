@@ -1,0 +1,1 @@
+"""Compilation, array alignment, checkpoints and divergence monitoring, shared by all kernels."""

@@ -1,0 +1,150 @@
+"""What looks at a run from within its kernel, and stops it where its motion has lost its bound.
+
+No speed can be more than all forces together can cause, and no energy come from nowhere. Kernels
+look at the speeds every 96 steps, which costs a look at every velocity in the time of 96 steps, and
+leapfrog, whose ledger is exact, at its last sample.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from numerics.jit import apart, inlined, jitted
+
+EVERY = 96  # steps, at most, between two looks at the speeds
+RUNAWAY = 100.0  # times the speed that forces can cause: at the critical step leapfrog swings wide
+CREATED = 0.1  # of the largest term of the ledger: more than any scheme here makes of a bounded run
+LAST_DIGITS = 1e-9  # of what a ledger holds at rest, of which small changes are differences
+MAGNITUDE = 0x7FFF_FFFF_FFFF_FFFF  # all bits of a number but its sign
+
+SPEED, ENERGY = 0, 1  # what was found out of bounds
+
+
+class Guard(NamedTuple):
+    """What a run is held to, and what was found.
+
+    limit : int64 array, the bits of the largest speed of each kind, m/s (or rad/s, kg m2/s).
+    peak : float array [1], the largest change of a ledger's term so far, J.
+    found : int64 array [3], the step at which the run was found out of bounds, -1 before, what was,
+        SPEED or ENERGY, and the last step that was sound.
+    """
+
+    limit: np.ndarray
+    peak: np.ndarray
+    found: np.ndarray
+
+
+def guard(speeds: Any) -> Guard:
+    """Return what holds a run to `RUNAWAY` times the speeds that its forces can cause."""
+    with np.errstate(over="ignore"):
+        limit = np.minimum(RUNAWAY * np.atleast_1d(speeds), np.finfo(float).max)
+    return Guard(limit.view(np.int64), np.zeros(1), np.array([-1, SPEED, -1]))
+
+
+def look(guard: Guard, speeds: Any, n: int) -> None:
+    """Look at the largest speed of each kind after n steps, whatever n is."""
+    limit = guard.limit.view(np.float64)
+    if guard.found[0] < 0 and not np.all(np.atleast_1d(speeds) <= limit):
+        guard.found[:] = n, SPEED, n - EVERY - 1
+
+
+@jitted
+def audit(guard, energy, first, last, stride):
+    """Look at samples first .. last - 1 of a ledger, `stride` steps apart."""
+    for s in range(first, last):
+        creates_energy(guard, energy, s, s * stride)
+
+
+def speed_that(*motions: float) -> float:
+    """Return a bound on sqrt(2 E / m) from all that puts energy into a body at once.
+
+    Each is a speed: an impulse over the mass, a velocity of the base, sqrt(2 E / m) of what is
+    stored. They add up: d sqrt(2 E) / dt is at most |F| in the norm of 1 / m.
+    """
+    return float(sum(abs(motion) for motion in motions))
+
+
+@inlined
+def next_look(guard, n, end):
+    """Return after which step, `end` at most, to look next."""
+    if guard is None:
+        return end
+    return min(n + EVERY, end)
+
+
+@inlined
+def is_lost(guard, v, n, energy, s, stride):
+    """Return whether, after n steps, the speeds are out of bounds, or the last sample of a ledger,
+    s, of every stride-th step.
+
+    Both looks are functions of their own: the steps are compiled as they are without a guard.
+    """
+    if guard is None:
+        return False
+    if speeds_exceed(v, guard.limit[0]):
+        note(guard.found, n, SPEED, n - EVERY - 1)
+        return True
+    return ledger_creates(guard, energy, s, s * stride)
+
+
+@apart
+def speeds_exceed(v, limit):
+    """Return what `exceeds` does."""
+    return exceeds(v, limit)
+
+
+@apart
+def ledger_creates(guard, energy, s, n):
+    """Return what `creates_energy` does."""
+    return creates_energy(guard, energy, s, n)
+
+
+@inlined
+def runs_away(guard, v, n):
+    """Return whether, after n steps, a velocity is out of bounds or no number."""
+    if guard is not None and exceeds(v, guard.limit[0]):
+        note(guard.found, n, SPEED, n - EVERY - 1)
+        return True
+    return False
+
+
+@inlined
+def exceeds(v, limit):
+    """Return whether a magnitude is above the limit, given by its bits, or no number.
+
+    As whole numbers the bits of magnitudes are in the order of the magnitudes, with infinity and
+    what is no number behind all others. A difference has its sign in one bit, which is collected.
+    """
+    bits, signs = v.view(np.int64), 0
+    for i in range(bits.size):
+        signs |= limit - (bits[i] & MAGNITUDE)
+    return signs < 0
+
+
+@inlined
+def creates_energy(guard, energy, s, n):
+    """Return whether sample s, at step n, of a ledger [term, sample] holds energy from nowhere."""
+    if guard is not None and energy is not None:
+        return _creates(guard, energy, s, n)
+    return False
+
+
+@inlined
+def _creates(guard, energy, s, n):
+    work, created, most = energy.shape[0] - 1, 0.0, 0.0
+    for k in range(work + 1):
+        gained = energy[k, s] - energy[k, 0]
+        created += -gained if k == work else gained
+        guard.peak[0] = max(guard.peak[0], abs(gained))
+        most = max(most, abs(energy[k, s]))
+    if created > CREATED * guard.peak[0] + LAST_DIGITS * most:
+        note(guard.found, n, ENERGY, n - EVERY - 1)
+        return True
+    return False
+
+
+@inlined
+def note(found, n, what, sound):
+    """Keep what was found first."""
+    if found[0] < 0:
+        found[0], found[1], found[2] = n, what, sound

@@ -1,0 +1,50 @@
+"""The one line that a stopped run leaves behind: where, when, why, what to change."""
+
+from typing import NamedTuple
+
+from cases.errors import StoppedError
+from cases.sampling import Clock
+from cases.schema.scene import Scene
+
+HUGE = 1e100  # an amplitude whose squares are no numbers
+
+
+class Sighting(NamedTuple):
+    """What was seen of a run that is out of bounds.
+
+    who : in words. key : of the scene, that decides the step. step : at which, after the last that
+    was `sound`. energy : whether the ledger shows it, not a speed. y : of the fastest, m.
+    """
+
+    who: str
+    key: str
+    step: int
+    sound: int
+    energy: bool
+    y: float
+
+
+def stopped(scene: Scene, time: Clock, critical: float, seen: Sighting) -> StoppedError:
+    """Return the error of a run out of bounds, with the samples that are sound; critical in s."""
+    name = f"{scene.where}, {scene.name}" if scene.name else scene.where
+    what = "created energy" if seen.energy else "ran away"
+    error = StoppedError(
+        f"{name}: {seen.who} {what} at t = {seen.step * time.dt:.6g} s, step {seen.step} of "
+        f"{time.dt:.4g} s, fastest at y = {seen.y:.6g} m: {_cause(scene, time, critical, seen)}"
+    )
+    error.samples = max(0, seen.sound) // time.stride + 1
+    return error
+
+
+def _cause(scene: Scene, time: Clock, critical: float, seen: Sighting) -> str:
+    if time.dt > 0.9999 * critical:
+        return (
+            f"the step is {time.dt / critical:.4g} times the critical step {critical:.4g} s; "
+            f"take {seen.key} of at most 0.9"
+        )
+    if abs(scene.load.amplitude or 0.0) > HUGE:
+        return "numbers grow beyond 1e308; take a smaller load.amplitude"
+    return (
+        "joints open, close or slide within a step, or the scene goes beyond what the scheme can "
+        f"do; {'halve' if seen.key.endswith('fraction') else 'double'} {seen.key}"
+    )

@@ -1,0 +1,82 @@
+"""How every kernel is compiled: one set of options, one cache that follows the sources."""
+
+import fcntl
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from typing import Any
+
+import llvmlite.binding
+import numba
+
+from numerics.cache import cache_directory, make, mark_used
+
+
+def widest_vectors() -> None:
+    """Let kernels use all of a wide vector unit, where compilers by default keep to half of it.
+
+    Rows of 64 blocks fill whole registers, so there is no short loop that this would slow down.
+    """
+    features = llvmlite.binding.get_host_cpu_features()
+    if features.get("avx512f") and not numba.config.CPU_NAME:
+        numba.config.CPU_NAME = llvmlite.binding.get_host_cpu_name()
+        numba.config.CPU_FEATURES = f"{features.flatten()},-prefer-256-bit"
+
+
+widest_vectors()
+numba.config.CACHE_DIR = str(cache_directory(Path(__file__).resolve().parent.parent))
+mark_used(Path(numba.config.CACHE_DIR))
+
+
+def jitted(function: Callable) -> Callable:
+    """Compile a kernel: cached on disk, IEEE arithmetic (fastmath would break bit-identity).
+
+    It must not take a kernel as an argument: numba's index of a cache cannot hold that.
+    Kernels become part of their callers, so that absent parts fall away and loops over many
+    blocks are vectorised; they hold no lock of Python's, so that threads run side by side.
+    """
+    return _compiled(function)
+
+
+def apart(function: Callable) -> Callable:
+    """Compile a kernel, as `jitted` does, that stays a function of its own in all its callers.
+
+    So its machine code, and its speed, is the same whatever they do besides.
+    """
+    return _compiled(function, forceinline=False)
+
+
+def inlined(function: Callable) -> Callable:
+    """Compile a part of kernels, as `jitted` does, that only kernels call.
+
+    Python cannot call it (it would crash): the code that would unpack a whole model at every part
+    would take longer to compile than the parts.
+    """
+    return _compiled(function, no_cpython_wrapper=True)
+
+
+def _compiled(function: Callable, **options: bool) -> Callable:
+    common = {"forceinline": True, "nogil": True, "no_cfunc_wrapper": True}
+    kernel = numba.njit(cache=True, fastmath=False, error_model="numpy", **(common | options))(
+        function
+    )
+    kernel._cache.save_overload = _one_at_a_time(kernel._cache.save_overload)
+    return kernel
+
+
+def _one_at_a_time(save: Callable) -> Callable:
+    """Let one process at a time enter what it has compiled into the cache.
+
+    numba reads a kernel's index, adds to it and writes it back. Two processes at once would give
+    two specialisations the same file, and one of them would run the other's code.
+    """
+
+    @wraps(save)
+    def alone(*arguments: Any) -> None:
+        directory = Path(numba.config.CACHE_DIR)
+        make(directory)
+        with (directory / "lock").open("w") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            save(*arguments)
+
+    return alone

@@ -1,0 +1,1 @@
+"""Results: waveforms, energies and snapshots as xarray datasets and NetCDF files."""

@@ -1,0 +1,205 @@
+"""The one form of every result, whichever engine or formula it comes from."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from cases.effects import active_effects
+from cases.schema.scene import Scene
+from cases.warnings import warnings
+from results.labels import label
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Every term of an energy ledger, and those of the axial motion of joints that hold.
+ALL_TERMS = (
+    "kinetic",
+    "rotation",
+    "elastic",
+    "viscous",
+    "friction",
+    "fracture",
+    "boundary",
+    "gravity",
+    "work",
+)
+TERMS = ("kinetic", "elastic", "viscous", "boundary", "work")
+
+#: What a computed solution bounds its own error of, and the dimensions of the bound.
+ERRORS = {
+    "stress": ("stress_y",),
+    "shear": ("stress_y", "across"),
+    "velocity": ("velocity_y", "axis"),
+    "displacement": ("velocity_y", "axis"),
+    "rotation": ("velocity_y", "axis"),
+}
+
+#: Of the energy at rest: a million times what double precision rounds it to.
+AT_REST = 1e6 * float(np.finfo(float).eps)
+
+Variable = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
+
+
+class Fields(NamedTuple):
+    """A result as plain arrays, in the order that xarray.Dataset takes them.
+
+    variables, coords : name to (dimensions, values, attributes). attributes : of the whole.
+    xarray takes longer to import than most scenes to run; what needs no Dataset uses this.
+    """
+
+    variables: dict[str, Variable]
+    coords: dict[str, Variable]
+    attributes: dict[str, Any]
+
+
+def scene_hash(scene: Scene) -> str:
+    """Return a short hash of everything that decides a result, the load's samples included."""
+    digest = hashlib.sha256(scene.model_dump_json().encode())
+    if scene.load.history is not None:
+        digest.update(scene.load.history.time.tobytes())
+        digest.update(scene.load.history.stress.tobytes())
+    return digest.hexdigest()[:16]
+
+
+def dataset(*arguments: Any, **attributes: Any) -> xr.Dataset:
+    """Return a result as xarray.Dataset; takes what `fields` takes."""
+    import xarray as xr
+
+    return xr.Dataset(*fields(*arguments, **attributes))
+
+
+def fields(
+    scene: Scene,
+    engine: str,
+    time: np.ndarray,
+    stress: np.ndarray,
+    velocity: np.ndarray,
+    displacement: np.ndarray | None = None,
+    energy: np.ndarray | None = None,
+    shear: np.ndarray | None = None,
+    rotation: np.ndarray | None = None,
+    terms: Sequence[str] = TERMS,
+    errors: Mapping[str, np.ndarray] | None = None,
+    **attributes: Any,
+) -> Fields:
+    """Return a result with the schema that all engines and exact solutions share.
+
+    Parameters
+    ----------
+    engine : "dem", "continuum-jointed", ..., or the name of an exact solution.
+    time : float array [n], s.
+    stress : float array [len(record.stress), n], Pa, compression positive.
+    velocity, displacement : float array [len(record.velocity), n], m/s and m, along y; of spatial
+        motion [len(record.velocity), n, 3], along x, y, z.
+    energy : float array [len(terms), n], J; work is what the load has put in, the others
+        what became of it.
+    shear : float array [len(record.stress), n, 2], along x, z, the force on the far side over the
+        area, Pa; of spatial motion alone.
+    rotation : float array [len(record.velocity), n, 3], about x, y, z, rad; likewise.
+    terms : what the rows of `energy` are, from ALL_TERMS.
+    errors : of a solution that is computed, an upper bound of the root-mean-square error over time
+        of each waveform, by its quantity (a key of ERRORS) and in its unit: float arrays of that
+        quantity's shape without time. A closed form has none.
+    attributes : numbers and texts about the run (dt, steps, seconds, ...).
+
+    All are those of `cases.loads.load_history`; the result has the scale of the scene's own load.
+    """
+    points = ("velocity_y", "time", "axis")
+    record, spatial, scale = scene.record, velocity.ndim == 3, scene.load.scale
+    if scale != 1:
+        stress, velocity = scale * stress, scale * velocity
+        displacement = None if displacement is None else scale * displacement
+        energy = None if energy is None else scale * (scale * energy)
+        errors = {name: scale * np.asarray(bound) for name, bound in (errors or {}).items()}
+    coords: dict[str, Variable] = {
+        "time": (("time",), time, label("time")),
+        "stress_y": (("stress_y",), np.array(record.stress, dtype=float), label("stress_y")),
+        "velocity_y": (
+            ("velocity_y",),
+            np.array(record.velocity, dtype=float),
+            label("velocity_y"),
+        ),
+        "axis": (("axis",), np.array(list("xyz") if spatial else ["y"]), label("axis")),
+    }
+    variables: dict[str, Variable] = {
+        "stress": (("stress_y", "time"), stress, label("stress")),
+        "velocity": (points, _with_axis(velocity), label("velocity")),
+    }
+    if displacement is not None:
+        variables["displacement"] = (points, _with_axis(displacement), label("displacement"))
+    if shear is not None:
+        variables["shear"] = (("stress_y", "time", "across"), shear, label("shear"))
+        coords["across"] = (("across",), np.array(["x", "z"]), label("across"))
+    if rotation is not None:
+        variables["rotation"] = (points, rotation, label("rotation"))
+    if energy is not None:
+        variables["energy"] = (("term", "time"), energy, label("energy"))
+        coords["term"] = (("term",), np.array(list(terms)), label("term"))
+    for name, bound in (errors or {}).items():
+        variables[f"{name}_error"] = (
+            ERRORS[name],
+            _of_receivers(name, bound),
+            label(f"{name}_error"),
+        )
+    common = {
+        "engine": engine,
+        "title": scene.title,
+        "variant": scene.name,
+        "scene_hash": scene_hash(scene),
+        **static_attributes(scene),
+        "effects": json.dumps(active_effects(scene)),
+        "warnings": json.dumps(warnings(scene)),
+    }
+    # The longest last, where it hides no other.
+    about = {**common, **attributes, "scene": scene.model_dump_json()}
+    return Fields(variables, coords, about)
+
+
+def static_attributes(scene: Scene) -> dict[str, Any]:
+    """Return what a result says of the state that its motion starts from.
+
+    starts : "unloaded", "prestressed" or "at rest under gravity". prestress : of every section, Pa,
+    where there is one. Displacement counts from the prestressed state.
+    """
+    static = scene.gravity is not None and scene.gravity.static
+    pressed = {} if scene.prestress is None else {"prestress": scene.prestress.normal}
+    starts = "prestressed" if pressed else "unloaded"
+    return {"starts": "at rest under gravity" if static else starts, **pressed}
+
+
+def energy_residual(result: xr.Dataset) -> float:
+    """Return the largest imbalance of a result's energy ledger over the largest work put in."""
+    return imbalance(result["energy"].values, [str(term) for term in result["term"].values])
+
+
+def imbalance(energy: np.ndarray, terms: Sequence[str] = TERMS) -> float:
+    """Return the largest imbalance of an energy ledger [len(terms), n] over the largest work.
+
+    Both count from the first sample, where the energy of a static state is there already. Where
+    no work is done, as under gravity alone, the largest term takes its place. It is taken over
+    `AT_REST` of what a static state holds where that is more: its sums are rounded to a share of
+    it, tens of epsilon, which under a prestress of millions of times the load is all of the work.
+    """
+    since = energy - energy[:, :1]
+    work = since[list(terms).index("work")]
+    balance = since.sum(axis=0) - 2 * work
+    scale = float(np.abs(work if work.any() else since).max())
+    scale = max(scale, AT_REST * float(np.abs(energy[:, 0]).max()))
+    return float(np.abs(balance).max()) / scale if scale > 0 else 0.0
+
+
+def _of_receivers(name: str, bound: np.ndarray) -> np.ndarray:
+    """Return a bound with the dimensions that ERRORS gives it; axial motion has one axis."""
+    found = np.asarray(bound, dtype=float)
+    return found[:, None] if found.ndim < len(ERRORS[name]) else found
+
+
+def _with_axis(values: np.ndarray) -> np.ndarray:
+    """Return values [point, time, axis] of axial [point, time] or spatial motion."""
+    return values if values.ndim == 3 else values[..., None]

@@ -1,0 +1,156 @@
+"""Snapshots of the whole pillar, the one form of a field result, and how a result holds them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from cases.errors import SceneError
+from cases.schema.scene import Scene
+from cases.size import LARGEST_VARIABLE
+from results.arrays import copied
+from results.dataset import Fields, Variable
+from results.labels import label
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+AXES = {1: [1], 2: [0, 1], 3: [0, 1, 2]}  # which of x, y, z so many components are
+DIMENSIONS = {
+    "points": ("node", "component"),
+    "cells": ("cell", "corner"),
+    "block": ("cell",),
+    "displacement": ("field_time", "node", "component"),
+    "velocity": ("field_time", "node", "component"),
+    "stress": ("field_time", "cell"),
+}
+
+
+class Snapshots(NamedTuple):
+    """The whole pillar at some instants, on linear cells; blocks share no node.
+
+    time : float array [snapshots], s.
+    points : float array [nodes, 3], x, y, z of the unloaded pillar, m.
+    kind : of the cells, as meshio names it: "line", "triangle", "quad", "tetra", "hexahedron".
+    cells : int32 array [cells, corners], nodes in VTK's order.
+    block : int32 array [cells], the block of each cell, 0 at the loaded end.
+    displacement, velocity : float arrays [snapshots, nodes, 3], m and m/s.
+    stress : float array [snapshots, cells], Pa, axial, compression positive; None where not known.
+    """
+
+    time: np.ndarray
+    points: np.ndarray
+    kind: str
+    cells: np.ndarray
+    block: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+    stress: np.ndarray | None
+
+    def since(self, first: int) -> Snapshots:
+        """Return the snapshots without those before the `first`."""
+        stress = None if self.stress is None else self.stress[first:]
+        return self._replace(
+            time=self.time[first:],
+            displacement=self.displacement[first:],
+            velocity=self.velocity[first:],
+            stress=stress,
+        )
+
+
+class Film:
+    """What a run keeps of every `every`-th sample: whatever `shoot(sample)` returns, in `shots`."""
+
+    def __init__(self, every: int, shoot: Callable[[int], Any]) -> None:
+        self.every, self.shoot = every, shoot
+        self.shots: list[Any] = []
+
+    def look(self, sample: int) -> None:
+        """Keep this sample, where it is one of those."""
+        if sample % self.every == 0:
+            self.shots.append(self.shoot(sample))
+
+    def expect(self, samples: int) -> None:
+        """Make room for what so many samples have left, to be filled from elsewhere."""
+        self.shots[:] = [copied(self.shoot(0)) for _ in range(0, samples, self.every)]
+
+
+def samples_between(scene: Scene) -> int | None:
+    """Return the samples from one snapshot to the next; None where the scene asks for none."""
+    fields = scene.record.fields
+    return None if fields is None else max(1, round(fields / scene.interval))
+
+
+def snapshots(
+    time: np.ndarray,
+    points: np.ndarray,
+    kind: str,
+    cells: np.ndarray,
+    block: np.ndarray,
+    displacement: np.ndarray,
+    velocity: np.ndarray,
+    stress: np.ndarray | None = None,
+) -> Snapshots:
+    """Return snapshots from points and vectors [..., 1 to 3]: along y, along x and y, or all."""
+    return Snapshots(
+        time,
+        in_space(points),
+        kind,
+        np.asarray(cells, dtype=np.int32),
+        np.asarray(block, dtype=np.int32),
+        in_space(displacement),
+        in_space(velocity),
+        stress,
+    )
+
+
+def in_space(values: np.ndarray) -> np.ndarray:
+    """Return vectors [..., 3] along x, y, z of vectors [..., 1] along y or [..., 2] along x, y."""
+    found = np.zeros((*values.shape[:-1], 3))
+    found[..., AXES[values.shape[-1]]] = values
+    return found
+
+
+def refuse_beyond_room(scene: Scene, nodes: int) -> None:
+    """Raise SceneError where the snapshots of so many nodes would not fit a file."""
+    fields, most = scene.record.fields, LARGEST_VARIABLE // (3 * 8 * nodes)
+    count = int(scene.time.duration / scene.interval + 1e-9) // (samples_between(scene) or 1) + 1
+    if count > most:
+        raise SceneError(
+            scene.where,
+            "record.fields",
+            fields,
+            f"gives {count:,} snapshots of {nodes:,} nodes; at most {most:,} fit a file",
+        )
+
+
+def with_snapshots(result: Fields, s: Snapshots) -> Fields:
+    """Return a result that holds snapshots as variables field_NAME, on dimensions of their own."""
+    variables: dict[str, Variable] = dict(result.variables)
+    for name, dimensions in DIMENSIONS.items():
+        values = getattr(s, name)
+        if values is not None:
+            variables[f"field_{name}"] = (dimensions, values, label(f"field_{name}"))
+    variables["field_cells"][2]["kind"] = s.kind
+    coords = {
+        **result.coords,
+        "field_time": (("field_time",), s.time, label("field_time")),
+        "component": (("component",), np.array(list("xyz")), label("component")),
+    }
+    return Fields(variables, coords, result.attributes)
+
+
+def snapshots_of(result: Fields | xr.Dataset) -> Snapshots | None:
+    """Return the snapshots that a result holds; None where it holds none."""
+    if isinstance(result, Fields):
+        found = {name: (v[1], v[2]) for name, v in {**result.coords, **result.variables}.items()}
+    else:
+        found = {str(name): (v.values, v.attrs) for name, v in result.variables.items()}
+    if "field_cells" not in found:
+        return None
+    arrays: dict[str, Any] = {
+        name: found.get(f"field_{name}", (None,))[0] for name in ("time", *DIMENSIONS)
+    }
+    return Snapshots(kind=found["field_cells"][1]["kind"], **arrays)

@@ -1,0 +1,118 @@
+"""`jointwave animate` and `jointwave view` as a user meets them."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+from imageio_ffmpeg import count_frames_and_secs
+from PIL import Image
+
+from compare.cli.commands import animation
+
+SCENE = "guo-li-2002/fig-03"
+SHORT = ("--set", "time.duration=0.01", "--set", "pillar.length=10", "--set", "record.stress=[5]")
+HEADLESS = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+
+
+def jointwave(*arguments, code=0, cwd=None):
+    """Run the command and return its process, having checked the exit status."""
+    command = [sys.executable, "-m", "compare", *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=cwd, env=HEADLESS)
+    assert done.returncode == code, done.stderr
+    assert "Traceback" not in done.stderr
+    return done
+
+
+def test_animate_writes_a_film_of_both_engines(tmp_path):
+    options = ("--frames", 12, "--seconds", 1.5, "--out", tmp_path / "wave.mp4", "--json")
+    facts = json.loads(jointwave("animate", SCENE, *SHORT, *options).stdout)
+    assert facts["engines"] == ["dem", "continuum-jointed"] and facts["not_shown"] == {}
+    assert facts["scale"] > 100 and facts["file"] == str(tmp_path / "wave.mp4")
+    assert count_frames_and_secs(facts["file"]) == (12, 1.5)
+
+
+def test_animate_names_the_file_by_scene_and_variant(tmp_path):
+    options = ("--variant", "zeta 0.02", "--frames", 3, "--scale", 500)
+    done = jointwave("animate", SCENE, *SHORT, *options, cwd=tmp_path)
+    assert [p.name for p in tmp_path.iterdir()] == ["fig-03-zeta-0.02.mp4"]
+    assert done.stdout == "fig-03-zeta-0.02.mp4: dem and continuum-jointed, displacements × 500\n"
+
+
+def test_animate_shows_one_engine_where_the_other_does_not_apply(tmp_path):
+    """A block that slides: no intact rock is given, and a homogenised bar has no joints."""
+    options = ("--set", "time.duration=0.01", "--frames", 3, "--out", tmp_path / "block.gif")
+    done = jointwave("animate", "beyond/block-on-incline", *options)
+    assert "continuum-jointed is not shown: the jointed rock needs" in done.stdout
+    with Image.open(tmp_path / "block.gif") as file:
+        assert file.n_frames == 3 and file.size == (960, 540)
+
+
+BAD = [
+    (("animate", SCENE, "--out", "wave.avi"), "--out: wave.avi: must end in .mp4 or .gif"),
+    (("animate", SCENE, "--scale", "0"), "--scale: must be a positive number, not 0"),
+    (("animate", SCENE, "--scale", "nan"), "--scale: must be a positive number, not nan"),
+    (("animate", SCENE, "--seconds", "-1"), "--seconds: must be a positive number, not -1"),
+    (("animate", SCENE, "--frames", "1"), "'--frames'"),
+    (("animate", SCENE, "--frames", "401", "--out", "wave.gif"), "--frames: at most 400 for a GIF"),
+    (("animate", "no-such-scene"), "cannot be read"),
+    (("animate", SCENE, "--variant", "none"), "variants.name"),
+    (("view", SCENE, "--out", "wave.jpg"), "--out: wave.jpg: must end in .png"),
+    (("view", SCENE, "--time", "0"), "--time: must be greater than 0 and at most"),
+    (("view", SCENE, "--time", "9"), "time.duration = 0.12 s, not 9"),
+    (("view", SCENE, "--time", "nan"), "--time: must be greater than 0 and at most"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "message"), BAD, ids=[" ".join(a[1:]) for a, _ in BAD])
+def test_a_mistake_is_one_line_before_anything_is_run(arguments, message, tmp_path):
+    if arguments[0] == "view":
+        pytest.importorskip("pyvista")
+    done = jointwave(*arguments, code=2, cwd=tmp_path)
+    assert message in done.stderr and done.stderr.count("\n") == 1 and not done.stdout
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(("command", "name"), [("animate", "wave.mp4"), ("view", "wave.png")])
+def test_a_foreign_file_is_not_replaced(command, name, tmp_path):
+    if command == "view":
+        pytest.importorskip("pyvista")
+    (tmp_path / name).write_text("notes")
+    done = jointwave(command, SCENE, *SHORT, "--out", tmp_path / name, code=2)
+    assert "is not a result and would be replaced" in done.stderr
+    assert (tmp_path / name).read_text() == "notes"
+
+
+def test_view_without_a_display_writes_a_picture(tmp_path):
+    pytest.importorskip("pyvista")
+    command = [sys.executable, "-m", "compare", "view", SCENE, *SHORT, "--time", "0.008"]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env=HEADLESS)
+    if "needs EGL or OSMesa" in done.stderr:
+        assert done.returncode == 2 and not list(tmp_path.iterdir())
+        pytest.skip("VTK can draw nothing here")
+    assert done.returncode == 0 and done.stderr == ""
+    assert done.stdout.startswith("fig-03.png: dem and continuum-jointed, displacements × ")
+    with Image.open(tmp_path / "fig-03.png") as file:
+        assert file.size == (1280, 720) and len(file.getcolors(1_000_000)) > 100
+
+
+def test_view_says_how_to_get_what_it_needs(monkeypatch):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(
+        animation.SceneError, match=r"needs PyVista: pip install 'jointwave\[view\]'"
+    ):
+        animation._require_pyvista()
+
+
+def test_help_draws_nothing():
+    """Neither drawing nor engines are imported to say what a command takes."""
+    script = (
+        "import sys; sys.argv = ['jointwave', 'animate', '--help']\n"
+        "from compare.cli.program import main\n"
+        "try:\n    main()\nexcept SystemExit:\n    pass\n"
+        "heavy = {'matplotlib', 'pyvista', 'imageio_ffmpeg', 'PIL', 'xarray', 'dolfinx', 'numba'}\n"
+        "print('heavy:', sorted(heavy & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert done.stdout.endswith("heavy: []\n") and "--frames" in done.stdout

@@ -1,0 +1,124 @@
+"""What `jointwave compare` prints: an answer of at most ten lines, and all facts on request."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from compare.cli.comparison_view import MOST_LINES, in_percent, show_comparisons
+from compare.misfit.alignment import Beside
+from compare.misfit.metrics import Worst
+from compare.misfit.pairs import Comparison, measure, measure_curves
+from compare.report.verdict import standings
+
+
+@pytest.fixture
+def compared(pillar):
+    """Return a function that gives a comparison: by name how far each result is from one wave."""
+
+    def make(name="", expect=None, **far):
+        wave = np.sin(np.linspace(0, 9, 200))[None]
+        results = {
+            one.replace("_", "-"): xr.Dataset(
+                {"stress": (("stress_y", "time"), (1 + x) * wave)},
+                {"stress_y": [20.0], "time": 1e-3 * np.arange(200.0)},
+                {"seconds_stepping": 0.02, "warnings": '["a slip"]'},
+            )
+            for one, x in far.items()
+        }
+        scene = pillar().model_copy(update={"expect": expect or {}, "name": name})
+        reasons = {"series": "its reason"}
+        return Comparison(scene, results, reasons, measure(results))
+
+    return make
+
+
+FAR = {"dem": 0.03, "continuum_jointed": 1e-4, "continuum_equivalent": 0.3, "jointed_bar": 0.0}
+
+
+def test_the_answer_names_the_worst_of_each_engine_and_the_verdict_of_the_page(compared, capsys):
+    found = [compared(**FAR | {"lattice": 0.029}), compared("soft", **FAR | {"dem": 0.08})]
+    show_comparisons(found, False, False)
+    lines = capsys.readouterr().out.splitlines()
+    stand = standings(found)
+    assert lines[1].split()[0] == "engine" and len(lines) <= MOST_LINES
+    for engine, line in zip(stand, lines[2:], strict=False):
+        assert line.startswith(engine) and line.rstrip().endswith(stand[engine].verdict.word)
+    dem = " ".join(lines[2].split())
+    assert dem == "dem 8.00 % stress at 20 m, soft jointed-bar 0.0972 % 20 ms △ differs"
+    assert "jointed-bar: deformable rock with every joint, exact" in lines[5]
+    assert lines[-1].endswith("--all; as JSON: --json") and "its reason" not in " ".join(lines)
+
+
+@pytest.mark.parametrize("variants", [1, 2, 8])
+@pytest.mark.parametrize("files", [0, 1, 8])
+def test_the_answer_has_at_most_ten_lines(compared, curve, capsys, variants, files):
+    """However many variants and files, with bounds that are not met and nothing to check by."""
+    found = []
+    for i in range(variants):
+        one = compared(f"v{i}", {"dem ~ continuum-jointed": 1e-3}, **FAR)
+        if i % 2:
+            del one.results["jointed-bar"]
+        for _ in range(files):
+            curve(one)
+        found.append(one)
+    show_comparisons(found, False, False)
+    said = capsys.readouterr().out
+    assert len(said.splitlines()) <= MOST_LINES and "beyond the scene's bound: dem ~" in said
+    if variants > 1:
+        assert "not checked independently: continuum-jointed (v1" in said
+    assert ("more curves" in said) == (files * variants > (2 if variants == 1 else 1))
+
+
+@pytest.fixture
+def curve(tmp_path):
+    """Return a function that puts a measured curve, half as large again, beside a comparison."""
+    from compare.misfit.external import read_curves
+
+    def add(comparison, factor=1.5):
+        time = comparison.results["dem"].time.values
+        file = tmp_path / "gauge.csv"
+        wave = factor * np.sin(np.linspace(0, 9, 200))
+        np.savetxt(file, np.column_stack([time, wave]), delimiter=",")
+        (curves,) = read_curves([f"{file}:stress@20"], [comparison.scene])
+        beside = Beside(curves, None, time, True, 0.0, 0.0, [])
+        comparison.besides.append(beside)
+        comparison.rows += measure_curves(beside, comparison.results)
+
+    return add
+
+
+def test_curves_are_data_over_model(compared, curve, capsys):
+    one = compared(**FAR)
+    curve(one)
+    show_comparisons([one], False, False)
+    said = capsys.readouterr().out
+    ratio = f"{1.5 / 1.03:.3f}"
+    assert f"gauge.csv: 45.6 % from dem (stress at 20 m, data/model {ratio})" in said
+    show_comparisons([one], True, False)
+    said = capsys.readouterr().out
+    assert "given curves, data over model" in said and f"{1.5 / 1.03:.4f}" in said
+
+
+def test_everything_is_there_on_request_and_in_json(compared, capsys):
+    one = compared(expect={"dem ~ continuum-jointed": 1e-3}, **FAR)
+    show_comparisons([one], True, False)
+    said = capsys.readouterr().out
+    assert "series does not apply: its reason" in said and "dem ~ continuum-jointed" in said
+    show_comparisons([one], False, True)
+    (facts,) = json.loads(capsys.readouterr().out)
+    assert facts["does_not_apply"] == one.reasons and facts["warnings"] == ["a slip"]
+    assert len(facts["rows"]) == len(one.rows) > 3
+    dem = facts["engines"]["dem"]
+    assert dem["misfit"] == pytest.approx(0.03) and dem["at"] == "stress at 20 m"
+    assert dem["against"] == "jointed-bar" and dem["seconds_stepping"] == 0.02
+    assert dem["verdict"] == "out of bounds" and dem["out_of_bounds"] == list(one.scene.expect)
+    assert facts["engines"]["continuum-equivalent"]["verdict"] == "far off"
+
+
+def test_a_misfit_below_ten_times_the_error_of_its_reference_is_an_upper_bound():
+    assert in_percent(Worst(2e-4, None, 5e-5)) == "< 0.0500 %"
+    assert in_percent(Worst(2e-3, None, 5e-5)) == "0.200 %"
+    assert in_percent(Worst(1e-7)) == "< 0.001 %" and in_percent(Worst(np.nan)) == "-"
+    assert in_percent(Worst(1e-7, None, 2e-7)) == "< 0.001 %"

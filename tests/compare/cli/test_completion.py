@@ -1,0 +1,117 @@
+"""What a shell is given when a key is pressed: by the very call that its script makes."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cases.schema.keys import keys
+from compare.scenes import SHIPPED, shipped
+
+SCENE = "guo-li-2002/fig-03"
+
+
+def complete(line, cwd=None):
+    """Return what bash is offered for the last word of a line, empty after a space."""
+    place = str(len(line.split(" ")) - 1)
+    asked = {"_JOINTWAVE_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": place}
+    code = "import sys; sys.argv = ['jointwave']; from compare.cli.start import main; main()"
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        env={**os.environ, **asked},
+        cwd=cwd,
+    )
+    assert done.stderr == "" and done.returncode == 0
+    return [word for word in done.stdout.split("\n") if word]
+
+
+def test_commands_and_options():
+    assert complete("jointwave com") == ["compare"]
+    assert {"--set", "--sweep", "--dry-run"} <= set(complete("jointwave run --"))
+
+
+def test_scenes_by_name_and_by_file(tmp_path):
+    """Shipped ones, files of scenes, and the folders on the way to them."""
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "own scene.toml").write_text("")
+    (tmp_path / "first.toml").write_text("")
+    (tmp_path / "notes.txt").write_text("")
+    names = [f"{path.parent.name}/{path.stem}" for path in shipped()]
+    found = complete("jointwave run ", cwd=tmp_path)
+    assert found == [*names, "first.toml", "mine/"]
+    assert complete("jointwave compare mine/", cwd=tmp_path) == ["mine/own scene.toml"]
+    assert SCENE in complete("jointwave explain guo", cwd=tmp_path)
+    assert complete("jointwave new x --from nothing", cwd=tmp_path) == []
+
+
+def test_engines_models_and_studies():
+    assert complete(f"jointwave run {SCENE} --engine ") == ["dem", "continuum", "exact"]
+    assert complete(f"jointwave run {SCENE} --model joi") == ["jointed", "jointed-bar"]
+    assert {"free-pillar", "stability"} <= set(complete("jointwave study "))
+
+
+def test_variants_of_the_scene_that_is_named():
+    """A name of two words as bash takes it for one; of no scene, none."""
+    assert complete(f"jointwave run {SCENE} --variant ")[0] == "zeta\\ 0.02"
+    assert complete("jointwave run nothing.toml --variant ") == []
+
+
+@pytest.mark.parametrize("option", ["--set", "--sweep"])
+def test_keys_and_their_values(option):
+    """Every key of the models; values where there are few."""
+    line = f"jointwave run {SCENE} {option} "
+    wanted = [f"{key}=" for key, _ in keys() if not key.startswith("soft_layers.")]
+    assert complete(line) == wanted and len(wanted) > 40
+    (one, other) = complete(f"{line}joints.damp")  # two, or bash would end the word
+    assert (one, other) == ("joints.damping_ratio=", "joints.damping_ratio=VALUE")
+    values = [f"ends.start={value}" for value in ("free", "quiet", "matched", "fixed")]
+    assert complete(f"{line}ends.start=") == values
+    assert complete(f"{line}record.energy=t") == ["record.energy=true"]
+    assert complete(f"{line}pillar.length=") == []
+
+
+def test_a_broken_scene_is_no_message(tmp_path):
+    (tmp_path / "broken.toml").write_text("[pillar\n")
+    assert complete("jointwave run broken.toml --variant ", cwd=tmp_path) == []
+
+
+def test_nothing_heavy_is_imported_for_it():
+    code = (
+        "import sys, compare.cli.options, compare.cli.completion as c; c.scenes(''); c.models('')\n"
+        "c.settings('ends.'); c.studies('')\n"
+        "heavy = {'numba', 'scipy', 'xarray', 'matplotlib', 'dolfinx', 'pandas'}\n"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    done = subprocess.run((sys.executable, "-c", code), capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="no bash here")
+def test_bash_completes_by_the_script_that_is_installed(tmp_path):
+    """--install-completion writes it where bash will read it, and bash asks it."""
+    home = {**os.environ, "HOME": str(tmp_path)}
+    code = "import sys; sys.argv = ['jointwave', '--install-completion']\n"
+    code += "from compare.cli.start import main; main()"
+    install = f'{sys.executable} -c "$CODE"; exit $?'
+    within = {**home, "CODE": code}  # the shell is known by the process that asks
+    subprocess.run(("bash", "-c", install), env=within, check=True, capture_output=True)
+    script = tmp_path / ".bash_completions" / "jointwave.sh"
+    assert str(script) in (tmp_path / ".bashrc").read_text()
+    real = tmp_path / "real"
+    real.write_text(
+        f"#!{sys.executable}\nimport sys\nsys.argv[0] = 'jointwave'\n"
+        "from compare.cli.start import main\nmain()\n"
+    )
+    real.chmod(0o755)
+    ask = (
+        f"source {script}; COMP_WORDS=(jointwave run guo-li-2002/fig-0); COMP_CWORD=2; "
+        f"_jointwave_completion {real}; printf '%s\\n' \"${{COMPREPLY[@]}}\""
+    )
+    done = subprocess.run(("bash", "-c", ask), env=home, capture_output=True, text=True)
+    names = sorted(Path(p).stem for p in (SHIPPED / "guo-li-2002").glob("fig-0*.toml"))
+    assert done.stdout.split() == [f"guo-li-2002/{name}" for name in names], done.stderr

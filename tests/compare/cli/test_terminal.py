@@ -1,0 +1,75 @@
+"""On a terminal there are colours and progress with the time that is left; elsewhere neither."""
+
+import os
+import pty
+import re
+import subprocess
+import sys
+
+import pytest
+
+COLOUR = re.compile(r"\x1b\[[0-9;]*3[0-9][0-9;]*m")
+#: A point that would fail, which is said in red.
+RED = ("run", "guo-li-2002/fig-03", "--sweep", "joints.damping_ratio=-1,0.1", "--dry-run")
+
+SLOW = """
+from time import sleep
+from compare.cli.terminal import progress
+with progress("[bold]ten parts") as advance:
+    for i in range(10):
+        sleep(0.15)
+        advance((i + 1) / 10)
+"""
+
+
+def on_terminal(command, **environment):
+    """Return what a command writes to a terminal that is its output and its error."""
+    ours, theirs = pty.openpty()
+    clean = {k: v for k, v in os.environ.items() if k not in ("NO_COLOR", "FORCE_COLOR")}
+    told = {**clean, "TERM": "xterm-256color", "COLUMNS": "120", **environment}
+    process = subprocess.Popen(command, stdout=theirs, stderr=theirs, env=told)
+    os.close(theirs)
+    said = b""
+    while True:
+        try:
+            part = os.read(ours, 65536)
+        except OSError:  # the other end is closed
+            break
+        if not part:
+            break
+        said += part
+    os.close(ours)
+    assert process.wait() == 0
+    return said.decode()
+
+
+def command(*arguments):
+    return [sys.executable, "-m", "compare", *arguments]
+
+
+def test_progress_says_what_is_done_and_how_long_it_will_take():
+    """Its bar is gone in the end; square brackets in a label are no markup."""
+    said = on_terminal([sys.executable, "-c", SLOW])
+    assert "[bold]ten parts" in said and re.search(r"[3-8]0%", said)
+    left = [int(s) for s in re.findall(r"left\S* \S*?0:00:0(\d)", said)]
+    assert left and max(left) in (1, 2) and left == sorted(left, reverse=True)
+    assert "\x1b[2K" in said.rsplit("100%")[-1]
+
+
+@pytest.mark.parametrize("stream", ["stdout", "stderr"])
+def test_nothing_of_it_reaches_a_pipe(stream):
+    done = subprocess.run([sys.executable, "-c", SLOW], capture_output=True, text=True)
+    assert getattr(done, stream) == ""
+
+
+def test_colours_are_for_a_terminal_that_wants_them():
+    """Red on a terminal; none with NO_COLOR, none in a pipe."""
+    assert COLOUR.search(on_terminal(command(*RED)))
+    assert not COLOUR.search(on_terminal(command(*RED), NO_COLOR="1"))
+    done = subprocess.run(command(*RED), capture_output=True, text=True)
+    assert "would fail" in done.stdout and "\x1b" not in done.stdout and done.stderr == ""
+
+
+def test_a_run_shows_its_progress_on_a_terminal(tmp_path):
+    run = command("run", "guo-li-2002/fig-03", "--set", "time.duration=0.01", "--out", tmp_path)
+    assert re.search(r"4 runs.*left", on_terminal(run))

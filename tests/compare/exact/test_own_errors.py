@@ -1,0 +1,169 @@
+"""The bounds that computed solutions give of their own errors, against solutions that are finer."""
+
+import numpy as np
+import pytest
+
+from cases import Scene
+from cases.material.calibrate import calibrate
+from cases.sampling import sample_times
+from compare.exact.bar import images, kelvin_voigt, series
+from compare.exact.blocks import lattice, spatial_lattice
+from compare.exact.blocks.chain import chain, receivers
+from compare.exact.blocks.events import integrate
+from compare.exact.blocks.spatial import PLANES, plane, row
+from compare.exact.blocks.spatial_lattice import _rows, drive_vector
+from compare.exact.blocks.spatial_system import system
+from compare.exact.drive import drive
+from compare.exact.joint import one_joint
+
+QUANTITIES = ("stress", "velocity", "displacement")
+
+
+def holds(found, name, exact, sharp=1e-9):
+    """Assert that a result's bound holds against exact waveforms [..., n] and is below `sharp` of
+    each quantity's peak."""
+    waves = np.moveaxis(found[name].values, found[name].dims.index("time"), -1)
+    error = np.sqrt(((waves - np.reshape(exact, waves.shape)) ** 2).mean(axis=-1))
+    bound = found[f"{name}_error"].values
+    assert bound.shape == error.shape
+    assert (error <= bound).all(), (name, error, bound)
+    assert (bound <= sharp * np.abs(waves).max()).all()
+
+
+def random_load(r):
+    period = r.uniform(0.002, 0.02)
+    return [
+        {"shape": "sine", "period": period, "cycles": int(r.integers(1, 4)), "amplitude": 1e6},
+        {"shape": "ricker", "period": period, "amplitude": 1e6},
+        {"shape": "step", "amplitude": 1e6},
+    ][r.integers(3)]
+
+
+def random_table(scene, seed):
+    """Return a row of rigid blocks with any load, ends, dashpots and a soft layer."""
+    r = np.random.default_rng(seed)
+    table = scene(
+        pillar={"length": 0.5 * int(r.integers(3, 12))},
+        ends={
+            "start": str(r.choice(["free", "quiet", "matched"])),
+            "end": str(r.choice(["free", "quiet", "matched", "fixed"])),
+        },
+        joints={"damping_ratio": r.choice([0.004, 0.05, 0.5])} if r.random() < 0.6 else {},
+        soft_layers=[{"y": 1.0, "spacing_stiffness": 4e8 * r.uniform(0.3, 8)}],
+        time={"duration": r.uniform(0.02, 0.08)},
+        record={"stress": [0.0, 0.7, 1.0], "velocity": [0.0, 0.6, 1.4], "interval": 2e-4},
+    ).model_dump(exclude_none=True)
+    return table | {"load": random_load(r)}
+
+
+@pytest.fixture
+def extended():
+    """Skip where there is no floating-point number finer than double precision."""
+    if np.finfo(np.longdouble).eps > 1e-18:
+        pytest.skip("no extended precision here")
+
+
+@pytest.mark.parametrize(
+    "seed", [*range(5), *(pytest.param(s, marks=pytest.mark.slow) for s in range(5, 80))]
+)
+def test_of_the_lattice(scene, extended, seed):
+    """Against Taylor series of the chain in extended precision."""
+    at = Scene.model_validate(random_table(scene, seed))
+    model, times, signal = chain(at), sample_times(at), drive(at)
+    fine = integrate(model, signal, times.astype(np.longdouble), None, at.load.period).states
+    exact = receivers(at, model, fine.astype(float), signal.value(times) * model.gain)
+    for name, waves in zip(QUANTITIES, exact, strict=True):
+        holds(lattice.solve(at), name, waves.T)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_of_the_spatial_lattice(scene, extended, seed):
+    """A step across, off the centre, by Taylor series of each plane in extended precision."""
+    table = random_table(scene, seed)
+    table["load"] = {"shape": "step", "amplitude": 1e6, "direction": [0.6, 0, 0.8], "at": [0.1, 0]}
+    at = Scene.model_validate(table)
+    found, times, push = spatial_lattice.solve(at), sample_times(at), drive_vector(at)
+    forces, motion, rate = (np.zeros((6, 3, len(times))) for _ in range(3))
+    for freedoms in PLANES["small"]:
+        own = list(freedoms)
+        if not push[own].any():
+            continue
+        parts = system(plane(row(at), freedoms), push[own], 0 * push[own], None)
+        rows, _ = _rows(at, parts, len(own))
+        states = of_step(parts.matrix, 1e6 * parts.load, times)
+        read = (rows @ states.T).reshape(3, 3, len(own), len(times))
+        for field, part in zip((forces, motion, rate), read, strict=True):
+            field[own] = part.swapaxes(0, 1)
+    area = at.pillar.area
+    forces[:, 0] = np.outer(push, drive(at).value(times))
+    if table["ends"]["start"] == "free":
+        holds(found, "shear", forces[[0, 2]].swapaxes(0, 1) / area)
+    holds(found, "velocity", rate[:3].swapaxes(0, 1))
+    holds(found, "displacement", motion[:3].swapaxes(0, 1))
+    holds(found, "rotation", motion[3:].swapaxes(0, 1))
+
+
+def of_step(matrix, vector, times):
+    """Return the states [n, m] of x' = A x + b from rest, by Taylor series of order 24."""
+    A, b = matrix.astype(np.longdouble), vector.astype(np.longdouble)
+    steps = int(np.ceil(times[1] * np.abs(matrix).sum(axis=1).max() / 2))
+    h, x, out = np.longdouble(times[1]) / steps, 0 * b, [0 * vector]
+    for _ in range(len(times) - 1):
+        for _ in range(steps):
+            term = h * (A @ x + b)
+            x = x + term
+            for k in range(2, 25):
+                term = A @ term * (h / k)
+                x = x + term
+        out.append(x.astype(float))
+    return np.array(out)
+
+
+@pytest.mark.parametrize(
+    "seed", [*range(4), *(pytest.param(s, marks=pytest.mark.slow) for s in range(4, 40))]
+)
+def test_of_the_damped_bar_s_modes(scene, seed):
+    """Against ten times as many, at any damping. At the loaded end, where the velocity has kinks,
+    its terms fall as 1/n^2: 500 of them leave 1/500 of the peak, and the bound is twice that."""
+    r = np.random.default_rng(seed)
+    at = scene(
+        joints={"damping_ratio": 10 ** r.uniform(-2.5, 0.3)},
+        load={"period": r.uniform(0.004, 0.02), "cycles": int(r.integers(1, 4))},
+        record={"stress": [0.3, r.uniform(1, 49)], "velocity": [0.0, 25.0, r.uniform(1, 49)]},
+        time={"duration": 0.06},
+    )
+    found, finer = kelvin_voigt.solve(at), kelvin_voigt.solve(at, 5000)
+    for name in QUANTITIES:
+        holds(found, name, finer[name].values, sharp=kelvin_voigt.SAFETY / 500)
+
+
+def test_of_the_paper_s_series(scene):
+    """What it leaves out, to the digit: 0.585 % of the stress at 20 m after a hundred terms."""
+    at = scene(record={"velocity": [33.3]})
+    found, exact = series.solve(at, series.PAPER_TERMS), images.solve(at)
+    for name in QUANTITIES:
+        holds(found, name, exact[name].values, sharp=0.1)
+    relative = found.stress_error.values / np.sqrt((exact.stress.values**2).mean())
+    assert relative == pytest.approx(5.85e-3, abs=5e-5)
+
+
+@pytest.mark.parametrize("eta", [0.0, 3e-4])
+def test_of_one_joint(scene, eta):
+    """A sine's closed form: s = p0 (sin wt - w tau cos wt + w tau e^(-t/tau)) / (1 + (w tau)^2)."""
+    layer = {"y": 20.0, "spacing_stiffness": 4.375e8} | ({"damping_ratio": 0.05} if eta else {})
+    at = scene(
+        soft_layers=[layer],
+        load={"cycles": 40},
+        ends={"start": "quiet", "end": "quiet"},
+        record={"stress": [30.0], "velocity": [30.0]},
+    )
+    p, times = calibrate(at), sample_times(at)
+    joint = one_joint.the_joint(p)
+    tau, w = joint.time_constant + p.impedance / (2 * joint.stiffness), 200 * np.pi
+    t = np.maximum(times - 30.0 / p.bar_speed, 0.0)
+    smooth = np.sin(w * t) - w * tau * (np.cos(w * t) - np.exp(-t / tau))
+    share = joint.time_constant / tau
+    stress = 0.5e6 * (share * np.sin(w * t) + (1 - share) * smooth / (1 + (w * tau) ** 2))
+    found = one_joint.solve(at)
+    holds(found, "stress", stress[None])
+    holds(found, "velocity", stress[None] / p.impedance)

@@ -1,0 +1,139 @@
+"""The slip joint: three coefficients, its energy, an implicit scheme, and its elastic limit."""
+
+import numpy as np
+import pytest
+from scipy.integrate import trapezoid
+
+from cases.loads import Recorded, Ricker, Sine, Step, load_history
+from cases.material.calibrate import calibrate
+from compare.exact.bar import images
+from compare.exact.joint import one_joint, sliding_joint
+from compare.exact.joint.sliding_joint import SlipJoint, transmitted
+
+Z = 2400.0 * 800.0
+OMEGA = 2 * np.pi / 0.01
+SHEAR = {
+    "load": {"direction": [0.6, 0.0, -0.8]},
+    "motion": {"rotation": "none"},
+    "ends": {"start": "matched", "end": "matched"},
+    "time": {"duration": 0.08},
+    "record": {"stress": [5.0, 20.0, 41.3], "velocity": [5.0, 20.0, 41.3]},
+}
+LAYER = {"y": 20.0, "cohesion": 3e5, "friction_angle": 0.0}
+
+
+@pytest.mark.parametrize(
+    "a, T, R, A",
+    [(0.5, 0.6253, 0.4159, 0.6603), (0.1, 0.1384, 0.8746, 0.4647), (0.02, 0.0282, 0.9746, 0.2221)],
+)
+def test_a_harmonic_wave_at_a_joint_rigid_before_slip(a, T, R, A):
+    """Miller (1978) to the digits given, and the waveform's own mean squares over a cycle: the sum
+    over 4000 samples is off by the kinks alone, of the order (2 pi/4000)^2 = 2.5e-6."""
+    assert sliding_joint.coefficients(a) == pytest.approx((T, R, A), abs=5.1e-5)
+    load, times = Sine(1.0, 0.01, cycles=2), np.linspace(0.0, 0.02, 8001)
+    s, _ = transmitted(SlipJoint(0.0, 0.0, a), Z, load, times)
+    incident, second = load.value(times), times > 0.01 - 1e-9
+    means = [np.mean(x[second][:-1] ** 2) for x in (incident, s, s - incident)]
+    ratios = np.sqrt(np.divide(means[1:], means[0]))
+    assert ratios == pytest.approx(sliding_joint.coefficients(a)[:2], abs=2e-6)
+
+
+def test_the_limits_of_strength():
+    assert sliding_joint.coefficients(0.0) == pytest.approx((0, 1, 0), abs=1e-12)
+    assert sliding_joint.coefficients(1.0) == pytest.approx((1, 0, 0), abs=1e-7)
+
+
+@pytest.mark.parametrize("load", [Sine(1.0, 0.01, 2), Ricker(1.0, 0.01), Step(1.0)])
+def test_an_unlimited_joint_is_the_linear_one(load, misfit):
+    """The same integral by other nodes: round-off, a step's half value at t = 0 left out."""
+    times, K = np.linspace(-1e-3, 0.03, 3101), 0.7 * Z * OMEGA
+    found = transmitted(SlipJoint(0.0, 1 / K, 1e100), Z, load, times)
+    expected = one_joint.transmitted(one_joint.Joint(0.0, K, 0.0), Z, load, times)
+    for a, b in zip(found, expected, strict=True):
+        assert misfit(a, b) < 1e-12
+
+
+@pytest.mark.parametrize("tau", [0.0, 0.1, 0.5, 0.9])
+@pytest.mark.parametrize("kappa", [0.3, 3.0, np.inf])
+def test_energy_is_transmitted_reflected_stored_or_spent_on_friction(tau, kappa):
+    """int sigma_I^2/Z = int sigma_T^2/Z + int sigma_R^2/Z + tau int |slip rate| + s^2/2K, by the
+    trapezoid. At each of six onsets the slip rate jumps, and half a step h of tau times it counts
+    wrong: 6 h tau (1 - tau)/1.5 T of the whole, at most 2.5e-4."""
+    load, times = Sine(1.0, 0.01, 3), np.linspace(0.0, 0.05, 20_001)
+    compliance = 0.0 if np.isinf(kappa) else 1 / (kappa * Z * OMEGA)
+    s, _ = transmitted(SlipJoint(0.0, compliance, tau), Z, load, times)
+    incident = load.value(times)
+    slides = np.where(np.abs(s) >= tau, 2 * np.abs(incident - s) / Z, 0.0)
+    slides[incident * s < s * s] = 0.0
+    spent = trapezoid((s**2 + (s - incident) ** 2) / Z + tau * slides, times)
+    stored = compliance * s[-1] ** 2 / 2
+    whole = trapezoid(incident**2 / Z, times)
+    assert abs(spent + stored - whole) < 2.5e-4 * whole
+
+
+@pytest.mark.parametrize(
+    "load", [Sine(1.0, 0.01, 2), Recorded(np.array([1e-3, 3e-3, 8e-3]), np.array([0.5, -1.0, 2.0]))]
+)
+def test_an_implicit_scheme_converges_to_it_at_order_one(load):
+    """s <- clip((s + h/T sigma_I)/(1 + h/T)): halving the step halves the error."""
+    relaxation, tau, errors = 1.5e-3, 0.4, []
+    joint = SlipJoint(0.0, 2 * relaxation / Z, tau)
+    exact, _ = transmitted(joint, Z, load, np.linspace(0.0, 0.025, 2501))
+    for refine in (4, 8, 16):
+        times = np.linspace(0.0, 0.025, 2500 * refine + 1)
+        h, s, seen = times[1] / relaxation, 0.0, [0.0]
+        for value in load.value(times[1:] - 1e-12).tolist():
+            s = min(max((s + h * value) / (1 + h), -tau), tau)
+            seen.append(s)
+        errors.append(np.abs(np.array(seen)[::refine] - exact).mean())
+    assert np.log2(np.divide(errors[:-1], errors[1:])) == pytest.approx([1, 1], abs=0.1)
+
+
+def test_the_impulse_is_the_integral_of_the_stress():
+    load, times = Sine(1.0, 0.01, 2), np.linspace(0.0, 0.03, 3001)
+    for compliance in (0.0, 1 / (Z * OMEGA)):
+        joint = SlipJoint(0.0, compliance, 0.3)
+        _, impulse = transmitted(joint, Z, load, times)
+        fine = np.linspace(0.0, 0.03, 300_001)
+        s, _ = transmitted(joint._replace(compliance=compliance), Z, load, fine[::10])
+        steps = np.cumsum((s[1:] + s[:-1]) / 2 * fine[10])
+        assert np.abs(impulse[1:] - steps[9::10]).max() < 1e-6 * 0.01
+
+
+def test_a_joint_that_holds_lets_the_shear_wave_pass(scene, misfit):
+    """Half the load enters at the matched start and runs at c_s = 800 m/s along its direction."""
+    at = scene(**SHEAR, soft_layers=[LAYER | {"cohesion": 6e5}])
+    assert sliding_joint.applies(at)
+    p, result, load = calibrate(at), sliding_joint.solve(at), load_history(at)
+    there, _ = images.images(load.value, [5.0, 20.0, 41.3], result.time.values, 50.0, 800.0, 0, 0)
+    way, _ = images.images(load.impulse, [5.0, 20.0, 41.3], result.time.values, 50.0, 800.0, 0, 0)
+    along = np.array([0.6, 0.0, -0.8])
+    assert misfit(result.shear, there[..., None] / 2 * along[[0, 2]]) < 1e-12
+    assert misfit(result.velocity, there[..., None] / (2 * p.shear_impedance) * along) < 1e-12
+    assert misfit(result.displacement, way[..., None] / (2 * p.shear_impedance) * along) < 1e-12
+
+
+def test_behind_a_joint_that_slips_stress_is_cut_off_at_its_strength(scene):
+    """Prestress: tau = c + sigma tan(phi); 0.1 MPa + 0.2 MPa here."""
+    layer = {"y": 20.0, "cohesion": 1e5, "friction_angle": 45.0}
+    at = scene(**SHEAR, soft_layers=[layer], prestress={"normal": 2e5})
+    shear = np.linalg.norm(sliding_joint.solve(at).shear, axis=-1)
+    assert shear[1:].max() == pytest.approx(3e5, rel=1e-9)
+    assert shear[0].max() == pytest.approx(5e5, rel=1e-3)
+    assert (sliding_joint.solve(at).stress == 2e5).all()
+
+
+@pytest.mark.parametrize("interval", [5e-5, 4e-3])
+def test_the_bound_of_its_error_holds_where_samples_are_far_apart_too(scene, interval):
+    """By a record eight times as dense, whose crossings of the strength are all found."""
+    layer = {"y": 20.0, "cohesion": 2e5, "friction_angle": 0.0, "spacing_stiffness": 4.375e8}
+    tables = SHEAR | {"time": {"duration": 0.04}, "soft_layers": [layer]}
+    record = SHEAR["record"] | {"interval": interval}
+    found = sliding_joint.solve(scene(**tables | {"record": record}))
+    dense = sliding_joint.solve(scene(**tables | {"record": record | {"interval": interval / 8}}))
+    for name in ("shear", "velocity", "displacement"):
+        exact = dense[name].values[:, ::8]
+        error = np.sqrt(((found[name].values - exact) ** 2).mean(axis=1))
+        assert (error <= found[f"{name}_error"].values).all()
+        if interval < 1e-3:
+            assert found[f"{name}_error"].max() < 1e-9 * np.abs(exact).max()

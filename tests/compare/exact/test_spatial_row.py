@@ -1,0 +1,133 @@
+"""The spatial row's matrices against contact points summed one by one, and closed forms."""
+
+import numpy as np
+import pytest
+
+from cases.face import face_points
+from cases.material.calibrate import calibrate
+from compare.exact.blocks import cantilever, lattice, spatial, spatial_lattice
+from compare.exact.blocks.spatial_system import at_rest, system
+from compare.exact.schemes import leapfrog
+
+SHORT = {
+    "pillar": {"length": 3.0, "side": 0.7, "block": 0.5},
+    "record": {"stress": [1.0], "velocity": []},
+}
+RECORD = {"velocity": [0.25 + 0.5 * i for i in range(6)], "interval": 1e-4}
+FREE = SHORT | {"load": {"direction": [1.0, 0.0, 0.0]}}
+
+
+def contact_forces(motions, stiffness, points, d):
+    """Return F and M on the right side of each contact [N - 1, 6], point by point."""
+    out = []
+    for (u1, t1), (u2, t2), (K, Ks) in zip(motions[:-1], motions[1:], stiffness, strict=True):
+        rel = u2 - u1 + d / 2 * np.array([t2[2] + t1[2], 0.0, -(t2[0] + t1[0])])
+        phi, F, M = t2 - t1, np.zeros(3), np.zeros(3)
+        for x, z, area in zip(*points, strict=True):
+            gap = rel[1] + phi[2] * x - phi[0] * z
+            slip = rel[0] + phi[1] * z, rel[2] - phi[1] * x
+            f = -area * np.array([Ks * slip[0], K * gap, Ks * slip[1]])
+            F, M = F + f, M + np.cross([x, 0.0, z], f)
+        out.append(np.concatenate([F, M]))
+    return np.array(out)
+
+
+def block_forces(contacts, d):
+    """Return force and torque on every block [N, 6] of the contacts between them."""
+    out = np.zeros((len(contacts) + 1, 6))
+    for j, c in enumerate(contacts):
+        lever = np.array([0.0, 0.0, 0.0, -d / 2 * c[2], 0.0, d / 2 * c[0]])
+        out[j + 1] += c + lever
+        out[j] += -c + lever
+    return out
+
+
+@pytest.mark.parametrize("n, rule", [(1, "midpoint"), (2, "midpoint"), (3, "gauss")])
+def test_springs_push_as_the_sum_over_the_points(scene, n, rule):
+    """Round-off: some hundred terms, each known to 1e-16."""
+    soft = [{"y": 1.5, "spacing_stiffness": 4e8, "shear_stiffness": 3e8}]
+    at = scene(**FREE, soft_layers=soft, joints={"contact_points": n, "point_rule": rule})
+    p, row, rng = calibrate(at), spatial.row(at), np.random.default_rng(3)
+    q = rng.standard_normal((6, 6)) * [1, 1, 1, 2, 2, 2]
+    motions = [(block[:3], block[3:]) for block in q]
+    stiffness = list(zip(p.stiffness, p.shear_stiffness, strict=True))
+    points = face_points(0.7, n, rule)
+    expected = block_forces(contact_forces(motions, stiffness, points, 0.5), 0.5)
+    found = np.zeros((6, 6))
+    for freedoms in spatial.PLANES["small"]:
+        plane = spatial.plane(row, freedoms)
+        B, own = plane.relative[:, plane.blocks], list(freedoms)
+        forces = -B.T @ plane.stiffness @ B @ q[:, own].ravel()
+        found[:, own] = forces.reshape(6, -1)
+    assert np.abs(found - expected).max() < 1e-13 * np.abs(expected).max()
+
+
+def test_a_motion_of_the_whole_row_strains_nothing(scene):
+    row = spatial.row(scene(**FREE))
+    y, turn = 0.5 * np.arange(6) + 0.25, np.array([0.3, -0.2, 0.7])
+    shift = np.array([1.0, 2.0, 3.0])
+    q = np.array([np.r_[shift + np.cross(turn, [0, yi, 0]), turn] for yi in y])
+    for freedoms in spatial.PLANES["small"]:
+        plane = spatial.plane(row, freedoms)
+        inner = slice(len(freedoms), -len(freedoms))
+        strain = plane.relative[inner, plane.blocks] @ q[:, list(freedoms)].ravel()
+        assert np.abs(strain).max() < 1e-14
+
+
+@pytest.mark.parametrize("freedom", [0, 1, 2, 4])
+def test_single_freedoms_are_lattices_of_their_own(scene, freedom):
+    """omega_n = 2 sqrt(k/m) sin(n pi / 2N): shear K'_s A, stretching K'_n A, torsion K'_s J / I_y
+    with J = (1 - 1/n^2) a^4/6 of n x n midpoints."""
+    at = scene(**FREE)
+    p, plane = calibrate(at), spatial.plane(spatial.row(at), (freedom,))
+    k = (p.regular_stiffness if freedom == 1 else p.regular_shear_stiffness) * p.area
+    m = p.block_mass
+    if freedom == 4:
+        k, m = p.regular_shear_stiffness * 0.75 * 0.7**4 / 6, m * 0.7**2 / 6
+    found, expected = leapfrog.plane_modes(plane).omega, lattice.frequencies(k, m, 6)
+    assert np.abs(np.sort(found) - expected).max() < 1e-13 * expected.max()
+
+
+def test_bending_has_two_rigid_modes(scene):
+    plane = spatial.plane(spatial.row(scene(**FREE)), (0, 5))
+    assert np.count_nonzero(leapfrog.plane_modes(plane).omega == 0) == 2
+
+
+@pytest.mark.parametrize("axis, turns, sign", [(0, 2, 1), (2, 0, -1)])
+@pytest.mark.parametrize("rule, share", [("midpoint", 0.75), ("gauss", 1.0)])
+def test_the_cantilever_hangs_as_the_explicit_sum(scene, axis, turns, sign, rule, share):
+    """A solve of a matrix whose condition grows as N^4, here 1e4: twelve digits. Towards the free
+    start a block moves by theta_z l along x, and by -theta_x l along z."""
+    direction = [0.0, 0.0, 0.0]
+    direction[axis] = 1.0
+    at = scene(
+        **SHORT | {"record": {"stress": [0.0, 1.0, 3.0], **RECORD}},
+        load={"amplitude": 0.0},
+        joints={"point_rule": rule},
+        gravity={"direction": direction},
+        ends={"end": "fixed"},
+        time={"duration": 1e-3},
+    )
+    p, result = calibrate(at), spatial_lattice.solve(at)
+    u, theta = cantilever.deflection(
+        6,
+        0.5,
+        9.81 * p.block_mass,
+        p.regular_shear_stiffness * p.area,
+        p.regular_stiffness * share * 0.7**4 / 12,
+    )
+    assert np.allclose(result.displacement.values[:, -1, axis], u, rtol=1e-11)
+    assert np.allclose(result.rotation.values[:, -1, turns], sign * theta, rtol=1e-11)
+    shear = result.shear.values[:, -1, [0, 2].index(axis)]
+    assert np.allclose(shear, 2400 * 9.81 * np.array([0.0, 1.0, 3.0]), rtol=1e-11, atol=1e-6)
+    assert np.abs(result.velocity.values).max() == 0
+
+
+def test_a_couple_on_the_free_face_is_carried_to_the_wall(scene):
+    """Statics: in any section the moment of a couple is the couple itself, and no force."""
+    at = scene(**SHORT, ends={"end": "fixed"}, load={"amplitude": 0.0})
+    plane = spatial.plane(spatial.row(at), (0, 5))
+    parts = system(plane, np.array([0.0, 5.0]), np.zeros(2))
+    state = at_rest(parts._replace(gravity=parts.load))
+    forces = (parts.forces @ state + parts.direct).reshape(-1, 2)
+    assert np.allclose(forces[:, 1], 5.0) and np.abs(forces[:, 0]).max() < 1e-9

@@ -1,0 +1,153 @@
+"""Effects of many scenes: kept when done, whichever process prepared them, and shown whole."""
+
+import json
+import re
+import sys
+from math import nan
+
+import pandas as pd
+import pytest
+
+from compare.cli.program import main
+from compare.experiments.ablation import runner
+from compare.experiments.ablation.ablation import Balance, Dropped, Worth
+from compare.experiments.ablation.diagram import draw
+from compare.experiments.ablation.runner import Case, all_shipped, reported, run
+from compare.experiments.ablation.section import sentences, table, write_section
+
+LEDGER = Worth("energy ledger", 1.0, 3.0, 0.75, 1.0, nan, 0.0, "")
+LAYER = Worth("joints that differ", 0.1, -0.1, -0.025, 1.0, nan, 0.8, "")
+DAMPED = Worth("dashpots", 0.2, 2.0, 0.5, 4.0, 1.5, 0.05, "")
+SPACE = Worth("spatial motion", nan, nan, nan, nan, nan, nan, "is what the scene is about")
+FOUND = [
+    Balance("set/one", "One", "", 0.5, 4.0, 40.0, nan, [LAYER, LEDGER]),
+    Balance("set/two", "Two", "hard", 0.5, 4.0, 20.0, 3.0, [SPACE, DAMPED]),
+]
+
+
+@pytest.fixture
+def counted(monkeypatch):
+    """Replace solving and timing by something that counts; return what was timed."""
+    timed = []
+    monkeypatch.setattr(runner, "prepare_whole", lambda: None)
+    monkeypatch.setattr(
+        runner, "prepare", lambda scene: [Dropped("energy ledger", 0.0, 1.0, True, False, "")]
+    )
+
+    def balance(name, scene, dropped):
+        timed.append((name, dropped))
+        return FOUND[0]._replace(scene=name, effects=[LEDGER, SPACE])
+
+    monkeypatch.setattr(runner, "balance", balance)
+    return timed
+
+
+def test_what_is_done_is_not_done_again(counted, pillar, tmp_path):
+    """The second run reads what the first has written, nan and all, and measures what is new."""
+    wanted = [Case("a/b", pillar())]
+    first, fractions = run(wanted, tmp_path, None, None), []
+    more = [*wanted, Case("a/c", pillar(time__duration=0.01))]
+    again = run(more, tmp_path, None, fractions.append)
+    assert [name for name, _ in counted] == ["a/b", "a/c"]
+    assert repr(again[0]) == repr(first[0])
+    assert fractions == sorted(fractions) and fractions[-1] == 1
+    assert sorted(p.name for p in tmp_path.iterdir()) == sorted(f"{c.key}.json" for c in more)
+
+
+def test_an_interrupted_run_keeps_what_was_solved(counted, pillar, tmp_path, monkeypatch):
+    """Answers that are there are taken; only the timing is left to do."""
+    wanted = [Case("a/b", pillar())]
+    runner.prepare_case(wanted[0], tmp_path)
+    monkeypatch.setattr(runner, "prepare", lambda scene: pytest.fail("solved again"))
+    run(wanted, tmp_path, None, None)
+    assert counted[0][1] == [Dropped("energy ledger", 0.0, 1.0, True, False, "")]
+
+
+def test_cases_are_told_apart_by_all_that_decides_them(pillar):
+    one, other = Case("a/b", pillar()), Case("a/b", pillar(joints__damping_ratio=0.01))
+    assert one.key == Case("a/b", pillar()).key
+    assert len({one.key, other.key, one._replace(name="a/c").key}) == 3
+
+
+def test_every_variant_of_every_shipped_scene_is_taken():
+    every = {(case.name, case.scene.name) for case in all_shipped()}
+    assert {("beyond/spall", ""), ("beyond/spall", "strong joints")} <= every
+    assert {(case.name, case.scene.name) for case in reported()} <= every
+
+
+def test_sentences_have_the_numbers_of_the_extremes():
+    sets, nothing, some = sentences(FOUND)
+    assert "10.0 % (set/one) to 20.0 % (set/two, hard)" in sets
+    assert "the energy ledger: 75.0 % of a step of set/one" in nothing
+    assert "dearest is dashpots in set/two, hard (50.0 % of a step, misfit 5.00 % without)" in some
+    assert "worth most is joints that differ in set/one (nothing that shows, misfit 80.0 %" in some
+
+
+def test_table_has_the_dearest_first_and_says_why_an_effect_stays():
+    found = table(FOUND)
+    one, two = found.groups.values()
+    assert [row[0] for row in one] == ["energy ledger", "joints that differ"]
+    assert [row[0] for row in two] == ["dashpots", "spatial motion"]
+    assert two[1][1:] == [*[""] * 6, "is what the scene is about"]
+    assert two[0][1:] == ["5.00", "50", "+2", "+0.2", "4", "+1.5", ""]
+    assert "10.0 % of 40 ns" in next(iter(found.groups))
+    assert table(FOUND[:1]).header == found.header[:-1]
+
+
+def test_diagram_has_a_point_for_every_effect_that_can_be_left_out():
+    """What costs or is worth nothing lies at an edge, hollow; the rest is filled."""
+    ax = draw(FOUND).axes[0]
+    points = {line.get_label(): line.get_xydata()[0] for line in ax.lines if line.get_gid()}
+    assert set(points) == {"energy ledger", "joints that differ", "dashpots"}
+    assert tuple(points["dashpots"]) == pytest.approx((50, 5))
+    assert tuple(points["energy ledger"]) == pytest.approx((75, 0.01))
+    assert tuple(points["joints that differ"]) == pytest.approx((0.5, 80))
+    filled = [line for line in ax.lines if not line.get_gid()]
+    assert len(filled) == 1 and tuple(filled[0].get_xydata()[0]) == pytest.approx((50, 5))
+    assert sorted(text.get_text() for text in ax.texts) == ["1", "1", "2"]
+
+
+def test_files_hold_every_number(tmp_path):
+    section = write_section(tmp_path, FOUND)
+    frame = pd.read_csv(tmp_path / "effects.csv", keep_default_na=False)
+    assert frame["effect"].tolist() == [w.effect for b in FOUND for w in b.effects]
+    assert frame["ns_everything"].tolist() == [40, 40, 20, 20]
+    assert len(re.findall(r'id="effects-points-\d"', section.figure.svg)) == 3
+    assert all(file.is_file() for file in section.files)
+
+
+def command(monkeypatch, *arguments):
+    """Run `jointwave` with these arguments and return its exit code."""
+    monkeypatch.setattr(sys, "argv", ["jointwave", *arguments])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    return ended.value.code
+
+
+def test_command_prints_a_scene_and_keeps_its_files(counted, monkeypatch, tmp_path, capsys):
+    out = tmp_path / "effects"
+    scene = ["effects", "guo-li-2002/fig-09", "--variant", "no tension", "--workers", "1"]
+    assert command(monkeypatch, *scene, "--out", str(out)) == 0
+    said = capsys.readouterr().out
+    assert "energy ledger" in said and "10.0 % of 40 ns" in said
+    assert "effects.csv" in said and (out / "effects.csv").is_file()
+    assert command(monkeypatch, *scene, "--out", str(out), "--json") == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts[0]["effects"][0]["misfit"] == 0 and facts[0]["effects"][1]["cost"] is None
+    assert len(counted) == 1
+
+
+@pytest.mark.parametrize("option", [("--variant", "x"), ("--set", "joints.tension=false")])
+def test_options_of_a_scene_need_one(option, monkeypatch, capsys):
+    assert command(monkeypatch, "effects", *option) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and option[0] in said and "needs a scene" in said
+
+
+def test_wrong_table_of_other_codes_is_one_line(tmp_path, monkeypatch, capsys):
+    """Before anything is solved."""
+    arguments = ["report", "--out", str(tmp_path / "report"), "--peers", str(tmp_path / "none.csv")]
+    assert command(monkeypatch, *arguments) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and "none.csv" in said and "cannot be read" in said
+    assert not (tmp_path / "report").exists()

@@ -1,0 +1,60 @@
+"""What a block-step costs is measured, and the cost of everything only once."""
+
+import json
+
+import pytest
+
+from compare.experiments.cost import step_cost
+from compare.experiments.cost.step_cost import changed, in_turns, nanoseconds, stretch, whole
+
+
+def test_stretch_counts_its_block_steps():
+    """Blocks times steps of the samples taken, along the axis and in space alike."""
+    for changes in ({}, step_cost.ACROSS):
+        scene = changed({**changes, "time.duration": 5e-4, "record.energy": False}, 100)
+        march, block_steps = stretch(scene)
+        march()
+        assert block_steps % 100 == 0 and block_steps > 0
+
+
+def test_a_plain_scene_costs_less_than_one_in_space():
+    """One freedom and a spring against six and a face: a factor far beyond any noise."""
+    plain = {"record.energy": False}
+    assert nanoseconds(changed(plain)) < nanoseconds(changed({**plain, **step_cost.ACROSS}))
+
+
+def test_scenes_in_turns_cost_what_they_cost_one_by_one():
+    """In the order that they are given, whatever their lengths."""
+    plain = changed({"record.energy": False}, 100)
+    space = changed({"record.energy": False, **step_cost.ACROSS}, 100)
+    cheap, dear = in_turns([plain, space])
+    assert 0 < 2 * cheap < dear
+
+
+def test_everything_is_measured_once(tmp_path, monkeypatch):
+    """The first call measures and keeps; later ones read; a broken file is measured again."""
+    monkeypatch.setattr(step_cost.numba.config, "CACHE_DIR", str(tmp_path))
+    measured = []
+    monkeypatch.setattr(step_cost, "nanoseconds", lambda scene: measured.append(scene) or 42.0)
+    assert whole(100) == whole(100) == 42.0
+    assert [scene.pillar.block_count for scene in measured] == [100]
+    file = tmp_path / "effort.json"
+    assert json.loads(file.read_text()) == {"100": 42.0}
+    for broken in ("broken", "[1]", '{"100": null}'):
+        file.write_text(broken)
+        assert whole(100) == 42.0
+    assert len(measured) == 4
+
+
+@pytest.mark.parametrize(("blocks", "measured"), [(1, 2), (2, 2), (100, 100), (10**6, 1000)])
+def test_everything_is_measured_in_as_many_blocks(blocks, measured):
+    """A step has a cost of its own, which few blocks share; a thousand hardly feel it."""
+    assert step_cost.everything(blocks).pillar.block_count == measured
+
+
+@pytest.mark.parametrize("name", ["finite rotation", "slip", "softening", "dashpots", "gravity"])
+def test_everything_calls_for_everything(name):
+    """The line of 100 % has every effect on that joints and motion have."""
+    from cases.effects import active_effects
+
+    assert name in active_effects(changed(step_cost.EVERYTHING))

@@ -1,0 +1,84 @@
+"""Criteria that can fail: runs made wrong are not taken for sound ones."""
+
+import numpy as np
+import pytest
+
+from compare.engines import solve
+from compare.experiments.robustness.case import ALLOW, FOURTH, LEAPFROG, STEP, Case, Finding, Trial
+from compare.experiments.robustness.criteria import accuracy, energies, steps
+from compare.experiments.robustness.linear_cases import BLOW, JOINT, SHORT, TINY
+from compare.experiments.robustness.row import FAILED, HELD, NONE, row_of
+
+
+def judged(judge, changes, solver=LEAPFROG, **about):
+    """Return the row of a case of one's own."""
+    return row_of(Case("a case", SHORT, "a criterion", judge, changes, **about), solver)
+
+
+def test_unstable_step_breaks_the_bound_of_the_stable_one(monkeypatch):
+    """At 1.001 with the guard off, motion leaves what the impulse allows."""
+    monkeypatch.setattr(steps, "STEPS", 1000)
+    changes = {STEP: 1.001, ALLOW: True} | BLOW
+    assert judged(steps.impulse_bound, changes).state == FAILED
+    assert judged(steps.impulse_bound, changes | {STEP: 0.999}).state == HELD
+
+
+def test_step_that_is_never_stopped_is_not_caught():
+    """A stable step that is asked for as an unstable one runs to its end: the criterion says so."""
+
+    class Sound(Trial):
+        def run(self, **more):
+            return super().run(**more | {STEP: 0.9})
+
+    case = Case("a case", SHORT, "", steps.caught, {STEP: 1.001} | BLOW)
+    assert not np.isfinite(steps.caught(Sound(case, LEAPFROG)).value)
+
+
+def test_wrong_stiffness_breaks_the_accuracy():
+    """Joints one part in a hundred too stiff are further off than the phase error."""
+
+    class Stiffer(Trial):
+        def run(self, **more):
+            layers = [{"y": 0.5 * j, "normal_stiffness": 1.05 * JOINT} for j in range(1, 20)]
+            return super().run(soft_layers=layers, **more)
+
+    case = Case("a case", SHORT, "", accuracy.near_exact)
+    sound, wrong = (accuracy.near_exact(kind(case, LEAPFROG)) for kind in (Trial, Stiffer))
+    assert sound.value < sound.bound and wrong.value > wrong.bound
+
+
+def test_energy_that_leaks_has_a_trend():
+    """Dashpots of a ratio of 1e-12 lose more in a hundred thousand steps than round-off does."""
+    leaky = TINY | {"joints.damping_ratio": 1e-12}
+    assert judged(energies.no_trend(100_000), leaky).state == FAILED
+    assert judged(energies.no_trend(100_000), TINY | {"joints.damping_ratio": 0.0}).state == HELD
+
+
+def test_dissipated_energy_that_comes_back_is_seen(pillar):
+    """A viscous term that falls by a millionth of the work breaks the second law."""
+    result = solve("dem", pillar(joints__damping_ratio=0.1))
+    assert energies.largest_fall(result) < 1e-12
+    work = float(np.abs(result.energy.sel(term="work")).max())
+    viscous = result.energy.values[list(result.term.values).index("viscous")]
+    viscous[-1] = viscous[:-1].max() - 1e-6 * work
+    assert energies.largest_fall(result) == pytest.approx(1e-6, rel=0.1)
+
+
+def test_bound_that_bounds_nothing_fails():
+    """A bound of infinity or nan, and a value of nan, hold nothing."""
+    for finding in (Finding(1.0, np.inf), Finding(1.0, np.nan), Finding(np.nan, 1.0)):
+        assert judged(lambda trial, found=finding: found, {}).state == FAILED
+
+
+def test_spared_and_impossible_rows_give_their_reason():
+    """What a case spares and what a scheme cannot do are rows without a number."""
+    spared = judged(accuracy.near_exact, {}, spared={"dem": "because"})
+    assert (spared.state, spared.message) == (NONE, "because") and np.isnan(spared.value)
+    damped = judged(accuracy.near_exact, {"joints.damping_ratio": 0.1}, FOURTH)
+    assert damped.state == NONE and "dashpots" in damped.message
+
+
+def test_error_of_a_run_is_a_failed_row():
+    """A scene that cannot be run fails its row with the message of the run."""
+    found = judged(accuracy.near_exact, {"rock.density": -1.0})
+    assert found.state == FAILED and "rock.density" in found.message

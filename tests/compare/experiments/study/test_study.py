@@ -1,0 +1,115 @@
+"""Files of studies, the command, and what it writes."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pandas as pd
+import pytest
+import xarray as xr
+
+from cases.errors import SceneError
+from compare.experiments.study.methods import adaptive
+from compare.experiments.study.reference import reference
+from compare.experiments.study.study import load
+from compare.misfit.metrics import misfit
+
+GOOD = """
+title = "two steps"
+scene = "guo-li-2002/fig-03"
+changes = { "pillar.length" = 5.0, "record.stress" = [2.0], "time.duration" = 0.01 }
+finest = "lattice"
+
+[[curves]]
+label = "blocks"
+method = "dem"
+own = "lattice"
+vary = { "numerics.dem.step_fraction" = [0.1, 0.05] }
+order = 2
+"""
+
+
+def command(*arguments, code=0, before=()):
+    done = subprocess.run(
+        [*before, sys.executable, "-m", "compare", "study", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"},
+    )
+    assert done.returncode == code, done.stderr
+    return done
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("scene =", "scen =", "scene"),
+        ("order = 2", 'order = "two"', "curves.0.order = 'two'"),
+        ("order = 2", "oder = 2", "curves.0.oder"),
+        ("[0.1, 0.05]", "[]", "step_fraction = []"),
+        ("title", "title = ", "not valid TOML"),
+        ("[0.1, 0.05]", "[" * 3000, "not valid TOML"),
+        ('method = "dem"', 'method = "den"', "curves[0].method = 'den'"),
+        ('own = "lattice"', 'own = "truth"', "curves[0].own = 'truth'"),
+        ('finest = "lattice"', 'finest = "truth"', "finest = 'truth'"),
+        ("[0.1, 0.05]", "[2026-01-01]", "a number, a text, or true or false"),
+        ("[0.1, 0.05]", "[0x" + "f" * 99 + "]", "at most 64 bits"),
+        ("vary = {", "vary = { n_terms = [9],", "is an argument of series, kelvin-voigt"),
+        (
+            '"dem"\nown',
+            '"series"\nchanges = { n_terms = 1.5 }\nown',
+            "n_terms = 1.5: must be a whole",
+        ),
+        (
+            "vary = {",
+            f"vary = {{ 'load.period' = {[*range(1, 200)]}, 'pillar.side' = {[*range(1, 200)]},",
+            "give 79202 points, at most 10000",
+        ),
+    ],
+)
+def test_a_mistake_in_a_study_is_one_line(tmp_path, old, new, words):
+    path = tmp_path / "study.toml"
+    path.write_text(GOOD.replace(old, new, 1))
+    with pytest.raises(SceneError, match=words.replace("[", r"\[").replace("]", r"\]")):
+        load(str(path))
+
+
+def test_a_study_that_is_not_there_names_those_that_are(tmp_path):
+    done = command("no-such", "--out", tmp_path, code=2)
+    assert done.stderr.startswith("jointwave: no-such: is no file, nor one of column-3d")
+
+
+def test_command_writes_what_it_prints(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(GOOD)
+    done = command(path, "--out", tmp_path / "out", "--json", "--workers", 1)
+    facts = json.loads(done.stdout)
+    table = pd.read_csv(tmp_path / "out" / "mine.csv")
+    data = xr.load_dataset(tmp_path / "out" / "mine.nc")
+    assert [r["numerical"] for r in facts["rows"]] == pytest.approx(list(table.numerical), rel=1e-8)
+    assert list(data.numerical.values) == pytest.approx(list(table.numerical), rel=1e-8)
+    assert data.attrs["processor"] and json.loads(data.attrs["study"])["title"] == "two steps"
+    assert facts["orders"][0]["measured"] == pytest.approx(2, abs=0.1)
+
+
+def test_two_ranks_give_the_table_of_one_process(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(GOOD)
+    tables = []
+    for i, before in enumerate(((), ("mpiexec", "-n", "2", "--oversubscribe"))):
+        done = command(path, "--out", tmp_path / str(i), "--json", before=before)
+        tables.append(json.loads(done.stdout)["rows"])
+    keys = ("numerical", "total", "steps", "work")
+    one, two = ([[row[k] for k in keys] for row in table] for table in tables)
+    assert one == two
+
+
+@pytest.mark.parametrize("damping", [{}, {"joints__damping_ratio": 0.05}])
+def test_adaptive_steps_reach_the_exact_chain_as_their_tolerance_shrinks(pillar, damping):
+    """Some digits for every digit of the tolerance."""
+    load = {"shape": "ricker", "amplitude": 1e6, "period": 0.01}
+    scene = pillar(load=load, time__duration=0.03, **damping)
+    exact = reference("lattice", scene)
+    coarse, fine = (misfit(adaptive.solve(scene, rtol), exact) for rtol in (1e-4, 1e-8))
+    assert coarse < 1e-2 and fine < 1e-5 and fine < 1e-2 * coarse

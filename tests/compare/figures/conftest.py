@@ -1,0 +1,48 @@
+"""What the tests of pictures share: small comparisons by the fast engine and its exact solution."""
+
+import matplotlib
+import numpy as np
+import pytest
+
+from compare.engines import applies, solve
+from compare.figures.charts import interactive
+from compare.misfit.pairs import Comparison
+
+
+@pytest.fixture
+def compared():
+    """Return a function that solves scenes by the rigid blocks, or by what is named."""
+
+    def comparisons(*scenes, by=("dem", "lattice")):
+        return [
+            Comparison(scene, {name: solve(name, scene) for name in by if applies(name, scene)})
+            for scene in scenes
+        ]
+
+    return comparisons
+
+
+@pytest.fixture
+def values():
+    """Return a function that gives a trace's numbers along x or y as plotly.js draws them."""
+
+    def numbers(trace, axis):
+        if axis in trace:
+            return interactive.unpacked(trace[axis])
+        count = interactive.unpacked(trace["y" if axis == "x" else "x"]).shape[0]
+        return trace[f"{axis}0"] + trace[f"d{axis}"] * np.arange(count)
+
+    return numbers
+
+
+@pytest.fixture
+def ink():
+    """Return a function that gives the share of a figure's pixels that are not nearly white."""
+
+    def share(figure):
+        figure.canvas.draw()
+        image = np.asarray(figure.canvas.buffer_rgba())[..., :3]
+        return float((image.min(axis=2) < 230).mean())
+
+    with matplotlib.rc_context():
+        yield share

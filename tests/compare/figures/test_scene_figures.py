@@ -1,0 +1,167 @@
+"""All pictures of a scene together."""
+
+import json
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+
+from compare.engines import solve
+from compare.figures.charts.along_axis import recorded_along
+from compare.figures.charts.interactive import unpacked
+from compare.figures.charts.waveforms import waveforms
+from compare.figures.figure import KINDS
+from compare.figures.scene_figures import pictures_of
+from compare.figures.style import GIVEN
+from compare.misfit.alignment import lay_beside
+from compare.misfit.external import Curves, Place
+
+
+@pytest.fixture
+def comparisons(pillar, compared):
+    """Variants of one pillar, the second of them damped."""
+    scenes = [pillar(time__duration=0.03, **c) for c in ({}, {"joints__damping_ratio": 0.05})]
+    return compared(scenes[0], scenes[1].model_copy(update={"name": "damped"}))
+
+
+@pytest.fixture
+def pictures(comparisons):
+    fields = [
+        {name: solve(name, recorded_along(c.scene)) for name in ("dem", "lattice")}
+        for c in comparisons
+    ]
+    return pictures_of("fig", comparisons, fields)
+
+
+def test_kinds_come_in_the_order_of_the_page_each_under_its_own_name(pictures):
+    assert list(dict.fromkeys(p.kind for p in pictures)) == list(KINDS)
+    assert [p.title for p in pictures if p.kind == "space-time" and not p.folded] == [
+        "Stress along the pillar over time, undamped",
+        "Stress along the pillar over time, damped",
+    ]
+    names = [p.name for p in pictures]
+    assert len(set(names)) == len(names) and all(n.startswith("fig-") for n in names)
+
+
+def test_no_picture_is_blank(pictures, ink):
+    for picture in pictures:
+        assert 0.005 < ink(picture.static) < 0.6, picture.name
+        assert len(picture.table) > 0 and picture.title and picture.caption
+
+
+def test_interactive_figures_are_plain_values_without_titles_of_their_own(pictures):
+    for picture in pictures:
+        if picture.plot is not None:
+            assert json.loads(json.dumps(picture.plot, allow_nan=False)) == picture.plot
+            assert "title" not in picture.plot["layout"]
+            assert all("hovertemplate" in trace for trace in picture.plot["data"])
+    assert [p.kind for p in pictures if p.plot is None] == ["scene"]
+
+
+def test_tables_carry_units(pictures):
+    bare = {"variant", "part", "what", "engine"}
+    for picture in pictures:
+        assert all(c in bare or c.endswith(")") for c in picture.table.columns), picture.name
+
+
+def test_without_fields_there_are_no_diagrams(comparisons):
+    assert "space-time" not in [p.kind for p in pictures_of("fig", comparisons, [])]
+
+
+def every_solution(pictures):
+    return next(p for p in pictures if p.name == "fig-waveforms")
+
+
+def test_variants_stand_in_one_pair_of_axes_and_every_solution_in_a_fold(pictures):
+    first, second = (p for p in pictures if p.kind == "waveforms")
+    assert (first.name, first.folded) == ("fig-variants", False)
+    assert (second.name, second.folded) == ("fig-waveforms", True)
+    upper, lower = first.static.axes
+    assert "dem" in upper.get_title(loc="left") and "less lattice" in lower.get_title(loc="left")
+    assert len([line for line in upper.lines if "-variant-" in str(line.get_gid())]) == 2
+    assert "joints.damping_ratio" in first.caption and "reference, lattice" in first.caption
+
+
+def test_many_sections_of_one_variant_are_stacked_by_their_places(pillar, compared):
+    """Each waveform begins at its y, all on one scale; residuals beside them on a larger one."""
+    places = [10.0, 20.0, 35.0]
+    scene = pillar(time__duration=0.05, record__stress=places)
+    (comparison,) = compared(scene)
+    (picture,) = waveforms("fig", [comparison])
+    left, right = picture.static.axes
+    drawn = {line.get_gid(): line.get_ydata() for line in left.lines if line.get_gid()}
+    stress = comparison.results["dem"].stress.values
+    metres = [np.ptp(drawn[f"fig-waveforms-0-{k}-dem"]) / np.ptp(stress[k]) for k in range(3)]
+    np.testing.assert_allclose(metres, metres[0])
+    assert [drawn[f"fig-waveforms-0-{k}-dem"][0] for k in range(3)] == places
+    assert "m stand for" in left.get_ylabel() and left.get_yticks().tolist() == places
+    rest = [line for line in right.lines if line.get_gid()]
+    assert {line.get_gid().split("-", 5)[5] for line in rest} == {"dem"}
+    error = stress[0] - comparison.results["lattice"].stress.values[0]
+    times = np.ptp(rest[0].get_ydata()) / np.ptp(error)
+    assert f"drawn {times / metres[0]:.2g} times" in right.get_title(loc="left")
+    hovered = [t for t in picture.plot["data"] if t["name"] == "dem" and t["yaxis"] == "y"]
+    for trace, expected in zip(hovered, stress, strict=True):
+        np.testing.assert_allclose(unpacked(trace["customdata"]), 1e-6 * expected, atol=1e-6)
+
+
+def test_two_sections_or_curves_of_others_keep_panels_of_their_own(pillar, compared):
+    (comparison,) = compared(pillar(time__duration=0.03, record__stress=[10.0, 20.0]))
+    (picture,) = waveforms("fig", [comparison])
+    assert len(picture.static.axes) == 4
+
+
+def test_waveforms_hold_the_numbers_of_the_table(pictures, values):
+    """And under them what each leaves from the reference."""
+    picture = every_solution(pictures)
+    columns = iter(picture.table.columns[1:])
+    upper = [t for t in picture.plot["data"] if t["yaxis"] in ("y", "y3")]
+    for trace in sorted(upper, key=lambda t: (t["yaxis"], t["name"] != "dem")):
+        column = next(columns)
+        assert column.startswith(f"{trace['name']} | ")
+        y, x = unpacked(trace["y"]), values(trace, "x")
+        at = np.searchsorted(picture.table["time (s)"], 1e-3 * x - 1e-9)
+        np.testing.assert_allclose(
+            y, 1e-6 * picture.table[column].values[at], rtol=1e-6, atol=1e-30
+        )
+        assert len(y) == len(picture.table)
+    for axis, first in (("y2", 1), ("y4", 3)):
+        (rest,) = [t for t in picture.plot["data"] if t["yaxis"] == axis]
+        expected = picture.table.iloc[:, first] - picture.table.iloc[:, first + 1]
+        assert rest["name"] == "dem"
+        largest = np.abs(unpacked(rest["y"])).max()
+        np.testing.assert_allclose(
+            unpacked(rest["y"]) / largest, expected / np.abs(expected).max(), atol=1e-6
+        )
+
+
+def test_waveforms_have_the_colours_of_print(pictures):
+    picture = every_solution(pictures)
+    printed = {
+        line.get_gid().rpartition("-")[2]: to_hex(line.get_color())
+        for ax in picture.static.axes
+        for line in ax.lines
+        if line.get_gid()
+    }
+    drawn = {trace["name"]: trace["line"]["color"] for trace in picture.plot["data"]}
+    assert drawn == printed and set(drawn) == {"dem", "lattice"}
+
+
+def test_a_legend_entry_switches_a_solution_in_every_panel(pictures):
+    picture = every_solution(pictures)
+    for name, count in (("dem", 4), ("lattice", 2)):
+        traces = [t for t in picture.plot["data"] if t["legendgroup"] == name]
+        assert len(traces) == count and [t["showlegend"] for t in traces].count(True) == 1
+
+
+def test_curves_of_others_stand_beside_at_their_own_times(pillar, compared):
+    (comparison,) = compared(pillar(time__duration=0.03))
+    time = np.array([0.0, 0.011, 0.017, 0.029])
+    place = Place("stress", "", 20.0)
+    given = Curves("lab.csv", "lab.csv", time, {place: np.array([0.0, 1e5, 8e5, -2e5])})
+    comparison.besides.append(lay_beside(given, comparison.scene, comparison.results, False))
+    (picture,) = waveforms("fig", [comparison])
+    (trace,) = [t for t in picture.plot["data"] if t["name"] == "lab.csv"]
+    np.testing.assert_allclose(unpacked(trace["x"]), 1e3 * time, rtol=1e-6)
+    np.testing.assert_allclose(unpacked(trace["y"]), [0.0, 0.1, 0.8, -0.2], rtol=1e-6)
+    assert trace["line"]["color"] == GIVEN[0].colour and trace["showlegend"]

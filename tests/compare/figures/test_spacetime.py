@@ -1,0 +1,244 @@
+"""Space-time diagrams against what is known of the waves in them."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import dem
+from cases.material.calibrate import calibrate
+from cases.sampling import Clock
+from compare.engines import solve
+from compare.exact.schemes import leapfrog
+from compare.figures.charts import along_axis
+from compare.figures.charts.along_axis import along_pillar, recorded_along, sections
+from compare.figures.charts.interactive import unpacked
+from compare.figures.charts.spacetime import FINER, space_time
+from compare.figures.charts.spacetime_data import diagrams_of
+from compare.report.compression import pack_plot, pack_table
+from dem.axial.model import build_model
+
+
+def fields_of(scene, names):
+    """Return what `along_pillar` would, by these solutions alone."""
+    return {name: solve(name, recorded_along(scene)) for name in names}
+
+
+def front_speed(diagram, time, y, level):
+    """Return the speed of the first crossing of a level, fitted over the middle of the pillar."""
+    middle, arrivals = slice(5, -5), []
+    for row in diagram.values[middle]:
+        i = int(np.argmax(row > level))
+        arrivals.append(np.interp(level, row[i - 1 : i + 1], time[i - 1 : i + 1]))
+    return np.polyfit(arrivals, y[middle], 1)[0]
+
+
+@pytest.mark.parametrize(("name", "bound"), [("images", 1e-3), ("dem", 2e-2)])
+def test_front_moves_at_the_speed_of_the_bar(pillar, name, bound):
+    """That of the blocks is a little behind: the chain's long waves are slower than the bar's."""
+    scene = pillar(time__duration=0.045)
+    fields = fields_of(scene, ["dem", name])
+    shown = diagrams_of(scene, {"dem": fields[name]})[0]
+    speed = front_speed(shown.diagrams[0], shown.time, shown.y, 0.5e6 / shown.diagrams[0].unit.size)
+    assert speed == pytest.approx(calibrate(scene).bar_speed, rel=bound)
+
+
+def test_difference_from_what_the_engine_is_exactly_is_round_off(pillar):
+    """Against leapfrog's closed form, at every joint and sample."""
+    scene = recorded_along(pillar(time__duration=0.03))
+    result, p = dem.simulate(scene), calibrate(scene)
+    samples, dt = result.sizes["time"], result.attrs["dt"]
+    stride = round(scene.interval / dt)
+    load = build_model(scene, p, Clock(dt, stride, samples)).load
+    force = np.zeros(stride * (samples - 1))
+    force[: len(load)] = load[: len(force)]
+    k = p.regular_stiffness * p.area
+    steps = stride * np.arange(samples)
+    u = leapfrog.displacements(force, steps, dt, k, p.block_mass, p.block_count)
+    joints = np.rint(result.stress_y.values[1:-1] / p.spacing).astype(int)
+    inner = result.isel(stress_y=slice(1, -1))
+    closed = inner.assign(stress=(("stress_y", "time"), k / p.area * (u[joints - 1] - u[joints])))
+    shown, errors = diagrams_of(scene, {"dem": inner, "lattice": closed})
+    assert [d.name for d in shown.diagrams] == ["dem"] and errors.exact
+    assert [d.name for d in errors.diagrams] == ["dem − lattice"]
+    assert 0 < errors.diagrams[0].share < 1e-9
+
+
+def test_difference_from_the_exact_chain_is_the_numerical_error(pillar):
+    scene = pillar(time__duration=0.03)
+    fields = fields_of(scene, ["dem", "lattice"])
+    shown, errors = diagrams_of(scene, fields)
+    (one,), (difference,) = shown.diagrams, errors.diagrams
+    largest = np.abs(difference.values).max() * difference.unit.size
+    assert 1e-5 < difference.share < 2e-3
+    peak = np.abs(fields["lattice"].stress.values).max()
+    assert largest == pytest.approx(difference.share * peak, rel=0.01)
+    assert difference.limit * difference.unit.size < one.limit * one.unit.size
+    assert f"at most {100 * difference.share:.2g} %" in difference.heading
+
+
+def test_the_range_of_a_field_says_that_tension_is_cut(pillar):
+    """Where joints bar it, nothing is blue but the load itself: the least stress is none."""
+    scene = pillar(time__duration=0.03, joints__tension=False, joints__damping_ratio=0.02)
+    shown = diagrams_of(scene, fields_of(scene, ["dem"]))[0].diagrams[0]
+    inner = shown.values[1:-1]
+    assert shown.heading.endswith(f"between the ends 0 to {inner.max():.4g}")
+    assert inner.min() == 0 < inner.max()
+
+
+def test_a_scene_that_records_velocities_is_drawn_by_them(pillar):
+    """At the centres of blocks: another picture than that of the stress."""
+    scene = pillar(time__duration=0.03, record__stress=[], record__velocity=[20.25])
+    (shown, _) = diagrams_of(scene, fields_of(scene, ["dem", "lattice"]))
+    assert shown.quantity.words == "velocity" and shown.diagrams[0].unit.name == "mm/s"
+    assert shown.y[:2].tolist() == [0.25, 1.25]
+    stress = diagrams_of(scene, fields_of(pillar(time__duration=0.03), ["dem", "lattice"]))[0]
+    assert stress.quantity.words == "stress"
+
+
+def test_the_wave_is_drawn_not_the_prestress(pillar):
+    """A shear wave on which no prestress tells: the same diagram with it and without."""
+    across = {"load__direction": [1.0, 0.0, 0.0], "motion__rotation": "none"}
+    scenes = [pillar(time__duration=0.02, prestress__normal=n, **across) for n in (0.0, 1e7)]
+    waves = [fields_of(scene, ["spatial-lattice"])["spatial-lattice"] for scene in scenes]
+    without, stressed = (diagrams_of(scenes[0], {"dem": wave})[0] for wave in waves)
+    assert stressed.quantity.words == without.quantity.words == "shear x"
+    np.testing.assert_allclose(stressed.diagrams[0].values, without.diagrams[0].values, atol=0.01)
+
+
+def test_sections_are_the_waveforms_of_the_comparison(pillar, compared, monkeypatch):
+    """Receivers all along change neither the step nor a digit of a run; samples are thinned."""
+    monkeypatch.setattr(along_axis, "ENGINES", ("dem",))
+    scene = pillar()
+    fields = along_pillar(scene)
+    assert set(fields) == {"dem", "lattice"}
+    waveform = compared(scene)[0].results["dem"].stress.sel(stress_y=20.0)
+    thin = fields["dem"].stress.sel(stress_y=20.0)
+    assert thin.sizes["time"] == 241
+    np.testing.assert_array_equal(thin.values, waveform.sel(time=thin.time).values)
+
+
+def test_sections_are_joints_and_both_ends(pillar):
+    assert sections(pillar()) == [float(y) for y in range(51)]
+    odd = sections(pillar(pillar__length=48.5))  # 97 blocks: the last section is one block on
+    assert odd[-2:] == [48.0, 48.5] and len(odd) == 50
+    assert len(sections(pillar(pillar__length=5000.0))) <= along_axis.SECTIONS + 2
+
+
+def test_few_blocks_show_no_wave(pillar):
+    scene = pillar(pillar__length=3.5, record__stress=[1.0])
+    assert along_pillar(scene) == {}
+
+
+def test_engines_stand_beside_each_other_and_their_errors_apart(pillar):
+    scene = pillar(pillar__length=10.0, record__stress=[5.0], time__duration=0.02)
+    shown, errors = diagrams_of(scene, along_pillar(scene))
+    assert [d.name for d in shown.diagrams] == [
+        "dem",
+        "dem − continuum-jointed",
+        "dem − continuum-equivalent",
+        "continuum-equivalent − continuum-jointed",
+    ]
+    names = [d.name for d in errors.diagrams]
+    assert names[:2] == ["dem − lattice", "continuum-jointed − jointed-bar"]
+    assert names[2].startswith("continuum-equivalent − ") and len(names) == 3
+    picture = space_time("fig", scene, "as it stands", shown)
+    assert picture.title == "Stress along the pillar over time, as it stands"
+
+
+def spatial(stress, shear, rotation):
+    """Return a result in space with these peaks, each of its own shape."""
+    time, y = np.linspace(0, 1, 5), np.arange(9.0)
+    wave = np.outer(y, np.sin(time))
+    return xr.Dataset(
+        {
+            "stress": (("stress_y", "time"), stress * wave),
+            "shear": (("stress_y", "time", "across"), np.stack([shear * wave, 0 * wave], axis=2)),
+            "rotation": (
+                ("velocity_y", "time", "axis"),
+                np.stack([0 * wave, rotation * wave, 0 * wave], axis=2),
+            ),
+        },
+        {
+            "time": time,
+            "stress_y": y,
+            "velocity_y": y,
+            "across": ["x", "z"],
+            "axis": ["x", "y", "z"],
+        },
+        {"variant": ""},
+    )
+
+
+@pytest.mark.parametrize(
+    ("peaks", "words", "unit"),
+    [
+        ((5e5, 1e5, 1e-3), "stress", "MPa"),
+        ((1e5, 5e5, 1e-3), "shear x", "MPa"),
+        ((0.0, 0.0, 1e-3), "rotation y", "mrad"),
+    ],
+)
+def test_largest_force_is_drawn_else_what_turns(pillar, peaks, words, unit):
+    (shown,) = diagrams_of(pillar(), {"dem": spatial(*peaks)})
+    assert shown.quantity.words == words
+    assert shown.diagrams[0].unit.name == unit
+    assert shown.diagrams[0].limit > 0
+
+
+def test_nothing_moves_nothing_is_drawn(pillar):
+    assert diagrams_of(pillar(), {"dem": spatial(0.0, 0.0, 0.0)}) == []
+
+
+@pytest.fixture
+def picture(pillar):
+    layer = {"y": 20.0, "spacing_stiffness": 4.375e8}
+    scene = pillar(time__duration=0.03, soft_layers=[layer])
+    bar = {"dem": fields_of(scene, ["dem"])["dem"]}
+    bar["continuum-equivalent"] = fields_of(scene, ["equivalent-bar"])["equivalent-bar"]
+    return space_time("fig", scene, "soft layer", diagrams_of(scene, bar)[0])
+
+
+def test_traces_hold_the_numbers_of_the_table(picture):
+    assert len(picture.plot["data"]) == 2
+    for trace, column in zip(picture.plot["data"], picture.table.columns[2:], strict=True):
+        z = unpacked(trace["z"])
+        assert column.startswith(f"{trace['name']} (")
+        np.testing.assert_allclose(z.ravel(), picture.table[column].values, rtol=1e-7)
+        assert z.shape == (51, len(z[0])) and np.abs(z).max() <= 1.001 * trace["zmax"]
+        x = 1e-3 * (trace["x0"] + trace["dx"] * np.arange(z.shape[1]))
+        np.testing.assert_allclose(x, picture.table["time (s)"].unique(), atol=1e-9)
+        y = trace["y0"] + trace["dy"] * np.arange(z.shape[0])
+        np.testing.assert_allclose(y, picture.table["y (m)"].unique())
+
+
+def test_one_diagram_takes_little_of_the_page(picture):
+    size = len(pack_plot(json.dumps(picture.plot))) + len(pack_table(picture.table))
+    assert size / len(picture.plot["data"]) < 40e3
+
+
+def test_soft_layer_is_drawn_through_every_diagram(picture):
+    assert [shape["y0"] for shape in picture.plot["layout"]["shapes"]] == [20.0] * 2
+    drawn = [ax for ax in picture.static.axes if ax.images and ax.get_title(loc="left")]
+    assert [t.get_text() for t in drawn[0].texts] == [
+        "soft layer"
+    ] and "soft layer" in picture.title
+    for ax in drawn:
+        assert any(set(line.get_ydata()) == {20.0} for line in ax.lines)
+
+
+def test_static_diagrams_hold_the_same_numbers_in_the_same_colours(picture, ink):
+    drawn = [ax for ax in picture.static.axes if ax.get_title(loc="left")]
+    assert len(drawn) == 2
+    for ax, trace in zip(drawn, picture.plot["data"], strict=True):
+        (image,) = ax.images
+        rows = image.get_array()[::FINER]
+        np.testing.assert_allclose(rows, unpacked(trace["z"]), rtol=1e-6, atol=1e-9)
+        assert image.norm.vmax == trace["zmax"] and image.norm.vmin == trace["zmin"]
+        assert (*ax.get_xlim(), *ax.get_ylim()) == pytest.approx((0.0, 30.0, 0.0, 50.0))
+        edges = np.array(image.get_extent()).reshape(2, 2)
+        pixel = np.ptp(edges, axis=1) / image.get_array().shape[::-1]
+        outermost = edges + np.outer(pixel, [0.5, -0.5])  # where the outermost points are
+        np.testing.assert_allclose(outermost, [[0.0, 30.0], [0.0, 50.0]], atol=1e-9)
+        assert image.origin == "lower"
+    assert ink(picture.static) > 0.05

@@ -1,0 +1,160 @@
+"""Spectra against Fourier's theory, and the frequencies that a scene is known by."""
+
+from math import pi, sqrt
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from cases.material.calibrate import calibrate
+from compare.exact.joint.parallel_joints import transmission
+from compare.figures.charts.frequencies import band_edge, marks_of
+from compare.figures.charts.interactive import unpacked
+from compare.figures.charts.spectra import spectra
+from compare.figures.charts.spectrum import TAPERED, spectra_of, spectrum, tapered
+from compare.figures.subplots import panels
+
+LAYER = {"y": 20.0, "spacing_stiffness": 4.375e8}
+
+
+def marks(comparison):
+    """Return the marks of a comparison's first panel by name."""
+    return {m.name: m.frequency for m in marks_of(panels([comparison])[0][0])}
+
+
+@pytest.mark.parametrize("frequency", [37.0, 100.0, 612.5])
+def test_a_sine_peaks_at_its_frequency_with_half_its_area(frequency):
+    dt, count = 1e-4, 8000
+    time = dt * np.arange(count)
+    found, amplitude = spectrum(3.0 * np.sin(2 * pi * frequency * time), dt)
+    peak = int(amplitude.argmax())
+    assert abs(found[peak] - frequency) <= found[1]
+    # The taper takes half of the tenth at the end; between two frequencies a tenth is lost at most.
+    area = 3.0 / 2 * dt * count * (1 - TAPERED / 2)
+    assert 0.9 * area < amplitude[peak] <= 1.001 * area
+
+
+def test_a_gaussian_is_a_gaussian():
+    dt, width = 1e-4, 2e-3
+    time = dt * np.arange(2000) - 0.05
+    found, amplitude = spectrum(np.exp(-0.5 * (time / width) ** 2), dt)
+    expected = sqrt(2 * pi) * width * np.exp(-0.5 * (2 * pi * found * width) ** 2)
+    np.testing.assert_allclose(amplitude, expected, atol=1e-9 * expected[0])
+
+
+def test_energy_is_the_same_over_time_and_frequency():
+    """Parseval."""
+    values = np.random.default_rng(1).normal(size=777)
+    dt = 2e-5
+    found, amplitude = spectrum(values, dt)
+    twice = np.full(len(found), 2.0)
+    twice[[0, -1]] = 1.0
+    over_frequency = found[1] * (twice * amplitude**2).sum()
+    assert over_frequency == pytest.approx(dt * (tapered(values) ** 2).sum(), rel=1e-12)
+
+
+def test_taper_leaves_nine_tenths_and_ends_in_zero():
+    window = tapered(np.ones(1000))
+    assert (window[:900] == 1).all()
+    assert (np.diff(window[899:]) < 0).all() and window[-1] == pytest.approx(0, abs=1e-15)
+
+
+def test_nothing_passes_above_the_cut_off_of_the_chain(pillar, compared):
+    """The homogenised bar passes what the blocks do not."""
+    (comparison,) = compared(pillar(load__period=0.002), by=("dem", "lattice", "equivalent-bar"))
+    shown = spectra_of(panels([comparison])[0][0])
+    cut_off = marks(comparison)["chain cut-off"]
+    p = calibrate(comparison.scene)
+    assert cut_off == pytest.approx(
+        sqrt(p.regular_stiffness * p.area / p.block_mass) / pi, rel=1e-12
+    )
+
+    def passed(name):
+        curve = shown.curves[name]
+        above = (curve.index > 1.15 * cut_off) & (curve.index < 1.6 * cut_off)
+        below = (curve.index > 0.4 * cut_off) & (curve.index < 0.85 * cut_off)
+        return curve[above].mean() / curve[below].mean()
+
+    assert passed("dem") < 2e-3 and passed("lattice") < 2e-3
+    assert passed("equivalent-bar") > 0.1
+
+
+def test_joints_between_stiff_rock_end_their_band_as_a_chain_does():
+    impedance, crossing, stiffness = 1e7, 1e-7, 1e9
+    chain = sqrt(stiffness / (impedance * crossing)) / pi  # of mass Z times the crossing
+    assert band_edge(impedance, stiffness, crossing) == pytest.approx(chain, rel=1e-3)
+
+
+def test_many_joints_pass_below_their_band_edge_and_not_above():
+    impedance, stiffness, crossing = 1.44e7, 9.7e9, 8.3e-5
+    edge = band_edge(impedance, stiffness, crossing)
+
+    def passes(frequency):
+        kappa = stiffness / (impedance * 2 * pi * frequency)
+        return transmission(60, kappa, frequency * crossing)
+
+    assert passes(1.02 * edge) < 1e-3 < 0.01 < passes(0.98 * edge)
+
+
+def test_half_the_energy_passes_a_soft_layer_at_its_mark(pillar, compared):
+    (comparison,) = compared(pillar(soft_layers=[LAYER]), by=("lattice",))
+    p = calibrate(comparison.scene)
+    stiffness = 1 / p.excess_compliance[p.soft[0]]
+    kappa = stiffness / (p.impedance * 2 * pi * marks(comparison)["soft layer"])
+    assert 2 * kappa / sqrt(4 * kappa**2 + 1) == pytest.approx(1 / sqrt(2))
+
+
+@pytest.mark.parametrize(
+    ("end", "waves"), [("free", 2), ("fixed", 4), ("quiet", None), ("matched", None)]
+)
+def test_first_mode_is_that_of_two_ends_that_reflect(pillar, compared, end, waves):
+    (comparison,) = compared(pillar(ends__end=end), by=("lattice",))
+    found = marks(comparison)
+    assert found["load"] == pytest.approx(100.0)
+    if waves is None:
+        assert "first mode" not in found
+    else:
+        speed = calibrate(comparison.scene).bar_speed
+        assert found["first mode"] == pytest.approx(speed / (waves * 50.0))
+
+
+@pytest.fixture
+def picture(pillar, compared):
+    scenes = [
+        pillar(time__duration=0.04, soft_layers=layers, record__velocity=[30.25])
+        for layers in ([], [LAYER])
+    ]
+    (found,) = spectra("fig", compared(*scenes))
+    return found
+
+
+def test_traces_hold_the_numbers_of_the_table(picture, values):
+    columns = iter(c for c in picture.table.columns if c != "frequency (Hz)")
+    by_axis = sorted(picture.plot["data"], key=lambda t: (t["yaxis"], t["name"] != "dem"))
+    factors = {"Pa/Hz": 1e-6, "m/s/Hz": 1.0}
+    assert len(by_axis) == 8
+    for trace, column in zip(by_axis, columns, strict=True):
+        assert column.startswith(f"{trace['name']} | ")
+        kept = picture.table[["frequency (Hz)", column]].dropna()
+        factor = factors[column[column.rindex("(") + 1 : -1]]
+        np.testing.assert_allclose(unpacked(trace["y"]), factor * kept[column], rtol=1e-6)
+        np.testing.assert_allclose(values(trace, "x"), kept["frequency (Hz)"], rtol=1e-6)
+
+
+def test_every_panel_has_its_own_marks(picture):
+    shapes = pd.Series([s["yref"] for s in picture.plot["layout"]["shapes"]]).value_counts()
+    # Load, first mode, cut-off and band edge; with the layer one more.
+    assert [shapes[f"{axis} domain"] for axis in ("y", "y2", "y3", "y4")] == [4, 4, 5, 5]
+    lines = [sum(line.get_linestyle() == ":" for line in ax.lines) for ax in picture.static.axes]
+    assert lines == [4, 4, 5, 5]
+
+
+def test_axes_are_logarithmic(picture, ink):
+    layout = picture.plot["layout"]
+    assert layout["xaxis"]["type"] == layout["yaxis"]["type"] == layout["yaxis4"]["type"] == "log"
+    assert all(ax.get_xscale() == ax.get_yscale() == "log" for ax in picture.static.axes)
+    assert ink(picture.static) > 0.01
+
+
+def test_no_spectra_of_what_does_not_move(pillar, compared):
+    assert spectra("fig", compared(pillar(load__amplitude=0.0), by=("lattice",))) == []

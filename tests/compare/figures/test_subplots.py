@@ -1,0 +1,93 @@
+"""Which quantity and component a panel shows."""
+
+import numpy as np
+import pytest
+
+from compare.exact.blocks import lattice, spatial_lattice
+from compare.figures.overlay_figures import draw
+from compare.figures.subplots import curve_table, panels
+from compare.misfit.pairs import Comparison
+
+RECORD = {"record__stress": [5.0], "record__velocity": [5.25], "time__duration": 0.01}
+TWIST = {"load__arm": 0.2, "record__stress": []}
+
+
+def comparison(pillar, solution=spatial_lattice, **changes):
+    """Return a scene solved by one exact solution."""
+    scene = pillar(**RECORD | changes)
+    return Comparison(scene, {solution.NAME: solution.solve(scene)})
+
+
+@pytest.mark.parametrize(
+    ("changes", "places"),
+    [
+        ({"load__direction": [0.0, 0.0, 1.0]}, ["shear z at y = 5 m", "velocity z at y = 5.25 m"]),
+        ({"load__direction": [0.28, 0.96, 0.0]}, ["stress at y = 5 m", "velocity y at y = 5.25 m"]),
+        (TWIST, ["rotation y at y = 5.25 m"]),
+    ],
+)
+def test_panel_shows_the_component_that_moves_most(pillar, changes, places):
+    found = comparison(pillar, **changes)
+    (row,) = panels([found])
+    assert [panel.place for panel in row] == places
+    for panel in row:
+        values = found.results["spatial-lattice"][panel.quantity].values
+        assert panel.curves["spatial-lattice"].abs().max() == np.abs(values).max()
+
+
+def test_variants_of_different_motion_share_a_figure_and_a_table(pillar):
+    """Axial, spatial and twisted: each panel has its own unit, each column says what it is."""
+    found = [
+        comparison(pillar, lattice),
+        comparison(pillar, load__direction=[1.0, 0.0, 0.0]),
+        comparison(pillar, record__velocity=[5.25, 9.75], **TWIST),
+    ]
+    labels = [ax.get_ylabel() for ax in draw("fig", found).axes]
+    assert [label for label in labels if label] == [
+        "stress (MPa)",
+        "velocity (m/s)",
+        "shear (MPa)",
+        "velocity (m/s)",
+        "rotation (mrad)",
+        "rotation (mrad)",
+    ]
+    units = [column.rpartition("(")[2] for column in curve_table(found)]
+    assert units == ["Pa)", "m/s)", "Pa)", "m/s)", "rad)", "rad)"]
+
+
+SHEAR = {"load__direction": [1.0, 0.0, 0.0], "motion__rotation": "none"}
+
+
+@pytest.mark.parametrize("normal", [1e5, 1e7])
+def test_what_moves_is_drawn_not_what_stands(pillar, normal):
+    """A shear wave under a prestress that is larger: the transmitted shear, in every panel."""
+    plain = comparison(pillar, **SHEAR)
+    found = comparison(pillar, prestress__normal=normal, **SHEAR)
+    for panel, other in zip(panels([found])[0], panels([plain])[0], strict=True):
+        assert panel.place == other.place and panel.at_rest == 0
+        (curve,), (same,) = panel.curves.values(), other.curves.values()
+        np.testing.assert_allclose(curve, same, atol=1e-9 * np.abs(same).max())
+    assert panels([found])[0][0].place == "shear x at y = 5 m"
+
+
+def test_the_static_state_is_taken_from_a_waveform_and_said(pillar):
+    """Drawn is the motion; the table keeps what was recorded."""
+    scenes = [pillar(**RECORD, prestress__normal=normal) for normal in (0.0, 2e6)]
+    found = [Comparison(scene, {"lattice": lattice.solve(scene)}) for scene in scenes]
+    (moving, _), (stressed, _) = panels(found)
+    assert (moving.at_rest, stressed.at_rest) == (0.0, pytest.approx(2e6))
+    np.testing.assert_allclose(stressed.curves["lattice"], moving.curves["lattice"], atol=1e-3)
+    upper = draw("fig", found[1:]).axes[0]
+    assert upper.get_ylabel() == "stress (MPa)\nless 2 at rest"
+    assert np.abs(upper.lines[1].get_ydata()).max() < 1.1
+    column = curve_table(found[1:]).iloc[:, 0]
+    assert column.iloc[0] == pytest.approx(2e6)
+
+
+def test_gravity_that_stands_is_no_motion(pillar):
+    """Where it is there from the start, the first sample is at rest."""
+    scene = pillar(**RECORD, gravity__direction=[0.0, 1.0, 0.0], ends__end="fixed")
+    found = Comparison(scene, {"lattice": lattice.solve(scene)})
+    stress, _ = panels([found])[0]
+    assert stress.at_rest == pytest.approx(2400 * 9.81 * 5.0, rel=0.02)
+    assert stress.curves["lattice"].iloc[0] == 0

@@ -1,0 +1,337 @@
+"""The page as its reader meets it: a headless Chromium opens it alone, without a network."""
+
+import io
+import re
+import shutil
+from itertools import pairwise
+from xml.etree import ElementTree
+
+import numpy as np
+import pandas as pd
+import pytest
+from PIL import Image
+
+from compare.report.report import build
+from compare.report.section import PAPER
+
+WIDE, NARROW = (1280, 800), (390, 844)
+BOXES = ".scroll, .static, pre, nav"  # may scroll; whatever else is wider than its place is clipped
+CHARTS = "figure[data-plot]"
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    """Build the page of three quick scenes: one of one's own with variants, the same recorded by
+    its velocities, and one of the paper."""
+    own = tmp_path_factory.mktemp("scenes") / "short pillar.toml"
+    moving = own.with_name("moving.toml")
+    text = (PAPER / "fig-03.toml").read_text(encoding="utf-8").partition("[[variants]]")[0]
+    text = re.sub(r"duration *=.*", "duration = 0.03", text)
+    text = f'{text}\n[[variants]]\nname = "zeta 0.05"\njoints.damping_ratio = 0.05\n'
+    own.write_text(text)
+    moving.write_text(re.sub(r"stress *= .*", "velocity = [20.25]", text))
+    scenes = [str(own), str(moving), "guo-li-2002/fig-06"]
+    return build(tmp_path_factory.mktemp("report"), scenes=scenes)
+
+
+@pytest.fixture(scope="module")
+def alone(report, tmp_path_factory):
+    """Return the page moved to a folder without any of its files."""
+    return shutil.copy(report.page, tmp_path_factory.mktemp("alone") / "page.html")
+
+
+@pytest.fixture
+def opened(browser, alone):
+    """Return a function that opens the page, and the list of all that the browser complains of."""
+    contexts, complaints = [], []
+
+    def show(size=WIDE, path=alone, **options):
+        context = browser.new_context(
+            viewport=dict(zip(("width", "height"), size, strict=True)), **options
+        )
+        contexts.append(context)
+        context.route(re.compile("^(http|ws)"), lambda route: route.abort())
+        page = context.new_page()
+        page.on("console", lambda message: complaints.append(message.text))
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("request", lambda request: _refuse_outside(request.url, path, complaints))
+        page.goto(path.as_uri() if hasattr(path, "as_uri") else f"file://{path}")
+        return page
+
+    show.complaints = complaints
+    yield show
+    for context in contexts:
+        context.close()
+
+
+def _refuse_outside(url, path, complaints):
+    if not url.startswith(("data:", "blob:")) and url.split("#")[0] != f"file://{path}":
+        complaints.append(f"asks for {url}")
+
+
+def unfold(page):
+    """Open every fold."""
+    page.evaluate("document.querySelectorAll('details').forEach(d => { d.open = true })")
+
+
+def drawn(page):
+    """Open every fold, let every chart come into view, and wait until it is drawn."""
+    unfold(page)
+    for figure in page.locator(CHARTS).all():
+        figure.scroll_into_view_if_needed()
+        figure.locator(".chart .main-svg").first.wait_for(timeout=20_000)
+    return page.locator(CHARTS).all()
+
+
+def spread(png):
+    """Return the standard deviation of an image's brightness: 0 where it is blank."""
+    return float(np.asarray(Image.open(io.BytesIO(png)).convert("L")).std())
+
+
+def test_the_page_opens_and_draws_without_a_complaint(opened):
+    page = opened()
+    assert drawn(page)
+    assert opened.complaints == []
+
+
+def test_charts_wait_until_they_are_looked_at(opened):
+    page = opened()
+    assert page.locator(CHARTS).count() > page.locator(".live").count()
+    page.locator(CHARTS).last.scroll_into_view_if_needed()
+    page.locator(CHARTS).last.locator(".chart .main-svg").first.wait_for(timeout=20_000)
+
+
+def test_the_first_screen_answers_how_far_apart_and_at_what_cost(opened, report):
+    page = opened()
+    table = page.locator("table.overview")
+    box = table.bounding_box()
+    assert box["y"] + box["height"] <= WIDE[1] and box["x"] + box["width"] <= WIDE[0]
+    assert table.locator("tbody tr").count() == 3
+    heads = table.locator("thead").inner_text().replace("\u00a0", " ")
+    assert all(heads.count(word) == 3 for word in ("own %", "finest %", "cost", "verdict"))
+    lead = page.locator("ul.lead").inner_text()
+    for engine in report.overview.engines:
+        assert engine in lead
+    assert lead.count("from the finest physics") == 3 and "× the cheapest's time" in lead
+
+
+def test_a_verdict_is_never_a_colour_alone(opened):
+    grades = opened().locator(".grade").all_inner_texts()
+    assert len(grades) == 9
+    assert all(re.fullmatch(r"[✓≈△▲✗?] [a-z ]+", text) for text in grades)
+
+
+def test_no_button_of_a_chart_sends_it_away(opened):
+    page = opened()
+    drawn(page)
+    names = set(page.locator(".modebar-btn").evaluate_all("all => all.map(b => b.ariaLabel)"))
+    assert {"Zoom in", "Zoom out", "Reset axes"} <= names
+    assert not [name for name in names if "hare" in name or "loud" in name]
+
+
+def test_dragging_zooms_all_panels_of_a_chart(opened):
+    page = opened()
+    chart = drawn(page)[0].locator(".chart")
+    chart.locator(".nsewdrag").first.scroll_into_view_if_needed()
+    panel = chart.locator(".nsewdrag").first.bounding_box()
+    y = panel["y"] + panel["height"] / 2
+    before = chart.evaluate("box => [...box.layout.xaxis.range]")
+    page.mouse.move(panel["x"] + panel["width"] * 0.25, y)
+    page.mouse.down()
+    page.mouse.move(panel["x"] + panel["width"] * 0.5, y, steps=8)
+    page.mouse.up()
+    page.wait_for_timeout(300)
+    low, high = chart.evaluate("box => [...box._fullLayout.xaxis.range]")
+    full = before[1] - before[0]
+    assert (low - before[0]) / full == pytest.approx(0.25, abs=0.02)
+    assert (high - before[0]) / full == pytest.approx(0.5, abs=0.02)
+
+
+def test_a_curve_is_switched_off_and_on_in_every_panel_by_mouse_and_by_key(opened):
+    page = opened()
+    drawn(page)
+    figure = page.locator("#short-pillar-waveforms-figure")
+    button = figure.get_by_role("button", name="dem", exact=True)
+    shown = "box => box.data.filter(t => t.legendgroup === 'dem').map(t => t.visible ?? true)"
+    states = []
+    for press in (button.click, lambda: button.press("Enter"), lambda: button.press("Space")):
+        press()
+        page.wait_for_timeout(100)
+        found = figure.locator(".chart").evaluate(shown)
+        states.append(found)
+        assert button.get_attribute("aria-pressed") == str(found[0]).lower()
+    assert states == [[False] * 4, [True] * 4, [False] * 4]  # in both variants, and residuals
+
+
+def test_every_download_is_a_whole_file_of_its_kind(opened, report):
+    page = opened(accept_downloads=True)
+    unfold(page)
+    links = page.locator(".files a").all()
+    figures = page.locator("figure").count()
+    assert len(links) == 3 * figures > 3
+    for link in links:
+        page.wait_for_timeout(150)  # Chromium holds back who saves twenty files in a row at once
+        with page.expect_download() as waiting:
+            link.click()
+        name = link.get_attribute("download")
+        assert waiting.value.suggested_filename == name
+        content = waiting.value.path().read_bytes()
+        beside = report.page.parent / "figures" / name
+        CHECKS[name.rpartition(".")[2]](content, beside)
+    assert opened.complaints == []
+
+
+def _check_svg(content, beside):
+    tree = ElementTree.fromstring(content)
+    assert tree.tag == "{http://www.w3.org/2000/svg}svg"
+    there = ElementTree.parse(beside).getroot()
+    path = "{http://www.w3.org/2000/svg}path"
+    assert len(list(tree.iter(path))) == len(list(there.iter(path))) > 5
+
+
+def _check_pdf(content, beside):
+    assert content.startswith(b"%PDF") and content == beside.read_bytes()
+    assert b"/FontFile2" in content  # TrueType, embedded
+
+
+def _check_csv(content, beside):
+    table = pd.read_csv(io.BytesIO(content))
+    assert len(table) > 1 and len(table.columns) > 1
+    there = pd.read_csv(beside)
+    assert list(table) == list(there) and len(table) == len(there)
+    for name in table:
+        if pd.api.types.is_numeric_dtype(there[name]):
+            largest = there[name].abs().max()
+            np.testing.assert_allclose(table[name], there[name], rtol=3e-6, atol=1e-6 * largest)
+        else:
+            assert (table[name].fillna("") == there[name].fillna("")).all()
+
+
+CHECKS = {"svg": _check_svg, "pdf": _check_pdf, "csv": _check_csv}
+
+
+def test_no_figure_is_blank_on_screen_or_on_paper(opened):
+    page = opened()
+    drawn(page)
+    for figure in page.locator("figure").all():
+        assert spread(figure.screenshot()) > 8, figure.get_attribute("id")
+    page.emulate_media(media="print")
+    for figure in page.locator("figure").all():
+        assert figure.locator(".static svg").is_visible()
+        assert figure.locator(".chart:visible").count() == 0
+        assert spread(figure.locator(".static").screenshot()) > 8
+
+
+def test_the_page_prints_what_is_not_folded(opened):
+    """Folds stay closed; each scene takes at most three sides and a half."""
+    page = opened()
+    pdf = page.pdf(prefer_css_page_size=True)
+    assert pdf.startswith(b"%PDF")
+    sheets = len(re.findall(rb"/Type\s*/Page\b", pdf))
+    assert 4 <= sheets <= 11
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert page.locator("details[open]").count() == 0 < page.locator("details").count()
+
+
+def test_no_two_captions_show_the_same_picture_or_numbers(opened, report):
+    """Pixel by pixel, and file by file; what two scenes share is drawn once and linked to."""
+    page = opened()
+    unfold(page)
+    page.emulate_media(media="print")
+    found = {}
+    for figure in page.locator("figure").all():
+        name = figure.get_attribute("id").removesuffix("-figure")
+        numbers = (report.page.parent / "figures" / f"{name}.csv").read_bytes()
+        for seen in (figure.locator(".static").screenshot(), numbers):
+            assert found.setdefault(seen, name) == name
+    links = page.locator("#moving p a[href^='#short-pillar']")
+    assert links.all_inner_texts() == ["short-pillar: Energy over time"]
+    assert page.locator(links.get_attribute("href")).count() == 1
+
+
+def test_every_variant_has_a_diagram_of_its_own_under_its_name(opened):
+    heads = opened().locator("h3").all_inner_texts()
+    for words in ("Stress along", "Velocity along"):
+        for variant in ("undamped", "ζ = 0.05"):
+            assert f"{words} the pillar over time, {variant}" in heads
+
+
+CLIPPED = """boxes => [...document.querySelectorAll(
+    "body, h1, h2, h3, p, li, td, th, figcaption, summary, button, code, .grade")]
+  .filter(e => e.clientWidth && e.scrollWidth > e.clientWidth + 1
+    && (e === document.body || !e.closest(boxes)))
+  .map(e => e.tagName + " " + e.textContent.slice(0, 60))"""
+OUTSIDE = """figure => {
+  const chart = figure.querySelector(".live .chart, .chart");
+  const place = chart?.offsetWidth ? chart : figure.querySelector(".static svg");
+  const box = place.getBoundingClientRect();
+  return [...place.querySelectorAll("text")].filter(text => {
+    const r = text.getBoundingClientRect();
+    return r.width && (r.left < box.left - 1 || r.right > box.right + 1
+      || r.top < box.top - 1 || r.bottom > box.bottom + 1);
+  }).map(text => text.textContent); }"""
+
+
+@pytest.mark.parametrize("size", [WIDE, NARROW], ids=["wide", "narrow"])
+def test_no_text_is_clipped(opened, size):
+    page = opened(size)
+    drawn(page)
+    assert page.evaluate("document.documentElement.scrollWidth") == size[0]
+    assert page.evaluate(CLIPPED, BOXES) == []
+    for figure in page.locator("figure").all():
+        assert figure.evaluate(OUTSIDE) == [], figure.get_attribute("id")
+
+
+def test_keys_reach_everything_and_are_seen_where_they_are(opened):
+    """Tab goes through every link, button and summary in turn, and out again."""
+    page = opened()
+    drawn(page)
+    page.evaluate("scrollTo(0, 0); document.activeElement.blur()")
+    wanted = page.evaluate(
+        "[...document.querySelectorAll('a[href], button, summary')]"
+        ".filter(e => e.checkVisibility() && !e.disabled).length"
+    )
+    step = """() => { const e = document.activeElement; e.dataset.reached = 1;
+      return [e.tagName, e.className, getComputedStyle(e).outlineStyle] }"""
+    page.keyboard.press("Tab")
+    first = page.evaluate(step)
+    assert first[1] == "skip"
+    for _ in range(3 * wanted):
+        tag, name, outline = page.evaluate(step)
+        if tag == "BODY":
+            break
+        assert outline != "none", (tag, name)
+        page.keyboard.press("Tab")
+    missed = page.evaluate(
+        "[...document.querySelectorAll('a[href], button, summary')]"
+        ".filter(e => e.checkVisibility() && !e.dataset.reached).map(e => e.outerHTML.slice(0, 90))"
+    )
+    assert missed == []
+
+
+def test_headings_follow_each_other_and_everything_has_a_name(opened):
+    page = opened()
+    levels = page.evaluate("[...document.querySelectorAll('h1,h2,h3,h4')].map(h => +h.tagName[1])")
+    assert levels[0] == 1 and levels.count(1) == 1
+    assert all(b <= a + 1 for a, b in pairwise(levels))
+    unnamed = "e => e.filter(x => !(x.getAttribute('aria-label') || x.textContent.trim())).length"
+    assert page.locator("[role=img], [role=group], button, a").evaluate_all(unnamed) == 0
+    ids = page.evaluate("[...document.querySelectorAll('[id]')].map(e => e.id)")
+    assert len(ids) == len(set(ids))
+
+
+def test_the_command_of_a_scene_is_copied(opened):
+    page = opened(permissions=["clipboard-read", "clipboard-write"])
+    page.locator("#fig-06 .copy").click()
+    page.locator("#fig-06 .copy", has_text="Copied").wait_for()
+    copied = page.evaluate("navigator.clipboard.readText()")
+    assert copied == "jointwave report guo-li-2002/fig-06 --out fig-06"
+
+
+def test_without_scripts_figures_stand_still_and_links_lead_to_files(opened, report):
+    page = opened(path=report.page, java_script_enabled=False)
+    for figure in page.locator("section > figure").all():
+        assert figure.locator(".static svg").is_visible()
+    for link in page.locator("figure .files a").all():
+        assert (report.page.parent / link.get_attribute("href")).stat().st_size > 100
+    assert page.locator(".copy:visible").count() == 0

@@ -1,0 +1,175 @@
+"""Every finding both ways: it holds on the exact chain, and fails once its claim is made false."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import cases
+from compare.exact.blocks import lattice, no_tension
+from compare.misfit.pairs import Comparison
+from compare.report.findings import FINDINGS, ends, joints, pillar, travel
+from compare.report.findings.overview import mostly_dispersion
+from compare.report.section import PAPER as SCENES
+
+CLAIMS = [(figure, find) for figure, finds in FINDINGS.items() for find in finds]
+
+#: Sections that show all of the claims, where the shipped scene has too few.
+SECTIONS = {4: {"record.stress": [10.0, 20.0, 30.0, 40.0, 47.5]}}
+
+
+def exact_chain(scene):
+    """Return a comparison whose rigid blocks are the exact solution of their own equations."""
+    solution = lattice if lattice.applies(scene) else no_tension
+    return Comparison(scene, {"dem": solution.solve(scene)})
+
+
+@pytest.fixture(scope="module")
+def chains():
+    """Return a function that gives a figure's comparisons, each solved once."""
+    known = {}
+
+    def of(figure):
+        if figure not in known:
+            scenes = cases.load(SCENES / f"fig-{figure:02d}.toml", SECTIONS.get(figure))
+            known[figure] = [exact_chain(scene) for scene in scenes]
+        return known[figure]
+
+    return of
+
+
+def changed(comparison, quantity, change):
+    """Return a comparison whose waveforms are change(waveform [..., time], time)."""
+    result = comparison.results["dem"].copy(deep=True)
+    waves = np.moveaxis(result[quantity].values, 1, -1)
+    waves[...] = change(waves.copy(), result.time.values)
+    return dataclasses.replace(comparison, results={"dem": result})
+
+
+def every(quantity, change):
+    """Return what makes a claim false by changing every variant's waveforms."""
+    return lambda comparisons: [changed(c, quantity, change) for c in comparisons]
+
+
+def swapped(comparisons):
+    """Return the variants with their results the other way round."""
+    results = [c.results for c in comparisons][::-1]
+    return [dataclasses.replace(c, results=r) for c, r in zip(comparisons, results, strict=True)]
+
+
+def alike(index):
+    """Return what gives every variant the results of one."""
+
+    def change(comparisons):
+        results = comparisons[index].results
+        return [dataclasses.replace(c, results=results) for c in comparisons]
+
+    return change
+
+
+def end_as(end, other):
+    """Return what gives the variant with one end the results of that with the other."""
+
+    def change(comparisons):
+        of = {c.scene.ends.end: c.results for c in comparisons}
+        return [
+            dataclasses.replace(c, results=of[other]) if c.scene.ends.end == end else c
+            for c in comparisons
+        ]
+
+    return change
+
+
+def after(time, factor):
+    """Return a change that multiplies a waveform by a factor after a time (s)."""
+    return lambda wave, t: np.where(t > time, factor * wave, wave)
+
+
+def first_only(wave, t):
+    """Return the incident pulses alone: zero from 38 ms on, when the end sends them back."""
+    return np.where(t < 0.038, wave, 0.0)
+
+
+def late_at_the_last(wave, t):
+    """Return waveforms of which the sections after the first are 2 ms late."""
+    wave[1:] = np.roll(wave[1:], round(2e-3 / t[1]), axis=-1)
+    return wave
+
+
+#: What makes each claim false.
+FALSE = {
+    pillar.one_sine_cycle: every("stress", lambda wave, t: 1.02 * wave),
+    pillar.three_pulses: every("stress", after(0.045, -1)),
+    pillar.falls_with_distance: every("stress", after(0.045, 3)),
+    pillar.falls_with_damping: swapped,
+    travel.travels: every("stress", late_at_the_last),
+    travel.reflection: every("stress", after(0.045, -1)),
+    travel.superposition: every("stress", first_only),
+    ends.quiet_end: end_as("quiet", "free"),
+    ends.what_the_quiet_end_leaves: end_as("quiet", "matched"),
+    ends.matched_end: end_as("matched", "quiet"),
+    pillar.broader: swapped,
+    pillar.second_half_weaker: swapped,
+    joints.reflects_in_front: alike(0),
+    joints.smaller_and_later: alike(0),
+    joints.tension_is_cut: alike(0),
+    joints.blocks_separate: alike(0),
+    joints.blocks_coast: every("velocity", lambda wave, t: wave + 0.01 * np.sin(500 * t)),
+}
+
+
+@pytest.mark.parametrize(("figure", "find"), CLAIMS)
+def test_claim_holds_on_the_exact_chain(chains, figure, find):
+    finding = find(chains(figure))
+    assert finding.holds, finding.sentence
+    assert "dem" in finding.sentence
+
+
+@pytest.mark.parametrize(("figure", "find"), CLAIMS)
+def test_finding_sees_a_false_claim(chains, figure, find):
+    finding = find(FALSE[find](chains(figure)))
+    assert not finding.holds, finding.sentence
+
+
+def test_superposition_needs_a_section_where_pulses_meet():
+    scene = cases.load_variant(SCENES / "fig-04.toml", "", {"record.stress": [10.0, 40.0]})
+    finding = travel.superposition([exact_chain(scene)])
+    assert not finding.holds
+    assert "6.75 m" in finding.sentence  # c T / 2 = 1350 m/s * 10 ms / 2
+
+
+def test_theory_gives_what_the_quiet_end_leaves(chains):
+    """tan(kh/4) of a harmonic is 5.8 % at the default period."""
+    finding = ends.what_the_quiet_end_leaves(chains(5))
+    assert "5.8 % at the load's period" in finding.sentence
+
+
+def overview(replaced=None):
+    from compare.exact.bar import equivalent_bar, jointed_bar
+
+    scene = cases.load_variant(SCENES / "fig-03.toml")
+    solutions = {
+        "dem": lattice,
+        "lattice": lattice,
+        "jointed-bar": jointed_bar,
+        "equivalent-bar": equivalent_bar,
+    } | (replaced or {})
+    return mostly_dispersion(
+        Comparison(scene, {name: module.solve(scene) for name, module in solutions.items()})
+    )
+
+
+def test_overview_gives_the_known_distances():
+    """17.9 % from the homogenised bar, 4.0 % from the bar with 99 joints."""
+    finding = overview()
+    assert finding.holds
+    for number in ("lie 17.9 % from", "cost 4.0 %", "99 joints"):
+        assert number in finding.sentence
+
+
+def test_overview_says_so_when_joints_explain_nothing():
+    from compare.exact.bar import equivalent_bar
+
+    finding = overview({"jointed-bar": equivalent_bar})
+    assert not finding.holds
+    assert "does not explain" in finding.sentence

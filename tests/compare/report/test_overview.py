@@ -1,0 +1,133 @@
+"""Where engines stand, on made-up results whose distances are known."""
+
+from math import nan
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from compare.misfit.metrics import Worst
+from compare.misfit.pairs import Comparison
+from compare.report.overview import Ranked, in_seconds, overview
+from compare.report.verdict import NOT_CHECKED, Held, Standing, standings
+
+
+@pytest.fixture
+def compared(pillar):
+    """Return a function that gives a comparison: by name how far each result is from one wave."""
+
+    def make(expect=None, **far):
+        wave = np.sin(np.linspace(0, 9, 200))[None]
+        results = {
+            name.replace("_", "-"): xr.Dataset(
+                {"stress": (("stress_y", "time"), (1 + x) * wave)},
+                {"stress_y": [20.0], "time": np.arange(200.0)},
+            )
+            for name, x in far.items()
+        }
+        return Comparison(pillar().model_copy(update={"expect": expect or {}}), results)
+
+    return make
+
+
+def test_an_engine_is_held_to_its_own_model_and_to_the_finest(compared):
+    found = standings([compared(dem=0.03, lattice=0.029, continuum_jointed=1e-4, jointed_bar=0.0)])
+    assert found["dem"].total == pytest.approx(0.03)
+    assert found["dem"].own == pytest.approx(0.001 / 1.029)
+    assert found["dem"].finest == ("jointed-bar",)
+    assert found["dem"].verdict.word == "close"
+    assert found["continuum-jointed"].verdict.word == "agrees"
+    assert "continuum-equivalent" not in found
+
+
+def test_the_largest_misfit_of_the_variants_counts(compared):
+    found = standings([compared(dem=x, jointed_bar=0.0) for x in (0.3, 0.01, 0.06)])
+    assert found["dem"].total == pytest.approx(0.3) and found["dem"].verdict.word == "far off"
+    assert np.isnan(found["dem"].own)
+
+
+def test_without_an_exact_solution_the_resolved_joints_are_the_finest(compared):
+    found = standings([compared(dem=0.1, continuum_jointed=0.0, lattice=0.1)])
+    assert found["dem"].finest == ("continuum-jointed",)
+    assert found["dem"].verdict.word == "differs"
+    assert found["continuum-jointed"].finest == () and np.isnan(found["continuum-jointed"].total)
+    assert found["continuum-jointed"].verdict == NOT_CHECKED
+
+
+def test_one_variant_that_nothing_checks_takes_the_tick_from_all(compared):
+    checked = compared(continuum_jointed=1e-4, jointed_bar=0.0)
+    alone = compared(continuum_jointed=0.0, dem=0.1)
+    found = standings([checked, alone])["continuum-jointed"]
+    assert [held.verdict.word for held in found.variants] == ["agrees", NOT_CHECKED.word]
+    assert found.verdict == NOT_CHECKED and len(found.unchecked) == 1
+    worse = compared(continuum_jointed=0.5, jointed_bar=0.0)
+    assert standings([worse, alone])["continuum-jointed"].verdict.word == "far off"
+
+
+def test_what_is_below_ten_times_the_error_of_the_reference_is_no_agreement(compared):
+    comparison = compared(dem=1e-4, jointed_bar=0.0)
+    bar = comparison.results["jointed-bar"]
+    rms = float(np.sqrt((bar.stress**2).mean()))
+    bar["stress_error"] = ("stress_y", [3e-3 * rms])
+    found = standings([comparison])["dem"]
+    assert found.total == pytest.approx(0.03) and found.verdict.word == "close"
+
+
+def test_of_a_reference_that_stands_still_nothing_is_known(compared):
+    found = standings([compared(dem=0.1, spatial_lattice=-1.0)])
+    assert np.isnan(found["dem"].total) and found["dem"].verdict == NOT_CHECKED
+
+
+def test_a_bound_of_the_scene_that_is_not_met_outdoes_every_misfit(compared):
+    expect = {"dem ~ jointed-bar": 1e-4, "dem ~ lattice": 1.0, "dem ~ images": 1e-9}
+    found = standings([compared(expect, dem=0.002, jointed_bar=0.0, lattice=0.0)])
+    assert found["dem"].broken == ("dem ~ jointed-bar",)
+    assert found["dem"].verdict.sign == "✗" and found["dem"].verdict.word == "out of bounds"
+
+
+def standing(total, against):
+    held = Held("", Worst(nan), Worst(total), against, "", ())
+    return Standing((held,))
+
+
+def ranked(name, seconds, **total):
+    found = {engine.replace("_", "-"): standing(x, "jointed-bar") for engine, x in total.items()}
+    return Ranked(name, name, f"title of {name}", found, dict(zip(found, seconds, strict=True)))
+
+
+def test_costs_are_ratios_to_the_cheapest_of_each_scene():
+    scenes = [
+        ranked("a", [2e-3, 3e-2], dem=0.04, continuum_jointed=1e-6),
+        ranked("b", [4e-3, 2e-3], dem=0.002, continuum_jointed=0.0),
+        ranked("c", [1e-3], dem=0.01),
+    ]
+    found = overview(scenes)
+    assert found.engines == ["dem", "continuum-jointed"]
+    assert [[cell and cell.ratio for cell in line.cells] for line in found.lines] == [
+        ["1.0×", "15×"],
+        ["2.0×", "1.0×"],
+        ["1.0×", None],
+    ]
+    sentences = dict(found.lead)
+    assert "0.2 to 4 % from the finest physics" in sentences["dem"]
+    assert "1.0× to 2.0× the cheapest's time" in sentences["dem"]
+    assert "0 to < 0.001 %" in sentences["continuum-jointed"]
+
+
+def test_the_cheapest_everywhere_says_its_seconds():
+    found = overview([ranked("a", [2e-3], dem=0.04), ranked("b", [3.14], dem=0.04)])
+    assert dict(found.lead)["dem"].endswith("cheapest, 2 ms to 3.1 s a run.")
+
+
+def test_an_engine_without_a_distance_is_not_given_one():
+    there = {"dem": standing(nan, "lattice"), "continuum-jointed": standing(nan, "")}
+    said = dict(overview([Ranked("a", "a", "A", there, dict.fromkeys(there, 1.0))]).lead)
+    assert "not held against finer physics" in said["dem"]
+    assert NOT_CHECKED.word in said["continuum-jointed"]
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"), [(12.3, "12 s"), (1.234, "1.2 s"), (0.0123, "12 ms"), (4.5e-5, "45 µs")]
+)
+def test_seconds_are_written_in_the_unit_that_suits_them(seconds, text):
+    assert in_seconds(seconds) == text

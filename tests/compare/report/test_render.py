@@ -1,0 +1,129 @@
+"""The page of made-up parts: what it says where something fails, is missing, or is odd text."""
+
+from pathlib import Path
+
+import pytest
+
+from compare.experiments.study.section import StudySection
+from compare.figures.export import Drawn
+from compare.report.findings import Finding
+from compare.report.overview import Overview
+from compare.report.render import Page, render
+from compare.report.section import Section, Shown, linked
+from compare.report.tables import Table
+
+
+@pytest.fixture
+def figure(tmp_path):
+    """Return a function that gives a figure and writes its files."""
+
+    def make(name):
+        for kind in ("pdf", "csv", "nc"):
+            (tmp_path / f"{name}.{kind}").write_text("x")
+        (tmp_path / f"{name}-map.csv").write_text("x")
+        return Drawn(name, "A figure", tmp_path, "<svg></svg>", "What is seen.")
+
+    return make
+
+
+@pytest.fixture
+def page(tmp_path):
+    """Return a function that renders a page of nothing but the given parts."""
+
+    def make(**parts):
+        nothing = Page(
+            "About", Overview([], [], []), Table([], {}), [], "jointwave report", "here", {}
+        )
+        return render(nothing.__class__(**{**nothing.__dict__, **parts}), tmp_path)
+
+    return make
+
+
+@pytest.fixture
+def section(tmp_path, figure):
+    """Return a function that gives a scene with these findings."""
+    empty = Table(["pair"], {})
+    file = tmp_path / "fig-05-misfits.csv"
+    file.write_text("x")
+
+    def make(findings, **changes):
+        about = "fig-05", "fig. 5", 5, "Ends", "source", "toml", "jointwave report five"
+        one = Section(*about, [shown(figure("ends"))], file, findings, *[empty] * 4, {})
+        return one._replace(**changes)
+
+    return make
+
+
+def shown(drawn, folded=False, marks=("drawing", "numbers")):
+    """Return a figure as it stands on the page."""
+    return Shown(drawn, folded, frozenset(marks))
+
+
+def test_a_failed_claim_is_red_and_named_at_the_top(page, section):
+    findings = [Finding("waves pass", "They do.", True), Finding("waves stop", "No.", False)]
+    html = page(sections=[section(findings)])
+    assert '<li class="holds"><strong>waves pass.</strong> They do.</li>' in html
+    assert '<li class="fails"><strong>waves stop: does not hold.</strong> No.</li>' in html
+    assert "1 of 2 claims do not hold" in html.replace("\n", " ")
+    assert '<a href="#fig-05">fig. 5, waves stop</a>' in html
+
+
+def test_a_claim_about_the_whole_that_fails_is_red(page):
+    html = page(about=Finding("claim", "It is not so.", False))
+    assert '<p class="fails">It is not so.</p>' in html
+
+
+def test_text_of_scenes_is_escaped(page, section):
+    html = page(sections=[section([], title="<b>a & b</b>", toml="x = '<i></script>'")])
+    assert "&lt;b&gt;a &amp; b&lt;/b&gt;" in html and "&lt;i&gt;&lt;/script&gt;" in html
+
+
+def test_without_a_table_of_other_codes_one_line_says_how_to_get_it(page, figure):
+    study = StudySection("s", "S", "", "stress", True, figure("s"), [], Table([], {}), [])
+    html = page(studies=[study], peers_file="a.csv")
+    assert "run <code>make bench-peers</code>, then <code>jointwave report" in html
+    assert "--peers a.csv</code>" in html
+
+
+def test_hard_cases_stand_with_their_margins_and_what_failed(page, figure):
+    table = Table(["engine", "value", "bound", "margin", ""], {"step": [["dem", "1", "2"]]})
+    about = "stability", "Hard cases", "A note.", "", False, figure("stability")
+    found = StudySection(*about, ["3 of 4 rows hold."], table, ["step, dem: 3 above 2"])
+    html = page(stability=found)
+    assert '<a href="#stability">' in html and "<li>3 of 4 rows hold.</li>" in html
+    assert 'class="fails">Rows that do not hold: step, dem: 3 above 2.' in html
+    assert "<td" in html.split('id="stability"')[1]
+
+
+def test_a_page_without_charts_does_not_carry_what_draws_them(page, section):
+    still = page(sections=[section([])])
+    assert len(still) < 100_000 and 'id="held-charts"' not in still
+
+
+def test_a_file_that_is_not_there_is_an_error_not_a_dead_link(page, section, figure):
+    one = figure("gone")
+    Path(one.file("pdf")).unlink()
+    with pytest.raises(FileNotFoundError):
+        page(sections=[section([], figures=[shown(one)])])
+
+
+@pytest.mark.parametrize("shared", ["drawing", "numbers"])
+def test_no_picture_stands_twice(page, section, figure, shared):
+    """A later one is a link to the first, and its files are gone; so of one of equal numbers."""
+    one, other, third = figure("first"), figure("second"), figure("third")
+    sections = [
+        section([], figures=[shown(one)]),
+        section([], figures=[shown(other, marks=(shared, "x")), shown(third, marks=("y", "z"))]),
+    ]
+    found = linked(sections)
+    assert [s.place for section in found for s in section.figures] == ["", "first-figure", ""]
+    assert other.file("pdf").exists() is False and third.file("pdf").exists()
+    found = [found[0], found[1]._replace(name="fig-06")]
+    html = page(sections=found)
+    assert html.count("<figure id=") == 2 and 'id="second-figure"' not in html
+    assert 'The same picture as <a href="#first-figure">fig. 5: A figure</a>.' in html
+
+
+def test_a_folded_picture_is_closed_until_it_is_opened(page, section, figure):
+    html = page(sections=[section([], figures=[shown(figure("more"), folded=True)])])
+    assert "<details><summary>A figure</summary>" in html and "<details open" not in html

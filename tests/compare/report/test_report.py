@@ -1,0 +1,297 @@
+"""The report of the paper's figures: in its files, its findings and studies, and as it opens."""
+
+import html
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import cases
+from cases.effects import active_effects
+from compare.experiments.ablation.runner import reported
+from compare.experiments.study.section import REPORTED
+from compare.experiments.study.study import load
+from compare.figures.subplots import curve_table, variant_names
+from compare.misfit.pairs import Comparison
+from compare.report.report import build
+from compare.report.scenes import _key
+from compare.report.section import PAPER
+from compare.report.verdict import NOT_CHECKED
+from compare.runs.field_files import read_pvd
+
+FIGURES = [f"fig-{number:02d}" for number in range(2, 11)]
+ENGINES = ["dem", "continuum-jointed", "continuum-equivalent"]
+
+PEERS = """\
+curve,settings,state,message,solves,misfit,total_misfit,seconds,whole,rate,work,beside,stepping_over_ours,whole_over_ours,machine
+jointwave blocks,{},done,,rigid blocks,0.01,0.04,0.001,0.8,1e9,1e6,,,,a quiet one
+LAMMPS bonds,{},done,,points,0.01,0.04,0.036,0.12,3e7,1e6,jointwave blocks,36,0.15,a quiet one
+Yade spheres,,missing,no apt here,cohesive spheres,,,,,,,,,,a quiet one
+"""
+
+
+@pytest.fixture(scope="module")
+def fractions():
+    return []
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory, fractions):
+    """Build the whole report once, with a small table of other codes."""
+    table = tmp_path_factory.mktemp("peers") / "points.csv"
+    table.write_text(PEERS, encoding="utf-8")
+    out = tmp_path_factory.mktemp("report")
+    return build(out, fractions.append, peers_table=table, hard=False)
+
+
+@pytest.fixture(scope="module")
+def text(report):
+    """Return the page's HTML."""
+    return report.page.read_text(encoding="utf-8")
+
+
+def part(text, name):
+    """Return a section of the page."""
+    found = html.unescape(text[text.index(f'<section id="{name}"') :])
+    return found[: found.index("</section>")]
+
+
+def test_no_picture_and_no_numbers_stand_under_two_captions(report, text):
+    """Figures 7 and 8, 9 and 10 share their physics: what is the same is linked to."""
+    drawn = dict.fromkeys(re.findall(r'<figure id="(fig-[a-z0-9-]+)-figure"', text))
+    seen = {}
+    for name in drawn:
+        table = (report.page.parent / "figures" / f"{name}.csv").read_bytes()
+        assert seen.setdefault(table, name) == name
+    for name in ("fig-07", "fig-08", "fig-09", "fig-10"):
+        assert [d for d in drawn if d.startswith(f"{name}-space-time")], name
+
+
+@pytest.mark.parametrize("name", ["fig-03", "fig-05", "fig-06", "fig-07", "fig-08", "fig-09"])
+def test_variants_of_a_figure_share_a_pair_of_axes_an_engine(report, name):
+    svg = (report.page.parent / "figures" / f"{name}-variants.svg").read_text(encoding="utf-8")
+    scenes = cases.load(PAPER / f"{name}.toml")
+    for k in range(len(scenes)):
+        assert f'id="{name}-variants-0-0-variant-{k}"' in svg
+        assert f'id="{name}-variants-residual-0-0-variant-{k}"' in svg
+
+
+def test_the_page_prints_on_few_sides(report, browser):
+    page = browser.new_page()
+    page.goto(report.page.as_uri())
+    sides = re.findall(rb"/Type\s*/Page\b", page.pdf(prefer_css_page_size=True))
+    page.close()
+    assert 15 < len(sides) < 35
+
+
+def curve_ids(report, name):
+    """Return the ids of all curves in the SVG file of a scene's waveforms."""
+    svg = (report.page.parent / "figures" / f"{name}-waveforms.svg").read_text(encoding="utf-8")
+    return re.findall(rf'id="({name}-waveforms-\d+-\d+-[a-z-]+)"', svg)
+
+
+def test_the_first_screen_holds_every_engine_on_every_figure(report, browser):
+    """At 1280 by 800, with what the distances are and what a run takes."""
+    page = browser.new_page(viewport={"width": 1280, "height": 800})
+    page.goto(report.page.as_uri())
+    box = page.locator("table.overview").bounding_box()
+    assert box["y"] + box["height"] < 800 and box["x"] + box["width"] <= 1280
+    rows = page.locator("table.overview tbody tr").all_inner_texts()
+    assert len(rows) == len(FIGURES) and all(row.count("×") == 3 for row in rows)
+    lead = page.locator("ul.lead").inner_text().replace("\u00a0", " ")
+    assert "(rigid blocks): 0.22 to 4 % from the finest physics" in lead
+    assert "the cheapest's time" in lead and "a run." in lead
+    page.close()
+
+
+def test_the_overview_is_measured(report):
+    """Each line against the misfits of the summary; nobody is beyond a bound of its scene."""
+    summary = {row[1]: dict(zip(report.columns, row, strict=True)) for row in report.rows}
+    for line in report.overview.lines:
+        dem, jointed, bar = line.cells
+        assert dem.total in (
+            summary["dem ~ jointed-bar"][line.label],
+            summary["dem ~ continuum-jointed"][line.label],
+        )
+        assert bar.own == summary["continuum-equivalent ~ equivalent-bar"][line.label]
+        assert {dem.verdict.word, bar.verdict.word} <= {"agrees", "close", "differs"}
+        unchecked = line.name in ("fig-09", "fig-10")  # without tension nothing else resolves rock
+        assert jointed.verdict.word == (NOT_CHECKED.word if unchecked else "agrees")
+
+
+def test_most_of_the_papers_own_distance_is_dispersion(report, text):
+    assert report.about.holds and "17.9 %" in report.about.sentence
+    assert "4.0\u00a0%" in part(text, "overview") and "dispersion" in part(text, "overview")
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_every_scene_has_every_kind_of_picture(report, text, name):
+    """In the order of the page, each with its files and at least both engines in it."""
+    found = re.findall(rf'<figure id="({name}-[a-z0-9-]+)-figure"', part(text, name))
+    heads = re.findall(r"<h3>(.*?)</h3>|<summary>(.*?)</summary>", part(text, name))
+    titles = " ".join(a or b for a, b in heads)
+    for words in ("The scene", "Waveforms", "along the pillar over time", "spectra", "Energy"):
+        assert words in titles
+    for figure in found:
+        for kind in ("svg", "pdf", "csv"):
+            assert (report.page.parent / "figures" / f"{figure}.{kind}").stat().st_size > 100
+    assert {"dem", "continuum-jointed"} <= {i.split("-", 5)[5] for i in curve_ids(report, name)}
+    assert f"jointwave report guo-li-2002/{name} --out {name}" in part(text, name)
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_csv_holds_every_curve_and_only_those(report, name):
+    table = pd.read_csv(report.page.parent / "figures" / f"{name}-waveforms.csv")
+    assert table.columns[0] == "time (s)"
+    drawn = [identity.split("-", 5)[5] for identity in curve_ids(report, name)]
+    written = [column.split(" | ")[0] for column in table.columns[1:]]
+    assert sorted(written) == sorted(drawn)
+    assert table.columns[1:].str.endswith(("(Pa)", "(m/s)")).all()
+    assert not table.isna().any().any()
+    scene = cases.load_variant(PAPER / f"{name}.toml")
+    assert table["time (s)"].iloc[-1] == pytest.approx(scene.time.duration)
+
+
+def test_csv_holds_the_load_itself(report):
+    """At y = 0 the rigid blocks' stress is the load: 1 MPa times sin(2 pi t / 10 ms), 6 digits."""
+    table = pd.read_csv(report.page.parent / "figures" / "fig-02-waveforms.csv")
+    (column,) = (c for c in table if c.startswith("dem | stress at y = 0 m"))
+    one = table[table["time (s)"] < 0.01]
+    sine = 1e6 * np.sin(2 * np.pi * one["time (s)"] / 0.01)
+    np.testing.assert_allclose(one[column], sine, atol=1.0)
+
+
+def test_misfits_are_written_as_numbers(report):
+    table = pd.read_csv(report.page.parent / "figures" / "fig-03-misfits.csv")
+    chosen = table[(table["pair"] == "dem ~ equivalent-bar") & (table["variant"] == "undamped")]
+    assert chosen["relative L2"].item() == pytest.approx(0.179, abs=5e-4)
+    assert set(table["kind"]) == {"numerical error", "modelling error", "between engines"}
+
+
+def test_page_needs_no_other_file(report, text):
+    """It is below 15 MB, asks for nothing, and every link of its own leads somewhere."""
+    assert len(text.encode()) < 15e6
+    shown = re.sub(r"<script.*?</script>", "", text, flags=re.DOTALL)
+    assert not re.findall(r'\bsrc="|@import|url\((?!#)', shown)
+    for link in re.findall(r'href="([^"#][^"]*)"', shown):
+        assert link.startswith("data:") or (report.page.parent / html.unescape(link)).is_file(), (
+            link
+        )
+    ids = re.findall(r'\bid="([^"]+)"', text)
+    assert len(ids) == len(set(ids))
+    for target in re.findall(r'(?<!:)href="#([^"]+)"', shown):
+        assert target in ids
+
+
+def test_every_figure_of_the_studies_has_its_downloads(report, text):
+    names = [*REPORTED, "peers", "effects", "snapshots"]
+    for name in names:
+        for kind in ("pdf", "csv"):
+            assert f'id="held-{name}.{kind}"' in text
+        assert f'download="{name}.svg" data-drawn' in text
+
+
+def test_the_pillar_in_motion_is_drawn_and_its_blocks_are_listed(report, text):
+    found = part(text, "motion")
+    assert "1350\u00a0m/s" in found
+    assert len(re.findall(r'id="snapshots-\d-dem"', found)) == 7
+    table = pd.read_csv(report.page.parent / "figures" / "snapshots.csv")
+    assert table["time (s)"].nunique() == 7 and table["axial stress (Pa)"].abs().max() > 1e5
+    assert table.groupby("time (s)").size().nunique() == 1
+
+
+def test_the_pillar_in_motion_can_be_opened_in_a_viewer(report):
+    found = read_pvd(report.page.parent / "fields" / "dem.pvd")
+    assert found.time == pytest.approx(5e-3 * np.arange(8))
+    assert found.kind == "hexahedron" and found.displacement[1:].any(axis=(1, 2)).all()
+
+
+def test_report_leaves_no_half_written_files(report):
+    files = [path.name for path in report.page.parent.rglob("*") if path.is_file()]
+    drawn = [*REPORTED, "peers", "effects", "snapshots"]
+    kinds = ("svg", "pdf", "png", "csv")
+    assert {f"{name}.{kind}" for name in drawn for kind in kinds} <= set(files)
+    assert {f"{name}-misfits.csv" for name in FIGURES} <= set(files)
+    assert {f"{i:04d}.vtu" for i in range(8)} | {f"{name}.nc" for name in REPORTED} <= set(files)
+    assert not [name for name in files if name.startswith(".")]
+
+
+@pytest.mark.parametrize("name", REPORTED)
+def test_page_shows_what_each_study_found(name, text):
+    """Its diagram, and every point of its table."""
+    found = part(text, name)
+    assert "<svg" in found and "Failed points" not in found
+    assert all(found.count(curve.label) >= 2 for curve in load(name).curves)
+
+
+def test_page_shows_other_codes_beside_the_free_pillar(text):
+    """Ratios, what each solves, the machine, and who is missing and why."""
+    found = part(text, "peers")
+    assert "36 (LAMMPS bonds)" in found and "a quiet one" in found
+    assert "Yade spheres (cohesive spheres): missing, no apt here" in found
+    order = [text.index(f'<section id="{name}">') for name in ("free-pillar", "peers")]
+    assert order == sorted(order) and text.count("<section", *order) == 1
+
+
+def test_page_shows_what_every_effect_costs_and_is_worth(text):
+    """Every scene and effect of the section, in the table and in the diagram."""
+    found = part(text, "effects")
+    for case in reported():
+        assert case.name in found
+        assert all(effect in found for effect in active_effects(case.scene))
+    groups = re.findall(r'id="effects-points-\d+"', found)
+    assert len(groups) == len({e for case in reported() for e in active_effects(case.scene)})
+    assert "jointwave effects" in found and "with everything on" in found
+
+
+def test_progress_ends_whole(report, fractions):
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1
+
+
+def test_summary_has_a_column_a_figure_and_a_row_a_pair(report):
+    assert report.columns[:2] == ["what", "pair"]
+    assert len(report.columns) == 2 + len(FIGURES)
+    pairs = {row[1]: row for row in report.rows}
+    assert float(pairs["dem ~ lattice"][3]) < 0.2  # in %, what the default step promises
+    assert all(len(row) == len(report.columns) for row in report.rows)
+
+
+def test_every_figure_has_findings(report):
+    assert list(report.findings) == FIGURES
+    assert all(report.findings.values())
+
+
+def test_what_scenes_share_is_solved_once():
+    """Fig. 3 at zeta = 0.02 and fig. 5 with its free end are one simulation."""
+    damped = cases.load_variant(PAPER / "fig-03.toml", "zeta 0.02")
+    free = cases.load_variant(PAPER / "fig-05.toml")
+    assert _key(damped) == _key(free)
+    assert _key(damped) != _key(cases.load_variant(PAPER / "fig-03.toml", "zeta 0.05"))
+
+
+@pytest.mark.parametrize(
+    ("name", "names"),
+    [
+        ("fig-03", ["undamped", "ζ = 0.02", "ζ = 0.05", "ζ = 0.1"]),
+        ("fig-05", ["free", "quiet", "matched"]),
+        ("fig-07", ["no soft layer", "soft layer"]),
+        ("fig-09", ["tension", "no tension"]),
+    ],
+)
+def test_variants_are_named_by_what_differs(name, names):
+    comparisons = [Comparison(scene) for scene in cases.load(PAPER / f"{name}.toml")]
+    assert variant_names(comparisons) == names
+
+
+def test_variants_of_other_durations_share_one_table(pillar):
+    """Where a shorter variant has no sample the cell is empty."""
+    from compare.exact.bar import images
+
+    scenes = [pillar(time__duration=duration, load__cycles=1) for duration in (0.01, 0.02)]
+    scenes[1] = scenes[1].model_copy(update={"name": "long"})
+    comparisons = [Comparison(scene, {"images": images.solve(scene)}) for scene in scenes]
+    table = curve_table(comparisons)
+    assert table.shape == (401, 2)
+    assert table.isna().sum().tolist() == [200, 0]

@@ -1,0 +1,156 @@
+"""Ctrl-C and its kin end every command cleanly, with what is there."""
+
+import os
+import signal
+import subprocess
+import time
+
+import pytest
+import xarray as xr
+
+from compare.runs.checkpoint.signals import Ended, Signals
+
+EVERY = ("--checkpoint-every", "0.01")
+
+
+def members(group):
+    """Return the processes of a group that still run."""
+    command = ["ps", "-eo", "pgid=,stat=,args="]
+    lines = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
+    found = [line.split(None, 2) for line in lines]
+    return [args for gid, state, args in found if gid == str(group) and state[0] != "Z"]
+
+
+@pytest.fixture
+def stepping(start, until, arguments):
+    """Return a function that starts a run of blocks, and gives it when it is stepping."""
+
+    def started(out, *more):
+        process = start(*arguments("axial", out, *EVERY, *more))
+        assert until(process, lambda: list(out.glob(".*.checkpoint-*-0.npz")))
+        return process
+
+    return started
+
+
+@pytest.mark.parametrize(
+    ("number", "code", "word"),
+    [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")],
+)
+def test_run_that_is_stopped_keeps_what_is_there_and_goes_on(
+    number, code, word, tmp_path, stepping, start, finish, arguments, refuse_difference
+):
+    """One line; the waveforms until then are those of the whole run; --resume ends with the rest.
+
+    Then nothing but the result is left.
+    """
+    out, whole = tmp_path / "out", tmp_path / "whole"
+    process = stepping(out)
+    process.send_signal(number)
+    ended, (line,) = finish(process)
+    assert ended == code and f"{word} at t = 0." in line and "--resume" in line
+    assert str(out / "dem.stopped.nc") in line and not (out / "dem.nc").exists()
+    assert finish(start(*arguments("axial", whole)))[0] == 0
+    with (
+        xr.open_dataset(out / "dem.stopped.nc") as part,
+        xr.open_dataset(whole / "dem.nc") as all_of_it,
+    ):
+        count, shots = part.sizes["time"], part.sizes["field_time"]
+        assert 1 < count < all_of_it.sizes["time"] and shots > 1
+        until_then = {"time": slice(count), "field_time": slice(shots)}
+        xr.testing.assert_equal(part, all_of_it.isel(until_then))
+    ended, (line,) = finish(start(*arguments("axial", out, "--resume")))
+    assert ended == 0 and "goes on at t = 0." in line
+    refuse_difference(out / "dem.nc", whole / "dem.nc")
+    assert {p.name for p in out.iterdir()} == {p.name for p in whole.iterdir()}
+
+
+def test_processes_that_share_a_run_stop_together(
+    tmp_path, start, finish, until, arguments, refuse_difference
+):
+    """A signal that reaches one of two stops both, at the same sample."""
+    out, whole = tmp_path / "out", tmp_path / "whole"
+    run = start(*arguments("shared", out, *EVERY), ranks=2)
+    assert until(run, lambda: len(list(out.glob(".*.checkpoint-*-[01].npz"))) > 1)
+    children = ["pgrep", "-P", str(run.pid), "-f", "compare"]
+    one = subprocess.run(children, capture_output=True, text=True, check=True).stdout.split()[-1]
+    os.kill(int(one), signal.SIGTERM)
+    code, (line,) = finish(run)
+    assert code == 143 and "terminated at t = 0." in line and "--resume" in line
+    assert finish(start(*arguments("shared", whole), ranks=2))[0] == 0
+    assert finish(start(*arguments("shared", out, "--resume"), ranks=2))[0] == 0
+    refuse_difference(out / "continuum-jointed.nc", whole / "continuum-jointed.nc")
+
+
+def test_results_that_are_whole_are_not_made_again(tmp_path, start, finish, arguments):
+    """--resume keeps a result of the same scene, and makes that of another anew."""
+    result = tmp_path / "dem.nc"
+    short = arguments("axial", tmp_path, "--set", "time.duration=4e-3")
+    assert finish(start(*short)) == (0, [])
+    before = result.stat().st_mtime_ns
+    assert finish(start(*short, "--resume")) == (0, [])
+    assert result.stat().st_mtime_ns == before
+    assert finish(start(*short, "--resume", "--set", "load.amplitude=2e6")) == (0, [])
+    assert result.stat().st_mtime_ns != before
+
+
+def test_resume_goes_on_with_the_first_variant_that_is_not_whole(
+    tmp_path, start, finish, until, arguments
+):
+    """Of several runs those that ended stay; the one that was killed goes on."""
+    every = [a for a in arguments("axial", tmp_path, *EVERY) if a not in ("--variant", "")]
+    process = start(*every)
+    first, folder = tmp_path / "dem.nc", tmp_path / "zeta 0.02"
+    assert until(process, lambda: list(folder.glob(".*.checkpoint-*-0.npz")))
+    process.kill()
+    before = first.stat().st_mtime_ns
+    code, (line,) = finish(start(*every, "--resume"))
+    assert code == 0 and f"{folder / 'dem.nc'} goes on" in line
+    assert first.stat().st_mtime_ns == before and (folder / "dem.nc").is_file()
+
+
+def test_elsewhere_it_ends_in_one_line_and_leaves_nothing(tmp_path, start, finish, until):
+    """Exact solutions have no steps to go on from."""
+    out = tmp_path / "out"
+    process = start("run", "guo-li-2002/fig-03", "--engine", "exact", "--out", out)
+    assert until(process, (out / ".jointwave.lock").exists)
+    process.send_signal(signal.SIGINT)
+    code, said = finish(process)
+    assert (code, said) == (130, ["jointwave: interrupted"])
+    left = [path for path in tmp_path.rglob("*") if path.is_file()]
+    assert all(path.name.startswith("exact-") for path in left)
+
+
+@pytest.mark.parametrize("command", [("study", "convergence"), ("report",)])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_workers_end_without_a_word(command, number, tmp_path, start, finish, until):
+    """Ctrl-C reaches the workers too, SIGTERM does not: neither says anything, none is left."""
+    process = start(*command, "--out", tmp_path / "out")
+    assert until(process, lambda: list((tmp_path / "out").rglob(".jointwave.lock")))
+    time.sleep(1.5)
+    if number == signal.SIGINT:
+        os.killpg(process.pid, number)
+    else:
+        process.send_signal(number)
+    code, said = finish(process)
+    assert code == 128 + number and len(said) == 1
+    for _ in range(100):
+        left = members(process.pid)
+        if not left:
+            break
+        time.sleep(0.05)
+    assert not left
+
+
+def test_second_signal_does_not_wait():
+    """The first waits for the next look; whoever asks again ends the program at once."""
+    signals = Signals(patient=True)
+    signals._arrived(signal.SIGINT, None)
+    assert signals.asked == signal.SIGINT
+    before = {number: signal.getsignal(number) for number in signal.Signals}
+    try:
+        with pytest.raises(Ended, match="interrupted"):
+            signals._arrived(signal.SIGINT, None)
+    finally:
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, before[number])

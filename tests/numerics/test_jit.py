@@ -1,0 +1,111 @@
+"""The compiled kernels are kept on disk, and never outlive the sources they came from."""
+
+import fcntl
+import os
+import pickle
+import shutil
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numba
+import pytest
+
+import joints
+from numerics.cache import PACKAGES, UNUSED, cache_directory, make, mark_used
+from numerics.jit import jitted
+
+ROOT = Path(joints.__file__).resolve().parent.parent
+
+
+@pytest.mark.parametrize(
+    "edited", ["joints/laws.py", "dem/spatial/step.py", "continuum/explicit/march.py"]
+)
+def test_cache_follows_every_source(edited, tmp_path):
+    """One character in any kernel's file, a callee's included, is another cache."""
+    for package in PACKAGES:
+        shutil.copytree(ROOT / package, tmp_path / package)
+    assert cache_directory(tmp_path) == cache_directory(ROOT)
+    with (tmp_path / edited).open("a") as file:
+        file.write("#")
+    assert cache_directory(tmp_path) != cache_directory(ROOT)
+
+
+def test_states_that_no_program_has_used_for_long_are_dropped(tmp_path):
+    """When a new one is made: the past is dropped, what is in use and what is not ours stays."""
+    past, used, other = (tmp_path / name for name in ("0" * 16, "1" * 16, "mine"))
+    for folder in (past, used, other):
+        (folder / "joints").mkdir(parents=True)
+        (folder / "joints" / "a.nbi").touch()
+        os.utime(folder, (0, time.time() - 1.01 * UNUSED))
+    mark_used(used)
+    make(used)
+    assert past.exists()
+    make(tmp_path / ("2" * 16))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["1" * 16, "2" * 16, "mine"]
+    assert (other / "joints" / "a.nbi").exists() and (used / "joints" / "a.nbi").exists()
+
+
+def test_a_cache_that_is_not_there_is_not_made_by_its_use(tmp_path):
+    mark_used(tmp_path / ("3" * 16))
+    assert not list(tmp_path.iterdir())
+
+
+def test_kernels_are_cached_there_with_ieee_arithmetic():
+    """Every kernel is made by one decorator: cached, and bit-identical however it is called."""
+    assert str(cache_directory(ROOT)) == numba.config.CACHE_DIR
+    assert not jitted(lambda x: x + 1.0).targetoptions.get("fastmath")
+
+
+def test_one_process_at_a_time_enters_the_cache(tmp_path, monkeypatch):
+    """While another holds the cache a kernel compiles but does not save; then it does."""
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    kernel = jitted(lambda x: x + 1.0)
+    worker = threading.Thread(target=kernel, args=(1.0,))
+    with (tmp_path / "lock").open("w") as other:
+        fcntl.flock(other, fcntl.LOCK_EX)
+        worker.start()
+        worker.join(timeout=2)
+        assert worker.is_alive()
+        assert not list(tmp_path.rglob("*.nb?"))
+    worker.join()
+    assert {path.suffix for path in tmp_path.rglob("*.nb?")} == {".nbi", ".nbc"}
+
+
+RUN = "import cases, dem; dem.simulate(cases.load_variant({scene!r}, '', {changes}))"
+
+
+SLIDES = {"load.direction": [0.6, 0.8, 0.0], "joints.friction_angle": 30.0}
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"numerics.dem.scheme": "fourth-order"},
+        pytest.param(SLIDES, marks=pytest.mark.slow),
+    ],
+)
+def test_no_kernel_takes_a_kernel_as_an_argument(changes, tmp_path):
+    """What numba keeps of such a one it cannot write again in a process that has let the other go:
+    so none that was compiled for a run is kept for the type of a kernel."""
+    scene = str(ROOT / "cases" / "guo-li-2002" / "fig-03.toml")
+    changes = {"time.duration": 1e-3, "record.energy": False} | changes
+    command = [sys.executable, "-c", RUN.format(scene=scene, changes=changes)]
+    place = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
+    subprocess.run(command, check=True, env=place, cwd=ROOT)
+    kept = {path.name: signatures(path) for path in tmp_path.rglob("*.nbi")}
+    assert any("step-" in name for name in kept)
+    for name, found in kept.items():
+        for types in found:
+            assert not any(isinstance(one, numba.types.Dispatcher) for one in types), name
+
+
+def signatures(index):
+    """Return the types of the arguments that a kernel has been compiled for."""
+    with index.open("rb") as file:
+        pickle.load(file)  # of numba's version
+        _stamp, overloads = pickle.loads(file.read())
+    return [key[0] for key in overloads]

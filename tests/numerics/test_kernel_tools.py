@@ -1,0 +1,114 @@
+"""What kernels are built with: absent parts, borrowed arrays, tiny numbers, counters."""
+
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+from numerics.atomic import give_way, peek, post
+from numerics.borrowed import borrowed
+from numerics.denormals import ARM, X86, flush_tiny, restore_tiny
+from numerics.jit import jitted
+from numerics.optional import either, given
+
+
+class Pair(NamedTuple):
+    numbers: np.ndarray
+    more: Any
+
+
+@jitted
+def fill(pair, value):
+    pair = borrowed(pair)
+    for i in range(pair.numbers.shape[0]):
+        row = pair.numbers[i]
+        row[0] = value
+        pair.more.numbers[0] += row[0]
+
+
+def test_borrowed_arrays_are_the_callers_own():
+    """Rows taken out of them, nested ones included, write where the caller looks, and are alive."""
+    inner = Pair(np.zeros(1), None)
+    pair = Pair(np.zeros((3, 2)), inner)
+    for _ in range(1000):
+        fill(pair, 2.0)
+    assert pair.numbers[:, 0].tolist() == [2.0, 2.0, 2.0]
+    assert inner.numbers[0] == 6000.0
+
+
+@jitted
+def halve(x, out):
+    for i in range(x.size):
+        out[i] = x[i] * 0.5
+
+
+@jitted
+def halve_flushed(x, out):
+    old = flush_tiny()
+    halve(x, out)
+    restore_tiny(old)
+
+
+@pytest.mark.skipif(not (X86 or ARM), reason="tiny numbers stay on this kind of processor")
+def test_tiny_numbers_are_zero_only_while_asked():
+    """2.2e-308 halved is below full precision: zero under the flag, itself before and after."""
+    smallest, half = np.full(3, np.finfo(float).tiny), np.zeros(3)
+    halve(smallest, half)
+    assert (half == smallest / 2).all() and half.all()
+    halve_flushed(smallest, half)
+    assert not half.any()
+    halve(smallest, half)
+    assert (half == np.ldexp(smallest, -1)).all() and half.all()
+
+
+@jitted
+def relay(counter, data, thread, rounds):
+    """Two threads add to one number in turn, each seeing what the other wrote."""
+    for n in range(thread, rounds, 2):
+        while peek(counter, 0) < n:
+            give_way()
+        data[0] = 2.0 * data[0] + n
+        post(counter, 0, n + 1)
+
+
+def test_counters_order_what_threads_write():
+    """In turn by the counter, the result is that of one thread: every write was seen."""
+    rounds = 40
+    counter, data = np.zeros(1, dtype=np.int64), np.zeros(1)
+    relay(np.full(1, rounds, dtype=np.int64), np.zeros(1), 0, 0)  # compiles
+    with ThreadPoolExecutor(2) as pool:
+        list(pool.map(lambda thread: relay(counter, data, thread, rounds), range(2)))
+    expected = 0.0
+    for n in range(rounds):
+        expected = 2.0 * expected + n
+    assert data[0] == expected
+
+
+@jitted
+def sum_given(flag, x):
+    value = given(flag, x)
+    return 0.0 if value is None else value
+
+
+@jitted
+def one(x):
+    return x, x
+
+
+@jitted
+def two(x):
+    return x
+
+
+@jitted
+def chosen(flag, x):
+    return either(flag, one, two)(x)
+
+
+def test_absent_parts_are_told_by_their_types():
+    """In compiled code and in plain Python alike; the two choices may differ in type."""
+    assert sum_given(None, 3.0) == 0.0 and sum_given(True, 3.0) == 3.0
+    assert given(None, 3.0) is None and given(0.0, 3.0) == 3.0
+    assert chosen(None, 2.0) == (2.0, 2.0) and chosen(1.0, 2.0) == 2.0
+    assert either(None, one, two) is one and either(False, one, two) is two
