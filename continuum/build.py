@@ -118,7 +118,7 @@ def critical_step_of(scene: Scene, discrete: Discrete, model: str) -> float:
     given = fixed_ends(scene, body)
     fixed = np.zeros(0, dtype=np.int64) if given is None else given.freedom
     assembled = body.mass, stiffness, viscosity, fixed, any_motion(body)
-    return body.team.critical_step(*assembled)
+    return body.communicator.critical_step(*assembled)
 
 
 def operators(discrete: Discrete) -> tuple[csr_matrix, csr_matrix | None]:
@@ -150,7 +150,7 @@ def build_model(scene: Scene, discrete: Discrete, model: str, time: Clock) -> Mo
     """Return the constants of a scene in space, for a given clock."""
     p, body = discrete.properties, discrete.body
     alpha = (p.mass_damping or 0.0) * time.dt / 2
-    mass = body.team.total(body.mass)
+    mass = body.communicator.total(body.mass)
     step_over_mass = zeros(mass.size)
     # Nothing moves what has no mass: nodes of another process's cell beyond a joint.
     np.divide(time.dt / (1 + alpha), mass, out=step_over_mass, where=mass > 0)
@@ -197,7 +197,9 @@ def receivers(scene: Scene, discrete: Discrete) -> Receivers:
     motion, pull = points(body, scene.record.velocity), pull_of(scene, body)
     force = sections(body, discrete.jumps, discrete.materials, scene.record.stress)
     # Alike on all processes that have joints, which then share what is compiled.
-    viscous, contact = (body.team.any(part.nnz > 0) for part in (force.viscous, force.contact))
+    viscous, contact = (
+        body.communicator.any(part.nnz > 0) for part in (force.viscous, force.contact)
+    )
     return Receivers(
         point=motion.motion,
         turn=motion.turn,

@@ -82,7 +82,7 @@ def quiet_ends(
         impedance = impedances(scene, p, model, body.dim, len(area))
         sprung = kind == "matched" and model == "jointed"
         springs = absorbing(scene, p, body, dt) if sprung else None
-        whole = body.team.total(area)
+        whole = body.communicator.total(area)
         for c in range(len(area)):
             spring = None if springs is None else springs[c]
             parts.append(_absorber(impedance[c], area[c], whole[c], spring))
@@ -90,7 +90,7 @@ def quiet_ends(
         return None
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
     freedom, viscosity, whole, stiffness, decay, gain = columns
-    sprung = body.team.any(bool(stiffness.any()))
+    sprung = body.communicator.any(bool(stiffness.any()))
     half_joints = HalfJoints(stiffness, decay, gain) if sprung else None
     braked = 1 + (p.mass_damping or 0.0) * dt / 2  # as in the step over the mass
     beta = whole * dt / (2 * braked * mass[freedom])
@@ -144,7 +144,7 @@ def fixed_ends(scene: Scene, body: Body, time: Clock | None = None) -> Fixed | N
     for place in ("start", "end"):
         if getattr(scene.ends, place) != "fixed":
             continue
-        whole = body.team.total(face_area(body, getattr(body.mesh, place)))
+        whole = body.communicator.total(face_area(body, getattr(body.mesh, place)))
         for c, area in enumerate(whole):
             freedoms.append(np.flatnonzero(area))
             component = 1 if body.section.components == 1 else c

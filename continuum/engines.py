@@ -36,13 +36,13 @@ def explicit_engine(
     scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, monitor: Monitor
 ) -> Engine:
     """Return leapfrog."""
-    team = discrete.body.team
+    communicator = discrete.body.communicator
     if scene.gravity is not None and not scene.gravity.static:
         let_go(model, state, discrete.body)
-    march = team.leapfrog(model, state, samples, monitor.time.stride, monitor.guard)
+    march = communicator.leapfrog(model, state, samples, monitor.time.stride, monitor.guard)
 
     def compile() -> None:
-        with team.in_turn():
+        with communicator.in_turn():
             march(0, 0)
 
     return Engine(compile, march, monitor.time.dt, dict)
@@ -53,7 +53,7 @@ def let_go(model: Model, state: State, body: Body) -> None:
 
     At t = 0, in the middle of the first two, it is at rest.
     """
-    fall = 0.5 * model.rock.step_over_mass * body.team.total(model.weight)
+    fall = 0.5 * model.rock.step_over_mass * body.communicator.total(model.weight)
     if model.rock.decay is not None:
         fall *= 2 / (1 + model.rock.decay)  # step_over_mass is that of damped motion
     if model.ends.fixed is not None:

@@ -9,7 +9,7 @@ from cases.sampling import Clock
 from cases.schema.scene import Scene
 from continuum.build import Discrete
 from continuum.model import Model, Samples, State
-from continuum.parallel.serial import Alone
+from continuum.parallel.serial import Serial
 from continuum.scheme import Choice
 from continuum.space.body import axis
 from numerics.divergence import CREATED, ENERGY, EVERY, LAST_DIGITS, guard, look, speed_that
@@ -17,7 +17,7 @@ from numerics.instability import Sighting, stopped
 
 
 class Monitor:
-    """Looks at a run: kernels that run alone look by themselves at `guard`, and stop.
+    """Ends a run that exceeds its bounds; the kernel of leapfrog compares speeds by itself.
 
     Attributes
     ----------
@@ -37,21 +37,23 @@ class Monitor:
         critical: float,
     ) -> None:
         self.scene, self.discrete, self.state = scene, discrete, state
-        self.team, self.time = discrete.body.team, choice.time
+        self.communicator, self.time = discrete.body.communicator, choice.time
         self.explicit, self.critical = choice.scheme == "explicit", critical
         self.samples = samples
-        speed = highest_speed(scene, discrete.properties, model, state, self.time, self.team)
+        speed = highest_speed(
+            scene, discrete.properties, model, state, self.time, self.communicator
+        )
         self.guard = guard(speed)
         self.energy = samples.energy
         self.parts: tuple = (self.guard,)
-        if samples.energy is not None and self.team.size > 1:
+        if samples.energy is not None and self.communicator.size > 1:
             self.energy = np.zeros_like(samples.energy)
             self.parts = self.guard, self.energy
 
     def look(self, n: int) -> bool:
         """Look at the speeds after n steps, and return whether the run is lost."""
         look(self.guard, np.abs(self.state.v).max(initial=0.0), n)
-        return self.team.any(bool(self.guard.found[0] >= 0))
+        return self.communicator.any(bool(self.guard.found[0] >= 0))
 
     def finds(self, n: int) -> bool:
         """Look now and then at implicit steps, after step n, and return whether the run is lost.
@@ -65,7 +67,7 @@ class Monitor:
         if self.energy is None or first == last:
             return
         if self.energy is not self.samples.energy:
-            self.energy[:, first:last] = self.team.sum(self.samples.energy[:, first:last])
+            self.energy[:, first:last] = self.communicator.sum(self.samples.energy[:, first:last])
         energy, (_, peak, found), stride = self.energy[:, first:last], self.guard, self.time.stride
         gained = energy - self.energy[:, :1]
         largest = np.maximum.accumulate(np.abs(gained).max(axis=0))
@@ -91,9 +93,9 @@ class Monitor:
         seen = Sighting(
             "the continuum",
             f"numerics.continuum.{key}",
-            int(-self.team.largest(-step)),
-            int(-self.team.largest(-sound)),
-            bool(self.team.any(what == ENERGY)),
+            int(-self.communicator.largest(-step)),
+            int(-self.communicator.largest(-sound)),
+            bool(self.communicator.any(what == ENERGY)),
             self.fastest(),
         )
         raise stopped(self.scene, self.time, self.critical if self.explicit else np.inf, seen)
@@ -104,11 +106,13 @@ class Monitor:
         freedoms = body.freedom(np.arange(len(body.x))[:, None], np.arange(body.section.components))
         speed = np.nan_to_num(np.abs(self.state.v[freedoms]).max(axis=1), nan=np.inf)
         node = int(speed.argmax())
-        return self.team.of_largest(float(speed[node]), float(body.x[node, axis(body.x.shape[1])]))
+        return self.communicator.of_largest(
+            float(speed[node]), float(body.x[node, axis(body.x.shape[1])])
+        )
 
 
 def highest_speed(
-    scene: Scene, p: Properties, model: Model, state: State, time: Clock, team: Alone
+    scene: Scene, p: Properties, model: Model, state: State, time: Clock, communicator: Serial
 ) -> float:
     """Return a bound on the speed of any node, m/s.
 
@@ -118,18 +122,18 @@ def highest_speed(
     """
     mass, loaded, fixed = model.rock.mass, model.ends.loaded, model.ends.fixed
     rock = mass > 0
-    least = np.sqrt(team.largest(1 / mass[rock].min()))
+    least = np.sqrt(communicator.largest(1 / mass[rock].min()))
     duration, stored, weight = time.dt * (time.steps + time.stride), 0.0, 0.0
     pushed = shaken = 0.0
     if loaded is not None:
-        drive = team.sum((loaded.share**2 / mass[loaded.freedom]).sum())
+        drive = communicator.sum((loaded.share**2 / mass[loaded.freedom]).sum())
         pushed = (model.dt * np.abs(loaded.pressure) * np.sqrt(drive)).sum()
     if fixed is not None and fixed.step is not None:
         speed = np.diff(fixed.step, prepend=0.0, append=0.0) / model.dt
-        shaken = np.abs(speed).sum() * np.sqrt(team.sum(mass[rock].sum()))
+        shaken = np.abs(speed).sum() * np.sqrt(communicator.sum(mass[rock].sum()))
     if model.weight is not None:
-        weight = np.sqrt(team.sum((model.weight[rock] ** 2 / mass[rock]).sum()))
-        stored = np.sqrt(2 * abs(team.sum(model.weight @ state.u)))
+        weight = np.sqrt(communicator.sum((model.weight[rock] ** 2 / mass[rock]).sum()))
+        stored = np.sqrt(2 * abs(communicator.sum(model.weight @ state.u)))
     with np.errstate(over="ignore"):
         pressed = _prestressed(scene, p) + duration * least * _pressing(scene, p)
         return least * speed_that(pushed, shaken, duration * weight, stored, pressed)

@@ -28,7 +28,7 @@ from continuum.monitor import Monitor
 from continuum.scheme import Choice, choose
 from continuum.size import refuse_large_run
 from continuum.space import compat
-from continuum.time_loop import march_with_looks
+from continuum.time_loop import run_in_stretches
 from continuum.validity import applies
 from continuum.waveforms import energy_terms, waveforms
 from numerics.checkpoint import Keeper
@@ -68,7 +68,7 @@ def simulate(
         raise SceneError(scene.name or scene.title, "model", model, reason)
     began = perf_counter()
     discrete = discretise(scene, model, dim, comm if comm is not None and comm.size > 1 else None)
-    team = discrete.body.team
+    communicator = discrete.body.communicator
     choice, critical = _steps(scene, discrete, model)
     time = choice.time
     refuse_large_run(scene, discrete.kinematics, time)
@@ -91,17 +91,17 @@ def simulate(
             "seconds_stepping": perf_counter() - compiled,
         }
         about = _about(scene, discrete, model, choice, critical) | rest | engine.attributes()
-        about |= {"bytes": int(team.sum(size_of(built, state)))}
+        about |= {"bytes": int(communicator.sum(size_of(built, state)))}
         for rows in (samples.waves, samples.energy):
             if rows is not None:
-                team.gather(rows)
+                communicator.gather(rows)
         found = _recorded(scene, discrete, built, samples, time.times[:count], about | seconds)
         return xr.Dataset(*(found if film is None else film.developed(found)))
 
     parts = state, samples, monitor.parts, engine.parts
-    work = engine.work * int(team.largest(state.u.size))
+    work = engine.work * int(communicator.largest(state.u.size))
     try:
-        march_with_looks(time, work, engine.march, monitor.check, parts, progress, film, keeper)
+        run_in_stretches(time, work, engine.march, monitor.check, parts, progress, film, keeper)
     except StoppedError as error:
         error.result = result(error.samples)
         raise
@@ -128,7 +128,7 @@ def _recorded(
 ) -> Fields:
     """Return what was recorded at these times as a result, with attributes about the run."""
     until = changed(samples, lambda rows: rows[:, : times.size])
-    terms, energy = energy_terms(built, until.energy, discrete.body.team)
+    terms, energy = energy_terms(built, until.energy, discrete.body.communicator)
     return fields(
         scene,
         f"continuum-{about['model']}",
@@ -156,7 +156,7 @@ def _about(
         "critical_dt": critical,
         "steps": choice.time.steps,
         "degrees_of_freedom": discrete.body.degrees_of_freedom,
-        "processes": discrete.body.team.size,
+        "processes": discrete.body.communicator.size,
         "versions": json.dumps(versions),
     }
 

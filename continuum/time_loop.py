@@ -1,4 +1,4 @@
-"""A run in stretches, between which it is looked at: is it still sound, how far is it."""
+"""The time loop: a run in stretches, after each of which it is checked, saved and reported."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from numerics.checkpoint import Keeper, begin, show
 if TYPE_CHECKING:
     from results.snapshots import Film
 
-FREEDOM_STEPS_BETWEEN_LOOKS = 10_000_000  # some 0.1 s: often enough for a progress bar
-LEAST_LOOKS = 20  # however short the run
+FREEDOM_STEPS_AT_ONCE = 10_000_000  # some 0.1 s: often enough for a progress bar
+LEAST_STRETCHES = 20  # however short the run
 
 
-def march_with_looks(
+def run_in_stretches(
     time: Clock,
     work: int,
     march: Callable[[int, int], object],
@@ -27,15 +27,15 @@ def march_with_looks(
     keeper: Keeper | None,
 ) -> None:
     """Run all samples: `march(first, last)` takes steps first .. last - 1, and after it
-    `check(first, last)` looks at samples first .. last - 1.
+    `check(first, last)` examines samples first .. last - 1.
 
     work : of a step, in freedoms that leapfrog steps in that time.
     Every stretch ends with the step of a sample: what follows it belongs to the next one.
-    parts : all that changes in the run. film : sees it at every sample that it keeps; keeper : sees
-    its parts after every stretch; None without.
+    parts : all that changes in the run. film : takes snapshots; keeper : may save the parts after
+    every stretch; None without.
     """
-    chunk = FREEDOM_STEPS_BETWEEN_LOOKS // (work * time.stride)
-    chunk = max(1, min(chunk, time.samples // LEAST_LOOKS))
+    chunk = FREEDOM_STEPS_AT_ONCE // (work * time.stride)
+    chunk = max(1, min(chunk, time.samples // LEAST_STRETCHES))
     stops = {time.samples, *range(0, time.samples, chunk)}
     if film is not None:
         stops.update(range(1, time.samples, film.every))

@@ -83,7 +83,7 @@ def any_motion(body: Body) -> np.ndarray:
     size = random.standard_normal(count)
     cells, one_row = np.arange(count), np.zeros(count, dtype=np.int64)
     found = matrix_of(body, one_row, cells, size[:, None, None] * shape, 1)
-    return body.team.total(found.toarray()[0])
+    return body.communicator.total(found.toarray()[0])
 
 
 def _highest_mode(matrix, start: np.ndarray) -> tuple[np.ndarray, float]:

@@ -12,7 +12,7 @@ from functools import cache
 from continuum.parallel.exchange import receive, send
 from continuum.space.operator import multiply
 from continuum.space.stencils import add_transposed, multiply_stencils
-from continuum.tractions import joint_energy, joint_loads
+from continuum.space.tractions import joint_energy, joint_loads
 from joints.flat.formula import formula
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.divergence import EVERY, SPEED

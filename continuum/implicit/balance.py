@@ -12,9 +12,9 @@ from scipy.sparse import csr_matrix, diags
 
 from continuum.explicit.march import mass_damping
 from continuum.model import STATES, Model, Samples, State
-from continuum.parallel.serial import ALONE, Alone
+from continuum.parallel.serial import SERIAL, Serial
 from continuum.space.body import Body, whole
-from continuum.tractions import joint_energy, joint_loads, joint_tangents
+from continuum.space.tractions import joint_energy, joint_loads, joint_tangents
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.jit import jitted
 from results.arrays import fill
@@ -22,14 +22,14 @@ from results.arrays import fill
 
 class Matrices(NamedTuple):
     """Of the rock, [n, n]: stiffness, N/m; viscosity, N s/m, None without dashpots; mass, kg,
-    diagonal or consistent. moves : bool array [n], false for padding. team : the processes that
+    diagonal or consistent. moves : bool array [n], false for padding. communicator : of those who
     share the rock, each with its share of the matrices."""
 
     stiffness: csr_matrix
     viscosity: csr_matrix | None
     mass: csr_matrix
     moves: np.ndarray
-    team: Alone = ALONE
+    communicator: Serial = SERIAL
 
 
 def rock_matrices(body: Body) -> Matrices:
@@ -38,8 +38,8 @@ def rock_matrices(body: Body) -> Matrices:
     if body.viscous_blocks:
         viscosity = whole(body.layout, body.mesh, body.viscous_blocks)
     mass = csr_matrix(diags(body.mass)) if body.consistent is None else body.consistent
-    moves = body.team.total(stiffness.diagonal()) > 0
-    return Matrices(stiffness, viscosity, mass, moves, body.team)
+    moves = body.communicator.total(stiffness.diagonal()) > 0
+    return Matrices(stiffness, viscosity, mass, moves, body.communicator)
 
 
 def empty_tangents(model: Model) -> np.ndarray:
@@ -164,7 +164,7 @@ def joint_balance_for(parts, directions):
 
 @cache
 def joint_energy_for(parts, directions):
-    """Return the kernel of `continuum.tractions.joint_energy`."""
+    """Return the kernel of `continuum.space.tractions.joint_energy`."""
 
     @jitted
     def energy(table, area, prestress, jump, opening, slide, loads):

@@ -6,7 +6,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from petsc4py import PETSc  # started by `continuum.space.compat`
 
-from continuum.parallel.serial import ALONE, Alone
+from continuum.parallel.serial import SERIAL, Serial
 
 MOST_ITERATIONS = 12
 #: Unknowns from which MUMPS outweighs what it costs to call; PETSc's own factors are quicker below.
@@ -27,7 +27,7 @@ def newton(
     residual: Callable[[np.ndarray], tuple[np.ndarray, float]],
     correction: Callable[[np.ndarray], np.ndarray],
     start: np.ndarray,
-    team: Alone = ALONE,
+    communicator: Serial = SERIAL,
 ) -> Outcome:
     """Return what Newton's method makes of a start, after one correction at least.
 
@@ -37,13 +37,13 @@ def newton(
     ----------
     residual : function of x that returns the residual and what of it may be left.
     correction : function of a residual that returns by what to move the last x.
-    team : the processes that each have a part of x; all come to the same end.
+    communicator : the processes that each have a part of x; all come to the same end.
     """
     x, errors, tolerance = start.copy(), [], 0.0
     for _ in range(MOST_ITERATIONS + 1):
         rest, left = residual(x)
-        errors.append(team.largest(_size(rest)))
-        tolerance = team.largest(left)
+        errors.append(communicator.largest(_size(rest)))
+        tolerance = communicator.largest(left)
         if not np.isfinite(errors[-1]):
             break
         if errors[-1] == 0 or (len(errors) > 1 and errors[-1] <= tolerance):
@@ -72,19 +72,19 @@ class LinearSolver(Protocol):
 
 
 def factors_of(
-    start: np.ndarray, column: np.ndarray, free: np.ndarray, team: Alone = ALONE
+    start: np.ndarray, column: np.ndarray, free: np.ndarray, communicator: Serial = SERIAL
 ) -> LinearSolver:
     """Return what factorises a matrix of this pattern, the sum of those of all processes.
 
     start [n + 1], column [nnz] : CSR. free : int array [n], the freedoms that its rows are.
     """
-    if team.size == 1:
+    if communicator.size == 1:
         return Factors(start, column)
-    from continuum.parallel.communicator import Team
+    from continuum.parallel.communicator import Communicator
     from continuum.parallel.factors import SharedFactors
 
-    assert isinstance(team, Team)
-    return SharedFactors(start, column, free, team)
+    assert isinstance(communicator, Communicator)
+    return SharedFactors(start, column, free, communicator)
 
 
 class Factors:

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from continuum.model import Interfaces
-from continuum.tractions import NN, XN, XX, XZ, ZN, ZZ
+from continuum.space.tractions import NN, XN, XX, XZ, ZN, ZZ
 
 
 class Entries(NamedTuple):

@@ -43,7 +43,10 @@ class Implicit:
         self.now, self.trial = (
             Moment(s, np.zeros_like(state.u), np.zeros(1)) for s in (state, copied(state))
         )
-        self.team, mass = matrices.team, matrices.team.total(model.rock.mass)
+        self.communicator, mass = (
+            matrices.communicator,
+            matrices.communicator.total(model.rock.mass),
+        )
         self.mass = np.where(mass > 0, mass, np.inf)  # what no rock is part of does not move
         self.counts = np.array([0, -1])
         self.contact = contact_rows(model)
@@ -78,7 +81,7 @@ class Implicit:
         one = samples._replace(waves=samples.waves[:, :1].copy())
         if samples.energy is not None:
             one = one._replace(energy=samples.energy[:, :1].copy())
-        with self.team.in_turn():
+        with self.communicator.in_turn():
             self.stepper.set_forces(self.model, self.now, spare, 0, 0.0)
             record(
                 self.model,
@@ -93,9 +96,9 @@ class Implicit:
     def _begin(self) -> None:
         """Balance the forces of the first moment by its acceleration."""
         now, trial, stepper = self.now, self.trial, self.stepper
-        held = motion_at(stepper.wall, 0, 0.0)
-        for values, given in zip((now.state.u, now.state.v, now.acceleration), held, strict=True):
-            values[stepper.wall.freedom] = given
+        given = motion_at(stepper.fixed, 0, 0.0)
+        for values, motion in zip((now.state.u, now.state.v, now.acceleration), given, strict=True):
+            values[stepper.fixed.freedom] = motion
         fill(trial.state, now.state)
         stepper.set_forces(self.model, now, trial, 0, 0.0)
         trial.acceleration[:] = now.acceleration
@@ -156,15 +159,15 @@ class Implicit:
             ledger[2] += (now.reaction + trial.reaction) @ moved[ends.quiet.freedom] / 2
         if ends.loaded is not None:
             ledger[3] += pressure * (ends.loaded.share @ moved[ends.loaded.freedom])
-        if self.stepper.wall.motion is not None:
-            held = self.stepper.wall.freedom
-            gained = (mass @ (trial.v - now.v))[held] @ (now.v + trial.v)[held]
-            ledger[3] += (gained - (now.force + trial.force)[held] @ moved[held]) / 2
+        if self.stepper.fixed.motion is not None:
+            fixed = self.stepper.fixed.freedom
+            gained = (mass @ (trial.v - now.v))[fixed] @ (now.v + trial.v)[fixed]
+            ledger[3] += (gained - (now.force + trial.force)[fixed] @ moved[fixed]) / 2
 
     def _record(self, samples: Samples, s: int) -> None:
         """Take sample s. Accelerations are those that balance the forces at the step itself: those
         of the scheme are of an earlier time, by alpha_f - alpha_m of a step."""
-        state, held = self.now.state, self.stepper.wall.freedom
-        balancing = self.team.total(state.force) / self.mass
-        balancing[held] = self.now.acceleration[held]
+        state, fixed = self.now.state, self.stepper.fixed.freedom
+        balancing = self.communicator.total(state.force) / self.mass
+        balancing[fixed] = self.now.acceleration[fixed]
         record(self.model, self.stepper.rock, *self.contact, state, balancing, samples, s)

@@ -17,7 +17,7 @@ from continuum.implicit.newton import Outcome, factors_of, newton
 from continuum.implicit.pattern import pattern
 from continuum.model import Model, State
 from continuum.space.body import Body
-from continuum.tractions import NN, XX, ZZ
+from continuum.space.tractions import NN, XX, ZZ
 from results.arrays import copied, fill
 
 TOLERANCE = 1e-10  # what may be left of the largest force that is summed up
@@ -51,7 +51,7 @@ def settle_static(scene: Scene, model: Model, state: State, body: Body) -> Rest:
         else:
             _refuse(scene, done)
     fill(state, system.state)
-    return Rest(steps, outcome.errors[-1] / body.team.largest(system.size))
+    return Rest(steps, outcome.errors[-1] / body.communicator.largest(system.size))
 
 
 def _refuse(scene: Scene, done: float) -> None:
@@ -79,8 +79,10 @@ class _Static:
             moves[model.ends.fixed.freedom] = False
         self.free = np.flatnonzero(moves)
         self.pattern = pattern([matrices.stiffness], model.interfaces, self.free)
-        self.team = body.team
-        self.factors = factors_of(self.pattern.start, self.pattern.column, self.free, self.team)
+        self.communicator = body.communicator
+        self.factors = factors_of(
+            self.pattern.start, self.pattern.column, self.free, self.communicator
+        )
         self.tangents = empty_tangents(model)
 
     def balance(self, share: float) -> Outcome:
@@ -90,7 +92,7 @@ class _Static:
         def residual(u: np.ndarray) -> tuple[np.ndarray, float]:
             self.trial.u[self.free] = u
             self.size = balance(model, self.rock, self.state, self.trial, 0.0, 0.0, self.tangents)
-            return self.team.total(self.trial.force)[self.free], TOLERANCE * self.size
+            return self.communicator.total(self.trial.force)[self.free], TOLERANCE * self.size
 
         def correction(rest: np.ndarray) -> np.ndarray:
             if not self.trial.u.any():
@@ -99,7 +101,7 @@ class _Static:
             self.factors.factorise(self.pattern.fixed[0] + of_joints)
             return self.factors.solve(rest)
 
-        outcome = newton(residual, correction, self.state.u[self.free], self.team)
+        outcome = newton(residual, correction, self.state.u[self.free], self.communicator)
         if outcome.converged:
             self.trial.v_before[:] = 0.0
             fill(self.state, self.trial)

@@ -20,10 +20,10 @@ from continuum.implicit.newton import Outcome, factors_of, newton
 from continuum.implicit.pattern import pattern
 from continuum.implicit.substeps import (
     end_resistance,
+    fixed_motion,
     motion_at,
     pressure_at,
     shortened,
-    wall,
 )
 from continuum.model import Model, State
 
@@ -66,17 +66,17 @@ class Stepper:
 
     def __init__(self, model: Model, matrices: Matrices, rho: float) -> None:
         self.model, self.scheme = model, scheme(rho)
-        self.rock, self.mass, self.team = matrices, matrices.mass, matrices.team
+        self.rock, self.mass, self.communicator = matrices, matrices.mass, matrices.communicator
         self.mass_damping = mass_damping(model.rock.decay, model.dt)
-        self.wall = wall(model.ends.fixed, model.dt)
+        self.fixed = fixed_motion(model.ends.fixed, model.dt)
         moves = matrices.moves.copy()
-        moves[self.wall.freedom] = False
+        moves[self.fixed.freedom] = False
         self.free = np.flatnonzero(moves)
         viscosity = 0 * matrices.mass if matrices.viscosity is None else matrices.viscosity
         parts = [matrices.mass, matrices.stiffness, viscosity]
         self._pattern = pattern(parts, model.interfaces, self.free)
         place = self._pattern.start, self._pattern.column, self.free
-        self._factors = factors_of(*place, self.team)
+        self._factors = factors_of(*place, self.communicator)
         self._tangents = empty_tangents(model)
         self._factored: tuple[Length, np.ndarray] | None = None
         self._weight = np.zeros(self.free.size)
@@ -90,7 +90,7 @@ class Stepper:
         old, dt, free = now.state, length.model.dt, self.free
         drift = dt * old.v + (0.5 - beta) * dt**2 * now.acceleration
         before = alpha_f * old.force - alpha_m * (self.mass @ now.acceleration)
-        self._hold(trial, n, share)
+        self._apply_fixed(trial, n, share)
 
         def residual(moved: np.ndarray) -> tuple[np.ndarray, float]:
             state, a = trial.state, trial.acceleration
@@ -102,7 +102,7 @@ class Stepper:
             rest = (1 - alpha_f) * state.force + before - (1 - alpha_m) * inertia
             size = max(trial.size[0], now.size[0], np.abs(inertia).max())
             digits = LAST_DIGITS * np.abs(self._weight * state.u[free]).max(initial=0.0)
-            return self.team.total(rest)[free], RESIDUAL * size + digits
+            return self.communicator.total(rest)[free], RESIDUAL * size + digits
 
         def correction(rest: np.ndarray) -> np.ndarray:
             self._factorise(length)
@@ -110,7 +110,7 @@ class Stepper:
             return self._factors.solve(rest)
 
         start = (drift + beta * dt**2 * now.acceleration)[free]
-        return newton(residual, correction, start, self.team)
+        return newton(residual, correction, start, self.communicator)
 
     def set_forces(
         self, model: Model, now: Moment, trial: Moment, n: int, share: float, r: float = 0.0
@@ -124,17 +124,17 @@ class Stepper:
 
     def balance(self, moment: Moment) -> None:
         """Set the acceleration of the freedoms that move by the forces of a moment."""
-        rest = self.team.total(moment.state.force - self.mass @ moment.acceleration)
+        rest = self.communicator.total(moment.state.force - self.mass @ moment.acceleration)
         self._factors.factorise(self._pattern.fixed[0])
         self._factored = None
         moment.acceleration[self.free] += self._factors.solve(rest[self.free])
 
-    def _hold(self, trial: Moment, n: int, share: float) -> None:
-        motion = motion_at(self.wall, n, share)
+    def _apply_fixed(self, trial: Moment, n: int, share: float) -> None:
+        motion = motion_at(self.fixed, n, share)
         for values, given in zip(
             (trial.state.u, trial.state.v, trial.acceleration), motion, strict=True
         ):
-            values[self.wall.freedom] = given
+            values[self.fixed.freedom] = given
 
     def _length(self, halvings: int) -> Length:
         if halvings not in self._lengths:
@@ -158,7 +158,7 @@ class Stepper:
         """Take the matrix of the last trial moment, unless it is that of the one before."""
         if self._factored is not None:
             last, tangents = self._factored
-            if last is length and self.team.all(np.array_equal(tangents, self._tangents)):
+            if last is length and self.communicator.all(np.array_equal(tangents, self._tangents)):
                 return
         of_joints = self._pattern.joints @ self._tangents.ravel()
         values = length.fixed + (1 - self.scheme.alpha_f) * of_joints
@@ -166,5 +166,5 @@ class Stepper:
         self.counts[1] += 1
         diagonal = np.zeros(self.mass.shape[0])
         diagonal[self.free] = (values - length.inertia)[self._pattern.diagonal]
-        self._weight = np.abs(self.team.total(diagonal)[self.free])
+        self._weight = np.abs(self.communicator.total(diagonal)[self.free])
         self._factored = length, self._tangents.copy()

@@ -7,7 +7,7 @@ import numpy as np
 from continuum.model import Fixed, HalfJoints, Model, Quiet
 
 
-class Wall(NamedTuple):
+class FixedMotion(NamedTuple):
     """Freedoms that move as they are told.
 
     freedom, direction : [k]; all move by direction times the same displacement (m), velocity and
@@ -19,28 +19,28 @@ class Wall(NamedTuple):
     motion: np.ndarray | None
 
 
-def wall(fixed: Fixed | None, dt: float) -> Wall:
+def fixed_motion(fixed: Fixed | None, dt: float) -> FixedMotion:
     """Return the motion of fixed freedoms; dt : of whole steps, s.
 
     Displacements are sums of the given steps; velocity and acceleration are centred differences
-    of them, of second order, with the wall at rest before t = 0.
+    of them, of second order, at rest before t = 0.
     """
     if fixed is None:
-        return Wall(np.zeros(0, dtype=np.int64), np.zeros(0), None)
+        return FixedMotion(np.zeros(0, dtype=np.int64), np.zeros(0), None)
     if fixed.step is None:
-        return Wall(fixed.freedom, fixed.direction, None)
+        return FixedMotion(fixed.freedom, fixed.direction, None)
     before = np.concatenate([[0.0], fixed.step[:-1]])
     motion = [np.cumsum(before), (before + fixed.step) / (2 * dt), (fixed.step - before) / dt**2]
-    return Wall(fixed.freedom, fixed.direction, np.array(motion))
+    return FixedMotion(fixed.freedom, fixed.direction, np.array(motion))
 
 
-def motion_at(wall: Wall, n: int, share: float) -> np.ndarray:
+def motion_at(fixed_motion: FixedMotion, n: int, share: float) -> np.ndarray:
     """Return displacement, velocity and acceleration [3, k] at step n and a share of the next."""
-    if wall.motion is None:
-        return np.zeros((3, wall.freedom.size))
-    first = wall.motion[:, n]
-    last = wall.motion[:, n + 1] if share else first
-    return np.outer((1 - share) * first + share * last, wall.direction)
+    if fixed_motion.motion is None:
+        return np.zeros((3, fixed_motion.freedom.size))
+    first = fixed_motion.motion[:, n]
+    last = fixed_motion.motion[:, n + 1] if share else first
+    return np.outer((1 - share) * first + share * last, fixed_motion.direction)
 
 
 def pressure_at(model: Model, n: int, share: float) -> float:

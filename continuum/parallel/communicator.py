@@ -13,11 +13,11 @@ from continuum.explicit.march import march
 from continuum.parallel.connection import TAG, connect, release
 from continuum.parallel.exchange import add_shares
 from continuum.parallel.identity import Border, joined
-from continuum.parallel.serial import Alone, Pieces, T
+from continuum.parallel.serial import Pieces, Serial, T
 from numerics.divergence import EVERY
 
 
-class Team(Alone):
+class Communicator(Serial):
     """Several processes, each with a share of the rock and of the joints.
 
     Parameters

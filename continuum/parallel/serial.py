@@ -28,7 +28,7 @@ class Pieces(NamedTuple):
     of_nodes: tuple[np.ndarray, ...]
 
 
-class Alone:
+class Serial:
     """One process that has all of the rock.
 
     rank, size : which of how many processes this is.
@@ -98,4 +98,4 @@ class Alone:
         return march(model, state, samples, stride, limits)
 
 
-ALONE = Alone()
+SERIAL = Serial()

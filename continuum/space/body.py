@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse import csr_matrix, kron
 
 from continuum.mesh.description import Mesh
-from continuum.parallel.serial import ALONE, Alone
+from continuum.parallel.serial import SERIAL, Serial
 from continuum.space.elasticity import Material, Piece, Section, discretise
 from continuum.space.operator import Layout, Operator, layout, operator, spread
 
@@ -29,7 +29,7 @@ class Body(NamedTuple):
     stiffness, viscosity : of all copies, N/m and N s/m; viscosity None without dashpots in rock.
     blocks, viscous_blocks : the same of one copy of each part [n, n], for `whole`.
     mass : float array [layout.length], kg; consistent : as a matrix, kg, None where lumped.
-    team : the processes that share the body. Where there are several, `mesh.parts`, nodes, freedoms
+    communicator : of the processes that share the body. Of several, `mesh.parts`, nodes, freedoms
         and operators are of one of them; cells are those of all, and -1 the nodes that it lacks.
     """
 
@@ -50,7 +50,7 @@ class Body(NamedTuple):
     viscous_blocks: list[csr_matrix]
     mass: np.ndarray
     consistent: csr_matrix | None
-    team: Alone = ALONE
+    communicator: Serial = SERIAL
 
     @property
     def dim(self) -> int:
@@ -61,7 +61,7 @@ class Body(NamedTuple):
     def degrees_of_freedom(self) -> int:
         """Values that move, padding left out."""
         sizes = (block.shape[0] for block in self.blocks)
-        return self.team.count(
+        return self.communicator.count(
             sum(p.copies * n for p, n in zip(self.mesh.parts, sizes, strict=True))
         )
 

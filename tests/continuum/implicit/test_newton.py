@@ -140,7 +140,7 @@ def test_slip_that_turns_converges_quadratically(pillar, implicit, monkeypatch, 
         monkeypatch.setattr(
             implicit_step,
             "newton",
-            lambda rest, correct, _, team, x=start: newton(rest, correct, x),
+            lambda rest, correct, _, communicator, x=start: newton(rest, correct, x),
         )
         errors.append(run.implicit.stepper.step(now, trial, 3, 1.0, 0).errors[:2])
     orders = np.log10(np.divide(errors[:-1], errors[1:]))
