@@ -1,6 +1,6 @@
 """Deformable rock in dolfinx, with the joints as cohesive interfaces."""
 
-from continuum.reach import applies
 from continuum.simulate import simulate
+from continuum.validity import applies
 
 __all__ = ["applies", "simulate"]

@@ -10,20 +10,29 @@ from cases.errors import SceneError
 from cases.material.calibrate import Properties, calibrate
 from cases.sampling import Clock
 from cases.schema.scene import Scene
-from continuum.body import Body, build_body, whole
-from continuum.critical import any_motion
-from continuum.elasticity import Material
-from continuum.ends import build_ends, end_stiffness, held_ends
-from continuum.interface import Jumps, jumps
+from continuum.ends import build_ends, end_stiffness, fixed_ends
+from continuum.explicit.critical import any_motion
+from continuum.joints import interfaces, joint_law, resolved_joints
 from continuum.kinematics import Kinematics, kinematics, layer_thickness, materials
-from continuum.laws import interfaces, joint_law, measured, memory, resolved_joints, tractions
-from continuum.meshing.description import Mesh
-from continuum.meshing.pillar import elements_in_block, pillar_mesh
-from continuum.model import Interfaces, Model, Receivers, Rock, Samples, State
-from continuum.receivers import points, sections
-from continuum.record import TERMS
+from continuum.mesh.description import Mesh
+from continuum.mesh.pillar import elements_in_block, pillar_mesh
+from continuum.model import (
+    TERMS,
+    Fixed,
+    Interfaces,
+    Model,
+    Places,
+    Receivers,
+    Rock,
+    Samples,
+    State,
+)
 from continuum.size import refuse_large_file, refuse_large_mesh
-from continuum.sparse import Rows, rows, sparse
+from continuum.space.body import Body, build_body, whole
+from continuum.space.elasticity import Material
+from continuum.space.interface import Jumps, jumps
+from continuum.space.receivers import points, sections
+from continuum.space.simd import WIDTH
 from numerics.aligned import zeros
 
 
@@ -71,7 +80,7 @@ def mesh_of(scene: Scene, p: Properties, model: str, motion: Kinematics) -> Mesh
     """Return the mesh of a scene's pillar: its own file, or blocks by gmsh."""
     numerics = scene.numerics.continuum
     if numerics.mesh_path is not None:
-        from continuum.meshing.given import given_mesh
+        from continuum.mesh.given import given_mesh
 
         refuse_large_file(scene)
         return given_mesh(numerics.mesh_path, scene, p, motion.dim)
@@ -106,10 +115,10 @@ def critical_step_of(scene: Scene, discrete: Discrete, model: str) -> float:
     p, body = discrete.properties, discrete.body
     stiffness, viscosity = operators(discrete)
     stiffness = stiffness + diags(end_stiffness(scene, p, body, model))
-    held = held_ends(scene, body)
-    fixed = np.zeros(0, dtype=np.int64) if held is None else held.freedom
+    given = fixed_ends(scene, body)
+    fixed = np.zeros(0, dtype=np.int64) if given is None else given.freedom
     assembled = body.mass, stiffness, viscosity, fixed, any_motion(body)
-    return body.team.critical_step(*assembled)
+    return body.communicator.critical_step(*assembled)
 
 
 def operators(discrete: Discrete) -> tuple[csr_matrix, csr_matrix | None]:
@@ -122,29 +131,26 @@ def operators(discrete: Discrete) -> tuple[csr_matrix, csr_matrix | None]:
         viscosity = whole(body.layout, body.mesh, body.viscous_blocks)
     if joints is None:
         return stiffness, viscosity
-    size, law = body.mass.size, joints.law
-    stiffness = stiffness + _of_joints(joints, size, law.normal_stiffness, law.shear_stiffness)
+    law = joints.law
+    stiffness = stiffness + _of_joints(joints, law.normal_stiffness, law.shear_stiffness)
     if law.normal_viscosity is not None:
-        dashpots = _of_joints(joints, size, law.normal_viscosity, law.shear_viscosity)
+        dashpots = _of_joints(joints, law.normal_viscosity, law.shear_viscosity)
         viscosity = dashpots if viscosity is None else viscosity + dashpots
     return stiffness, viscosity
 
 
-def _of_joints(joints: Interfaces, size: int, normal, shear) -> csr_matrix:
+def _of_joints(joints: Interfaces, normal, shear) -> csr_matrix:
     """Return B^T W k B of all joints: k along the normal, and another along the joint."""
-    found = csr_matrix((size, size))
-    for matrix, k in ((joints.opening, normal), (joints.slip_x, shear), (joints.slip_z, shear)):
-        if matrix is not None and k is not None:
-            jump = sparse(matrix, size)
-            found = found + jump.T @ diags(joints.area * k) @ jump
-    return csr_matrix(found)
+    of_direction = [normal, *(joints.directions - 1) * [0.0 if shear is None else shear]]
+    weights = np.concatenate([joints.area * k for k in of_direction])
+    return csr_matrix(joints.jump.T @ diags(weights) @ joints.jump)
 
 
 def build_model(scene: Scene, discrete: Discrete, model: str, time: Clock) -> Model:
     """Return the constants of a scene in space, for a given clock."""
     p, body = discrete.properties, discrete.body
     alpha = (p.mass_damping or 0.0) * time.dt / 2
-    mass = body.team.total(body.mass)
+    mass = body.communicator.total(body.mass)
     step_over_mass = zeros(mass.size)
     # Nothing moves what has no mass: nodes of another process's cell beyond a joint.
     np.divide(time.dt / (1 + alpha), mass, out=step_over_mass, where=mass > 0)
@@ -154,7 +160,7 @@ def build_model(scene: Scene, discrete: Discrete, model: str, time: Clock) -> Mo
             viscosity=body.viscosity,
             mass=body.mass,
             step_over_mass=step_over_mass,
-            keep=None if p.mass_damping is None else (1 - alpha) / (1 + alpha),
+            decay=None if p.mass_damping is None else (1 - alpha) / (1 + alpha),
         ),
         interfaces=discrete.joints,
         ends=build_ends(scene, p, body, model, time, mass),
@@ -191,54 +197,83 @@ def receivers(scene: Scene, discrete: Discrete) -> Receivers:
     motion, pull = points(body, scene.record.velocity), pull_of(scene, body)
     force = sections(body, discrete.jumps, discrete.materials, scene.record.stress)
     # Alike on all processes that have joints, which then share what is compiled.
-    viscous, contact = (body.team.any(part.nnz > 0) for part in (force.viscous, force.contact))
+    viscous, contact = (
+        body.communicator.any(part.nnz > 0) for part in (force.viscous, force.contact)
+    )
     return Receivers(
-        point=rows(motion.motion),
-        turn=None if motion.turn is None else rows(motion.turn),
-        elastic=rows(force.elastic / area),
-        viscous=rows(force.viscous / area) if viscous else None,
-        inertia=rows(force.inertia / area),
-        contact=rows(force.contact / area) if contact and discrete.joints is not None else None,
+        point=motion.motion,
+        turn=motion.turn,
+        elastic=force.elastic / area,
+        viscous=force.viscous / area if viscous else None,
+        inertia=force.inertia / area,
+        contact=force.contact / area if contact and discrete.joints is not None else None,
         weight=None if pull is None else -(force.inertia / area) @ pull,
     )
 
 
 def state_at_rest(model: Model, keep_ledger: bool) -> State:
     """Return the state at rest, with no array for anything that the model does not have."""
-    n, joints, ends = model.rock.mass.size, model.interfaces, model.ends
-    quiet, held = ends.quiet, ends.held
+    n, joints, (_, quiet, fixed) = model.rock.mass.size, model.interfaces, model.ends
+    damped = joints is not None and joints.parts.dashpots
+    viscous = damped or model.rock.viscosity is not None or model.receivers.viscous is not None
     sprung = quiet is not None and quiet.springs is not None
-    damped = joints is not None and joints.law.normal_viscosity is not None
-    read = model.receivers.viscous is not None
-    viscous = model.rock.viscosity is not None or damped or read
+    shape = None if joints is None else (joints.directions, joints.area.size)
+    fields, at = _fields(n, viscous, shape, damped)
     return State(
-        u=zeros(n),
-        v=zeros(n),
-        v_before=zeros(n),
+        fields=fields,
+        at=at,
         force=zeros(n),
-        rate=zeros(n) if viscous else None,
         drag=zeros(n) if viscous else None,
-        memory=None if joints is None else memory(joints),
-        tractions=None if joints is None else tractions(joints),
-        jumps=None if joints is None else measured(joints),
+        **_points_at_rest(joints),
         closure=np.zeros(quiet.freedom.size) if sprung else None,
         reaction=np.zeros(quiet.freedom.size) if quiet is not None else None,
-        wall=np.zeros(held.freedom.size) if held is not None and held.step is not None else None,
+        base_force=np.zeros(fixed.freedom.size) if fixed is not None and _moves(fixed) else None,
         ledger=np.zeros(4) if keep_ledger else None,
     )
 
 
-def room(model: Model, state: State, samples: int) -> Samples:
-    """Return empty samples."""
+def _moves(fixed: Fixed) -> bool:
+    return fixed.step is not None
+
+
+def _fields(
+    n: int, viscous: bool, shape: tuple[int, int] | None, damped: bool
+) -> tuple[np.ndarray, Places]:
+    """Return the vectors that receivers read, each from a cache line on."""
+    points = 0 if shape is None else shape[0] * shape[1]
+    sizes = {"u": n, "v": n, "v_before": n, "rate": n * viscous}
+    sizes |= {"loads": points, "drags": points * damped}
+    places, begin = {}, 0
+    for name, size in sizes.items():
+        places[name] = slice(begin, begin + size) if size else None
+        begin += -(-size // WIDTH) * WIDTH
+    return zeros(begin), Places(**places, shape=shape)  # type: ignore[arg-type]
+
+
+def _points_at_rest(joints: Interfaces | None) -> dict[str, np.ndarray | None]:
+    """Return the history and the jumps of the joints' points, None for what nothing asks for."""
+    names = "opening", "slide", "cohesion", "jump", "jump_rate", "slip_rate"
+    found: dict[str, np.ndarray | None] = dict.fromkeys(names)
+    if joints is not None:
+        parts, points = joints.parts, joints.area.size
+        jumps = (joints.directions, points)
+        found["jump"] = zeros(jumps)
+        if parts.dashpots:
+            found["jump_rate"] = zeros(jumps)
+        if parts.softening:
+            found["opening"] = np.zeros(points)
+        if parts.limited:
+            found["slide"] = np.zeros((joints.directions - 1, points))
+            found["slip_rate"] = zeros(jumps)
+        if parts.residual and parts.shear:
+            found["cohesion"] = np.zeros(points) + joints.law.cohesion
+    return found
+
+
+def empty_samples(model: Model, state: State, samples: int) -> Samples:
+    """Return samples to be recorded."""
     receivers = model.receivers
-
-    def waves(matrix: Rows) -> np.ndarray:
-        return np.zeros((matrix.start.size - 1, samples))
-
-    return Samples(
-        stress=waves(receivers.elastic),
-        velocity=waves(receivers.point),
-        displacement=waves(receivers.point),
-        turn=None if receivers.turn is None else waves(receivers.turn),
-        energy=None if state.ledger is None else np.zeros((len(TERMS), samples)),
-    )
+    sections, points = receivers.elastic.shape[0], receivers.point.shape[0]
+    turns = 0 if receivers.turn is None else receivers.turn.shape[0]
+    energy = None if state.ledger is None else np.zeros((len(TERMS), samples))
+    return Samples(np.zeros((sections + 2 * points + turns, samples)), energy, sections, points)

@@ -1,4 +1,4 @@
-"""What acts on the two end faces: the load, what absorbs, and what is held."""
+"""What acts on the two end faces: the load, what absorbs, and what is fixed."""
 
 import numpy as np
 
@@ -6,12 +6,12 @@ from cases.loads import base_steps, load_history, step_means
 from cases.material.calibrate import Properties
 from cases.sampling import Clock
 from cases.schema.scene import Scene
-from continuum.body import Body, along
-from continuum.interface import Facets, facet_points
 from continuum.kinematics import impedances
-from continuum.meshing.description import Side
-from continuum.model import Ends, HalfJoints, Held, Loaded, Quiet
-from continuum.places import Places, places_in
+from continuum.mesh.description import Side
+from continuum.model import Ends, Fixed, HalfJoints, Loaded, Quiet
+from continuum.space.body import Body, along
+from continuum.space.evaluation import Places, places_in
+from continuum.space.interface import Facets, facet_points
 from joints.ends import HalfSpring, half_spring
 
 
@@ -22,7 +22,7 @@ def build_ends(
     return Ends(
         loaded=load_on(scene, p, body, time),
         quiet=quiet_ends(scene, p, body, model, time.dt, mass),
-        held=held_ends(scene, body, time),
+        fixed=fixed_ends(scene, body, time),
     )
 
 
@@ -82,7 +82,7 @@ def quiet_ends(
         impedance = impedances(scene, p, model, body.dim, len(area))
         sprung = kind == "matched" and model == "jointed"
         springs = absorbing(scene, p, body, dt) if sprung else None
-        whole = body.team.total(area)
+        whole = body.communicator.total(area)
         for c in range(len(area)):
             spring = None if springs is None else springs[c]
             parts.append(_absorber(impedance[c], area[c], whole[c], spring))
@@ -90,7 +90,7 @@ def quiet_ends(
         return None
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
     freedom, viscosity, whole, stiffness, decay, gain = columns
-    sprung = body.team.any(bool(stiffness.any()))
+    sprung = body.communicator.any(bool(stiffness.any()))
     half_joints = HalfJoints(stiffness, decay, gain) if sprung else None
     braked = 1 + (p.mass_damping or 0.0) * dt / 2  # as in the step over the mass
     beta = whole * dt / (2 * braked * mass[freedom])
@@ -138,25 +138,25 @@ def end_stiffness(scene: Scene, p: Properties, body: Body, model: str) -> np.nda
     return found
 
 
-def held_ends(scene: Scene, body: Body, time: Clock | None = None) -> Held | None:
+def fixed_ends(scene: Scene, body: Body, time: Clock | None = None) -> Fixed | None:
     """Return the freedoms of fixed ends, those of a shaken base with its motion; None without."""
-    freedoms, ways = [], []
+    freedoms, directions = [], []
     for place in ("start", "end"):
         if getattr(scene.ends, place) != "fixed":
             continue
-        whole = body.team.total(face_area(body, getattr(body.mesh, place)))
+        whole = body.communicator.total(face_area(body, getattr(body.mesh, place)))
         for c, area in enumerate(whole):
             freedoms.append(np.flatnonzero(area))
             component = 1 if body.section.components == 1 else c
             shaken = place == "start" and scene.load.shakes_base
-            way = scene.load.direction[component] if shaken else 0.0
-            ways.append(np.full(freedoms[-1].size, way))
+            direction = scene.load.direction[component] if shaken else 0.0
+            directions.append(np.full(freedoms[-1].size, direction))
     if not freedoms:
         return None
     step = None
     if scene.load.shakes_base and time is not None:
         step = base_steps(scene, time.dt, time.steps + 1)
-    return Held(np.concatenate(freedoms), np.concatenate(ways).astype(float), step)
+    return Fixed(np.concatenate(freedoms), np.concatenate(directions).astype(float), step)
 
 
 def face_area(body: Body, side: Side) -> np.ndarray:

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from cases.schema.scene import Scene
-from continuum.body import Body
 from continuum.build import Discrete
 from continuum.model import Model, Samples, State
-from continuum.watch import Watch
+from continuum.monitor import Monitor
+from continuum.space.body import Body
 
 IMPLICIT_WORK = 100  # some corrections, each a triangular solve and often a factorisation
 
@@ -27,7 +25,7 @@ class Engine(NamedTuple):
     """
 
     compile: Callable[[], None]
-    march: Callable[[int, int], None]
+    march: Callable[[int, int], object]
     ahead: float
     attributes: Callable[[], dict[str, Any]]
     parts: Any = ()
@@ -35,22 +33,19 @@ class Engine(NamedTuple):
 
 
 def explicit_engine(
-    scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, watch: Watch
+    scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, monitor: Monitor
 ) -> Engine:
     """Return leapfrog."""
-    team, held = discrete.body.team, model.ends.held
+    communicator = discrete.body.communicator
     if scene.gravity is not None and not scene.gravity.static:
         let_go(model, state, discrete.body)
-    run = team.stepping(np.zeros(0, dtype=np.int64) if held is None else held.freedom)
-
-    def march(first: int, last: int) -> None:
-        run(model, state, samples, watch.time.stride, first, last, watch.guard)
+    march = communicator.leapfrog(model, state, samples, monitor.time.stride, monitor.guard)
 
     def compile() -> None:
-        with team.in_turn():
+        with communicator.in_turn():
             march(0, 0)
 
-    return Engine(compile, march, watch.time.dt, dict)
+    return Engine(compile, march, monitor.time.dt, dict)
 
 
 def let_go(model: Model, state: State, body: Body) -> None:
@@ -58,20 +53,20 @@ def let_go(model: Model, state: State, body: Body) -> None:
 
     At t = 0, in the middle of the first two, it is at rest.
     """
-    fall = 0.5 * model.rock.step_over_mass * body.team.total(model.weight)
-    if model.rock.keep is not None:
-        fall *= 2 / (1 + model.rock.keep)  # step_over_mass is that of damped motion
-    if model.ends.held is not None:
-        fall[model.ends.held.freedom] = 0.0
+    fall = 0.5 * model.rock.step_over_mass * body.communicator.total(model.weight)
+    if model.rock.decay is not None:
+        fall *= 2 / (1 + model.rock.decay)  # step_over_mass is that of damped motion
+    if model.ends.fixed is not None:
+        fall[model.ends.fixed.freedom] = 0.0
     state.v[:], state.v_before[:] = -fall, -3 * fall
 
 
 def implicit_engine(
-    scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, watch: Watch
+    scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, monitor: Monitor
 ) -> Engine:
     """Return the generalised-alpha method of the scene's spectral radius."""
-    from continuum.implicit import Implicit
-    from continuum.implicit_step import rock_matrices
+    from continuum.implicit.balance import rock_matrices
+    from continuum.implicit.run import Implicit
 
     rho = scene.numerics.continuum.spectral_radius
     run = Implicit(model, state, rock_matrices(discrete.body), rho)
@@ -86,7 +81,7 @@ def implicit_engine(
 
     return Engine(
         lambda: run.compile(samples),
-        lambda first, last: run.run(samples, watch.time.stride, first, last, watch),
+        lambda first, last: run.run(samples, monitor.time.stride, first, last, monitor),
         0.0,
         attributes,
         run.parts,

@@ -8,7 +8,7 @@ from cases.errors import SceneError
 from cases.material.calibrate import Properties
 from cases.material.elastic import equivalent_modulus
 from cases.schema.scene import Scene
-from continuum.elasticity import Material, Section
+from continuum.space.elasticity import Material, Section
 
 MODELS = ("jointed", "equivalent")
 

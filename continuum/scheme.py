@@ -16,7 +16,7 @@ from continuum.build import Discrete, operators, resolved_period
 
 #: How many explicit steps one implicit step must replace before its cost is looked into: it solves
 #: an equation with several times the entries of the stiffness, and is not vectorised over blocks.
-WORTH_A_LOOK = 20
+STEPS_PER_IMPLICIT = 20
 
 #: Entries that a step takes in a second: of the block operators, and of triangular factors.
 OPERATOR_RATE, FACTOR_RATE = 3e9, 3e8
@@ -70,8 +70,9 @@ def _cheaper(scene: Scene, discrete: Discrete, critical: float) -> Choice:
     implicit = _implicit(scene, "")
     many = scene.time.duration / (critical * scene.numerics.continuum.step_fraction)
     few = implicit.time.steps
-    if many < WORTH_A_LOOK * few:
-        reason = f"{many:,.0f} explicit steps are fewer than {WORTH_A_LOOK} x {few:,} implicit ones"
+    if many < STEPS_PER_IMPLICIT * few:
+        few_more = f"{STEPS_PER_IMPLICIT} x {few:,} implicit ones"
+        reason = f"{many:,.0f} explicit steps are fewer than {few_more}"
         return _explicit(scene, critical, reason)
     explicit_cost, implicit_cost = _costs(discrete, many, few)
     costs = f"{many:,.0f} explicit steps, some {explicit_cost:.2g} s, against {few:,} implicit ones"
@@ -86,16 +87,16 @@ def _costs(discrete: Discrete, many: float, few: int) -> tuple[float, float]:
 
     They are those of one process, so that any number of them comes to the same choice.
     """
-    team, found = discrete.body.team, (0.0, 0.0)
+    communicator, found = discrete.body.communicator, (0.0, 0.0)
     stiffness, viscosity = operators(discrete)
     none = csr_matrix(stiffness.shape)
     shares = stiffness, none if viscosity is None else viscosity
-    bends = team.any(_bends(discrete))
-    stiffness, viscosity = (team.assembled(share) for share in shares)
+    bends = communicator.any(_bends(discrete))
+    stiffness, viscosity = (communicator.assembled(share) for share in shares)
     if stiffness is not None and viscosity is not None:
         entries = stiffness.nnz + viscosity.nnz + 10 * stiffness.shape[0]
         found = many * entries / OPERATOR_RATE, _implicit_seconds(stiffness, bends, few)
-    return team.same(found)
+    return communicator.same(found)
 
 
 def _bends(discrete: Discrete) -> bool:

@@ -13,26 +13,26 @@ import xarray as xr
 
 from cases.errors import SceneError, StoppedError
 from cases.schema.scene import Scene
-from continuum import compat
 from continuum.build import (
     Discrete,
     build_model,
     critical_step_of,
     discretise,
-    room,
+    empty_samples,
     state_at_rest,
 )
 from continuum.engines import explicit_engine, implicit_engine
 from continuum.kinematics import refuse
-from continuum.looks import march_with_looks
 from continuum.model import Model, Samples, State
-from continuum.reach import applies
+from continuum.monitor import Monitor
 from continuum.scheme import Choice, choose
 from continuum.size import refuse_large_run
-from continuum.watch import Watch
+from continuum.space import compat
+from continuum.time_loop import run_in_stretches
+from continuum.validity import applies
 from continuum.waveforms import energy_terms, waveforms
 from numerics.checkpoint import Keeper
-from results.arrays import size_of
+from results.arrays import changed, size_of
 from results.dataset import Fields, fields
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def simulate(
     progress : called with the finished fraction.
     comm : mpi4py's communicator of processes that share the run: all call this alike, each steps
         its part of the rock, and all get the whole result. None: this one alone.
-    keeper : watches over the run, `numerics.checkpoint`; each process has its own.
+    keeper : keeps checkpoints, `numerics.checkpoint`; each process has its own.
 
     Raises SceneError for what this model cannot simulate; StoppedError, an UnstableError with the
     result so far, when the motion leaves its bounds or implicit steps do not converge.
@@ -68,17 +68,17 @@ def simulate(
         raise SceneError(scene.name or scene.title, "model", model, reason)
     began = perf_counter()
     discrete = discretise(scene, model, dim, comm if comm is not None and comm.size > 1 else None)
-    team = discrete.body.team
+    communicator = discrete.body.communicator
     choice, critical = _steps(scene, discrete, model)
     time = choice.time
     refuse_large_run(scene, discrete.kinematics, time)
     built = build_model(scene, discrete, model, time)
     state = state_at_rest(built, scene.record.energy)
     rest = _at_rest(scene, built, state, discrete)
-    samples = room(built, state, time.samples)
+    samples = empty_samples(built, state, time.samples)
     start = explicit_engine if choice.scheme == "explicit" else implicit_engine
-    watch = Watch(scene, discrete, built, state, samples, choice, critical)
-    engine = start(scene, discrete, built, state, samples, watch)
+    monitor = Monitor(scene, discrete, built, state, samples, choice, critical)
+    engine = start(scene, discrete, built, state, samples, monitor)
     film = _film(scene, discrete, state, engine.ahead)
     ready = perf_counter()
     engine.compile()
@@ -91,17 +91,17 @@ def simulate(
             "seconds_stepping": perf_counter() - compiled,
         }
         about = _about(scene, discrete, model, choice, critical) | rest | engine.attributes()
-        about |= {"bytes": int(team.sum(size_of(built, state)))}
-        for wave in samples:
-            if wave is not None:
-                team.gather(wave)
+        about |= {"bytes": int(communicator.sum(size_of(built, state)))}
+        for rows in (samples.waves, samples.energy):
+            if rows is not None:
+                communicator.gather(rows)
         found = _recorded(scene, discrete, built, samples, time.times[:count], about | seconds)
         return xr.Dataset(*(found if film is None else film.developed(found)))
 
-    parts = state, samples, watch.parts, engine.parts
-    work = engine.work * int(team.largest(state.u.size))
+    parts = state, samples, monitor.parts, engine.parts
+    work = engine.work * int(communicator.largest(state.u.size))
     try:
-        march_with_looks(time, work, engine.march, watch.check, parts, progress, film, keeper)
+        run_in_stretches(time, work, engine.march, monitor.check, parts, progress, film, keeper)
     except StoppedError as error:
         error.result = result(error.samples)
         raise
@@ -127,9 +127,8 @@ def _recorded(
     about: dict[str, Any],
 ) -> Fields:
     """Return what was recorded at these times as a result, with attributes about the run."""
-    taken: list[Any] = [None if wave is None else wave[:, : times.size] for wave in samples]
-    until = Samples(*taken)
-    terms, energy = energy_terms(built, until.energy, discrete.body.team)
+    until = changed(samples, lambda rows: rows[:, : times.size])
+    terms, energy = energy_terms(built, until.energy, discrete.body.communicator)
     return fields(
         scene,
         f"continuum-{about['model']}",
@@ -157,7 +156,7 @@ def _about(
         "critical_dt": critical,
         "steps": choice.time.steps,
         "degrees_of_freedom": discrete.body.degrees_of_freedom,
-        "processes": discrete.body.team.size,
+        "processes": discrete.body.communicator.size,
         "versions": json.dumps(versions),
     }
 
@@ -166,7 +165,7 @@ def _at_rest(scene: Scene, built: Model, state: State, discrete: Discrete) -> di
     """Bring a scene's rock to rest under gravity, and return what a result says of that."""
     if scene.gravity is None or not scene.gravity.static:
         return {}
-    from continuum.static import settle_static
+    from continuum.implicit.static import settle_static
 
     return settle_static(scene, built, state, discrete.body).attributes
 

@@ -6,13 +6,13 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from cases.schema.scene import Scene
-from continuum import compat
-from continuum.body import axis
 from continuum.build import Discrete
 from continuum.model import State
-from continuum.places import at_reference, matrix_of
-from continuum.receivers import section_tractions
-from continuum.team import Pieces
+from continuum.parallel.serial import Pieces
+from continuum.space import compat
+from continuum.space.body import axis
+from continuum.space.evaluation import at_reference, matrix_of
+from continuum.space.receivers import section_tractions
 from results.dataset import Fields
 from results.snapshots import (
     Film,
@@ -36,7 +36,7 @@ class RockFilm(Film):
         self.cell = np.flatnonzero(body.cells[:, 0] >= 0)
         self.nodes, numbers = np.unique(body.cells[self.cell], return_inverse=True)
         self.table = numbers.reshape(self.cell.size, -1)
-        refuse_beyond_room(scene, int(body.team.sum(self.nodes.size)))
+        refuse_beyond_room(scene, int(body.communicator.sum(self.nodes.size)))
         super().__init__(samples_between(scene) or 1, self.shot)
         self.discrete, self.state, self.ahead = discrete, state, ahead
         self.freedoms = body.freedom(self.nodes[:, None], np.arange(body.section.components))
@@ -60,7 +60,7 @@ class RockFilm(Film):
         u, v, stress = (np.stack(column, axis=1) for column in zip(*self.shots, strict=True))
         of_cells = (stress.reshape(self.cell.size, len(self.parts), -1),)
         own = Pieces(self.cell, self.table, of_cells, (body.x[self.nodes], u, v))
-        whole = body.team.joined(own)
+        whole = body.communicator.joined(own)
         return result if whole is None else with_snapshots(result, self._of_all(result, whole))
 
     def _of_all(self, result: Fields, whole: Pieces) -> Snapshots:

@@ -6,11 +6,10 @@ import numpy as np
 
 from cases.schema.scene import Scene
 from continuum.build import Discrete
-from continuum.model import Model, Samples
-from continuum.receivers import is_on_joint
-from continuum.record import TERMS
-from continuum.team import ALONE, Alone
-from joints.laws import Law
+from continuum.model import TERMS, Model, Samples
+from continuum.parallel.serial import SERIAL, Serial
+from continuum.space.receivers import is_on_joint
+from joints.flat.law import Law
 from results.dataset import ALL_TERMS
 
 
@@ -33,7 +32,7 @@ def waveforms(scene: Scene, discrete: Discrete, samples: Samples) -> dict[str, A
             for name, wave in motion.items()
         },
     }
-    if samples.turn is not None:
+    if samples.turn.size:
         found["rotation"] = np.moveaxis(_by_component(samples.turn, 3), 0, 2)
     return found
 
@@ -59,7 +58,7 @@ def _padded(waves: np.ndarray, components: int) -> np.ndarray:
 
 
 def energy_terms(
-    model: Model, energy: np.ndarray | None, team: Alone = ALONE
+    model: Model, energy: np.ndarray | None, communicator: Serial = SERIAL
 ) -> tuple[tuple[str, ...], np.ndarray | None]:
     """Return the terms that the ledger of a model has, in the order of every result, and them."""
     law = None if model.interfaces is None else model.interfaces.law
@@ -68,7 +67,7 @@ def energy_terms(
         "friction": law is not None and slides(law),
         "gravity": model.weight is not None,
     }
-    there = {term: team.any(is_there) for term, is_there in there.items()}
+    there = {term: communicator.any(is_there) for term, is_there in there.items()}
     terms = tuple(t for t in ALL_TERMS if t in TERMS and there.get(t, True))
     if energy is None:
         return terms, None

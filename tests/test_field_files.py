@@ -13,7 +13,7 @@ import dem
 from cases import SceneError
 from compare.runs import field_files
 from compare.runs.field_files import read_pvd, refuse_vtx, write_pvd, write_vtx
-from continuum import compat
+from continuum.space import compat
 from results.snapshots import snapshots, snapshots_of
 
 SPALL = {
@@ -187,8 +187,8 @@ def test_vtx_is_written_where_dolfinx_can_and_refused_where_not(tmp_path):
 
 
 def test_vtx_is_refused_where_there_is_no_dolfinx(monkeypatch):
-    monkeypatch.setitem(sys.modules, "continuum.compat", None)
-    monkeypatch.delattr("continuum.compat", raising=False)
+    monkeypatch.setitem(sys.modules, "continuum.space.compat", None)
+    monkeypatch.delattr("continuum.space.compat", raising=False)
     with pytest.raises(SceneError, match="--vtx: dolfinx cannot be imported"):
         refuse_vtx()
 

@@ -27,7 +27,7 @@ from compare.runs.checkpoint.files import Checkpoints
 from compare.runs.checkpoint.resume import result_of
 from compare.runs.output import read_kept
 from compare.runs.processes import ALONE
-from continuum.meshing.tagged import read_tagged
+from continuum.mesh.tagged import read_tagged
 
 AT_ONCE = 200e6  # bytes: what reading a scene of ten million blocks takes, not one run refused here
 

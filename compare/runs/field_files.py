@@ -75,7 +75,7 @@ def read_pvd(path: Path) -> Snapshots:
 def refuse_vtx() -> None:
     """Raise SceneError where no VTX file can be written."""
     try:
-        from continuum import compat
+        from continuum.space import compat
     except ImportError as error:
         raise SceneError("--vtx", "", None, f"dolfinx cannot be imported ({error})") from None
     if compat.vtx_writer() is None:
@@ -85,7 +85,7 @@ def refuse_vtx() -> None:
 
 def write_vtx(path: Path, s: Snapshots) -> Path:
     """Write displacement (m) and velocity (m/s) of all instants as one ADIOS2 file, NAME.bp."""
-    from continuum import compat
+    from continuum.space import compat
 
     displacement, velocity, at, nodes = _functions(s)
 
@@ -102,7 +102,7 @@ def write_vtx(path: Path, s: Snapshots) -> Path:
 def _functions(s: Snapshots) -> tuple[Any, Any, np.ndarray, np.ndarray]:
     """Return dolfinx functions for displacement and velocity, and which of their values
     [cells, corners] are those of which nodes [cells, corners]."""
-    from continuum import compat
+    from continuum.space import compat
 
     cells = s.cells[:, TENSOR_ORDER.get(s.kind, slice(None))].astype(np.int64)
     domain = compat.cell_mesh(CELLS.get(s.kind, s.kind), cells, s.points)

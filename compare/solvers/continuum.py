@@ -68,7 +68,7 @@ def prepare(scene: Scene, model: str) -> Prepared:
 
 def libraries() -> dict[str, str]:
     """Return the version of dolfinx."""
-    from continuum import compat
+    from continuum.space import compat
 
     return {"dolfinx": compat.VERSION}
 

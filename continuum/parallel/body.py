@@ -8,13 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum.body import Body, build_body, cell_geometry
-from continuum.elasticity import Material, Section, discretise
-from continuum.interface import Jumps, jumps
-from continuum.meshing.description import Mesh, Part
+from continuum.mesh.description import Mesh, Part
+from continuum.parallel.communicator import Communicator, in_turn
 from continuum.parallel.identity import Border, border
 from continuum.parallel.partition import Share, ranks_of_cells, restrict
-from continuum.parallel.team import Team, in_turn
+from continuum.space.body import Body, build_body, cell_geometry
+from continuum.space.elasticity import Material, Section, discretise
+from continuum.space.interface import Jumps, jumps
 
 NOTHING = Material(0.0, 0.0, 0.0)  # of which ghosts are made
 
@@ -42,8 +42,8 @@ def share_of(
     meeting = border(mesh, rank_of, order)
     tied = border(mesh, rank_of, order, plane_wave) if plane_wave else meeting
     names = _names(held, own, across, tied)
-    team = Team(comm, *names, held.mass.size, meeting)
-    return held._replace(cells=own, team=team), across
+    communicator = Communicator(comm, *names, held.mass.size, meeting)
+    return held._replace(cells=own, communicator=communicator), across
 
 
 def held_share(

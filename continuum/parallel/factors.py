@@ -1,9 +1,9 @@
 """The factorised matrix of an implicit step of rock that several processes share."""
 
 import numpy as np
-from petsc4py import PETSc  # started by `continuum.compat`
+from petsc4py import PETSc  # started by `continuum.space.compat`
 
-from continuum.parallel.team import Team
+from continuum.parallel.communicator import Communicator
 
 PACKAGES = ("mumps", "superlu_dist")  # that factorise what several processes hold
 
@@ -15,24 +15,28 @@ class SharedFactors:
     ----------
     start, column : CSR pattern [n + 1], [nnz] of this process's matrix.
     free : int array [n], its rows and columns, as freedoms of this process.
-    team : the processes. All its methods are called by all of them.
+    communicator : the processes. All its methods are called by all of them.
     """
 
-    def __init__(self, start: np.ndarray, column: np.ndarray, free: np.ndarray, team: Team) -> None:
-        self._team, self._free = team, free
-        self._mine = np.intersect1d(free, team.mine)
+    def __init__(
+        self, start: np.ndarray, column: np.ndarray, free: np.ndarray, communicator: Communicator
+    ) -> None:
+        self._team, self._free = communicator, free
+        self._mine = np.intersect1d(free, communicator.mine)
         self._pattern = start.astype(PETSc.IntType), column.astype(PETSc.IntType)
         self._share = PETSc.Mat().createAIJ(
             (free.size, free.size),
             csr=(*self._pattern, np.zeros(column.size)),
             comm=PETSc.COMM_SELF,
         )
-        names = PETSc.LGMap().create(self._names().astype(PETSc.IntType), comm=team.comm)
+        names = PETSc.LGMap().create(self._names().astype(PETSc.IntType), comm=communicator.comm)
         rows = (self._mine.size, PETSc.DETERMINE)
-        self._sum = PETSc.Mat().createIS((rows, rows), lgmapr=names, lgmapc=names, comm=team.comm)
+        self._sum = PETSc.Mat().createIS(
+            (rows, rows), lgmapr=names, lgmapc=names, comm=communicator.comm
+        )
         self._sum.setISLocalMat(self._share)
         self._whole = PETSc.Mat()
-        self._solver = PETSc.KSP().create(team.comm)
+        self._solver = PETSc.KSP().create(communicator.comm)
         self._solver.setType("preonly")
         conditioner = self._solver.getPC()
         conditioner.setType("lu")
@@ -62,10 +66,10 @@ class SharedFactors:
 
     def _names(self) -> np.ndarray:
         """Return the numbers [n] of the free freedoms among those of all processes."""
-        team, found = self._team, np.zeros(self._team.length)
-        first = team.comm.exscan(self._mine.size) or 0
+        communicator, found = self._team, np.zeros(self._team.length)
+        first = communicator.comm.exscan(self._mine.size) or 0
         found[self._mine] = first + np.arange(self._mine.size)
-        return np.rint(team.total(found)[self._free])
+        return np.rint(communicator.total(found)[self._free])
 
 
 def _package() -> str:

@@ -9,12 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum import compat
-from continuum.body import SAME
-from continuum.meshing.description import Mesh
-from continuum.meshing.facets import row_numbers
+from continuum.mesh.description import Mesh
+from continuum.mesh.facets import row_numbers
 from continuum.parallel.partition import Copies, copies_of
-from continuum.team import Pieces
+from continuum.parallel.serial import Pieces
+from continuum.space import compat
+from continuum.space.body import SAME
 
 STEPS = 1_000_000  # of a place between vertices: nodes are much farther apart than one of them
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cases.errors import SceneError
-from continuum.meshing.description import Joints, Mesh, Part
+from continuum.mesh.description import Joints, Mesh, Part
 
 #: Of the cells of one process: copies of at most so many stay whole. Many alike blocks make one
 #: operator; half of a block is one of its own.

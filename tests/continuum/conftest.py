@@ -8,18 +8,18 @@ import pytest
 from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from cases.schema.scene import Scene
-from continuum.body import build_body
 from continuum.build import (
     Discrete,
     build_model,
     critical_step_of,
     discretise,
-    room,
+    empty_samples,
     state_at_rest,
 )
-from continuum.elasticity import Material, Section
-from continuum.explicit import run
-from continuum.meshing.pillar import pillar_mesh
+from continuum.explicit.march import run
+from continuum.mesh.pillar import pillar_mesh
+from continuum.space.body import build_body
+from continuum.space.elasticity import Material, Section
 from continuum.waveforms import waveforms
 
 ROCK = Material(modulus=8.64e10, poisson=0.25, density=2400.0)
@@ -85,7 +85,7 @@ def ready():
             clock = Clock(fraction * critical_step_of(scene, discrete, model), 1, samples)
         built = build_model(scene, discrete, model, clock)
         state = state_at_rest(built, scene.record.energy)
-        return Run(scene, discrete, built, state, room(built, state, clock.samples), clock)
+        return Run(scene, discrete, built, state, empty_samples(built, state, clock.samples), clock)
 
     return prepared
 

@@ -43,8 +43,8 @@ def growth(ready):
         nodes = np.arange(len(body.x))
         freedoms = np.unique([body.freedom(nodes, c) for c in range(body.section.components)])
         run.state.v[freedoms] = start(freedoms.size)
-        if run.model.ends.held is not None:
-            run.state.v[run.model.ends.held.freedom] = 0.0
+        if run.model.ends.fixed is not None:
+            run.state.v[run.model.ends.fixed.freedom] = 0.0
         run.state.v_before[:] = run.state.v
         run.take(0, STEPS)
         return float(np.nan_to_num(np.abs(run.state.v).max(), nan=np.inf))

@@ -7,7 +7,10 @@ from cases.errors import SceneError
 from cases.material.calibrate import calibrate
 from continuum import applies, simulate
 from continuum.build import discretise, state_at_rest
-from continuum.explicit import absorb, accelerate, add, forces, hold, run
+from continuum.explicit.leapfrog import leapfrog_for
+from continuum.explicit.march import arguments
+from continuum.implicit.balance import empty_tangents, joint_balance_for
+from continuum.joints import interfaces
 from continuum.model import Quiet
 from continuum.simulate import steps_of
 
@@ -46,7 +49,8 @@ def test_joints_that_all_carry_tension_one_by_one_change_nothing(pillar, waves):
     def change(built):
         every = np.ones(built.interfaces.area.size, dtype=bool)
         law = built.interfaces.law._replace(carries_tension=every)
-        return built._replace(interfaces=built.interfaces._replace(law=law))
+        jumps = discretise(scene, "jointed").jumps
+        return built._replace(interfaces=interfaces(jumps, law, None))
 
     assert np.array_equal(waves(scene, "jointed"), waves(scene, "jointed", change))
 
@@ -103,13 +107,16 @@ def test_ledger_changes_nothing(pillar, waves):
 def test_absent_effects_leave_no_array(short, ready):
     at = ready(short(**SILENT), "equivalent")
     assert at.model.interfaces is None and at.model.weight is None
-    assert at.model.ends.quiet is None and at.model.ends.held is None
-    assert at.model.rock.viscosity is None and at.model.rock.keep is None
+    assert at.model.ends.quiet is None and at.model.ends.fixed is None
+    assert at.model.rock.viscosity is None and at.model.rock.decay is None
     receivers = at.model.receivers
     assert (receivers.turn, receivers.viscous, receivers.contact, receivers.weight) == (None,) * 4
     state = at.state
-    assert (state.rate, state.drag, state.memory, state.tractions) == (None,) * 4
-    assert (state.closure, state.reaction, state.wall, state.ledger) == (None,) * 4
+    assert (state.rate, state.drag, state.loads, state.drags) == (None,) * 4
+    assert (state.jump, state.jump_rate, state.slip_rate) == (None,) * 3
+    assert (state.opening, state.slide, state.cohesion) == (None,) * 3
+    assert (state.closure, state.reaction, state.base_force, state.ledger) == (None,) * 4
+    assert state.fields.size == 3 * at.model.rock.mass.size
 
 
 def test_alike_undamped_joints_are_one_number(short, ready):
@@ -117,40 +124,51 @@ def test_alike_undamped_joints_are_one_number(short, ready):
     law = at.model.interfaces.law
     assert isinstance(law.normal_stiffness, float)
     assert law[1:] == (None,) * (len(law) - 1)
-    assert at.state.memory == (None,) * 4
-    assert at.state.tractions[1:] == (None,) * 5
-    assert at.state.rate is None and at.state.drag is None
+    assert at.model.interfaces.table.shape == (len(law), 1)
+    state = at.state
+    assert (state.opening, state.slide, state.cohesion) == (None,) * 3
+    assert (state.rate, state.drag, state.drags, state.jump_rate, state.slip_rate) == (None,) * 5
+    assert state.loads.shape == state.jump.shape == (1, 3)
 
 
 @pytest.mark.parametrize(
     ("joints", "kept"),
     [
         ({}, ()),
-        ({"cohesion": 1e5}, ("slide_x", "slide_z")),
-        ({"tension": False}, ("slide_x", "slide_z")),
+        ({"cohesion": 1e5}, ("slide",)),
+        ({"tension": False}, ("slide",)),
         (
             {"cohesion": 1e5, "residual_cohesion": 1e4},
-            ("slide_x", "slide_z", "cohesion"),
+            ("slide", "cohesion"),
         ),
-        (BREAKS, ("opening", "slide_x", "slide_z")),
+        (BREAKS, ("opening", "slide")),
     ],
 )
 def test_joints_remember_what_their_law_asks_for(joints, kept, short, ready):
     at = ready(short(joints=joints), "jointed", 3)
-    memory = at.state.memory._asdict()
-    assert {name for name, values in memory.items() if values is not None} == set(kept)
-    assert at.state.tractions.drag_n is None
+    history = {name: getattr(at.state, name) for name in ("opening", "slide", "cohesion")}
+    assert {name for name, values in history.items() if values is not None} == set(kept)
+    assert at.state.drags is None
 
 
-def test_absent_effects_leave_no_instruction(short, ready, instructions):
+@pytest.fixture
+def count(short, ready, instructions):
+    """Return a function that counts one kind of instruction in the kernel of a scene."""
+
+    def counted(kind, model="jointed", dim=None, **changes):
+        at = ready(short(**SILENT, **changes), model, dim)
+        joints = at.model.interfaces
+        constants = (None, None) if joints is None else (joints.parts, joints.directions)
+        given = arguments(at.model, at.state, at.samples, None, None)
+        return instructions(leapfrog_for(*constants), (0, 0, 1, at.model.dt, *given), kind)
+
+    return counted
+
+
+def test_absent_effects_leave_no_instruction(count):
     """Without no-tension nothing is compared, without a quiet end nothing is divided."""
-
-    def count(kind, model="jointed", **changes):
-        at = ready(short(**SILENT, **changes), model)
-        return instructions(run, (at.model, at.state, at.samples, 1, 0, 0), kind)
-
     assert count("fcmp") == 0 < count("fcmp", joints__tension=False)
-    assert count("fdiv") < count("fdiv", ends__end="quiet")
+    assert count("fdiv") == 0 < count("fdiv", ends__end="quiet")
     assert count("fmul", "equivalent") < count("fmul") < count("fmul", joints__damping_ratio=0.02)
 
 
@@ -165,51 +183,38 @@ def test_absent_effects_leave_no_instruction(short, ready, instructions):
     ],
     ids=["slip compares", "softening compares", "slip divides", "softening divides", "prestress"],
 )
-def test_elastic_joints_in_space_compare_and_divide_nothing(
-    kind, changes, short, ready, instructions
-):
-    """The forces of a step: joints that hold, with no load before, are sums and products."""
-
-    def count(**changes):
-        at = ready(short(**SILENT, **changes), "jointed", 2)
-        return instructions(forces, (at.model, at.state, 0), kind)
-
-    assert count() == 0 < count(**changes)
+def test_elastic_joints_in_space_compare_and_divide_nothing(kind, changes, count):
+    """Joints that hold, with no load before, are sums and products."""
+    assert count(kind, dim=2) == 0 < count(kind, dim=2, **changes)
 
 
 def test_joints_of_the_bar_have_no_shear(short, ready, instructions):
+    """Told by the kernel of the joints alone, without the vectorised loops over the rock."""
+
     def count(dim):
         at = ready(short(**SILENT), "jointed", dim)
-        return instructions(forces, (at.model, at.state, 0), "fmul")
+        joints, state = at.model.interfaces, at.state
+        given = (
+            *(joints.table, joints.area, None, state.jump, None, None, None, None, None),
+            *(state.loads, None, at.model.dt, None, None, None, 0.0, empty_tangents(at.model)),
+        )
+        return instructions(joint_balance_for(joints.parts, joints.directions), given, "fmul")
 
-    assert count(1) < count(2) < count(3)
+    assert count(1) < count(2)
 
 
-def test_absent_effects_of_the_rock_leave_no_instruction(short, ready, instructions):
-    """One product and one sum for a velocity; weight is one more sum, damping one more product."""
+def test_absent_effects_of_the_rock_leave_no_instruction(count):
+    """Weight is one more sum, mass-proportional damping one more product; a base that does not move
+    divides nothing."""
 
-    def parts(**changes):
-        at = ready(short(**SILENT, **changes), "equivalent")
-        model, state = at.model, at.state
-        quiet = (model.ends.quiet, state.reaction, state.closure, state.v, state.v_before)
-        return {
-            accelerate: (model.rock, model.rock.keep, state),
-            add: (state.force, model.weight),
-            absorb: quiet,
-            hold: (model.ends.held, model, state, 0),
-        }
-
-    def count(kernel, kind, **changes):
-        return instructions(kernel, parts(**changes)[kernel], kind)
+    def rock(kind, **changes):
+        return count(kind, "equivalent", **changes)
 
     fixed = {"ends__start": "fixed", "load__amplitude": 0.0}
     shaken = {"ends__start": "fixed", "load": SHAKEN}
-    damped = {"damping__mass_proportional": 10.0}
-    plain = count(accelerate, "fmul")
-    assert 0 < plain < count(accelerate, "fmul", **damped)
-    assert count(add, "fadd") == 0 < count(add, "fadd", gravity=SUDDEN)
-    assert count(absorb, "fdiv") == 0 < count(absorb, "fdiv", ends__end="quiet")
-    assert count(hold, "fdiv") == count(hold, "fdiv", **fixed) == 0 < count(hold, "fdiv", **shaken)
+    assert 0 < rock("fmul") < rock("fmul", damping__mass_proportional=10.0)
+    assert 0 < rock("fadd") < rock("fadd", gravity=SUDDEN)
+    assert rock("fdiv") == rock("fdiv", **fixed) == 0 < rock("fdiv", **shaken)
 
 
 def test_homogenised_rock_is_whole_but_for_soft_layers(pillar):

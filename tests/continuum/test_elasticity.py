@@ -11,10 +11,10 @@ import ufl
 from scipy.linalg import eigh
 from scipy.sparse.csgraph import connected_components
 
-from continuum import compat
-from continuum.body import whole
-from continuum.elasticity import Material, Section, discretise, measure
-from continuum.meshing.description import Part
+from continuum.mesh.description import Part
+from continuum.space import compat
+from continuum.space.body import whole
+from continuum.space.elasticity import Material, Section, discretise, measure
 
 ROOT = Path(__file__).parents[2]
 ROCK = Material(modulus=8.64e10, poisson=0.25, density=2400.0)
@@ -193,7 +193,7 @@ def test_a_compiler_that_was_killed_keeps_nobody_waiting(tmp_path):
     """What it left in the cache of forms is forgotten once no compiler would still be at it."""
     program = (
         "import numpy as np, ufl\n"
-        "from continuum import compat\n"
+        "from continuum.space import compat\n"
         "mesh = compat.cell_mesh('interval', np.array([[0, 1]]), np.array([[0.0], [1.0]]))\n"
         "print(compat.vector(ufl.TestFunction(compat.lagrange_space(mesh, 1)) * ufl.dx))\n"
     )

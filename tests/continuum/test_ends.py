@@ -6,7 +6,7 @@ import pytest
 from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from continuum.build import discretise
-from continuum.ends import end_stiffness, held_ends, load_on, quiet_ends
+from continuum.ends import end_stiffness, fixed_ends, load_on, quiet_ends
 
 OBLIQUE, ACROSS = [0.48, 0.6, -0.64], [0.6, 0.8, 0.0]
 LOADS = {
@@ -78,10 +78,10 @@ def test_quiet_ends_have_the_impedance_of_the_rock_mass(dim, model, short):
     np.add.at(total, quiet.freedom, quiet.viscosity)
     nodes = np.arange(len(body.x))
     for c in range(dim):
-        of_way = total[body.freedom(nodes, c)]
+        of_direction = total[body.freedom(nodes, c)]
         z = p.impedance if dim == 1 or c == 1 else p.shear_impedance
-        assert of_way[body.y < 1e-9].sum() == pytest.approx(0.25 * z, rel=1e-13)
-        assert of_way[body.y > 2 - 1e-9].sum() == pytest.approx(0.25 * z, rel=1e-13)
+        assert of_direction[body.y < 1e-9].sum() == pytest.approx(0.25 * z, rel=1e-13)
+        assert of_direction[body.y > 2 - 1e-9].sum() == pytest.approx(0.25 * z, rel=1e-13)
     assert quiet.springs is None
     assert quiet.beta == pytest.approx(quiet.viscosity * 5e-7 / body.mass[quiet.freedom])
 
@@ -100,32 +100,32 @@ def test_matched_ends_have_half_a_joint_in_front_in_jointed_rock_alone(dim, shor
         for c in range(dim):
             along = dim == 1 or c == 1
             k = 2 * (p.regular_own_stiffness if along else p.regular_own_shear_stiffness)
-            of_way = np.isin(quiet.freedom, body.freedom(np.arange(len(body.x)), c))
-            assert quiet.springs.stiffness[of_way].sum() == pytest.approx(0.25 * k, rel=1e-12)
-            of_way = body.freedom(np.arange(len(body.x)), c)
-            assert stiffness[of_way].sum() == pytest.approx(0.25 * k, rel=1e-12)
+            of_direction = np.isin(quiet.freedom, body.freedom(np.arange(len(body.x)), c))
+            assert quiet.springs.stiffness[of_direction].sum() == pytest.approx(0.25 * k, rel=1e-12)
+            of_direction = body.freedom(np.arange(len(body.x)), c)
+            assert stiffness[of_direction].sum() == pytest.approx(0.25 * k, rel=1e-12)
 
 
 @pytest.mark.parametrize("cell", ["hexahedron", "simplex"])
 @pytest.mark.parametrize("dim", [1, 2, 3])
 def test_fixed_ends_hold_every_node_of_the_face_in_every_direction(dim, cell, short):
     scene, body = meshed(short, dim, (cell, 2, 2), ends__end="fixed")
-    held = held_ends(scene, body, ONE_SAMPLE)
+    fixed = fixed_ends(scene, body, ONE_SAMPLE)
     face = np.flatnonzero(body.y > 2 - 1e-9)
     expected = np.concatenate([body.freedom(face, c) for c in range(dim)])
-    assert np.array_equal(np.sort(held.freedom), np.sort(expected))
-    assert held.step is None and not held.way.any()
+    assert np.array_equal(np.sort(fixed.freedom), np.sort(expected))
+    assert fixed.step is None and not fixed.direction.any()
 
 
 @pytest.mark.parametrize("dim", [1, 2, 3])
 def test_shaken_base_moves_every_node_of_the_face_alike(dim, short):
     load = {"shape": "sine", "amplitude": 0.1, "period": 1e-3, "quantity": "velocity"}
-    way = {1: [0.0, 1.0, 0.0], 2: ACROSS, 3: OBLIQUE}[dim]
-    scene = short(ends__start="fixed", load={**load, "direction": way})
+    direction = {1: [0.0, 1.0, 0.0], 2: ACROSS, 3: OBLIQUE}[dim]
+    scene = short(ends__start="fixed", load={**load, "direction": direction})
     body = discretise(scene, "jointed", dim).body
-    held = held_ends(scene, body, Clock(1e-5, 1, 101))
+    fixed = fixed_ends(scene, body, Clock(1e-5, 1, 101))
     for c in range(dim):
-        of_way = np.isin(held.freedom, body.freedom(np.arange(len(body.x)), c))
-        assert (held.way[of_way] == (1.0 if dim == 1 else way[c])).all()
-    moved = np.cumsum(held.step)[49]
+        of_direction = np.isin(fixed.freedom, body.freedom(np.arange(len(body.x)), c))
+        assert (fixed.direction[of_direction] == (1.0 if dim == 1 else direction[c])).all()
+    moved = np.cumsum(fixed.step)[49]
     assert moved == pytest.approx(0.1 * 1e-3 / np.pi, rel=1e-12)

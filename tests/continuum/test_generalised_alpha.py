@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from compare.exact.schemes import generalised_alpha as theory
-from continuum.generalised_alpha import scheme
+from compare.exact import generalised_alpha as theory
+from continuum.implicit.generalised_alpha import scheme
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import pytest
 from cases.material.calibrate import calibrate
 from continuum.build import mesh_of
 from continuum.kinematics import kinematics
-from continuum.meshing.export import export
+from continuum.mesh.export import export
 
 BLOW = {
     2: {"load__direction": [0.6, 0.8, 0.0], "load__at": [0.1, 0.0]},

@@ -6,8 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse import csr_matrix, random
 
-from continuum.lanes import WIDTH
-from continuum.operator import (
+from continuum.space.operator import (
     layout,
     multiply,
     operator,
@@ -15,6 +14,7 @@ from continuum.operator import (
     tile_widths,
     without_round_off,
 )
+from continuum.space.simd import WIDTH
 from numerics.aligned import zeros
 
 COUNTS = (1, 2, 7, 8, 9, 17, 25, 33, 40, 41, 48, 100)  # every width of a tile, full and not
@@ -59,7 +59,7 @@ def test_every_block_gets_its_own_product(parts, factor):
     numbers = np.random.default_rng(1)
     for _, places in blocks:
         x[places] = numbers.standard_normal(places.size)
-    multiply(operator(where, matrices), x, y, factor)
+    multiply(*operator(where, matrices), x, y, factor)
     left = np.ones(where.length, dtype=bool)
     for p, places in blocks:
         assert y[places].tolist() == [factor * total for total in in_turn(matrices[p], x[places])]
@@ -74,7 +74,7 @@ def test_alike_blocks_move_alike(count):
     where = layout([count], [12])
     values = np.random.default_rng(2).standard_normal(12)
     x, y = spread(where, [values]), zeros(where.length)
-    multiply(operator(where, [matrix]), x, y)
+    multiply(*operator(where, [matrix]), x, y, 1.0)
     product = y[where.first[:, None] + where.stride[:, None] * np.arange(12)]
     assert (product == product[0]).all() and product.any()
 
@@ -88,7 +88,7 @@ def test_a_large_block():
     matrix = without_round_off(symmetric(1000))
     where = layout([5], [1000])
     x, y = spread(where, [np.linspace(-1.0, 2.0, 1000)]), zeros(where.length)
-    multiply(operator(where, [matrix]), x, y)
+    multiply(*operator(where, [matrix]), x, y, 1.0)
     values = x[where.first[0] + where.stride[0] * np.arange(1000)]
     got = y[where.first[4] + where.stride[4] * np.arange(1000)]
     entries = np.diff(matrix.indptr).max()
@@ -148,5 +148,5 @@ def test_an_empty_matrix_gives_zero():
     where = layout([9, 2], [4, 3])
     viscous = operator(where, [csr_matrix((4, 4)), csr_matrix(np.eye(3))])
     y = np.ones(where.length)
-    multiply(viscous, np.ones(where.length), y)
+    multiply(*viscous, np.ones(where.length), y, 1.0)
     assert not y[: 4 * 16].any() and (y[4 * 16 :] == 1.0).all()

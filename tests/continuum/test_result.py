@@ -13,8 +13,8 @@ from continuum import simulate
 SILENT = """
 import logging
 import numpy as np
-from continuum.elasticity import Material, Section, discretise
-from continuum.meshing.description import Part
+from continuum.space.elasticity import Material, Section, discretise
+from continuum.mesh.description import Part
 cells = np.array([[0, 1], [1, 2]])
 bar = Part(np.arange(3.0)[:, None], cells, np.zeros(2, dtype=int), np.zeros((1, 1)))
 piece = discretise(bar, "interval", 2, [Material(1.0, 0.0, 1.0)], Section(1, 1.0))

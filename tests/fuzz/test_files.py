@@ -7,7 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import cases
-from continuum.meshing.session import gmsh_session
+from continuum.mesh.session import gmsh_session
 
 LOADS = [p.read_bytes() for p in sorted(Path(cases.__file__).parent.glob("*/*.csv"))]
 

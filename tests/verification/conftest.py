@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from compare.exact.solid.manufactured import Manufactured
-from continuum import compat
-from continuum.body import Body, build_body
-from continuum.elasticity import Material, Section, lame_constants
 from continuum.ends import on_freedoms
-from continuum.interface import facet_points
-from continuum.meshing.cells import CORNERS, DIMENSION, oriented
-from continuum.meshing.description import Joints, Mesh, Part, Side
-from continuum.meshing.facets import Facets, normals, outer_facets
-from continuum.places import at_reference, jacobians, places_in
+from continuum.mesh.cells import CORNERS, DIMENSION, oriented
+from continuum.mesh.description import Joints, Mesh, Part, Side
+from continuum.mesh.facets import Facets, normals, outer_facets
+from continuum.space import compat
+from continuum.space.body import Body, build_body
+from continuum.space.elasticity import Material, Section, lame_constants
+from continuum.space.evaluation import at_reference, jacobians, places_in
+from continuum.space.interface import facet_points
 
 PERIOD = 0.01  # s, of the Ricker wavelet's peak frequency
 DENSITY, MODULUS, SPEED = 2400.0, 9.6e9, 2000.0

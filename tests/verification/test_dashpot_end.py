@@ -5,9 +5,9 @@ import pytest
 
 from cases.loads import load_history
 from cases.sampling import clock
-from compare.exact.bar import dashpot_end
-from continuum.build import build_model, critical_step_of, discretise, room, state_at_rest
-from continuum.explicit import run
+from compare.exact import dashpot_end
+from continuum.build import build_model, critical_step_of, discretise, empty_samples, state_at_rest
+from continuum.explicit.march import run
 
 
 @pytest.mark.parametrize("beta", [0.5, 1.0, 2.0])
@@ -27,7 +27,7 @@ def test_reflection(bar, beta):
     quiet = quiet._replace(viscosity=far * quiet.viscosity, beta=far * quiet.beta)
     model = model._replace(ends=model.ends._replace(quiet=quiet))
     state = state_at_rest(model, keep_ledger=False)
-    samples = room(model, state, time.samples)
+    samples = empty_samples(model, state, time.samples)
     run(model, state, samples, time.stride, 0, time.steps + 1)
     load, z = load_history(scene), 2400.0 * 2000.0
     there, back = (load.value(time.times - y / 2000.0) / (2 * z) for y in (40.0, 80.0))

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from cases.sampling import Clock
-from continuum.build import build_model, critical_step_of, discretise, room, state_at_rest
-from continuum.explicit import run
-from continuum.model import Held
-from continuum.record import TERMS
+from continuum.build import build_model, critical_step_of, discretise, empty_samples, state_at_rest
+from continuum.explicit.march import run
+from continuum.model import TERMS, Fixed
 
 STRENGTH, ENERGY, AREA = 5e5, 30.0, 0.25
 CRITICAL = 2 * ENERGY / STRENGTH
@@ -30,10 +29,10 @@ def pulled(scene, discrete, freedom, way, step, dt):
     """Return every term of the ledger (J) at the last step: freedom [k] moves by way [k] times step
     [n] (m) from n to n + 1."""
     model = build_model(scene, discrete, "jointed", Clock(dt, step.size, 2))
-    held = Held(freedom, way, step)
-    model = model._replace(ends=model.ends._replace(held=held))
+    fixed = Fixed(freedom, way, step)
+    model = model._replace(ends=model.ends._replace(fixed=fixed))
     state = state_at_rest(model, keep_ledger=True)
-    samples = room(model, state, 2)
+    samples = empty_samples(model, state, 2)
     run(model, state, samples, step.size - 1, 0, step.size)
     return dict(zip(TERMS, samples.energy[:, 1], strict=True))
 

@@ -4,15 +4,14 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_matrix
 
-from continuum.body import whole
-from continuum.build import room, state_at_rest
-from continuum.critical import critical_time_step
-from continuum.explicit import run
-from continuum.implicit import Implicit
-from continuum.implicit_step import rock_matrices
+from continuum.build import empty_samples, state_at_rest
+from continuum.explicit.critical import critical_time_step
+from continuum.explicit.march import march
+from continuum.implicit.balance import rock_matrices
+from continuum.implicit.run import Implicit
 from continuum.model import Ends, Model, Receivers, Rock
-from continuum.operator import zeros
-from continuum.sparse import rows
+from continuum.space.body import whole
+from continuum.space.operator import zeros
 
 #: Kind, order p, cells a side of the coarser mesh, and the order of convergence.
 MESHES = [
@@ -37,7 +36,7 @@ def model_of(problem, dt):
     """Return the constants of a run of the body alone, whose weight may change from step to step:
     it is the load."""
     body, n = problem.body, problem.body.mass.size
-    none = rows(csr_matrix((0, n)))
+    none = csr_matrix((0, n))
     return Model(
         rock=Rock(body.stiffness, None, body.mass, dt / body.mass, None),
         interfaces=None,
@@ -56,11 +55,11 @@ def drive(problem, dt, steps, inertia):
     model, g, start = model_of(problem, dt), problem.motion.history, problem.at_nodes()
     state = state_at_rest(model, keep_ledger=False)
     state.u[:], state.v[:] = g(0.0) * start, (g(0.0) - g(-dt)) / dt * start
-    samples = room(model, state, 1)
+    leapfrog = march(model, state, empty_samples(model, state, 1), steps, None)
     for k in range(steps):
         t = k * dt
         model.weight[:] = inertia(t) * problem.inertia + g(t) * problem.elastic
-        run(model, state, samples, steps, k, k + 1)
+        leapfrog(k, k + 1)
     return state.u
 
 
@@ -76,7 +75,7 @@ def drive_implicitly(problem, dt, steps, frequency, rho=1.0):
     state = state_at_rest(model, keep_ledger=False)
     speed = frequency * np.cos(motion.start)
     state.u[:], state.v[:] = motion.history(0.0) * start, speed * start
-    samples = room(model, state, 1)
+    samples = empty_samples(model, state, 1)
     stepper = Implicit(model, state, rock_matrices(problem.body), rho)
     for k in range(steps + 1):
         load = problem.elastic - frequency**2 * problem.inertia

@@ -11,8 +11,8 @@ from cases.sampling import clock
 from compare.exact.bar.jointed_spall import jointed_spall
 from compare.exact.bar.spall import spall
 from compare.scenes import SHIPPED
-from continuum.build import build_model, critical_step_of, discretise, room, state_at_rest
-from continuum.explicit import run
+from continuum.build import build_model, critical_step_of, discretise, empty_samples, state_at_rest
+from continuum.explicit.march import march
 from results.dataset import energy_residual
 
 SAW_TOOTH = SHIPPED / "beyond" / "spall.toml"
@@ -32,14 +32,15 @@ def first_break(scene, after):
     time = clock(scene, critical, 0.5, False, "continuum")
     model = build_model(scene, discrete, "jointed", time)
     state = state_at_rest(model, keep_ledger=True)
-    samples = room(model, state, time.samples)
+    samples = empty_samples(model, state, time.samples)
     law, start = model.interfaces.law, int(after / time.dt)
     limit = law.tensile_strength / law.normal_stiffness
-    run(model, state, samples, time.stride, 0, start)
-    assert (state.memory.opening <= limit).all()
+    steps = march(model, state, samples, time.stride, None)
+    steps(0, start)
+    assert (state.opening <= limit).all()
     for n in range(start, time.steps):
-        run(model, state, samples, time.stride, n, n + 1)
-        broken = np.flatnonzero(state.memory.opening > limit)
+        steps(n, n + 1)
+        broken = np.flatnonzero(state.opening > limit)
         if broken.size:
             return discrete.jumps.joint[broken], n * time.dt
     raise AssertionError("nothing breaks")

@@ -17,7 +17,7 @@ from kernels import ROUNDS, rate
 from plain_dolfinx import Pillar
 from rock import BLOCKS, CASES, SAME_STEPS, Engine, assert_same, engine_of, pillar_of
 
-from continuum.operator import Operator, layout, multiply, operator, zeros
+from continuum.space.operator import Operator, layout, multiply, operator, zeros
 from results.arrays import size_of
 
 
@@ -54,7 +54,7 @@ def operators(pillar: Pillar, size: int) -> Iterator[Contender]:
     where = layout([BLOCKS], [block.shape[0]])
     own, x, y = operator(where, [block]), zeros(where.length), zeros(where.length)
     x[:] = 1.0
-    yield Contender("engine, K u alone", lambda: multiply(own, x, y), size)
+    yield Contender("engine, K u alone", lambda: multiply(*own, x, y, 1.0), size)
     whole = plain_scipy.without_zeros(pillar)
     u = np.ones(size)
     yield Contender("scipy, K u alone", lambda: whole @ u, size)
@@ -107,7 +107,7 @@ def flops(engine: Engine, freedoms: int) -> float:
 
 def flops_of(stiffness: Operator) -> int:
     """Return products and sums of K u, without padding."""
-    return 2 * BLOCKS * stiffness.rows.value.size
+    return 2 * BLOCKS * stiffness.value.size
 
 
 def bytes_moved(engine: Engine, freedoms: int) -> float:

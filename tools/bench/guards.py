@@ -15,7 +15,7 @@ from kernels import SLIDES, rate
 from rock import Engine, engine_of
 
 from compare.experiments.cost.step_cost import changed, stretches
-from continuum.explicit import run
+from continuum.explicit.march import march
 from numerics.divergence import Guard, guard
 
 FREEDOM_STEPS = 5_000_000
@@ -68,11 +68,8 @@ def marching(engine: Engine, held: Guard | None) -> Timed:
     """Return what takes some steps, and its number of freedom-steps."""
     size = engine.state.u.size
     steps = max(64, FREEDOM_STEPS // size)
-
-    def march() -> None:
-        run(engine.model, engine.state, engine.samples, engine.time.stride, 1, 1 + steps, held)
-
-    return march, steps * size
+    take = march(engine.model, engine.state, engine.samples, engine.time.stride, held)
+    return lambda: take(1, 1 + steps), steps * size
 
 
 def main() -> None:

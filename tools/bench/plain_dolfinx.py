@@ -12,7 +12,7 @@ import numpy as np
 import ufl
 from dolfinx import fem
 
-from continuum import compat
+from continuum.space import compat
 
 
 class Pillar(NamedTuple):

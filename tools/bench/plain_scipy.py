@@ -6,8 +6,8 @@ import ufl
 from plain_dolfinx import Pillar, Steps
 from scipy.sparse import csr_matrix
 
-from continuum import compat
-from continuum.operator import without_round_off
+from continuum.space import compat
+from continuum.space.operator import without_round_off
 
 
 def stiffness(pillar: Pillar) -> csr_matrix:

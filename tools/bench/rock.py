@@ -8,8 +8,8 @@ from plain_dolfinx import Pillar, Steps, in_order
 from cases.sampling import Clock
 from cases.schema.scene import Scene
 from compare.experiments.cost.step_cost import changed
-from continuum.build import Discrete, build_model, discretise, room, state_at_rest
-from continuum.explicit import run
+from continuum.build import Discrete, build_model, discretise, empty_samples, state_at_rest
+from continuum.explicit.march import run
 from continuum.model import Model, Samples, State
 from continuum.simulate import steps_of
 
@@ -72,7 +72,7 @@ def engine_of(case: str) -> Engine:
     discrete, time = discretise(scene, "jointed", 3), steps_of(scene, "jointed", 3)[0].time
     model = build_model(scene, discrete, "jointed", time)
     state = state_at_rest(model, False)
-    return Engine(discrete, model, state, room(model, state, time.samples), time)
+    return Engine(discrete, model, state, empty_samples(model, state, time.samples), time)
 
 
 def pillar_of(case: str, engine: Engine) -> Pillar:

@@ -14,7 +14,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / ".fuzz"), str(Path(__file__).parent)]
 
 import atheris  # noqa: E402
 
-READERS = ["cases", "compare", "tomllib", "meshio", "continuum.meshing", "targets"]
+READERS = ["cases", "compare", "tomllib", "meshio", "continuum.mesh", "targets"]
 
 
 def main() -> None:

@@ -52,7 +52,7 @@ def result() -> bytes:
 
 def meshes() -> list[bytes]:
     """Return a pillar of three blocks of 0.4 x 0.5 m, versions 2.2 and 4.1, text and binary."""
-    from continuum.meshing.session import gmsh_session
+    from continuum.mesh.session import gmsh_session
 
     found = []
     with gmsh_session() as gmsh, tempfile.TemporaryDirectory() as folder:

@@ -155,7 +155,7 @@ def study(data: bytes, folder: Path) -> str:
 
 def mesh(data: bytes, folder: Path) -> str:
     """A gmsh file of a pillar of three blocks."""
-    from continuum.meshing.given import given_mesh
+    from continuum.mesh.given import given_mesh
 
     shape = {"pillar.length": 1.5, "pillar.side": 0.4, "pillar.block": 0.5, "soft_layers": []}
     places = {"record.stress": [0.5], "record.velocity": [0.25], "variants": []}

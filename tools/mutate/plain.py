@@ -35,22 +35,16 @@ def post(counters, i, value):
 def give_way():
     pass
 """,
-    "continuum.lanes": """
-import numpy as np
-
+    "continuum.space.simd": """
 WIDTH = 8
 
-def zero(n):
-    return np.zeros(WIDTH * n)
-
-def load(like, x, i):
-    return x[i : i + like.size].copy()
-
-def store(x, i, lanes):
-    x[i : i + lanes.size] = lanes
-
-def add_scaled(lanes, factor, other):
-    return lanes + factor * other
+def multiply_tile(start, column, value, x, y, factor, at, width, first, size):
+    for i in range(size):
+        total = 0.0
+        for k in range(start[first + i], start[first + i + 1]):
+            here = at + int(column[k]) * width
+            total = total + value[k] * x[here : here + width]
+        y[at + i * width : at + (i + 1) * width] = factor * total
 """,
 }
 PACKAGES = ("cases", "results", "numerics", "joints", "dem", "continuum", "compare")

@@ -90,7 +90,7 @@ def _gmsh() -> str:
 
 def _adios() -> str:
     _dolfinx()
-    from continuum.compat import vtx_writer
+    from continuum.space.compat import vtx_writer
 
     if vtx_writer() is None:
         raise Missing("dolfinx is built without it")

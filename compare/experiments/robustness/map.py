@@ -116,8 +116,14 @@ def _blocks(scene: Scene) -> tuple[Growth, float]:
 
 def _rock(kind: str) -> Callable[[Scene], tuple[Growth, float]]:
     """Return what gives the growth of rock by the step (s), and its critical step, s."""
-    from continuum.build import build_model, critical_step_of, discretise, room, state_at_rest
-    from continuum.explicit import run
+    from continuum.build import (
+        build_model,
+        critical_step_of,
+        discretise,
+        empty_samples,
+        state_at_rest,
+    )
+    from continuum.explicit.march import run
 
     def prepare(scene: Scene) -> tuple[Growth, float]:
         discrete = discretise(scene, kind)
@@ -128,7 +134,7 @@ def _rock(kind: str) -> Callable[[Scene], tuple[Growth, float]]:
             moves = model.rock.mass > 0
             state.v[moves] = _random(moves.sum())
             state.v_before[:] = state.v
-            run(model, state, room(model, state, 1), STEPS, 0, STEPS)
+            run(model, state, empty_samples(model, state, 1), STEPS, 0, STEPS)
             return _largest(state.v)
 
         return growth, critical_step_of(scene, discrete, kind)

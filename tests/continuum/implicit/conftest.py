@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from cases.sampling import Clock
-from continuum.build import build_model, discretise, room, state_at_rest
-from continuum.implicit import Implicit
-from continuum.implicit_step import rock_matrices
-from continuum.record import TERMS
+from continuum.build import build_model, discretise, empty_samples, state_at_rest
+from continuum.implicit.balance import rock_matrices
+from continuum.implicit.run import Implicit
+from continuum.model import TERMS
 
 
 class Run(NamedTuple):
@@ -46,7 +46,7 @@ def implicit():
         model = model if change is None else change(model)
         state = state_at_rest(model, ledger)
         stepper = Implicit(model, state, rock_matrices(discrete.body), rho)
-        return Run(discrete, model, state, room(model, state, samples), clock, stepper)
+        return Run(discrete, model, state, empty_samples(model, state, samples), clock, stepper)
 
     return make
 

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from cases.errors import StoppedError, UnstableError
-from continuum import implicit_step, simulate
-from continuum.implicit import HALVINGS
-from continuum.substeps import end_resistance, shortened
+from continuum import simulate
+from continuum.implicit import step as implicit_step
+from continuum.implicit.run import HALVINGS
+from continuum.implicit.substeps import end_resistance, shortened
 from joints.ends import half_spring
 
 
@@ -87,12 +88,12 @@ def test_a_run_in_halves_is_one_of_half_the_step(short, implicit, kind):
 
 
 def follow(fine, whole):
-    """Give the wall of a run at half the step the motion of the whole one at its halves."""
-    motion = whole.implicit.stepper.wall.motion
+    """Give the fixed of a run at half the step the motion of the whole one at its halves."""
+    motion = whole.implicit.stepper.fixed.motion
     steps = np.arange(motion.shape[1])
     at = np.arange(2 * steps.size - 1) / 2
     finer = np.array([np.interp(at, steps, values) for values in motion])
-    fine.implicit.stepper.wall = fine.implicit.stepper.wall._replace(motion=finer)
+    fine.implicit.stepper.fixed = fine.implicit.stepper.fixed._replace(motion=finer)
 
 
 @pytest.mark.parametrize("share", [0.5, 1 / 1024])

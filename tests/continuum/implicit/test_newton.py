@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_matrix, random
 
-from continuum import implicit_step
-from continuum.newton import MOST_ITERATIONS, Factors, newton
-from continuum.pattern import pattern
-from continuum.sparse import sparse
+from continuum.implicit import step as implicit_step
+from continuum.implicit.newton import MOST_ITERATIONS, Factors, newton
+from continuum.implicit.pattern import pattern
 
 
 def roots_of_two(x):
@@ -86,13 +85,12 @@ def test_joints_on_the_pattern_are_the_product_of_their_matrices(short, implicit
     size, q = run.state.u.size, joints.area.size
     found = pattern([csr_matrix((size, size))], joints, free)
     nn, xn, zn, xx, xz, zz = d = np.random.default_rng(1).standard_normal((6, q))
-    jumps = [None if b is None else sparse(b, size) for b in joints[:3]]
+    jumps = [joints.jump[d * q : (d + 1) * q] for d in range(joints.directions)]
     blocks = [[nn, 0 * nn, 0 * nn], [xn, xx, xz], [zn, xz, zz]]
     expected = csr_matrix((size, size))
     for a, left in enumerate(jumps):
         for b, right in enumerate(jumps):
-            if left is not None and right is not None:
-                expected = expected + left.T @ csr_matrix(np.diag(blocks[a][b])) @ right
+            expected = expected + left.T @ csr_matrix(np.diag(blocks[a][b])) @ right
     values = found.joints @ d.ravel()
     matrix = csr_matrix((values, found.column, found.start), (free.size, free.size))
     assert abs(matrix - expected[free][:, free]).max() < 1e-14
@@ -142,7 +140,7 @@ def test_slip_that_turns_converges_quadratically(pillar, implicit, monkeypatch, 
         monkeypatch.setattr(
             implicit_step,
             "newton",
-            lambda rest, correct, _, team, x=start: newton(rest, correct, x),
+            lambda rest, correct, _, communicator, x=start: newton(rest, correct, x),
         )
         errors.append(run.implicit.stepper.step(now, trial, 3, 1.0, 0).errors[:2])
     orders = np.log10(np.divide(errors[:-1], errors[1:]))

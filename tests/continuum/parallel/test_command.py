@@ -73,7 +73,7 @@ def test_more_processes_than_cells_are_refused(jointwave, said, tmp_path):
 
 
 #: One process fails where the others wait for it.
-ALONE = """
+SERIAL = """
 import sys
 from mpi4py import MPI
 from compare import cli
@@ -94,7 +94,7 @@ cli.main()
 @pytest.mark.parametrize("function", ["body.restrict", "body.held_share", "build.weight_of"])
 def test_a_process_that_fails_alone_ends_all(rank, function, under_mpi, said, tmp_path):
     """Others wait for what it would have sent them; its line is the only one."""
-    program = ALONE.format(error="MemoryError('of one')", rank=rank, function=function)
+    program = SERIAL.format(error="MemoryError('of one')", rank=rank, function=function)
     arguments = ("run", *SCENE, *CONTINUUM, *SHORT, "--out", tmp_path)
     done = under_mpi(3, "-c", program, *arguments, code=2)
     assert said(done) == ["jointwave: not enough memory: of one"]
@@ -102,7 +102,7 @@ def test_a_process_that_fails_alone_ends_all(rank, function, under_mpi, said, tm
 
 def test_a_mistake_of_the_program_on_one_process_ends_all(under_mpi, said, tmp_path):
     """Its line says where the bug is, and no processes are left waiting."""
-    program = ALONE.format(error="KeyError('bug')", rank=1, function="build.weight_of")
+    program = SERIAL.format(error="KeyError('bug')", rank=1, function="build.weight_of")
     arguments = ("run", *SCENE, *CONTINUUM, *SHORT, "--out", tmp_path)
     done = under_mpi(3, "-c", program, *arguments, code=1)
     (line,) = said(done)

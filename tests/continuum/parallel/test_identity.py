@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from cases.material.calibrate import calibrate
-from continuum.body import build_body
-from continuum.elasticity import Material, Section
-from continuum.meshing.description import Joints, Mesh, Part, Side
-from continuum.meshing.pillar import pillar_mesh
+from continuum.mesh.description import Joints, Mesh, Part, Side
+from continuum.mesh.pillar import pillar_mesh
 from continuum.parallel.identity import border, joined
 from continuum.parallel.partition import ranks_of_cells
-from continuum.team import Pieces
+from continuum.parallel.serial import Pieces
+from continuum.space.body import build_body
+from continuum.space.elasticity import Material, Section
 
 ROCK = Material(8.64e10, 0.25, 2400.0)
 KINDS = [(1, "hexahedron", 4), (2, "hexahedron", 3), (2, "simplex", 2), (3, "hexahedron", 2)]

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cases.errors import SceneError
-from continuum.meshing.description import Joints, Mesh, Part, Side
+from continuum.mesh.description import Joints, Mesh, Part, Side
 from continuum.parallel.partition import WHOLE, copies_of, ranks_of_cells, restrict
 
 NOBODY = Side(np.zeros(0, dtype=np.int64), np.zeros((0, 1, 1)))

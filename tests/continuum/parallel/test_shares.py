@@ -5,12 +5,12 @@ import pytest
 from scipy.sparse import csr_matrix, diags
 
 from cases.material.calibrate import calibrate
-from continuum.body import build_body, whole
-from continuum.elasticity import Material, Section
-from continuum.interface import jumps
-from continuum.meshing.pillar import pillar_mesh
+from continuum.mesh.pillar import pillar_mesh
 from continuum.parallel.body import held_share
 from continuum.parallel.partition import ranks_of_cells, restrict
+from continuum.space.body import build_body, whole
+from continuum.space.elasticity import Material, Section
+from continuum.space.interface import jumps
 
 ROCK, LAYER = Material(8.64e10, 0.25, 2400.0), Material(1e9, 0.0, 2400.0)
 

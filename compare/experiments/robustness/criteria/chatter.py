@@ -25,7 +25,7 @@ from cases.schema.scene import Scene
 from compare.experiments.robustness.case import STEP, Finding, Trial, criterion
 
 if TYPE_CHECKING:
-    from continuum.body import Body
+    from continuum.space.body import Body
 
 IMPACTS = 10_000
 SAMPLES = 16  # of the speed, from one impact to the next
@@ -106,8 +106,8 @@ def _blocks(scene: Scene, dt: float) -> Loose:
 
 def _rock(scene: Scene, dt: float, kind: str) -> Loose:
     """Return the middle one of three deformable blocks, at 1 m/s; its speed is that of its mass."""
-    from continuum.build import build_model, discretise, room, state_at_rest
-    from continuum.explicit import run
+    from continuum.build import build_model, discretise, empty_samples, state_at_rest
+    from continuum.explicit.march import run
 
     discrete = discretise(scene, kind)
     model = build_model(scene, discrete, kind, Clock(dt, 1, 2))
@@ -116,7 +116,7 @@ def _rock(scene: Scene, dt: float, kind: str) -> Loose:
     freedom = body.freedom(_middle(body, d), 0)
     state.v[freedom] = 1.0
     state.v_before[:] = state.v
-    mass, samples = model.rock.mass[freedom], room(model, state, 2)
+    mass, samples = model.rock.mass[freedom], empty_samples(model, state, 2)
 
     def advance(steps: int) -> None:
         run(model, state, samples, steps + 2, 1, steps + 1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -14,6 +14,9 @@ from compare.experiments.robustness.criteria.accuracy import EPS
 from compare.experiments.robustness.criteria.energies import ROUND_OFF, SPENT
 from compare.misfit.metrics import relative_l2
 from compare.solvers.continuum import JOINTED_ROCK
+
+if TYPE_CHECKING:
+    from joints.flat.law import Law
 
 #: Of the work put in. Where a joint opens within a step the trapezoid of its force is off by
 #: K (v dt)^2 / 8 at most; at a twentieth of the critical step that is 3e-4 of m v^2 / 2.
@@ -137,20 +140,22 @@ def one_ulp(trial: Trial) -> Finding:
 def _normal_law(trial: Trial) -> tuple[float, Callable[[float, float], float]]:
     """Return the stiffness (Pa/m) of the first joint, as the solver has it, and its traction (Pa)
     at a gap (m) and its rate (m/s)."""
+    from joints.flat.law import law_of, parts_of, table_of
+    from joints.flat.normal import normal_traction
+
+    joints = _joint_law(trial)
+    first, parts = law_of(table_of(joints), 0), parts_of(joints)
+    return first.normal_stiffness, lambda gap, rate: normal_traction(first, parts, gap, rate, 0.0)
+
+
+def _joint_law(trial: Trial) -> Law:
     scene = trial.scene()
     if trial.solver.is_rigid:
         from dem.axial.model import law_of_joints
-        from joints.flat import law, normal
 
-        joints = law_of_joints(calibrate(scene))
-        first, parts = law.law_of(law.table_of(joints), 0), law.parts_of(joints)
-        return first.normal_stiffness, lambda gap, rate: normal.normal_traction(
-            first, parts, gap, rate, 0.0
-        )
+        return law_of_joints(calibrate(scene))
     from continuum.build import discretise
-    from joints.laws import law_of, normal_traction
 
     interface = discretise(scene, str(JOINTED_ROCK.model)).joints
     assert interface is not None
-    own = law_of(interface.law, 0)
-    return own.normal_stiffness, lambda gap, rate: normal_traction(own, gap, rate)
+    return interface.law

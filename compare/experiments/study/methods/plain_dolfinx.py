@@ -124,8 +124,8 @@ def _bar(scene: Scene) -> Bar:
     import ufl
     from dolfinx import fem
 
-    from continuum import compat
     from continuum.build import elements_for
+    from continuum.space import compat
 
     p, order = calibrate(scene), scene.numerics.continuum.order
     per_block = scene.numerics.continuum.elements_per_block
@@ -173,7 +173,7 @@ def _receivers(scene: Scene, bar: Bar) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _row(bar: Bar, y: float, derivative: int) -> np.ndarray:
-    from continuum import compat
+    from continuum.space import compat
 
     nodes = compat.cell_nodes(bar.space)
     at = bar.space.tabulate_dof_coordinates()[:, 0][nodes]

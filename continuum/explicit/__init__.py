@@ -1,0 +1,1 @@
+"""Leapfrog steps, compiled, and their critical step."""

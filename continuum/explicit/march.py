@@ -1,0 +1,129 @@
+"""A run by leapfrog: the arguments of its kernel, and how receivers read the state."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from scipy.sparse import csr_matrix, diags, identity, kron
+
+from continuum.explicit.leapfrog import leapfrog_for
+from continuum.model import Model, Samples, State
+from numerics.divergence import Guard
+
+
+def run(model: Model, state: State, samples: Samples, stride: int, first: int, last: int) -> None:
+    """Take steps first .. last - 1 and a sample at every step that `stride` divides, whatever comes
+    of them."""
+    march(model, state, samples, stride, None)(first, last)
+
+
+def march(
+    model: Model,
+    state: State,
+    samples: Samples,
+    stride: int,
+    limits: Guard | None,
+    link: Any = None,
+) -> Callable[[int, int], int]:
+    """Return a function of (first, last) that takes steps first .. last - 1, and a sample at every
+    step that `stride` divides; it returns MPI's error code, 0 without.
+
+    limits : end the run where it exceeds them; None without. link : to those who share the run,
+        `continuum.parallel.exchange.Link`, who then go on to where all of them look.
+    """
+    joints = model.interfaces
+    constants = (None, None) if joints is None else (joints.parts, joints.directions)
+    kernel = leapfrog_for(*constants)
+    arrays = arguments(model, state, samples, limits, link)
+    return lambda first, last: kernel(first, last, stride, model.dt, *arrays)
+
+
+def arguments(
+    model: Model, state: State, samples: Samples, limits: Guard | None, link: Any
+) -> tuple[Any, ...]:
+    """Return the arguments of the kernel after the steps, in its order; None for what is absent."""
+    rock, joints, (loaded, quiet, fixed) = model.rock, model.interfaces, model.ends
+    tiles, *stiffness = rock.stiffness
+    springs = None if quiet is None else quiet.springs
+    jumps: tuple[Any, ...] = 8 * (None,)
+    if joints is not None:
+        along = int(np.searchsorted(joints.stencils.first, joints.area.size))
+        jumps = *joints.stencils, along, joints.table, joints.area, joints.prestress
+    return (
+        *(state.u, state.v, state.v_before, state.force, state.rate, state.drag),
+        *(tiles, *stiffness, *(3 * (None,) if rock.viscosity is None else rock.viscosity[1:])),
+        *(rock.step_over_mass, rock.mass, rock.decay, model.weight),
+        *(*jumps, state.jump, state.jump_rate, state.slip_rate),
+        *(state.opening, state.slide, state.cohesion),
+        *(state.loads, state.drags, _flat(state.jump), _flat(state.jump_rate)),
+        *(_flat(state.slip_rate), _flat(state.loads), _flat(state.drags)),
+        *(3 * (None,) if loaded is None else loaded),
+        *(3 * (None,) if quiet is None else quiet[:3]),
+        state.reaction,
+        *(3 * (None,) if springs is None else (springs.stiffness, springs.decay, springs.gain)),
+        state.closure,
+        *(3 * (None,) if fixed is None else fixed),
+        state.base_force,
+        *(state.fields, *readings(model, state), samples.waves),
+        *(state.ledger, samples.energy),
+        *(2 * (None,) if limits is None else (limits.limit.view(float)[0], limits.found)),
+        link,
+    )
+
+
+def _flat(points: np.ndarray | None) -> np.ndarray | None:
+    return None if points is None else points.reshape(-1)
+
+
+def readings(model: Model, state: State) -> tuple[np.ndarray, ...]:
+    """Return how the rows of `Samples.waves` follow from `State.fields`: start, column and value of
+    a sparse matrix, and what is added.
+
+    Velocity at the step is the mean of those half a step before and after, acceleration their
+    difference over dt.
+    """
+    r, at, dt = model.receivers, state.at, model.dt
+    alpha = mass_damping(model.rock.decay, dt)
+    sections, points = r.elastic.shape[0], r.point.shape[0]
+    contact, added = contact_rows(model)
+    entries = [
+        (0, r.elastic, at.u),
+        (0, r.viscous, at.rate),
+        (0, (alpha / 2 + 1 / dt) * r.inertia, at.v),
+        (0, (alpha / 2 - 1 / dt) * r.inertia, at.v_before),
+        (0, contact, at.loads),
+        (0, contact, at.drags),
+        (sections, 0.5 * r.point, at.v),
+        (sections, 0.5 * r.point, at.v_before),
+        (sections + points, r.point, at.u),
+        (sections + 2 * points, r.turn, at.u),
+    ]
+    parts = [
+        (first, matrix.tocoo(), place.start)
+        for first, matrix, place in entries
+        if matrix is not None and place is not None
+    ]
+    row = np.concatenate([first + part.row for first, part, _ in parts])
+    column = np.concatenate([begin + part.col for _, part, begin in parts])
+    value = np.concatenate([part.data for _, part, _ in parts])
+    count = sections + 2 * points + (0 if r.turn is None else r.turn.shape[0])
+    matrix = csr_matrix((value, (row, column)), (count, state.fields.size))
+    return matrix.indptr, matrix.indices, matrix.data, np.append(added, np.zeros(count - sections))
+
+
+def contact_rows(model: Model) -> tuple[csr_matrix | None, np.ndarray]:
+    """Return how sections on joints read the joints' forces, and what is added to all sections."""
+    r, joints = model.receivers, model.interfaces
+    added = np.zeros(r.elastic.shape[0])
+    if r.weight is not None:
+        added += r.weight
+    if r.contact is None:
+        return None, added
+    normal = r.contact @ np.full(joints.area.size, joints.prestress or 0.0)
+    added[: normal.size] += normal
+    return kron(identity(joints.directions), r.contact @ diags(1 / joints.area)), added
+
+
+def mass_damping(decay: float | None, dt: float) -> float:
+    """Return the alpha (1/s) of mass-proportional damping that `Rock.decay` stands for."""
+    return 0.0 if decay is None else 2 * (1 - decay) / (1 + decay) / dt

@@ -1,0 +1,1 @@
+"""Implicit steps: generalised alpha in time, Newton's method, static states."""

@@ -1,0 +1,216 @@
+"""The forces of a trial state that an implicit step has to balance, and the joints' tangents.
+
+A trial starts from what the state before the step remembers, and changes nothing of it. Rock and
+ends are linear, sums of arrays; the law of the joints is compiled.
+"""
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import csr_matrix, diags
+
+from continuum.explicit.march import mass_damping
+from continuum.model import STATES, Model, Samples, State
+from continuum.parallel.serial import SERIAL, Serial
+from continuum.space.body import Body, whole
+from continuum.space.tractions import joint_energy, joint_loads, joint_tangents
+from numerics.denormals import flush_tiny, restore_tiny
+from numerics.jit import jitted
+from results.arrays import fill
+
+
+class Matrices(NamedTuple):
+    """Of the rock, [n, n]: stiffness, N/m; viscosity, N s/m, None without dashpots; mass, kg,
+    diagonal or consistent. moves : bool array [n], false for padding. communicator : of those who
+    share the rock, each with its share of the matrices."""
+
+    stiffness: csr_matrix
+    viscosity: csr_matrix | None
+    mass: csr_matrix
+    moves: np.ndarray
+    communicator: Serial = SERIAL
+
+
+def rock_matrices(body: Body) -> Matrices:
+    """Return the matrices of discretised rock."""
+    stiffness, viscosity = whole(body.layout, body.mesh, body.blocks), None
+    if body.viscous_blocks:
+        viscosity = whole(body.layout, body.mesh, body.viscous_blocks)
+    mass = csr_matrix(diags(body.mass)) if body.consistent is None else body.consistent
+    moves = body.communicator.total(stiffness.diagonal()) > 0
+    return Matrices(stiffness, viscosity, mass, moves, body.communicator)
+
+
+def empty_tangents(model: Model) -> np.ndarray:
+    """Return an array for how the joints resist displacement, [6, q], N/m."""
+    return np.zeros((6, 0 if model.interfaces is None else model.interfaces.area.size))
+
+
+def balance(
+    model: Model,
+    rock: Matrices,
+    now: State,
+    trial: State,
+    pressure: float,
+    r: float,
+    tangents: np.ndarray,
+) -> float:
+    """Set the forces of a trial state and what it would remember, and the joints' tangents.
+
+    now : state at the beginning of the step. trial : u and v are given; v_before is set to the
+    mean velocity of the step, and the reactions of the ends count among the forces.
+    pressure : of the load, Pa. r : rate factor, 1/s (`joints.flat.tangent`).
+    Returns the largest force (N) that is summed up, of rock, dashpots, load and weight.
+    """
+    trial.v_before[:] = (trial.u - now.u) / model.dt
+    fill(_history(trial), _history(now))
+    if trial.ledger is not None:
+        trial.ledger[:] = now.ledger
+    force = -(rock.stiffness @ trial.u)
+    parts = [force]
+    if trial.rate is not None:
+        trial.rate[:] = trial.v
+        trial.drag[:] = 0.0 if rock.viscosity is None else -(rock.viscosity @ trial.v)
+        parts.append(trial.drag.copy())
+    if model.weight is not None:
+        parts.append(model.weight)
+    if model.ends.loaded is not None:
+        parts.append(model.ends.loaded.share * pressure)
+    size = max(float(np.abs(part).max(initial=0.0)) for part in parts)
+    trial.force[:] = force
+    if model.interfaces is not None:
+        _add_joint_forces(model, now, trial, r, tangents)
+    if trial.rate is not None:
+        trial.force[:] += trial.drag
+    if model.weight is not None:
+        trial.force[:] += model.weight
+    if model.ends.loaded is not None:
+        trial.force[model.ends.loaded.freedom] += parts[-1]
+    _add_ends(model, now, trial)
+    return size
+
+
+def _history(state: State) -> tuple:
+    return state.opening, state.slide, state.cohesion
+
+
+def _add_joint_forces(
+    model: Model, now: State, trial: State, r: float, tangents: np.ndarray
+) -> None:
+    """Add the forces of the joints, and set their tangents."""
+    joints, shape = model.interfaces, trial.jump.shape
+    # A joint slides by what it slips in the step, whatever the velocity at the end of it.
+    for jump, moved in (
+        (trial.jump, trial.u),
+        (trial.jump_rate, trial.rate),
+        (trial.slip_rate, trial.v_before),
+    ):
+        if jump is not None:
+            jump[:] = (joints.jump @ moved).reshape(shape)
+    work = joint_balance_for(joints.parts, joints.directions)(
+        joints.table, joints.area, joints.prestress,
+        trial.jump, trial.jump_rate, trial.slip_rate,
+        trial.opening, trial.slide, trial.cohesion, trial.loads, trial.drags, model.dt,
+        now.opening, now.slide, now.cohesion, r, tangents,
+    )  # fmt: skip
+    if trial.ledger is not None:
+        trial.ledger[1] += work
+    trial.force[:] += joints.jump.T @ trial.loads.ravel()
+    if trial.drags is not None:
+        trial.drag[:] += joints.jump.T @ trial.drags.ravel()
+
+
+def _add_ends(model: Model, now: State, trial: State) -> None:
+    """Add what absorbs at the ends; springs in front of dashpots close by the mean velocity."""
+    quiet = model.ends.quiet
+    if quiet is None:
+        return
+    trial.reaction[:] = quiet.viscosity * trial.v[quiet.freedom]
+    if now.closure is not None:
+        springs = quiet.springs
+        moved = springs.gain * trial.v_before[quiet.freedom]
+        trial.closure[:] = springs.decay * now.closure + moved
+        trial.reaction[:] += springs.stiffness * trial.closure
+    np.subtract.at(trial.force, quiet.freedom, trial.reaction)
+
+
+@cache
+def joint_balance_for(parts, directions):
+    """Return the kernel of the joints in a trial state, for a law with these parts and jumps in so
+    many directions."""
+    shears = True if directions != 1 else None
+
+    @jitted
+    def joint_balance(
+        table, area, prestress, jump, jump_rate, slip_rate, opening, slide, cohesion, loads, drags,
+        dt, opening_before, slide_before, cohesion_before, r, tangents,
+    ):  # fmt: skip
+        """Set forces, history and tangents of all points; return the work of sliding, J."""
+        flushing = flush_tiny()
+        joint_tangents(
+            parts, directions, shears, table, area, prestress, jump, jump_rate,
+            opening_before, slide_before, cohesion_before, r, tangents,
+        )  # fmt: skip
+        sliding = joint_loads(
+            parts, directions, shears, table, area, prestress,
+            jump, jump_rate, slip_rate, opening, slide, cohesion, loads, drags, dt,
+        )  # fmt: skip
+        restore_tiny(flushing)
+        return sliding
+
+    return joint_balance
+
+
+@cache
+def joint_energy_for(parts, directions):
+    """Return the kernel of `continuum.space.tractions.joint_energy`."""
+
+    @jitted
+    def energy(table, area, prestress, jump, opening, slide, loads):
+        """Return elastic energy and what opening has spent, J."""
+        return joint_energy(parts, directions, table, area, prestress, jump, opening, slide, loads)
+
+    return energy
+
+
+def record(
+    model: Model,
+    rock: Matrices,
+    contact: csr_matrix | None,
+    added: np.ndarray,
+    state: State,
+    acceleration: np.ndarray,
+    samples: Samples,
+    s: int,
+) -> None:
+    """Record sample s of a state in balance: receivers and ledger.
+
+    contact, added : of `continuum.explicit.march.contact_rows`. acceleration : m/s2.
+    """
+    receivers = model.receivers
+    moving = acceleration + mass_damping(model.rock.decay, model.dt) * state.v
+    stress = receivers.elastic @ state.u + receivers.inertia @ moving + added
+    if receivers.viscous is not None:
+        stress += receivers.viscous @ state.rate
+    if contact is not None:
+        loads = state.loads if state.drags is None else state.loads + state.drags
+        stress[: contact.shape[0]] += contact @ loads.ravel()
+    motion = [receivers.point @ state.v, receivers.point @ state.u]
+    turn = [] if receivers.turn is None else [receivers.turn @ state.u]
+    samples.waves[:, s] = np.concatenate([stress, *motion, *turn])
+    if samples.energy is None:
+        return
+    stored, spent, joints = 0.0, 0.0, model.interfaces
+    if joints is not None:
+        stored, spent = joint_energy_for(joints.parts, joints.directions)(
+            joints.table, joints.area, joints.prestress,
+            state.jump, state.opening, state.slide, state.loads,
+        )  # fmt: skip
+    samples.energy[:STATES, s] = (
+        state.v @ (rock.mass @ state.v) / 2,
+        state.u @ (rock.stiffness @ state.u) / 2 + stored,
+        spent,
+        0.0 if model.weight is None else -(model.weight @ state.u),
+    )
+    samples.energy[STATES:, s] = state.ledger

@@ -1,0 +1,173 @@
+"""Implicit runs of jointed rock: step after step, and what becomes of one that does not converge.
+
+Such a step is taken in halves, down to a 1024th of the whole; halves that are done make way for
+longer ones again, so that whole steps end on the clock.
+"""
+
+import numpy as np
+
+from cases.errors import StoppedError
+from continuum.explicit.march import contact_rows
+from continuum.implicit.balance import Matrices, record
+from continuum.implicit.newton import Outcome
+from continuum.implicit.step import Moment, Stepper
+from continuum.implicit.substeps import motion_at, pressure_at
+from continuum.model import Model, Samples, State
+from continuum.monitor import Monitor
+from results.arrays import copied, fill
+
+HALVINGS = 10
+WHOLE = 1 << HALVINGS
+
+
+class Implicit:
+    """A run by implicit steps.
+
+    Parameters
+    ----------
+    model, state : constants and initial state, as for explicit steps. The state follows the run,
+        at whole steps: v_before equals v, `force` is the sum of all forces.
+    matrices : of the rock, as `model.rock` has them.
+    rho : spectral radius, 0 .. 1.
+
+    Attributes
+    ----------
+    stepper : counts iterations and factorisations. outcome : of the last step or part of one.
+    counts : int array [2], how many steps were halved, and the last whole step that was done, -1
+        none. parts : all arrays that change beside the state.
+    """
+
+    def __init__(self, model: Model, state: State, matrices: Matrices, rho: float) -> None:
+        self.model, self.state = model, state
+        self.stepper = Stepper(model, matrices, rho)
+        self.now, self.trial = (
+            Moment(s, np.zeros_like(state.u), np.zeros(1)) for s in (state, copied(state))
+        )
+        self.communicator, mass = (
+            matrices.communicator,
+            matrices.communicator.total(model.rock.mass),
+        )
+        self.mass = np.where(mass > 0, mass, np.inf)  # what no rock is part of does not move
+        self.counts = np.array([0, -1])
+        self.contact = contact_rows(model)
+        self.outcome: Outcome | None = None
+        self.parts = self.now[1:], self.trial, self.counts, self.stepper.counts
+
+    @property
+    def halvings(self) -> int:
+        """How many steps were halved."""
+        return int(self.counts[0])
+
+    def run(
+        self, samples: Samples, stride: int, first: int, last: int, monitor: Monitor | None = None
+    ) -> None:
+        """Go from step first - 1 to each of first .. last - 1, and take a sample at every step that
+        `stride` divides. Raises StoppedError where a step does not converge; ends where the
+        monitor finds the run out of bounds."""
+        for n in range(first, last):
+            if n == 0:
+                self._begin()
+            else:
+                self._reach(n, stride)
+            self.counts[1] = n
+            if n % stride == 0:
+                self._record(samples, n // stride)
+            if monitor is not None and monitor.finds(n):
+                break
+
+    def compile(self, samples: Samples) -> None:
+        """Compile every kernel of the run, and change nothing."""
+        spare = Moment(copied(self.state), np.zeros(1), np.zeros(1))
+        one = samples._replace(waves=samples.waves[:, :1].copy())
+        if samples.energy is not None:
+            one = one._replace(energy=samples.energy[:, :1].copy())
+        with self.communicator.in_turn():
+            self.stepper.set_forces(self.model, self.now, spare, 0, 0.0)
+            record(
+                self.model,
+                self.stepper.rock,
+                *self.contact,
+                spare.state,
+                np.zeros_like(self.state.u),
+                one,
+                0,
+            )
+
+    def _begin(self) -> None:
+        """Balance the forces of the first moment by its acceleration."""
+        now, trial, stepper = self.now, self.trial, self.stepper
+        given = motion_at(stepper.fixed, 0, 0.0)
+        for values, motion in zip((now.state.u, now.state.v, now.acceleration), given, strict=True):
+            values[stepper.fixed.freedom] = motion
+        fill(trial.state, now.state)
+        stepper.set_forces(self.model, now, trial, 0, 0.0)
+        trial.acceleration[:] = now.acceleration
+        stepper.balance(trial)
+        self._accept(0, 0.0, 0.0)
+
+    def _reach(self, n: int, stride: int) -> None:
+        """Go from step n - 1 to step n, whole or in parts of it; samples are `stride` apart."""
+        halvings, done = 0, 0
+        while done < WHOLE:
+            part = WHOLE >> halvings
+            share = (done + part) / WHOLE
+            self.outcome = self.stepper.step(self.now, self.trial, n - 1, share, halvings)
+            if self.outcome.converged:
+                self._accept(n - 1, done / WHOLE, share)
+                done += part
+                if halvings and done % (2 * part) == 0:
+                    halvings -= 1
+            elif halvings < HALVINGS:
+                halvings += 1
+                self.counts[0] += 1
+            else:
+                error = StoppedError(self._why(n - 1 + done / WHOLE))
+                error.samples = (n - 1) // stride + 1
+                raise error
+
+    def _why(self, step: float) -> str:
+        assert self.outcome is not None
+        error, tolerance, dt = self.outcome.errors[-1], self.outcome.tolerance, self.model.dt
+        return (
+            f"the implicit steps do not converge at t = {step * dt:.6g} s: forces are out of "
+            f"balance by {error:.3g} N (tolerance {tolerance:.3g} N) even with steps of "
+            f"{dt / WHOLE:.3g} s; take shorter ones (numerics.continuum.steps_per_period) or "
+            "explicit ones"
+        )
+
+    def _accept(self, n: int, before: float, share: float) -> None:
+        """Make the trial the present, and add the work of the part of step n that led there."""
+        now, trial = self.now, self.trial
+        if trial.state.ledger is not None and share:
+            pressures = (pressure_at(self.model, n, at) for at in (before, share))
+            self._book(trial.state.ledger, sum(pressures) / 2)
+        trial.state.v_before[:] = trial.state.v
+        fill(now.state, trial.state)
+        now.acceleration[:] = trial.acceleration
+        now.size[:] = trial.size
+
+    def _book(self, ledger: np.ndarray, pressure: float) -> None:
+        """Add the work of all forces by the trapezoidal rule, friction apart; with rho = 1 their
+        balance is exact."""
+        now, trial, ends = self.now.state, self.trial.state, self.model.ends
+        moved, mass = trial.u - now.u, self.stepper.mass
+        if trial.drag is not None:
+            ledger[0] -= (now.drag + trial.drag) @ moved / 2
+        if self.stepper.mass_damping:
+            ledger[0] += self.stepper.mass_damping * (mass @ (now.v + trial.v)) @ moved / 2
+        if ends.quiet is not None:
+            ledger[2] += (now.reaction + trial.reaction) @ moved[ends.quiet.freedom] / 2
+        if ends.loaded is not None:
+            ledger[3] += pressure * (ends.loaded.share @ moved[ends.loaded.freedom])
+        if self.stepper.fixed.motion is not None:
+            fixed = self.stepper.fixed.freedom
+            gained = (mass @ (trial.v - now.v))[fixed] @ (now.v + trial.v)[fixed]
+            ledger[3] += (gained - (now.force + trial.force)[fixed] @ moved[fixed]) / 2
+
+    def _record(self, samples: Samples, s: int) -> None:
+        """Take sample s. Accelerations are those that balance the forces at the step itself: those
+        of the scheme are of an earlier time, by alpha_f - alpha_m of a step."""
+        state, fixed = self.now.state, self.stepper.fixed.freedom
+        balancing = self.communicator.total(state.force) / self.mass
+        balancing[fixed] = self.now.acceleration[fixed]
+        record(self.model, self.stepper.rock, *self.contact, state, balancing, samples, s)

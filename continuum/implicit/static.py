@@ -1,0 +1,117 @@
+"""Static states: rock and joints at rest under gravity, by Newton's method.
+
+The weight is put on in parts, and a part that does not converge in halves, because what slides,
+opens or breaks on the way depends on the way.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cases.errors import SceneError
+from cases.schema.scene import Scene
+from continuum.implicit.balance import balance, empty_tangents, rock_matrices
+from continuum.implicit.newton import Outcome, factors_of, newton
+from continuum.implicit.pattern import pattern
+from continuum.model import Model, State
+from continuum.space.body import Body
+from continuum.space.tractions import NN, XX, ZZ
+from results.arrays import copied, fill
+
+TOLERANCE = 1e-10  # what may be left of the largest force that is summed up
+LEAST_PART = 2.0**-10  # of the weight
+
+
+class Rest(NamedTuple):
+    """How a static state was reached: corrections made, largest unbalanced force over the largest
+    force at work."""
+
+    steps: int
+    ratio: float
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """What a result says of it."""
+        return {"static_steps": self.steps, "static_out_of_balance": self.ratio}
+
+
+def settle_static(scene: Scene, model: Model, state: State, body: Body) -> Rest:
+    """Bring a state to rest under gravity; raises SceneError where there is no static state."""
+    system = _Static(model, state, body)
+    done, part, steps = 0.0, 1.0, 0
+    while done < 1:
+        outcome = system.balance(min(done + part, 1.0))
+        steps += len(outcome.errors) - 1
+        if outcome.converged:
+            done += part
+        elif part > LEAST_PART:
+            part /= 2
+        else:
+            _refuse(scene, done)
+    fill(state, system.state)
+    return Rest(steps, outcome.errors[-1] / body.communicator.largest(system.size))
+
+
+def _refuse(scene: Scene, done: float) -> None:
+    raise SceneError(
+        scene.where,
+        "gravity",
+        None,
+        f"no static state beyond {done:.3g} of the weight: a joint slides or opens, or a block is "
+        "unsupported: static = false starts without it",
+    )
+
+
+class _Static:
+    """The forces of a model at rest, without what absorbs at its ends and without its load.
+
+    state : the last one in balance. size : the largest force that is summed up, N.
+    """
+
+    def __init__(self, model: Model, state: State, body: Body) -> None:
+        self.rock = matrices = rock_matrices(body)
+        self.model = model._replace(ends=model.ends._replace(quiet=None, loaded=None))
+        self.state, self.trial, self.size = copied(state), copied(state), 0.0
+        moves = matrices.moves.copy()
+        if model.ends.fixed is not None:
+            moves[model.ends.fixed.freedom] = False
+        self.free = np.flatnonzero(moves)
+        self.pattern = pattern([matrices.stiffness], model.interfaces, self.free)
+        self.communicator = body.communicator
+        self.factors = factors_of(
+            self.pattern.start, self.pattern.column, self.free, self.communicator
+        )
+        self.tangents = empty_tangents(model)
+
+    def balance(self, share: float) -> Outcome:
+        """Try to balance a share of the weight; what comes of it is kept where that succeeds."""
+        model = self.model._replace(weight=share * self.model.weight)
+
+        def residual(u: np.ndarray) -> tuple[np.ndarray, float]:
+            self.trial.u[self.free] = u
+            self.size = balance(model, self.rock, self.state, self.trial, 0.0, 0.0, self.tangents)
+            return self.communicator.total(self.trial.force)[self.free], TOLERANCE * self.size
+
+        def correction(rest: np.ndarray) -> np.ndarray:
+            if not self.trial.u.any():
+                self._stick_joints()
+            of_joints = self.pattern.joints @ self.tangents.ravel()
+            self.factors.factorise(self.pattern.fixed[0] + of_joints)
+            return self.factors.solve(rest)
+
+        outcome = newton(residual, correction, self.state.u[self.free], self.communicator)
+        if outcome.converged:
+            self.trial.v_before[:] = 0.0
+            fill(self.state, self.trial)
+        return outcome
+
+    def _stick_joints(self) -> None:
+        """Give all joints their elastic stiffness: one that nothing presses has no friction, and
+        rock at rest on such joints could be anywhere."""
+        joints = self.model.interfaces
+        if joints is not None:
+            self.tangents[NN] = joints.area * joints.law.normal_stiffness
+            shear = joints.law.shear_stiffness
+            self.tangents[[XX, ZZ]] = 0.0 if shear is None else joints.area * shear

@@ -1,0 +1,170 @@
+"""One implicit step of jointed rock: generalised alpha in time, solved by Newton's method.
+
+At the end of a step the residual on the freedoms that move is (`generalised_alpha`)
+
+    (1 - alpha_f) G' + alpha_f G - M ((1 - alpha_m) a' + alpha_m a),
+
+G the sum of all forces: rock, joints, dashpots, ends, load, weight. Its derivative by the
+displacement is the inertia over beta dt^2 and (1 - alpha_f) times stiffness, dashpots at the rate
+factor r = gamma / (beta dt), and tangents of the joints; it is factorised only when it changes.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from continuum.explicit.march import mass_damping
+from continuum.implicit.balance import Matrices, balance, empty_tangents
+from continuum.implicit.generalised_alpha import scheme
+from continuum.implicit.newton import Outcome, factors_of, newton
+from continuum.implicit.pattern import pattern
+from continuum.implicit.substeps import (
+    end_resistance,
+    fixed_motion,
+    motion_at,
+    pressure_at,
+    shortened,
+)
+from continuum.model import Model, State
+
+RESIDUAL = 1e-10  # what may be left, of the largest force that is summed up
+LAST_DIGITS = 8 * np.finfo(float).eps  # of a displacement: what they weigh cannot be balanced
+
+
+class Moment(NamedTuple):
+    """A state and its acceleration [n], m/s2; `state.force` counts what ends and mass damping do.
+
+    size : float array [1], the largest force (N) that is summed up.
+    """
+
+    state: State
+    acceleration: np.ndarray
+    size: np.ndarray
+
+
+class Length(NamedTuple):
+    """A length of steps: the model with its dt and half joints; the rate factor r, 1/s; the matrix
+    without the joints [nnz], N/m, and what of it is inertia."""
+
+    model: Model
+    r: float
+    fixed: np.ndarray
+    inertia: np.ndarray
+
+
+class Stepper:
+    """What takes steps of 1, 1/2, 1/4 ... of the model's dt from one moment to the next.
+
+    Parameters
+    ----------
+    model, matrices : of one run; rho : spectral radius of the scheme, 0 .. 1.
+
+    Attributes
+    ----------
+    counts : int array [2], how many corrections and factorisations there have been.
+    """
+
+    def __init__(self, model: Model, matrices: Matrices, rho: float) -> None:
+        self.model, self.scheme = model, scheme(rho)
+        self.rock, self.mass, self.communicator = matrices, matrices.mass, matrices.communicator
+        self.mass_damping = mass_damping(model.rock.decay, model.dt)
+        self.fixed = fixed_motion(model.ends.fixed, model.dt)
+        moves = matrices.moves.copy()
+        moves[self.fixed.freedom] = False
+        self.free = np.flatnonzero(moves)
+        viscosity = 0 * matrices.mass if matrices.viscosity is None else matrices.viscosity
+        parts = [matrices.mass, matrices.stiffness, viscosity]
+        self._pattern = pattern(parts, model.interfaces, self.free)
+        place = self._pattern.start, self._pattern.column, self.free
+        self._factors = factors_of(*place, self.communicator)
+        self._tangents = empty_tangents(model)
+        self._factored: tuple[Length, np.ndarray] | None = None
+        self._weight = np.zeros(self.free.size)
+        self._lengths: dict[int, Length] = {}
+        self.counts = np.zeros(2, dtype=np.int64)
+
+    def step(self, now: Moment, trial: Moment, n: int, share: float, halvings: int) -> Outcome:
+        """Try a step of dt / 2**halvings to a share of the way from step n to n + 1; the end is
+        left in `trial`."""
+        length, (alpha_m, alpha_f, beta, gamma) = self._length(halvings), self.scheme
+        old, dt, free = now.state, length.model.dt, self.free
+        drift = dt * old.v + (0.5 - beta) * dt**2 * now.acceleration
+        before = alpha_f * old.force - alpha_m * (self.mass @ now.acceleration)
+        self._apply_fixed(trial, n, share)
+
+        def residual(moved: np.ndarray) -> tuple[np.ndarray, float]:
+            state, a = trial.state, trial.acceleration
+            a[free] = (moved - drift[free]) / (beta * dt**2)
+            state.u[free] = old.u[free] + moved
+            state.v[free] = (old.v + dt * ((1 - gamma) * now.acceleration + gamma * a))[free]
+            self.set_forces(length.model, now, trial, n, share, length.r)
+            inertia = self.mass @ a
+            rest = (1 - alpha_f) * state.force + before - (1 - alpha_m) * inertia
+            size = max(trial.size[0], now.size[0], np.abs(inertia).max())
+            digits = LAST_DIGITS * np.abs(self._weight * state.u[free]).max(initial=0.0)
+            return self.communicator.total(rest)[free], RESIDUAL * size + digits
+
+        def correction(rest: np.ndarray) -> np.ndarray:
+            self._factorise(length)
+            self.counts[0] += 1
+            return self._factors.solve(rest)
+
+        start = (drift + beta * dt**2 * now.acceleration)[free]
+        return newton(residual, correction, start, self.communicator)
+
+    def set_forces(
+        self, model: Model, now: Moment, trial: Moment, n: int, share: float, r: float = 0.0
+    ) -> None:
+        """Set the forces and tangents of a trial moment whose displacement and velocity are given;
+        r : rate factor, 1/s."""
+        state, pressure = trial.state, pressure_at(self.model, n, share)
+        trial.size[0] = balance(model, self.rock, now.state, state, pressure, r, self._tangents)
+        if self.mass_damping:
+            state.force[:] -= self.mass_damping * (self.mass @ state.v)
+
+    def balance(self, moment: Moment) -> None:
+        """Set the acceleration of the freedoms that move by the forces of a moment."""
+        rest = self.communicator.total(moment.state.force - self.mass @ moment.acceleration)
+        self._factors.factorise(self._pattern.fixed[0])
+        self._factored = None
+        moment.acceleration[self.free] += self._factors.solve(rest[self.free])
+
+    def _apply_fixed(self, trial: Moment, n: int, share: float) -> None:
+        motion = motion_at(self.fixed, n, share)
+        for values, given in zip(
+            (trial.state.u, trial.state.v, trial.acceleration), motion, strict=True
+        ):
+            values[self.fixed.freedom] = given
+
+    def _length(self, halvings: int) -> Length:
+        if halvings not in self._lengths:
+            self._lengths[halvings] = self._make_length(0.5**halvings)
+        return self._lengths[halvings]
+
+    def _make_length(self, share: float) -> Length:
+        alpha_m, alpha_f, beta, gamma = self.scheme
+        model = shortened(self.model, share)
+        r = gamma / (beta * model.dt)
+        mass, stiffness, viscosity = self._pattern.fixed
+        inertia = (1 - alpha_m) / (beta * model.dt**2) * mass
+        forces = stiffness + r * (viscosity + self.mass_damping * mass)
+        if model.ends.quiet is not None:
+            freedom, resistance = end_resistance(model.ends.quiet, r, model.dt)
+            place = self._pattern.diagonal[np.searchsorted(self.free, freedom)]
+            np.add.at(forces, place, resistance)
+        return Length(model, r, inertia + (1 - alpha_f) * forces, inertia)
+
+    def _factorise(self, length: Length) -> None:
+        """Take the matrix of the last trial moment, unless it is that of the one before."""
+        if self._factored is not None:
+            last, tangents = self._factored
+            if last is length and self.communicator.all(np.array_equal(tangents, self._tangents)):
+                return
+        of_joints = self._pattern.joints @ self._tangents.ravel()
+        values = length.fixed + (1 - self.scheme.alpha_f) * of_joints
+        self._factors.factorise(values)
+        self.counts[1] += 1
+        diagonal = np.zeros(self.mass.shape[0])
+        diagonal[self.free] = (values - length.inertia)[self._pattern.diagonal]
+        self._weight = np.abs(self.communicator.total(diagonal)[self.free])
+        self._factored = length, self._tangents.copy()

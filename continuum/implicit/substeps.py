@@ -1,0 +1,77 @@
+"""The constants of a run for any part of a step: implicit steps that are halved need them."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from continuum.model import Fixed, HalfJoints, Model, Quiet
+
+
+class FixedMotion(NamedTuple):
+    """Freedoms that move as they are told.
+
+    freedom, direction : [k]; all move by direction times the same displacement (m), velocity and
+    acceleration, each float array [steps + 1] at whole steps; None where they do not move.
+    """
+
+    freedom: np.ndarray
+    direction: np.ndarray
+    motion: np.ndarray | None
+
+
+def fixed_motion(fixed: Fixed | None, dt: float) -> FixedMotion:
+    """Return the motion of fixed freedoms; dt : of whole steps, s.
+
+    Displacements are sums of the given steps; velocity and acceleration are centred differences
+    of them, of second order, at rest before t = 0.
+    """
+    if fixed is None:
+        return FixedMotion(np.zeros(0, dtype=np.int64), np.zeros(0), None)
+    if fixed.step is None:
+        return FixedMotion(fixed.freedom, fixed.direction, None)
+    before = np.concatenate([[0.0], fixed.step[:-1]])
+    motion = [np.cumsum(before), (before + fixed.step) / (2 * dt), (fixed.step - before) / dt**2]
+    return FixedMotion(fixed.freedom, fixed.direction, np.array(motion))
+
+
+def motion_at(fixed_motion: FixedMotion, n: int, share: float) -> np.ndarray:
+    """Return displacement, velocity and acceleration [3, k] at step n and a share of the next."""
+    if fixed_motion.motion is None:
+        return np.zeros((3, fixed_motion.freedom.size))
+    first = fixed_motion.motion[:, n]
+    last = fixed_motion.motion[:, n + 1] if share else first
+    return np.outer((1 - share) * first + share * last, fixed_motion.direction)
+
+
+def pressure_at(model: Model, n: int, share: float) -> float:
+    """Return the pressure of the load (Pa) at step n and a share of the next, linear in between."""
+    loaded = model.ends.loaded
+    if loaded is None:
+        return 0.0
+    last = loaded.pressure[n + 1] if share else 0.0
+    return float((1 - share) * loaded.pressure[n] + share * last)
+
+
+def shortened(model: Model, share: float) -> Model:
+    """Return a model whose step is a share of what it was; only dt and half joints know it."""
+    quiet = model.ends.quiet
+    if quiet is not None and quiet.springs is not None:
+        springs = shorter_springs(quiet.springs, share)
+        model = model._replace(ends=model.ends._replace(quiet=quiet._replace(springs=springs)))
+    return model._replace(dt=share * model.dt)
+
+
+def shorter_springs(springs: HalfJoints, share: float) -> HalfJoints:
+    """Return half joints for a share of the step: decay = (1 - lag) / (1 + lag) and gain =
+    dt share / (1 + lag), lag in proportion to dt (`joints.ends.half_spring`)."""
+    lag = (1 - springs.decay) / (1 + springs.decay)
+    gain = springs.gain * (1 + lag) * share / (1 + share * lag)
+    return HalfJoints(springs.stiffness, (1 - share * lag) / (1 + share * lag), gain)
+
+
+def end_resistance(quiet: Quiet, r: float, dt: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the freedoms that ends absorb from and how they resist displacement there, N/m."""
+    resistance = r * quiet.viscosity
+    if quiet.springs is not None:
+        resistance = resistance + quiet.springs.stiffness * quiet.springs.gain / dt
+    return quiet.freedom, resistance

@@ -1,0 +1,103 @@
+"""The joints that a model resolves, and their law at every quadrature point."""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import csr_matrix, vstack
+
+from cases.material.calibrate import Properties
+from continuum.model import Interfaces
+from continuum.space.interface import Jumps
+from continuum.space.stencils import stencils
+from joints.flat.law import Law, parts_of, table_of
+from joints.uniform import law
+
+#: Over an ordinary joint: the stiffness of one that differs from it in strength alone, where the
+#: homogenised bar holds it already. It makes the rock softer by a tenth of one joint.
+RIGID = 10.0
+
+
+class Resolved(NamedTuple):
+    """The joints that a model resolves, by their number in the pillar.
+
+    number : int array [n]. stiffness, shear_stiffness : [pillar's joints], Pa/m.
+    """
+
+    number: np.ndarray
+    stiffness: np.ndarray
+    shear_stiffness: np.ndarray
+
+
+def resolved_joints(
+    p: Properties, model: str, shears: bool, meshed: tuple[int, ...] = ()
+) -> Resolved:
+    """Return all joints ("jointed"), or the soft layers by their excess ("equivalent").
+
+    shears : whether the motion has components along the joints. meshed : joints that are layers of
+    rock in the mesh.
+    """
+    if model == "jointed":
+        assert p.own_stiffness is not None and p.own_shear_stiffness is not None
+        number = np.arange(p.block_count - 1)
+        normal, shear = p.own_stiffness, p.own_shear_stiffness
+    else:
+        number = p.soft
+        normal = _excess(p.excess_compliance, p.regular_stiffness)
+        same = np.isclose(p.shear_stiffness, p.regular_shear_stiffness, rtol=1e-9, atol=0)
+        compliance = np.where(same, 0.0, 1 / p.shear_stiffness - 1 / p.regular_shear_stiffness)
+        shear = _excess(compliance, p.regular_shear_stiffness)
+        differs = (p.excess_compliance != 0) | (shears & (compliance != 0)) | _fails(p, shears)
+        number = number[differs[number]]
+    return Resolved(np.setdiff1d(number, meshed), normal, shear)
+
+
+def _excess(compliance: np.ndarray, regular: float) -> np.ndarray:
+    with np.errstate(divide="ignore"):
+        return np.where(compliance == 0, RIGID * regular, 1 / compliance)
+
+
+def _fails(p: Properties, shears: bool) -> np.ndarray:
+    """Return which joints can open, slide or break, bool array [N - 1]."""
+    from joints.flat.shear import UNLIMITED
+
+    found = ~p.tension
+    if shears and p.cohesion is not None:
+        found = found | (p.cohesion < UNLIMITED)
+    elif shears and p.friction is not None:
+        found = np.ones_like(found)
+    if p.tensile_strength is not None:
+        found = found | (p.tensile_strength < UNLIMITED)
+    return found
+
+
+def joint_law(p: Properties, joints: Resolved, joint: np.ndarray, shears: bool) -> Law:
+    """Return the law at points [q] of these joints, in its smallest form.
+
+    shears : whether the motion has components along the joints.
+    """
+    damping = p.joint_time_constant
+    return Law(
+        *law(
+            joints.stiffness[joint],
+            None if damping is None else damping[joint],
+            p.tension[joint],
+            shear_stiffness=joints.shear_stiffness[joint] if shears else None,
+            **p.strengths(shears, joint),
+        )
+    )
+
+
+def interfaces(jumps: Jumps, law: Law, prestress: float | None) -> Interfaces:
+    """Return the joints of a model."""
+    matrices = [m for m in (jumps.opening, jumps.slip_x, jumps.slip_z) if m is not None]
+    jump = csr_matrix(vstack(matrices))
+    return Interfaces(
+        jump=jump,
+        stencils=stencils(jump),
+        directions=len(matrices),
+        area=jumps.weight,
+        law=law,
+        table=table_of(law),
+        parts=parts_of(law),
+        prestress=prestress,
+    )

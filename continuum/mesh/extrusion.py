@@ -1,0 +1,82 @@
+"""A straight piece of the pillar: its section, extruded along y by gmsh."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from continuum.mesh.cells import CORNERS, DIMENSION, oriented
+from continuum.mesh.session import gmsh_session
+
+
+class Column(NamedTuple):
+    """Rows of cells along y.
+
+    edges : float array [rows + 1], m, ends of the rows, from 0.
+    material : int array [rows].
+    """
+
+    edges: np.ndarray
+    material: np.ndarray
+
+
+def extruded(
+    kind: str, side: float, across: int, column: Column
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return vertices [n, dim] (m), cells [n, corners] and material [n] of a column of rock.
+
+    The section `side` (m) is centred on the axis, with `across` elements in each direction. Both
+    ends carry the same mesh, so that columns conform. Vertices and cells are numbered along y.
+    """
+    rows = len(column.material)
+    if kind == "interval":
+        vertex = np.arange(rows + 1)
+        return column.edges[:, None], np.column_stack([vertex[:-1], vertex[1:]]), column.material
+    grid, cells = _grid(kind, across, rows)
+    x = np.empty(grid.shape)
+    x[:, ::2] = side * (grid[:, ::2] / across - 0.5)
+    x[:, 1] = column.edges[grid[:, 1]]
+    row = grid[cells, 1].min(axis=1)
+    return x, oriented(kind, x, cells), column.material[row]
+
+
+def _grid(kind: str, across: int, rows: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return vertices [n, dim] and cells of a column of unit cells, all in whole numbers."""
+    dim = DIMENSION[kind]
+    with gmsh_session() as gmsh:
+        _mesh_column(gmsh, dim, across, rows, recombine=kind in ("quadrilateral", "hexahedron"))
+        tags, x, _ = gmsh.model.mesh.getNodes()
+        (tagged,) = gmsh.model.mesh.getElements(dim)[2]
+        # gmsh's own arrays end with its session.
+        grid, tags, tagged = np.rint(x).astype(np.int64), np.array(tags), np.array(tagged)
+    # In space the section is gmsh's x-y plane: its (x, y, z) are the pillar's (z, x, y).
+    grid = grid.reshape(-1, 3)[:, [1, 2, 0] if dim == 3 else [0, 1]]
+    along = [0, *range(2, dim), 1]
+    place = np.lexsort(grid[:, along].T)
+    number = np.empty(int(tags.max()) + 1, dtype=np.int64)
+    number[tags[place]] = np.arange(place.size)
+    grid, cells = grid[place], number[tagged].reshape(-1, CORNERS[kind])
+    # Corners in order of z, y, x: the tensor order, with the cell's own axes along the pillar's.
+    cells = np.take_along_axis(cells, np.lexsort(grid[cells].transpose(2, 0, 1)), axis=1)
+    return grid, cells[np.lexsort(grid[cells].sum(axis=1)[:, along].T)]
+
+
+def _mesh_column(gmsh, dim: int, across: int, rows: int, recombine: bool) -> None:
+    """Mesh a column of `across` unit cells each way and `rows` along, its axis gmsh's last one."""
+    occ, mesh = gmsh.model.occ, gmsh.model.mesh
+    if dim == 2:
+        section = (1, occ.addLine(occ.addPoint(0, 0, 0), occ.addPoint(across, 0, 0)))
+        curves = [section]
+    else:
+        section = (2, occ.addRectangle(0, 0, 0, across, across))
+        occ.synchronize()
+        curves = gmsh.model.getBoundary([section], oriented=False)
+    length = (0, rows, 0) if dim == 2 else (0, 0, rows)
+    occ.extrude([section], *length, numElements=[rows], recombine=recombine)
+    occ.synchronize()
+    for _, curve in curves:
+        mesh.setTransfiniteCurve(curve, across + 1)
+    if dim == 3:
+        mesh.setTransfiniteSurface(section[1])
+        if recombine:
+            mesh.setRecombine(*section)
+    mesh.generate(dim)

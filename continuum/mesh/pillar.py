@@ -1,0 +1,136 @@
+"""The pillar of a scene as a mesh: straight pieces between the joints that cut it."""
+
+from collections.abc import Mapping
+from math import ceil
+
+import numpy as np
+
+from cases.material.calibrate import Properties
+from continuum.mesh import facets
+from continuum.mesh.cells import KINDS
+from continuum.mesh.description import Mesh, Part
+from continuum.mesh.extrusion import Column, extruded
+
+#: Of the period: the longest that a wave may take through one element. A load that starts like a
+#: sine has a kink, which only dashpots round off on its way.
+TRAVEL_OF_KINKS, TRAVEL_OF_DAMPED = 0.01, 0.04
+
+#: Of a block: how exactly facets across the pillar are told by their place.
+PLACE = 1e-6
+
+
+def elements_in_block(block: float, speed: float, period: float, damped: bool = False) -> int:
+    """Return the fewest equal elements in a block (m) that resolve waves of this speed (m/s).
+
+    A wave crosses one element within a hundredth of the period (s), or a 25th in damped rock.
+    """
+    travel = TRAVEL_OF_DAMPED if damped else TRAVEL_OF_KINKS
+    return max(1, ceil(block / (speed * travel * period) * (1 - 1e-9)))
+
+
+def pillar_mesh(
+    p: Properties,
+    dim: int,
+    cell: str,
+    elements_per_block: int,
+    elements_across: int,
+    interfaces: np.ndarray,
+    layers: Mapping[int, float] | None = None,
+    elements_per_layer: int = 1,
+) -> Mesh:
+    """Return the mesh of a pillar that is cut at some of its joints.
+
+    Parameters
+    ----------
+    dim, cell : 1 to 3, and "hexahedron" or "simplex" as in `numerics.continuum`.
+    elements_per_block : equal elements in each block along y.
+    elements_across : elements in each direction of the section.
+    interfaces : int array, the joints that cut the pillar, 0 nearest the loaded end.
+    layers : thickness (m) of the joints that are layers of rock: bonded to the blocks on both
+        sides, which are shorter by half of it.
+    elements_per_layer : elements through each layer.
+
+    Pieces of the same length are copies of one part. Raises ValueError for a joint that is both
+    interface and layer, or a layer that leaves nothing of a block.
+    """
+    kind, layers = KINDS[dim, cell], dict(sorted((layers or {}).items()))
+    _refuse_impossible(p, interfaces, layers)
+    parts = []
+    for first, last, starts in _pieces(p.block_count, np.unique(interfaces), np.array([*layers])):
+        column = _column(p, first, last, layers, elements_per_block, elements_per_layer)
+        shifts = np.zeros((starts.size, dim))
+        shifts[:, min(1, dim - 1)] = p.spacing * starts
+        parts.append(Part(*extruded(kind, p.side, elements_across, column), shifts))
+    return _joined(p, kind, tuple(parts), tuple(layers))
+
+
+def _refuse_impossible(p: Properties, interfaces: np.ndarray, layers: dict[int, float]) -> None:
+    both = np.intersect1d(interfaces, [*layers])
+    if both.size:
+        raise ValueError(f"joint {both[0]:g} is both an interface and a layer")
+    lost = np.zeros(p.block_count + 1)
+    lost[[joint + 1 for joint in layers]] = [thickness / 2 for thickness in layers.values()]
+    if (lost[1:] + lost[:-1] >= p.spacing).any():
+        block = int((lost[1:] + lost[:-1]).argmax())
+        raise ValueError(f"the layers leave nothing of block {block}, {p.spacing:g} m long")
+
+
+def _pieces(
+    block_count: int, cuts: np.ndarray, layers: np.ndarray
+) -> list[tuple[int, int, np.ndarray]]:
+    """Return first and past-the-last block of each distinct piece, and where its copies start.
+
+    Pieces with a layer are distinct, because each layer is a material of its own.
+    """
+    ends = np.r_[0, cuts + 1, block_count].astype(np.int64)
+    like = np.diff(ends)
+    layered = np.unique(np.searchsorted(ends, layers + 1) - 1).astype(np.int64)
+    like[layered] = -1 - np.arange(layered.size)
+    _, first, kind = np.unique(like, return_index=True, return_inverse=True)
+    return [
+        (int(ends[piece]), int(ends[piece + 1]), ends[:-1][kind == kind[piece]])
+        for piece in np.sort(first)
+    ]
+
+
+def _column(
+    p: Properties,
+    first: int,
+    last: int,
+    layers: dict[int, float],
+    in_block: int,
+    in_layer: int,
+) -> Column:
+    """Return the rows of elements of blocks `first` to `last` - 1 and of the layers within."""
+    inside = {joint: h for joint, h in layers.items() if first <= joint < last - 1}
+    joint = np.array([*inside], dtype=np.int64) - first
+    half = np.zeros(last - first + 1)
+    half[joint + 1] = np.array([*inside.values()]) / 2
+    y, count = p.spacing * np.arange(half.size), np.full(half.size - 1, in_block)
+    begin, end = (y + half)[:-1], (y - half)[1:]
+    material = 1 + np.searchsorted([*layers], [*inside])
+    begin, end, count, material = (
+        np.insert(blocks, joint + 1, of_layers)
+        for blocks, of_layers in (
+            (begin, end[joint]),
+            (end, begin[joint + 1]),
+            (count, np.full(joint.size, in_layer)),
+            (np.zeros_like(count), material),
+        )
+    )
+    within = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+    edges = np.repeat(begin, count) + within * np.repeat((end - begin) / count, count)
+    return Column(np.r_[edges, end[-1]], np.repeat(material, count))
+
+
+def _joined(p: Properties, kind: str, parts: tuple[Part, ...], layers: tuple[int, ...]) -> Mesh:
+    """Return the mesh with its facets: the end faces, and the pairs between its parts' copies."""
+    length, tolerance = p.spacing * p.block_count, PLACE * p.spacing
+    outer = facets.outer_facets(kind, parts)
+    start, end = (facets.lies_at(outer, y, tolerance) for y in (0.0, length))
+    cut = outer.chosen(facets.lies_across(outer, tolerance) & ~start & ~end)
+    pair = facets.pairs(cut)
+    joint = np.rint(cut.y[pair[:, 0]] / p.spacing).astype(np.int64) - 1
+    return Mesh(
+        kind, parts, layers, facets.joints(cut, pair, joint), outer.side(start), outer.side(end)
+    )

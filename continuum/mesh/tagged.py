@@ -1,0 +1,141 @@
+"""A gmsh file as it stands: vertices, rock cells, and the facets of its named groups."""
+
+from contextlib import redirect_stderr
+from io import StringIO
+from pathlib import Path
+from typing import NamedTuple
+from warnings import catch_warnings, simplefilter
+
+import numpy as np
+
+from cases.size import memory, require, within
+from continuum.mesh.cells import FROM_GMSH
+
+#: meshio's names of the kinds of cells, and of their facets.
+KINDS = {
+    "triangle": "triangle",
+    "quad": "quadrilateral",
+    "tetra": "tetrahedron",
+    "hexahedron": "hexahedron",
+}
+FACET_NAMES = {
+    "interval": "vertex",
+    "triangle": "line",
+    "quadrilateral": "line",
+    "tetrahedron": "triangle",
+    "hexahedron": "quad",
+}
+
+#: Bytes that reading may take beside what the process has: in all, and for each byte of the file.
+#: The reader makes an array as long as the largest number of a vertex, whatever the file holds.
+ROOM, ROOM_OF_BYTE = 300_000_000, 100
+
+SAVE_GROUPS = "save it with Mesh.SaveAll = 0"
+
+
+class MeshError(ValueError):
+    """What is wrong with a gmsh file, in one phrase."""
+
+
+class Tagged(NamedTuple):
+    """The rock of a gmsh file and its groups of facets, by name.
+
+    x : float array [vertices, 3], m, all of the file.
+    kind : of the cells, "triangle", "quadrilateral", "tetrahedron" or "hexahedron".
+    cells : int array [cells, corners], vertex numbers in basix's corner order.
+    facets : for each group "joint...", "start" and "end" int arrays [facets, facet corners], vertex
+        numbers in any order.
+    """
+
+    x: np.ndarray
+    kind: str
+    cells: np.ndarray
+    facets: dict[str, np.ndarray]
+
+
+def read_tagged(path: str | Path) -> Tagged:
+    """Read a gmsh file, version 2.2 or 4.1, as text or binary; raises MeshError.
+
+    The groups whose names start with "rock" are the rock; capitals do not matter.
+    """
+    mesh = _read(Path(path))
+    names = {name: name.strip().lower() for name in mesh.field_data}
+    kind, cells = _rock(mesh, [name for name, plain in names.items() if plain.startswith("rock")])
+    facets = {
+        plain: _of_type(mesh, [name], FACET_NAMES[kind])
+        for name, plain in names.items()
+        if plain.startswith("joint") or plain in ("start", "end")
+    }
+    empty = [name for name, found in facets.items() if not len(found)]
+    if empty:
+        raise MeshError(f"its group '{empty[0]}' holds no facets ({FACET_NAMES[kind]}s)")
+    return Tagged(mesh.points, kind, cells[:, FROM_GMSH[kind]], facets)
+
+
+def _read(path: Path):
+    import meshio
+
+    if not path.is_file():
+        raise MeshError("is no file" if path.exists() else "does not exist")
+    try:
+        size = path.stat().st_size
+        require(size, "it")
+        room = min(ROOM + ROOM_OF_BYTE * size, max(ROOM, memory()))
+        with redirect_stderr(StringIO()), catch_warnings(), within(room):
+            simplefilter("ignore")
+            return meshio.gmsh.read(path)
+    # A broken file makes the reader fail in any way.
+    except Exception as error:
+        reason = str(error) or type(error).__name__
+        if "gmsh:physical" in reason:
+            raise MeshError(f"holds cells of no group, {SAVE_GROUPS}") from None
+        raise MeshError(f"cannot be read as a gmsh mesh, version 2.2 or 4.1: {reason}") from None
+
+
+def _rock(mesh, names: list[str]) -> tuple[str, np.ndarray]:
+    """Return the kind and the cells of the rock, in gmsh's corner order."""
+    if not names:
+        raise MeshError("has no group whose name starts with 'rock'")
+    types = {block.type for block, inside in _blocks(mesh, names) if inside.any()}
+    if not types:
+        raise MeshError(f"no cells are in its group '{names[0]}', {SAVE_GROUPS}")
+    if len(types) > 1:
+        found = " and ".join(sorted(types))
+        raise MeshError(f"its rock holds {found} cells, must be of one kind: {', '.join(KINDS)}")
+    (name,) = types
+    if name not in KINDS:
+        raise MeshError(f"its rock holds {name} cells, must be first-order {', '.join(KINDS)}")
+    cells = _of_type(mesh, names, name)
+    dim = next(block.dim for block in mesh.cells if block.type == name)
+    everything = [block for block in mesh.cells if block.dim == dim]
+    others = sum(len(block.data) for block in everything if block.type != name)
+    others += len(_each_once([b.data for b in everything if b.type == name])) - len(cells)
+    if others:
+        raise MeshError(f"{others} of its cells are in no group whose name starts with 'rock'")
+    return KINDS[name], cells
+
+
+def _of_type(mesh, names: list[str], cell: str) -> np.ndarray:
+    """Return the cells of one type in these groups, each once, int array [n, corners]."""
+    found = [block.data[inside] for block, inside in _blocks(mesh, names) if block.type == cell]
+    return _each_once(found) if found else np.empty((0, 1), dtype=np.int64)
+
+
+def _each_once(found: list[np.ndarray]) -> np.ndarray:
+    """Return cells without repetitions: version 2 of the format lists a cell for each group."""
+    cells = np.concatenate(found).astype(np.int64)
+    first = np.unique(np.sort(cells, axis=1), axis=0, return_index=True)[1]
+    return cells[np.sort(first)]
+
+
+def _blocks(mesh, names: list[str]):
+    """Return each block of cells and which of its cells are in any of these groups."""
+    for k, block in enumerate(mesh.cells):
+        inside = np.zeros(len(block.data), dtype=bool)
+        for name in names:
+            tag, dim = mesh.field_data[name]
+            if name in mesh.cell_sets:
+                inside[mesh.cell_sets[name][k]] = True
+            elif dim == block.dim and "gmsh:physical" in mesh.cell_data:
+                inside |= mesh.cell_data["gmsh:physical"][k] == tag
+        yield block, inside

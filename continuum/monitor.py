@@ -1,0 +1,152 @@
+"""The divergence monitor: how fast rock can become at most, and whether a run exceeds that.
+
+No node can be faster than all forces together can make it, and no energy come from nowhere."""
+
+import numpy as np
+
+from cases.material.calibrate import Properties
+from cases.sampling import Clock
+from cases.schema.scene import Scene
+from continuum.build import Discrete
+from continuum.model import Model, Samples, State
+from continuum.parallel.serial import Serial
+from continuum.scheme import Choice
+from continuum.space.body import axis
+from numerics.divergence import CREATED, ENERGY, EVERY, LAST_DIGITS, guard, look, speed_that
+from numerics.instability import Sighting, stopped
+
+
+class Monitor:
+    """Ends a run that exceeds its bounds; the kernel of leapfrog compares speeds by itself.
+
+    Attributes
+    ----------
+    guard : `numerics.divergence.Guard`. energy : the whole ledger [term, sample], J; None when not
+    kept.
+    parts : arrays that change with the run. time : its clock.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        discrete: Discrete,
+        model: Model,
+        state: State,
+        samples: Samples,
+        choice: Choice,
+        critical: float,
+    ) -> None:
+        self.scene, self.discrete, self.state = scene, discrete, state
+        self.communicator, self.time = discrete.body.communicator, choice.time
+        self.explicit, self.critical = choice.scheme == "explicit", critical
+        self.samples = samples
+        speed = highest_speed(
+            scene, discrete.properties, model, state, self.time, self.communicator
+        )
+        self.guard = guard(speed)
+        self.energy = samples.energy
+        self.parts: tuple = (self.guard,)
+        if samples.energy is not None and self.communicator.size > 1:
+            self.energy = np.zeros_like(samples.energy)
+            self.parts = self.guard, self.energy
+
+    def look(self, n: int) -> bool:
+        """Look at the speeds after n steps, and return whether the run is lost."""
+        look(self.guard, np.abs(self.state.v).max(initial=0.0), n)
+        return self.communicator.any(bool(self.guard.found[0] >= 0))
+
+    def finds(self, n: int) -> bool:
+        """Look now and then at implicit steps, after step n, and return whether the run is lost.
+
+        Their ledger is not exact, and what it is out by is no fault.
+        """
+        return self.look(n) if n % EVERY == 0 else False
+
+    def audit(self, first: int, last: int) -> None:
+        """Look for energy from nowhere in samples first .. last - 1 of the ledger."""
+        if self.energy is None or first == last:
+            return
+        if self.energy is not self.samples.energy:
+            self.energy[:, first:last] = self.communicator.sum(self.samples.energy[:, first:last])
+        energy, (_, peak, found), stride = self.energy[:, first:last], self.guard, self.time.stride
+        gained = energy - self.energy[:, :1]
+        largest = np.maximum.accumulate(np.abs(gained).max(axis=0))
+        created = gained[:-1].sum(axis=0) - gained[-1]
+        peaks = np.maximum(peak[0], largest)
+        allowed = CREATED * peaks + LAST_DIGITS * np.abs(energy).max(axis=0)
+        peak[0] = peaks[-1]
+        if (created > allowed).any():
+            n = (first + int((created > allowed).argmax())) * stride
+            if found[0] < 0 or n < found[0]:
+                found[:] = n, ENERGY, n - EVERY - 1
+
+    def check(self, first: int, last: int) -> None:
+        """Raise StoppedError where the run is lost when samples first .. last - 1 are taken, with
+        what all processes saw."""
+        n = (last - 1) * self.time.stride + 1
+        if self.explicit:
+            self.audit(first, last)
+        if not self.look(n):
+            return
+        step, what, sound = self.guard.found.tolist() if self.guard.found[0] >= 0 else (n, 0, n)
+        key = "step_fraction" if self.explicit else "steps_per_period"
+        seen = Sighting(
+            "the continuum",
+            f"numerics.continuum.{key}",
+            int(-self.communicator.largest(-step)),
+            int(-self.communicator.largest(-sound)),
+            bool(self.communicator.any(what == ENERGY)),
+            self.fastest(),
+        )
+        raise stopped(self.scene, self.time, self.critical if self.explicit else np.inf, seen)
+
+    def fastest(self) -> float:
+        """Return where along the pillar (m) the fastest node is."""
+        body = self.discrete.body
+        freedoms = body.freedom(np.arange(len(body.x))[:, None], np.arange(body.section.components))
+        speed = np.nan_to_num(np.abs(self.state.v[freedoms]).max(axis=1), nan=np.inf)
+        node = int(speed.argmax())
+        return self.communicator.of_largest(
+            float(speed[node]), float(body.x[node, axis(body.x.shape[1])])
+        )
+
+
+def highest_speed(
+    scene: Scene, p: Properties, model: Model, state: State, time: Clock, communicator: Serial
+) -> float:
+    """Return a bound on the speed of any node, m/s.
+
+    Where forces F put energy in, d sqrt(2 E) / dt is at most |F| in the norm of 1 / m, and m v^2 of
+    any node at most 2 E. Of a node that several processes share, the shares of F^2 / m add up to no
+    less than the whole: (a + b)^2 / (m + n) <= a^2 / m + b^2 / n.
+    """
+    mass, loaded, fixed = model.rock.mass, model.ends.loaded, model.ends.fixed
+    rock = mass > 0
+    least = np.sqrt(communicator.largest(1 / mass[rock].min()))
+    duration, stored, weight = time.dt * (time.steps + time.stride), 0.0, 0.0
+    pushed = shaken = 0.0
+    if loaded is not None:
+        drive = communicator.sum((loaded.share**2 / mass[loaded.freedom]).sum())
+        pushed = (model.dt * np.abs(loaded.pressure) * np.sqrt(drive)).sum()
+    if fixed is not None and fixed.step is not None:
+        speed = np.diff(fixed.step, prepend=0.0, append=0.0) / model.dt
+        shaken = np.abs(speed).sum() * np.sqrt(communicator.sum(mass[rock].sum()))
+    if model.weight is not None:
+        weight = np.sqrt(communicator.sum((model.weight[rock] ** 2 / mass[rock]).sum()))
+        stored = np.sqrt(2 * abs(communicator.sum(model.weight @ state.u)))
+    with np.errstate(over="ignore"):
+        pressed = _prestressed(scene, p) + duration * least * _pressing(scene, p)
+        return least * speed_that(pushed, shaken, duration * weight, stored, pressed)
+
+
+def _prestressed(scene: Scene, p: Properties) -> float:
+    """Return the root of twice the energy that a prestress keeps in rock and joints, sqrt(J)."""
+    if scene.prestress is None:
+        return 0.0
+    softness = p.block_count * p.spacing / p.modulus + np.abs(p.excess_compliance).sum()
+    return abs(scene.prestress.normal) * np.sqrt(p.area * softness)
+
+
+def _pressing(scene: Scene, p: Properties) -> float:
+    """Return what prestressed rock can push with on the two sides of a joint that opens, N."""
+    return 0.0 if scene.prestress is None else 2 * abs(scene.prestress.normal) * p.area

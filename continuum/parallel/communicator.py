@@ -1,0 +1,209 @@
+"""The processes that share a run: what they have in common, and what they do together."""
+
+import weakref
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cached_property
+
+import numpy as np
+from mpi4py import MPI
+from scipy.sparse import csr_matrix
+
+from continuum.explicit.march import march
+from continuum.parallel.connection import TAG, connect, release
+from continuum.parallel.exchange import add_shares
+from continuum.parallel.identity import Border, joined
+from continuum.parallel.serial import Pieces, Serial, T
+from numerics.divergence import EVERY
+
+
+class Communicator(Serial):
+    """Several processes, each with a share of the rock and of the joints.
+
+    Parameters
+    ----------
+    comm : mpi4py's communicator of those who share the run.
+    freedom : int array, the freedoms of this process, without those that only ghosts have.
+    border : int array [k], of these the ones that others may have too.
+    name : int array [k], ascending: what each of them is called by every process.
+    length : of the vectors of freedoms.
+    meeting : the cells where processes meet, and which of their nodes are the same.
+
+    Attributes
+    ----------
+    freedom, length : as given. rank, size : which of how many processes this is.
+    """
+
+    def __init__(
+        self,
+        comm,
+        freedom: np.ndarray,
+        border: np.ndarray,
+        name: np.ndarray,
+        length: int,
+        meeting: Border,
+    ) -> None:
+        self.comm, self.rank, self.size = comm, comm.rank, comm.size
+        self.freedom, self.length, self._meeting = freedom, length, meeting
+        self._common = [
+            border[np.isin(name, other, assume_unique=True)] for other in comm.allgather(name)
+        ]
+        self._all = connect(comm, self._common)
+        weakref.finalize(self, release, self._all)
+
+    def total(self, share: np.ndarray) -> np.ndarray:
+        """Return values on the freedoms [..., n], summed up over all who have each of them."""
+        found = np.array(share, dtype=float)
+        for values in found.reshape(-1, self.length):
+            _check(add_shares(self._all.link, values))
+        return found
+
+    def sum(self, value: float) -> float:
+        """Return the sum of one number of every process."""
+        return self.comm.allreduce(value)
+
+    def largest(self, value: float) -> float:
+        """Return the largest of one number of every process."""
+        return self.comm.allreduce(value, MPI.MAX)
+
+    def of_largest(self, value: float, about: T) -> T:
+        """Return what the process with the largest number says of it."""
+        return max(self.comm.allgather((value, -self.rank, about)))[2]
+
+    def all(self, holds: bool) -> bool:
+        """Return whether something holds on every process."""
+        return self.comm.allreduce(bool(holds), MPI.LAND)
+
+    def same(self, value: T) -> T:
+        """Return what the first process has."""
+        return self.comm.bcast(value)
+
+    def assembled(self, share: csr_matrix) -> csr_matrix | None:
+        """Return the sum of matrices on the freedoms [n, n] by `number`, on the first process."""
+        entries = share.tocoo()
+        row, column = self.number[entries.row], self.number[entries.col]
+        there = (row >= 0) & (column >= 0)
+        size = self.degrees_of_freedom
+        found = self._sent_to_first([row[there], column[there], entries.data[there]])
+        if not found:
+            return None
+        rows, columns, values = (np.concatenate(parts) for parts in zip(*found, strict=True))
+        return csr_matrix((values, (rows, columns)), (size, size))
+
+    def gather(self, waves: np.ndarray) -> None:
+        """Replace shares of waveforms by their sums over all processes, the same bits for all."""
+        whole = np.empty_like(waves)
+        self.comm.Reduce(waves, whole)
+        self.comm.Bcast(whole)
+        waves[:] = whole
+
+    def joined(self, pieces: Pieces) -> Pieces | None:
+        """Return the pieces of all processes as one; the first process alone, None on others."""
+        cell, table, of_cells, of_nodes = pieces
+        found = self._sent_to_first([cell, table, *of_cells, *of_nodes])
+        last = 2 + len(of_cells)
+        gathered = [Pieces(a[0], a[1], tuple(a[2:last]), tuple(a[last:])) for a in found]
+        return joined(gathered, self._meeting) if gathered else None
+
+    @contextmanager
+    def in_turn(self) -> Iterator[None]:
+        """Let the first process of every machine compile: the others find it in the cache."""
+        with in_turn(self.comm):
+            yield
+
+    def leapfrog(self, model, state, samples, stride, limits) -> Callable[[int, int], object]:
+        """Return a function of (first, last) that takes steps, as `explicit.march.march` does.
+
+        Freedoms whose motion is given need no force, and keep their shares of it, which sum up to
+        what moves them.
+        """
+        fixed = np.zeros(0) if model.ends.fixed is None else model.ends.fixed.freedom
+        connection = connect(self.comm, [f[~np.isin(f, fixed)] for f in self._common])
+        weakref.finalize(self, release, connection)
+        steps = march(model, state, samples, stride, limits, connection.link)
+
+        def run(first: int, last: int) -> None:
+            for n in range(first, max(last, first + 1), EVERY):
+                _check(steps(n, min(n + EVERY, last)))
+                # No step is taken to compile, where processes come one after the other.
+                if limits is not None and last > first and self.any(bool(limits.found[0] >= 0)):
+                    return
+
+        return run
+
+    @cached_property
+    def mine(self) -> np.ndarray:
+        """The freedoms that no process of a lower rank has, int array."""
+        lower = np.concatenate([np.zeros(0, dtype=np.int64), *self._common[: self.rank]])
+        return np.setdiff1d(self.freedom, lower)
+
+    @cached_property
+    def number(self) -> np.ndarray:
+        """Numbers of all freedoms together, int array [length]; -1 for padding and mere ghosts."""
+        first = self.comm.exscan(self.mine.size) or 0
+        found = np.zeros(self.length)
+        found[self.mine] = first + np.arange(self.mine.size)
+        found = self.total(found)
+        number = np.full(self.length, -1)
+        number[self.freedom] = np.rint(found[self.freedom])
+        return number
+
+    @cached_property
+    def degrees_of_freedom(self) -> int:
+        """How many freedoms there are in all."""
+        return 1 + int(self.largest(self.number.max()))
+
+    def count(self, here: int) -> int:
+        """Return how many freedoms there are in all."""
+        return self.degrees_of_freedom
+
+    def critical_step(self, *assembled) -> float:
+        """Return the critical step (s), from what each process has assembled."""
+        from continuum.parallel.critical import shared_critical_step
+
+        return shared_critical_step(self, *assembled)
+
+    def on_first(self, share: np.ndarray) -> np.ndarray:
+        """Return values [n] summed up as one vector by `number`, on the first process alone."""
+        found = np.zeros(self.degrees_of_freedom)
+        found[self.number[self.freedom]] = share[self.freedom]
+        whole = np.empty_like(found)
+        self.comm.Reduce(found, whole)
+        return whole
+
+    def _sent_to_first(self, arrays: list[np.ndarray]) -> list[list[np.ndarray]]:
+        """Return the arrays of every process on the first one, an empty list on others.
+
+        One message for each array: pickled together they might be longer than a message can be.
+        """
+        shapes = self.comm.gather([(a.shape, a.dtype) for a in arrays])
+        if self.rank:
+            for array in arrays:
+                self.comm.Send(np.ascontiguousarray(array), 0, TAG)
+            return []
+        found = [arrays]
+        for rank in range(1, self.size):
+            found.append([np.empty(*kind) for kind in shapes[rank]])
+            for array in found[-1]:
+                self.comm.Recv(array, rank, TAG)
+        return found
+
+
+def _check(code: int) -> None:
+    if code:
+        raise MPI.Exception(code)
+
+
+@contextmanager
+def in_turn(comm) -> Iterator[None]:
+    """Let the first process of every machine go before the others, and leave together."""
+    local = comm.Split_type(MPI.COMM_TYPE_SHARED)
+    if local.rank:
+        local.barrier()
+    try:
+        yield
+    finally:
+        if not local.rank:
+            local.barrier()
+        comm.barrier()
+        local.Free()

@@ -1,0 +1,101 @@
+"""The processes that share a run, seen from one of them; here the only one there is.
+
+`continuum.parallel.communicator` has the same for several. What is called on one is called on all
+of them, in the same order.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+T = TypeVar("T")
+
+
+class Pieces(NamedTuple):
+    """Values on some cells of a mesh, and on the nodes of these.
+
+    cell : int array [cells], their numbers in the whole mesh.
+    table : int array [cells, nodes per cell], nodes that values count from 0.
+    of_cells, of_nodes : arrays [cells, ...] and [nodes, ...].
+    """
+
+    cell: np.ndarray
+    table: np.ndarray
+    of_cells: tuple[np.ndarray, ...]
+    of_nodes: tuple[np.ndarray, ...]
+
+
+class Serial:
+    """One process that has all of the rock.
+
+    rank, size : which of how many processes this is.
+    """
+
+    rank = 0
+    size = 1
+
+    def total(self, share: np.ndarray) -> np.ndarray:
+        """Return values on the freedoms [..., n], summed up over all who have each of them."""
+        return share
+
+    def sum(self, value: float) -> float:
+        """Return the sum of one number of every process."""
+        return value
+
+    def largest(self, value: float) -> float:
+        """Return the largest of one number of every process."""
+        return value
+
+    def of_largest(self, value: float, about: T) -> T:
+        """Return what the process with the largest number says of it."""
+        return about
+
+    def all(self, holds: bool) -> bool:
+        """Return whether something holds on every process."""
+        return holds
+
+    def any(self, holds: bool) -> bool:
+        """Return whether something holds on any process."""
+        return not self.all(not holds)
+
+    def count(self, here: int) -> int:
+        """Return how many freedoms there are in all, of so many here."""
+        return here
+
+    def critical_step(self, *assembled) -> float:
+        """Return what `critical.critical_time_step` does for what all processes have assembled."""
+        from continuum.explicit.critical import critical_time_step
+
+        return critical_time_step(*assembled)
+
+    def same(self, value: T) -> T:
+        """Return what the first process has."""
+        return value
+
+    def assembled(self, share: csr_matrix) -> csr_matrix | None:
+        """Return the sum of matrices on the freedoms, on the first process alone."""
+        return share
+
+    def gather(self, waves: np.ndarray) -> None:
+        """Replace shares of waveforms by their sums over all processes."""
+
+    def joined(self, pieces: Pieces) -> Pieces | None:
+        """Return the pieces of all processes as one; the first process alone, None on others."""
+        return pieces
+
+    @contextmanager
+    def in_turn(self) -> Iterator[None]:
+        """Let the first process of every machine compile: the others find it in the cache."""
+        yield
+
+    def leapfrog(self, model, state, samples, stride, limits) -> Callable[[int, int], object]:
+        """Return a function of (first, last) that takes steps, as `explicit.march.march` does."""
+        from continuum.explicit.march import march
+
+        return march(model, state, samples, stride, limits)
+
+
+SERIAL = Serial()

@@ -1,0 +1,153 @@
+"""The joint law at the quadrature points: forces of the joints, their tangents, their energy.
+
+All arrays of points are [directions, q]: the normal first, then along x and z. Arrays of effects
+that the law does not have are None. With the jump operator B (displacements to jumps), the areas W
+and the traction t (compression positive, on the far side) the force on the freedoms is B^T W t.
+"""
+
+from joints.flat.energy import fracture_energy_spent, friction_work
+from joints.flat.formula import formula
+from joints.flat.law import History, law_of
+from joints.flat.normal import normal_traction, spring_traction
+from joints.flat.shear import cohesion_left, shear_return, shear_strength, shear_traction
+from joints.flat.tangent import tangent
+
+#: Rows of the tangents: t_n with the gap; t_x, t_z with it; t_x with x, either with the other, t_z
+#: with z.
+NN, XN, ZN, XX, XZ, ZZ = range(6)
+
+
+@formula
+def joint_loads(
+    parts, directions, shears, table, area, prestress,
+    jump, rate, slip_rate, opening, slide, cohesion, loads, drags, dt,
+):  # fmt: skip
+    """Set the forces W t (N) of all points, and what the points remember; return the work of
+    sliding in this step, J.
+
+    parts, directions : constants of the caller; shears : None without shear.
+    table, area, prestress : as in `Interfaces`.
+    jump, m; rate : of the jump, m/s; slip_rate : of the slip over the step, m/s.
+    opening, slide, cohesion : history, replaced. loads : of the springs, prestress left out;
+    drags : of the dashpots, None where loads have all.
+    """
+    sliding, law, carried = 0.0, law_of(table, 0), 0.0
+    if prestress is not None:
+        carried = prestress
+    for q in range(area.size):
+        if parts.varied:
+            law = law_of(table, q)
+        gap, gap_rate = jump[0, q], 0.0
+        if prestress is not None:
+            gap -= prestress / law.normal_stiffness
+        if rate is not None:
+            gap_rate = rate[0, q]
+        widest = gap
+        if opening is not None:
+            widest = max(opening[q], gap)
+            opening[q] = widest
+        t_n = normal_traction(law, parts, gap, gap_rate, widest)
+        spring = t_n
+        if drags is not None:
+            spring = spring_traction(law, parts, gap, widest)
+            drags[0, q] = area[q] * (t_n - spring)
+        loads[0, q] = area[q] * (spring - carried)
+        if shears is not None:
+            x, z = jump[1, q], jump[2, q] if directions == 3 else 0.0
+            rate_x, rate_z = 0.0, 0.0
+            if rate is not None:
+                rate_x, rate_z = rate[1, q], rate[2, q] if directions == 3 else 0.0
+            if slide is None:
+                t_x, t_z = shear_traction(law, parts, x, z, rate_x, rate_z)
+            else:
+                x, z = x - slide[0, q], z - slide[1, q] if directions == 3 else 0.0
+                dx, dz = dt * slip_rate[1, q], dt * slip_rate[2, q] if directions == 3 else 0.0
+                left = 0.0
+                if cohesion is not None:
+                    left = cohesion[q]
+                tau = shear_strength(law, parts, t_n, gap, widest, left)
+                t_x, t_z, ex, ez, slipped = shear_return(
+                    law, parts, x, z, x - dx, z - dz, rate_x, rate_z, tau, dt
+                )
+                if slipped:
+                    slide[0, q] += x - ex
+                    if directions == 3:
+                        slide[1, q] += z - ez
+                    if cohesion is not None:
+                        cohesion[q] = cohesion_left(law, parts, left, True)
+                    sliding += area[q] * friction_work(law, x - dx, z - dz, ex, ez, dx, dz)
+                x, z = ex, ez
+            if drags is not None:
+                spring_x, spring_z = -law.shear_stiffness * x, -law.shear_stiffness * z
+                drags[1, q] = area[q] * (t_x - spring_x)
+                if directions == 3:
+                    drags[2, q] = area[q] * (t_z - spring_z)
+                t_x, t_z = spring_x, spring_z
+            loads[1, q] = area[q] * t_x
+            if directions == 3:
+                loads[2, q] = area[q] * t_z
+    return sliding
+
+
+@formula
+def joint_energy(parts, directions, table, area, prestress, jump, opening, slide, loads):
+    """Return the elastic energy of the joints, half of their forces times elastic displacements
+    less what prestressed rock gives off as they open, and what opening them has spent, J."""
+    stored, spent = 0.0, 0.0
+    for q in range(area.size):
+        gap, push = jump[0, q], loads[0, q]
+        if prestress is not None:
+            stored += area[q] * prestress * gap
+            gap -= prestress / table[0, q if parts.varied else 0]
+            push += area[q] * prestress
+        stored -= 0.5 * push * gap
+        for d in range(1, directions):
+            slip = jump[d, q]
+            if slide is not None:
+                slip -= slide[d - 1, q]
+            stored -= 0.5 * loads[d, q] * slip
+        if opening is not None:
+            law = law_of(table, q if parts.varied else 0)
+            spent += area[q] * fracture_energy_spent(law, opening[q])
+    return stored, spent
+
+
+@formula
+def joint_tangents(
+    parts, directions, shears, table, area, prestress,
+    jump, rate, opening, slide, cohesion, r, stiffness,
+):  # fmt: skip
+    """Set how the joints resist displacement, [6, q], N/m: the tangents at every point less than
+    zero, times its area.
+
+    opening, slide, cohesion : history before the step; r : rate factor, 1/s
+    (`joints.flat.tangent`); the rest is as for `joint_loads`.
+    """
+    law = law_of(table, 0)
+    for q in range(area.size):
+        if parts.varied:
+            law = law_of(table, q)
+        gap, gap_rate = jump[0, q], 0.0
+        x, z, rate_x, rate_z, widest, left = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        if prestress is not None:
+            gap -= prestress / law.normal_stiffness
+        if opening is not None:
+            widest = opening[q]
+        if cohesion is not None:
+            left = cohesion[q]
+        if rate is not None:
+            gap_rate = rate[0, q]
+        if shears is not None:
+            x, z = jump[1, q], jump[2, q] if directions == 3 else 0.0
+            if rate is not None:
+                rate_x, rate_z = rate[1, q], rate[2, q] if directions == 3 else 0.0
+            if slide is not None:
+                x, z = x - slide[0, q], z - slide[1, q] if directions == 3 else 0.0
+        # The whole elastic slip of the trial: what the step adds to the old one is in it.
+        before = History(widest, x, z, left)
+        found = tangent(law, parts, gap, gap_rate, (0.0, 0.0), (rate_x, rate_z), before, r)
+        stiffness[NN, q] = -area[q] * found.nn
+        if shears is not None:
+            stiffness[XN, q], stiffness[ZN, q] = -area[q] * found.xn, -area[q] * found.zn
+            stiffness[XX, q], stiffness[XZ, q] = -area[q] * found.xx, -area[q] * found.xz
+            stiffness[ZZ, q] = -area[q] * found.zz

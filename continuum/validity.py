@@ -1,0 +1,58 @@
+"""Which scenes the continuum can simulate, and why not the others."""
+
+import numpy as np
+
+from cases.material.calibrate import Properties, calibrate
+from cases.schema.scene import Scene
+from continuum.joints import resolved_joints
+from continuum.kinematics import holds, kinematics
+
+
+def applies(scene: Scene, model: str = "jointed", dim: int | None = None) -> str:
+    """Return "" where this model can simulate the scene, else the reason why not."""
+    p, motion = calibrate(scene), kinematics(scene, dim)
+    reason = holds(scene, motion.dim) or _beyond(scene, p)
+    if reason:
+        return reason
+    if model == "jointed":
+        reason = "" if p.intact_modulus else "the jointed rock needs rock.intact_modulus"
+    else:
+        reason = _beyond_the_homogenised(p, motion.shears)
+    if reason:
+        return reason
+    joints = resolved_joints(p, model, motion.shears)
+    return _beyond_shear(joints.shear_stiffness[joints.number]) if motion.shears else ""
+
+
+def _beyond_shear(stiffness: np.ndarray) -> str:
+    if not np.isfinite(stiffness).all():
+        return "the intact rock alone is softer in shear than rock and joint together should be"
+    if (stiffness < 0).any():
+        return "a joint stiffer than the others in shear cannot be added to the homogenised rock"
+    return ""
+
+
+def _beyond(scene: Scene, p: Properties) -> str:
+    if p.local_damping is not None:
+        return "the continuum has no local damping"
+    if scene.ends.start == "fixed" and not scene.load.shakes_base and scene.load.amplitude:
+        return "the load acts on a fixed face"
+    return ""
+
+
+def _beyond_the_homogenised(p: Properties, shears: bool) -> str:
+    ordinary = np.setdiff1d(np.arange(p.block_count - 1), p.soft)
+    if not p.tension[ordinary].all():
+        return "a homogenised bar has no joints to open where tension is barred"
+    if (p.excess_compliance < 0).any():
+        return "a joint stiffer than the others cannot be added to the homogenised bar"
+    if p.damps_alone.any():
+        return "a homogenised bar cannot damp one ordinary joint by itself"
+    from joints.shear import UNLIMITED
+
+    for strength in (p.cohesion if shears else None, p.tensile_strength):
+        if strength is not None and (strength[ordinary] < UNLIMITED).any():
+            return "a homogenised bar has no joints that slide or break"
+    if shears and p.cohesion is None and p.friction is not None:
+        return "a homogenised bar has no joints that slide"
+    return ""

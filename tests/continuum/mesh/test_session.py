@@ -1,0 +1,43 @@
+"""gmsh leaves the process as it found it."""
+
+import locale
+import signal
+
+import pytest
+
+from continuum.mesh.session import gmsh_session
+
+
+def test_interrupts_and_notation_stay(capfd):
+    def handler(number, frame):
+        raise AssertionError
+
+    notation, before = locale.setlocale(locale.LC_NUMERIC), signal.signal(signal.SIGINT, handler)
+    try:
+        with gmsh_session() as gmsh:
+            inside = signal.getsignal(signal.SIGINT)
+            gmsh.model.occ.addRectangle(0, 0, 0, 1, 1)
+            gmsh.model.occ.synchronize()
+            gmsh.model.mesh.generate(2)
+        assert inside is handler
+        assert signal.getsignal(signal.SIGINT) is handler
+        assert locale.setlocale(locale.LC_NUMERIC) == notation
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_session_ends_with_an_error_too():
+    with pytest.raises(ZeroDivisionError), gmsh_session():
+        raise ZeroDivisionError
+    with gmsh_session() as gmsh:
+        assert gmsh.model.getEntities() == []
+
+
+def test_an_open_session_is_refused_where_gmsh_can_tell():
+    with gmsh_session() as gmsh:
+        if not hasattr(gmsh, "isInitialized"):
+            pytest.skip("gmsh before 4.9 cannot tell")
+        with pytest.raises(RuntimeError, match="gmsh is in use"), gmsh_session():
+            pass
+        assert gmsh.model.getEntities() == []
