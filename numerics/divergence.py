@@ -115,8 +115,8 @@ def gains_energy(peak, energy, s):
     for k in range(work + 1):
         gained = energy[k, s] - energy[k, 0]
         created += -gained if k == work else gained
-        peak[0] = max(peak[0], abs(gained))
-        most = max(most, abs(energy[k, s]))
+        peak[0] = abs(gained) if abs(gained) > peak[0] else peak[0]
+        most = abs(energy[k, s]) if abs(energy[k, s]) > most else most
     return created > CREATED * peak[0] + LAST_DIGITS * most
 
 

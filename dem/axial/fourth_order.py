@@ -178,7 +178,7 @@ def loop_for(effects):
     ):  # fmt: skip
         tiny = flush_tiny()
         tail, law = u.size - 1, law_of(laws, 0)
-        due = min(first + every, last)
+        due = first + every if first + every < last else last
         for n in range(first, last):
             if n == s * stride:
                 spring_forces(parts, c.area, laws, u, force, force)
@@ -238,7 +238,7 @@ def loop_for(effects):
                 if out_of_bounds(v, limit):
                     found[0], found[1], found[2] = n + 1, SPEED, n - EVERY
                     break
-                due = min(due + every, last)
+                due = due + every if due + every < last else last
         restore_tiny(tiny)
 
     return loop

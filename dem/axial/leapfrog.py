@@ -87,7 +87,7 @@ def loop_for(effects):
     ):  # fmt: skip
         tiny = flush_tiny()
         count, law, dt, x = u.size, law_of(laws, 0), c.dt, c.impulse_to_speed
-        due = min(first + every, last)
+        due = first + every if first + every < last else last
         for n in range(first, last):
             # Forces of the joints, compression positive.
             for j in range(count - 1):
@@ -219,7 +219,7 @@ def loop_for(effects):
                 if lost >= 0:
                     found[0], found[1], found[2] = lost, what, lost - EVERY - 1
                     break
-                due = min(due + every, last)
+                due = due + every if due + every < last else last
         restore_tiny(tiny)
 
     return loop
