@@ -30,7 +30,7 @@ from cases.material.calibrate import calibrate
 from cases.sampling import Clock, clock
 from cases.schema.scene import Scene
 from dem.axial.model import Model, unloaded
-from dem.axial.samples import Samples, buffers, sample
+from dem.axial.samples import Samples, buffers
 from dem.axial.springs import spring_forces
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State, state_at_rest
@@ -185,10 +185,13 @@ def loop_for(effects):
                 start[1], end[1] = c.start.stiffness * start[0], c.end.stiffness * end[0]
                 force[0] = (load[n] if n < load.size else 0.0) + c.start_force + start[1]
                 force[tail + 1] = end[1] + c.end_force
-                sample(
-                    s, c.area, force, u, v, left, right, weight, before, after, share,
-                    stress, velocity, displacement,
-                )  # fmt: skip
+                for i in range(left.size):
+                    f = (1.0 - weight[i]) * force[left[i]] + weight[i] * force[right[i]]
+                    stress[i, s] = f / c.area
+                for i in range(before.size):
+                    a, b, w = before[i], after[i], share[i]
+                    velocity[i, s] = (1.0 - w) * v[a] + w * v[b]
+                    displacement[i, s] = (1.0 - w) * u[a] + w * u[b]
                 if ledger:
                     in_ends = 0.5 * start[1] * start[0] + 0.5 * end[1] * end[0]
                     if n == 0:
