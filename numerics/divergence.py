@@ -113,10 +113,11 @@ def gains_energy(peak, energy, s):
     """
     work, created, most = energy.shape[0] - 1, 0.0, 0.0
     for k in range(work + 1):
-        gained = energy[k, s] - energy[k, 0]
+        now = energy[k, s]
+        gained = now - energy[k, 0]
         created += -gained if k == work else gained
-        peak[0] = max(peak[0], abs(gained))
-        most = max(most, abs(energy[k, s]))
+        peak[0] = abs(gained) if abs(gained) > peak[0] else peak[0]
+        most = abs(now) if abs(now) > most else most
     return created > CREATED * peak[0] + LAST_DIGITS * most
 
 

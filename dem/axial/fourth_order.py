@@ -30,7 +30,7 @@ from cases.material.calibrate import calibrate
 from cases.sampling import Clock, clock
 from cases.schema.scene import Scene
 from dem.axial.model import Model, unloaded
-from dem.axial.samples import Samples, buffers, sample
+from dem.axial.samples import Samples, buffers
 from dem.axial.springs import spring_forces
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State, state_at_rest
@@ -178,17 +178,20 @@ def loop_for(effects):
     ):  # fmt: skip
         tiny = flush_tiny()
         tail, law = u.size - 1, law_of(laws, 0)
-        due = min(first + every, last)
+        due = first + every if first + every < last else last
         for n in range(first, last):
             if n == s * stride:
                 spring_forces(parts, c.area, laws, u, force, force)
                 start[1], end[1] = c.start.stiffness * start[0], c.end.stiffness * end[0]
                 force[0] = (load[n] if n < load.size else 0.0) + c.start_force + start[1]
                 force[tail + 1] = end[1] + c.end_force
-                sample(
-                    s, c.area, force, u, v, left, right, weight, before, after, share,
-                    stress, velocity, displacement,
-                )  # fmt: skip
+                for i in range(left.size):
+                    f = (1.0 - weight[i]) * force[left[i]] + weight[i] * force[right[i]]
+                    stress[i, s] = f / c.area
+                for i in range(before.size):
+                    a, b, w = before[i], after[i], share[i]
+                    velocity[i, s] = (1.0 - w) * v[a] + w * v[b]
+                    displacement[i, s] = (1.0 - w) * u[a] + w * u[b]
                 if ledger:
                     in_ends = 0.5 * start[1] * start[0] + 0.5 * end[1] * end[0]
                     if n == 0:
@@ -238,7 +241,7 @@ def loop_for(effects):
                 if out_of_bounds(v, limit):
                     found[0], found[1], found[2] = n + 1, SPEED, n - EVERY
                     break
-                due = min(due + every, last)
+                due = due + every if due + every < last else last
         restore_tiny(tiny)
 
     return loop

@@ -13,7 +13,7 @@ import numpy as np
 
 from dem.axial.ends import end_reaction
 from dem.axial.model import Model
-from dem.axial.samples import Samples, buffers, sample
+from dem.axial.samples import Samples, buffers
 from dem.axial.state import State
 from joints.flat.energy import elastic_energy, fracture_energy_spent
 from joints.flat.law import law_of
@@ -87,7 +87,7 @@ def loop_for(effects):
     ):  # fmt: skip
         tiny = flush_tiny()
         count, law, dt, x = u.size, law_of(laws, 0), c.dt, c.impulse_to_speed
-        due = min(first + every, last)
+        due = first + every if first + every < last else last
         for n in range(first, last):
             # Forces of the joints, compression positive.
             for j in range(count - 1):
@@ -147,10 +147,13 @@ def loop_for(effects):
 
             sampled = n == s * stride
             if sampled:
-                sample(
-                    s, c.area, force, u, v, left, right, weight, before, after, share,
-                    stress, velocity, displacement,
-                )  # fmt: skip
+                for i in range(left.size):
+                    f = (1.0 - weight[i]) * force[left[i]] + weight[i] * force[right[i]]
+                    stress[i, s] = f / c.area
+                for i in range(before.size):
+                    a, b, w = before[i], after[i], share[i]
+                    velocity[i, s] = (1.0 - w) * v[a] + w * v[b]
+                    displacement[i, s] = (1.0 - w) * u[a] + w * u[b]
                 if ledger:
                     # v_before holds the energies of all joints first.
                     largest = 0.0
@@ -219,7 +222,7 @@ def loop_for(effects):
                 if lost >= 0:
                     found[0], found[1], found[2] = lost, what, lost - EVERY - 1
                     break
-                due = min(due + every, last)
+                due = due + every if due + every < last else last
         restore_tiny(tiny)
 
     return loop

@@ -7,7 +7,6 @@ import numpy as np
 from dem.axial.model import Effects, Model
 from dem.axial.state import State
 from numerics.aligned import zeros
-from numerics.formula import formula
 
 
 class Samples(NamedTuple):
@@ -43,17 +42,3 @@ def buffers(model: Model, state: State, samples: int) -> Samples:
         energy=np.zeros((len(terms(model.effects)), samples)) if ledger else None,
         v_before=zeros(state.v.size) if ledger else None,
     )
-
-
-@formula
-def sample(
-    s, area, force, u, v, left, right, weight, before, after, share, stress, velocity, displacement
-):
-    """Sample the receivers; left, right, weight : of sections, before, after, share : of points."""
-    for i in range(left.size):
-        f = (1.0 - weight[i]) * force[left[i]] + weight[i] * force[right[i]]
-        stress[i, s] = f / area
-    for i in range(before.size):
-        a, b, w = before[i], after[i], share[i]
-        velocity[i, s] = (1.0 - w) * v[a] + w * v[b]
-        displacement[i, s] = (1.0 - w) * u[a] + w * u[b]

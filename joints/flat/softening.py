@@ -17,7 +17,8 @@ def strength_left(law, opening):
     """Return s(k) (Pa), the tension that a joint opened by k (m) can carry again."""
     first = law.tensile_strength / law.normal_stiffness
     slope = law.tensile_strength / (law.critical_opening - first)
-    falling = max(slope * (law.critical_opening - opening), 0.0)
+    falling = slope * (law.critical_opening - opening)
+    falling = 0.0 if falling < 0.0 else falling
     return law.tensile_strength if opening <= first else falling
 
 
@@ -25,7 +26,8 @@ def strength_left(law, opening):
 def stiffness_left(law, opening):
     """Return the secant stiffness over K: 1 before the strength is reached, 0 when broken."""
     first = law.tensile_strength / law.normal_stiffness
-    secant = strength_left(law, opening) / (law.normal_stiffness * max(opening, first))
+    beyond = first if opening <= first else opening
+    secant = strength_left(law, opening) / (law.normal_stiffness * beyond)
     return 1.0 if opening <= first else secant
 
 
