@@ -4,20 +4,15 @@ Titles and names come from others: no text gets here that is not `printable`.
 """
 
 import json
+import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from itertools import zip_longest
+from threading import Event, Thread
+from time import monotonic
 from typing import Any
 
 from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    Progress,
-    TaskProgressColumn,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
 from rich.table import Table
 from rich.text import Text
 
@@ -27,25 +22,49 @@ WIDEST = 220  # a pipe has no width to respect: a machine or a log gets whole li
 
 
 @contextmanager
-def progress(label: str) -> Iterator[Callable[[float], None]]:
-    """Show a bar on standard error while something runs, and clear it at the end.
+def progress(label: str, every: float = 30.0) -> Iterator[Callable[[float], None]]:
+    """Show on standard error what is being done, while it runs.
 
-    With what is done, the time that it took and the time that is left; on a terminal only.
+    On a terminal a bar, with the time that it took and the time that is left, cleared at the end;
+    elsewhere a line every so many seconds.
     """
+    shown = _bar(label) if Console(stderr=True).is_terminal else _lines(label, every)
+    with shown as advance:
+        yield advance
+
+
+@contextmanager
+def _bar(label: str) -> Iterator[Callable[[float], None]]:
+    from rich import progress as rich
+
     columns = (
-        TextColumn("{task.description}", markup=False),
-        BarColumn(),
-        TaskProgressColumn(),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
+        rich.TextColumn("{task.description}", markup=False),
+        rich.BarColumn(),
+        rich.TaskProgressColumn(),
+        rich.TimeElapsedColumn(),
+        rich.TextColumn("left"),
+        rich.TimeRemainingColumn(),
     )
-    console = Console(stderr=True)
-    with Progress(
-        *columns, console=console, transient=True, disable=not console.is_terminal
-    ) as bar:
+    with rich.Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(printable(label), total=1.0)
         yield lambda fraction: bar.update(task, completed=fraction)
+
+
+@contextmanager
+def _lines(label: str, every: float) -> Iterator[Callable[[float], None]]:
+    done, ended, began = [0.0], Event(), monotonic()
+
+    def tell() -> None:
+        while not ended.wait(every):
+            line = f"{printable(label)}: {done[0]:.0%} after {monotonic() - began:.0f} s"
+            with suppress(OSError, ValueError):  # nobody may be there to read it
+                print(f"jointwave: {line}", file=sys.stderr, flush=True)
+
+    Thread(target=tell, daemon=True).start()
+    try:
+        yield lambda fraction: done.__setitem__(0, fraction)
+    finally:
+        ended.set()
 
 
 def say(text: str, style: str = "") -> None:

@@ -61,7 +61,7 @@ def effects(
 
         dry_run.show_effects(wanted, out, as_json)
         return
-    with locked(out), terminal.progress(f"{len(wanted)} variants") as advance:
+    with locked(out), terminal.progress(f"effects of {len(wanted)} variants") as advance:
         found = on_pool(
             started(), workers, lambda pool: ablation_runs.run(wanted, out, pool, advance)
         )
@@ -187,7 +187,7 @@ def report(
 
         dry_run.show_report(scenes or (), out, as_json)
         return
-    with locked(out, out / "figures", out / "studies"), terminal.progress("scenes") as advance:
+    with locked(out, out / "figures", out / "studies"), terminal.progress("report") as advance:
         found = build(out, advance, scenes=scenes or (), peers_table=peers)
     views.show_report(found, as_json)
 

@@ -57,9 +57,29 @@ def test_progress_says_what_is_done_and_how_long_it_will_take():
 
 
 @pytest.mark.parametrize("stream", ["stdout", "stderr"])
-def test_nothing_of_it_reaches_a_pipe(stream):
+def test_nothing_of_what_is_soon_done_reaches_a_pipe(stream):
     done = subprocess.run([sys.executable, "-c", SLOW], capture_output=True, text=True)
     assert getattr(done, stream) == ""
+
+
+def test_a_pipe_gets_a_line_now_and_then():
+    """On standard error alone, with what is done so far; none is left once the work has ended."""
+    often = SLOW.replace('parts"', 'parts", every=0.4') + "sleep(0.6)"
+    done = subprocess.run([sys.executable, "-c", often], capture_output=True, text=True)
+    assert done.stdout == ""
+    lines = done.stderr.splitlines()
+    said = [re.fullmatch(r"jointwave: \[bold\]ten parts: (\d+)% after \d s", x) for x in lines]
+    assert len(said) in (2, 3) and all(said)
+    shares = [int(one[1]) for one in said]
+    assert shares == sorted(shares) and 0 < shares[0] < 100
+
+
+@pytest.mark.parametrize("stream", ["closed", "broken"])
+def test_a_pipe_that_nobody_reads_does_not_end_the_work(stream):
+    close = "sys.stderr.close()" if stream == "closed" else "os.close(2)"
+    code = f"import os, sys\n{close}\n" + SLOW.replace('parts"', 'parts", every=0.1')
+    done = subprocess.run([sys.executable, "-c", code + "print('whole')"], stdout=subprocess.PIPE)
+    assert done.stdout == b"whole\n"
 
 
 def test_colours_are_for_a_terminal_that_wants_them():
