@@ -1,9 +1,7 @@
 """How a study is run: every point once, kept as soon as it is done, on any executor."""
 
-import fcntl
 import hashlib
 import json
-import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, as_completed
 from contextlib import contextmanager, nullcontext
@@ -15,7 +13,7 @@ from compare.experiments.cost import timings
 from compare.experiments.study.measure import Row, measure
 from compare.experiments.study.pareto import judged
 from compare.experiments.study.study import Point, Study
-from compare.runs.checkpoint.lock import opened
+from compare.runs.checkpoint.lock import exclusive
 from compare.runs.checkpoint.signature import program
 from compare.runs.output import read_kept, write_text
 
@@ -85,9 +83,5 @@ def key(point: Point) -> str:
 @contextmanager
 def alone() -> Iterator[None]:
     """Wait until no other timed study is running on this machine."""
-    handle = opened(Path(gettempdir(), "jointwave-timing.lock"))
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX)
+    with exclusive(Path(gettempdir()), wait=True):
         yield
-    finally:
-        os.close(handle)
