@@ -15,6 +15,9 @@ import cases
 settings.register_profile("jointwave", deadline=None)
 settings.load_profile("jointwave")
 
+# Nor does a test how long it takes: no command that it runs speaks of its progress.
+os.environ["JOINTWAVE_PROGRESS"] = "0"
+
 PILLAR = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
 
 #: Open MPI refuses root and more processes than processors unless told otherwise, binds all jobs

@@ -26,7 +26,7 @@ from compare.cli import program, start, terminal
 from compare.experiments.study.study import load as load_study
 from compare.figures.export import save
 from compare.misfit.external_files import read_columns
-from compare.runs.checkpoint.lock import NAME, locked, opened
+from compare.runs.checkpoint.lock import locked
 from compare.runs.jobs import plan
 from compare.runs.output import refuse_foreign, write, write_csv, write_folder
 
@@ -502,18 +502,11 @@ def test_own_tables_are_read_as_curves_again(tmp_path):
     assert found.rest[0].values.tolist() == wave["stress@20 [Pa]"]
 
 
-@pytest.mark.parametrize("kind", ["link", "link to nothing", "pipe"])
-def test_a_lock_follows_no_link(tmp_path, kind):
-    """Nor does it wait for a pipe; what the link leads to stays as it was, or away."""
-    diary, place = tmp_path / "diary", tmp_path / NAME
-    if kind == "pipe":
-        os.mkfifo(place)
-    else:
-        place.symlink_to(diary)
-    if kind == "link":
-        diary.write_text("my diary")
-    with pytest.raises(SceneError, match=r"is (a link|no file), remove it"), locked(tmp_path):
-        pass
-    with pytest.raises(SceneError, match=r"is (a link|no file), remove it"):
-        opened(place)
-    assert diary.exists() == (kind == "link") and os.path.lexists(place)
+def test_a_lock_leaves_no_file_and_is_refused_to_another(tmp_path):
+    """It is one on the folder itself: there is no file that a link could lead elsewhere."""
+    folder = tmp_path / "new" / "folder"
+    with locked(folder):
+        assert list(folder.iterdir()) == []
+        with pytest.raises(SceneError, match="another jointwave is writing here"), locked(folder):
+            pass
+    assert list(tmp_path.iterdir()) == []

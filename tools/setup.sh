@@ -9,11 +9,28 @@ cd "$(dirname "$0")/.."
 say() { printf 'setup: %s\n' "$*"; }
 fail() { printf 'setup: %s\n' "$*" >&2; exit 1; }
 
+every=30  # s
+
+# Runs a command; every half minute that it takes, a line on standard error says what it does.
+telling() {  # what, command ...
+    local what=$1 code=0 began=$SECONDS teller
+    shift
+    # What sleeps on after the end holds no pipe open.
+    while sleep "$every" </dev/null >/dev/null 2>&1; do say "$what, for $((SECONDS - began)) s" >&2; done &
+    teller=$!
+    "$@" || code=$?
+    kill "$teller"
+    wait "$teller" 2>/dev/null || true
+    return "$code"
+}
+
 # Judge the user's own Python, not a .venv made here before that happens to be active.
 PATH=$(printf %s "$PATH" | tr : '\n' | grep -vFx -e "$PWD/.venv/bin" | paste -sd: -)
 unset PYTHONHOME
 
 imports_dolfinx() { "$1" -c 'import dolfinx, ensurepip, sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1; }
+
+in_log() { local log=$1; shift; "$@" >"$log" 2>&1; }
 
 # apt-get, as root or through sudo; fails where there is neither.
 apt_install() {
@@ -29,11 +46,11 @@ apt_install() {
     say "${admin[*]:+sudo }apt-get install ${missing[*]}"
     local get=("${admin[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=600)
     # A bare image has no package lists.
-    apt-cache show "${missing[@]}" >/dev/null 2>&1 || "${get[@]}" update >&2 || return 1
+    apt-cache show "${missing[@]}" >/dev/null 2>&1 || telling 'apt-get update' "${get[@]}" update >&2 || return 1
     local log
     log=$(mktemp)
     # Packages chat on standard error too: show its end only if it matters.
-    if "${get[@]}" install -y --no-install-recommends "${missing[@]}" >"$log" 2>&1; then rm "$log"; return 0; fi
+    if telling 'apt-get install' in_log "$log" "${get[@]}" install -y --no-install-recommends "${missing[@]}"; then rm "$log"; return 0; fi
     tail -n 5 "$log" >&2
     say "apt-get failed, see $log"
     return 1
@@ -66,8 +83,8 @@ make_conda() {
     conda=$(command -v micromamba || command -v mamba || command -v conda) || return 1
     say "$(basename "$conda") creates .venv from environment.yml (some minutes)"
     case $(basename "$conda") in
-        micromamba) micromamba create -y -q -p ./.venv -f environment.yml ;;
-        *) "$conda" env create -q -p ./.venv -f environment.yml ;;
+        micromamba) telling 'micromamba create' micromamba create -y -q -p ./.venv -f environment.yml ;;
+        *) telling 'conda env create' "$conda" env create -q -p ./.venv -f environment.yml ;;
     esac
 }
 
@@ -80,7 +97,7 @@ install_project() {  # with these extras
     fi
     say "pip install -e .[$1] $constraints (about a minute)"
     # shellcheck disable=SC2086
-    .venv/bin/python -m pip --disable-pip-version-check install -q $constraints -e ".[$1]"
+    telling 'pip install' .venv/bin/python -m pip --disable-pip-version-check install -q $constraints -e ".[$1]"
 }
 
 install_browser() {

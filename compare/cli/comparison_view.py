@@ -15,6 +15,7 @@ from compare.report.verdict import Standing, held_to, standings
 from results.dataset import energy_residual
 
 MOST_LINES = 10  # of the answer
+HINT = "every distance and bound, and what does not apply: --all; as JSON: --json"
 ANSWER = ["engine", "worst misfit", "of", "held against", "own error", "stepping", "verdict"]
 
 
@@ -37,7 +38,7 @@ def _show_answer(found: list[Comparison], every: bool) -> None:
     say(f"{found[0].scene.title}{count or f' {found[0].scene.name}'}".rstrip(), "bold")
     show_table(ANSWER, [_engine_cells(e, one, found, several) for e, one in stand.items()])
     below = [*_remarks(stand, several)]
-    hint = "" if every else "every distance, and what does not apply: --all; as JSON: --json"
+    hint = "" if every else HINT
     room = MOST_LINES - 2 - len(stand) - len(below) - bool(hint)
     files = [*_files(found)]
     if len(files) > room:

@@ -1,6 +1,5 @@
 """The entry of `jointwave`: what goes wrong is one line and an exit code, never a traceback."""
 
-import gc
 import os
 import sys
 import traceback
@@ -35,8 +34,6 @@ LONGEST = 1500  # characters of a message; an argument or a path in it may be of
 
 def main() -> None:
     """Run the command line; every mistake is one line on standard error and a non-zero exit."""
-    # What is imported stays: looking through it for garbage costs a tenth of a short run.
-    gc.set_threshold(100_000)
     if len(sys.argv) == 1:
         sys.argv.append("--help")
     processes = Processes()

@@ -4,48 +4,73 @@ Titles and names come from others: no text gets here that is not `printable`.
 """
 
 import json
+import os
+import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from itertools import zip_longest
+from threading import TIMEOUT_MAX, Event, Thread
+from time import monotonic
 from typing import Any
 
 from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    Progress,
-    TaskProgressColumn,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
 from rich.table import Table
 from rich.text import Text
 
-from cases.errors import printable
+from cases.errors import SceneError, printable
+from cases.files import is_number
 
+EVERY = "JOINTWAVE_PROGRESS"  # in the environment: s from one line to the next, 0 for none
 WIDEST = 220  # a pipe has no width to respect: a machine or a log gets whole lines
 
 
 @contextmanager
 def progress(label: str) -> Iterator[Callable[[float], None]]:
-    """Show a bar on standard error while something runs, and clear it at the end.
+    """Show on standard error what is being done, while it runs.
 
-    With what is done, the time that it took and the time that is left; on a terminal only.
+    On a terminal a bar, with the time that it took and the time that is left, cleared at the end;
+    elsewhere a line every half minute, or as many seconds as `EVERY` says; 0: none.
     """
+    with _bar(label) if Console(stderr=True).is_terminal else _lines(label) as advance:
+        yield advance
+
+
+@contextmanager
+def _bar(label: str) -> Iterator[Callable[[float], None]]:
+    from rich import progress as rich
+
     columns = (
-        TextColumn("{task.description}", markup=False),
-        BarColumn(),
-        TaskProgressColumn(),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
+        rich.TextColumn("{task.description}", markup=False),
+        rich.BarColumn(),
+        rich.TaskProgressColumn(),
+        rich.TimeElapsedColumn(),
+        rich.TextColumn("left"),
+        rich.TimeRemainingColumn(),
     )
-    console = Console(stderr=True)
-    with Progress(
-        *columns, console=console, transient=True, disable=not console.is_terminal
-    ) as bar:
+    with rich.Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(printable(label), total=1.0)
         yield lambda fraction: bar.update(task, completed=fraction)
+
+
+@contextmanager
+def _lines(label: str) -> Iterator[Callable[[float], None]]:
+    done, ended, began = [0.0], Event(), monotonic()
+    text = os.environ.get(EVERY, "30")
+    if not (is_number(text) and 0 <= float(text) <= TIMEOUT_MAX):
+        raise SceneError(EVERY, "", None, f"must be a number of seconds, not {text!r}")
+
+    def tell() -> None:
+        while not ended.wait(float(text)):
+            line = f"{printable(label)}: {done[0]:.0%} after {monotonic() - began:.0f} s"
+            with suppress(OSError, ValueError):  # nobody may be there to read it
+                print(f"jointwave: {line}", file=sys.stderr, flush=True)
+
+    if float(text):
+        Thread(target=tell, daemon=True).start()
+    try:
+        yield lambda fraction: done.__setitem__(0, fraction)
+    finally:
+        ended.set()
 
 
 def say(text: str, style: str = "") -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
-import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import ExitStack, contextmanager
@@ -13,7 +11,7 @@ from tempfile import gettempdir
 from typing import TypeVar
 
 from compare.engines import Progress
-from compare.runs.checkpoint.lock import locked, opened
+from compare.runs.checkpoint.lock import exclusive, locked
 from compare.runs.processes import Processes, started
 from compare.runs.workers import Workers
 
@@ -60,9 +58,5 @@ class Lent(Executor):
 @contextmanager
 def alone() -> Iterator[None]:
     """Wait until no other timed experiment is running on this machine."""
-    handle = opened(Path(gettempdir(), "jointwave-timing.lock"))
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX)
+    with exclusive(Path(gettempdir()), wait=True):
         yield
-    finally:
-        os.close(handle)

@@ -16,7 +16,6 @@ from math import nan
 import numpy as np
 import pandas as pd
 import xarray as xr
-from scipy.optimize import minimize_scalar
 
 from cases.errors import SceneError
 from cases.sampling import sample_times
@@ -210,6 +209,8 @@ def _refined(seconds: float, name: str, curves: Curves, scene: Scene, result: Re
 
     Straight lines between few and uneven samples have moved the peak by a part of their distance.
     """
+    from scipy.optimize import minimize_scalar  # slow to import
+
     reach = max(scene.interval, float(np.diff(curves.time).mean()))
     near = _moved(curves, seconds)  # the search is as fine as its variable is small
     found = minimize_scalar(

@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from scipy.signal import correlate, correlation_lags
 
 from compare.misfit.external import Place
 from compare.misfit.external_files import DIMENSIONS
@@ -259,6 +258,8 @@ def delay(one: np.ndarray, other: np.ndarray, dt: float) -> float:
 
     A parabola through the three largest values resolves a fraction of a sample.
     """
+    from scipy.signal import correlate, correlation_lags  # slow to import
+
     if not one.any() or not other.any():
         return np.nan
     c = correlate(one, other)

@@ -1,6 +1,6 @@
 """A scene solved by all that applies to it, and how far apart the solutions are, pair by pair."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from time import perf_counter
@@ -10,11 +10,12 @@ import numpy as np
 import xarray as xr
 
 from cases.schema.scene import Scene
-from compare.engines import Progress, applies, names, solve, solvers
+from compare.engines import Progress, solve, solvers
 from compare.experiments.cost import timings
 from compare.misfit.alignment import Beside, distances, lay_beside
 from compare.misfit.external import Curves
 from compare.misfit.metrics import Distance, distance, pairings
+from compare.misfit.ranking import applicable
 
 
 class Pair(NamedTuple):
@@ -85,9 +86,24 @@ def compare(
     `progress` is called with the finished fraction; `spectral` adds envelope and phase misfits;
     `curves` of others are held against every solution, their clocks moved onto it by `align`.
     """
-    comparison, everything = Comparison(scene), names()
-    for i, name in enumerate(everything):
-        answer = applies(name, scene)
+    comparison = solved(scene, applicable(scene), progress)
+    comparison.rows = measure(comparison.results, spectral)
+    for one in (curve for curve in curves if curve.holds_for(scene)):
+        beside = lay_beside(one, scene, comparison.results, align)
+        comparison.besides.append(beside)
+        comparison.rows += measure_curves(beside, comparison.results, spectral)
+    return comparison
+
+
+def solved(
+    scene: Scene, answers: Mapping[str, Answer], progress: Progress | None = None
+) -> Comparison:
+    """Solve a scene by what applies to it, without measuring any pair.
+
+    answers : by name whether each of the solutions that are wanted applies.
+    """
+    comparison = Comparison(scene)
+    for i, (name, answer) in enumerate(answers.items()):
         if answer:
             began = perf_counter()
             comparison.results[name] = solve(name, scene)
@@ -95,12 +111,7 @@ def compare(
         else:
             comparison.reasons[name] = answer.reason
         if progress:
-            progress((i + 1) / len(everything))
-    comparison.rows = measure(comparison.results, spectral)
-    for one in (curve for curve in curves if curve.holds_for(scene)):
-        beside = lay_beside(one, scene, comparison.results, align)
-        comparison.besides.append(beside)
-        comparison.rows += measure_curves(beside, comparison.results, spectral)
+            progress((i + 1) / len(answers))
     return comparison
 
 

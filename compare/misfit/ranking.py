@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
-from compare.engines import applies, names, solver
+from compare.engines import ENGINES, applies, names, solver
 from compare.exact.conditions import has_thick_layer
 from compare.solvers.record import Answer, Rock
 
@@ -75,6 +75,18 @@ def own_exact(name: str, names: Iterable[str], scene: Scene) -> str | None:
             own.append(other)
     found = finest(own, scene)
     return found.name if found else None
+
+
+def deciding(scene: Scene) -> dict[str, Answer]:
+    """Return whether each of the solutions that verdicts rest on applies to a scene: the engines,
+    and of each the reference and the exact solution of its own model."""
+    answers = applicable(scene)
+    able = [name for name, answer in answers.items() if answer]
+    wanted: set[str | None] = {*ENGINES}
+    for engine in (name for name in ENGINES if name in able):
+        reference = reference_of(engine, able, scene)
+        wanted |= {reference and reference.name, own_exact(engine, able, scene)}
+    return {name: answer for name, answer in answers.items() if name in wanted}
 
 
 def _fineness(name: str) -> tuple[int, int]:

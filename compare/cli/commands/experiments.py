@@ -189,7 +189,7 @@ def report(
 
         show_parts(parts_of_report(scenes or (), out), as_json)
         return
-    with locked(out, out / "figures", out / "studies"), terminal.progress("scenes") as advance:
+    with locked(out, out / "figures", out / "studies"), terminal.progress("report") as advance:
         found = build(out, advance, scenes=scenes or (), peers_table=peers)
     views.show_report(found, as_json)
 

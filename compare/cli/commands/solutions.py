@@ -51,8 +51,9 @@ def compare(
     """Solve a scene by all that applies, and say how far each engine is from the finest of it.
 
     A line an engine: its worst misfit and where, the solution that it is held against, its own
-    numerical error, the time of its steps, and the verdict. --all adds every distance of every
-    pair; of curves of others, data over model.
+    numerical error, the time of its steps, and the verdict. --all, --json, --out and --with solve
+    it by everything else too, and hold it to each bound of its [expect]; --all shows every distance
+    of every pair; of curves of others, data over model.
 
     --with puts a waveform of another code, figure or experiment beside them: a CSV file with a
     header such as "time [ms], stress@20 [MPa]" (# starts a comment; commas, semicolons or tabs),
@@ -70,6 +71,7 @@ def compare(
     """
     from compare.cli import comparison_view, terminal
     from compare.misfit import pairs
+    from compare.misfit.ranking import deciding
 
     if swept:
         from compare.experiments.sweep import command
@@ -88,10 +90,14 @@ def compare(
 
         dry_run.show_all(scenes, as_json)
         return
+    shows_all = every or as_json or out is not None or bool(curves)
     found = []
     for one in scenes:
         with terminal.progress(one.name or one.title) as advance:
-            found.append(pairs.compare(one, advance, spectral, curves, align))
+            if shows_all:
+                found.append(pairs.compare(one, advance, spectral, curves, align))
+            else:
+                found.append(pairs.solved(one, deciding(one), advance))
     if out is not None:
         from compare.report.report import write_comparisons
 

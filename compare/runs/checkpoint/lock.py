@@ -4,80 +4,65 @@ from __future__ import annotations
 
 import fcntl
 import os
-import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from errno import ELOOP
 from pathlib import Path
+from tempfile import TemporaryFile
 
 from cases.errors import SceneError
 from compare.runs.output import sweep
 
-NAME = ".jointwave.lock"
-ELSE = "remove it: jointwave locks a file of its own there"
-
 
 @contextmanager
 def locked(folder: Path, *inner: Path) -> Iterator[None]:
-    """Hold a folder for one command that writes results there and in `inner`, and sweep them.
+    """Lock a folder for one command that writes results there and in `inner`, and sweep them.
 
-    The system lets go of the lock of a process that is killed. A folder that is made for this, and
-    left empty, is removed at the end.
+    A folder that is made for this, and left empty, is removed at the end.
 
-    Raises SceneError where another command holds it, OSError where nothing can be written there.
+    Raises SceneError where another command has locked it, OSError where nothing can be written.
     """
     made = [place for place in (folder, *folder.parents) if not place.exists()]
-    folder.mkdir(parents=True, exist_ok=True)
-    place = folder / NAME
     try:
-        handle = _hold(place)
-        try:
+        with exclusive(folder):
+            TemporaryFile(dir=folder).close()  # it can be written, which a lock does not tell
             for each in {folder, *inner}:
                 sweep(each)
             yield
-        finally:
-            place.unlink(missing_ok=True)
-            os.close(handle)
     finally:
         with suppress(OSError):
             for empty in made:
                 empty.rmdir()
 
 
-def opened(place: Path) -> int:
-    """Return an open file to lock; raises SceneError where anything but a file is in its place.
+@contextmanager
+def exclusive(folder: Path, wait: bool = False) -> Iterator[None]:
+    """Lock a folder, made where there is none; wait : until nobody else has locked it.
 
-    Whoever may write there could have put a link, which would be followed, or a pipe.
+    The lock is one on the folder itself: no file is written that a link could lead elsewhere, and
+    the system releases it when a process is killed. Libraries for locks all write a file.
+    Raises SceneError where another process has locked it and this one is not to wait.
     """
-    flags = os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
+    handle = _locked(folder, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
     try:
-        # Where all may write, creating what another user has created already is forbidden.
-        handle = os.open(place, os.O_RDONLY | flags)
-    except FileNotFoundError:
-        handle = os.open(place, os.O_RDONLY | os.O_CREAT | flags, 0o644)
-    except OSError as error:
-        if error.errno != ELOOP:
-            raise
-        raise SceneError(str(place), "", None, f"is a link, {ELSE}") from None
-    if stat.S_ISREG(os.fstat(handle).st_mode):
-        return handle
-    os.close(handle)
-    raise SceneError(str(place), "", None, f"is no file, {ELSE}")
+        yield
+    finally:
+        os.close(handle)
 
 
-def _hold(place: Path) -> int:
-    """Return the open and locked file."""
+def _locked(folder: Path, operation: int) -> int:
+    """Return the open and locked folder."""
     while True:
-        handle = opened(place)
+        folder.mkdir(parents=True, exist_ok=True)
+        handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
         try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            fcntl.flock(handle, operation)
+            # Whoever had locked it may have removed it in between.
+            if os.path.samestat(os.fstat(handle), folder.stat()):
+                return handle
+        except FileNotFoundError:
+            pass
         except BlockingIOError:
             os.close(handle)
-            raise SceneError(
-                str(place.parent), "", None, "another jointwave is writing here; wait for it"
-            ) from None
-        # Whoever held it may have removed it in between: then this is a file that nobody sees.
-        with suppress(FileNotFoundError):
-            if os.path.samestat(os.fstat(handle), place.stat()):
-                return handle
+            allowed = "another jointwave is writing here; wait for it"
+            raise SceneError(str(folder), "", None, allowed) from None
         os.close(handle)

@@ -57,9 +57,44 @@ def test_progress_says_what_is_done_and_how_long_it_will_take():
 
 
 @pytest.mark.parametrize("stream", ["stdout", "stderr"])
-def test_nothing_of_it_reaches_a_pipe(stream):
+def test_nothing_of_what_is_soon_done_reaches_a_pipe(stream):
     done = subprocess.run([sys.executable, "-c", SLOW], capture_output=True, text=True)
     assert getattr(done, stream) == ""
+
+
+def piped(code, every):
+    """Return a program that has run with pipes, and with a line of progress every so many s."""
+    environment = os.environ | {"JOINTWAVE_PROGRESS": every}
+    command = [sys.executable, "-c", code]
+    return subprocess.run(command, capture_output=True, text=True, env=environment)
+
+
+def test_a_pipe_gets_a_line_now_and_then():
+    """On standard error alone, with what is done so far; none is left once the work has ended."""
+    done = piped(SLOW + "sleep(0.6)", "0.4")
+    assert done.stdout == ""
+    lines = done.stderr.splitlines()
+    said = [re.fullmatch(r"jointwave: \[bold\]ten parts: (\d+)% after \d s", x) for x in lines]
+    assert said and all(said)
+    shares = [int(one[1]) for one in said]
+    assert shares == sorted(shares) and shares[0] < 100
+
+
+@pytest.mark.parametrize("close", ["sys.stderr.close()", "os.close(2)"])
+def test_a_pipe_that_nobody_reads_does_not_end_the_work(close):
+    assert piped(f"import os, sys\n{close}\n{SLOW}print('whole')", "0.1").stdout == "whole\n"
+
+
+@pytest.mark.parametrize("every", ["often", "-1", "nan", "inf"])
+def test_an_interval_that_is_none_is_one_line(every):
+    environment = os.environ | {"JOINTWAVE_PROGRESS": every}
+    run = command("run", "guo-li-2002/fig-03", "--out", "/nowhere/writable")
+    done = subprocess.run(run, capture_output=True, text=True, env=environment)
+    assert done.returncode == 2
+    assert (
+        done.stderr
+        == f"jointwave: JOINTWAVE_PROGRESS: must be a number of seconds, not {every!r}\n"
+    )
 
 
 def test_colours_are_for_a_terminal_that_wants_them():

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 import xarray as xr
@@ -47,6 +48,17 @@ RUNS = {
         2,
     ),
 }
+
+
+@pytest.fixture
+def is_locked():
+    """Return a function that says whether a command has locked a folder of results."""
+
+    def found(folder):
+        place = f":{folder.stat().st_ino} " if folder.is_dir() else "nowhere"
+        return place in Path("/proc/locks").read_text()
+
+    return found
 
 
 @pytest.fixture

@@ -104,28 +104,27 @@ def test_full_standard_output_is_one_line(start, finish):
 
 
 def test_second_run_into_a_folder_is_refused_and_the_first_goes_on(
-    tmp_path, start, finish, until, arguments
+    tmp_path, start, finish, until, arguments, is_locked
 ):
     """Results of two runs do not mix; those who only read are let in."""
-    lock = tmp_path / "out" / ".jointwave.lock"
-    first = start(*arguments("axial", lock.parent, "--checkpoint-every", "0"))
-    assert until(first, lock.exists)
+    out = tmp_path / "out"
+    first = start(*arguments("axial", out, "--checkpoint-every", "0"))
+    assert until(first, lambda: is_locked(out))
     first.send_signal(signal.SIGSTOP)  # lest it ends before the second has started
-    code, (line,) = finish(start(*arguments("axial", lock.parent, *SHORT)))
-    assert code == 2 and f"{lock.parent}: another jointwave is writing here" in line
+    code, (line,) = finish(start(*arguments("axial", out, *SHORT)))
+    assert code == 2 and f"{out}: another jointwave is writing here" in line
     first.send_signal(signal.SIGCONT)
-    assert finish(first) == (0, []) and not lock.exists()
+    assert finish(first) == (0, []) and not is_locked(out)
 
 
-def test_lock_of_a_killed_run_is_nobodys(tmp_path, start, finish, until, arguments):
-    """The file is still there, and the next run takes it over."""
-    first, lock = start(*arguments("axial", tmp_path)), tmp_path / ".jointwave.lock"
-    assert until(first, lock.exists)
+def test_lock_of_a_killed_run_is_nobodys(tmp_path, start, finish, until, arguments, is_locked):
+    """The system releases it, and the next run takes it."""
+    first = start(*arguments("axial", tmp_path))
+    assert until(first, lambda: is_locked(tmp_path))
     first.kill()
     first.communicate()
-    assert lock.exists()
+    assert not is_locked(tmp_path)
     assert finish(start(*arguments("axial", tmp_path, *SHORT))) == (0, [])
-    assert not lock.exists()
 
 
 def test_folder_of_a_refused_run_is_not_made(tmp_path, start, finish, arguments):

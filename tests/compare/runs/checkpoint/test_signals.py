@@ -109,11 +109,13 @@ def test_resume_goes_on_with_the_first_variant_that_is_not_whole(
     assert first.stat().st_mtime_ns == before and (folder / "dem.nc").is_file()
 
 
-def test_elsewhere_it_ends_in_one_line_and_leaves_nothing(tmp_path, start, finish, until):
+def test_elsewhere_it_ends_in_one_line_and_leaves_nothing(
+    tmp_path, start, finish, until, is_locked
+):
     """Exact solutions have no steps to go on from."""
     out = tmp_path / "out"
     process = start("run", "guo-li-2002/fig-03", "--engine", "exact", "--out", out)
-    assert until(process, (out / ".jointwave.lock").exists)
+    assert until(process, lambda: is_locked(out))
     process.send_signal(signal.SIGINT)
     code, said = finish(process)
     assert (code, said) == (130, ["jointwave: interrupted"])
@@ -123,10 +125,11 @@ def test_elsewhere_it_ends_in_one_line_and_leaves_nothing(tmp_path, start, finis
 
 @pytest.mark.parametrize("command", [("study", "convergence"), ("report",)])
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_workers_end_without_a_word(command, number, tmp_path, start, finish, until):
+def test_workers_end_without_a_word(command, number, tmp_path, start, finish, until, is_locked):
     """Ctrl-C reaches the workers too, SIGTERM does not: neither says anything, none is left."""
-    process = start(*command, "--out", tmp_path / "out")
-    assert until(process, lambda: list((tmp_path / "out").rglob(".jointwave.lock")))
+    out = tmp_path / "out"
+    process = start(*command, "--out", out)
+    assert until(process, lambda: any(map(is_locked, (out, *out.rglob("*")))))
     time.sleep(1.5)
     if number == signal.SIGINT:
         os.killpg(process.pid, number)
