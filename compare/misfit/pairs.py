@@ -16,6 +16,7 @@ from compare.misfit.alignment import Beside, distances, lay_beside
 from compare.misfit.external import Curves
 from compare.misfit.metrics import Distance, distance, pairings
 from compare.misfit.ranking import applicable
+from compare.solvers.record import Answer
 
 
 class Pair(NamedTuple):
