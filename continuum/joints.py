@@ -9,7 +9,7 @@ from cases.material.calibrate import Properties
 from continuum.model import Interfaces
 from continuum.space.interface import Jumps
 from continuum.space.stencils import stencils
-from joints.flat.law import Law, parts_of, table_of
+from joints.law import Law, parts_of, table_of
 from joints.uniform import law
 
 #: Over an ordinary joint: the stiffness of one that differs from it in strength alone, where the
@@ -58,7 +58,7 @@ def _excess(compliance: np.ndarray, regular: float) -> np.ndarray:
 
 def _fails(p: Properties, shears: bool) -> np.ndarray:
     """Return which joints can open, slide or break, bool array [N - 1]."""
-    from joints.flat.shear import UNLIMITED
+    from joints.shear import UNLIMITED
 
     found = ~p.tension
     if shears and p.cohesion is not None:
@@ -76,14 +76,12 @@ def joint_law(p: Properties, joints: Resolved, joint: np.ndarray, shears: bool) 
     shears : whether the motion has components along the joints.
     """
     damping = p.joint_time_constant
-    return Law(
-        *law(
-            joints.stiffness[joint],
-            None if damping is None else damping[joint],
-            p.tension[joint],
-            shear_stiffness=joints.shear_stiffness[joint] if shears else None,
-            **p.strengths(shears, joint),
-        )
+    return law(
+        joints.stiffness[joint],
+        None if damping is None else damping[joint],
+        p.tension[joint],
+        shear_stiffness=joints.shear_stiffness[joint] if shears else None,
+        **p.strengths(shears, joint),
     )
 
 

@@ -14,7 +14,7 @@ from scipy.sparse import csr_matrix
 
 from continuum.space.operator import Operator
 from continuum.space.stencils import Stencils
-from joints.flat.law import Law, Parts
+from joints.law import Law, Parts
 
 
 class Rock(NamedTuple):

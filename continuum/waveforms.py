@@ -9,7 +9,7 @@ from continuum.build import Discrete
 from continuum.model import TERMS, Model, Samples
 from continuum.parallel.serial import SERIAL, Serial
 from continuum.space.receivers import is_on_joint
-from joints.flat.law import Law
+from joints.law import Law
 from results.dataset import ALL_TERMS
 
 

@@ -1,27 +1,22 @@
-"""What a joint stores and what it spends, per unit area (J/m2)."""
+"""The energy that a joint stores and dissipates, per unit area (J/m2)."""
 
+from joints.formula import formula
 from joints.normal import spring_traction
-from numerics.jit import inlined, jitted
 
 
-@jitted
-def elastic_energy(law, gap, opening=None, ex=None, ez=None):
+@formula
+def elastic_energy(law, parts, gap, opening, ex, ez):
     """Return the energy in the springs, half of traction times elastic displacement.
 
-    gap, opening : m, opening None without softening; ex, ez : elastic slip, m, None without shear.
+    gap, opening : m; ex, ez : elastic slip, m.
     """
-    normal = -0.5 * spring_traction(law, gap, opening) * gap
-    return normal + _shear_energy(law, ex, ez)
+    energy = -0.5 * spring_traction(law, parts, gap, opening) * gap
+    if parts.shear:
+        energy = energy + 0.5 * law.shear_stiffness * (ex * ex + ez * ez)
+    return energy
 
 
-@inlined
-def _shear_energy(law, ex, ez):
-    if ex is None:
-        return 0.0
-    return 0.5 * law.shear_stiffness * (ex * ex + ez * ez)
-
-
-@jitted
+@formula
 def friction_work(law, ex_old, ez_old, ex, ez, dx, dz):
     """Return what sliding takes in a step of slip dx, dz: the mean spring force times the slide.
 
@@ -33,7 +28,7 @@ def friction_work(law, ex_old, ez_old, ex, ez, dx, dz):
     return 0.5 * law.shear_stiffness * (along_x + along_z)
 
 
-@jitted
+@formula
 def fracture_energy_spent(law, opening):
     """Return what opening has spent: the area under the softening curve less what unloads.
 

@@ -1,52 +1,35 @@
 """Normal traction of a joint: spring, dashpot, softening, no tension."""
 
+from joints.formula import formula
 from joints.softening import stiffness_left, strength_left
-from numerics.jit import inlined, jitted
 
 
-@jitted
-def normal_traction(law, gap, gap_rate, opening=None):
+@formula
+def normal_traction(law, parts, gap, gap_rate, opening):
     """Return t_n (Pa) of one joint: spring and dashpot, the whole cut by what it can pull.
 
-    opening : the largest so far with this gap included, m; None without softening.
+    opening : the largest so far with this gap included, m; any number without softening.
 
     The total gap decides opening, equation (10); a force kept by increments would forget it.
     """
-    t = _with_dashpot(-law.normal_stiffness * gap, law.normal_viscosity, gap_rate)
-    return _cut(law, t, gap, opening)
+    t = -law.normal_stiffness * gap
+    if parts.dashpots:
+        t = t - law.normal_viscosity * gap_rate
+    return _cut(law, parts, t, gap, opening)
 
 
-@jitted
-def spring_traction(law, gap, opening=None):
+@formula
+def spring_traction(law, parts, gap, opening):
     """Return the elastic part of t_n (Pa): what is stored, not dissipated."""
-    return _cut(law, -law.normal_stiffness * gap, gap, opening)
+    return _cut(law, parts, -law.normal_stiffness * gap, gap, opening)
 
 
-@inlined
-def _cut(law, t, gap, opening):
-    softened = _softened(t, law.tensile_strength, law, gap, opening)
-    return _without_tension(softened, law.carries_tension, gap)
-
-
-@inlined
-def _with_dashpot(t, viscosity, gap_rate):
-    if viscosity is None:
-        return t
-    return t - viscosity * gap_rate
-
-
-@inlined
-def _softened(t, strength, law, gap, opening):
-    if strength is None:
-        return t
-    share = stiffness_left(law, opening) if gap > 0.0 else 1.0
-    return max(share * t, -strength_left(law, opening))
-
-
-@inlined
-def _without_tension(t, carries_tension, gap):
-    if carries_tension is None:
-        return t
-    if carries_tension:
-        return t
-    return max(t, 0.0) if gap <= 0.0 else 0.0
+@formula
+def _cut(law, parts, t, gap, opening):
+    if parts.softening:
+        share = stiffness_left(law, opening) if gap > 0.0 else 1.0
+        t, most = share * t, -strength_left(law, opening)
+        t = most if t < most else t
+    if parts.no_tension and not law.carries_tension:
+        t = 0.0 if gap > 0.0 or t < 0.0 else t
+    return t

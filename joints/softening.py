@@ -9,42 +9,29 @@ Below k it unloads and reloads through the origin with the secant stiffness s(k)
 Hillerborg, Modeer & Petersson (1976); Camacho & Ortiz (1996).
 """
 
-from numerics.jit import inlined, jitted
+from joints.formula import formula
 
 
-@jitted
-def update_opening(opening, gap):
-    """Return the largest opening (m) so far; None without softening."""
-    if opening is None:
-        return None
-    return max(opening, gap)
-
-
-@jitted
+@formula
 def strength_left(law, opening):
     """Return s(k) (Pa), the tension that a joint opened by k (m) can carry again."""
     first = law.tensile_strength / law.normal_stiffness
     slope = law.tensile_strength / (law.critical_opening - first)
-    falling = max(slope * (law.critical_opening - opening), 0.0)
+    falling = slope * (law.critical_opening - opening)
+    falling = 0.0 if falling < 0.0 else falling
     return law.tensile_strength if opening <= first else falling
 
 
-@inlined
+@formula
 def stiffness_left(law, opening):
     """Return the secant stiffness over K: 1 before the strength is reached, 0 when broken."""
     first = law.tensile_strength / law.normal_stiffness
-    secant = strength_left(law, opening) / (law.normal_stiffness * opening)
+    beyond = first if opening <= first else opening
+    secant = strength_left(law, opening) / (law.normal_stiffness * beyond)
     return 1.0 if opening <= first else secant
 
 
-@jitted
-def is_broken(law, opening=None):
+@formula
+def is_broken(law, parts, opening):
     """Return whether a joint has no tensile strength left; never without softening."""
-    return _is_broken(law.tensile_strength, law, opening)
-
-
-@inlined
-def _is_broken(strength, law, opening):
-    if strength is None:
-        return False
-    return strength_left(law, opening) == 0.0
+    return parts.softening and strength_left(law, opening) == 0.0

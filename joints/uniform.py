@@ -4,7 +4,7 @@ from typing import overload
 
 import numpy as np
 
-from joints.laws import Law
+from joints.law import Law
 
 
 @overload

@@ -1,21 +1,24 @@
-"""Who watches over a run from outside: keeps what it has got to, brings it back, or stops it.
+"""Checkpoints of a run, seen from an engine: its state is saved, restored, or the run is stopped.
 
-Engines write no files and know no signals. They show a keeper all that changes in them, as nested
-tuples of arrays (`results.arrays`), wherever they look at themselves.
+Engines write no files and know no signals. They hand all that changes in them to a keeper, as
+nested tuples of arrays (`results.arrays`), between stretches of steps.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 from cases.errors import InterruptedRun
 
-if TYPE_CHECKING:
-    from results.snapshots import Film
+class Film(Protocol):
+    """Snapshots of a run, of which those of an earlier part may be there already."""
+
+    def expect(self, done: int) -> None:
+        """Take the snapshots of so many samples for taken."""
 
 
 class Keeper(Protocol):
-    """Who watches over one run.
+    """Saves and restores the state of one run.
 
     done : how many samples an earlier run of the same scene got to; 0 where this one is the first.
     """
@@ -26,7 +29,7 @@ class Keeper(Protocol):
         """Copy into `parts` what they were when `done` samples were done."""
 
     def look(self, samples: int, parts: Any) -> None:
-        """See the run where so many samples are done: keep its parts, or raise InterruptedRun."""
+        """Save the parts where so many samples are done, or raise InterruptedRun."""
 
 
 def begin(keeper: Keeper | None, film: Film | None, parts: Any) -> int:
@@ -40,7 +43,7 @@ def begin(keeper: Keeper | None, film: Film | None, parts: Any) -> int:
 
 
 def show(keeper: Keeper, samples: int, parts: Any) -> None:
-    """Let a keeper see a run, and say how far it had got where the keeper stops it."""
+    """Hand a run to its keeper, and note how many samples it has where the keeper stops it."""
     try:
         keeper.look(samples, parts)
     except InterruptedRun as error:

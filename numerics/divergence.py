@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from numerics.formula import formula
+from joints.formula import formula
 from numerics.jit import jitted
 
 EVERY = 96  # steps, at most, between two looks at the speeds

@@ -39,6 +39,21 @@ def jitted(function: Callable) -> Callable:
     return _compiled(function)
 
 
+def jitted_for(*effects: Any) -> Callable:
+    """Compile a kernel, as `jitted` does, that a factory makes for these effects.
+
+    What else it closes over follows from them, so they tell its specialisations apart in the cache:
+    it may hold formulas that are made for the same effects.
+    """
+
+    def compiled(function: Callable) -> Callable:
+        kernel: Any = _compiled(function)
+        kernel._cache._index_key = lambda sig, codegen: (sig, codegen.magic_tuple(), repr(effects))
+        return kernel
+
+    return compiled
+
+
 def apart(function: Callable) -> Callable:
     """Compile a kernel, as `jitted` does, that stays a function of its own in all its callers.
 

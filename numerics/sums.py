@@ -1,6 +1,6 @@
 """Sums over blocks or freedoms."""
 
-from numerics.formula import formula
+from joints.formula import formula
 
 
 @formula

@@ -13,7 +13,7 @@ from continuum.parallel.exchange import receive, send
 from continuum.space.operator import multiply
 from continuum.space.stencils import add_transposed, multiply_stencils
 from continuum.space.tractions import joint_energy, joint_loads
-from joints.flat.formula import formula
+from joints.formula import formula
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.divergence import EVERY, SPEED
 from numerics.jit import jitted
@@ -21,7 +21,7 @@ from numerics.jit import jitted
 
 @cache
 def leapfrog_for(parts, directions):
-    """Return the kernel for joints of a law with these parts (`joints.flat.law.Parts`) and jumps
+    """Return the kernel for joints of a law with these parts (`joints.law.Parts`) and jumps
     in so many directions; both None without joints.
 
     Its arguments are those of `continuum.explicit.march.arguments`; what a model lacks is None.

@@ -60,7 +60,7 @@ def balance(
 
     now : state at the beginning of the step. trial : u and v are given; v_before is set to the
     mean velocity of the step, and the reactions of the ends count among the forces.
-    pressure : of the load, Pa. r : rate factor, 1/s (`joints.flat.tangent`).
+    pressure : of the load, Pa. r : rate factor, 1/s (`joints.tangent`).
     Returns the largest force (N) that is summed up, of rock, dashpots, load and weight.
     """
     trial.v_before[:] = (trial.u - now.u) / model.dt

@@ -5,12 +5,12 @@ that the law does not have are None. With the jump operator B (displacements to 
 and the traction t (compression positive, on the far side) the force on the freedoms is B^T W t.
 """
 
-from joints.flat.energy import fracture_energy_spent, friction_work
-from joints.flat.formula import formula
-from joints.flat.law import History, law_of
-from joints.flat.normal import normal_traction, spring_traction
-from joints.flat.shear import cohesion_left, shear_return, shear_strength, shear_traction
-from joints.flat.tangent import tangent
+from joints.energy import fracture_energy_spent, friction_work
+from joints.formula import formula
+from joints.law import History, law_of
+from joints.normal import normal_traction, spring_traction
+from joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
+from joints.tangent import tangent
 
 #: Rows of the tangents: t_n with the gap; t_x, t_z with it; t_x with x, either with the other, t_z
 #: with z.
@@ -121,7 +121,7 @@ def joint_tangents(
     zero, times its area.
 
     opening, slide, cohesion : history before the step; r : rate factor, 1/s
-    (`joints.flat.tangent`); the rest is as for `joint_loads`.
+    (`joints.tangent`); the rest is as for `joint_loads`.
     """
     law = law_of(table, 0)
     for q in range(area.size):

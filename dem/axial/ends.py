@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from cases.material.calibrate import Properties
 from joints.ends import HalfSpring, half_spring
-from numerics.formula import formula
+from joints.formula import formula
 
 
 class End(NamedTuple):

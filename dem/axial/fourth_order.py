@@ -35,8 +35,8 @@ from dem.axial.springs import spring_forces
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State, state_at_rest
 from dem.size import refuse_large
-from joints.flat.energy import elastic_energy
-from joints.flat.law import law_of
+from joints.energy import elastic_energy
+from joints.law import law_of
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.divergence import EVERY, SPEED, Guard, guard, out_of_bounds
 from numerics.jit import jitted

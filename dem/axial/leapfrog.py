@@ -15,10 +15,10 @@ from dem.axial.ends import end_reaction
 from dem.axial.model import Model
 from dem.axial.samples import Samples, buffers
 from dem.axial.state import State
-from joints.flat.energy import elastic_energy, fracture_energy_spent
-from joints.flat.law import law_of
-from joints.flat.normal import normal_traction, spring_traction
-from joints.flat.softening import strength_left
+from joints.energy import elastic_energy, fracture_energy_spent
+from joints.law import law_of
+from joints.normal import normal_traction, spring_traction
+from joints.softening import strength_left
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.divergence import ENERGY, EVERY, SPEED, Guard, gains_energy, guard, out_of_bounds
 from numerics.jit import jitted

@@ -12,7 +12,7 @@ from dem.axial.ends import End, build_end
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State, state_at_rest
 from dem.size import refuse_large
-from joints.flat.law import Law, Parts, parts_of, table_of
+from joints.law import Law, Parts, parts_of, table_of
 from joints.uniform import law
 
 
@@ -66,7 +66,7 @@ class Chain(NamedTuple):
 class Model(NamedTuple):
     """The constants of a run.
 
-    laws : of the joints, per unit area, as `joints.flat.law.table_of` returns them.
+    laws : of the joints, per unit area, as `joints.law.table_of` returns them.
     load : float array, N, mean of the load over each step, cut after the last that acts.
     base : float array, m, the displacement increment of a shaken base in each step, against y
         (outward), the first the one before the run, cut after the last that moves.
@@ -140,7 +140,7 @@ def unloaded(scene: Scene, p: Properties, dt: float, ends: tuple[str, str]) -> M
 def law_of_joints(p: Properties) -> Law:
     """Return the law of the joints along the axis, per unit area."""
     strengths = p.strengths(shears=False)
-    return Law(*law(p.stiffness, p.joint_time_constant, p.tension, **strengths))
+    return law(p.stiffness, p.joint_time_constant, p.tension, **strengths)
 
 
 def with_mass_damping(model: Model, alpha: float) -> Model:

@@ -1,8 +1,8 @@
 """Forces of the joints without dashpots, for states at rest and for steps without damping."""
 
-from joints.flat.law import law_of
-from joints.flat.normal import spring_traction
-from numerics.formula import formula
+from joints.formula import formula
+from joints.law import law_of
+from joints.normal import spring_traction
 
 
 @formula

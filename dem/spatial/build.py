@@ -1,6 +1,4 @@
-"""From a scene to the model, the state at rest and the room of a spatial run."""
-
-from typing import Any
+"""From a scene to the model, the state at rest and the buffers of a spatial run."""
 
 import numpy as np
 
@@ -8,16 +6,12 @@ from cases.loads import base_steps, load_history, step_means
 from cases.material.calibrate import Properties
 from cases.sampling import Clock, Interpolation, interpolation
 from cases.schema.scene import Scene
-from dem.spatial import scratch
-from dem.spatial.book import ACCOUNT_OF, ACCOUNTS, AFTER
-from dem.spatial.contact import Contact
-from dem.spatial.ends import End, Springs, build_end, end_springs, end_state
-from dem.spatial.finite import SCALAR
-from dem.spatial.layout import LANES, STRIDE, Layout, layout, packed, tile_count
-from dem.spatial.model import Load, Model, Receivers, Room, Samples, State
-from dem.spatial.motion import Motion
-from dem.spatial.section import contact_points, face_of, section
-from joints.laws import Law
+from dem.spatial.ends import STEADY, contact_points, end_constants, end_springs, face_of
+from dem.spatial.energy import AFTER, LEDGER, PLACES
+from dem.spatial.layout import BUFFER, LANES, STRIDE, Form, packed, tile_count
+from dem.spatial.model import Buffers, Load, Model, Receivers, Samples, State
+from dem.spatial.motion import Block
+from joints.law import Law, parts_of, table_of
 from joints.uniform import law
 from numerics.aligned import zeros
 from numerics.divergence import Guard
@@ -28,28 +22,40 @@ DEPTH = 8  # steps a tile takes while it is in the cache
 
 def build_model(scene: Scene, p: Properties, time: Clock) -> Model:
     """Return the constants of a scene for a given clock."""
-    turns = scene.motion.rotation != "none"
-    motion = build_motion(scene, p, time.dt, turns)
-    contact = build_contact(scene, p, motion)
-    start, end = build_ends(scene, p, contact, motion)
-    weight = None
-    if scene.gravity is not None:
-        weight = p.block_mass * scene.gravity.acceleration * np.array(scene.gravity.direction)
-    damps = contact.damped is not None or motion.keep is not None or motion.local is not None
-    terms = energy_terms(scene, p)
-    return Model(
-        contact=contact,
-        motion=motion,
-        load=build_load(scene, p, time, 6 if turns else 3),
+    joints, points, load = build_law(p), contact_points(scene), build_load(scene, p, time)
+    block, terms = build_block(scene, p, time.dt, points), energy_terms(scene, p)
+    start, end, ends = build_ends(scene, p, block)
+    form = Form(
+        parts=parts_of(joints),
+        points=points_looked_after(scene, p) > 0,
+        turns=scene.motion.rotation != "none",
+        finite=scene.motion.rotation == "finite",
+        mass_damping=bool(p.mass_damping),
+        local_damping=p.local_damping is not None,
+        gravity=scene.gravity is not None,
+        base=load.base is not None,
         start=start,
         end=end,
-        last=p.block_count - LANES * (tile_count(p.block_count) - 1),
+        ledger=bool(terms),
+    )
+    return Model(
+        form=form,
+        block=block,
+        block_count=p.block_count,
+        table=packed(_columns(joints, p.block_count), LANES),
+        points=points,
+        load=load,
+        ends=ends,
         receivers=build_receivers(*receivers(scene, p)),
         stride=time.stride,
-        accounts=np.array([ACCOUNT_OF[term] for term in terms]) if terms else None,
-        weight=weight,
-        viscous=True if damps else None,
+        places=np.array([PLACES[term] for term in terms]) if terms else None,
     )
+
+
+def _columns(joints: Law, blocks: int) -> np.ndarray:
+    """Return the table of the joint law, with a column for each block where joints vary."""
+    table = table_of(joints)
+    return table if table.shape[1] == 1 else np.pad(table, ((0, 0), (0, 1)))
 
 
 def energy_terms(scene: Scene, p: Properties) -> tuple[str, ...]:
@@ -73,124 +79,65 @@ def _is_nonlinear(p: Properties) -> bool:
 def points_looked_after(scene: Scene, p: Properties) -> int:
     """Return how many points of a joint are looked after one by one; 0 where their sum will do."""
     if _is_nonlinear(p) or scene.motion.rotation == "finite":
-        return len(contact_points(scene).x)
+        return contact_points(scene).shape[1]
     return 0
 
 
-def build_motion(scene: Scene, p: Properties, dt: float, turns: bool) -> Motion:
-    """Return the constants of a block's motion."""
-    drag = 0.5 * dt * (p.mass_damping or 0.0)
-    inertia = (p.inertia_across, p.inertia_along, p.inertia_across)
-    fall = None
+def build_block(scene: Scene, p: Properties, dt: float, points: np.ndarray) -> Block:
+    """Return the constants of a block's motion and of its faces."""
+    drag, g, direction = 0.5 * dt * (p.mass_damping or 0.0), 0.0, np.zeros(6)
     if scene.gravity is not None:
-        fall = tuple(
-            dt / (1 + drag) * scene.gravity.acceleration * x for x in scene.gravity.direction
-        )
-    return Motion(
+        g, direction[:3] = scene.gravity.acceleration, scene.gravity.direction
+    across, along, face = p.inertia_across, p.inertia_along, face_of(points)
+    inertia = np.array([p.block_mass, p.block_mass, p.block_mass, across, along, across])
+    return Block(
         dt=dt,
-        arm=p.spacing / 2 if turns else None,
+        arm=p.spacing / 2,
+        half_side=p.side / 2,
+        keep=(1 - drag) / (1 + drag),
+        local=p.local_damping or 0.0,
         mass=p.block_mass,
-        inertia=inertia if turns else None,
-        push=dt / p.block_mass / (1 + drag),
-        twist=tuple(dt / i / (1 + drag) for i in inertia) if turns else None,
-        fall=fall,
-        keep=(1 - drag) / (1 + drag) if p.mass_damping else None,
-        local=p.local_damping,
-        finite=top(p) if scene.motion.rotation == "finite" else None,
+        inertia_across=across,
+        inertia_along=along,
+        freedoms=6 if scene.motion.rotation != "none" else 3,
+        inertia=inertia,
+        push=dt / inertia / (1 + drag),
+        fall=dt / (1 + drag) * g * direction,
+        weight=p.block_mass * g * direction,
+        face=face.normal + face.shear,
     )
 
 
-def top(p: Properties) -> tuple[float, float]:
-    """Return 1 / I_t and 1 / I_a - 1 / I_t of a block as a symmetric top, 1/(kg m2)."""
-    return 1 / p.inertia_across, 1 / p.inertia_along - 1 / p.inertia_across
-
-
-def build_contact(scene: Scene, p: Properties, motion: Motion) -> Contact:
-    """Return the constants of all joints: by points where they can open or slide, or turn far."""
-    joints = law(
+def build_law(p: Properties) -> Law:
+    """Return the law of all joints."""
+    return law(
         p.stiffness,
         p.joint_time_constant,
         p.tension,
         shear_stiffness=p.shear_stiffness,
         **p.strengths(),
     )
-    points, damped = contact_points(scene), p.joint_time_constant is not None
-    by_points = points_looked_after(scene, p) > 0
-    return Contact(
-        law=_numbers(joints),
-        table=_table(joints, p.block_count),
-        points=points if by_points else None,
-        section=None if by_points else section(points),
-        rows=rows_of(points if by_points else None, joints, motion, damped),
-        arm=motion.arm,
-        dt=motion.dt,
-        damped=True if damped else None,
-        finite=motion.finite,
-        half_side=p.side / 2,
-    )
 
 
-def rows_of(points: Any, joints: Law, motion: Motion, damped: bool) -> Layout:
-    """Return which rows a tile has."""
-    freedoms = 3 if motion.arm is None else 6
-    n = 0 if points is None else len(points.area)
-    return layout(
-        motion=2 * freedoms + (motion.finite is not None),
-        rates=freedoms if damped else 0,
-        slides=2 * n,
-        openings=n if joints.tensile_strength is not None else 0,
-        cohesions=n if joints.residual_cohesion is not None else 0,
-    )
-
-
-def _differ(joints: Law) -> bool:
-    return any(isinstance(part, np.ndarray) for part in joints)
-
-
-def _numbers(joints: Law) -> Law:
-    """Return a law of numbers: where joints differ only which parts there are matters."""
-    if not _differ(joints):
-        return joints
-    numbers = Law(*(None if part is None else 0.0 for part in joints))
-    return numbers._replace(carries_tension=None if joints.carries_tension is None else False)
-
-
-def _table(joints: Law, blocks: int) -> np.ndarray | None:
-    """Return every part of every joint in tiles, where joints differ."""
-    if not _differ(joints):
-        return None
-    rows = np.zeros((len(joints), blocks))  # for as many tiles as the blocks have
-    for row, part in zip(rows, joints, strict=True):
-        row[:-1] = 0.0 if part is None else part
-    return packed(rows, LANES)
-
-
-def build_ends(
-    scene: Scene, p: Properties, contact: Contact, motion: Motion
-) -> tuple[End | None, End | None]:
-    """Return both ends, with the prestress that they carry where they give way."""
-    size = 3 if motion.arm is None else 6
-    face = face_of(section(contact_points(scene)))
-    springs, base = end_springs(p, face, size), np.zeros(size)
+def build_ends(scene: Scene, p: Properties, block: Block) -> tuple[bool, bool, np.ndarray | None]:
+    """Return whether anything acts on start and end, and the constants of both, with the prestress
+    that they carry where they give way; None where nothing does and no ledger asks for them."""
+    size = 3 if scene.motion.rotation == "none" else 6
+    springs, base = end_springs(p, face_of(contact_points(scene)), size), np.zeros(size)
     base[:3] = scene.load.direction if scene.load.shakes_base else 0.0
-    return (
-        _build_end(scene, scene.ends.start, 1.0, springs, motion, base, p.area),
-        _build_end(scene, scene.ends.end, -1.0, springs, motion, np.zeros(size), p.area),
-    )
+    kinds, found = (scene.ends.start, scene.ends.end), []
+    for kind, side, moved in zip(kinds, (1.0, -1.0), (base, 0.0 * base), strict=True):
+        steady = np.zeros(size)
+        if scene.prestress is not None and kind != "fixed":
+            steady[1] = side * scene.prestress.normal * p.area
+        found.append(end_constants(kind, side, springs, block, steady, moved))
+    start, end = (k != "free" or e[STEADY].any() for k, e in zip(kinds, found, strict=True))
+    return start, end, np.array(found) if start or end or scene.record.energy else None
 
 
-def _build_end(
-    scene: Scene, kind: str, side: float, springs: Springs, motion: Motion, base: Any, area: float
-) -> End | None:
-    steady = np.zeros_like(base)
-    if scene.prestress is not None and kind != "fixed":
-        steady[1] = side * scene.prestress.normal * area
-    return build_end(kind, side, springs, motion, steady, base)
-
-
-def build_load(scene: Scene, p: Properties, time: Clock, size: int) -> Load:
+def build_load(scene: Scene, p: Properties, time: Clock) -> Load:
     """Return what acts on the start face."""
-    steps = time.steps + time.stride
+    steps, size = time.steps + time.stride, 3 if scene.motion.rotation == "none" else 6
     if scene.load.shakes_base:
         base = np.append(0.0, base_steps(scene, time.dt, steps + 1))
         return Load(np.zeros(0), np.zeros(size), base)
@@ -223,50 +170,48 @@ def build_receivers(sections: Interpolation, points: Interpolation) -> Receivers
     """Return the contacts and blocks on either side of every recorded place, left ones first."""
     contacts = np.concatenate([sections.left, sections.right])
     blocks = np.concatenate([points.left, points.right])
-    contact_tile = np.maximum(contacts - 1, 0) // LANES
-    return Receivers(contact_tile, contacts - contact_tile * LANES, blocks // LANES, blocks % LANES)
+    tile = np.maximum(contacts - 1, 0) // LANES
+    return Receivers(
+        np.array([tile, contacts - tile * LANES]), np.array([blocks // LANES, blocks % LANES])
+    )
 
 
-def state_at_rest(model: Model, block_count: int) -> State:
+def state_at_rest(model: Model) -> State:
     """Return the state at rest, with no array for anything that the model does not have."""
-    rows, tiles = model.contact.rows, tile_count(block_count)
-    kept = sum(len(kind) for kind in rows[1:] if kind is not None)
+    form, tiles, points = model.form, tile_count(model.block_count), model.points.shape[1]
+    kept = form.rate_rows + points * form.point_rows
     history = zeros((tiles, kept * LANES)) if kept else None
-    if history is not None and rows.cohesions is not None:
-        fill_cohesion(model.contact, history)
-    sums = None if model.accounts is None else zeros(AFTER * STRIDE)
-    motion = zeros((tiles, len(rows.motion) * STRIDE))
-    if model.motion.finite is not None:
-        motion[:, SCALAR:] = 1.0  # no rotation
-    slides = None if model.contact.points is None else np.zeros((tiles, 1), dtype=np.int64)
-    return State(motion, history, slides, end_state(model.start), end_state(model.end), sums)
+    if history is not None and form.points and form.parts.residual:
+        field = Law._fields.index("cohesion")
+        cohesion = model.table.reshape(len(model.table), -1, LANES)[:, field]
+        whole = cohesion if form.parts.varied else cohesion[:, :1]
+        history.reshape(tiles, -1, LANES)[:, form.cohesions] = whole[:, None]
+    motion = zeros((tiles, form.motion_rows * STRIDE))
+    if form.finite:
+        motion[:, 12 * STRIDE :] = 1.0  # no rotation
+    return State(
+        motion,
+        history,
+        np.zeros((tiles, 1), dtype=np.int64) if form.points else None,
+        None if model.ends is None else np.zeros((2, 4, form.freedoms)),
+        zeros(AFTER) if form.ledger else None,
+    )
 
 
-def fill_cohesion(contact: Contact, history: np.ndarray) -> None:
-    """Give every contact point the cohesion of its joint."""
-    whole = contact.law.cohesion
-    if contact.table is not None:
-        whole = contact.table[:, None, 5 * LANES : 6 * LANES]
-    first, points = contact.rows.cohesions[0], len(contact.rows.cohesions)
-    history.reshape(len(history), -1, LANES)[:, first : first + points] = whole
-
-
-def room_for(model: Model, threads: int, guard: Guard | None = None) -> Room:
-    """Return the room that so many threads work in, watched by a guard."""
+def buffers_for(model: Model, threads: int, guard: Guard | None = None) -> Buffers:
+    """Return the buffers that so many threads work in, a run ended by a guard."""
     slots = threads * DEPTH
-    books = None if model.accounts is None else zeros((slots, ACCOUNTS * STRIDE))
-    work, carry = zeros((threads, scratch.ROWS * STRIDE)), np.zeros((slots, 12))
-    return Room(work, carry, books, DEPTH, guard)
+    ledgers = zeros((slots, LEDGER)) if model.form.ledger else None
+    return Buffers(zeros((threads, BUFFER)), np.zeros((slots, 12)), ledgers, DEPTH, guard)
 
 
 def samples_for(model: Model, samples: int) -> Samples:
     """Return empty samples."""
-    freedoms = len(model.contact.rows.motion) // 2
-    contacts, blocks = len(model.receivers.contact_tile), len(model.receivers.block_tile)
-    energy = None if model.accounts is None else np.zeros((len(model.accounts), samples))
+    contacts, centres = (places.shape[1] for places in model.receivers)
+    freedoms, rows = model.form.freedoms, model.form.motion_rows
     return Samples(
         np.zeros((contacts, freedoms, samples)),
-        np.zeros((blocks, freedoms, samples)),
-        np.zeros((blocks, len(model.contact.rows.motion) - freedoms, samples)),
-        energy,
+        np.zeros((centres, freedoms, samples)),
+        np.zeros((centres, rows - freedoms, samples)),
+        None if model.places is None else np.zeros((len(model.places), samples)),
     )

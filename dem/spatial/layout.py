@@ -1,83 +1,95 @@
-"""Where a block's numbers lie: tiles of 64 blocks, one row of lanes for each number.
+"""Which effects a row has, and where a block's numbers lie: tiles of 64 blocks, a row for each.
 
 The motion of a tile and the history of its joints are flat arrays in which all distances between
 rows are constants: what lets the compiler work on several blocks at once. They are apart because
 a loop that reads neighbouring lanes of the one writes the other.
 
-Rows of motion: displacement and rotation, then velocity and angular velocity. A row has room for
-the first block of the next tile, whose joint with this tile's last block is computed here. Rows
-of history, per joint: the rates of its relative motion half a step before (`rates`), and what the
-law remembers of each contact point (`slides`, x and z in turn, `openings`, `cohesions`).
+Rows of motion: displacement (3), rotation (3), velocity (3), angular velocity (3). With finite
+rotations the vector part of the unit quaternion, its angular momentum, and the scalar part last.
+A row ends with a copy of the first block of the next tile, whose joint with this tile's last block
+is computed here. Rows of history, per joint: the rates of its relative motion half a step before,
+where it has dashpots, and for each contact point its slides along x and z, its largest opening with
+softening and its cohesion where slip reduces it.
 """
 
-from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from joints.law import Parts
 from numerics.aligned import zeros
-from numerics.jit import inlined, jitted
 
 LANES = 64  # blocks in a tile
 STRIDE = 72  # lanes in a row of motion: the tile's own, the next one's first, whole cache lines
 
+# Rows of a vector and a rotation: of motion, of velocity, of force and moment.
+X, Y, Z, ABOUT_X, ABOUT_Y, ABOUT_Z = range(0, 6 * STRIDE, STRIDE)
 
-class Layout(NamedTuple):
-    """Which rows a tile has, as tuples of their indices; an absent kind is None.
+# Rows of the buffer of one tile's step, which the next tile does not need. Joint i has lane i, but
+# for its forces: those lie in lane i + 1, so that a block finds the force of its left joint in its
+# own lane and that of its right joint in the next.
+FORCE = 0  # and moment about the face's centre; with finite rotations about the right centroid
+LEFT = 6 * STRIDE  # moment about the left block's centroid, for finite rotations
+DRAG = 9 * STRIDE  # the dashpots' share of all nine, for the ledger
+BEFORE = 18 * STRIDE  # velocity and angular velocity before the step, for the ledger
+MOMENTA = 24 * STRIDE  # angular momentum before the step, for the ledger
+SLID = 27 * STRIDE  # work done by sliding, for the ledger
+NET = 55 * STRIDE  # impulse on a block in the step, N s and N m s, for the ledger
+RELATIVE = 28 * STRIDE  # relative motion of a joint's faces: displacement and rotation, 6 or 9 rows
+RATE = 37 * STRIDE  # their rates half a step before
+CENTRED = 46 * STRIDE  # and at the whole step, for the dashpots
+BUFFER = 61 * STRIDE
 
-    The lengths are known when a kernel is compiled, so the place of each row is a constant.
+
+class Form(NamedTuple):
+    """Which effects a row has: the constants of its compiled kernel.
+
+    parts : of the joint law. points : whether the law acts at every contact point, else over the
+    face as a whole, where joints always hold. turns, finite : whether blocks turn, and by any
+    angle. start, end : whether anything acts on these ends.
     """
 
-    motion: tuple
-    rates: Any
-    slides: Any
-    openings: Any
-    cohesions: Any
+    parts: Parts
+    points: bool
+    turns: bool
+    finite: bool
+    mass_damping: bool
+    local_damping: bool
+    gravity: bool
+    base: bool
+    start: bool
+    end: bool
+    ledger: bool
 
+    @property
+    def freedoms(self) -> int:
+        """How many freedoms a block has."""
+        return 6 if self.turns else 3
 
-def layout(motion: int, rates: int, slides: int, openings: int, cohesions: int) -> Layout:
-    """Return the layout with so many rows of each kind."""
-    ends = np.cumsum([0, rates, slides, openings, cohesions]).tolist()
-    history = (tuple(range(a, b)) or None for a, b in pairwise(ends))
-    return Layout(tuple(range(motion)), *history)
+    @property
+    def motion_rows(self) -> int:
+        """Rows of a tile's motion."""
+        return 2 * self.freedoms + self.finite
 
+    @property
+    def rate_rows(self) -> int:
+        """Rows of history with the rates of the relative motion."""
+        return self.freedoms if self.parts.dashpots else 0
 
-@inlined
-def count(rows):
-    """Return how many rows of a kind there are."""
-    if rows is None:
-        return 0
-    return len(rows)
+    @property
+    def point_rows(self) -> int:
+        """Rows of history for each contact point: slides, opening, cohesion."""
+        return 2 + self.parts.softening + self.parts.residual if self.points else 0
 
+    @property
+    def openings(self) -> slice:
+        """The rows of history with the largest openings of the contact points."""
+        return slice(self.rate_rows + 2, None, self.point_rows)
 
-@jitted
-def freedoms(rows):
-    """Return how many freedoms a block has."""
-    return len(rows.motion) // 2
-
-
-@inlined
-def velocities(rows):
-    """Return the place of the first velocity in a tile's motion."""
-    return len(rows.motion) // 2 * STRIDE
-
-
-@inlined
-def first_slide(rows):
-    """Return the place of the first slide in a tile's history."""
-    return count(rows.rates) * LANES
-
-
-@inlined
-def first_opening(rows):
-    """Return the place of the first largest opening in a tile's history."""
-    return first_slide(rows) + count(rows.slides) * LANES
-
-
-@inlined
-def first_cohesion(rows):
-    """Return the place of the first cohesion in a tile's history."""
-    return first_opening(rows) + count(rows.openings) * LANES
+    @property
+    def cohesions(self) -> slice:
+        """The rows of history with the cohesions of the contact points."""
+        return slice(self.rate_rows + 2 + self.parts.softening, None, self.point_rows)
 
 
 def tile_count(blocks: int) -> int:

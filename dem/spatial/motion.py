@@ -2,156 +2,133 @@
 
 m v' = F_left - F_right + m g,   I omega' = M_left - M_right + h y x (-(F_left + F_right)),
 
-with y x F = (F_z, 0, -F_x): the shear forces of both joints turn a block the same way.
+with y x F = (F_z, 0, -F_x): the shear forces of both joints turn a block the same way. With finite
+rotations the angular momentum advances by the moments about the centroid, and turns the block.
 """
 
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from math import copysign
+from typing import NamedTuple
 
-from dem.damping import advanced
-from dem.spatial.finite import SCALAR, orientation, spin
+import numpy as np
+
+from dem.spatial.finite import angular_velocity, put_three, three, turn_by_momentum
+from dem.spatial.layout import ABOUT_X, ABOUT_Y, ABOUT_Z, BEFORE, LEFT, MOMENTA, Form, X, Y, Z
 from dem.spatial.layout import LANES as L
 from dem.spatial.layout import STRIDE as R
-from dem.spatial.layout import velocities
-from dem.spatial.scratch import LEFT
-from dem.spatial.vectors import columns_less_one, dot, normalised, product, times, turn_by
-from numerics.jit import inlined
-from numerics.optional import either
+from joints.formula import formula
 
 
-class Motion(NamedTuple):
-    """The constants of the motion of one block.
+class Block(NamedTuple):
+    """The constants of one block and of the face between two; kernels take them as one array.
 
-    dt : s. arm : half the thickness, m; None where blocks do not turn.
-    mass : m, kg; inertia : about the axes x, y, z, kg m2; None where blocks do not turn.
-    push, twist : what a force and a moment add in a step to velocity and angular velocity:
-        dt / m and dt / I, less by mass-proportional damping; twist None where blocks do not turn.
-    fall : what gravity adds to the velocity in a step, m/s; None without.
-    keep : what mass-proportional damping leaves of a velocity in a step; None without.
-    local : Cundall's damping, None without.
-    finite : (1 / I_t, 1 / I_a - 1 / I_t) of a block that turns by any angle, 1/(kg m2); else None.
+    dt : s. arm : half the thickness, m. half_side : of the section, m. keep : what
+    mass-proportional damping leaves of a velocity in a step. local : Cundall's damping. mass : kg;
+    inertia_across : about x and z, inertia_along : about y, kg m2. freedoms : 3 or 6; kernels take
+    it as a number, which keeps compilers from writing out the loops over it.
+
+    The rest are float arrays [6], for x, y, z and the rotations about them. inertia : kg and kg m2.
+    push : what a force or moment adds to a velocity in a step, dt / m and dt / I, less by
+    mass-proportional damping. fall : what gravity adds, m/s. weight : m g, N. face : sums over the
+    points of a face: A, m2, three times, then A z^2, A (x^2 + z^2) and A x^2, m4.
     """
 
     dt: float
-    arm: Any
+    arm: float
+    half_side: float
+    keep: float
+    local: float
     mass: float
-    inertia: Any
-    push: float
-    twist: Any
-    fall: Any
-    keep: Any
-    local: Any
-    finite: Any
+    inertia_across: float
+    inertia_along: float
+    freedoms: int
+    inertia: np.ndarray
+    push: np.ndarray
+    fall: np.ndarray
+    weight: np.ndarray
+    face: np.ndarray
+
+    def as_array(self) -> np.ndarray:
+        """Return all in one array [6, 9], as kernels take them."""
+        rows = np.zeros((6, 9))
+        rows[0], rows[1:, :6] = self[:9], self[9:]
+        return rows
 
 
-@inlined
-def net_force(q, i):
-    """Return the force of both joints on the block in lane i, N."""
-    return q[i] - q[i + 1], q[R + i] - q[R + i + 1], q[2 * R + i] - q[2 * R + i + 1]
+@formula
+def block_of(c):
+    """Return the block of an array of its constants."""
+    return Block(
+        c[0, 0], c[0, 1], c[0, 2], c[0, 3], c[0, 4], c[0, 5], c[0, 6], c[0, 7],
+        int(c[0, 8]), c[1], c[2], c[3], c[4], c[5],
+    )  # fmt: skip
 
 
-@inlined
-def net_moment(q, i, arm):
-    """Return the moment of both joints about the centroid of the block in lane i, N m."""
-    mx = q[3 * R + i] - q[3 * R + i + 1] - arm * (q[2 * R + i] + q[2 * R + i + 1])
-    my = q[4 * R + i] - q[4 * R + i + 1]
-    mz = q[5 * R + i] - q[5 * R + i + 1] + arm * (q[i] + q[i + 1])
-    return mx, my, mz
+def motion_for(form: Form) -> Callable:
+    """Return the formula that advances the blocks of a tile by one step."""
+    velocity, turns, finite, ledger = form.freedoms * R, form.turns, form.finite, form.ledger
+    gravity, mass_damping, local_damping = form.gravity, form.mass_damping, form.local_damping
 
+    @formula
+    def advanced(b, v, gain):
+        """Return a velocity after the step, from that before it and what its forces would add."""
+        if local_damping:  # less by local |gain| along v
+            gain = gain - b.local * copysign(abs(gain), v) if v != 0.0 else gain
+        if mass_damping:
+            v = b.keep * v
+        return v + gain
 
-@inlined
-def angular_velocity(motion, s, i):
-    """Return the angular velocity of block i."""
-    return s[9 * R + i], s[10 * R + i], s[11 * R + i]
+    @formula
+    def advance_one(b, m, q, i, f, push, fall):
+        """Advance one component of velocity and displacement, or of both angular ones, by f."""
+        gain = push * f
+        if gravity:
+            gain += fall
+        old = m[velocity + i]
+        if ledger:
+            q[BEFORE + i] = old
+        new = advanced(b, old, gain)
+        m[velocity + i] = new
+        m[i] += b.dt * new
 
-
-@inlined
-def spin_of(motion, s, i):
-    """Return the angular velocity of block i from its angular momentum and orientation."""
-    columns = columns_less_one(orientation(s, i))
-    return spin(motion.finite, columns, angular_velocity(motion, s, i))
-
-
-@inlined
-def gains(push, fall, f):
-    """Return what force f adds to a velocity in a step, with gravity."""
-    x, y, z = push * f[0], push * f[1], push * f[2]
-    if fall is None:
-        return x, y, z
-    return x + fall[0], y + fall[1], z + fall[2]
-
-
-@inlined
-def turns(twist, m):
-    """Return what moment m adds to an angular velocity in a step."""
-    return twist[0] * m[0], twist[1] * m[1], twist[2] * m[2]
-
-
-@inlined
-def advance(motion, rows, s, q, n):
-    """Advance the first n blocks of a tile's motion s by one step."""
-    translate(motion, motion.fall, rows, s, q, n)
-    either(motion.finite, rotate, rotate_by_momentum)(motion, motion.arm, s, q, n)
-
-
-@inlined
-def translate(motion, fall, rows, s, q, n):
-    """Advance velocities and displacements."""
-    dt, push, keep, local = motion.dt, motion.push, motion.keep, motion.local
-    v = velocities(rows)
-    for i in range(min(n, L)):
-        gain = gains(push, fall, net_force(q, i))
-        x = advanced(keep, local, s[v + i], gain[0])
-        y = advanced(keep, local, s[v + R + i], gain[1])
-        z = advanced(keep, local, s[v + 2 * R + i], gain[2])
-        s[v + i], s[v + R + i], s[v + 2 * R + i] = x, y, z
-        s[i] += dt * x
-        s[R + i] += dt * y
-        s[2 * R + i] += dt * z
-
-
-@inlined
-def rotate(motion, arm, s, q, n):
-    """Advance angular velocities and rotations, where blocks turn."""
-    if arm is not None:
-        dt, twist, keep, local = motion.dt, motion.twist, motion.keep, motion.local
+    @formula
+    def turn(b, m, q, n):
+        """Advance angular momenta by the moments of a step, and turn the blocks by them."""
+        gain = b.push[0] * b.mass  # dt, less by mass-proportional damping
         for i in range(min(n, L)):
-            gain = turns(twist, net_moment(q, i, arm))
-            x = advanced(keep, local, s[9 * R + i], gain[0])
-            y = advanced(keep, local, s[10 * R + i], gain[1])
-            z = advanced(keep, local, s[11 * R + i], gain[2])
-            s[9 * R + i], s[10 * R + i], s[11 * R + i] = x, y, z
-            s[3 * R + i] += dt * x
-            s[4 * R + i] += dt * y
-            s[5 * R + i] += dt * z
+            momentum, at = three(m, velocity + ABOUT_X, i), i + 1 + LEFT
+            moment = three(q, ABOUT_X, i)
+            if ledger:
+                put_three(q, MOMENTA + i, momentum)
+                put_three(q, BEFORE + ABOUT_X + i, angular_velocity(b, m, i))
+            momentum = (
+                advanced(b, momentum[0], gain * (moment[0] + q[at + X])),
+                advanced(b, momentum[1], gain * (moment[1] + q[at + Y])),
+                advanced(b, momentum[2], gain * (moment[2] + q[at + Z])),
+            )
+            put_three(m, velocity + ABOUT_X + i, momentum)
+            turn_by_momentum(b, m, i, momentum)
 
+    @formula
+    def advance(b, m, q, n):
+        """Advance the first n blocks of a tile; the ledger finds their velocities before it in q.
 
-@inlined
-def finite_moment(q, i, arm):
-    """Return the moment of both joints about the centroid of the block in lane i, N m."""
-    return (
-        q[3 * R + i] + q[LEFT + i + 1],
-        q[4 * R + i] + q[LEFT + R + i + 1],
-        q[5 * R + i] + q[LEFT + 2 * R + i + 1],
-    )
+        m : motion of the tile. q : its buffer, with the forces of all joints.
+        """
+        push, (x, y, z) = b.push[0], (b.fall[0], b.fall[1], b.fall[2])
+        for i in range(min(n, L)):
+            advance_one(b, m, q, X + i, q[X + i] - q[X + i + 1], push, x)
+            advance_one(b, m, q, Y + i, q[Y + i] - q[Y + i + 1], push, y)
+            advance_one(b, m, q, Z + i, q[Z + i] - q[Z + i + 1], push, z)
+        if finite:
+            turn(b, m, q, n)
+        elif turns:
+            across, along = b.push[3], b.push[4]
+            for i in range(min(n, L)):
+                x = q[ABOUT_X + i] - q[ABOUT_X + i + 1] - b.arm * (q[Z + i] + q[Z + i + 1])
+                z = q[ABOUT_Z + i] - q[ABOUT_Z + i + 1] + b.arm * (q[X + i] + q[X + i + 1])
+                advance_one(b, m, q, ABOUT_X + i, x, across, 0.0)
+                advance_one(b, m, q, ABOUT_Y + i, q[ABOUT_Y + i] - q[ABOUT_Y + i + 1], along, 0.0)
+                advance_one(b, m, q, ABOUT_Z + i, z, across, 0.0)
 
-
-@inlined
-def rotate_by_momentum(motion, arm, s, q, n):
-    """Advance angular momenta by the moments of a step, and turn the blocks by them."""
-    dt, finite, keep, local = motion.dt, motion.finite, motion.keep, motion.local
-    for i in range(min(n, L)):
-        gain = times(motion.push * motion.mass, finite_moment(q, i, arm))
-        momentum = (
-            advanced(keep, local, s[9 * R + i], gain[0]),
-            advanced(keep, local, s[10 * R + i], gain[1]),
-            advanced(keep, local, s[11 * R + i], gain[2]),
-        )
-        s[9 * R + i], s[10 * R + i], s[11 * R + i] = momentum
-        p = orientation(s, i)
-        columns = columns_less_one(p)
-        axis = (columns[1][0], 1.0 + columns[1][1], columns[1][2])
-        about_momentum = turn_by(times(0.5 * dt * finite[0], momentum))
-        own = 0.5 * dt * finite[1] * dot(momentum, axis)
-        about_axis = turn_by((0.0, own, 0.0))
-        p = normalised(product(about_momentum, product(p, about_axis)))
-        s[SCALAR + i], s[3 * R + i], s[4 * R + i], s[5 * R + i] = p
+    return advance

@@ -1,30 +1,100 @@
-"""What a tile leaves of itself at a sample: forces of contacts, motion of blocks."""
+"""What is recorded of a row in space: waveforms, snapshots of all blocks, fragments."""
 
-from dem.spatial.layout import STRIDE as R
-from numerics.jit import inlined
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from cases.loads import with_load_itself
+from cases.material.calibrate import Properties
+from cases.sampling import Clock, Interpolation
+from cases.schema.scene import Scene
+from dem.fragments import with_fragments
+from dem.spatial.build import buffers_for, build_receivers, receivers, samples_for
+from dem.spatial.layout import LANES, STRIDE, unpacked
+from dem.spatial.march import marcher
+from dem.spatial.model import Model, Samples, State
+from dem.static import since_prestress
+from numerics.divergence import guard
+from results.arrays import copied
+from results.dataset import Fields
 
 
-@inlined
-def sample_before(receivers, samples, half, s, q, t, c):
-    """Read forces, displacements and half the velocities of tile t for sample c."""
-    for r in range(receivers.contact_tile.size):
-        if receivers.contact_tile[r] == t:
-            for k in range(half):
-                samples.force[r, k, c] = q[k * R + receivers.contact_lane[r]]
-    for r in range(receivers.block_tile.size):
-        if receivers.block_tile[r] == t:
-            lane = receivers.block_lane[r]
-            for k in range(half):
-                samples.displacement[r, k, c] = s[k * R + lane]
-                samples.velocity[r, k, c] = 0.5 * s[(half + k) * R + lane]
-            for k in range(half, samples.displacement.shape[1]):  # the scalar part of a quaternion
-                samples.displacement[r, k, c] = s[(half + k) * R + lane]
+def waveforms(scene: Scene, p: Properties, samples: Samples, time: Clock) -> dict[str, Any]:
+    """Return the recorded fields at the scene's receivers, as `results.dataset.fields` takes
+    them."""
+    sections, points = receivers(scene, p)
+    force, velocity = between(samples.force, sections), between(samples.velocity, points)
+    times = time.times[: force.shape[-1]]
+    stress = with_load_itself(force[:, :3] / p.area, scene, sections, times, time.dt)
+    moved = between(samples.displacement, points)
+    moved[:, 1] = since_prestress(scene, p, moved[:, 1], points)
+    found = {
+        "stress": stress[:, 1],
+        "shear": np.moveaxis(stress[:, [0, 2]], 1, 2),
+        "velocity": np.moveaxis(velocity[:, :3], 1, 2),
+        "displacement": np.moveaxis(moved[:, :3], 1, 2),
+    }
+    if moved.shape[1] == 6:
+        found["rotation"] = np.moveaxis(moved[:, 3:], 1, 2)
+    elif moved.shape[1] == 7:
+        found["rotation"] = rotation_vectors(np.moveaxis(moved[:, 3:], 1, 2))
+    return found
 
 
-@inlined
-def sample_after(receivers, samples, half, s, t, c):
-    """Add the other half of the velocities."""
-    for r in range(receivers.block_tile.size):
-        if receivers.block_tile[r] == t:
-            for k in range(half):
-                samples.velocity[r, k, c] += 0.5 * s[(half + k) * R + receivers.block_lane[r]]
+def rotation_vectors(quaternions: np.ndarray) -> np.ndarray:
+    """Return the rotation vectors [..., 3] (rad, up to pi) of quaternions [..., 4], scalar last."""
+    from scipy.spatial.transform import Rotation
+
+    lengths = np.linalg.norm(quaternions, axis=-1, keepdims=True)
+    turns = Rotation.from_quat((quaternions / lengths).reshape(-1, 4))
+    return turns.as_rotvec().reshape(*quaternions.shape[:-1], 3)
+
+
+def between(values: np.ndarray, at: Interpolation) -> np.ndarray:
+    """Return values [left and right of each place, freedom, sample] interpolated to the places."""
+    left, right = np.split(values, 2)
+    weight = at.weight[:, None, None]
+    return (1 - weight) * left + weight * right
+
+
+def shooter(p: Properties, model: Model, state: State, threads: int) -> Callable[[int], Any]:
+    """Return what takes a sample of all contacts and blocks, on a copy of the state.
+
+    A velocity at a whole step needs the step, as it does at the receivers.
+    """
+    from dem.snapshots import Shot
+
+    everything = build_receivers(_all(p.block_count + 1), _all(p.block_count))
+
+    def shoot(sample: int) -> Shot:
+        n = sample * model.stride
+        # Samples are the steps that the stride divides: step 0, and step n as number 1.
+        everywhere = model._replace(receivers=everything, stride=max(n, 1))
+        twin, found = copied(state), samples_for(everywhere, 2)
+        # A guard that finds nothing, as the run has one: the same kernel.
+        buffers = buffers_for(everywhere, threads, guard([np.inf] * model.form.freedoms))
+        marcher(everywhere, twin, buffers, found)(n, n + 1)
+        force, velocity, displacement = (x[..., min(n, 1)] for x in found[:3])
+        return Shot(force[:, 1] / p.area, displacement, velocity)
+
+    return shoot
+
+
+def _all(count: int) -> Interpolation:
+    """Return how every place is read by itself."""
+    return Interpolation(np.arange(count), np.arange(0), np.zeros(count))
+
+
+def with_breaks(result: Fields, p: Properties, model: Model, state: State) -> Fields:
+    """Return a result with its fragments, where joints soften.
+
+    A joint is broken when all its contact points are. When it broke is not kept.
+    """
+    form = model.form
+    if not form.parts.softening:
+        return result
+    opened = unpacked(state.history, LANES, p.block_count)[form.openings, :-1]
+    broken = (opened >= p.critical_opening).all(axis=0)
+    motion, first = unpacked(state.motion, STRIDE, p.block_count), form.freedoms
+    return with_fragments(result, p, broken, motion[first : first + 3].T)

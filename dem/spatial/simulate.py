@@ -4,35 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from cases.errors import SceneError
-from cases.loads import with_load_itself
 from cases.material.calibrate import Properties, calibrate
-from cases.sampling import Clock, Interpolation, clock
+from cases.sampling import Clock, clock
 from cases.schema.scene import Scene
 from dem.looks import Run, followed, sighting, versions
 from dem.size import refuse_large
-from dem.spatial.bound import highest_speeds
-from dem.spatial.breaks import with_breaks
 from dem.spatial.build import (
+    buffers_for,
     build_model,
     energy_terms,
     points_looked_after,
-    receivers,
-    room_for,
     samples_for,
     state_at_rest,
 )
-from dem.spatial.layout import LANES, STRIDE, freedoms, unpacked
-from dem.spatial.model import Model, Samples, State
-from dem.spatial.section import contact_points, face_of, section
-from dem.spatial.stability import critical_spatial_step
+from dem.spatial.ends import contact_points, face_of
+from dem.spatial.layout import LANES, STRIDE, unpacked
+from dem.spatial.march import marcher, thread_count
+from dem.spatial.model import Model, State
+from dem.spatial.record import shooter, waveforms, with_breaks
+from dem.spatial.stability import critical_spatial_step, highest_speeds
 from dem.spatial.start import start
-from dem.spatial.threads import marcher, thread_count
-from dem.static import since_prestress
 from numerics.checkpoint import Keeper
 from numerics.divergence import guard, look
 from numerics.instability import stopped
@@ -65,7 +61,7 @@ def prepare(scene: Scene) -> Prepared:
 
 def critical_step_of(scene: Scene, p: Properties) -> float:
     """Return the critical step of a scene, s."""
-    face, ends = face_of(section(contact_points(scene))), scene.ends
+    face, ends = face_of(contact_points(scene)), scene.ends
     return critical_spatial_step(p, face, (ends.start, ends.end), scene.motion.rotation != "none")
 
 
@@ -75,11 +71,11 @@ def simulate_fields(
     """Simulate a scene of motion in space, three or six freedoms a block."""
     began = perf_counter()
     p, model, time, critical = prepare(scene)
-    state, samples = state_at_rest(model, p.block_count), samples_for(model, time.samples)
+    state, samples = state_at_rest(model), samples_for(model, time.samples)
     rest = start(scene, p, model, state)
     threads = thread_count(scene.numerics.dem.threads, p.block_count)
     held = guard(highest_speeds(scene, p, model, state, time))
-    march = marcher(model, state, room_for(model, threads, held), samples)
+    march = marcher(model, state, buffers_for(model, threads, held), samples)
     built = perf_counter()
     march(0, 0)
     film = _film(scene, p, model, state, threads, time.dt)
@@ -99,7 +95,7 @@ def simulate_fields(
             dt=time.dt,
             critical_dt=critical,
             steps=time.steps,
-            degrees_of_freedom=len(model.contact.rows.motion) // 2 * p.block_count,
+            degrees_of_freedom=model.form.freedoms * p.block_count,
             threads=threads,
             bytes=size_of(model, state),
             **({} if rest is None else rest.attributes),
@@ -133,58 +129,19 @@ def _film(
     if scene.record.fields is None:
         return None
     from dem.snapshots import BlockFilm
-    from dem.spatial.snapshots import shooter
 
     return BlockFilm(scene, p, shooter(p, model, state, threads), dt)
 
 
-def waveforms(scene: Scene, p: Properties, samples: Samples, time: Clock) -> dict[str, Any]:
-    """Return the recorded fields at the scene's receivers, as `results.dataset.fields` takes
-    them."""
-    sections, points = receivers(scene, p)
-    force, velocity = between(samples.force, sections), between(samples.velocity, points)
-    times = time.times[: force.shape[-1]]
-    stress = with_load_itself(force[:, :3] / p.area, scene, sections, times, time.dt)
-    moved = between(samples.displacement, points)
-    moved[:, 1] = since_prestress(scene, p, moved[:, 1], points)
-    found = {
-        "stress": stress[:, 1],
-        "shear": np.moveaxis(stress[:, [0, 2]], 1, 2),
-        "velocity": np.moveaxis(velocity[:, :3], 1, 2),
-        "displacement": np.moveaxis(moved[:, :3], 1, 2),
-    }
-    if moved.shape[1] == 6:
-        found["rotation"] = np.moveaxis(moved[:, 3:], 1, 2)
-    elif moved.shape[1] == 7:
-        found["rotation"] = rotation_vectors(np.moveaxis(moved[:, 3:], 1, 2))
-    return found
-
-
-def rotation_vectors(quaternions: np.ndarray) -> np.ndarray:
-    """Return the rotation vectors [..., 3] (rad, up to pi) of quaternions [..., 4], scalar last."""
-    from scipy.spatial.transform import Rotation
-
-    lengths = np.linalg.norm(quaternions, axis=-1, keepdims=True)
-    turns = Rotation.from_quat((quaternions / lengths).reshape(-1, 4))
-    return turns.as_rotvec().reshape(*quaternions.shape[:-1], 3)
-
-
-def between(values: np.ndarray, at: Interpolation) -> np.ndarray:
-    """Return values [left and right of each place, freedom, sample] interpolated to the places."""
-    left, right = np.split(values, 2)
-    weight = at.weight[:, None, None]
-    return (1 - weight) * left + weight * right
-
-
 def speeds(model: Model, state: State, blocks: int) -> np.ndarray:
     """Return the magnitude of every component of every block's velocity [freedoms, N]."""
-    half = freedoms(model.contact.rows)
+    half = model.form.freedoms
     return np.abs(unpacked(state.motion, STRIDE, blocks)[half : 2 * half])
 
 
 def refuse_large_turns(scene: Scene, model: Model, state: State, t: float) -> None:
     """Raise SceneError where blocks have turned too far for small rotations at t (s)."""
-    if model.motion.arm is None or model.motion.finite is not None:
+    if not model.form.turns or model.form.finite:
         return
     rows = state.motion[:, 3 * STRIDE : 6 * STRIDE].reshape(-1, 3, STRIDE)[:, :, :LANES]
     if max(rows.max(), -rows.min()) > MOST_TURN:

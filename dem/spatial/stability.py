@@ -1,4 +1,6 @@
-"""The critical step of a row of blocks in space, from its assembled stiffness and damping.
+"""Bounds of a row of blocks in space: its critical step, and how fast its blocks can become.
+
+The critical step follows from the assembled stiffness and damping.
 
 With T(h) the velocity of a face at the lever h, a joint's relative motion is T(h) w2 - T(-h) w1 of
 its two blocks, and K = B^T D B with a row of B for each component. Slip and opening only take
@@ -12,9 +14,14 @@ from scipy import sparse
 from scipy.linalg import LinAlgError, cholesky_banded
 
 from cases.material.calibrate import Properties
-from dem.spatial.ends import end_springs, face_stiffness, lever_matrix
-from dem.spatial.section import Face
+from cases.sampling import Clock
+from cases.schema.scene import Scene
+from dem.axial.bound import shaking
+from dem.spatial.ends import Face, end_springs, face_stiffness, lever_matrix
+from dem.spatial.layout import STRIDE, unpacked
+from dem.spatial.model import Model, State
 from joints.stability import critical_step
+from numerics.divergence import speed_that
 
 ENOUGH_BLOCKS = 2000  # of alike joints: no longer row has an eigenvalue larger by 1e-6
 CLOSE_ENOUGH = 1e-12  # relative, to the largest eigenvalue
@@ -83,3 +90,53 @@ def _largest_eigenvalue(matrix: sparse.csr_matrix) -> float:
         except LinAlgError:
             low = shift
     return float(high)
+
+
+def highest_speeds(
+    scene: Scene, p: Properties, model: Model, state: State, time: Clock
+) -> np.ndarray:
+    """Return a bound on each component of the velocity of any block [freedoms], m/s and rad/s; with
+    finite rotations kg m2/s for the angular momentum."""
+    inertia = model.block.inertia[: model.form.freedoms]
+    with np.errstate(over="ignore"):
+        bound = np.sqrt(p.block_mass / inertia) * _speed(scene, p, model, state, time, inertia)
+        if model.form.finite:
+            bound[3:] = inertia[3:].max() * bound[3:].max()
+    return bound
+
+
+def _speed(
+    scene: Scene, p: Properties, model: Model, state: State, time: Clock, inertia: np.ndarray
+) -> float:
+    """Return the bound for a block's velocity, m/s."""
+    m, duration = p.block_mass, time.dt * (time.steps + time.stride)
+    weight = model.block.weight[:3]
+    push = np.linalg.norm(model.load.direction / np.sqrt(m * inertia))
+    return speed_that(
+        time.dt * (np.abs(model.load.stress) * push).sum(),
+        duration * _steady(scene, p) / m,
+        duration * np.sqrt(p.block_count) * np.linalg.norm(weight) / m,
+        np.sqrt(p.block_count) * shaking(model.load.base, time.dt),
+        _stored(scene, p, model, state, weight) / np.sqrt(m),
+    )
+
+
+def _steady(scene: Scene, p: Properties) -> float:
+    """Return what a prestress presses on ends that give way, N."""
+    if scene.prestress is None:
+        return 0.0
+    return 2 * abs(scene.prestress.normal) * p.area
+
+
+def _stored(scene: Scene, p: Properties, model: Model, state: State, weight: np.ndarray) -> float:
+    """Return a bound on the root of twice the energy stored at the start, sqrt(J).
+
+    Of a prestress that of all springs; of a static state under gravity at most what the weight has
+    done on its way there. The roots add up, for the energy is a norm of the displacement.
+    """
+    moved = unpacked(state.motion, STRIDE, p.block_count)[:3].sum(axis=1)
+    stored = np.sqrt(2 * np.abs(weight * moved).sum())
+    if scene.prestress is None:
+        return float(stored)
+    softness = (1 / p.stiffness).sum() + 1 / p.regular_stiffness  # the ends' springs as well
+    return float(stored + abs(scene.prestress.normal) * np.sqrt(p.area * softness))

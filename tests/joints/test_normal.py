@@ -8,8 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from joints.energy import elastic_energy, fracture_energy_spent
-from joints.laws import Law, normal_traction, spring_traction
-from joints.softening import is_broken, strength_left, update_opening
+from joints.law import Law, law_of, parts_of, table_of
+from joints.normal import normal_traction, spring_traction
+from joints.softening import is_broken, strength_left
 
 gaps = st.floats(-1e-3, 1e-3)
 rates = st.floats(-10, 10)
@@ -19,6 +20,11 @@ openings = st.lists(st.floats(-1, 1.5), min_size=2, max_size=30)  # in units of 
 
 tied = st.tuples(stiffnesses, viscosities).map(lambda parts: Law(*parts))
 no_tension = tied.map(lambda one: one._replace(carries_tension=False))
+
+
+def at_point(one):
+    """Return the law of one joint as kernels have it, every parameter a number, and its parts."""
+    return law_of(table_of(one), 0), parts_of(one)
 
 
 @st.composite
@@ -49,7 +55,7 @@ def nodes(path, kinks):
 @given(no_tension, gaps, rates)
 def test_no_tension_never_pulls_and_open_is_free(one, gap, rate):
     """Equation (10): no traction when open, none below zero, whatever the dashpot wants."""
-    t = normal_traction(one, gap, rate)
+    t = normal_traction(*at_point(one), gap, rate, 0.0)
     assert t >= 0
     if gap > 0:
         assert t == 0
@@ -59,7 +65,7 @@ def test_no_tension_never_pulls_and_open_is_free(one, gap, rate):
 def test_spring_gives_back_what_it_took(one, path):
     """The springs' work around any closed path of gaps is zero, opening included."""
     fine = nodes([*path, path[0]], [0.0])
-    t = np.array([spring_traction(one, g) for g in fine])
+    t = np.array([spring_traction(*at_point(one), g, 0.0) for g in fine])
     work = -np.sum((t[1:] + t[:-1]) / 2 * np.diff(fine))
     scale = one.normal_stiffness * np.abs(fine).max() ** 2
     assert work == pytest.approx(0, abs=1e-12 * scale + 1e-300)
@@ -68,7 +74,9 @@ def test_spring_gives_back_what_it_took(one, path):
 @given(no_tension | tied, gaps, rates)
 def test_dashpot_only_dissipates(one, gap, rate):
     """The part of the traction that is not elastic never does positive work on the blocks."""
-    excess = normal_traction(one, gap, rate) - spring_traction(one, gap)
+    excess = normal_traction(*at_point(one), gap, rate, 0.0) - spring_traction(
+        *at_point(one), gap, 0.0
+    )
     assert excess * rate <= 1e-12 * abs(one.normal_stiffness * gap * rate)
 
 
@@ -77,8 +85,11 @@ def test_dashpot_of_a_softening_joint_only_dissipates(one, path, rate):
     """The same with any history, and spring and dashpot together never pull beyond s(k)."""
     k = 0.0
     for gap in np.array(path) * one.critical_opening:
-        k = update_opening(k, gap)
-        t, spring = normal_traction(one, gap, rate, k), spring_traction(one, gap, k)
+        k = max(k, gap)
+        t, spring = (
+            normal_traction(*at_point(one), gap, rate, k),
+            spring_traction(*at_point(one), gap, k),
+        )
         assert t >= -strength_left(one, k)
         round_off = 1e-14 * (one.normal_stiffness * abs(gap) + one.tensile_strength)
         assert (t - spring) * rate <= round_off * abs(rate)
@@ -96,10 +107,14 @@ def test_softening_keeps_its_energy_at_every_step(one, path):
     k = work = spent = 0.0
     for a, b in pairwise(path):
         for g, h in pairwise(nodes([a, b], [*kinks, k])):
-            before = spring_traction(one, g, k)
-            k = update_opening(k, h)
-            work -= (before + spring_traction(one, h, k)) / 2 * (h - g)
-        stored, previous, spent = elastic_energy(one, b, k), spent, fracture_energy_spent(one, k)
+            before = spring_traction(*at_point(one), g, k)
+            k = max(k, h)
+            work -= (before + spring_traction(*at_point(one), h, k)) / 2 * (h - g)
+        stored, previous, spent = (
+            elastic_energy(*at_point(one), b, k, 0.0, 0.0),
+            spent,
+            fracture_energy_spent(one, k),
+        )
         scale = one.normal_stiffness * np.abs(path).max() ** 2 * len(path)
         assert work == pytest.approx(stored + spent, abs=1e-13 * scale)
         assert spent >= previous
@@ -113,16 +128,18 @@ def test_pulled_to_the_critical_opening_takes_fracture_energy(one, path):
     assert fracture_energy_spent(one, k) == pytest.approx(
         one.tensile_strength * critical / 2, rel=1e-12
     )
-    assert is_broken(one, k) and strength_left(one, k) == 0
-    assert elastic_energy(one, critical / 2, k) == 0
+    assert is_broken(*at_point(one), k) and strength_left(one, k) == 0
+    assert elastic_energy(*at_point(one), critical / 2, k, 0.0, 0.0) == 0
 
 
 @given(softening(), st.floats(0, 1), st.floats(0, 1))
 def test_unloads_through_the_origin(one, largest, part):
     """Between zero and the largest opening the spring is a straight line through both."""
     k = largest * one.critical_opening
-    whole = spring_traction(one, k, k)
-    assert spring_traction(one, part * k, k) == pytest.approx(part * whole, rel=1e-12, abs=1e-300)
+    whole = spring_traction(*at_point(one), k, k)
+    assert spring_traction(*at_point(one), part * k, k) == pytest.approx(
+        part * whole, rel=1e-12, abs=1e-300
+    )
     # One step after the strength is reached the secant is K but for the last digit.
     assert -whole == pytest.approx(min(one.normal_stiffness * k, strength_left(one, k)), rel=1e-12)
 
@@ -132,5 +149,9 @@ def test_broken_joint_is_a_no_tension_joint(one, gap, rate):
     """Once broken, the joint follows equation (10)."""
     k = max(gap, one.critical_opening)
     without = Law(one.normal_stiffness, one.normal_viscosity, False)
-    assert normal_traction(one, gap, rate, k) == normal_traction(without, gap, rate)
-    assert elastic_energy(one, gap, k) == elastic_energy(without, gap)
+    assert normal_traction(*at_point(one), gap, rate, k) == normal_traction(
+        *at_point(without), gap, rate, 0.0
+    )
+    assert elastic_energy(*at_point(one), gap, k, 0.0, 0.0) == elastic_energy(
+        *at_point(without), gap, 0.0, 0.0, 0.0
+    )

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from joints.energy import elastic_energy, friction_work
-from joints.laws import History, Law, traction
-from joints.shear import shear_return, shear_strength
+from joints.law import History, Law, law_of, parts_of, table_of, traction
+from joints.shear import UNLIMITED, shear_return, shear_strength
 from joints.softening import strength_left
 
 DT = 1e-5
@@ -19,6 +19,11 @@ EPS = np.finfo(float).eps
 def some(low, high):
     """Return floats in a range; rounded, as the square of a number below 1e-162 is zero."""
     return st.floats(low, high).map(lambda x: round(x, 9))
+
+
+def at_point(one):
+    """Return the law of one joint as kernels have it, every parameter a number, and its parts."""
+    return law_of(table_of(one), 0), parts_of(one)
 
 
 @st.composite
@@ -46,11 +51,11 @@ steps = st.lists(st.tuples(some(-1, 0.3), some(-1, 1), some(-1, 1)), min_size=1,
 
 def march(one, path):
     """Yield (gap, slip, t_n, traction, history before, after) of each step of a path of slips."""
-    h = History(None if one.tensile_strength is None else 0.0, 0.0, 0.0, one.cohesion)
+    point, h = at_point(one), History(0.0, 0.0, 0.0, one.cohesion)
     for gap, x, z in path:
         gap, slip = gap * 1e-4, np.array([x, z]) * 1e-4
         before, rate = h, slip / DT
-        t_n, t_x, t_z, h = traction(one, gap, 0.0, tuple(slip), tuple(rate), DT, before)
+        t_n, t_x, t_z, h = traction(*point, gap, 0.0, tuple(slip), tuple(rate), DT, before)
         yield gap, slip, t_n, np.array([t_x, t_z]), before, h
 
 
@@ -110,7 +115,8 @@ def test_friction_work_closes_the_trapezoid(one, path):
     for _, slip, _, _, before, h in march(one, path):
         e, old = elastic(h), elastic(before)
         work = one.shear_stiffness * (e + old) / 2 @ slip
-        stored = elastic_energy(one, 0.0, 0.0, *e) - elastic_energy(one, 0.0, 0.0, *old)
+        point = at_point(one)
+        stored = elastic_energy(*point, 0.0, 0.0, *e) - elastic_energy(*point, 0.0, 0.0, *old)
         taken = friction_work(one, *old, *e, *slip)
         scale = one.shear_stiffness * (np.abs(e) + np.abs(old) + np.abs(slip)).sum() ** 2
         assert work == pytest.approx(stored + taken, abs=1e-14 * scale)
@@ -150,10 +156,11 @@ def test_cyclic_slip_takes_four_tau_times_the_slide(stiffness, tau, ratio):
     """
     one = Law(9e9, shear_stiffness=1e9 * stiffness, cohesion=1e6 * tau, friction=0.0)
     tau, s = one.cohesion, ratio * one.cohesion / one.shear_stiffness
-    taken, e = [], 0.0
+    point, taken, e = at_point(one), [], 0.0
     for slip in (s, -2 * s, 2 * s):
+        strength = shear_strength(*point, 0.0, 0.0, 0.0, 0.0)
         t, _, after, _, _ = shear_return(
-            one, e + slip, 0.0, e, 0.0, slip / DT, 0.0, shear_strength(one, 0.0, 0.0), DT
+            *point, e + slip, 0.0, e, 0.0, slip / DT, 0.0, strength, DT
         )
         taken.append(-t * (slip - (after - e)))
         e = after
@@ -161,12 +168,9 @@ def test_cyclic_slip_takes_four_tau_times_the_slide(stiffness, tau, ratio):
 
 
 def test_nothing_limits_a_tied_joint_without_strength():
-    """No strength at all, not a large one, where nothing can slide."""
-    plain = Law(9e9, shear_stiffness=3e9)
-    assert shear_strength(plain, 1e6, -1e-4) is None
-    assert traction(plain, -1e-4, 0.0, (1.0, 0.0), (0.0, 0.0), DT, History(None, 0.0, 0.0))[
-        1:3
-    ] == (
-        -3e9,
-        0.0,
-    )
+    """The whole traction, however large, where nothing can slide."""
+    plain = at_point(Law(9e9, shear_stiffness=3e9))
+    assert shear_strength(*plain, 1e6, -1e-4, 0.0, 0.0) == UNLIMITED
+    huge = 2 * UNLIMITED / 3e9
+    found = traction(*plain, -1e-4, 0.0, (huge, 0.0), (0.0, 0.0), DT, History())
+    assert found[1:3] == (pytest.approx(-2 * UNLIMITED, rel=1e-15), 0.0)

@@ -1,4 +1,4 @@
-"""What kernels are built with: absent parts, borrowed arrays, tiny numbers, counters."""
+"""Parts of kernels: borrowed arrays, denormals, counters between threads."""
 
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
@@ -10,7 +10,6 @@ from numerics.atomic import give_way, peek, post
 from numerics.borrowed import borrowed
 from numerics.denormals import ARM, X86, flush_tiny, restore_tiny
 from numerics.jit import jitted
-from numerics.optional import either, given
 
 
 class Pair(NamedTuple):
@@ -83,32 +82,3 @@ def test_counters_order_what_threads_write():
     for n in range(rounds):
         expected = 2.0 * expected + n
     assert data[0] == expected
-
-
-@jitted
-def sum_given(flag, x):
-    value = given(flag, x)
-    return 0.0 if value is None else value
-
-
-@jitted
-def one(x):
-    return x, x
-
-
-@jitted
-def two(x):
-    return x
-
-
-@jitted
-def chosen(flag, x):
-    return either(flag, one, two)(x)
-
-
-def test_absent_parts_are_told_by_their_types():
-    """In compiled code and in plain Python alike; the two choices may differ in type."""
-    assert sum_given(None, 3.0) == 0.0 and sum_given(True, 3.0) == 3.0
-    assert given(None, 3.0) is None and given(0.0, 3.0) == 3.0
-    assert chosen(None, 2.0) == (2.0, 2.0) and chosen(1.0, 2.0) == 2.0
-    assert either(None, one, two) is one and either(False, one, two) is two

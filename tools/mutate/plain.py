@@ -12,7 +12,14 @@ SOURCES = {
 def jitted(function):
     return function
 
+def jitted_for(*effects):
+    return jitted
+
 apart = inlined = jitted
+""",
+    "joints.formula": """
+def formula(function):
+    return function
 """,
     "numerics.borrowed": """
 def borrowed(value):
@@ -76,7 +83,5 @@ class Loader(SourceFileLoader):
         return super().get_code(name)
 
     def exec_module(self, module: ModuleType) -> None:
-        """Execute it; what it overloads for numba is called by its plain name."""
+        """Execute it."""
         super().exec_module(module)
-        if module.__name__ == "dem.spatial.points":
-            module.every_point = module.looped_points

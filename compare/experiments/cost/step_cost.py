@@ -131,19 +131,19 @@ def _along_axis(scene: Scene, guarded: tuple[bool, ...]) -> list[Stretch]:
 
 
 def _in_space(scene: Scene, guarded: tuple[bool, ...], threads: int) -> list[Stretch]:
-    from dem.spatial.build import room_for, samples_for, state_at_rest
+    from dem.spatial.build import buffers_for, samples_for, state_at_rest
+    from dem.spatial.march import marcher
     from dem.spatial.simulate import prepare
-    from dem.spatial.threads import marcher
     from numerics.divergence import guard
 
     p, model, time, _ = prepare(scene)
     count = _samples(time, p.block_count, BLOCK_STEPS_IN_SPACE)
-    state, samples = state_at_rest(model, p.block_count), samples_for(model, count)
+    state, samples = state_at_rest(model), samples_for(model, count)
     steps = count * time.stride
 
     def timed(held: bool) -> Stretch:
-        room = room_for(model, threads, guard([inf] * 6) if held else None)
-        march = marcher(model, state, room, samples)
+        buffers = buffers_for(model, threads, guard([inf] * 6) if held else None)
+        march = marcher(model, state, buffers, samples)
         march(0, 0)
         return lambda: march(0, steps), steps * p.block_count
 

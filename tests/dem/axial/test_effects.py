@@ -10,7 +10,7 @@ from dem.axial.leapfrog import arguments, loop_for, march
 from dem.axial.model import build, build_model
 from dem.axial.samples import buffers
 from dem.axial.state import state_at_rest
-from joints.flat.law import Law, Parts
+from joints.law import Law, Parts
 from numerics.divergence import out_of_bounds
 from numerics.jit import jitted
 

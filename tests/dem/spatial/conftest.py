@@ -8,10 +8,11 @@ import pytest
 
 from cases.material.calibrate import Properties
 from cases.sampling import Clock
-from dem.spatial.build import build_model, room_for, samples_for, state_at_rest
+from dem.spatial.build import buffers_for, build_model, samples_for, state_at_rest
+from dem.spatial.ends import CLOSURE
 from dem.spatial.layout import LANES, STRIDE, packed, unpacked
+from dem.spatial.march import marcher
 from dem.spatial.simulate import prepare
-from dem.spatial.step import march
 
 SHORT: dict[str, Any] = {
     "pillar__length": 8.0,
@@ -34,7 +35,7 @@ class Row(NamedTuple):
 
     def take(self, first: int, last: int) -> None:
         """Take the steps first .. last - 1."""
-        march(self.model, self.state, room_for(self.model, 1), self.samples, first, last)
+        marcher(self.model, self.state, buffers_for(self.model, 1), self.samples)(first, last)
 
     @property
     def motion(self) -> np.ndarray:
@@ -47,9 +48,9 @@ class Row(NamedTuple):
 
     def gaps(self) -> np.ndarray:
         """Gap of every contact point of every joint, m [points, N - 1]."""
-        at, m = self.model.contact.points, self.motion
+        (x, z, _), m = self.model.points, self.motion
         g, about_x, about_z = (np.diff(m[k]) for k in (1, 3, 5))
-        return g + np.outer(at.x, about_z) - np.outer(at.z, about_x)
+        return g + np.outer(x, about_z) - np.outer(z, about_x)
 
 
 @pytest.fixture
@@ -65,7 +66,7 @@ def at_rest():
     def prepared(scene):
         p, model, time, _ = prepare(scene)
         samples = samples_for(model, time.samples + 1)
-        return Row(p, model, state_at_rest(model, p.block_count), samples, time)
+        return Row(p, model, state_at_rest(model), samples, time)
 
     return prepared
 
@@ -80,7 +81,7 @@ def step_matrix():
     def matrix(scene, p, dt):
         model = build_model(scene, p, Clock(dt, 1, 1))
         model = model._replace(load=model.load._replace(stress=np.zeros(0)))
-        row = Row(p, model, state_at_rest(model, p.block_count), samples_for(model, 2), None)
+        row = Row(p, model, state_at_rest(model), samples_for(model, 2), None)
         size = _parts(row)[0].size
         step = np.zeros((size, size))
         for i, unit in enumerate(np.eye(size)):
@@ -98,8 +99,7 @@ def _parts(row):
     history = np.zeros((0, n - 1))
     if state.history is not None:
         history = unpacked(state.history, LANES, n - 1)
-    ends = [end.closure for end in (state.start, state.end) if end is not None]
-    pieces = [row.motion.ravel(), history.ravel(), *ends]
+    pieces = [row.motion.ravel(), history.ravel(), *_closures(state)]
     return np.concatenate(pieces), np.cumsum([x.size for x in pieces])[:-1]
 
 
@@ -109,6 +109,9 @@ def _set(row, vector):
     row.put(motion.reshape(-1, n))
     if state.history is not None:
         state.history[:] = packed(history.reshape(-1, n - 1), LANES)
-    held = [end for end in (state.start, state.end) if end is not None]
-    for end, closure in zip(held, ends, strict=True):
-        end.closure[:] = closure
+    for own, closure in zip(_closures(state), ends, strict=True):
+        own[:] = closure
+
+
+def _closures(state):
+    return [] if state.ends is None else list(state.ends[:, CLOSURE])

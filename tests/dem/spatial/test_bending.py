@@ -7,6 +7,7 @@ import dem
 from cases.material.calibrate import calibrate
 from compare.exact.blocks import cantilever, spatial
 from compare.exact.schemes import leapfrog
+from dem.spatial.ends import CLOSURE
 
 FACES = {
     "2 x 2 midpoint": ({"contact_points": 2}, 3 / 4),
@@ -65,7 +66,7 @@ def test_first_mode_swings_at_its_frequency(row, at_rest, joints, share):
     moved[[6, 11]] = (1 - np.cos(angle)) / column.time.dt * shape.T
     column.put(moved)
     u, theta = shape[-1]
-    column.state.end.closure[[0, 5]] = u - column.p.spacing / 2 * theta, theta
+    column.state.ends[1, CLOSURE, [0, 5]] = u - column.p.spacing / 2 * theta, theta
     column.take(1, 1001)
     expected = np.cos(1000 * angle) * shape.T
     assert np.abs(column.motion[[0, 5]] - expected).max() < 1e-10 * np.abs(shape).max()

@@ -1,14 +1,18 @@
 """Paying only for what a scene calls for, proved without a clock."""
 
+import numba
 import numpy as np
 import pytest
 
 import dem
-from dem.spatial.build import room_for
-from dem.spatial.step import march
+from dem.spatial.build import buffers_for
+from dem.spatial.layout import LANES, Form
+from dem.spatial.march import arguments, march_for
 from numerics.aligned import CACHE_LINE
 
 FIELDS = ("stress", "shear", "velocity", "displacement", "rotation")
+ABSENT = ("points", "finite", "mass_damping", "local_damping", "gravity", "base", "start", "end")
+ABSENT += ("ledger",)
 SQRT = r"(?:tail )?call \S+ @llvm\.sqrt\S*"
 
 
@@ -57,34 +61,30 @@ def test_idle_joint_law_changes_round_off_alone(row, idle, prestress):
 def test_absent_effects_leave_no_array(row, at_rest):
     """An elastic row of free ends holds its motion and the load, nothing else."""
     blocks = at_rest(row(record__energy=False))
-    model, state = blocks.model, blocks.state
-    assert (state.history, state.start, state.end, state.sums) == (None,) * 4
-    assert (model.contact.table, model.contact.points, model.contact.damped) == (None,) * 3
-    assert (model.start, model.end, model.accounts, model.weight, model.viscous) == (None,) * 5
-    assert (model.load.base, model.motion.keep, model.motion.fall, model.motion.local) == (
-        None,
-    ) * 4
-    assert room_for(model, 1).books is None and blocks.samples.energy is None
-    assert len(model.contact.rows.motion) == 12
+    model, state, form = blocks.model, blocks.state, blocks.model.form
+    assert (state.history, state.sliding, state.ends, state.sums) == (None,) * 4
+    assert (model.ends, model.places, model.load.base) == (None,) * 3
+    assert buffers_for(model, 1).ledgers is None and blocks.samples.energy is None
+    assert form == Form(parts=form.parts, turns=True, **dict.fromkeys(ABSENT, False))
+    assert [name for name, there in form.parts._asdict().items() if there] == ["shear"]
+    assert form.motion_rows == 12 and len(model.table) == 1
 
 
 def test_every_tile_starts_on_a_cache_line(row, at_rest):
     """And so does every row of it: no register of lanes straddles two lines."""
     damped = {"damping_ratio": 0.1, "friction_angle": 30.0, "cohesion": 1e5}
     blocks = at_rest(row(joints=damped, soft_layers=[{"y": 1.0, "damping_ratio": 0.2}]))
-    room, table = room_for(blocks.model, 2), blocks.model.contact.table
+    buffers, table = buffers_for(blocks.model, 2), blocks.model.table
     state = blocks.state
-    for tiles in (state.motion, state.history, state.sums, table, room.scratch, room.books):
+    for tiles in (state.motion, state.history, state.sums, table, buffers.tile, buffers.ledgers):
         assert not any(tile.ctypes.data % CACHE_LINE for tile in np.atleast_2d(tiles))
 
 
 def test_blocks_that_do_not_turn_have_three_freedoms(row, at_rest):
-    """No rotation, no lever, one contact point, six rows of motion."""
+    """No rotation, one contact point, six rows of motion."""
     still = at_rest(row(motion__rotation="none", load__at=[0.0, 0.0], record__energy=False))
-    assert len(still.model.contact.rows.motion) == 6
-    assert (still.model.motion.arm, still.model.motion.twist, still.model.motion.inertia) == (
-        None,
-    ) * 3
+    assert still.model.form.motion_rows == 6 and not still.model.form.turns
+    assert still.model.points.shape == (3, 1)
 
 
 def test_only_what_slides_or_softens_is_remembered(row, at_rest):
@@ -93,15 +93,18 @@ def test_only_what_slides_or_softens_is_remembered(row, at_rest):
     soft = {"tensile_strength": 1e5, "fracture_energy": 50.0}
 
     def kept(**joints):
-        rows = at_rest(row(joints=joints)).model.contact.rows
-        return [0 if kind is None else len(kind) for kind in rows]
+        blocks = at_rest(row(joints=joints))
+        form, history = blocks.model.form, blocks.state.history
+        rows = form.rate_rows + form.point_rows * blocks.model.points.shape[1]
+        assert rows == (0 if history is None else history.shape[1] // LANES)
+        return form.rate_rows, form.point_rows
 
-    assert kept() == [12, 0, 0, 0, 0]
-    assert kept(damping_ratio=0.1) == [12, 6, 0, 0, 0]
-    assert kept(**slip) == [12, 0, 8, 0, 0]
-    assert kept(**slip, **soft) == [12, 0, 8, 4, 0]
-    assert kept(**slip, residual_cohesion=1e3, damping_ratio=0.1) == [12, 6, 8, 0, 4]
-    assert kept(**slip, contact_points=3) == [12, 0, 18, 0, 0]
+    assert kept() == (0, 0)
+    assert kept(damping_ratio=0.1) == (6, 0)
+    assert kept(**slip) == (0, 2)
+    assert kept(**slip, **soft) == (0, 3)
+    assert kept(**slip, residual_cohesion=1e3, damping_ratio=0.1) == (6, 3)
+    assert kept(**slip, contact_points=3) == (0, 2)
 
 
 def test_absent_effects_leave_no_instruction(row, at_rest, instructions):
@@ -109,14 +112,26 @@ def test_absent_effects_leave_no_instruction(row, at_rest, instructions):
 
     def count(**changes):
         blocks = at_rest(row(record__energy=False, **changes))
-        room = room_for(blocks.model, 1)
-        arguments = (blocks.model, blocks.state, room, blocks.samples, 0, 1)
-        return [instructions(march, arguments, kind) for kind in ("fcmp", "fdiv", SQRT, "fmul")]
+        buffers = buffers_for(blocks.model, 1)
+        given = arguments(
+            blocks.model, blocks.state, buffers, blocks.samples, np.zeros(2, dtype=np.int64)
+        )
+        kernel, given = march_for(blocks.model.form), (*given, 0, 0, 1)
+        return [instructions(kernel, given, kind) for kind in ("fcmp", "fdiv", SQRT, "fmul")]
 
     elastic, slip = count(), count(joints={"friction_angle": 20.0})
     assert elastic[:3] == [0, 0, 0]
     assert min(slip[:3]) > 0 and slip[3] > elastic[3]
     assert count(motion__rotation="none", load__at=[0.0, 0.0])[3] < elastic[3]
+
+
+def test_kernels_of_different_effects_are_told_apart_in_the_cache(row, at_rest):
+    """One function of one signature: its effects are part of the key."""
+    keys, codegen = set(), numba.core.registry.cpu_target.target_context.codegen()
+    for ends in ({}, {"end": "fixed"}, {"start": "quiet", "end": "fixed"}):
+        form = at_rest(row(ends=ends)).model.form
+        keys.add(march_for(form)._cache._index_key((), codegen))
+    assert len(keys) == 3
 
 
 @pytest.mark.parametrize("blocks", [64, 65, 129])
@@ -126,9 +141,10 @@ def test_a_tile_without_a_joint_has_a_law_all_the_same(row, at_rest, blocks):
     joints = {"friction_angle": 20.0, "cohesion": 1e5, "residual_cohesion": 0.0}
     scene = row(pillar__length=0.5 * blocks, joints=joints, soft_layers=[layer])
     built = at_rest(scene)
-    assert len(built.model.contact.table) == len(built.state.motion) == -(-blocks // 64)
-    first, points = built.model.contact.rows.cohesions[0], 4
-    kept = built.state.history.reshape(len(built.state.history), -1, 64)[:, first : first + points]
-    of_joints = kept.transpose(1, 0, 2).reshape(points, -1)[:, : blocks - 1]
+    assert len(built.model.table) == len(built.state.motion) == -(-blocks // 64)
+    kept = built.state.history.reshape(len(built.state.history), -1, 64)
+    kept = kept[:, built.model.form.cohesions]
+    assert kept.shape[1] == 4
+    of_joints = kept.transpose(1, 0, 2).reshape(4, -1)[:, : blocks - 1]
     expected = np.where(np.arange(blocks - 1) == 3, 2e5, 1e5)
     assert (of_joints == expected).all()

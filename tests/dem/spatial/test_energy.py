@@ -112,7 +112,7 @@ def test_ledger_closes_but_for_the_corners_of_the_law(row, at_rest, joints):
 
 def corner_cost(blocks, gaps):
     """Return the sum over steps and points of A (K + K_soft) delta^2 / 8 for each corner passed."""
-    p, area = blocks.p, np.array(blocks.model.contact.points.area)[:, None]
+    p, area = blocks.p, blocks.model.points[2][:, None]
     low, high = np.minimum(gaps[1:], gaps[:-1]), np.maximum(gaps[1:], gaps[:-1])
     steepest, corners = p.stiffness, [0.0]
     if p.tensile_strength is not None:

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from dem.spatial.build import room_for, samples_for, state_at_rest
+from dem.spatial.build import buffers_for, samples_for, state_at_rest
 from dem.spatial.layout import LANES
+from dem.spatial.march import marcher
 from dem.spatial.simulate import prepare
-from dem.spatial.threads import marcher
 
 BLOCKS = 80 * LANES  # five runs of tiles for threads that follow one another
 STEPS = 203  # no multiple of any depth
@@ -42,13 +42,13 @@ def prepared(pillar):
 def outcome(prepared, threads, depth):
     """Return every array that so many steps leave."""
     model = prepared.model
-    state = state_at_rest(model, prepared.properties.block_count)
+    state = state_at_rest(model)
     samples = samples_for(model, STEPS // prepared.time.stride + 1)
     velocities = state.motion[:, state.motion.shape[1] // 2 :]
     velocities[:] = np.random.default_rng(1).uniform(-1e-3, 1e-3, velocities.shape)
-    room = room_for(model, threads)._replace(depth=depth)
-    marcher(model, state, room, samples)(0, STEPS)
-    return [*samples, *state.start, *state.end, state.motion, state.history, state.sums]
+    buffers = buffers_for(model, threads)._replace(depth=depth)
+    marcher(model, state, buffers, samples)(0, STEPS)
+    return [*samples, *state.ends, state.motion, state.history, state.sums]
 
 
 @pytest.mark.parametrize("threads, depth", [(1, 2), (1, 3), (1, 8), (2, 1), (2, 3), (2, 8), (3, 8)])

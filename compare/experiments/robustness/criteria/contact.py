@@ -16,7 +16,7 @@ from compare.misfit.metrics import relative_l2
 from compare.solvers.continuum import JOINTED_ROCK
 
 if TYPE_CHECKING:
-    from joints.flat.law import Law
+    from joints.law import Law
 
 #: Of the work put in. Where a joint opens within a step the trapezoid of its force is off by
 #: K (v dt)^2 / 8 at most; at a twentieth of the critical step that is 3e-4 of m v^2 / 2.
@@ -140,8 +140,8 @@ def one_ulp(trial: Trial) -> Finding:
 def _normal_law(trial: Trial) -> tuple[float, Callable[[float, float], float]]:
     """Return the stiffness (Pa/m) of the first joint, as the solver has it, and its traction (Pa)
     at a gap (m) and its rate (m/s)."""
-    from joints.flat.law import law_of, parts_of, table_of
-    from joints.flat.normal import normal_traction
+    from joints.law import law_of, parts_of, table_of
+    from joints.normal import normal_traction
 
     joints = _joint_law(trial)
     first, parts = law_of(table_of(joints), 0), parts_of(joints)

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from joints.flat.formula import formula
-from joints.flat.normal import normal_traction
-from joints.flat.shear import cohesion_left, shear_return, shear_strength
+from joints.formula import formula
+from joints.normal import normal_traction
+from joints.shear import cohesion_left, shear_return, shear_strength
 
 
 class Law(NamedTuple):
@@ -27,7 +27,7 @@ class Law(NamedTuple):
     residual_cohesion : what slip leaves of the cohesion, Pa; None where it leaves all.
     tensile_strength, critical_opening : s_t, Pa, and w_c, m; None without softening.
 
-    A joint without a strength that others have is given `joints.flat.shear.UNLIMITED`.
+    A joint without a strength that others have is given `joints.shear.UNLIMITED`.
     """
 
     normal_stiffness: Any
@@ -78,7 +78,7 @@ def parts_of(law: Law) -> Parts:
     slip = law.cohesion is not None or law.friction is not None
     no_tension, softening = law.carries_tension is not None, law.tensile_strength is not None
     return Parts(
-        dashpots=law.normal_viscosity is not None,
+        dashpots=law.normal_viscosity is not None or law.shear_viscosity is not None,
         no_tension=no_tension,
         softening=softening,
         shear=shear,

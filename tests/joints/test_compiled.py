@@ -1,0 +1,119 @@
+"""Compiled into a kernel, the law is what Python says, part by part, and nothing besides."""
+
+import re
+
+import numba
+import numpy as np
+import pytest
+
+from joints.law import History, Law, law_of, parts_of, table_of, traction
+from joints.tangent import Tangent, tangent
+
+N, DT = 64, 1e-5
+ELASTIC = Law(9e9, shear_stiffness=3e9)
+WHOLE = Law(9e9, 1e5, False, 3e9, 3e4, 1e6, 0.5, 1e5, 1e6, 1e-3)
+LAWS = {
+    "elastic": ELASTIC,
+    "no tension": ELASTIC._replace(carries_tension=False),
+    "friction": ELASTIC._replace(normal_viscosity=1e5, shear_viscosity=3e4, friction=0.5),
+    "all of shear": WHOLE._replace(tensile_strength=None, critical_opening=None),
+    "all of softening": WHOLE._replace(carries_tension=None),
+}
+
+
+def kernel_of(parts):
+    """Return a compiled loop over points: traction, memory and tangent of each."""
+
+    @numba.njit(error_model="numpy")
+    def load(table, motion, memory, force, slope, r):
+        law = law_of(table, 0)
+        for i in range(motion.shape[1]):
+            if parts.varied:
+                law = law_of(table, i)
+            before = History(memory[0, i], memory[1, i], memory[2, i], memory[3, i])
+            step = motion[0, i], motion[1, i], (motion[2, i], motion[3, i])
+            rate = (motion[4, i], motion[5, i])
+            force[0, i], force[1, i], force[2, i], after = traction(
+                law, parts, *step, rate, DT, before
+            )
+            memory[0, i], memory[1, i], memory[2, i], memory[3, i] = after
+            found = tangent(law, parts, *step, rate, before, r)
+            for k in range(6):
+                slope[k, i] = found[k]
+
+    return load
+
+
+def points(seed=1):
+    """Return motions [6, n] that reach every branch, and memories [4, n] before them."""
+    r = np.random.default_rng(seed)
+    motion = r.uniform(-1, 1, (6, N)) * np.array([[1e-3], [1.0], [1e-3], [1e-3], [1.0], [1.0]])
+    memory = np.abs(r.uniform(-1, 1, (4, N))) * np.array([[1.2e-3], [1e-4], [1e-4], [1e6]])
+    return motion, memory
+
+
+@pytest.mark.parametrize("varied", [False, True], ids=["one law", "a law each"])
+@pytest.mark.parametrize("one", LAWS.values(), ids=LAWS)
+def test_kernel_is_python_and_is_vectorised(one, varied):
+    """Bit for bit but for the last digit of a product and a sum in one instruction; and several
+    points at once, of whatever width the machine has."""
+    if varied:
+        one = Law(*(None if part is None else np.full(N, part) for part in one))
+    table, parts, (motion, memory) = table_of(one), parts_of(one), points()
+    force, slope, after = np.zeros((3, N)), np.zeros((6, N)), memory.copy()
+    kernel = kernel_of(parts)
+    kernel(table, motion, after, force, slope, 1e3)
+    for i in range(N):
+        law = law_of(table, i if varied else 0)
+        gap, rate, dx, dz, vx, vz = motion[:, i]
+        step, before = (gap, rate, (dx, dz), (vx, vz)), History(*memory[:, i])
+        *expected, history = traction(law, parts, *step, DT, before)
+        assert force[:, i] == pytest.approx(expected, rel=1e-12, abs=1e-6)
+        assert after[:, i] == pytest.approx(history, rel=1e-12, abs=1e-18)
+        assert slope[:, i] == pytest.approx(
+            tangent(law, parts, *step, before, 1e3), rel=1e-9, abs=1e-3
+        )
+
+
+def counts(one, kinds, formula="traction"):
+    """Return how many of each kind of instruction one point of a law takes."""
+    parts, table = parts_of(one), table_of(one)
+    if formula == "traction":
+
+        @numba.njit(error_model="numpy")
+        def point(table, gap, rate, dx, vx, opening, ex, cohesion):
+            law, h = law_of(table, 0), History(opening, ex, ex, cohesion)
+            return traction(law, parts, gap, rate, (dx, dx), (vx, vx), DT, h)[:3]
+    else:
+
+        @numba.njit(error_model="numpy")
+        def point(table, gap, rate, dx, vx, opening, ex, cohesion):
+            law, h = law_of(table, 0), History(opening, ex, ex, cohesion)
+            return tangent(law, parts, gap, rate, (dx, dx), (vx, vx), h, 1e3)
+
+    point(table, 1e-6, 0.1, 1e-6, 0.1, 0.0, 0.0, 0.0)
+    text = "\n".join(point.inspect_llvm().values())
+    return [len(re.findall(rf"= {kind} ", text)) for kind in kinds]
+
+
+def test_absent_parts_leave_no_instruction():
+    """A plain joint costs one product a direction; no comparison, no quotient, no root."""
+    kinds = ("fcmp", "fdiv", "fmul")
+    assert counts(Law(9e9), kinds) == [0, 0, 1]
+    assert counts(ELASTIC, kinds) == [0, 0, 2]  # both shears are of one slip
+    assert counts(Law(9e9, carries_tension=False), kinds)[0] > 0
+    assert counts(ELASTIC._replace(friction=0.5), kinds)[1] > 0
+    assert counts(Law(9e9, tensile_strength=1e5, critical_opening=1e-3), kinds)[0] > 0
+
+
+def test_absent_parts_leave_no_instruction_in_the_tangent():
+    """A plain joint compares nothing; without shear there is one product, of stiffness alone."""
+    kinds = ("fcmp", "fdiv", "fmul")
+    assert counts(Law(9e9), kinds[:2], "tangent") == [0, 0]
+    assert counts(ELASTIC, kinds[:2], "tangent") == [0, 0]
+    assert counts(Law(9e9, 1e5), kinds, "tangent")[2] <= 1
+    assert counts(Law(9e9, None, False), kinds, "tangent")[0] > 0
+    assert counts(ELASTIC._replace(friction=0.5), kinds, "tangent")[1] > 0
+    bare = law_of(table_of(Law(9e9)), 0), parts_of(Law(9e9))
+    found = tangent(*bare, 1e-6, 0.1, (0.0, 0.0), (0.0, 0.0), History(), 1e5)
+    assert found == Tangent(-9e9)

@@ -1,0 +1,371 @@
+"""The law in another form: each part as the papers have it, one equation after the other.
+
+Every part of a law is a number or None. Units and signs are those of `joints.law`: Pa, m, s;
+traction compression positive, gap positive when open, shear traction on the right block.
+"""
+
+from itertools import product
+from math import hypot, inf
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from joints import energy, softening
+from joints.law import History, Law, law_of, parts_of, table_of, traction
+from joints.normal import spring_traction
+from joints.shear import UNLIMITED
+from joints.uniform import law, uniform
+
+DT = 1e-5
+
+
+def twin_strength_left(law, opening):
+    """Return the tension (Pa) that can still be reached: linear softening.
+
+    Full up to w_0 = s_t / K, falling linearly to nothing at w_c: Hillerborg, Modeer & Petersson
+    (1976); Camacho & Ortiz (1996).
+    """
+    if law.tensile_strength is None:
+        return inf
+    first = law.tensile_strength / law.normal_stiffness
+    if opening <= first:
+        return law.tensile_strength
+    if opening >= law.critical_opening:
+        return 0.0
+    return law.tensile_strength * (law.critical_opening - opening) / (law.critical_opening - first)
+
+
+def twin_secant_stiffness(law, opening):
+    """Return the stiffness (Pa/m) of an open joint: K, or through the origin once it softened."""
+    if law.tensile_strength is None or opening <= law.tensile_strength / law.normal_stiffness:
+        return law.normal_stiffness
+    return twin_strength_left(law, opening) / opening
+
+
+def twin_is_broken(law, opening):
+    """Return whether no tensile strength is left."""
+    return twin_strength_left(law, opening) == 0
+
+
+def twin_holds(law, gap, opening):
+    """Return whether the faces hold each other: an open joint must be able to pull."""
+    if gap <= 0:
+        return True
+    return law.carries_tension is not False and not twin_is_broken(law, opening)
+
+
+def twin_normal_traction(law, gap, gap_rate, opening=None):
+    """Return t_n of a spring and a dashpot in parallel.
+
+    An open joint that softened has its secant stiffness, and a dashpot less by the same factor.
+    A joint that does not carry tension carries nothing when open, and never pulls: Guo & Li
+    (2002), equation (10); any other never pulls by more than the strength it has left.
+    """
+    stiffness, viscosity = law.normal_stiffness, law.normal_viscosity or 0.0
+    if gap > 0:
+        if not twin_holds(law, gap, opening):
+            return 0.0
+        stiffness = twin_secant_stiffness(law, opening)
+        viscosity *= stiffness / law.normal_stiffness
+    t = -stiffness * gap - viscosity * gap_rate
+    pull = 0.0 if law.carries_tension is False else twin_strength_left(law, opening)
+    return max(t, -pull)
+
+
+def twin_spring_traction(law, gap, opening=None):
+    """Return the elastic part of t_n: the same without its dashpot."""
+    return twin_normal_traction(law._replace(normal_viscosity=None), gap, 0.0, opening)
+
+
+def twin_shear_strength(law, t_n, gap, opening=None, cohesion=None):
+    """Return what |T| cannot exceed: |T| <= c + t_n tan(phi), Guo & Li (2002), equation (3).
+
+    Cohesion is lost in proportion to the tensile strength, unless it stands for no limit. A joint
+    that does not hold has none; one without cohesion and friction that holds is unlimited.
+    """
+    if not twin_holds(law, gap, opening):
+        return 0.0
+    if law.cohesion is None and law.friction is None:
+        return UNLIMITED
+    c = (law.cohesion or 0.0) if law.residual_cohesion is None else cohesion
+    if law.tensile_strength is not None and c < UNLIMITED:
+        c *= twin_strength_left(law, opening) / law.tensile_strength
+    return max(c + t_n * (law.friction or 0.0), 0.0)
+
+
+def twin_shear_traction(law, slip_x, slip_z, rate_x, rate_z):
+    """Return (t_x, t_z) of a spring and a dashpot in parallel: Guo & Li (2002), equation (2)."""
+    c = law.shear_viscosity or 0.0
+    return (
+        -law.shear_stiffness * slip_x - c * rate_x,
+        -law.shear_stiffness * slip_z - c * rate_z,
+    )
+
+
+def twin_shear_return(
+    law,
+    ex,
+    ez,
+    ex_old,
+    ez_old,
+    rate_x,
+    rate_z,
+    tau,
+    dt,
+):
+    """Return (t_x, t_z, ex, ez, slipped) from the trial elastic slip and the strength tau.
+
+    What exceeds the strength is scaled back along its direction. The elastic slip is then where
+    spring and dashpot carry that traction: e = (e* + h e_old) / (1 + h), e* = -T / K_s and
+    h = C_s / (K_s dt).
+    """
+    t_x, t_z = twin_shear_traction(law, ex, ez, rate_x, rate_z)
+    if hypot(t_x, t_z) <= tau:
+        return t_x, t_z, ex, ez, False
+    scale = tau / hypot(t_x, t_z)
+    t_x, t_z = scale * t_x, scale * t_z
+    h = (law.shear_viscosity or 0.0) / (law.shear_stiffness * dt)
+    ex = (-t_x / law.shear_stiffness + h * ex_old) / (1 + h)
+    ez = (-t_z / law.shear_stiffness + h * ez_old) / (1 + h)
+    return t_x, t_z, ex, ez, True
+
+
+def twin_traction(
+    law,
+    gap,
+    gap_rate,
+    slip,
+    slip_rate,
+    dt,
+    history,
+):
+    """Return (t_n, t_x, t_z, history) after a step: the normal part, then shear under it.
+
+    The first slip of a point leaves no more than the residual cohesion.
+    """
+    opening, cohesion = max(history.opening, gap), history.cohesion
+    t_n = twin_normal_traction(law, gap, gap_rate, opening)
+    if law.shear_stiffness is None:
+        return t_n, 0.0, 0.0, history._replace(opening=opening)
+    tau = twin_shear_strength(law, t_n, gap, opening, cohesion)
+    trial = history.ex + slip[0], history.ez + slip[1]
+    t_x, t_z, ex, ez, slipped = twin_shear_return(
+        law, *trial, history.ex, history.ez, *slip_rate, tau, dt
+    )
+    if slipped and law.residual_cohesion is not None:
+        cohesion = min(cohesion, law.residual_cohesion)
+    return t_n, t_x, t_z, History(opening, ex, ez, cohesion)
+
+
+def twin_elastic_energy(
+    law,
+    gap,
+    opening=None,
+    ex=None,
+    ez=None,
+):
+    """Return what the springs store, J/m2: half of stiffness times elastic displacement squared."""
+    stiffness = law.normal_stiffness
+    if gap > 0:
+        stiffness = twin_secant_stiffness(law, opening) if twin_holds(law, gap, opening) else 0.0
+    normal = stiffness * gap**2 / 2
+    return (
+        normal
+        if law.shear_stiffness is None
+        else normal + law.shear_stiffness * (ex**2 + ez**2) / 2
+    )
+
+
+def twin_friction_work(law, ex_old, ez_old, ex, ez, dx, dz):
+    """Return what sliding takes, J/m2: the mean spring force times the slide, slip less elastic."""
+    slide_x, slide_z = dx - (ex - ex_old), dz - (ez - ez_old)
+    return law.shear_stiffness * ((ex_old + ex) * slide_x + (ez_old + ez) * slide_z) / 2
+
+
+def twin_fracture_energy_spent(law, opening):
+    """Return what is lost by opening, J/m2: the area under the curve less the secant triangle."""
+    first = law.tensile_strength / law.normal_stiffness
+    if opening <= first:
+        return 0.0
+    end = min(opening, law.critical_opening)
+    left = twin_strength_left(law, end)
+    area = law.tensile_strength * first / 2 + (law.tensile_strength + left) / 2 * (end - first)
+    return area - left * end / 2
+
+
+# What limits the shear traction, by letter: cohesion, friction, residual cohesion. None: no shear.
+SHEARS = (None, "", "c", "f", "cf", "cr", "cfr")
+COMBINATIONS = list(product(("", "dashpots"), ("ties", "no tension", "softening"), SHEARS))
+
+
+@st.composite
+def one_law(draw, dashpots, opens, shears):
+    """Return the smallest law of one joint, as the engines build it."""
+
+    def some(low, high):
+        # Rounded, as the square of a number below 1e-162 is zero.
+        return np.array([round(draw(st.floats(low, high)), 9)])
+
+    stiffness, parts = some(1e8, 1e11), {}
+    if opens == "softening":
+        parts["tensile_strength"] = some(1e3, 1e7)
+        parts["critical_opening"] = some(1.1, 100) * parts["tensile_strength"] / stiffness
+    if shears is not None:
+        parts["shear_stiffness"] = some(1e8, 1e11)
+        wanted = {"cohesion": some(0, 1e6), "friction": some(0, 2)}
+        wanted["residual_cohesion"] = wanted["cohesion"] * some(0, 1)
+        parts.update((name, value) for name, value in wanted.items() if name[0] in shears)
+    eta = some(1e-9, 1e-3) if dashpots else None
+    return law(stiffness, eta, np.array([opens != "no tension"]), **parts)
+
+
+@st.composite
+def paths(draw, one):
+    """Return steps of (gap, gap rate, slip, slip rate) that reach every branch of a law."""
+    reach = 1.5 * (one.critical_opening or 1e-4)
+    unit = st.floats(-1, 1).map(lambda x: round(x, 9))
+    steps = draw(st.lists(st.tuples(*[unit] * 6), min_size=1, max_size=12))
+    return [
+        (g * reach, 10 * r, (x * 1e-4, z * 1e-4), (10 * rx, 10 * rz))
+        for g, r, x, z, rx, rz in steps
+    ]
+
+
+def virgin(one):
+    """Return the history of a point that nothing has happened to."""
+    return History(0.0, 0.0, 0.0, one.cohesion or 0.0)
+
+
+def at_point(one, j=0):
+    """Return the law of one joint as kernels have it, every parameter a number, and its parts."""
+    return law_of(table_of(one), j), parts_of(one)
+
+
+def scales(one, gap, rate, slip, slip_rate, h):
+    """Return the sums of all magnitudes in the normal and in the shear traction, Pa."""
+    cohesion = one.cohesion or 0.0
+    n = one.normal_stiffness * abs(gap) + (one.normal_viscosity or 0) * abs(rate)
+    n += one.tensile_strength or 0.0
+    if one.shear_stiffness is None:
+        return n, 0.0
+    s = one.shear_stiffness * (abs(h.ex) + abs(h.ez) + abs(slip[0]) + abs(slip[1]))
+    s += (one.shear_viscosity or 0) * (abs(slip_rate[0]) + abs(slip_rate[1]))
+    return n, s + cohesion + (one.friction or 0.0) * n
+
+
+def near(found, expected, scale):
+    """Hold two numbers to 1e-13 of the scale that they were computed from."""
+    assert abs(found - expected) <= 1e-13 * scale
+
+
+def on_the_edge(one, t_n, step, h, opening, scale):
+    """Return whether the last digit decides if a step slips."""
+    gap, _, slip, slip_rate = step
+    trial = twin_shear_traction(one, h.ex + slip[0], h.ez + slip[1], *slip_rate)
+    tau = twin_shear_strength(one, t_n, gap, opening, h.cohesion)
+    return abs(hypot(*trial) - tau) <= 1e-12 * scale
+
+
+@pytest.mark.parametrize(("dashpots", "opens", "shears"), COMBINATIONS)
+@settings(max_examples=40)
+@given(data=st.data())
+def test_law_equals_its_twin(dashpots, opens, shears, data):
+    """Step by step over a path, each step from the same history: tractions and memory."""
+    one = data.draw(one_law(dashpots, opens, shears))
+    point, h = at_point(one), virgin(one)
+    for step in data.draw(paths(one)):
+        n, s = scales(one, *step, h)
+        t_n, t_x, t_z, after = traction(*point, *step, DT, h)
+        r_n, r_x, r_z, expected = twin_traction(one, *step, DT, h)
+        near(t_n, r_n, n)
+        near(t_x, r_x, s)
+        near(t_z, r_z, s)
+        assert after.opening == expected.opening
+        if one.shear_stiffness is not None:
+            near(after.ex, expected.ex, s / one.shear_stiffness)
+            near(after.ez, expected.ez, s / one.shear_stiffness)
+            if not on_the_edge(one, r_n, step, h, expected.opening, s):
+                assert after.cohesion == expected.cohesion
+        h = after
+
+
+@pytest.mark.parametrize("opens", ["ties", "no tension", "softening"])
+@given(data=st.data())
+def test_energies_equal_their_twins(opens, data):
+    """What is stored, slid away and broken, and whether anything is left to break."""
+    one = data.draw(one_law("", opens, "cfr"))
+    point, h = at_point(one), virgin(one)
+    for gap, rate, slip, slip_rate in data.draw(paths(one)):
+        n, s = scales(one, gap, rate, slip, slip_rate, h)
+        after = traction(*point, gap, rate, slip, slip_rate, DT, h)[-1]
+        motion = (gap, after.opening, after.ex, after.ez)
+        stored = n * abs(gap) + s**2 / one.shear_stiffness
+        near(energy.elastic_energy(*point, *motion), twin_elastic_energy(one, *motion), stored)
+        slide = (point[0], h.ex, h.ez, after.ex, after.ez, *slip)
+        near(energy.friction_work(*slide), twin_friction_work(*slide), 4 * stored)
+        near(spring_traction(*point, *motion[:2]), twin_spring_traction(one, *motion[:2]), n)
+        assert softening.is_broken(*point, after.opening) == twin_is_broken(one, after.opening)
+        if opens == "softening":
+            spent = energy.fracture_energy_spent(one, after.opening)
+            whole = one.tensile_strength * one.critical_opening
+            near(spent, twin_fracture_energy_spent(one, after.opening), whole)
+        h = after
+
+
+@given(data=st.data())
+def test_unlike_joints_behave_as_if_alone(data):
+    """In an array of laws every joint carries what it carries by itself, to the last bit.
+
+    Where a joint lacks a strength that others have, an unlimited one stands in.
+    """
+    alone = [
+        data.draw(one_law("dashpots", "ties", "")),
+        data.draw(one_law("dashpots", "no tension", "cf")),
+        data.draw(one_law("dashpots", "softening", "")),
+        data.draw(one_law("dashpots", "softening", "cfr")),
+    ]
+    without = {"friction": 0.0, "carries_tension": True}
+    parts = {
+        name: np.array(
+            [
+                without.get(name, UNLIMITED) if part is None else part
+                for part in (getattr(one, name) for one in alone)
+            ]
+        )
+        for name in Law._fields
+    }
+    mixed = Law(**parts)
+    path = data.draw(paths(alone[-1]))
+    for j, one in enumerate(alone):
+        single, among = at_point(one), at_point(mixed, j)
+        a, b = virgin(one), virgin(among[0])
+        for step in path:
+            *t_alone, a = traction(*single, *step, DT, a)
+            *t_mixed, b = traction(*among, *step, DT, b)
+            assert t_alone == t_mixed
+            assert (a.ex, a.ez) == (b.ex, b.ez)
+
+
+def test_alike_joints_become_one_number_and_absent_parts_none():
+    """No array for what is the same everywhere, nothing at all for what is not there."""
+    stiffness, tension = np.full(4, 9e9), np.ones(4, dtype=bool)
+    assert law(stiffness, None, tension) == Law(9e9)
+    assert law(stiffness, None, tension, shear_stiffness=stiffness / 3) == Law(
+        9e9, shear_stiffness=3e9
+    )
+    mixed = law(
+        np.array([1.0, 2.0]),
+        np.array([0.5, 0.5]),
+        np.array([True, False]),
+        shear_stiffness=np.array([4.0, 4.0]),
+        friction=np.array([0.0, 0.5]),
+    )
+    assert mixed.normal_stiffness.tolist() == [1, 2]
+    assert mixed.normal_viscosity.tolist() == [0.5, 1]
+    assert law_of(table_of(mixed), 1) == Law(2.0, 1.0, 0.0, 4.0, 2.0, 0.0, 0.5, 0.0, 0.0, 0.0)
+    assert table_of(mixed).shape == (10, 2) and table_of(Law(9e9)).shape == (10, 1)
+    assert parts_of(mixed).varied and not parts_of(Law(9e9)).varied
+    assert uniform(np.array([3.0, 3.0])) == 3.0
+    assert uniform(None) is None
