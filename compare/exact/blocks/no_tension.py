@@ -9,19 +9,14 @@ time on at which the two differ by PARTED of the motion nothing is known (`known
 Holds for any load or shaken base, soft layers, dashpots, mass-proportional damping, ends, gravity
 along the axis and prestress, if no joint that bars tension would be pulled at rest.
 
-`contact` is the closed form for one such contact between two half-spaces: closed, it passes the
-incident stress; open, the far side stands still, the near side moves at twice the incident
-velocity v_I, and the gap grows at -2 v_I until it returns to zero. With the impulse I of the
-incident stress this is gap = (2/Z)(max_{s <= t} I(s) - I(t)).
+One such joint between two half-spaces has a closed form, `compare.exact.joint.opening_joint`.
 """
 
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from cases.loads import LoadHistory
 from cases.material.calibrate import calibrate
 from cases.sampling import sample_times
 from cases.schema.scene import Scene
@@ -99,26 +94,6 @@ def _known(model: Chain, states: np.ndarray, other: np.ndarray) -> int:
     apart = np.linalg.norm(motion(other - states), axis=1)
     lost = apart > PARTED * np.linalg.norm(motion(states), axis=1).max()
     return max(1, int(np.argmax(lost))) if lost.any() else len(states)
-
-
-class Contact(NamedTuple):
-    """Waves and gap at one no-tension contact: float arrays over time, Pa, Pa and m."""
-
-    transmitted: np.ndarray
-    reflected: np.ndarray
-    gap: np.ndarray
-
-
-def contact(load: LoadHistory, times: np.ndarray, impedance: float) -> Contact:
-    """Return what a pulse does at a no-tension contact between half-spaces of equal impedance.
-
-    `load` is the incident stress at the contact (Pa); the times (s) from before its start, at
-    which the contact opens: exact where they hold the zeros of the load.
-    """
-    incident, impulse = load.value(times), load.impulse(times)
-    gap = 2 / impedance * (np.maximum.accumulate(impulse) - impulse)
-    transmitted = np.where(gap > 0, 0.0, incident)
-    return Contact(transmitted, transmitted - incident, gap)
 
 
 SOLVER = Solver(
