@@ -88,18 +88,14 @@ def show_table(columns: list[str], rows: list[list[str]], styles: Sequence[str] 
     _console().print(table)
 
 
-def show_numbers(
-    columns: list[str], groups: dict[str, list[list[str]]], texts: Sequence[str] = ()
-) -> None:
+def show_numbers(columns: list[str], groups: dict[str, list[list[str]]]) -> None:
     """Print a table of numbers under group headings; text comes first in a row, never folded.
 
-    A terminal that is too narrow wraps whole lines, which can still be read and copied. texts :
-    the other columns of text.
+    A terminal that is too narrow wraps whole lines, which can still be read and copied.
     """
     table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0))
     for i, column in enumerate(columns):
-        is_number = i > 0 and column not in texts
-        table.add_column(printable(column), no_wrap=True, justify="right" if is_number else "left")
+        table.add_column(printable(column), no_wrap=True, justify="right" if i else "left")
     for heading, rows in groups.items():
         table.add_row(Text(printable(heading), style="bold"))
         for row in rows:

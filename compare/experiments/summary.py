@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from compare.cli.terminal import print_json, say, show_numbers
+from compare.cli.terminal import print_json, say, show_numbers, show_table
 from compare.experiments.store import plain
 from compare.figures.export import Drawn
 from compare.report.tables import Table
@@ -15,7 +15,8 @@ from compare.report.tables import Table
 class Summary(NamedTuple):
     """An experiment as it is shown.
 
-    name : of its files, and of its section of the page. table : rows of text under headings.
+    name : of its files, and of its section of the page. table : rows of cells under headings.
+    has_text : whether cells are sentences, which the terminal folds.
     sentences : its findings. failed : a line for each row that failed. facts : for a machine.
     note : about all of it. legend : of the table, on the terminal. about : for the caption of the
     figure: what it shows, the quantity of its misfits, or its scenes. timed : whether it has
@@ -34,15 +35,15 @@ class Summary(NamedTuple):
     legend: str = ""
     about: str = ""
     timed: bool = False
+    has_text: bool = False
 
 
-def show(found: Summary, as_json: bool, texts: Sequence[str] = ()) -> None:
-    """Print a summary; texts : the columns of the table that are no numbers, beside the first."""
+def show(found: Summary, as_json: bool) -> None:
+    """Print a summary: its table, its sentences and its files; or its facts."""
     if as_json:
         print_json(plain(found.facts))
         return
-    if found.table.groups:
-        show_numbers(found.table.header, found.table.groups, texts)
+    _show_table(found.table, found.has_text)
     for line in filter(None, [found.legend, *found.sentences]):
         say(line)
     for line in found.failed:
@@ -51,3 +52,13 @@ def show(found: Summary, as_json: bool, texts: Sequence[str] = ()) -> None:
         say(found.note)
     if found.files:
         say(f"written: {', '.join(map(str, found.files))}")
+
+
+def _show_table(table: Table, has_text: bool) -> None:
+    """Print the groups of a table: one by one where text is to be folded, else as one."""
+    if not has_text and table.groups:
+        show_numbers(table.header, table.groups)
+        return
+    for heading, rows in table.groups.items():
+        say(heading, "bold")
+        show_table(table.header, rows)

@@ -48,7 +48,7 @@ def effects(
     saved in DIR and not run again.
     """
     from compare.experiments.ablation import runner
-    from compare.experiments.ablation.summary import TEXTS, summarise
+    from compare.experiments.ablation.summary import summarise
     from compare.experiments.pool import shared
     from compare.experiments.summary import show
 
@@ -66,7 +66,7 @@ def effects(
         lambda pool, advance: runner.run(wanted, out, pool, advance),
     )
     assert found is not None  # one process only: see root
-    show(summarise(out, found), as_json, TEXTS)
+    show(summarise(out, found), as_json)
 
 
 @app.command()
@@ -142,7 +142,7 @@ def study(
 
 def _study_stability(out: Path, workers: int, as_json: bool) -> None:
     from compare.experiments.pool import shared
-    from compare.experiments.robustness.summary import NAME, TEXTS, TITLE, make_study
+    from compare.experiments.robustness.summary import NAME, TITLE, make_study
     from compare.experiments.summary import show
 
     found = shared(
@@ -152,7 +152,7 @@ def _study_stability(out: Path, workers: int, as_json: bool) -> None:
         lambda pool, advance: make_study(out, pool, progress=advance),
     )
     if found is not None:
-        show(found, as_json, TEXTS)
+        show(found, as_json)
 
 
 @app.command()

@@ -99,7 +99,7 @@ def run(
     if dry:
         from compare.experiments.cost import dry_run
 
-        dry_run.show_runs([(job.scene, job.name) for job in asked], as_json)
+        dry_run.show_runs([("", job.scene, job.name) for job in asked], as_json)
         return
     processes = started()
     folders, keeping = {job.path.parent for job in asked}, Keeping(every, resume, watched())

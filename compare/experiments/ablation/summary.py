@@ -28,7 +28,6 @@ COLUMNS = [
     "jointed rock (ns)",
     "why it stays",
 ]
-TEXTS = COLUMNS[-1:]
 Pair = tuple[Ablation, Effect]
 
 
@@ -47,6 +46,7 @@ def summarise(folder: Path, found: list[Ablation]) -> Summary:
         figure,
         about="; ".join(a.label for a in found),
         timed=True,
+        has_text=True,
     )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
+from cases.errors import SceneError
 from cases.schema.scene import Scene
 from cases.size import spoken
 from compare.cli.terminal import print_json, progress, say, show_table
@@ -19,37 +20,48 @@ COLUMNS = ["", "variant", "engine", "scheme", "steps", "size", "time", "memory"]
 UNKNOWN = "no estimate"  # where nothing of the kind was ever timed here
 
 
-def show_runs(wanted: list[tuple[Scene, str]], as_json: bool) -> None:
-    """Print what so many (scene, engine) would take."""
-    with progress(f"{len(wanted)} runs") as advance:
-        found = []
-        for i, (scene, name) in enumerate(wanted):
-            found.append(("", forecast(scene, name)))
-            advance((i + 1) / len(wanted))
-    show_forecasts(found, as_json)
+Run = tuple[str, Scene, str]  # the point of a sweep, empty without; the scene; what solves it
 
 
 def show_all(scenes: list[Scene], as_json: bool) -> None:
     """Print what everything that applies to some scenes would take."""
-    show_runs([(s, name) for s in scenes for name in names() if applies(name, s)], as_json)
+    show_runs([("", s, name) for s in scenes for name in names() if applies(name, s)], as_json)
 
 
-def show_forecasts(
-    found: list[tuple[str, Forecast]], as_json: bool, failing: Sequence[tuple[str, str]] = ()
+def show_runs(
+    wanted: Sequence[Run], as_json: bool, failing: Sequence[tuple[str, str]] = ()
 ) -> None:
-    """Print what would run under its point of a sweep, empty without, and all of it together.
+    """Print what each run would take under its point of a sweep, and all of them together.
 
-    failing : points that would not run, with the reason.
+    failing : points that would not run, with the reason. Raises SceneError for a run that cannot be
+    made; at a point of a sweep it is one that fails.
     """
+    found: list[tuple[str, Forecast]] = []
+    failed = dict(failing)
+    with progress(f"{len(wanted)} runs") as advance:
+        for i, (point, scene, name) in enumerate(wanted):
+            try:
+                found.append((point, forecast(scene, name)))
+            except SceneError as error:
+                if not point:
+                    raise
+                failed[point] = str(error)
+            advance((i + 1) / len(wanted))
+    _show_forecasts(found, failed, as_json)
+
+
+def _show_forecasts(
+    found: list[tuple[str, Forecast]], failed: dict[str, str], as_json: bool
+) -> None:
     seconds, unknown = seconds_of(one for _, one in found)
     if as_json:
         runs = [{"point": point, **one._asdict()} for point, one in found]
-        failed = [{"point": point, "message": message} for point, message in failing]
-        print_json({"runs": runs, "seconds": seconds, "untimed": unknown, "failing": failed})
+        failing = [{"point": point, "message": message} for point, message in failed.items()]
+        print_json({"runs": runs, "seconds": seconds, "untimed": unknown, "failing": failing})
         return
     first = 0 if any(point for point, _ in found) else 1
     show_table(COLUMNS[first:], [_cells(point, one)[first:] for point, one in found])
-    for point, message in failing:
+    for point, message in failed.items():
         say(f"would fail: {point}: {message}", "red")
     most = max((one.bytes for _, one in found), default=0.0)
     say(

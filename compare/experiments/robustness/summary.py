@@ -29,7 +29,6 @@ NOTE = (
     "case on every engine and scheme; its margin is the bound over the value."
 )
 COLUMNS = ["engine and scheme", "value", "bound", "margin", ""]
-TEXTS = COLUMNS[-1:]
 
 
 def make_study(
@@ -54,6 +53,7 @@ def make_study(
         {"rows": rows, "sentences": said, "files": list(map(str, files))},
         figure,
         about=NOTE,
+        has_text=True,
     )
 
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from cases.errors import SceneError
 from cases.read import parse_override
-from compare.cli import terminal
 from compare.cli.options import warn
 from compare.experiments.cost import dry_run
-from compare.experiments.cost.run_cost import Forecast, forecast
 from compare.experiments.pool import shared
 from compare.experiments.summary import show
 from compare.experiments.sweep import runner, summary
@@ -66,22 +64,12 @@ def sweep(
 
 def _foresee(asked: Asked, work: Work, as_json: bool) -> None:
     """Show what every case would take, and which would fail before they begin."""
-    found: list[tuple[str, Forecast]] = []
+    wanted: list[dry_run.Run] = []
     failing: list[tuple[str, str]] = []
-    with terminal.progress(f"{len(asked.cases)} points") as advance:
-        for i, case in enumerate(asked.cases):
-            point = ", ".join(f"{k}={v}" for k, v in case.settings.items())
-            if case.scene is None:
-                failing.append((point, case.message))
-                continue
-            try:
-                found += [(point, one) for one in _forecasts(case, work)]
-            except SceneError as error:
-                failing.append((point, str(error)))
-            advance((i + 1) / len(asked.cases))
-    dry_run.show_forecasts(found, as_json, failing)
-
-
-def _forecasts(case: Case, work: Work) -> list[Any]:
-    assert case.scene is not None
-    return [forecast(case.scene, name) for name in work.solvers(case)]
+    for case in asked.cases:
+        point = ", ".join(f"{k}={v}" for k, v in case.settings.items())
+        if case.scene is None:
+            failing.append((point, case.message))
+        else:
+            wanted += [(point, case.scene, name) for name in work.solvers(case)]
+    dry_run.show_runs(wanted, as_json, failing)
