@@ -1,5 +1,6 @@
 """What the tests share: the paper's pillar with any key changed, and a look at compiled code."""
 
+import gc
 import os
 import re
 import shutil
@@ -35,6 +36,18 @@ OPEN_MPI = {
     "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
     "PRTE_MCA_hwloc_default_binding_policy": "none",
 }
+
+
+@pytest.fixture(scope="module", autouse=True)
+def release_results(request):
+    """Release after each file what it has cached, and the garbage in cycles: results of whole
+    runs, figures and datasets that would stay until the tests end."""
+    yield
+    own = (value for value in vars(request.module).values() if hasattr(value, "cache_clear"))
+    for cached in own:
+        if cached.__module__ == request.module.__name__:
+            cached.cache_clear()
+    gc.collect()
 
 
 @pytest.fixture

@@ -8,13 +8,10 @@ import shlex
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 from warnings import warn
 
 import pytest
-
-#: Results of this session by (scene hash, name).
-RESULTS = pytest.StashKey[dict]()
-
 
 LARGEST_FILE = 10_000_000  # bytes, as of any scene
 
@@ -56,7 +53,18 @@ def _is_scene(path: Path) -> bool:
 
 
 class SceneFile(pytest.File):
-    """One scene file; its tests are the pairs of [expect] in each variant that they apply to."""
+    """One scene file; its tests are the pairs of [expect] in each variant that they apply to.
+
+    results : by scene hash and name, while the tests of this file run.
+    """
+
+    def setup(self) -> None:
+        """Begin without results."""
+        self.results: dict[tuple[str, str], Any] = {}
+
+    def teardown(self) -> None:
+        """Release the results: those of all scenes together take gigabytes."""
+        self.results.clear()
 
     def collect(self) -> Iterator["PairItem"]:
         from cases import SceneError
@@ -119,12 +127,12 @@ class PairItem(pytest.Item):
             warn(SceneWarning(f"{self.scene.where}: {line}"), stacklevel=1)
 
     def _solved(self, name: str):
-        """Return a result; each engine runs once in a session for the same scene."""
+        """Return a result; each engine runs once for the same scene of a file."""
         from compare.engines import solve
         from results.dataset import scene_hash
 
-        results = self.session.stash.setdefault(RESULTS, {})
-        key = scene_hash(self.scene), name
+        assert isinstance(self.parent, SceneFile)
+        results, key = self.parent.results, (scene_hash(self.scene), name)
         if key not in results:
             results[key] = solve(name, self.scene)
         return results[key]

@@ -1,38 +1,69 @@
-"""What a run of the rigid blocks costs beyond starting Python with numba, as a ratio.
+"""The cost of starting: a warm run over importing numpy and numba, and a first run over a second.
 
+    python tools/bench/startup.py
 
-
-The two commands are run in turn, so that a machine whose speed drifts slows both; the median of
-the pairs' ratios is the figure to quote.
+Two commands are run in turn, so that a machine whose speed drifts slows both; the median of the
+pairs' ratios is the figure to quote. A first run compiles its kernels into an empty cache: its
+processor time over that of the second is what compiling costs.
 """
 
+import os
 import subprocess
 import sys
 import tempfile
+from resource import RUSAGE_CHILDREN, getrusage
 from statistics import median
 from time import perf_counter
 
-SCENE = "guo-li-2002/fig-04"
+SCENE = "guo-li-2002/fig-03"
+BARE = (sys.executable, "-c", "import numpy, numba")
+#: Of the first-over-second ratio: the chain, the continuum and the row of blocks in space.
+FIRST = {
+    "free pillar, dem": ("guo-li-2002/fig-03", "--engine", "dem"),
+    "free pillar, continuum": ("guo-li-2002/fig-03", "--engine", "continuum"),
+    "block on an incline, dem": ("beyond/block-on-incline", "--engine", "dem"),
+}
 
 
-def seconds(*command: str) -> float:
-    """Return the wall time of a command, s."""
-    began = perf_counter()
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-    return perf_counter() - began
+def seconds(*command: str, **environment: str) -> tuple[float, float]:
+    """Return the wall time of a command and the processor time that it took, s."""
+    began, before = perf_counter(), getrusage(RUSAGE_CHILDREN)
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=os.environ | environment)
+    after = getrusage(RUSAGE_CHILDREN)
+    spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return perf_counter() - began, spent
+
+
+def run_of(*scene: str, out: str) -> tuple[str, ...]:
+    """Return the command that runs a scene."""
+    return sys.executable, "-m", "compare", "run", *scene, "--variant", "", "--out", out
+
+
+def first_over_second(*scene: str) -> tuple[float, float]:
+    """Return the processor time of a run with an empty cache and of the next with a full one, s."""
+    with tempfile.TemporaryDirectory() as place:
+        command = run_of(*scene, out=os.path.join(place, "out"))
+        caches = {"XDG_CACHE_HOME": place, "NUMBA_CACHE_DIR": os.path.join(place, "numba")}
+        first, second = (seconds(*command, **caches)[1] for _ in range(2))
+    return first, second
 
 
 def main(pairs: int = 11) -> None:
-    """Print the ratio of a warm `jointwave run` to importing numpy and numba."""
+    """Print both ratios."""
     with tempfile.TemporaryDirectory() as out:
-        run = (sys.executable, "-m", "compare", "run", SCENE, "--out", out)
-        bare = (sys.executable, "-c", "import numpy, numba")
+        run = run_of(SCENE, out=out)
         seconds(*run)  # compiles, where the cache is cold
-        ratios = [seconds(*run) / seconds(*bare) for _ in range(pairs)]
+        ratios = [seconds(*run)[0] / seconds(*BARE)[0] for _ in range(pairs)]
     print(
         f"jointwave run {SCENE}, warm, over python -c 'import numpy, numba': "
         f"{median(ratios):.2f} (median of {pairs} pairs, {min(ratios):.2f} to {max(ratios):.2f})"
     )
+    for name, scene in FIRST.items():
+        first, second = first_over_second(*scene)
+        print(
+            f"{name}: first run {first:.1f} s of processor time, second {second:.1f} s, "
+            f"ratio {first / second:.1f}"
+        )
 
 
 if __name__ == "__main__":
