@@ -75,6 +75,7 @@ GIVEN = (
     Style("#6e6e6e", 0.9, (0, (6, 2, 1.5, 2)), 3),
 )
 MARKERS = "oxs+"  # of the samples, where they are few enough to be told apart
+MOST_MARKS = 150  # samples of a curve that are marked one by one
 
 STYLES = {name: style for family in FAMILIES.values() for name, style in family.items()}
 
@@ -112,6 +113,12 @@ RC: dict[Any, Any] = {
 def style(name: str) -> Style:
     """Return how an engine or exact solution is drawn; grey for one that has no style yet."""
     return STYLES.get(name, Style("#777777", 1.1, _slot(0, 9), 3))
+
+
+def given_style(k: int, samples: int) -> tuple[Style, str]:
+    """Return how external data are drawn, the k-th file of so many samples, and their marker."""
+    marker = MARKERS[k % len(MARKERS)] if samples <= MOST_MARKS else ""
+    return GIVEN[k % len(GIVEN)], marker
 
 
 def in_order(names: set[str]) -> list[str]:

@@ -24,7 +24,7 @@ from cases.size import value_of
 from compare.experiments.fit.fit import Fit, Fitted
 from compare.experiments.fit.keys import CLOCK
 from compare.figures.export import save, write_csv
-from compare.figures.overlay_figures import UNITS
+from compare.figures.overlays import UNITS
 from compare.figures.style import GIVEN, RC, style
 from compare.runs.output import refuse_foreign, write, write_text
 

@@ -195,16 +195,19 @@ def _check_pdf(content, beside):
 
 
 def _check_csv(content, beside):
-    table = pd.read_csv(io.BytesIO(content))
-    assert len(table) > 1 and len(table.columns) > 1
-    there = pd.read_csv(beside)
-    assert list(table) == list(there) and len(table) == len(there)
-    for name in table:
-        if pd.api.types.is_numeric_dtype(there[name]):
-            largest = there[name].abs().max()
-            np.testing.assert_allclose(table[name], there[name], rtol=3e-6, atol=1e-6 * largest)
-        else:
-            assert (table[name].fillna("") == there[name].fillna("")).all()
+    """Of a chart its own numbers, single-precision and thinned; the file beside has all of them."""
+    table, there = pd.read_csv(io.BytesIO(content)), pd.read_csv(beside)
+    if list(table)[:2] != ["subplot", "curve"]:
+        assert content == beside.read_bytes()
+        return
+    assert len(table) > 100 and table["value"].notna().any()
+    assert (table.groupby(["subplot", "curve"]).size() > 50).all()
+    for (subplot, curve), rows in table.groupby(["subplot", "curve"]):
+        columns = [c for c in there if c.startswith(f"{curve} | {subplot.split(', ')[0]}")]
+        if len(columns) == 1 and "MPa" in rows["ordinate"].iloc[0]:  # of waveforms, here in MPa
+            at = np.interp(1e-3 * rows["time (ms)"], there["time (s)"], there[columns[0]])
+            largest = np.abs(at).max()
+            np.testing.assert_allclose(1e6 * rows["value"], at, atol=1e-4 * largest)
 
 
 CHECKS = {"svg": _check_svg, "pdf": _check_pdf, "csv": _check_csv}
