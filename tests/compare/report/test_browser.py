@@ -20,18 +20,20 @@ CHARTS = "figure[data-plot]"
 
 
 @pytest.fixture(scope="module")
-def report(tmp_path_factory):
-    """Build the page of three quick scenes: one of one's own with variants, the same recorded by
+def report(once):
+    """Return the report of three quick scenes: one of one's own with variants, the same recorded by
     its velocities, and one of the paper."""
-    own = tmp_path_factory.mktemp("scenes") / "short pillar.toml"
-    moving = own.with_name("moving.toml")
+    return once("small-report", build_small)
+
+
+def build_small(folder):
+    own, moving = folder / "short pillar.toml", folder / "moving.toml"
     text = (PAPER / "fig-03.toml").read_text(encoding="utf-8").partition("[[variants]]")[0]
     text = re.sub(r"duration *=.*", "duration = 0.03", text)
     text = f'{text}\n[[variants]]\nname = "zeta 0.05"\njoints.damping_ratio = 0.05\n'
     own.write_text(text)
     moving.write_text(re.sub(r"stress *= .*", "velocity = [20.25]", text))
-    scenes = [str(own), str(moving), "guo-li-2002/fig-06"]
-    return build(tmp_path_factory.mktemp("report"), scenes=scenes)
+    return build(folder / "report", scenes=[str(own), str(moving), "guo-li-2002/fig-06"])
 
 
 @pytest.fixture(scope="module")

@@ -31,17 +31,26 @@ Yade spheres,,missing,no apt here,cohesive spheres,,,,,,,,,,a quiet one
 
 
 @pytest.fixture(scope="module")
-def fractions():
-    return []
+def built(once):
+    """Return the whole report, with a small table of other codes, and what its progress was."""
+    return once("whole-report", build_whole)
+
+
+def build_whole(folder):
+    table = folder / "points.csv"
+    table.write_text(PEERS, encoding="utf-8")
+    fractions = []
+    return build(folder / "report", fractions.append, peers_table=table, hard=False), fractions
 
 
 @pytest.fixture(scope="module")
-def report(tmp_path_factory, fractions):
-    """Build the whole report once, with a small table of other codes."""
-    table = tmp_path_factory.mktemp("peers") / "points.csv"
-    table.write_text(PEERS, encoding="utf-8")
-    out = tmp_path_factory.mktemp("report")
-    return build(out, fractions.append, peers_table=table, hard=False)
+def report(built):
+    return built[0]
+
+
+@pytest.fixture(scope="module")
+def fractions(built):
+    return built[1]
 
 
 @pytest.fixture(scope="module")
