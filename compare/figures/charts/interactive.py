@@ -26,7 +26,7 @@ TOP, BOTTOM, LEFT, RIGHT = 11, 58, 66, 16  # px around the subplots
 GAP = 20  # px between subplots, besides their headings
 ENTRY = 20  # px of a line of the legend
 ITEM = 40  # px of the sample of a curve in the legend
-SAMPLES = 600  # of a curve
+SAMPLES = 800  # of a curve
 BITS = 14  # of the mantissa of a curve's values: a relative error of 3e-5
 
 

@@ -205,11 +205,10 @@ def _check_csv(content, beside):
     assert len(table) > 100 and table["value"].notna().any()
     assert (table.groupby(["subplot", "curve"]).size() > 50).all()
     for (subplot, curve), rows in table.groupby(["subplot", "curve"]):
-        columns = [c for c in there if c.startswith(f"{curve} | {subplot.split(', ')[0]}")]
-        if len(columns) == 1 and "MPa" in rows["ordinate"].iloc[0]:  # of waveforms, here in MPa
-            at = np.interp(1e-3 * rows["time (ms)"], there["time (s)"], there[columns[0]])
-            largest = np.abs(at).max()
-            np.testing.assert_allclose(1e6 * rows["value"], at, atol=1e-4 * largest)
+        column = f"{curve} | {subplot.replace(', ', ' | ', 1)} (Pa)"
+        if column in there and "time (s)" in there:  # a waveform, here in MPa and ms
+            at = np.interp(1e-3 * rows["time (ms)"], there["time (s)"], there[column])
+            np.testing.assert_allclose(1e6 * rows["value"], at, atol=1e-4 * np.abs(at).max())
 
 
 CHECKS = {"svg": _check_svg, "pdf": _check_pdf, "csv": _check_csv}
