@@ -183,10 +183,10 @@ def figure(
     columns : of the page, 1 or 2. style : "journal" or "screen".
     language : "en" or "zh". Raises SceneError where it would be taller than a page.
     """
-    from compare.figures.print.appearance import LOOKS
+    from compare.figures.print.appearance import STYLES
     from compare.figures.print.draw import draw
 
-    return draw(list(comparisons), LOOKS[style], columns, language)
+    return draw(list(comparisons), STYLES[style], columns, language)
 
 
 def _file(scene: str | Path) -> Path:

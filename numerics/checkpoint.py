@@ -10,10 +10,11 @@ from typing import Any, Protocol
 
 from cases.errors import InterruptedRun
 
+
 class Film(Protocol):
     """Snapshots of a run, of which those of an earlier part may be there already."""
 
-    def expect(self, done: int) -> None:
+    def expect(self, samples: int) -> None:
         """Take the snapshots of so many samples for taken."""
 
 

@@ -11,7 +11,7 @@ KINDS = ("scene", "waveforms", "space-time", "spectra", "energy")
 
 
 @dataclass(frozen=True)
-class Picture:
+class SceneFigure:
     """A picture of a scene and its solutions.
 
     name : stem of its files, unique on the page ("fig-03-spectra"). kind : one of KINDS.

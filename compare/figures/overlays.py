@@ -1,5 +1,5 @@
-"""Waveforms in one pair of axes, and under them on a scale of its own what each leaves from its
-reference: by solution in one variant, or by variant of one engine.
+"""Waveforms in one pair of axes, and under them their residuals from the reference on a scale of
+their own: by solution in one variant, or by variant of one engine.
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ import pandas as pd
 
 from cases.schema.scene import Scene
 from compare.engines import ENGINES
-from compare.figures.style import GIVEN, MARKERS, Style, in_order, style
+from compare.figures.charts.chart import Line, Subplot
+from compare.figures.style import Style, given_style, in_order, style
 from compare.figures.subplots import UNITS as SI
 from compare.figures.subplots import Panel, panels
 from compare.figures.units import Unit, unit_for
@@ -28,8 +29,8 @@ UNITS = {
 #: Of a scene what does not change its physics, or changes how it is solved alone.
 ASIDE = {"title", "source", "name", "expect", "numerics", "record", "where"}
 MOST = 6  # variants in one pair of axes
-SECTIONS = 3  # receivers, from which on they are stacked
-MOST_MARKS = 150  # samples of a curve that are marked one by one
+RESIDUAL = 0.75  # inches of residuals in print
+THIN = 1.4  # points, the widest line of residuals
 REFERENCE = "reference"
 #: Colours of variants, light to dark: of up to four, then of up to six.
 VARIANTS = (
@@ -40,14 +41,13 @@ DOTS = Style("#000000", 0.9, (0, (1.0, 2.0)), 12)  # of references under variant
 
 
 class Trace(NamedTuple):
-    """A waveform over time (s), SI: its entry in the legend, how it is drawn, and what it leaves
-    from its reference; None where it is that, or has none.
+    """A waveform over time (s), SI, and its residual from the reference; None where it has none.
 
-    part : what its part of the SVG is called. marker : of its samples, where they are few.
+    name : its entry in the legend. part : of the SVG. marker : of its samples, where they are few.
     """
 
     name: str
-    look: Style
+    style: Style
     curve: pd.Series
     residual: pd.Series | None = None
     part: str = ""
@@ -74,16 +74,6 @@ class Overlay(NamedTuple):
         return f"{self.quantity} ({unit}){rest}"
 
     @property
-    def factor(self) -> float:
-        """From SI to the unit that is drawn."""
-        return UNITS[self.quantity][0]
-
-    @property
-    def unit_name(self) -> str:
-        """The unit that is drawn."""
-        return UNITS[self.quantity][1]
-
-    @property
     def residuals(self) -> list[Trace]:
         """The traces that have one."""
         return [trace for trace in self.traces if trace.residual is not None]
@@ -108,16 +98,47 @@ class Overlay(NamedTuple):
         return f"less {self.reference} ({self.unit.name}){share}"
 
 
+def subplots_of(overlay: Overlay, place: str, height: float, share: str) -> list[Subplot]:
+    """Return the axes of an overlay's waveforms, and under them those of its residuals.
+
+    place : in the names of the lines' parts ("0-1"). share : see `Subplot`.
+    """
+    factor, name = UNITS[overlay.quantity]
+    waveforms = [
+        _line(t, factor * t.curve, name, f"{place}-{t.part}", t.style) for t in overlay.traces
+    ]
+    residuals = [
+        _line(
+            t,
+            t.residual / overlay.unit.size,
+            overlay.unit.name,
+            f"residual-{place}-{t.part}",
+            t.style._replace(width=min(t.style.width, THIN)),
+        )
+        for t in overlay.traces
+        if t.residual is not None
+    ]
+    lower = Subplot(overlay.residual_heading, "", residuals, RESIDUAL, levels=(0,), is_minor=True)
+    return [
+        Subplot(overlay.heading, overlay.label, waveforms, height, share, levels=(0,)),
+        lower if residuals else lower._replace(ticks=[]),
+    ]
+
+
+def _line(trace: Trace, curve: pd.Series, unit: str, part: str, style: Style) -> Line:
+    hover = f"%{{y:.4g}} {unit} at %{{x:.2f}} ms<extra>{trace.name}</extra>"
+    time = 1e3 * curve.index.values
+    return Line(trace.name, style, time, curve.values, hover, part, trace.marker)
+
+
 def by_solution(panel: Panel) -> Overlay:
     """Return every solution of one variant at one receiver."""
-    residuals = panel.residuals
+    residuals, given = panel.residuals, panel.given
     traces = [Trace(n, style(n), c, residuals.get(n), n) for n, c in panel.curves.items()]
-    given = panel.given
     for k, beside in enumerate(panel.comparison.besides):
-        if beside.curves.name in given:
-            marker = MARKERS[k % len(MARKERS)] if len(beside.time) <= MOST_MARKS else ""
-            curve, look = given[beside.curves.name], GIVEN[k % len(GIVEN)]
-            traces.append(Trace(beside.curves.name, look, curve, None, f"given-{k}", marker))
+        if (name := beside.curves.name) in given:
+            drawn, marker = given_style(k, len(beside.time))
+            traces.append(Trace(name, drawn, given[name], None, f"given-{k}", marker))
     heading = f"{panel.place}, {panel.variant}"
     return Overlay(heading, panel.quantity, panel.at_rest, traces, panel.reference)
 
@@ -158,15 +179,15 @@ def _engines(comparisons: list[Comparison]) -> list[str]:
 
 
 def _of_engine(engine: str, row: list[Panel]) -> Overlay:
-    """Return an engine's waveform in every variant, and under dots what each is held against."""
-    looks = variant_styles(len(row))
+    """Return an engine's waveform in every variant, and the reference of each as dots."""
+    styles = variant_styles(len(row))
     traces, references = [], set[str]()
-    for k, (panel, look) in enumerate(zip(row, looks, strict=True)):
+    for k, (panel, drawn) in enumerate(zip(row, styles, strict=True)):
         curves, known = panel.curves, panel.reference
         if engine not in curves:
             continue
         residual = panel.residuals.get(engine)
-        traces.append(Trace(panel.variant, look, curves[engine], residual, f"variant-{k}"))
+        traces.append(Trace(panel.variant, drawn, curves[engine], residual, f"variant-{k}"))
         if known != engine and known in curves:
             references.add(known)
             traces.append(Trace(REFERENCE, DOTS, curves[known], None, f"reference-{k}"))
@@ -189,5 +210,5 @@ def _flat(scene: Scene) -> dict[str, object]:
 
 def legend_of(overlays: Iterable[Overlay]) -> dict[str, Style]:
     """Return the entries of a legend, each once, references last."""
-    found = {t.name: t.look for overlay in overlays for t in overlay.traces}
+    found = {t.name: t.style for overlay in overlays for t in overlay.traces}
     return dict(sorted(found.items(), key=lambda entry: entry[0] == REFERENCE))

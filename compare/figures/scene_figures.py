@@ -7,22 +7,22 @@ from compare.figures.charts.spacetime import space_time
 from compare.figures.charts.spacetime_data import diagrams_of
 from compare.figures.charts.spectra import spectra
 from compare.figures.charts.waveforms import waveforms
-from compare.figures.drawing.scene import scene_picture
-from compare.figures.figure import Picture
+from compare.figures.drawing.scene import scene_figure
+from compare.figures.figure import SceneFigure
 from compare.figures.subplots import variant_names
 from compare.misfit.pairs import Comparison
 
 
-def pictures_of(
+def figures_of(
     name: str, comparisons: list[Comparison], fields: list[dict[str, xr.Dataset]]
-) -> list[Picture]:
+) -> list[SceneFigure]:
     """Return the pictures of a scene's variants.
 
     name : what file names begin with ("fig-03"). fields : what `along_pillar` returns for each
     variant; none: no space-time diagrams.
     """
     return [
-        scene_picture(name, comparisons),
+        scene_figure(name, comparisons),
         *waveforms(name, comparisons),
         *_space_time(name, comparisons, fields),
         *spectra(name, comparisons),
@@ -32,7 +32,7 @@ def pictures_of(
 
 def _space_time(
     name: str, comparisons: list[Comparison], fields: list[dict[str, xr.Dataset]]
-) -> list[Picture]:
+) -> list[SceneFigure]:
     variants = zip(comparisons, variant_names(comparisons), fields, strict=False)
     return [
         space_time(

@@ -67,6 +67,7 @@ GIVEN = (
     Style("#6e6e6e", 0.9, (0, (6, 2, 1.5, 2)), 3),
 )
 MARKERS = "oxs+"  # of the samples, where they are few enough to be told apart
+MOST_MARKS = 150  # samples of a curve that are marked one by one
 
 #: Of the terms of an energy ledger: those of Tol (2021), "muted", and black.
 TERMS = {
@@ -104,6 +105,12 @@ def style(name: str) -> Style:
     if name in names():
         return _style(solver(name).line)
     return Style("#777777", 1.1, _slot(0, 9), 3)
+
+
+def given_style(k: int, samples: int) -> tuple[Style, str]:
+    """Return how external data are drawn, the k-th file of so many samples, and their marker."""
+    marker = MARKERS[k % len(MARKERS)] if samples <= MOST_MARKS else ""
+    return GIVEN[k % len(GIVEN)], marker
 
 
 def in_order(drawn: set[str]) -> list[str]:

@@ -7,21 +7,17 @@ import gzip
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import pandas as pd
 from jinja2 import Environment, PackageLoader
 from markupsafe import Markup, escape
 
 from compare.experiments.summary import Summary
 from compare.figures.style import style
-from compare.report.compression import pack_plot, pack_table
 from compare.report.findings import Finding
-from compare.report.motion import Motion
 from compare.report.overview import Overview
 from compare.report.peers import PeersSection
 from compare.report.section import Section
+from compare.report.snapshots import SnapshotsSection
 from compare.report.tables import Table
-
-LONG = 20_000  # bytes of a table
 
 
 @dataclass(frozen=True)
@@ -46,7 +42,7 @@ class Page:
     peers_file: str = ""
     effects: Summary | None = None
     stability: Summary | None = None
-    motion: Motion | None = None
+    snapshots: SnapshotsSection | None = None
 
     @property
     def is_interactive(self) -> bool:
@@ -74,7 +70,7 @@ def render(page: Page, out: Path) -> str:
     )
     environment.globals |= {
         "held_file": held_file,
-        "held_plot": lambda text: base64.b64encode(pack_plot(text)).decode("ascii"),
+        "held": held,
         "place": lambda file: file.relative_to(out).as_posix(),
         "source": lambda name: Markup(_asset(environment, name)),
         "colour": lambda name: style(name).colour,
@@ -91,14 +87,9 @@ def held(content: str | bytes) -> str:
 
 
 def held_file(file: Path) -> Markup:
-    """Return the element that holds a file: of a long table the packed numbers, else its bytes."""
-    raw = file.read_bytes()
-    packed = None
-    if file.suffix == ".csv" and len(raw) > LONG:
-        packed = pack_table(pd.read_csv(file, keep_default_na=True))
-    text = held(raw) if packed is None else base64.b64encode(packed).decode("ascii")
-    about = f'id="held-{escape(file.name)}" data-kind="{"bytes" if packed is None else "table"}"'
-    return Markup(f'<script type="text/plain" {about}>{text}</script>')
+    """Return the element that holds a file."""
+    text = held(file.read_bytes())
+    return Markup(f'<script type="text/plain" id="held-{escape(file.name)}">{text}</script>')
 
 
 def charts() -> str:

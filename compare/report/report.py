@@ -4,6 +4,7 @@ import shlex
 from collections.abc import Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 
@@ -17,23 +18,31 @@ from compare.experiments.pool import Lent, Pool, alone
 from compare.experiments.robustness.summary import make_study as make_hard_cases
 from compare.experiments.study.summary import REPORTED
 from compare.experiments.study.summary import reported as reported_studies
+from compare.figures.charts.static import draw
+from compare.figures.charts.waveforms import by_solutions
 from compare.figures.export import save
-from compare.figures.overlay_figures import draw
 from compare.figures.subplots import curve_table
 from compare.misfit.pairs import Comparison
 from compare.report import peers, tables
 from compare.report.cost import seconds
 from compare.report.findings import Finding
 from compare.report.findings.overview import mostly_dispersion
-from compare.report.motion import make_motion
 from compare.report.overview import Overview, Ranked, overview
 from compare.report.render import Page, render
 from compare.report.scenes import Solved, asked_for, solve
+from compare.report.snapshots import make_snapshots
 from compare.report.versions import versions
 from compare.runs.output import write_csv, write_text
 from compare.runs.workers import Workers
 
 FREE_PILLAR = "fig-03"  # the scene that says what the paper's own comparison is made of
+#: From which to which fraction of the paper's page each part takes, where kernels are compiled.
+PARTS = {
+    "scenes": (0.0, 0.6),
+    "hard cases": (0.6, 0.7),
+    "studies": (0.7, 0.95),
+    "effects": (0.95, 1.0),
+}
 PAPERS = (
     "Figures 2 to 10 of Guo & Li (2002), Chin. J. Rock Mech. Eng. 21(8), 1124–1129, by rigid "
     "blocks, by a deformable continuum and by exact solutions"
@@ -76,27 +85,36 @@ def build(
     peers_table: Path | None = None,
     hard: bool = True,
 ) -> Report:
-    """Solve scenes by all that applies, and write their pictures, tables and `out`/index.html.
+    """Solve scenes by all that applies, and write their figures, tables and `out`/index.html.
 
     `scenes` are files or names of shipped ones; without any, the page has the paper's figures and
-    after them the studies. `progress` is called with the finished fraction.
+    after them the studies. `progress` is called with the finished fraction of the whole.
     `peers_table` is what `make bench-peers` wrote; None: where it writes, if it did.
     `hard` : also put both engines to the hard cases, except those that take long.
     Raises SceneError and UnstableError, as `compare` does; the page is then not written.
     """
     began = perf_counter()
     with Workers(workers) as executor:
+        pool = partial(Lent, executor)
         if scenes:
-            page = _of_scenes(Path(out), scenes, progress, lambda: Lent(executor))
+            page = _of_scenes(Path(out), scenes, progress, pool)
         else:
             others = peers.read(peers_table)
-            page = _of_paper(Path(out), progress, lambda: Lent(executor))
-            page = _with_hard_cases(page, Path(out), lambda: Lent(executor)) if hard else page
-            page = _with_studies(page, Path(out), studies, others, lambda: Lent(executor))
+            page = _of_paper(Path(out), _part(progress, "scenes"), pool)
+            page = _with_hard_cases(page, Path(out), pool, progress) if hard else page
+            page = _with_studies(page, Path(out), studies, others, pool, progress)
     file = write_text(Path(out) / "index.html", render(page, Path(out)))
-    found = {section.name: section.findings for section in page.sections}
+    findings = {section.name: section.findings for section in page.sections}
     taken = perf_counter() - began
-    return Report(file, page.overview, page.summary, page.about, found, taken)
+    return Report(file, page.overview, page.summary, page.about, findings, taken)
+
+
+def _part(progress: Progress | None, name: str) -> Progress | None:
+    """Return what is told the progress of one part of the paper's page."""
+    if progress is None:
+        return None
+    start, end = PARTS[name]
+    return lambda fraction: progress(start + (end - start) * fraction)
 
 
 def _of_scenes(out: Path, scenes: Sequence[str], progress: Progress | None, pool: Pool) -> Page:
@@ -109,16 +127,16 @@ def _of_scenes(out: Path, scenes: Sequence[str], progress: Progress | None, pool
 
 def _of_paper(out: Path, progress: Progress | None, pool: Pool) -> Page:
     """Return the page of the paper's figures."""
-    moving: list[Future] = []
+    snapshots: list[Future] = []
 
     def besides(executor: Executor) -> list[Future]:
-        moving.append(executor.submit(make_motion, out))
-        return moving
+        snapshots.append(executor.submit(make_snapshots, out))
+        return snapshots
 
     solved = solve(out / "figures", asked_for(()), progress, pool, besides)
     page = _page(solved, PAPERS, "jointwave report --out DIR")
     about = mostly_dispersion(solved.comparisons[FREE_PILLAR][0])
-    return replace(page, about=about, motion=moving[0].result())
+    return replace(page, about=about, snapshots=snapshots[0].result())
 
 
 def _page(solved: Solved, subtitle: str, command: str) -> Page:
@@ -143,16 +161,24 @@ def _ranked(solved: Solved) -> list[Ranked]:
         ]
 
 
-def _with_hard_cases(page: Page, out: Path, pool: Pool) -> Page:
-    return replace(page, stability=make_hard_cases(out / "studies", pool, slow=False))
+def _with_hard_cases(page: Page, out: Path, pool: Pool, progress: Progress | None) -> Page:
+    part = _part(progress, "hard cases")
+    return replace(page, stability=make_hard_cases(out / "studies", pool, False, part))
 
 
 def _with_studies(
-    page: Page, out: Path, studies: tuple[str, ...], others: DataFrame | None, pool: Pool
+    page: Page,
+    out: Path,
+    studies: tuple[str, ...],
+    others: DataFrame | None,
+    pool: Pool,
+    progress: Progress | None,
 ) -> Page:
     """Return the page with what was measured: the seconds after everything else, and alone."""
-    measured = reported_studies(out, studies)
-    effects = ablation_runs.run(ablation_runs.reported(), out / "effects", pool)
+    measured = reported_studies(out, studies, _part(progress, "studies"))
+    effects = ablation_runs.run(
+        ablation_runs.reported(), out / "effects", pool, _part(progress, "effects")
+    )
     return replace(
         page,
         studies=measured,
@@ -169,7 +195,7 @@ def write_comparisons(comparisons: list[Comparison], out: Path) -> None:
     """
     folder, name = Path(out), "comparison"
     curves = curve_table(comparisons).reset_index()
-    save(draw(name, comparisons), folder, name, comparisons[0].scene.title, curves)
+    save(draw(name, by_solutions(comparisons)), folder, name, comparisons[0].scene.title, curves)
     write_csv(folder / f"{name}-misfits.csv", tables.distance_frame(comparisons))
     if any(comparison.besides for comparison in comparisons):
         write_csv(folder / f"{name}-alignment.csv", tables.alignment_frame(comparisons))

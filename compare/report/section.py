@@ -12,8 +12,8 @@ import xarray as xr
 
 import cases
 from compare.figures.export import Drawn, save
-from compare.figures.figure import Picture
-from compare.figures.scene_figures import pictures_of
+from compare.figures.figure import SceneFigure
+from compare.figures.scene_figures import figures_of
 from compare.misfit.pairs import Comparison
 from compare.report import tables
 from compare.report.findings import Finding, findings
@@ -92,7 +92,7 @@ def make_section(
     fields : each variant's results all along the pillar, for space-time diagrams.
     """
     scene = comparisons[0].scene
-    pictures = pictures_of(asked.name, comparisons, fields)
+    pictures = figures_of(asked.name, comparisons, fields)
     distances = folder / f"{asked.name}-misfits.csv"
     return Section(
         asked.name,
@@ -113,7 +113,7 @@ def make_section(
     )
 
 
-def draw(folder: Path, picture: Picture) -> Shown:
+def draw(folder: Path, picture: SceneFigure) -> Shown:
     """Write a picture's files: those that the page offers."""
     p = picture
     drawn = save(p.static, folder, p.name, p.title, p.table, p.caption, p.plot, png=False)

@@ -47,15 +47,15 @@ def animate(
     with terminal.progress("both engines") as advance:
         from compare.figures.animation.snapshots import take
 
-        shots = take(one, frames, advance)
+        simulated = take(one, frames, advance)
     with terminal.progress("pictures") as advance:
         from compare.figures.animation.frame import Frame
-        from compare.figures.animation.view_settings import look_at
+        from compare.figures.animation.view_settings import settings_for
 
-        look = look_at(shots.scene, shots.found, scale)
-        frame = Frame(shots, look, video.DOTS[path.suffix])
+        settings = settings_for(simulated.scene, simulated.found, scale)
+        frame = Frame(simulated, settings, video.DOTS[path.suffix])
         video.write_video(path, frame.image, frames, seconds, advance)
-    _show(path, list(shots.found), shots.reasons, look.scale, as_json)
+    _show(path, list(simulated.found), simulated.reasons, settings.scale, as_json)
 
 
 def _require_positive(key: str, value: float | None) -> None:
@@ -126,13 +126,13 @@ def _require_pyvista() -> None:
 def _open(scene: Scene, time: float, scale: float | None) -> None:
     from compare.cli import terminal
     from compare.figures.animation.snapshots import take
-    from compare.figures.animation.view3d import Stage
-    from compare.figures.animation.view_settings import look_at
+    from compare.figures.animation.view3d import View3D
+    from compare.figures.animation.view_settings import settings_for
 
     with terminal.progress("both engines") as advance:
-        shots = take(scene, FRAMES, advance)
-    look = look_at(shots.scene, shots.found, scale)
-    stage = Stage(shots, look, window=True)
+        simulated = take(scene, FRAMES, advance)
+    settings = settings_for(simulated.scene, simulated.found, scale)
+    stage = View3D(simulated, settings, window=True)
     stage.add_slider(round(time / scene.time.duration * (FRAMES - 1)))
     stage.open()
 
@@ -141,14 +141,14 @@ def _write_picture(path: Path, scene: Scene, time: float, scale: float | None) -
     from compare.cli import terminal
     from compare.figures.animation.offscreen import draw
     from compare.figures.animation.snapshots import take, until
-    from compare.figures.animation.view_settings import look_at
+    from compare.figures.animation.view_settings import settings_for
     from compare.runs.output import refuse_foreign, write
 
     if path.suffix != ".png":
         raise SceneError("--out", str(path), None, "must end in .png")
     refuse_foreign(path, (b"\x89PNG",))
     with terminal.progress("both engines") as advance:
-        shots = take(until(scene, time), 2, advance)
-    look = look_at(shots.scene, shots.found, scale)
-    write(path, lambda new: draw(new, shots, look, 1))
-    _show(path, list(shots.found), shots.reasons, look.scale, False)
+        simulated = take(until(scene, time), 2, advance)
+    settings = settings_for(simulated.scene, simulated.found, scale)
+    write(path, lambda new: draw(new, simulated, settings, 1))
+    _show(path, list(simulated.found), simulated.reasons, settings.scale, False)

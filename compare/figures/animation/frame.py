@@ -18,8 +18,8 @@ from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
 
 from compare.figures import fonts
-from compare.figures.animation.snapshots import Shots
-from compare.figures.animation.view_settings import Look, caption
+from compare.figures.animation.snapshots import SceneSnapshots
+from compare.figures.animation.view_settings import ViewSettings, caption
 from compare.figures.animation.wave import Wave
 from compare.figures.print.layout import wrapped
 from compare.figures.snapshots import COLOURS
@@ -41,32 +41,34 @@ EDGE = "#333333"
 class Frame:
     """The picture of every instant, as pixels; what does not move is drawn once."""
 
-    def __init__(self, shots: Shots, look: Look, dots: int = 100) -> None:
-        self.shots, self.look = shots, look
-        side = shots.scene.pillar.side
-        self.waves = {n: Wave(shots.found[n], look, side) for n in in_order(set(shots.found))}
-        self.time = next(iter(shots.found.values())).time
+    def __init__(self, simulated: SceneSnapshots, settings: ViewSettings, dots: int = 100) -> None:
+        self.simulated, self.settings = simulated, settings
+        side = simulated.scene.pillar.side
+        self.waves = {
+            n: Wave(simulated.found[n], settings, side) for n in in_order(set(simulated.found))
+        }
+        self.time = next(iter(simulated.found.values())).time
         peak = max(float(np.abs(w.profile).max()) for w in self.waves.values())
-        self.peak = peak * look.quantity.factor or 1.0
+        self.peak = peak * settings.quantity.factor or 1.0
         self.colour = ScalarMappable(Normalize(-self.peak, self.peak), COLOURS)
         with matplotlib.rc_context(RC | {"font.size": 10.0, "font.family": fonts.families()}):
             self.figure = Figure(figsize=SIZE, dpi=dots)
             self.canvas = FigureCanvasAgg(self.figure)
             self._lay_out()
         self.canvas.draw()
-        self.still = self.canvas.copy_from_bbox(self.figure.bbox)
+        self.background = self.canvas.copy_from_bbox(self.figure.bbox)
 
     def show(self, i: int) -> None:
         """Move all that moves to instant i."""
         for name, wave in self.waves.items():
             polygons, faces, edges = wave.drawn(i)
-            values = self.look.quantity.factor * wave.values[i, faces]
+            values = self.settings.quantity.factor * wave.values[i, faces]
             self.faces[name].set_verts(list(polygons))
             self.faces[name].set_array(values)
             self.edges[name].set_segments(list(edges))
-            self.profiles[name].set_ydata(self.look.quantity.factor * wave.profile[i])
+            self.profiles[name].set_ydata(self.settings.quantity.factor * wave.profile[i])
         until = self.time[i] * (1 + 1e-9)
-        for name, curve in self.heard.items():
+        for name, curve in self.waveforms.items():
             shown = curve[curve.index <= until]
             self.traces[name].set_data(1e3 * shown.index, shown.values)
         self.cursor.set_xdata([1e3 * self.time[i]] * 2)
@@ -75,13 +77,13 @@ class Frame:
     def image(self, i: int) -> np.ndarray:
         """Return the picture of instant i, uint8 array [height, width, 4]."""
         self.show(i)
-        self.canvas.restore_region(self.still)
-        for artist in self.moving:
+        self.canvas.restore_region(self.background)
+        for artist in self.animated:
             (artist.axes or self.figure).draw_artist(artist)
         return np.array(self.canvas.buffer_rgba())
 
     @property
-    def moving(self) -> list[Artist]:
+    def animated(self) -> list[Artist]:
         """What is drawn anew for each instant, in order."""
         lines = sorted([*self.profiles.values(), *self.traces.values()], key=Line2D.get_zorder)
         return [*self.faces.values(), *self.edges.values(), *lines, self.cursor, self.clock]
@@ -89,8 +91,8 @@ class Frame:
     def _lay_out(self) -> None:
         (low, high), width = self._extent(), SIZE[0] - LEFT - RIGHT
         reach = high - low
-        height = min(width * self.look.stretch * reach[1] / reach[0], HIGHEST[len(self.waves)])
-        width = height * reach[0] / reach[1] / self.look.stretch
+        height = min(width * self.settings.stretch * reach[1] / reach[0], HIGHEST[len(self.waves)])
+        width = height * reach[0] / reach[1] / self.settings.stretch
         place = LEFT + (SIZE[0] - LEFT - RIGHT - width) / 2, width
         top = SIZE[1] - self._add_head()
         self.faces: dict[str, PolyCollection] = {}
@@ -100,7 +102,7 @@ class Frame:
             ax = self._axes(*place, top, height)
             ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
             self._add_strip(ax, name, 72 * width / reach[0])
-        for name, reason in self.shots.reasons.items():
+        for name, reason in self.simulated.reasons.items():
             words = self._in_lines(f"{name} does not apply: {reason}", SIZE[0] - LEFT - RIGHT, 10.0)
             top -= NAME + LINE * words.count("\n")
             self._say(LEFT, top + 0.05, words, color="#555555")
@@ -120,14 +122,14 @@ class Frame:
         across, up = SIZE
         return self.figure.add_axes((left / across, bottom / up, width / across, height / up))
 
-    def _say(self, x: float, y: float, text: str, **look) -> Text:
+    def _say(self, x: float, y: float, text: str, **settings) -> Text:
         """Write at a place in inches; a dollar sign is one."""
-        return self.figure.text(x / SIZE[0], y / SIZE[1], text, parse_math=False, **look)
+        return self.figure.text(x / SIZE[0], y / SIZE[1], text, parse_math=False, **settings)
 
     def _add_strip(self, ax: Axes, name: str, points_per_metre: float) -> None:
         ax.set_axis_off()
         ax.set_title(name, color=style(name).colour, pad=2, **_bold(name))
-        spacing = self.shots.scene.pillar.block * points_per_metre
+        spacing = self.simulated.scene.pillar.block * points_per_metre
         width = 0.5 if spacing > DENSE else 0.0
         self.faces[name] = PolyCollection(
             [],
@@ -146,24 +148,24 @@ class Frame:
     def _add_profile(self, ax: Axes, low: np.ndarray, high: np.ndarray) -> None:
         self.profiles: dict[str, Line2D] = {}
         for name, wave in self.waves.items():
-            look = style(name).of_line()
-            (line,) = ax.plot(wave.y, np.zeros_like(wave.y), label=name, animated=True, **look)
+            settings = style(name).of_line()
+            (line,) = ax.plot(wave.y, np.zeros_like(wave.y), label=name, animated=True, **settings)
             self.profiles[name] = line
-        for layer in self.shots.scene.soft_layers:
+        for layer in self.simulated.scene.soft_layers:
             ax.axvline(layer.y, color="#999999", linewidth=0.8, linestyle=":")
         ax.axvline(self.panel.y, color="#444444", linewidth=0.8, linestyle="--")
         ax.set(xlim=(low[0], high[0]), ylim=(-1.08 * self.peak, 1.08 * self.peak))
-        ax.set_xlabel("y (m)" + "; dotted: soft layers" * bool(self.shots.scene.soft_layers))
-        ax.set_ylabel(f"{self.look.quantity.name}\n({self.look.quantity.unit})")
+        ax.set_xlabel("y (m)" + "; dotted: soft layers" * bool(self.simulated.scene.soft_layers))
+        ax.set_ylabel(f"{self.settings.quantity.name}\n({self.settings.quantity.unit})")
 
     def _add_waveform(self, ax: Axes) -> None:
         """Add the first receiver's waveform as it was recorded, to be drawn up to each instant."""
         first, curves = self.panel, self.panel.curves
         peak = max(float(np.abs(curve.values).max()) for curve in curves.values())
         unit = unit_for(UNITS[first.quantity], 1.001 * peak)
-        self.heard = {name: curve / unit.size for name, curve in curves.items()}
+        self.waveforms = {name: curve / unit.size for name, curve in curves.items()}
         self.traces: dict[str, Line2D] = {}
-        for name in self.heard:
+        for name in self.waveforms:
             (self.traces[name],) = ax.plot([], [], animated=True, **style(name).of_line())
         self.cursor = ax.axvline(0.0, color="#000000", linewidth=1.2, animated=True)
         reach = 1.08 * peak / unit.size or 1.0
@@ -174,11 +176,11 @@ class Frame:
     @cached_property
     def panel(self) -> Panel:
         """The component that moves most at the first receiver."""
-        return panels([Comparison(self.shots.scene, self.shots.results)])[0][0]
+        return panels([Comparison(self.simulated.scene, self.simulated.results)])[0][0]
 
-    def _in_lines(self, text: str, width: float, size: float, **look) -> str:
+    def _in_lines(self, text: str, width: float, size: float, **settings) -> str:
         """Return a text in lines of at most so many inches; size : of its letters, points."""
-        measure = self.figure.text(0, 0, "", fontsize=size, parse_math=False, **look)
+        measure = self.figure.text(0, 0, "", fontsize=size, parse_math=False, **settings)
 
         def fits(line: str) -> bool:
             measure.set_text(line)
@@ -190,14 +192,14 @@ class Frame:
 
     def _add_head(self) -> float:
         """Add title, clock and colours; return their height, inches."""
-        scene, (across, up) = self.shots.scene, SIZE
+        scene, (across, up) = self.simulated.scene, SIZE
         title = ", ".join(t for t in (scene.title, scene.name) if t)
         bold = _bold(title)
         title = self._in_lines(title, across - LEFT - RIGHT - CLOCK, 12.0, **bold)
         self._say(LEFT, up - 0.15, title, fontsize=12, va="top", **bold)
         height = HEAD + LINE * title.count("\n")
         low = up - height
-        self._say(LEFT, low + 0.23, caption(scene, self.look), color="#333333")
+        self._say(LEFT, low + 0.23, caption(scene, self.settings), color="#333333")
         step = 1e3 * (self.time[1] - self.time[0])
         self.decimals = max(0, ceil(-log10(step)) + 1)
         place = {"ha": "right", "fontsize": 14, "animated": True, **_bold("t = 0")}
@@ -205,7 +207,7 @@ class Frame:
         bar = self._axes(across - RIGHT - 3.2, 3.2, low + 0.2, 0.13)
         few = MaxNLocator(5)
         self.figure.colorbar(self.colour, cax=bar, orientation="horizontal", ticks=few)
-        self._say(across - RIGHT - 3.45, low + 0.2, self.look.quantity.label, ha="right")
+        self._say(across - RIGHT - 3.45, low + 0.2, self.settings.quantity.label, ha="right")
         return height
 
 

@@ -16,8 +16,8 @@ from cases.errors import SceneError
 from compare.runs.workers import Workers
 
 if TYPE_CHECKING:
-    from compare.figures.animation.snapshots import Shots
-    from compare.figures.animation.view_settings import Look
+    from compare.figures.animation.snapshots import SceneSnapshots
+    from compare.figures.animation.view_settings import ViewSettings
 
 #: On Linux, in order of preference: VTK's window, and the libraries that it works with.
 WINDOWS = {
@@ -35,24 +35,24 @@ def has_display() -> bool:
     return any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY"))
 
 
-def draw(path: Path, shots: Shots, look: Look, i: int) -> None:
+def draw(path: Path, simulated: SceneSnapshots, settings: ViewSettings, i: int) -> None:
     """Write the pillars at instant i as PNG; raises SceneError where VTK cannot draw."""
     with Workers(1) as pool:
         try:
-            pool.submit(_draw, str(path), shots, look, i).result()
+            pool.submit(_draw, str(path), simulated, settings, i).result()
         except BrokenProcessPool:
             raise SceneError("view", "", None, NEEDED) from None
 
 
-def _draw(path: str, shots: Shots, look: Look, i: int) -> None:
+def _draw(path: str, simulated: SceneSnapshots, settings: ViewSettings, i: int) -> None:
     if sys.platform.startswith("linux"):
         os.environ.setdefault(CHOICE, _window())
     from vtkmodules.vtkCommonCore import vtkLogger
 
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-    from compare.figures.animation.view3d import Stage
+    from compare.figures.animation.view3d import View3D
 
-    Stage(shots, look).picture(path, i)
+    View3D(simulated, settings).picture(path, i)
 
 
 def _window() -> str:

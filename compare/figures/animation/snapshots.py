@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-class Shots(NamedTuple):
+class SceneSnapshots(NamedTuple):
     """One scene as each engine sees it.
 
     scene : with the instants in its record. found : by engine, all at the same instants.
@@ -48,7 +48,7 @@ def until(scene: Scene, time: float) -> Scene:
     return checked(scene.model_copy(update={"time": Time(duration=time)}))
 
 
-def take(scene: Scene, count: int, progress: Progress | None = None) -> Shots:
+def take(scene: Scene, count: int, progress: Progress | None = None) -> SceneSnapshots:
     """Simulate a scene with both engines and return `count` snapshots of each.
 
     Their stress is that of the motion, less the static state. The rock is jointed where that
@@ -70,7 +70,7 @@ def take(scene: Scene, count: int, progress: Progress | None = None) -> Shots:
         assert taken is not None
         found[name] = taken._replace(stress=_less_static(result, taken.stress))
         results[name] = result[[q for q in UNITS if q in result]]
-    return Shots(asked, found, {} if len(found) > 1 else reasons, results)
+    return SceneSnapshots(asked, found, {} if len(found) > 1 else reasons, results)
 
 
 def _less_static(result: xr.Dataset, stress: np.ndarray | None) -> np.ndarray | None:

@@ -37,7 +37,7 @@ ENCODING: dict[str, dict[str, Any]] = {
 
 MOST_OF_A_GIF = 400  # pictures, 2.3 MB each
 
-Picture = Callable[[int], np.ndarray]
+Image = Callable[[int], np.ndarray]
 
 
 def refuse(path: Path, count: int = 0) -> None:
@@ -51,7 +51,7 @@ def refuse(path: Path, count: int = 0) -> None:
 
 
 def write_video(
-    path: Path, picture: Picture, count: int, seconds: float, progress: Progress | None = None
+    path: Path, picture: Image, count: int, seconds: float, progress: Progress | None = None
 ) -> Path:
     """Write `count` pictures, uint8 arrays [height, width, 4], that last so many seconds.
 
@@ -60,24 +60,24 @@ def write_video(
     refuse(path, count)
 
     def save(new: Path) -> None:
-        film = _film(new, picture(0).shape, count / seconds)
+        writer = _writer(new, picture(0).shape, count / seconds)
         try:
             for i in range(count):
-                film.send(picture(i))
+                writer.send(picture(i))
                 if progress is not None:
                     progress((i + 1) / count)
         finally:
-            film.close()
+            writer.close()
 
     return write(path, save)
 
 
-def _film(path: Path, shape: tuple[int, ...], rate: float) -> Generator[None, np.ndarray, None]:
+def _writer(path: Path, shape: tuple[int, ...], rate: float) -> Generator[None, np.ndarray, None]:
     """Return what writes each picture that it is sent; `rate` of them a second."""
     from imageio_ffmpeg import write_frames
 
     height, width, _ = shape
-    film = write_frames(
+    writer = write_frames(
         str(path),
         (width, height),
         fps=rate,
@@ -87,5 +87,5 @@ def _film(path: Path, shape: tuple[int, ...], rate: float) -> Generator[None, np
         ffmpeg_log_level="error",
         **ENCODING[path.suffix],
     )
-    film.send(None)
-    return film
+    writer.send(None)
+    return writer

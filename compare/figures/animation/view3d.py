@@ -10,13 +10,13 @@ from matplotlib.ticker import MaxNLocator
 
 from compare.figures import fonts
 from compare.figures.animation.surface import Y, solid, surface_of
-from compare.figures.animation.view_settings import STRESS, Look, caption
+from compare.figures.animation.view_settings import STRESS, ViewSettings, caption
 from compare.figures.print.layout import wrapped
 from compare.figures.snapshots import COLOURS
 from compare.figures.style import in_order, style
 
 if TYPE_CHECKING:
-    from compare.figures.animation.snapshots import Shots
+    from compare.figures.animation.snapshots import SceneSnapshots
     from results.snapshots import Snapshots
 
 SIZE = 1280, 720  # pixels
@@ -32,18 +32,20 @@ CELLS = {
 }
 
 
-class Stage:
+class View3D:
     """The pillars, one above the other, at any instant.
 
     grids : by engine, with the points where the nodes are drawn (m), `displacement` (m) of points,
     and what the colours show, SI, under its name: `axial stress` of cells, `velocity across` of
-    points. Where the pillars stand and how thick they look is their actors' affair.
+    points. Where the pillars stand and how thick they are drawn is their actors' affair.
     """
 
-    def __init__(self, shots: Shots, look: Look, window: bool = False) -> None:
-        self.look, self.shots = look, shots
-        side = shots.scene.pillar.side
-        self.found = {n: solid(shots.found[n], side) for n in in_order(set(shots.found))}
+    def __init__(
+        self, simulated: SceneSnapshots, settings: ViewSettings, window: bool = False
+    ) -> None:
+        self.settings, self.simulated = settings, simulated
+        side = simulated.scene.pillar.side
+        self.found = {n: solid(simulated.found[n], side) for n in in_order(set(simulated.found))}
         self.time = next(iter(self.found.values())).time
         self.plotter = pyvista.Plotter(off_screen=not window, window_size=list(SIZE))
         self.plotter.set_background("white")
@@ -51,7 +53,7 @@ class Stage:
         self.grids, self.edges = {}, {}
         for i, (name, s) in enumerate(self.found.items()):
             self.grids[name], self.edges[name] = grid_of(s), edges_of(s)
-            self._add(name, -i * self._apart * look.up)
+            self._add(name, -i * self._apart * settings.up)
         self._label_bar()
         self._aim()
         self.show(0)
@@ -60,9 +62,9 @@ class Stage:
         """Move everything to instant i."""
         for name, s in self.found.items():
             grid, edges = self.grids[name], self.edges[name]
-            grid.points = edges.points = s.points + self.look.scale * s.displacement[i]
+            grid.points = edges.points = s.points + self.settings.scale * s.displacement[i]
             grid["displacement"] = s.displacement[i]
-            grid[self.look.quantity.name] = self._values(s, i)
+            grid[self.settings.quantity.name] = self._values(s, i)
         self._write(i)
 
     def picture(self, path: str, i: int) -> None:
@@ -91,17 +93,17 @@ class Stage:
     @property
     def _apart(self) -> float:
         """From one pillar's axis to the next, m as drawn."""
-        drawn = [s.points + self.look.scale * s.displacement for s in self.found.values()]
-        reach = max(float(np.ptp(x @ self.look.up)) for x in drawn)
-        side = self.shots.scene.pillar.side
-        return self.look.stretch * max(APART * side, reach + side)
+        drawn = [s.points + self.settings.scale * s.displacement for s in self.found.values()]
+        reach = max(float(np.ptp(x @ self.settings.up)) for x in drawn)
+        side = self.simulated.scene.pillar.side
+        return self.settings.stretch * max(APART * side, reach + side)
 
     def _values(self, s: Snapshots, i: int | slice) -> np.ndarray:
         """Return what the colours show, of cells or points, SI."""
-        if self.look.quantity == STRESS:
+        if self.settings.quantity == STRESS:
             assert s.stress is not None
             return s.stress[i]
-        return s.velocity[i] @ self.look.up
+        return s.velocity[i] @ self.settings.up
 
     @property
     def _peak(self) -> float:
@@ -111,7 +113,7 @@ class Stage:
 
     def _label_bar(self) -> None:
         """Write what the colours show above their bar, and numbers below it."""
-        quantity, peak = self.look.quantity, self._peak * self.look.quantity.factor
+        quantity, peak = self.settings.quantity, self._peak * self.settings.quantity.factor
         left, bottom, width, height = BAR
         self._say(quantity.label, (left + width / 2, bottom + height + 0.012), "center")
         for value in MaxNLocator(4, symmetric=True).tick_values(-peak, peak):
@@ -134,7 +136,7 @@ class Stage:
 
     def _add(self, name: str, place: np.ndarray) -> None:
         peak = self._peak
-        quantity, grid = self.look.quantity, self.grids[name]
+        quantity, grid = self.settings.quantity, self.grids[name]
         grid[quantity.name] = self._values(self.found[name], 0)
         bar = {
             "title": " ",  # what it says is written by _label_bar, beside its numbers
@@ -157,8 +159,8 @@ class Stage:
         lines = self.plotter.add_mesh(self.edges[name], color="#333333", line_width=1)
         for actor in (pillar, lines):
             actor.position = place
-            actor.scale = self.look.stretch, 1.0, self.look.stretch
-        above = 0.8 * self.look.stretch * self.shots.scene.pillar.side * self.look.up
+            actor.scale = self.settings.stretch, 1.0, self.settings.stretch
+        above = 0.8 * self.settings.stretch * self.simulated.scene.pillar.side * self.settings.up
         self.plotter.add_point_labels(
             [place + above],
             [name],
@@ -170,25 +172,25 @@ class Stage:
         )
 
     def _aim(self) -> None:
-        """Look at the middle from the side, a little from the right and from above."""
-        length, camera = self.shots.scene.pillar.length, self.plotter.camera
-        middle = Y * length / 2 - self.look.up * self._apart * (len(self.found) - 1) / 2
+        """ViewSettings at the middle from the side, a little from the right and from above."""
+        length, camera = self.simulated.scene.pillar.length, self.plotter.camera
+        middle = Y * length / 2 - self.settings.up * self._apart * (len(self.found) - 1) / 2
         right, above = TILT
-        towards = np.cross(Y, self.look.up) + right * Y + above * self.look.up
+        towards = np.cross(Y, self.settings.up) + right * Y + above * self.settings.up
         camera.focal_point = middle
         camera.position = middle + 2 * length * towards / np.linalg.norm(towards)
-        camera.up = self.look.up
+        camera.up = self.settings.up
         camera.enable_parallel_projection()
         tall = max(length * SIZE[1] / SIZE[0], self._apart * len(self.found))
         camera.parallel_scale = SHOWN * tall / 2
         self.plotter.renderer.ResetCameraClippingRange()
 
     def _write(self, i: int) -> None:
-        scene = self.shots.scene
+        scene = self.simulated.scene
         lines = [
             ", ".join(text for text in (scene.title, scene.name) if text),
-            f"t = {1e3 * self.time[i]:.4g} ms, {caption(scene, self.look)}",
-            *(f"{name} does not apply: {why}" for name, why in self.shots.reasons.items()),
+            f"t = {1e3 * self.time[i]:.4g} ms, {caption(scene, self.settings)}",
+            *(f"{name} does not apply: {why}" for name, why in self.simulated.reasons.items()),
         ]
         text = "\n".join(part for line in lines for part in wrapped(line, _fits))
         self.plotter.add_text(

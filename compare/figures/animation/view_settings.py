@@ -35,7 +35,7 @@ STRESS = Quantity("axial stress", "MPa", 1e-6)
 VELOCITY = Quantity("velocity across", "m/s", 1.0)
 
 
-class Look(NamedTuple):
+class ViewSettings(NamedTuple):
     """How a scene is drawn.
 
     up : unit vector [3], what is upwards in the picture; y is to the right. scale : of the
@@ -48,19 +48,21 @@ class Look(NamedTuple):
     quantity: Quantity
 
 
-def caption(scene: Scene, look: Look) -> str:
+def caption(scene: Scene, settings: ViewSettings) -> str:
     """Return what is said of a picture: how much is exaggerated, and what its stress is less."""
-    parts = [f"displacements × {look.scale:,g}"]
-    if look.stretch != 1:
-        parts.append(f"thickness × {look.stretch:g}")
-    if look.quantity == STRESS and scene.gravity is not None:
+    parts = [f"displacements × {settings.scale:,g}"]
+    if settings.stretch != 1:
+        parts.append(f"thickness × {settings.stretch:g}")
+    if settings.quantity == STRESS and scene.gravity is not None:
         parts.append("stress less its static state")
-    elif look.quantity == STRESS and scene.prestress is not None and scene.prestress.normal:
+    elif settings.quantity == STRESS and scene.prestress is not None and scene.prestress.normal:
         parts.append(f"stress less the prestress of {scene.prestress.normal / 1e6:g} MPa")
     return ", ".join(parts)
 
 
-def look_at(scene: Scene, found: dict[str, Snapshots], scale: float | None = None) -> Look:
+def settings_for(
+    scene: Scene, found: dict[str, Snapshots], scale: float | None = None
+) -> ViewSettings:
     """Return how snapshots by engine are drawn; `scale` (of displacements) in place of our own.
 
     A row of blocks is seen from the side to which nothing drives it: its motion along and across
@@ -73,7 +75,7 @@ def look_at(scene: Scene, found: dict[str, Snapshots], scale: float | None = Non
     if scale is None:
         largest = min(_largest_scale(scene, s, float(stretch)) for s in found.values())
         scale = max(1.0, round_down(largest))
-    return Look(_upwards(scene), scale, float(stretch), _quantity(scene, found))
+    return ViewSettings(_upwards(scene), scale, float(stretch), _quantity(scene, found))
 
 
 def _upwards(scene: Scene) -> np.ndarray:

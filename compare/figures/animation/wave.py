@@ -5,25 +5,25 @@ from functools import cached_property
 import numpy as np
 
 from compare.figures.animation.surface import in_front, seen, solid, surface_of
-from compare.figures.animation.view_settings import STRESS, Look
+from compare.figures.animation.view_settings import STRESS, ViewSettings
 from results.snapshots import Snapshots
 
 
 class Wave:
-    """One engine's pillar under a look.
+    """One engine's pillar under a settings.
 
     values : float array [snapshots, faces], what the colours show, SI.
     """
 
-    def __init__(self, s: Snapshots, look: Look, side: float) -> None:
-        self.s, self.look = solid(s, side), look
+    def __init__(self, s: Snapshots, settings: ViewSettings, side: float) -> None:
+        self.s, self.settings = solid(s, side), settings
         self.surface = surface_of(self.s)
         self.values = self._values()
 
     def points(self, i: int) -> np.ndarray:
         """Return where the nodes of instant i are drawn [nodes, 3], m: to the right, up (before
         the stretch), towards the viewer."""
-        return seen(self.s.points + self.look.scale * self.s.displacement[i], self.look.up)
+        return seen(self.s.points + self.settings.scale * self.s.displacement[i], self.settings.up)
 
     def drawn(self, i: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the polygons [n, corners, 2] of instant i, the farthest first, the face of each
@@ -37,15 +37,15 @@ class Wave:
 
     def _values(self) -> np.ndarray:
         s, surface = self.s, self.surface
-        if self.look.quantity == STRESS:
+        if self.settings.quantity == STRESS:
             assert s.stress is not None
             return s.stress[:, surface.cells]
-        return (s.velocity @ self.look.up)[:, surface.faces].mean(axis=2)
+        return (s.velocity @ self.settings.up)[:, surface.faces].mean(axis=2)
 
     @cached_property
     def _sections(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the faces seen at rest, the sections that they lie at, and these [n], m."""
-        front = in_front(self.surface, seen(self.s.points, self.look.up))
+        front = in_front(self.surface, seen(self.s.points, self.settings.up))
         at = self.s.points[self.surface.faces[front], 1].mean(axis=1)
         y, which = np.unique(at.round(9), return_inverse=True)
         return front, which.ravel(), y

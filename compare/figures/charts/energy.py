@@ -1,38 +1,38 @@
-"""The energy ledger over time: what the load has put in, what became of it, and what is missing."""
+"""The energy ledger over time: the work of the load, what became of it, and what is missing."""
+
+from __future__ import annotations
 
 from typing import Any
 
-import matplotlib
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from compare.engines import ENGINES
-from compare.figures.charts import interactive
+from compare.figures.charts.chart import Chart, Entry, Line, Subplot
+from compare.figures.charts.interactive import plot
 from compare.figures.charts.ledgers import Ledger, drawn_terms, ledgers_of, table
-from compare.figures.figure import Picture
-from compare.figures.style import RC, TERMS, WIDTH, Style, in_order, style
+from compare.figures.charts.static import draw
+from compare.figures.figure import SceneFigure
+from compare.figures.style import TERMS, Style, in_order, style
 from compare.figures.units import Unit, unit_for
 from compare.misfit.pairs import Comparison
-from compare.solvers.dem import DEM
 
 
-def energy(name: str, comparisons: list[Comparison]) -> list[Picture]:
+def energy(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     """Return the picture of all ledgers, none where no engine has kept one."""
     ledgers = ledgers_of(comparisons)
     if not any(x.any() for ledger in ledgers for x in ledger.terms.values()):
         return []
     unit = unit_for("J", max(np.abs(x).max() for ledger in ledgers for x in ledger.terms.values()))
+    chart = _chart(ledgers, unit)
     return [
-        Picture(
+        SceneFigure(
             f"{name}-energy",
             "energy",
             "Energy over time",
             _caption(ledgers),
-            _figure(ledgers, unit),
+            draw(f"{name}-energy", chart),
             table(ledgers),
-            _plot(ledgers, unit),
+            plot(chart),
         )
     ]
 
@@ -49,7 +49,7 @@ def _caption(ledgers: list[Ledger]) -> str:
     )
 
 
-def _look(engine: str, term: str) -> Style:
+def _of_term(engine: str, term: str) -> Style:
     return Style(TERMS[term], 2.0 if term == "work" else 1.4, _dashes(engine), 1)
 
 
@@ -63,96 +63,41 @@ def _of_engine(engine: str) -> Style:
     return style(engine)._replace(width=1.6, dashes=_dashes(engine))
 
 
-def _figure(ledgers: list[Ledger], unit: Unit) -> Figure:
+def _chart(ledgers: list[Ledger], unit: Unit) -> Chart:
+    """Return the terms of each variant, and under them what is missing, variants side by side."""
     variants = list(dict.fromkeys(ledger.variant for ledger in ledgers))
-    with matplotlib.rc_context(RC):
-        figure = Figure(figsize=(WIDTH, 4.4), layout="constrained")
-        FigureCanvasAgg(figure)
-        axes = figure.subplots(
-            2,
-            len(variants),
-            sharex="col",
-            sharey="row",
-            squeeze=False,
-            gridspec_kw={"height_ratios": [3, 1]},
-        )
-        for j, variant in enumerate(variants):
-            _draw(axes[:, j], [x for x in ledgers if x.variant == variant], unit)
-            axes[0, j].set_title(variant, pad=4)
-        axes[0, 0].set_ylabel(f"energy ({unit.name})")
-        axes[1, 0].set_ylabel("missing")
-        _add_legend(figure, ledgers)
-    return figure
-
-
-def _draw(axes: np.ndarray, ledgers: list[Ledger], unit: Unit) -> None:
-    upper, lower = axes
-    for ledger in ledgers:
-        for term in drawn_terms([ledger]):
-            look = _look(ledger.engine, term).of_line()
-            upper.plot(1e3 * ledger.time, ledger.terms[term] / unit.size, **look)
-        look = _of_engine(ledger.engine).of_line()
-        lower.plot(1e3 * ledger.time, ledger.missing, **look)
-    lower.set_yscale("log")
-    lower.set_xlabel("time (ms)")
-    for ax in axes:
-        ax.margins(x=0)
-
-
-def _add_legend(figure: Figure, ledgers: list[Ledger]) -> None:
+    entries = [Entry(term, term, _of_term("dem", term)) for term in drawn_terms(ledgers)]
     engines = in_order({ledger.engine for ledger in ledgers})
-    looks = {term: _look(DEM.name, term) for term in drawn_terms(ledgers)}
-    entries = [Line2D([], [], label=term, **look.of_line()) for term, look in looks.items()]
-    entries += [Line2D([], [], label=e, **_of_engine(e).of_line()) for e in engines]
-    figure.legend(handles=entries, ncols=len(entries), loc="outside upper center", frameon=False)
+    entries += [Entry(engine, engine, _of_engine(engine)) for engine in engines]
+    cells = [_cell(v, [x for x in ledgers if x.variant == v], unit) for v in variants]
+    return Chart([cells], "time (ms)", {"": entries})
 
 
-def _plot(ledgers: list[Ledger], unit: Unit) -> dict[str, Any]:
-    """Return the interactive figure: of each variant its terms, and under them what is missing."""
-    variants = list(dict.fromkeys(ledger.variant for ledger in ledgers))
-    looks = {t: _look(DEM.name, t) for t in drawn_terms(ledgers)}
-    looks |= {e: _of_engine(e) for e in in_order({x.engine for x in ledgers})}
-    traces, panels = [], []
-    for j, variant in enumerate(variants):
-        panels += [
-            interactive.Panel(variant, f"energy ({unit.name})", 200),
-            interactive.Panel("missing, over the largest work", "", 80, _LOGARITHMIC),
-        ]
-        for ledger in ledgers:
-            if ledger.variant == variant:
-                traces += _traces(ledger, unit, 2 * j)
-    layout = interactive.layout(panels, {"title": {"text": "time (ms)"}}, len(looks))
-    return {"data": interactive.in_layers(traces, looks), "layout": layout}
-
-
-_LOGARITHMIC: dict[str, Any] = {"type": "log", "exponentformat": "power", "nticks": 4}
-
-
-def _traces(ledger: Ledger, unit: Unit, panel: int) -> list[dict[str, Any]]:
-    time = interactive.places("x", 1e3 * ledger.time)
-    common = {"type": "scatter", "mode": "lines", **time}
-    found = [
-        common
-        | {
-            "name": term,
-            "legendgroup": term,
-            "y": interactive.packed(ledger.terms[term] / unit.size),
-            "yaxis": interactive.axis_of(panel),
-            "line": interactive.line(_look(ledger.engine, term)),
-            "hovertemplate": f"{term} %{{y:.4~g}} {unit.name} at %{{x:.2f}} ms"
-            f"<extra>{ledger.engine}</extra>",
-        }
-        for term in drawn_terms([ledger])
+def _cell(variant: str, ledgers: list[Ledger], unit: Unit) -> list[Subplot]:
+    at = "at %{x:.2f} ms<extra>"
+    terms = [
+        Line(
+            term,
+            _of_term(one.engine, term),
+            1e3 * one.time,
+            one.terms[term] / unit.size,
+            f"{term} %{{y:.4~g}} {unit.name} {at}{one.engine}</extra>",
+        )
+        for one in ledgers
+        for term in drawn_terms([one])
     ]
+    missing = [
+        Line(
+            one.engine,
+            _of_engine(one.engine),
+            1e3 * one.time,
+            one.missing,
+            f"%{{y:.2g}} missing {at}{one.engine}</extra>",
+        )
+        for one in ledgers
+    ]
+    label, heading = f"energy ({unit.name})", "missing, over the largest work"
     return [
-        *found,
-        common
-        | {
-            "name": ledger.engine,
-            "legendgroup": ledger.engine,
-            "y": interactive.packed(ledger.missing),
-            "yaxis": interactive.axis_of(panel + 1),
-            "line": interactive.line(_of_engine(ledger.engine)),
-            "hovertemplate": f"%{{y:.2g}} missing at %{{x:.2f}} ms<extra>{ledger.engine}</extra>",
-        },
+        Subplot(variant, label, terms, 2.2, share="terms"),
+        Subplot(heading, "", missing, 0.8, share="missing", is_log=True, is_minor=True),
     ]

@@ -1,40 +1,42 @@
-"""Parts of interactive figures, as plotly.js takes them: arrays, axes of stacked panels, lines.
+"""A chart as an interactive figure, for plotly.js: plain values that JSON can write.
 
-Panels stand one under the other on one time axis, so that they zoom together and stay readable on
-a narrow screen; the legend is below them. Numbers are packed as base64 of their bytes.
+Subplots stand one under the other on one abscissa, so that they zoom together and stay readable on
+a narrow screen; the legend is below them. Numbers are base64 of their bytes in single precision,
+of which as many bits of the mantissa are left as a screen can show: the rest are zeros, which gzip
+takes no bytes for (bit rounding, Kloewer et al. 2021, doi:10.1038/s43588-021-00156-2).
 """
 
 from base64 import b64decode, b64encode
+from math import log10
 from textwrap import wrap
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
+from compare.figures.charts.chart import Chart, Line, Mark, Subplot
+from compare.figures.charts.static import MARK
 from compare.figures.style import Style
 
 FONT = {"family": "system-ui, 'Segoe UI', Helvetica, Arial, 'DejaVu Sans', sans-serif", "size": 13}
 INK, GRID = "#1c2126", "#e3e6e9"
+PIXELS = 95  # px of an inch of a subplot in print
 LINE = 17  # px of a line of a heading
 NARROW = 42  # characters of such a line that a phone has room for
-TOP, BOTTOM, LEFT, RIGHT = 11, 58, 66, 16  # px around the panels
-GAP = 20  # px between panels, besides their headings
+TOP, BOTTOM, LEFT, RIGHT = 11, 58, 66, 16  # px around the subplots
+GAP = 20  # px between subplots, besides their headings
 ENTRY = 20  # px of a line of the legend
 ITEM = 40  # px of the sample of a curve in the legend
+SAMPLES = 800  # of a curve
+BITS = 14  # of the mantissa of a curve's values: a relative error of 3e-5
 
 
-class Panel(NamedTuple):
-    """One of the stacked panels: its heading, the label of its y axis, its height in px, and more
-    keys of that axis."""
-
-    heading: str
-    label: str
-    height: int = 190
-    axis: dict[str, Any] | None = None
-
-
-def packed(values: np.ndarray) -> dict[str, Any]:
-    """Return an array as plotly.js reads typed arrays, in single precision."""
+def packed(values: np.ndarray, bits: int = BITS) -> dict[str, Any]:
+    """Return an array as plotly.js reads typed arrays, with so many bits of the mantissa."""
     data = np.asarray(values).astype("<f4")
+    lost = 23 - bits
+    whole = data.view("<u4").astype(np.uint64) + (1 << (lost - 1))
+    rounded = (whole & np.uint64(0xFFFFFFFF ^ ((1 << lost) - 1))).astype("<u4").view("<f4")
+    data = np.where(np.isfinite(data), rounded, data)
     found = {"dtype": "f4", "bdata": b64encode(data.tobytes()).decode("ascii")}
     if data.ndim > 1:
         found["shape"] = ",".join(map(str, data.shape))
@@ -53,15 +55,57 @@ def places(axis: str, values: np.ndarray) -> dict[str, Any]:
     even = values[0] + step * np.arange(len(values))
     if len(values) > 1 and np.allclose(values, even, rtol=0, atol=1e-6 * abs(step)):
         return {f"{axis}0": float(f"{values[0]:.9g}"), f"d{axis}": float(f"{step:.9g}")}
-    return {axis: packed(values)}
+    return {axis: packed(values, 22)}
 
 
-def line(look: Style) -> dict[str, Any]:
+def thinned(samples: int, most: int = SAMPLES) -> slice:
+    """Return which of so many samples are drawn: every k-th, at most `most` and the first."""
+    return slice(None, None, max(1, -(-(samples - 1) // most)))
+
+
+def plot(chart: Chart) -> dict[str, Any]:
+    """Return the interactive figure of a chart: {"data": traces, "layout": ...}."""
+    abscissa = {"title": {"text": chart.abscissa}} | ({"type": "log"} if chart.is_log else {})
+    found = layout(chart.subplots, abscissa, len(chart.entries))
+    traces = []
+    for i, subplot in enumerate(chart.subplots):
+        traces += [(line.style.order, _trace(line, i)) for line in subplot.lines]
+        for mark in subplot.marks:
+            found["shapes"].append(_vertical(mark.x, i))
+            found["annotations"].append(_name(mark, i, chart.is_log))
+    rank = {entry.name: i for i, entry in enumerate(chart.entries)}
+    data: list[dict[str, Any]] = []
+    listed: set[str] = set()
+    for _, trace in sorted(traces, key=lambda pair: pair[0]):
+        group = trace["legendgroup"]
+        data.append(trace | {"legendrank": rank[group], "showlegend": group not in listed})
+        listed.add(group)
+    return {"data": data, "layout": found}
+
+
+def _trace(line: Line, row: int) -> dict[str, Any]:
+    kept = thinned(len(line.x))
+    hovered = {} if line.hovered is None else {"customdata": packed(line.hovered[kept])}
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "name": line.name,
+        "legendgroup": line.name,
+        **places("x", line.x[kept]),
+        "y": packed(line.y[kept]),
+        **hovered,
+        "yaxis": axis_of(row),
+        "line": line_style(line.style),
+        "hovertemplate": line.hover,
+    }
+
+
+def line_style(style: Style) -> dict[str, Any]:
     """Return how a curve is drawn, as in print: colour, width, and the dashes with their offset."""
-    found: dict[str, Any] = {"color": look.colour, "width": 1.15 * look.width, "simplify": False}
-    if look.dashes != "-":
-        offset, lengths = look.dashes
-        found["dash"] = ",".join(f"{look.width * x:.4g}px" for x in _begun(offset, lengths))
+    found: dict[str, Any] = {"color": style.colour, "width": 1.15 * style.width, "simplify": False}
+    if style.dashes != "-":
+        offset, lengths = style.dashes
+        found["dash"] = ",".join(f"{style.width * x:.4g}px" for x in _begun(offset, lengths))
     return found
 
 
@@ -80,58 +124,55 @@ def _begun(offset: float, lengths: tuple[float, ...]) -> list[float]:
     return [*turned, 0.0] if first % 2 == 0 else [0.0, *turned]
 
 
-def axis_of(panel: int) -> str:
-    """Return what a trace calls the y axis of the panel with this number."""
-    return f"y{panel + 1}" if panel else "y"
+def axis_of(row: int) -> str:
+    """Return what a trace calls the y axis of the subplot with this number."""
+    return f"y{row + 1}" if row else "y"
 
 
-def axis_key(panel: int) -> str:
+def axis_key(row: int) -> str:
     """Return what the layout calls it."""
-    return f"yaxis{panel + 1}" if panel else "yaxis"
+    return f"yaxis{row + 1}" if row else "yaxis"
 
 
-def thinned(samples: int, most: int) -> slice:
-    """Return which of so many samples are drawn: every k-th, at most `most` and the first."""
-    return slice(None, None, max(1, -(-(samples - 1) // most)))
-
-
-def layout(panels: list[Panel], x: dict[str, Any], entries: int) -> dict[str, Any]:
-    """Return the layout of panels under each other on one x axis, `entries` in the legend."""
-    # Two lines of the legend on a wide screen; on a narrow one it takes its room from the panels.
+def layout(subplots: list[Subplot], abscissa: dict[str, Any], entries: int) -> dict[str, Any]:
+    """Return the layout of subplots under each other on one abscissa, `entries` in the legend."""
+    # Two lines of the legend on a wide screen; on a narrow one it takes its room from the subplots.
     legend = ENTRY * (1 + (entries > 5)) if entries else 0
     headings = [
-        [line for part in panel.heading.split("\n") for line in wrap(part, NARROW)]
-        for panel in panels
+        [line for part in s.heading.split("\n") for line in wrap(part, NARROW)] for s in subplots
     ]
-    rooms = [LINE * max(1, len(lines)) for lines in headings]
-    inner = sum(p.height for p in panels) + sum(rooms[1:]) + GAP * (len(panels) - 1)
+    above = [LINE * max(1, len(lines)) for lines in headings]
+    heights = [round(PIXELS * s.height) for s in subplots]
+    inner = sum(heights) + sum(above[1:]) + GAP * (len(subplots) - 1)
     axes: dict[str, Any] = {}
-    notes, top = [], float(inner)
-    for i, panel in enumerate(panels):
-        domain = [max(0.0, (top - panel.height) / inner), top / inner]
-        axis = _axis(panel.label) | {"domain": domain} | (panel.axis or {})
-        axes[axis_key(i)] = axis
+    notes, top, shared = [], float(inner), dict[str, str]()
+    for i, (subplot, height) in enumerate(zip(subplots, heights, strict=True)):
+        domain = [max(0.0, (top - height) / inner), top / inner]
+        axes[axis_key(i)] = _axis(subplot.label) | {"domain": domain} | _ordinate(subplot)
+        if subplot.share and (first := shared.setdefault(subplot.share, axis_of(i))) != axis_of(i):
+            axes[axis_key(i)]["matches"] = first
         notes.append(_heading("<br>".join(headings[i]), domain[1]))
-        top -= panel.height + GAP + (rooms[i + 1] if i + 1 < len(rooms) else 0)
+        top -= height + GAP + (above[i + 1] if i + 1 < len(above) else 0)
     return {
         "template": {"layout": {}},
         "paper_bgcolor": "#ffffff",
         "plot_bgcolor": "#ffffff",
         "font": FONT | {"color": INK},
-        "height": TOP + rooms[0] + inner + BOTTOM + legend,
-        "margin": {"t": TOP + rooms[0], "b": BOTTOM + legend, "l": LEFT, "r": RIGHT},
+        "height": TOP + above[0] + inner + BOTTOM + legend,
+        "margin": {"t": TOP + above[0], "b": BOTTOM + legend, "l": LEFT, "r": RIGHT},
         "hovermode": "closest",
         "showlegend": bool(entries),
         "legend": _legend(inner),
         "annotations": notes,
-        "xaxis": _axis("") | {"anchor": axis_of(len(panels) - 1)} | x,
+        "shapes": [],
+        "xaxis": _axis("") | {"anchor": axis_of(len(subplots) - 1)} | abscissa,
         **axes,
     }
 
 
 def _axis(label: str) -> dict[str, Any]:
     return {
-        "title": {"text": label},
+        "title": {"text": label.replace("\n", "<br>")},
         "showline": True,
         "linecolor": "#8a9299",
         "gridcolor": GRID,
@@ -140,6 +181,18 @@ def _axis(label: str) -> dict[str, Any]:
         "tickcolor": "#8a9299",
         "automargin": False,
     }
+
+
+def _ordinate(subplot: Subplot) -> dict[str, Any]:
+    """Return the keys of a subplot's own ordinate."""
+    found: dict[str, Any] = {"nticks": 4} if subplot.is_minor else {}
+    if subplot.is_log:
+        found |= {"type": "log", "exponentformat": "power"}
+        if subplot.limits:
+            found |= {"range": [log10(value) for value in subplot.limits], "dtick": 1}
+    if subplot.ticks:
+        found["tickvals"] = subplot.ticks
+    return found
 
 
 def _heading(text: str, top: float) -> dict[str, Any]:
@@ -170,15 +223,28 @@ def _legend(inner: int) -> dict[str, Any]:
     }
 
 
-def in_layers(traces: list[dict[str, Any]], looks: dict[str, Style]) -> list[dict[str, Any]]:
-    """Return traces in the order that they are drawn over each other, one legend entry a group.
+def _vertical(x: float, row: int) -> dict[str, Any]:
+    return {
+        "type": "line",
+        "yref": f"{axis_of(row)} domain",
+        "x0": x,
+        "x1": x,
+        "y0": 0,
+        "y1": 1,
+        "layer": "below",
+        "line": {"color": MARK, "width": 1, "dash": "1px,3px"},
+    }
 
-    looks : by group, in the order of the legend.
-    """
-    rank = {group: i for i, group in enumerate(looks)}
-    found, listed = [], set()
-    for trace in sorted(traces, key=lambda t: looks[t["legendgroup"]].order):
-        group = trace["legendgroup"]
-        found.append(trace | {"legendrank": rank[group], "showlegend": group not in listed})
-        listed.add(group)
-    return found
+
+def _name(mark: Mark, row: int, is_log: bool) -> dict[str, Any]:
+    return {
+        "text": mark.name,
+        "x": log10(mark.x) if is_log else mark.x,
+        "xanchor": "right" if mark.is_left else "left",
+        "yref": f"{axis_of(row)} domain",
+        "y": 0.98 if mark.is_high else 0.02,
+        "yanchor": "top" if mark.is_high else "bottom",
+        "textangle": -90,
+        "showarrow": False,
+        "font": {"size": 11, "color": MARK},
+    }

@@ -11,7 +11,7 @@ from compare.figures.style import TERMS, in_order
 from compare.figures.subplots import variant_names
 from compare.misfit.pairs import Comparison
 
-MOST = 480  # samples of a curve
+MOST = 480  # samples of a curve, and of the table
 LEAST = 1e-17  # of what is drawn of a residual: below round-off
 
 

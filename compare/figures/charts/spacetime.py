@@ -12,12 +12,15 @@ from matplotlib.ticker import MaxNLocator
 
 from cases.schema.scene import Scene
 from compare.figures.charts import interactive
+from compare.figures.charts.chart import Subplot
 from compare.figures.charts.spacetime_data import Diagram, Diagrams
-from compare.figures.figure import Picture
+from compare.figures.figure import SceneFigure
 from compare.figures.style import RC, WIDTH
 
 COLOURS = 96  # of an image in print
+TIMES = 120  # of an image on the page
 FINER = 2  # rows of it
+BITS = 8  # of the mantissa of its values there: an error of 2e-3
 STOPS = 17  # of a colour scale on the page
 LAYER: dict[str, Any] = {"color": "#111111", "linewidth": 1.1, "linestyle": (0, (4, 3))}
 NAMED: dict[str, Any] = {
@@ -29,14 +32,14 @@ NAMED: dict[str, Any] = {
 }
 
 
-def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> Picture:
+def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> SceneFigure:
     """Return the picture of diagrams of one variant; those of numerical errors are folded.
 
     name : unique on the page. variant : its name there.
     """
     words = f"{shown.quantity.words} along the pillar over time, {variant}"
     title = f"Numerical error of {words}" if shown.exact else f"{words[0].upper()}{words[1:]}"
-    return Picture(
+    return SceneFigure(
         name,
         "space-time",
         title,
@@ -110,16 +113,12 @@ def evenly(
 
 
 def _plot(scene: Scene, shown: Diagrams) -> dict[str, Any]:
-    panels = [
-        interactive.Panel(diagram.heading, "y (m)", axis={"matches": "y"} if i else None)
-        for i, diagram in enumerate(shown.diagrams)
-    ]
-    layout = interactive.layout(panels, {"title": {"text": "time (ms)"}}, 0)
+    subplots = [Subplot(d.heading, "y (m)", [], 2.0, share="y") for d in shown.diagrams]
+    layout = interactive.layout(subplots, {"title": {"text": "time (ms)"}}, 0)
     layout["margin"]["r"] = 62
-    layout["shapes"] = [
-        _layer(layer.y, i) for layer in scene.soft_layers for i in range(len(panels))
-    ]
-    domains = [layout[interactive.axis_key(i)]["domain"] for i in range(len(panels))]
+    rows = range(len(subplots))
+    layout["shapes"] = [_layer(layer.y, i) for layer in scene.soft_layers for i in rows]
+    domains = [layout[interactive.axis_key(i)]["domain"] for i in rows]
     traces = [
         _trace(i, diagram, shown, domain)
         for i, (diagram, domain) in enumerate(zip(shown.diagrams, domains, strict=True))
@@ -128,13 +127,14 @@ def _plot(scene: Scene, shown: Diagrams) -> dict[str, Any]:
 
 
 def _trace(i: int, diagram: Diagram, shown: Diagrams, domain: list[float]) -> dict[str, Any]:
+    kept = interactive.thinned(len(shown.time), TIMES)
     place = f"{diagram.unit.name} at y = %{{y:.4~g}} m, %{{x:.2f}} ms"
     return {
         "type": "heatmap",
         "name": diagram.name,
-        **interactive.places("x", 1e3 * shown.time),
+        **interactive.places("x", 1e3 * shown.time[kept]),
         **interactive.places("y", shown.y),
-        "z": interactive.packed(diagram.values),
+        "z": interactive.packed(diagram.values[:, kept], BITS),
         "yaxis": interactive.axis_of(i),
         "zsmooth": "best",
         "zmin": -diagram.limit,
@@ -165,12 +165,12 @@ def _colourscale(name: str) -> list[list[Any]]:
     return [[float(x), to_hex(c)] for x, c in zip(at, matplotlib.colormaps[name](at), strict=True)]
 
 
-def _layer(y: float, panel: int) -> dict[str, Any]:
+def _layer(y: float, row: int) -> dict[str, Any]:
     """Return the line of a soft layer through a diagram."""
     return {
         "type": "line",
         "xref": "paper",
-        "yref": interactive.axis_of(panel),
+        "yref": interactive.axis_of(row),
         "x0": 0,
         "x1": 1,
         "y0": y,

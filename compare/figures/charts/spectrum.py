@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from compare.figures.charts.frequencies import Mark, marks_of
-from compare.figures.overlay_figures import UNITS
+from compare.figures.overlays import UNITS
 from compare.figures.subplots import Panel
 
 TAPERED = 0.1  # of the waveform, at its end

@@ -14,7 +14,7 @@ from cases.schema.scene import Scene
 from compare.figures.drawing import section, side
 from compare.figures.drawing.frame import HEIGHT, WIDTH
 from compare.figures.drawing.symbols import LOAD
-from compare.figures.figure import Picture
+from compare.figures.figure import SceneFigure
 from compare.figures.style import RC
 from compare.figures.subplots import variant_names
 from compare.figures.units import unit_for
@@ -28,10 +28,10 @@ HEADING = 0.22  # inches of a heading
 SEEN = ("pillar", "soft_layers", "load", "ends", "gravity", "prestress", "record", "motion")
 
 
-def scene_picture(name: str, comparisons: list[Comparison]) -> Picture:
+def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
     """Return the picture of a scene; variants that look alike share a drawing."""
     groups = _groups(comparisons)
-    return Picture(
+    return SceneFigure(
         f"{name}-scene",
         "scene",
         "The scene",

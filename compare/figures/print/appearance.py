@@ -1,4 +1,4 @@
-"""How a figure for a paper looks: its widths, its letters, its lines.
+"""The appearance of a figure for a paper: its widths, its letters, its lines.
 
 The widths are those of Elsevier's artwork (International Journal of Rock Mechanics and Mining
 Sciences and others): 90 mm for one column, 190 mm for two, at most 240 mm high.
@@ -15,7 +15,7 @@ MM = 1 / 25.4  # inches
 POINT = 25.4 / 72  # mm
 
 
-class Look(NamedTuple):
+class Appearance(NamedTuple):
     """widths : mm, of one and of two columns. most : panels beside each other, at most, in each.
     tallest : mm. panel, least : mm, height of a panel as it should be and at least. text, small :
     points, of titles and labels, and of ticks and legend. handle : length of a line in the legend,
@@ -66,7 +66,7 @@ class Look(NamedTuple):
         return GIVEN[k % len(GIVEN)].of_line()
 
 
-LOOKS = {
-    "journal": Look((90.0, 190.0), (2, 4), 240.0, 42.0, 26.0, 8.0, 7.5, 2.8, True, 600),
-    "screen": Look((160.0, 280.0), (2, 4), 900.0, 58.0, 40.0, 10.0, 9.0, 4.5, False, 160),
+STYLES = {
+    "journal": Appearance((90.0, 190.0), (2, 4), 240.0, 42.0, 26.0, 8.0, 7.5, 2.8, True, 600),
+    "screen": Appearance((160.0, 280.0), (2, 4), 900.0, 58.0, 40.0, 10.0, 9.0, 4.5, False, 160),
 }

@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator
 
 from cases.errors import SceneError
 from compare.figures import fonts
-from compare.figures.print.appearance import MM, Look
+from compare.figures.print.appearance import MM, Appearance
 from compare.figures.print.layout import Cell, add_axes, add_legend, arrange, cells, set_titles
 from compare.figures.print.text import WORDS, Words
 from compare.figures.style import in_order
@@ -23,7 +23,9 @@ from compare.misfit.pairs import Comparison
 MEASURED = 200  # dots an inch that letters are measured with
 
 
-def draw(comparisons: list[Comparison], look: Look, columns: int, language: str) -> Figure:
+def draw(
+    comparisons: list[Comparison], appearance: Appearance, columns: int, language: str
+) -> Figure:
     """Return the figure.
 
     columns : 1 or 2, of the page. language : "en" or "zh".
@@ -38,22 +40,24 @@ def draw(comparisons: list[Comparison], look: Look, columns: int, language: str)
     ]
     _refuse_unknown_letters(titles, families)
     _refuse_unknown_letters([b.curves.name for b in comparisons[0].besides], families)
-    with matplotlib.rc_context(look.rc(families)):
-        figure = Figure((look.widths[columns - 1] * MM, look.tallest * MM), dpi=MEASURED)
+    with matplotlib.rc_context(appearance.rc(families)):
+        figure = Figure(
+            (appearance.widths[columns - 1] * MM, appearance.tallest * MM), dpi=MEASURED
+        )
         FigureCanvasAgg(figure)
-        legend = add_legend(figure, _entries(comparisons, look, words), look)
-        places = cells(by_variant, look, columns, legend)
+        legend = add_legend(figure, _entries(comparisons, appearance, words), appearance)
+        places = cells(by_variant, appearance, columns, legend)
         if not places:
-            raise _too_many(len(every), look, comparisons[0])
+            raise _too_many(len(every), appearance, comparisons[0])
         axes = add_axes(figure, places)
         units = _units(every)
         for ax, panel in zip(axes, every, strict=True):
-            _draw_panel(ax, panel, look, units[panel.quantity])
+            _draw_panel(ax, panel, appearance, units[panel.quantity])
             ax.set_ylabel(words.axis(panel, units[panel.quantity].name))
         _label_times(axes, places, comparisons, words)
-        arrange(figure, look, axes, places, legend)  # for their width
+        arrange(figure, appearance, axes, places, legend)  # for their width
         set_titles(axes, titles)
-        arrange(figure, look, axes, places, legend)
+        arrange(figure, appearance, axes, places, legend)
     return figure
 
 
@@ -87,14 +91,14 @@ def _families(language: str) -> list[str]:
     return found
 
 
-def _draw_panel(ax: Axes, panel: Panel, look: Look, unit: Unit) -> None:
+def _draw_panel(ax: Axes, panel: Panel, appearance: Appearance, unit: Unit) -> None:
     ax.axhline(0, color="#999999", linewidth=0.4, zorder=1)
     for name, curve in panel.curves.items():
-        ax.plot(1e3 * curve.index, curve.values / unit.size, **look.of_line(name))
+        ax.plot(1e3 * curve.index, curve.values / unit.size, **appearance.of_line(name))
     for k, beside in enumerate(panel.comparison.besides):
         curve = panel.given.get(beside.curves.name)
         if curve is not None:
-            ax.plot(1e3 * curve.index, curve.values / unit.size, **look.of_given(k))
+            ax.plot(1e3 * curve.index, curve.values / unit.size, **appearance.of_given(k))
     ax.margins(x=0)
     ax.yaxis.set_major_locator(MaxNLocator(4))  # the same whatever height the panel is given
 
@@ -111,20 +115,20 @@ def _label_times(
             ax.set_xlabel(words.time)
 
 
-def _entries(found: list[Comparison], look: Look, words: Words) -> list[Line2D]:
+def _entries(found: list[Comparison], appearance: Appearance, words: Words) -> list[Line2D]:
     """Return the legend's entries: solutions in their order, then the files of others."""
     names = in_order({name for comparison in found for name in comparison.results})
-    entries = [Line2D([], [], label=words.solution(n), **look.of_line(n)) for n in names]
+    entries = [Line2D([], [], label=words.solution(n), **appearance.of_line(n)) for n in names]
     given = enumerate(found[0].besides)
     return entries + [
-        Line2D([], [], label=beside.curves.name, **look.of_given(k)) for k, beside in given
+        Line2D([], [], label=beside.curves.name, **appearance.of_given(k)) for k, beside in given
     ]
 
 
-def _too_many(count: int, look: Look, first: Comparison) -> SceneError:
+def _too_many(count: int, appearance: Appearance, first: Comparison) -> SceneError:
     allowed = (
-        f"{count} panels do not fit {look.tallest:g} mm: choose --columns 2, a --variant, or fewer "
-        "places by --set record.stress=..."
+        f"{count} panels do not fit {appearance.tallest:g} mm: choose --columns 2, a --variant, or "
+        "fewer places by --set record.stress=..."
     )
     return SceneError(first.scene.where, "", None, allowed)
 

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
 
-from compare.figures.print.appearance import MM, POINT, Look
+from compare.figures.print.appearance import MM, POINT, Appearance
 
 SPACELESS = "\u2e80-\u9fff\uac00-\ud7a3\uf900-\ufaff\uff00-\uffef"  # scripts without spaces
 #: What stays together: a word or a letter of such a script, with the space or bracket before it
@@ -28,7 +28,9 @@ TICK = 10.0  # mm along the axis of times for each of its numbers, at least
 Cell = tuple[int, int]
 
 
-def cells(titles: Sequence[Sequence[str]], look: Look, columns: int, legend: float) -> list[Cell]:
+def cells(
+    titles: Sequence[Sequence[str]], appearance: Appearance, columns: int, legend: float
+) -> list[Cell]:
     """Return the row and column of every panel, those of a variant one after the other.
 
     titles : of the panels of each variant. columns : of the page. legend : mm above the panels. As
@@ -37,12 +39,14 @@ def cells(titles: Sequence[Sequence[str]], look: Look, columns: int, legend: flo
     """
     counts = [len(group) for group in titles]
     longest = max((title for group in titles for title in group), key=_letters)
-    for across in range(min(columns, sum(counts)), look.most[columns - 1] + 1):
-        letters = (look.widths[columns - 1] / across - BESIDE) / (LETTER * look.text * POINT)
+    for across in range(min(columns, sum(counts)), appearance.most[columns - 1] + 1):
+        letters = (appearance.widths[columns - 1] / across - BESIDE) / (
+            LETTER * appearance.text * POINT
+        )
         more = max(0, int(_letters(longest) / letters) - FREE)
-        height = look.least + more * LINE * look.text * POINT
+        height = appearance.least + more * LINE * appearance.text * POINT
         for groups in (counts, [sum(counts)]) if min(counts) >= across else ([sum(counts)],):
-            if sum(-(-count // across) for count in groups) * height <= look.tallest - legend:
+            if sum(-(-count // across) for count in groups) * height <= appearance.tallest - legend:
                 return _filled(groups, across)
     return []
 
@@ -79,11 +83,11 @@ def set_titles(axes: list[Axes], titles: list[str]) -> None:
         ax.xaxis.set_major_locator(MaxNLocator(max(1, min(count, 8)), steps=[1, 2, 2.5, 5, 10]))
 
 
-def add_legend(figure: Figure, entries: list[Line2D], look: Look) -> float:
+def add_legend(figure: Figure, entries: list[Line2D], appearance: Appearance) -> float:
     """Put the legend above the panels, as wide as fits; return its height, mm."""
-    letter = look.small / 72 * figure.dpi  # pixels
-    width, beside = 0.98 * figure.bbox.width, (look.handle + HANDLE) * letter
-    measure, widths = figure.text(0, 0, "", fontsize=look.small), []
+    letter = appearance.small / 72 * figure.dpi  # pixels
+    width, beside = 0.98 * figure.bbox.width, (appearance.handle + HANDLE) * letter
+    measure, widths = figure.text(0, 0, "", fontsize=appearance.small), []
     for entry in entries:
         entry.set_label(_in_lines(str(entry.get_label()), measure, width - beside - letter))
         measure.set_text(entry.get_label())
@@ -95,7 +99,7 @@ def add_legend(figure: Figure, entries: list[Line2D], look: Look) -> float:
         loc="upper center",
         bbox_to_anchor=(0.5, 1.0),
         frameon=False,
-        handlelength=look.handle,
+        handlelength=appearance.handle,
         handletextpad=HANDLE,
         columnspacing=APART,
         labelspacing=0.3,
@@ -115,15 +119,15 @@ def _columns(widths: list[float], apart: float, room: float) -> int:
 
 
 def arrange(
-    figure: Figure, look: Look, axes: list[Axes], places: list[Cell], legend: float
+    figure: Figure, appearance: Appearance, axes: list[Axes], places: list[Cell], legend: float
 ) -> None:
     """Give the figure its height and the panels their places below the legend of so many mm."""
     rows = 1 + max(row for row, _ in places)
     lines = [ax.get_title(loc="left").count("\n") for ax in axes]
     by_row = groupby(zip(places, lines, strict=True), key=lambda one: one[0][0])
-    extra = sum(max(n for _, n in row) for _, row in by_row) * LINE * look.text * POINT
-    legend += look.small * POINT / 2
-    panels = min(rows * look.panel + extra, look.tallest - legend)
+    extra = sum(max(n for _, n in row) for _, row in by_row) * LINE * appearance.text * POINT
+    legend += appearance.small * POINT / 2
+    panels = min(rows * appearance.panel + extra, appearance.tallest - legend)
     figure.set_figheight((panels + legend) * MM)
     place(figure, panels, legend)
 

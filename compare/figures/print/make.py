@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from cases.errors import SceneError
 from cases.schema.scene import Scene
 from compare.engines import Progress, applies, names, solve
-from compare.figures.print.appearance import LOOKS
+from compare.figures.print.appearance import STYLES
 from compare.figures.print.draw import draw
 from compare.figures.print.save import BEGINS, save
 from compare.misfit.alignment import lay_beside
@@ -47,7 +47,7 @@ def make(
 
     runs : (engine, model) each, see `compare.runs.jobs`; empty: all that apply.
     """
-    kind, look = asked.format, LOOKS[asked.style]
+    kind, appearance = asked.format, STYLES[asked.style]
     wanted = [_solvers(scene, runs) for scene in scenes]
     found, done = [], 0
     for scene, solvers in zip(scenes, wanted, strict=True):
@@ -59,8 +59,8 @@ def make(
         given = [curve for curve in curves if curve.holds_for(scene)]
         comparison.besides += [lay_beside(c, scene, comparison.results, False) for c in given]
         found.append(comparison)
-    figure = draw(found, look, asked.columns, asked.language)
-    return save(figure, asked.out, kind, scenes[0].title, look.dpi)
+    figure = draw(found, appearance, asked.columns, asked.language)
+    return save(figure, asked.out, kind, scenes[0].title, appearance.dpi)
 
 
 def _solvers(scene: Scene, runs: list[tuple[str, str | None]]) -> list[str]:

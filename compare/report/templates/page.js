@@ -11,67 +11,39 @@
     return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")));
   }
 
-  /* What is packed (compare/report/compression.py): its header, and a function that reads its numbers. */
-  async function unpacked(id) {
-    const buffer = await held(id).arrayBuffer();
-    const end = 4 + new DataView(buffer).getUint32(0, true);
-    const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, end - 4)));
-    return [header, (part) => numbers(new Uint8Array(buffer, end + part.at, 4 * part.n), part)];
-  }
-
-  function numbers(bytes, { n, order, step = 1, log, zeros = [], gaps = [] }) {
-    const found = new Float64Array(n);
-    for (let i = 0; i < n; i += 1) {
-      const code = (bytes[i] | bytes[n + i] << 8 | bytes[2 * n + i] << 16 | bytes[3 * n + i] << 24) >>> 0;
-      found[i] = code % 2 ? -(code + 1) / 2 : code / 2;
-    }
-    for (let k = 0; k < order; k += 1) for (let i = 1; i < n; i += 1) found[i] += found[i - 1];
-    const values = found.map(log ? (x) => Math.exp(x * step) : (x) => x * step);
-    zeros.forEach((i) => { values[i] = 0; });
-    gaps.forEach((i) => { values[i] = NaN; });
-    return values;
-  }
-
-  /* A packed table as the text of a CSV file. */
+  /* The numbers of a chart as the text of a CSV file: a row a point of each curve or image. */
   async function table(id) {
-    const [{ rows, columns }, read] = await unpacked(id);
-    const cells = columns.map((column) => cellsOf(column, rows, read));
-    const lines = Array.from({ length: rows }, (_, i) => cells.map((cell) => cell[i]).join(","));
-    return [columns.map((column) => column.name).join(","), ...lines, ""].join("\n");
-  }
-
-  function cellsOf(column, rows, read) {
-    if ("levels" in column) return Array.from(read(column), (code) => column.levels[code] ?? "");
-    if ("first" in column) {
-      const step = (column.last - column.first) / (rows - 1);
-      return Array.from({ length: rows }, (_, i) => +(column.first + i * step).toPrecision(9));
+    const { data, layout } = await held(id).json();
+    const lines = [["subplot", "curve", layout.xaxis.title.text, "ordinate", "value"]];
+    for (const trace of data) {
+      const row = Number(trace.yaxis.slice(1) || 1), values = numbers(trace.z ?? trace.customdata ?? trace.y);
+      const width = trace.z ? Number(trace.z.shape.split(",")[1]) : values.length;
+      const x = places(trace, "x", width), y = trace.z && places(trace, "y", values.length / width);
+      const about = [layout.annotations[row - 1].text, trace.name].map(quoted);
+      const label = quoted(layout[`yaxis${row === 1 ? "" : row}`].title.text);
+      values.forEach((value, i) => lines.push([...about, x[i % width], y ? y[Math.floor(i / width)] : label,
+        Number.isNaN(value) ? "" : Number(value.toPrecision(6))]));
     }
-    return Array.from(read(column), (x) => (Number.isNaN(x) ? "" : +x.toPrecision(7)));
+    return lines.map((line) => line.join(",") + "\n").join("");
   }
 
-  /* A packed figure for plotly.js. */
-  async function plot(id) {
-    const [header, read] = await unpacked(id);
-    const whole = (part) => {
-      if (part === null || typeof part !== "object") return part;
-      if (part.packed) return matrix(read(part.packed), part.packed.width);
-      if (Array.isArray(part)) return part.map(whole);
-      return Object.fromEntries(Object.entries(part).map(([key, one]) => [key, whole(one)]));
-    };
-    return whole(header);
+  function numbers({ bdata }) {
+    return [...new Float32Array(Uint8Array.from(atob(bdata), (c) => c.charCodeAt(0)).buffer)];
   }
 
-  function matrix(values, width) {
-    if (!width) return values;
-    return Array.from({ length: values.length / width }, (_, i) => values.subarray(i * width, (i + 1) * width));
+  function places(trace, axis, count) {
+    if (trace[axis]) return numbers(trace[axis]);
+    return Array.from({ length: count }, (_, i) => Number((trace[`${axis}0`] + i * trace[`d${axis}`]).toPrecision(9)));
   }
+
+  const quoted = (text) => `"${text.replaceAll("<br>", " ").replaceAll('"', '""')}"`;
 
   /* Downloads. */
   const TYPES = { svg: "image/svg+xml", pdf: "application/pdf", csv: "text/csv;charset=utf-8" };
 
   async function content(link) {
-    const id = link.dataset.held;
-    if (id) return document.getElementById(id).dataset.kind === "table" ? table(id) : held(id).arrayBuffer();
+    if (link.dataset.numbers) return table(link.dataset.numbers);
+    if (link.dataset.held) return held(link.dataset.held).arrayBuffer();
     return new XMLSerializer().serializeToString(link.closest("figure").querySelector(".static svg"));
   }
 
@@ -105,7 +77,7 @@
   }
 
   async function draw(figure) {
-    const [Plotly, { data, layout }] = [await plotly(), await plot(figure.dataset.plot)];
+    const [Plotly, { data, layout }] = [await plotly(), await held(figure.dataset.plot).json()];
     const box = figure.querySelector(".chart");
     figure.classList.add("live");
     dropLegend(layout);
@@ -201,6 +173,6 @@
   letKeysScroll();
   addEventListener("resize", letKeysScroll);
   if (!window.DecompressionStream) return;
-  all("a[data-held], a[data-drawn]").forEach((link) => link.addEventListener("click", handOut));
+  all("a[data-held], a[data-numbers], a[data-drawn]").forEach((link) => link.addEventListener("click", handOut));
   if (document.getElementById("held-charts")) watch();
 })();

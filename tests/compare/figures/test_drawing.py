@@ -12,7 +12,7 @@ from matplotlib.patches import FancyArrowPatch, Rectangle
 import cases
 from compare.figures.drawing.frame import THICK, WIDTH, frame
 from compare.figures.drawing.labels import _apart
-from compare.figures.drawing.scene import load_curve, scene_picture
+from compare.figures.drawing.scene import load_curve, scene_figure
 from compare.figures.drawing.section import draw_section
 from compare.figures.drawing.side import MOST, draw_strip
 from compare.misfit.pairs import Comparison
@@ -165,7 +165,7 @@ def test_labels_move_apart_as_far_as_they_must():
 )
 def test_words_lie_over_nothing_else(pillar, collisions, changes):
     """Neither over each other nor over arrows, layers and the marks of receivers."""
-    picture = scene_picture("fig", [Comparison(pillar(**changes))]).static
+    picture = scene_figure("fig", [Comparison(pillar(**changes))]).static
     assert collisions(picture) == []
     renderer = picture.canvas.get_renderer()
     ax = picture.axes[0]
@@ -198,7 +198,7 @@ def test_variants_that_look_alike_share_a_drawing(pillar, ink):
         pillar(joints__damping_ratio=0.1).model_copy(update={"name": "b"}),
         pillar(soft_layers=LAYERS).model_copy(update={"name": "c"}),
     ]
-    picture = scene_picture("fig", [Comparison(scene) for scene in scenes])
+    picture = scene_figure("fig", [Comparison(scene) for scene in scenes])
     assert [text.get_text() for text in picture.static.texts] == ["(a)  a, b", "(b)  c"]
     parts = Counter(zip(picture.table["variant"], picture.table["part"], strict=True))
     assert parts["a, b", "block"] == parts["c", "block"] == 100
@@ -221,7 +221,7 @@ def test_variants_that_look_alike_share_a_drawing(pillar, ink):
 )
 def test_shipped_scenes_are_drawn_within_the_figure(name, ink):
     scenes = cases.load(find(name))
-    picture = scene_picture("fig", [Comparison(scene) for scene in scenes])
+    picture = scene_figure("fig", [Comparison(scene) for scene in scenes])
     assert 0.005 < ink(picture.static) < 0.3
     strips = [ax for ax in picture.static.axes if ax.get_xlim() == (0.0, WIDTH)]
     renderer = picture.static.canvas.get_renderer()

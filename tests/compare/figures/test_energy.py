@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from compare.figures.charts.energy import energy
-from compare.figures.charts.interactive import unpacked
+from compare.figures.charts.interactive import BITS, unpacked
 from compare.figures.charts.ledgers import ledgers_of
 from compare.figures.units import unit_for
 from results.dataset import energy_residual
+
+ROUNDED = 2.0**-BITS  # of a number that is drawn on the screen
 
 
 @pytest.fixture
@@ -74,10 +76,10 @@ def test_traces_hold_the_numbers_of_the_table(picture, values):
         drawn = unpacked(trace["y"])
         if row % 2:
             size = rows["residual (of the largest work)"].abs().values
-            np.testing.assert_allclose(drawn, np.where(size > 1e-17, size, np.nan), rtol=1e-6)
+            np.testing.assert_allclose(drawn, np.where(size > 1e-17, size, np.nan), rtol=ROUNDED)
         else:
             column = rows[f"{trace['name']} (J)"] / unit.size
-            np.testing.assert_allclose(drawn, column, rtol=1e-6, atol=1e-30)
+            np.testing.assert_allclose(drawn, column, rtol=ROUNDED, atol=1e-30)
 
 
 def test_missing_has_an_axis_of_its_own(picture, ink):

@@ -5,6 +5,7 @@ import pytest
 
 from compare.engines import names
 from compare.figures.charts import interactive
+from compare.figures.charts.chart import Subplot
 from compare.figures.style import Style, style
 from compare.figures.units import FINE, unit_for
 
@@ -14,6 +15,20 @@ def test_packed_numbers_come_back():
     packed = interactive.packed(values)
     assert packed["shape"] == "3,4" and packed["dtype"] == "f4"
     np.testing.assert_array_equal(interactive.unpacked(packed), values)
+
+
+@pytest.mark.parametrize("bits", [8, 14, 22])
+@pytest.mark.parametrize("size", [1e-30, 1.0, 1e30])
+def test_numbers_are_rounded_to_so_many_bits_of_the_mantissa(bits, size):
+    noise = size * np.random.default_rng(7).standard_normal(1000)
+    found = interactive.unpacked(interactive.packed(noise, bits))
+    np.testing.assert_allclose(found, noise, rtol=2.0 ** -(bits + 1) + 2.0**-23)
+    assert not (found.view("<u4") & ((1 << (23 - bits)) - 1)).any()
+
+
+def test_what_is_no_number_stays_so():
+    found = interactive.unpacked(interactive.packed(np.array([np.nan, np.inf, -1.0])))
+    assert np.isnan(found[0]) and np.isinf(found[1]) and found[2] == -1
 
 
 def test_even_places_are_two_numbers_and_others_all():
@@ -40,7 +55,7 @@ def test_dashes_begin_where_they_begin_in_print(name):
     """matplotlib begins `offset` into a pattern; SVG's own pattern must be turned by that."""
     look = style(name)
     offset, lengths = look.dashes
-    turned = [float(x.removesuffix("px")) for x in interactive.line(look)["dash"].split(",")]
+    turned = [float(x.removesuffix("px")) for x in interactive.line_style(look)["dash"].split(",")]
     assert len(turned) % 2 == 0  # SVG repeats an odd pattern with dashes and gaps exchanged
     places = look.width * (np.arange(0, 40, 0.25) + 0.1)
     expected = painted(look.width * np.array(lengths), places + look.width * offset)
@@ -48,20 +63,20 @@ def test_dashes_begin_where_they_begin_in_print(name):
 
 
 def test_a_solid_line_has_no_dashes():
-    assert "dash" not in interactive.line(Style("#000000", 1.0, "-", 1))
+    assert "dash" not in interactive.line_style(Style("#000000", 1.0, "-", 1))
 
 
 def test_panels_stand_apart_under_each_other():
-    panels = [
-        interactive.Panel("a", "m", 190),
-        interactive.Panel("a phone has no room for all of " * 2, "m", 80),
+    subplots = [
+        Subplot("a", "m", [], 2.0),
+        Subplot("a phone has no room for all of " * 2, "m", [], 0.8),
     ]
-    layout = interactive.layout(panels, {}, 0)
+    layout = interactive.layout(subplots, {}, 0)
     low, high = layout["yaxis"]["domain"], layout["yaxis2"]["domain"]
     assert low[1] == 1 and low[0] > high[1] and high[0] == pytest.approx(0, abs=1e-12)
     inner = layout["height"] - layout["margin"]["t"] - layout["margin"]["b"]
     assert (low[1] - low[0]) * inner == pytest.approx(190)
-    assert (high[1] - high[0]) * inner == pytest.approx(80)
+    assert (high[1] - high[0]) * inner == pytest.approx(76)
     gap = (low[0] - high[1]) * inner
     assert gap == pytest.approx(interactive.GAP + 2 * interactive.LINE)  # room for two lines
     assert layout["xaxis"]["anchor"] == "y2"

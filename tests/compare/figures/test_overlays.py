@@ -9,7 +9,8 @@ from matplotlib.text import Text
 
 import cases
 from compare.engines import applies, solve
-from compare.figures.overlay_figures import draw, draw_variants
+from compare.figures.charts.static import draw
+from compare.figures.charts.waveforms import by_solutions, by_variants
 from compare.figures.overlays import (
     MOST,
     REFERENCE,
@@ -104,7 +105,7 @@ def test_a_residual_is_a_solution_less_the_reference_on_a_scale_of_its_own(pilla
     assert {t.name for t in overlay.traces} - {t.name for t in overlay.residuals} == {"jointed-bar"}
     share = 100 * max(sizes) / np.abs(known).max()
     assert 1 < share < 50 and f"at most {share:.2g} % of the peak" in overlay.residual_heading
-    lower = draw("fig", [found]).axes[1]
+    lower = draw("fig", by_solutions([found])).axes[1]
     low, high = lower.get_ylim()
     reach = max(np.abs(line.get_ydata()).max() for line in lower.lines)
     assert reach > 0.35 * (high - low)
@@ -114,7 +115,7 @@ def test_a_residual_is_a_solution_less_the_reference_on_a_scale_of_its_own(pilla
 def test_a_lone_solution_has_no_residual(pillar):
     (found,) = solved(pillar(**SHORT), by=("lattice",))
     found.results.pop("dem")
-    assert len(draw("fig", [found]).axes) == 1
+    assert len(draw("fig", by_solutions([found])).axes) == 1
 
 
 @pytest.mark.parametrize("count", range(2, MOST + 1))
@@ -128,7 +129,7 @@ def test_every_variant_is_seen_where_all_coincide(count):
 def test_headings_of_a_figure_do_not_meet(pillar):
     """Above panels and residuals, three engines beside each other."""
     found = solved(pillar(**SHORT), pillar(**SHORT, joints__damping_ratio=0.1))
-    figure = draw_variants("fig", by_variant(found))
+    figure = draw("fig", by_variants(by_variant(found)))
     figure.canvas.draw()
     titles = {ax.get_title(loc="left") for ax in figure.axes}
     boxes = [t.get_window_extent() for t in figure.findobj(Text) if t.get_text() in titles - {""}]

@@ -9,10 +9,12 @@ import pytest
 from cases.material.calibrate import calibrate
 from compare.exact.joint.parallel_joints import transmission
 from compare.figures.charts.frequencies import band_edge, marks_of
-from compare.figures.charts.interactive import unpacked
+from compare.figures.charts.interactive import BITS, unpacked
 from compare.figures.charts.spectra import spectra
 from compare.figures.charts.spectrum import TAPERED, spectra_of, spectrum, tapered
 from compare.figures.subplots import panels
+
+ROUNDED = 2.0**-BITS  # of a number that is drawn on the screen
 
 LAYER = {"y": 20.0, "spacing_stiffness": 4.375e8}
 
@@ -137,7 +139,7 @@ def test_traces_hold_the_numbers_of_the_table(picture, values):
         assert column.startswith(f"{trace['name']} | ")
         kept = picture.table[["frequency (Hz)", column]].dropna()
         factor = factors[column[column.rindex("(") + 1 : -1]]
-        np.testing.assert_allclose(unpacked(trace["y"]), factor * kept[column], rtol=1e-6)
+        np.testing.assert_allclose(unpacked(trace["y"]), factor * kept[column], rtol=ROUNDED)
         np.testing.assert_allclose(values(trace, "x"), kept["frequency (Hz)"], rtol=1e-6)
 
 

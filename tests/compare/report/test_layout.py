@@ -2,6 +2,7 @@
 
 import io
 import re
+from functools import partial
 
 import pytest
 from pdfminer.high_level import extract_pages
@@ -43,10 +44,15 @@ OVERLAPS = """() => {
 
 
 @pytest.fixture(scope="module", params=SIZES, ids=str)
-def page(request, tmp_path_factory):
-    """Build the page of one scene of one's own with a long title, receivers and variants."""
+def page(request, once):
+    """Return the page of one scene of one's own with a long title, receivers and variants."""
     receivers, variants = request.param
-    own = tmp_path_factory.mktemp("scenes") / "own.toml"
+    make = partial(build_page, receivers=receivers, variants=variants)
+    return once(f"page-{receivers}-{variants}", make)
+
+
+def build_page(folder, receivers, variants):
+    own = folder / "own.toml"
     text = (PAPER / "fig-03.toml").read_text(encoding="utf-8").partition("[[variants]]")[0]
     places = [2.5 * (i + 1) for i in range(receivers)]
     for key, value in (("duration", 0.03), ("stress", places), ("title", f'"{TITLE}"')):
@@ -55,7 +61,7 @@ def page(request, tmp_path_factory):
         name = f"the same joints with dashpots of ratio {0.01 * i}"
         text += f'\n[[variants]]\nname = "{name}"\njoints.damping_ratio = {0.01 * i}\n'
     own.write_text(text)
-    return build(tmp_path_factory.mktemp("report"), workers=1, scenes=[str(own)]).page
+    return build(folder / "report", workers=1, scenes=[str(own)]).page
 
 
 TITLE = "A title of so many words that it takes more than one line on a narrow screen"

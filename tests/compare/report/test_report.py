@@ -12,13 +12,12 @@ from cases.effects import active_effects
 from compare.experiments.ablation.runner import reported
 from compare.experiments.study.study import load
 from compare.experiments.study.summary import REPORTED
-from compare.figures.subplots import curve_table, variant_names
-from compare.misfit.pairs import Comparison
 from compare.report.report import build
-from compare.report.scenes import _key
 from compare.report.section import PAPER
 from compare.report.verdict import NOT_CHECKED
 from compare.runs.field_files import read_pvd
+
+pytestmark = pytest.mark.slow  # minutes: small pages are opened in test_browser and test_layout
 
 FIGURES = [f"fig-{number:02d}" for number in range(2, 11)]
 ENGINES = ["dem", "continuum-jointed", "continuum-equivalent"]
@@ -32,17 +31,26 @@ Yade spheres,,missing,no apt here,cohesive spheres,,,,,,,,,,a quiet one
 
 
 @pytest.fixture(scope="module")
-def fractions():
-    return []
+def built(once):
+    """Return the whole report, with a small table of other codes, and what its progress was."""
+    return once("whole-report", build_whole)
+
+
+def build_whole(folder):
+    table = folder / "points.csv"
+    table.write_text(PEERS, encoding="utf-8")
+    fractions = []
+    return build(folder / "report", fractions.append, peers_table=table, hard=False), fractions
 
 
 @pytest.fixture(scope="module")
-def report(tmp_path_factory, fractions):
-    """Build the whole report once, with a small table of other codes."""
-    table = tmp_path_factory.mktemp("peers") / "points.csv"
-    table.write_text(PEERS, encoding="utf-8")
-    out = tmp_path_factory.mktemp("report")
-    return build(out, fractions.append, peers_table=table, hard=False)
+def report(built):
+    return built[0]
+
+
+@pytest.fixture(scope="module")
+def fractions(built):
+    return built[1]
 
 
 @pytest.fixture(scope="module")
@@ -261,37 +269,3 @@ def test_summary_has_a_column_a_figure_and_a_row_a_pair(report):
 def test_every_figure_has_findings(report):
     assert list(report.findings) == FIGURES
     assert all(report.findings.values())
-
-
-def test_what_scenes_share_is_solved_once():
-    """Fig. 3 at zeta = 0.02 and fig. 5 with its free end are one simulation."""
-    damped = cases.load_variant(PAPER / "fig-03.toml", "zeta 0.02")
-    free = cases.load_variant(PAPER / "fig-05.toml")
-    assert _key(damped) == _key(free)
-    assert _key(damped) != _key(cases.load_variant(PAPER / "fig-03.toml", "zeta 0.05"))
-
-
-@pytest.mark.parametrize(
-    ("name", "names"),
-    [
-        ("fig-03", ["undamped", "ζ = 0.02", "ζ = 0.05", "ζ = 0.1"]),
-        ("fig-05", ["free", "quiet", "matched"]),
-        ("fig-07", ["no soft layer", "soft layer"]),
-        ("fig-09", ["tension", "no tension"]),
-    ],
-)
-def test_variants_are_named_by_what_differs(name, names):
-    comparisons = [Comparison(scene) for scene in cases.load(PAPER / f"{name}.toml")]
-    assert variant_names(comparisons) == names
-
-
-def test_variants_of_other_durations_share_one_table(pillar):
-    """Where a shorter variant has no sample the cell is empty."""
-    from compare.exact.bar import images
-
-    scenes = [pillar(time__duration=duration, load__cycles=1) for duration in (0.01, 0.02)]
-    scenes[1] = scenes[1].model_copy(update={"name": "long"})
-    comparisons = [Comparison(scene, {"images": images.solve(scene)}) for scene in scenes]
-    table = curve_table(comparisons)
-    assert table.shape == (401, 2)
-    assert table.isna().sum().tolist() == [200, 0]

@@ -2,9 +2,12 @@
 
 import pytest
 
+import cases
 from cases.errors import SceneError
+from compare.figures.subplots import curve_table, variant_names
+from compare.misfit.pairs import Comparison
 from compare.report.report import build
-from compare.report.scenes import asked_for
+from compare.report.scenes import _key, asked_for
 from compare.report.section import PAPER
 
 
@@ -35,3 +38,37 @@ def test_a_scene_that_is_not_there_is_said_before_anything_is_written(tmp_path):
     with pytest.raises(SceneError, match=r"none\.toml"):
         build(tmp_path / "page", scenes=["none.toml"])
     assert not (tmp_path / "page").exists()
+
+
+def test_what_scenes_share_is_solved_once():
+    """Fig. 3 at zeta = 0.02 and fig. 5 with its free end are one simulation."""
+    damped = cases.load_variant(PAPER / "fig-03.toml", "zeta 0.02")
+    free = cases.load_variant(PAPER / "fig-05.toml")
+    assert _key(damped) == _key(free)
+    assert _key(damped) != _key(cases.load_variant(PAPER / "fig-03.toml", "zeta 0.05"))
+
+
+@pytest.mark.parametrize(
+    ("name", "names"),
+    [
+        ("fig-03", ["undamped", "ζ = 0.02", "ζ = 0.05", "ζ = 0.1"]),
+        ("fig-05", ["free", "quiet", "matched"]),
+        ("fig-07", ["no soft layer", "soft layer"]),
+        ("fig-09", ["tension", "no tension"]),
+    ],
+)
+def test_variants_are_named_by_what_differs(name, names):
+    comparisons = [Comparison(scene) for scene in cases.load(PAPER / f"{name}.toml")]
+    assert variant_names(comparisons) == names
+
+
+def test_variants_of_other_durations_share_one_table(pillar):
+    """Where a shorter variant has no sample the cell is empty."""
+    from compare.exact.bar import images
+
+    scenes = [pillar(time__duration=duration, load__cycles=1) for duration in (0.01, 0.02)]
+    scenes[1] = scenes[1].model_copy(update={"name": "long"})
+    comparisons = [Comparison(scene, {"images": images.solve(scene)}) for scene in scenes]
+    table = curve_table(comparisons)
+    assert table.shape == (401, 2)
+    assert table.isna().sum().tolist() == [200, 0]

@@ -1,4 +1,4 @@
-"""What the tests of moving pictures share: blocks of any cells, and a short pillar's shots."""
+"""What the tests of moving pictures share: blocks of any cells, and a short pillar's simulated."""
 
 import numpy as np
 import pytest
@@ -53,8 +53,8 @@ def _kept():
 
 
 @pytest.fixture
-def shots(pillar, _kept):
-    """Return a function that gives both engines' shots of a short pillar with keys changed."""
+def simulated(pillar, _kept):
+    """Return a function that gives both engines' simulated of a short pillar with keys changed."""
 
     def taken(count=41, **changes):
         key = repr((count, changes))

@@ -5,14 +5,14 @@ import pytest
 
 from cases.material.calibrate import calibrate
 from compare.figures.animation.frame import Frame
-from compare.figures.animation.view_settings import look_at
+from compare.figures.animation.view_settings import settings_for
 from compare.figures.style import style
 
 
 @pytest.fixture
-def frame(shots):
-    taken = shots()
-    return Frame(taken, look_at(taken.scene, taken.found), dots=50)
+def frame(simulated):
+    taken = simulated()
+    return Frame(taken, settings_for(taken.scene, taken.found), dots=50)
 
 
 def test_every_frame_differs_from_the_one_before(frame):
@@ -51,7 +51,7 @@ def redness(colours):
 def test_far_end_takes_colour_when_the_wave_is_there(frame):
     """As soon as a tenth of the colours' range is to be seen there: the sine, at the bar's speed,
     through the middle of the last block; to a frame and what the wave takes through a block."""
-    wave, scene = frame.waves["dem"], frame.shots.scene
+    wave, scene = frame.waves["dem"], frame.simulated.scene
     last, reds = int(wave.y.argmax()), []
     for i in range(len(frame.time)):
         frame.image(i)
@@ -70,7 +70,7 @@ def test_far_end_takes_colour_when_the_wave_is_there(frame):
 def test_the_picture_says_when_how_much_and_who(frame):
     frame.image(20)
     said = " ".join(t.get_text() for t in frame.figure.texts)
-    assert f"displacements × {frame.look.scale:,g}" in said and "thickness × 2" not in said
+    assert f"displacements × {frame.settings.scale:,g}" in said and "thickness × 2" not in said
     assert "axial stress (MPa), compression positive" in said and "t = 10.00 ms" in said
     strips = [drawn.axes for drawn in frame.faces.values()]
     assert [ax.get_title(loc="left") for ax in strips] == list(frame.waves)
@@ -79,7 +79,7 @@ def test_the_picture_says_when_how_much_and_who(frame):
 def test_nothing_is_clipped(frame, collisions):
     """Words lie inside the picture and beside each other, pillars inside their strips."""
     frame.image(20)
-    for part in frame.moving:
+    for part in frame.animated:
         part.set_animated(False)
     assert collisions(frame.figure) == []
     for i in (0, 20, 40):
@@ -93,22 +93,22 @@ def test_nothing_is_clipped(frame, collisions):
 
 
 @pytest.mark.parametrize("title", ["A title of many words, " * 12, "w" * 200])
-def test_a_title_of_any_length_is_whole(shots, collisions, title):
-    taken = shots()
+def test_a_title_of_any_length_is_whole(simulated, collisions, title):
+    taken = simulated()
     scene = taken.scene.model_copy(update={"title": title.strip()})
     reasons = {"continuum-jointed": "a reason of many words " * 10}
     some = taken._replace(scene=scene, found={"dem": taken.found["dem"]}, reasons=reasons)
-    frame = Frame(some, look_at(taken.scene, some.found), dots=50)
+    frame = Frame(some, settings_for(taken.scene, some.found), dots=50)
     frame.clock.set(text="t = 1000.00 ms", animated=False)
     assert collisions(frame.figure) == []
     said = "".join(t.get_text() for t in frame.figure.texts).replace("\n", "").replace(" ", "")
     assert title.replace(" ", "") in said
 
 
-def test_a_receiver_is_drawn_sample_by_sample_up_to_the_frame(shots):
+def test_a_receiver_is_drawn_sample_by_sample_up_to_the_frame(simulated):
     """Six frames miss the wave's peaks; the samples between them are drawn all the same."""
-    taken = shots(6)
-    frame = Frame(taken, look_at(taken.scene, taken.found), dots=50)
+    taken = simulated(6)
+    frame = Frame(taken, settings_for(taken.scene, taken.found), dots=50)
     label = next(iter(frame.traces.values())).axes.get_ylabel()
     size = {"stress\n(MPa)": 1e6, "stress\n(kPa)": 1e3}[label]
     for i in (0, 3, 5):
@@ -123,20 +123,20 @@ def test_a_receiver_is_drawn_sample_by_sample_up_to_the_frame(shots):
     assert np.abs(frame.traces["dem"].get_ydata()).max() > 1.02 * np.abs(at_frames).max()
 
 
-def test_an_engine_that_does_not_apply_is_named_with_the_reason(shots):
-    taken = shots()
+def test_an_engine_that_does_not_apply_is_named_with_the_reason(simulated):
+    taken = simulated()
     one = taken._replace(
         found={"dem": taken.found["dem"]}, reasons={"continuum-jointed": "it costs $1 or $2"}
     )
-    frame = Frame(one, look_at(one.scene, one.found), dots=50)
+    frame = Frame(one, settings_for(one.scene, one.found), dots=50)
     said = [t.get_text() for t in frame.figure.texts]
     assert "continuum-jointed does not apply: it costs $1 or $2" in said
     assert len(frame.faces) == 1 and frame.image(3).std() > 0
 
 
-def test_a_pillar_at_rest_is_drawn(shots):
-    taken = shots()
+def test_a_pillar_at_rest_is_drawn(simulated):
+    taken = simulated()
     still = {n: s._replace(displacement=0 * s.displacement, stress=0 * s.stress)
              for n, s in taken.found.items()}  # fmt: skip
-    frame = Frame(taken._replace(found=still), look_at(taken.scene, still), dots=50)
+    frame = Frame(taken._replace(found=still), settings_for(taken.scene, still), dots=50)
     assert frame.image(20).std() > 0

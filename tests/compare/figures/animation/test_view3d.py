@@ -9,36 +9,36 @@ from PIL import Image
 
 from cases import SceneError
 from compare.figures.animation import offscreen
-from compare.figures.animation.snapshots import Shots
+from compare.figures.animation.snapshots import SceneSnapshots
 from compare.figures.animation.surface import solid
-from compare.figures.animation.view_settings import STRESS, look_at
+from compare.figures.animation.view_settings import STRESS, settings_for
 
 pytest.importorskip("pyvista")
 
 
 @pytest.fixture
-def stage(shots, monkeypatch):
-    """The stage of a short pillar's shots, off screen, and its shots."""
+def stage(simulated, monkeypatch):
+    """The stage of a short pillar's simulated, off screen, and its simulated."""
     if sys.platform.startswith("linux"):
         try:
             monkeypatch.setenv(offscreen.CHOICE, offscreen._window())
         except SceneError:
             pytest.skip("VTK can draw nothing here")
-    from compare.figures.animation.view3d import Stage
+    from compare.figures.animation.view3d import View3D
 
-    taken = shots()
-    made = Stage(taken, look_at(taken.scene, taken.found))
+    taken = simulated()
+    made = View3D(taken, settings_for(taken.scene, taken.found))
     yield made
     made.plotter.close()
 
 
-def test_points_and_scalars_are_the_results(stage, shots):
+def test_points_and_scalars_are_the_results(stage, simulated):
     """Bit by bit, at every instant, and the grid's cells are the engine's."""
     for i in (0, 20, 40):
         stage.show(i)
-        for name, s in shots().found.items():
+        for name, s in simulated().found.items():
             box, grid = solid(s, 0.5), stage.grids[name]
-            expected = box.points + stage.look.scale * box.displacement[i]
+            expected = box.points + stage.settings.scale * box.displacement[i]
             np.testing.assert_array_equal(grid.points, expected)
             np.testing.assert_array_equal(grid.point_data["displacement"], box.displacement[i])
             np.testing.assert_array_equal(grid.cell_data[STRESS.name], s.stress[i])
@@ -53,14 +53,16 @@ def test_volumes_are_those_of_the_pillar(stage):
         assert grid.volume == pytest.approx(10.0 * 0.5**2)
 
 
-def test_the_slider_moves_everything_to_its_time(stage, shots):
+def test_the_slider_moves_everything_to_its_time(stage, simulated):
     stage.add_slider(10)
     widgets = getattr(stage.plotter, "widgets", stage.plotter)  # of newer PyVista
     (slider,) = widgets.slider_widgets
     assert slider.GetRepresentation().GetValue() == pytest.approx(5.0)  # ms
     slider.GetRepresentation().SetValue(1e3 * stage.time[20] + 0.1)
     slider.InvokeEvent("EndInteractionEvent")
-    np.testing.assert_array_equal(stage.grids["dem"][STRESS.name], shots().found["dem"].stress[20])
+    np.testing.assert_array_equal(
+        stage.grids["dem"][STRESS.name], simulated().found["dem"].stress[20]
+    )
 
 
 def test_numbers_and_title_of_the_colours_lie_beside_them(stage):
@@ -95,14 +97,14 @@ def colours_of(path):
 
 
 @pytest.mark.parametrize("engines", [("dem", "continuum-jointed"), ("dem",)])
-def test_a_picture_without_a_display_shows_the_wave(shots, engines, tmp_path):
+def test_a_picture_without_a_display_shows_the_wave(simulated, engines, tmp_path):
     """Compression red and tension blue, by a process of its own."""
-    taken = shots()
+    taken = simulated()
     reasons = {"continuum-jointed": "a reason"} if len(engines) == 1 else {}
-    some = Shots(taken.scene, {n: taken.found[n] for n in engines}, reasons, taken.results)
-    look = look_at(taken.scene, taken.found)
+    some = SceneSnapshots(taken.scene, {n: taken.found[n] for n in engines}, reasons, taken.results)
+    settings = settings_for(taken.scene, taken.found)
     try:
-        offscreen.draw(tmp_path / "wave.png", some, look, 18)
+        offscreen.draw(tmp_path / "wave.png", some, settings, 18)
     except SceneError as error:
         assert offscreen.NEEDED in str(error)
         pytest.skip("VTK can draw nothing here")
@@ -116,12 +118,12 @@ def test_where_vtk_cannot_draw_a_line_says_what_it_needs(monkeypatch):
         offscreen._window()
 
 
-def test_a_renderer_that_ends_its_process_is_reported(shots, monkeypatch, tmp_path):
+def test_a_renderer_that_ends_its_process_is_reported(simulated, monkeypatch, tmp_path):
     """As VTK does where a library is there but no driver."""
     monkeypatch.setattr(offscreen, "_draw", _end)
-    taken = shots()
+    taken = simulated()
     with pytest.raises(SceneError, match="needs EGL or OSMesa"):
-        offscreen.draw(tmp_path / "wave.png", taken, look_at(taken.scene, taken.found), 1)
+        offscreen.draw(tmp_path / "wave.png", taken, settings_for(taken.scene, taken.found), 1)
 
 
 def _end(*arguments):

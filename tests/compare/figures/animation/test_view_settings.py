@@ -5,7 +5,7 @@ import pytest
 
 import cases
 from compare.figures.animation.snapshots import take
-from compare.figures.animation.view_settings import STRESS, VELOCITY, look_at, round_down
+from compare.figures.animation.view_settings import STRESS, VELOCITY, round_down, settings_for
 from compare.scenes import find
 
 IN_SPACE = {"load__direction": [1.0, 0.0, 0.0]}
@@ -37,9 +37,9 @@ def test_a_scale_of_nothing_is_one(nothing):
 def test_neighbours_come_closer_by_at_most_four_fifths_of_a_block(scene, row):
     """0.8 m over 0.001 m; a gap that opens as far limits nothing but its reach."""
     closing = row(10, displacement=_step(1e-3))
-    assert look_at(scene(), {"dem": closing}).scale == 500  # of at most 800
+    assert settings_for(scene(), {"dem": closing}).scale == 500  # of at most 800
     opening = row(10, displacement=_step(-1e-3))
-    assert look_at(scene(), {"dem": opening}).scale == 1000  # of at most a tenth of 10 m
+    assert settings_for(scene(), {"dem": opening}).scale == 1000  # of at most a tenth of 10 m
 
 
 def _step(size):
@@ -56,7 +56,7 @@ def _step(size):
 def test_what_moves_aside_stays_in_its_strip(scene, row, side, scale):
     """By at most 0.04 of 10 m as drawn, over 0.002 m; thin pillars are drawn thicker."""
     aside = row(10, displacement=lambda x: np.full((len(x), 3), [0.002, 0.0, 0.0]))
-    found = look_at(scene(pillar__side=side, **IN_SPACE), {"dem": aside})
+    found = settings_for(scene(pillar__side=side, **IN_SPACE), {"dem": aside})
     assert found.scale == scale and found.scale * found.stretch * 0.002 <= 0.4
 
 
@@ -69,18 +69,18 @@ def test_a_turn_is_drawn_so_that_a_block_is_still_a_block(scene, row):
         x, y = points[:, 0], points[:, 1] - centre
         return turn * np.stack([-y, x, 0 * x], axis=1)
 
-    look = look_at(scene(**IN_SPACE), {"dem": row(10, displacement=moved)})
-    assert look.scale * turn * np.sqrt(0.5) <= 0.175 < 3 * look.scale * turn * np.sqrt(0.5)
+    settings = settings_for(scene(**IN_SPACE), {"dem": row(10, displacement=moved)})
+    assert settings.scale * turn * np.sqrt(0.5) <= 0.175 < 3 * settings.scale * turn * np.sqrt(0.5)
 
 
 def test_the_engine_that_moves_more_decides(scene, row):
     small, large = (row(10, displacement=_step(size)) for size in (1e-4, 1e-3))
-    assert look_at(scene(), {"dem": small, "continuum-jointed": large}).scale == 500
+    assert settings_for(scene(), {"dem": small, "continuum-jointed": large}).scale == 500
 
 
 def test_a_wish_is_granted_and_rest_is_not_exaggerated(scene, row):
-    assert look_at(scene(), {"dem": row(10)}).scale == 1
-    assert look_at(scene(), {"dem": row(10)}, 7.5).scale == 7.5
+    assert settings_for(scene(), {"dem": row(10)}).scale == 1
+    assert settings_for(scene(), {"dem": row(10)}, 7.5).scale == 7.5
 
 
 @pytest.mark.parametrize(
@@ -104,13 +104,13 @@ def test_a_wish_is_granted_and_rest_is_not_exaggerated(scene, row):
 def test_the_picture_holds_the_plane_of_the_motion(scene, row, changes, up):
     """Of an oblique load its part across, of an eccentric one where it acts, of a couple where it
     pushes, of a slope where it falls."""
-    assert look_at(scene(**changes), {"dem": row(10)}).up == pytest.approx(np.array(up))
+    assert settings_for(scene(**changes), {"dem": row(10)}).up == pytest.approx(np.array(up))
 
 
 @pytest.mark.parametrize(("side", "stretch"), [(1.0, 1), (0.45, 1), (0.25, 2), (0.1, 5)])
 def test_thin_pillars_are_drawn_thicker(scene, row, side, stretch):
     thin = scene(pillar__side=side)
-    assert look_at(thin, {"dem": row(10)}).stretch == stretch
+    assert settings_for(thin, {"dem": row(10)}).stretch == stretch
 
 
 @pytest.mark.parametrize(
@@ -120,4 +120,4 @@ def test_waves_of_shear_are_shown_by_their_velocity(name, quantity):
     """No axial stress is in them."""
     short = {"time.duration": 0.02, "pillar.length": 10.0, "record": {"stress": [5.0]}}
     scene = cases.load_variant(find(name), "", short)
-    assert look_at(scene, take(scene, 5).found).quantity == quantity
+    assert settings_for(scene, take(scene, 5).found).quantity == quantity

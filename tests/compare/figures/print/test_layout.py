@@ -10,7 +10,7 @@ from pdfminer.layout import LAParams, LTTextLine
 
 from cases.errors import SceneError
 from compare.figures import fonts
-from compare.figures.print.appearance import LOOKS
+from compare.figures.print.appearance import STYLES
 from compare.figures.print.draw import draw
 from compare.figures.print.layout import wrapped
 from compare.figures.print.save import save
@@ -26,17 +26,17 @@ SIZES = [(1, 1, 1), (3, 1, 2), (5, 2, 2), (8, 1, 1), (8, 4, 2), (2, 4, 1), (1, 4
 
 @pytest.mark.parametrize("receivers, variants, columns", SIZES)
 def test_nothing_is_cut_off_or_overprinted(many, collisions, receivers, variants, columns):
-    look, language = LOOKS["journal"], LANGUAGES[(receivers + variants) % len(LANGUAGES)]
-    figure = draw(many(receivers, variants, FEW, LONG), look, columns, language)
+    appearance, language = STYLES["journal"], LANGUAGES[(receivers + variants) % len(LANGUAGES)]
+    figure = draw(many(receivers, variants, FEW, LONG), appearance, columns, language)
     assert len(figure.axes) == receivers * variants
     assert collisions(figure) == []
-    assert figure.get_figheight() * 25.4 <= look.tallest + 1e-6
+    assert figure.get_figheight() * 25.4 <= appearance.tallest + 1e-6
 
 
 @pytest.mark.parametrize("columns", [1, 2])
-@pytest.mark.parametrize("style", LOOKS)
+@pytest.mark.parametrize("style", STYLES)
 def test_a_legend_of_every_solution_fits(many, collisions, style, columns):
-    assert collisions(draw(many(2, 2), LOOKS[style], columns, LANGUAGES[-1])) == []
+    assert collisions(draw(many(2, 2), STYLES[style], columns, LANGUAGES[-1])) == []
 
 
 @settings(max_examples=5, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -45,12 +45,12 @@ def test_numbers_on_the_axes_stay_apart(many, collisions, size, duration):
     """Whatever they are."""
     keys = {"load__amplitude": 10**size, "time__duration": duration}
     found = many(3, 1, ("dem",), record__interval=duration / 100, **keys)
-    assert collisions(draw(found, LOOKS["journal"], 2, "en")) == []
+    assert collisions(draw(found, STYLES["journal"], 2, "en")) == []
 
 
 def test_more_panels_than_a_page_holds_are_refused_in_one_line(many):
     with pytest.raises(SceneError, match="32 panels do not fit 240 mm: choose --columns 2, a "):
-        draw(many(8, 4, ("dem",)), LOOKS["journal"], 1, "en")
+        draw(many(8, 4, ("dem",)), STYLES["journal"], 1, "en")
 
 
 def lines_of(path):
@@ -71,12 +71,12 @@ def lines_of(path):
 def test_the_written_pdf_holds_all_words(many, tmp_path, columns, language):
     """Each within the page and beside the others, as another program finds them in the file."""
     found = many(2, 2, name=LONG)
-    look, words = LOOKS["journal"], WORDS[language]
+    appearance, words = STYLES["journal"], WORDS[language]
     path = save(
-        draw(found, look, columns, language), tmp_path / "figure.pdf", "pdf", "A title", 600
+        draw(found, appearance, columns, language), tmp_path / "figure.pdf", "pdf", "A title", 600
     )
     (left, bottom, right, top), lines = lines_of(path)
-    assert (right - left) * POINT == pytest.approx(look.widths[columns - 1], abs=0.1)
+    assert (right - left) * POINT == pytest.approx(appearance.widths[columns - 1], abs=0.1)
     text = "".join("".join(said for said, _ in lines).split())
     for name in found[0].results:
         assert "".join(words.solution(name).split()) in text
@@ -92,7 +92,7 @@ def test_the_written_pdf_holds_all_words(many, tmp_path, columns, language):
 def test_a_name_of_any_length_is_whole(many, collisions, name):
     if name[0] == "软" and len(LANGUAGES) == 1:
         pytest.skip("no font with Chinese characters here")
-    figure = draw(many(2, 2, ("dem",), name), LOOKS["journal"], 1, "en")
+    figure = draw(many(2, 2, ("dem",), name), STYLES["journal"], 1, "en")
     assert collisions(figure) == []
     title = figure.axes[-1].get_title(loc="left").replace("\n", "").replace(" ", "")
     assert name.replace("{}", "1").replace(" ", "") in title
@@ -109,7 +109,7 @@ def test_lines_break_at_spaces_and_never_before_a_stop():
 
 
 def test_variants_begin_rows_and_times_are_written_once_a_column(many):
-    figure = draw(many(5, 2), LOOKS["journal"], 2, "en")
+    figure = draw(many(5, 2), STYLES["journal"], 2, "en")
     rows = {round(ax.get_position().y0, 3) for ax in figure.axes}
     assert len(rows) == 6
     labels = [ax.get_xlabel() for ax in figure.axes]
@@ -123,7 +123,7 @@ def test_the_motion_is_drawn_and_the_title_says_without_what(many):
     for result in found.results.values():
         result["stress"] = result["stress"] + 1e7
         result.attrs |= {"starts": "prestressed", "prestress": 1e7}
-    figure = draw([found], LOOKS["journal"], 1, "en")
+    figure = draw([found], STYLES["journal"], 1, "en")
     for ax, wave in zip(figure.axes, waves, strict=True):
         assert "less the static 10\u00a0MPa" in ax.get_title(loc="left").replace("\n", " ")
         assert ax.get_ylabel() == "stress (MPa)"

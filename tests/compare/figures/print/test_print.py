@@ -21,7 +21,7 @@ from cases.errors import SceneError
 from compare.engines import names
 from compare.exact.blocks import lattice
 from compare.figures import fonts
-from compare.figures.print.appearance import LOOKS, MM
+from compare.figures.print.appearance import MM, STYLES
 from compare.figures.print.draw import draw
 from compare.figures.print.make import Asked, make
 from compare.figures.print.save import save
@@ -32,7 +32,7 @@ from compare.misfit.pairs import Comparison
 SCENE = "guo-li-2002/fig-03"
 SHORT = {"time__duration": 0.01, "record__velocity": [20.25]}
 FACE = re.compile(r"font-family:'([^']+)';src:url\(data:font/woff;base64,([^)]+)\)")
-JOURNAL = LOOKS["journal"]
+JOURNAL = STYLES["journal"]
 
 needs_chinese = pytest.mark.skipif(
     fonts.chinese_font() is None, reason="no font with Chinese characters here"
@@ -55,9 +55,9 @@ def comparison(pillar):
 def written(comparison, tmp_path):
     """Return a function that writes a figure of one scene and returns its file."""
 
-    def write(kind, language="en", columns=1, look=JOURNAL):
-        figure = draw([comparison()], look, columns, language)
-        return save(figure, tmp_path / f"figure.{kind}", kind, "A title", look.dpi)
+    def write(kind, language="en", columns=1, appearance=JOURNAL):
+        figure = draw([comparison()], appearance, columns, language)
+        return save(figure, tmp_path / f"figure.{kind}", kind, "A title", appearance.dpi)
 
     return write
 

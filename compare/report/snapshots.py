@@ -1,4 +1,4 @@
-"""The pillar as it moves: snapshots of one scene in space."""
+"""The snapshots of the report: one scene in space, by the rigid blocks."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -13,11 +13,11 @@ from compare.scenes import find
 from compare.solvers.dem import DEM
 from results.snapshots import Snapshots, snapshots_of
 
-MOVING = "beyond/eccentric-blow"  # the scene that is shown as a whole, and with which changes
+SCENE = "beyond/eccentric-blow"  # and the changes that make its snapshots
 CHANGES = {"record.fields": 5e-3, "time.duration": 0.035, "record.energy": False}
 
 
-class Motion(NamedTuple):
+class SnapshotsSection(NamedTuple):
     """Snapshots of a whole pillar; file : shows them in ParaView. bar_speed : m/s."""
 
     title: str
@@ -26,20 +26,20 @@ class Motion(NamedTuple):
     bar_speed: float
 
 
-def make_motion(out: Path) -> Motion:
-    """Simulate the moving pillar, write its snapshots, and draw them as they are read back."""
+def make_snapshots(out: Path) -> SnapshotsSection:
+    """Simulate the scene, write its snapshots, and draw them as they are read back."""
     import dem
     from compare.figures.snapshots import draw_snapshots
     from compare.runs.field_files import read_pvd, write_pvd
 
-    scene = cases.load_variant(find(MOVING), "", CHANGES)
+    scene = cases.load_variant(find(SCENE), "", CHANGES)
     found = snapshots_of(dem.simulate_fields(scene))
     assert found is not None
     file = write_pvd(out / "fields" / "dem.pvd", found)
     shown = read_pvd(file).since(1)
     figure = draw_snapshots("snapshots", {DEM.name: shown})
     drawn = save(figure, out / "figures", "snapshots", scene.title, _table(shown))
-    return Motion(scene.title, drawn, file, calibrate(scene).bar_speed)
+    return SnapshotsSection(scene.title, drawn, file, calibrate(scene).bar_speed)
 
 
 def _table(s: Snapshots) -> pd.DataFrame:

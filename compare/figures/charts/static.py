@@ -1,0 +1,143 @@
+"""A chart as a figure of matplotlib, for print."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from compare.figures.charts.chart import Chart, Entry, Line, Mark, Subplot
+from compare.figures.style import RC, WIDTH, Style
+
+HEAD, HEADING = 0.9, 0.2  # inches of the legend and the abscissa, and of each subplot's heading
+SMALLER = 0.76  # of the height of a subplot, where there are more than two rows of cells
+MARK = "#5d6670"  # colour of vertical lines
+
+
+def draw(name: str, chart: Chart) -> Figure:
+    """Return the figure; the group of a line in its SVG is called `name`-PART."""
+    with matplotlib.rc_context(RC):
+        columns, heights = max(map(len, chart.grid)), _heights(chart)
+        figure = Figure(figsize=(WIDTH, HEAD + sum(h + HEADING for h in heights)))
+        FigureCanvasAgg(figure)
+        axes = figure.subplots(
+            len(heights), columns, squeeze=False, sharex=True, height_ratios=heights
+        )
+        depth, shared = len(chart.grid[0][0]), dict[str, Axes]()
+        for i, row in enumerate(chart.grid):
+            for j, cell in enumerate(row):
+                for ax, subplot in zip(axes[depth * i :, j], cell, strict=False):
+                    if subplot.share:
+                        ax.sharey(shared.setdefault(subplot.share, ax))
+                    _draw(ax, subplot, name, chart.is_log)
+                    if j == 0 or not subplot.share:
+                        ax.set_ylabel(subplot.label)
+                if chart.is_lettered and (k := i * columns + j) < 26:
+                    ax = axes[depth * i, j]
+                    ax.set_title(f"({chr(97 + k)})  {cell[0].heading}", pad=4)
+            for ax in axes[depth * i : depth * (i + 1), len(row) :].ravel():
+                ax.set_visible(False)
+        for ax in axes[-1]:
+            ax.set_xlabel(chart.abscissa)
+        _add_legend(figure, chart.legend)
+    return figure
+
+
+def _heights(chart: Chart) -> list[float]:
+    """Return the inches of every row of axes."""
+    factor = SMALLER if len(chart.grid) > 2 else 1.0
+    return [
+        subplot.height * (1.0 if subplot.is_minor else factor)
+        for row in chart.grid
+        for subplot in max(row, key=lambda cell: sum(s.height for s in cell))
+    ]
+
+
+def _draw(ax: Axes, subplot: Subplot, name: str, is_log: bool) -> None:
+    if subplot.is_minor:
+        ax.set_title(subplot.heading, pad=2, fontsize=8)
+    else:
+        ax.set_title(subplot.heading, pad=4)
+    if is_log:
+        ax.set_xscale("log")
+    if subplot.is_log:
+        ax.set_yscale("log")
+    elif subplot.ticks is not None:
+        ax.set_yticks(subplot.ticks)
+    elif subplot.is_minor:
+        ax.locator_params(axis="y", nbins=4)
+    if subplot.limits:
+        ax.set_ylim(*subplot.limits)
+    for level in subplot.levels:
+        ax.axhline(level, color="#bbbbbb", linewidth=0.6, zorder=1)
+    for line in subplot.lines:
+        add_line(ax, line).set_gid(f"{name}-{line.part}" if line.part else None)
+    for mark in subplot.marks:
+        _add_mark(ax, mark)
+    ax.margins(x=0)
+
+
+def add_line(ax: Axes, line: Line) -> Line2D:
+    """Draw one curve."""
+    (drawn,) = ax.plot(line.x, line.y, **properties(line.style, line.marker))
+    return drawn
+
+
+def properties(style: Style, marker: str = "") -> dict[str, Any]:
+    """Return the arguments of matplotlib's plot; samples have a marker where one is given."""
+    if not marker:
+        return style.of_line()
+    return style.of_line() | {"marker": marker, "markersize": 3.0, "markerfacecolor": "none"}
+
+
+def _add_mark(ax: Axes, mark: Mark) -> None:
+    ax.axvline(mark.x, color=MARK, linewidth=0.8, linestyle=":", zorder=1)
+    ax.annotate(
+        mark.name,
+        (mark.x, 0.97 if mark.is_high else 0.03),
+        (-2 if mark.is_left else 2, 0),
+        xycoords=("data", "axes fraction"),
+        textcoords="offset points",
+        rotation=90,
+        ha="right" if mark.is_left else "left",
+        va="top" if mark.is_high else "bottom",
+        fontsize=7,
+        color=MARK,
+    )
+
+
+def _add_legend(figure: Figure, legend: dict[str, list[Entry]]) -> None:
+    """Put the legend above the subplots, where it hides no curve: a column a heading."""
+    if "" in legend:
+        handles, columns, depth = _handles(legend[""]), len(legend[""]), 1
+    else:
+        depth = 1 + max(map(len, legend.values()))
+        empty = Entry("", "", Style("none", 0.0, "-", 0))
+        filled = [
+            [empty._replace(label=heading), *entries, *[empty] * (depth - 1 - len(entries))]
+            for heading, entries in legend.items()
+        ]
+        handles, columns = _handles([entry for column in filled for entry in column]), len(legend)
+    found = figure.legend(
+        handles=handles,
+        ncols=columns,
+        loc="upper center",
+        bbox_to_anchor=(0.5, 1.0),
+        frameon=False,
+        handlelength=4.5 if depth > 1 else 3.5,
+        columnspacing=4.0 if depth > 1 else 2.0,
+        labelspacing=0.25,
+    )
+    for text in found.get_texts():
+        if text.get_text() in legend:
+            text.set_fontweight("bold")
+    top = 1 - (0.16 + 0.165 * depth) / figure.get_figheight()
+    figure.tight_layout(rect=(0, 0, 1, top), h_pad=0.5, w_pad=1.5)
+
+
+def _handles(entries: list[Entry]) -> list[Line2D]:
+    return [Line2D([], [], label=e.label, **properties(e.style, e.marker)) for e in entries]
