@@ -69,14 +69,16 @@ class Monitor:
         if self.energy is not self.samples.energy:
             self.energy[:, first:last] = self.communicator.sum(self.samples.energy[:, first:last])
         energy, (_, peak, found), stride = self.energy[:, first:last], self.guard, self.time.stride
-        gained = energy - self.energy[:, :1]
-        largest = np.maximum.accumulate(np.abs(gained).max(axis=0))
-        created = gained[:-1].sum(axis=0) - gained[-1]
-        peaks = np.maximum(peak[0], largest)
-        allowed = CREATED * peaks + LAST_DIGITS * np.abs(energy).max(axis=0)
+        with np.errstate(over="ignore", invalid="ignore"):
+            gained = energy - self.energy[:, :1]
+            largest = np.maximum.accumulate(np.abs(gained).max(axis=0))
+            created = gained[:-1].sum(axis=0) - gained[-1]
+            peaks = np.maximum(peak[0], largest)
+            allowed = CREATED * peaks + LAST_DIGITS * np.abs(energy).max(axis=0)
+            lost = created > allowed
         peak[0] = peaks[-1]
-        if (created > allowed).any():
-            n = (first + int((created > allowed).argmax())) * stride
+        if lost.any():
+            n = (first + int(lost.argmax())) * stride
             if found[0] < 0 or n < found[0]:
                 found[:] = n, ENERGY, n - EVERY - 1
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numba
 import numpy as np
 import xarray as xr
+from scipy.sparse import csr_matrix
 
 from cases.errors import SceneError, StoppedError
 from cases.schema.scene import Scene
@@ -91,7 +92,7 @@ def simulate(
             "seconds_stepping": perf_counter() - compiled,
         }
         about = _about(scene, discrete, model, choice, critical) | rest | engine.attributes()
-        about |= {"bytes": int(communicator.sum(size_of(built, state)))}
+        about |= {"bytes": int(communicator.sum(_bytes(built, state)))}
         for rows in (samples.waves, samples.energy):
             if rows is not None:
                 communicator.gather(rows)
@@ -159,6 +160,13 @@ def _about(
         "processes": discrete.body.communicator.size,
         "versions": json.dumps(versions),
     }
+
+
+def _bytes(built: Model, state: State) -> int:
+    """Return the bytes that model and state take."""
+    jump = () if built.interfaces is None else (built.interfaces.jump,)
+    sparse = [m for m in (*jump, *built.receivers) if isinstance(m, csr_matrix)]
+    return size_of(built, state, [(m.data, m.indices, m.indptr) for m in sparse])
 
 
 def _at_rest(scene: Scene, built: Model, state: State, discrete: Discrete) -> dict[str, Any]:

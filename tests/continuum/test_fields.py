@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from compare.runs.run.run.field_files import read_pvd, write_pvd
 
 import continuum
+from compare.runs.field_files import read_pvd, write_pvd
 from results.snapshots import snapshots_of
 
 LENGTH, BLOCK, SIDE = 2.0, 0.5, 0.5

@@ -5,7 +5,7 @@ import pytest
 
 from cases.loads import load_history
 from cases.sampling import clock
-from compare.exact import dashpot_end
+from compare.exact.bar import dashpot_end
 from continuum.build import build_model, critical_step_of, discretise, empty_samples, state_at_rest
 from continuum.explicit.march import run
 

@@ -9,8 +9,8 @@ from compare.exact.bar import images, jointed_bar
 from compare.exact.schemes import generalised_alpha as theory
 from continuum.build import critical_step_of, discretise, operators
 from continuum.explicit.march import run as run_explicit
+from continuum.implicit.balance import rock_matrices
 from continuum.implicit.generalised_alpha import scheme
-from continuum.implicit.step import rock_matrices
 
 RICKER = {"load": {"shape": "ricker", "amplitude": 1e6, "period": 0.01}}
 ACROSS = {"motion__rotation": "none", "load__direction": [0.6, 0.8, 0.0]}

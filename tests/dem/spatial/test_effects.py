@@ -13,6 +13,7 @@ from numerics.aligned import CACHE_LINE
 FIELDS = ("stress", "shear", "velocity", "displacement", "rotation")
 ABSENT = ("points", "finite", "mass_damping", "local_damping", "gravity", "base", "start", "end")
 ABSENT += ("ledger",)
+VECTOR = r"fmul <\d+ x double>"
 SQRT = r"(?:tail )?call \S+ @llvm\.sqrt\S*"
 
 
@@ -108,7 +109,8 @@ def test_only_what_slides_or_softens_is_remembered(row, at_rest):
 
 
 def test_absent_effects_leave_no_instruction(row, at_rest, instructions):
-    """No comparison, division or root in an elastic row; friction brings all three."""
+    """No comparison, division or root in an elastic row; friction brings all three. Both work on
+    several blocks at once."""
 
     def count(**changes):
         blocks = at_rest(row(record__energy=False, **changes))
@@ -117,11 +119,14 @@ def test_absent_effects_leave_no_instruction(row, at_rest, instructions):
             blocks.model, blocks.state, buffers, blocks.samples, np.zeros(2, dtype=np.int64)
         )
         kernel, given = march_for(blocks.model.form), (*given, 0, 0, 1)
-        return [instructions(kernel, given, kind) for kind in ("fcmp", "fdiv", SQRT, "fmul")]
+        return [
+            instructions(kernel, given, kind) for kind in ("fcmp", "fdiv", SQRT, "fmul", VECTOR)
+        ]
 
     elastic, slip = count(), count(joints={"friction_angle": 20.0})
     assert elastic[:3] == [0, 0, 0]
     assert min(slip[:3]) > 0 and slip[3] > elastic[3]
+    assert slip[4] > elastic[4] > 0
     assert count(motion__rotation="none", load__at=[0.0, 0.0])[3] < elastic[3]
 
 
