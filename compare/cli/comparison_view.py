@@ -15,7 +15,7 @@ from compare.report.verdict import Standing, held_to, standings
 from results.dataset import energy_residual
 
 MOST_LINES = 10  # of the answer
-HINT = "every distance and bound, and what does not apply: --all; as JSON: --json"
+HINT = "every distance, and what does not apply: --all; as JSON: --json"
 ANSWER = ["engine", "worst misfit", "of", "held against", "own error", "stepping", "verdict"]
 
 

@@ -79,13 +79,14 @@ def own_exact(name: str, names: Iterable[str], scene: Scene) -> str | None:
 
 def deciding(scene: Scene) -> dict[str, Answer]:
     """Return whether each of the solutions that verdicts rest on applies to a scene: the engines,
-    and of each the reference and the exact solution of its own model."""
+    of each the reference and the exact solution of its own model, and those that [expect] names."""
     answers = applicable(scene)
     able = [name for name, answer in answers.items() if answer]
     wanted: set[str | None] = {*ENGINES}
     for engine in (name for name in ENGINES if name in able):
         reference = reference_of(engine, able, scene)
         wanted |= {reference and reference.name, own_exact(engine, able, scene)}
+    wanted |= {name for pair in scene.expect for name in pair.split(" ~ ")}
     return {name: answer for name, answer in answers.items() if name in wanted}
 
 

@@ -52,7 +52,7 @@ def compare(
 
     A line an engine: its worst misfit and where, the solution that it is held against, its own
     numerical error, the time of its steps, and the verdict. --all, --json, --out and --with solve
-    it by everything else too, and hold it to each bound of its [expect]; --all shows every distance
+    it by everything else too; --all shows every distance
     of every pair; of curves of others, data over model.
 
     --with puts a waveform of another code, figure or experiment beside them: a CSV file with a

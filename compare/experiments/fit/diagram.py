@@ -10,7 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from compare.experiments.fit.fit import Fit, Fitted
-from compare.figures.overlay_figures import UNITS
+from compare.figures.overlays import UNITS
 from compare.figures.style import GIVEN, RC, style
 
 IN = {**UNITS, "displacement": (1e3, "mm")}  # what is drawn: factor from SI, and the unit
