@@ -33,7 +33,7 @@ from continuum.space.elasticity import Material
 from continuum.space.interface import Jumps, jumps
 from continuum.space.receivers import points, sections
 from continuum.space.simd import WIDTH
-from numerics.aligned import zeros
+from numerics.cache_lines import zeros
 
 
 class Discrete(NamedTuple):

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import cases
-import compare
 import jointwave as jw
 from compare.experiments.robustness.case import SHORT
 from compare.misfit.external import Curves, Place
 from compare.misfit.metrics import misfit
+from compare.scenes import find
 
 TABLES = {
     "title": "made of tables",
@@ -28,12 +28,10 @@ def test_a_scene_is_loaded_from_a_name_a_file_or_tables(tmp_path):
     name = "guo-li-2002/fig-03"
     changes = {"time.duration": 0.02}
     assert jw.load(name, "zeta 0.02", changes) == cases.load_variant(
-        compare.find(name), "zeta 0.02", changes
+        find(name), "zeta 0.02", changes
     )
     assert name in jw.shipped() and SHORT in jw.shipped()
-    assert [s.name for s in jw.load_variants(name)] == [
-        s.name for s in cases.load(compare.find(name))
-    ]
+    assert [s.name for s in jw.load_variants(name)] == [s.name for s in cases.load(find(name))]
     damped = jw.load(TABLES, "damped", {"record.stress": [3.0]})
     assert (damped.joints.damping_ratio, damped.record.stress) == (0.05, [3.0])
     assert TABLES["record"] == {"stress": [2.0]}  # as it was

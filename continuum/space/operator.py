@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse import block_diag, csr_matrix
 
 from continuum.space.simd import WIDTH, multiply_tile
-from numerics.aligned import zeros
+from numerics.cache_lines import zeros
 from numerics.jit import jitted
 
 TILE = 4  # registers wide; a part's blocks are dealt out evenly, so that tiles have 3 to 5

@@ -6,7 +6,7 @@ import numpy as np
 
 from dem.axial.model import Effects, Model
 from dem.axial.state import State
-from numerics.aligned import zeros
+from numerics.cache_lines import zeros
 
 
 class Samples(NamedTuple):

@@ -13,7 +13,7 @@ from cases.loads import with_load_itself
 from cases.material.calibrate import Properties, calibrate
 from cases.sampling import Clock, interpolation
 from cases.schema.scene import Scene
-from dem import looks
+from dem import time_loop
 from dem.axial import leapfrog
 from dem.axial.bound import highest_speed
 from dem.axial.model import Model, Receivers, build
@@ -111,19 +111,19 @@ def simulate_fields(
             seconds_setup=built - began,
             seconds_compile=compiled - built,
             seconds_stepping=perf_counter() - compiled,
-            versions=looks.versions(),
+            versions=time_loop.versions(),
         )
         return _with_breaks(found if film is None else film.developed(found), scene, state, time)
 
     def check(samples: int) -> None:
         speed = np.abs(state.v)
         look(monitor, speed.max(), samples * time.stride)
-        seen = looks.sighting(monitor, speed, calibrate(scene).spacing)
+        seen = time_loop.sighting(monitor, speed, calibrate(scene).spacing)
         if seen is not None:
             raise stopped(scene, time, critical, seen)
 
-    whole = looks.Run(time, state.u.size, march, check, (state, samples, monitor))
-    return looks.followed(whole, result, progress, film, keeper)
+    whole = time_loop.Run(time, state.u.size, march, check, (state, samples, monitor))
+    return time_loop.followed(whole, result, progress, film, keeper)
 
 
 def _with_breaks(result: Fields, scene: Scene, state: State, time: Clock) -> Fields:

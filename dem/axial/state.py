@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from numerics.aligned import zeros
+from numerics.cache_lines import zeros
 
 if TYPE_CHECKING:
     from dem.axial.model import Effects

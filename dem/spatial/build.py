@@ -13,7 +13,7 @@ from dem.spatial.model import Buffers, Load, Model, Receivers, Samples, State
 from dem.spatial.motion import Block
 from joints.law import Law, parts_of, table_of
 from joints.uniform import law
-from numerics.aligned import zeros
+from numerics.cache_lines import zeros
 from numerics.divergence import Guard
 from results.dataset import ALL_TERMS
 

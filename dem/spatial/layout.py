@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from joints.law import Parts
-from numerics.aligned import zeros
+from numerics.cache_lines import zeros
 
 LANES = 64  # blocks in a tile
 STRIDE = 72  # lanes in a row of motion: the tile's own, the next one's first, whole cache lines

@@ -12,7 +12,6 @@ from cases.errors import SceneError
 from cases.material.calibrate import Properties, calibrate
 from cases.sampling import Clock, clock
 from cases.schema.scene import Scene
-from dem.looks import Run, followed, sighting, versions
 from dem.size import refuse_large
 from dem.spatial.build import (
     buffers_for,
@@ -29,6 +28,7 @@ from dem.spatial.model import Model, State
 from dem.spatial.record import shooter, waveforms, with_breaks
 from dem.spatial.stability import critical_spatial_step, highest_speeds
 from dem.spatial.start import start
+from dem.time_loop import Run, followed, sighting, versions
 from numerics.checkpoint import Keeper
 from numerics.divergence import guard, look
 from numerics.instability import stopped

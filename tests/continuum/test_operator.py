@@ -15,7 +15,7 @@ from continuum.space.operator import (
     without_round_off,
 )
 from continuum.space.simd import WIDTH
-from numerics.aligned import zeros
+from numerics.cache_lines import zeros
 
 COUNTS = (1, 2, 7, 8, 9, 17, 25, 33, 40, 41, 48, 100)  # every width of a tile, full and not
 

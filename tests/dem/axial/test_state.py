@@ -4,7 +4,7 @@ import pytest
 
 from cases.material.calibrate import calibrate
 from dem.axial.model import build
-from numerics.aligned import CACHE_LINE
+from numerics.cache_lines import CACHE_LINE
 from results.arrays import arrays
 
 EFFECTS = {"joints__damping_ratio": 0.1, "joints__tensile_strength": 1e5}

@@ -8,7 +8,7 @@ import dem
 from dem.spatial.build import buffers_for
 from dem.spatial.layout import LANES, Form
 from dem.spatial.march import arguments, march_for
-from numerics.aligned import CACHE_LINE
+from numerics.cache_lines import CACHE_LINE
 
 FIELDS = ("stress", "shear", "velocity", "displacement", "rotation")
 ABSENT = ("points", "finite", "mass_damping", "local_damping", "gravity", "base", "start", "end")

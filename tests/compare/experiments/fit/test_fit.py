@@ -9,11 +9,12 @@ import pytest
 from scipy.stats import binom
 
 import cases
-import compare
 import dem
+import jointwave
 from cases.errors import SceneError, StoppedError
 from cases.schema.keys import keys
 from compare.cli.program import main
+from compare.engines import solve
 from compare.exact.blocks import lattice
 from compare.experiments.fit import fit as fitting
 from compare.experiments.fit.diagram import draw
@@ -80,10 +81,10 @@ def test_known_values_are_found_to_round_off(solver, scene):
     true = {**TRUE, RATIO: 0.08}
     places = (Place("stress", "", 1.0), AT_3, Place("velocity", "y", 3.25))
     steps = problem_of(scene, solver, [heard(scene)], None, 0.0)._stepped
-    result = compare.solve(solver, steps(changed(scene, true)))
+    result = solve(solver, steps(changed(scene, true)))
     waveforms = {place: place.waveform(result) for place in places}
     curves = Curves("run.nc", "run.nc", result.time.values, waveforms)
-    found = compare.fit(scene, [curves], list(true), solver)
+    found = jointwave.fit(scene, [curves], list(true), solver)
     assert found.solver == solver and found.before > 0.1 and found.after < 1e-6
     for key, estimate in by_key(found).items():
         assert estimate.value == pytest.approx(true[key], rel=1e-6) and not estimate.at_bound
@@ -102,7 +103,7 @@ def test_rigid_blocks_keep_their_steps(scene):
 def test_truth_lies_within_the_interval(scene):
     """Of noise with a fixed seed; the misfit that is left is the noise."""
     curves = heard(scene, noise=white(1, 2e4))
-    found = compare.fit(scene, [curves], list(TRUE))
+    found = jointwave.fit(scene, [curves], list(TRUE))
     for key, estimate in by_key(found).items():
         assert estimate.low < TRUE[key] < estimate.high
         assert 0.001 < (estimate.high - estimate.low) / estimate.value < 0.3
@@ -138,7 +139,7 @@ def test_intervals_hold_the_truth_in_19_of_20_cases(memory, scene):
     near = changed(scene, TRUE)
     for seed in range(repeats):
         curves = heard(scene, noise=coloured(seed, 3e4, memory))
-        (layer, _) = compare.fit(near, [curves], list(TRUE)).estimates
+        (layer, _) = jointwave.fit(near, [curves], list(TRUE)).estimates
         inside += layer.low <= TRUE[LAYER] <= layer.high
         values.append(np.log(layer.value))
         halves.append(np.log(layer.high / layer.low) / 2)
@@ -161,10 +162,10 @@ def test_clock_is_found_to_a_thousandth_of_an_interval(late, scene):
     curves = heard(scene, late=late)
     for free in ([LAYER, "clock"], ["clock"]):
         start = changed(scene, TRUE if len(free) == 1 else {LOAD: TRUE[LOAD]})
-        found = by_key(compare.fit(start, [curves], free))
+        found = by_key(jointwave.fit(start, [curves], free))
         assert found["clock"].value == pytest.approx(-late, abs=1e-3 * scene.interval, rel=0)
         assert found["clock"].unit == "s"
-    early = compare.fit(changed(scene, TRUE), [curves], [f"clock={-late + 2e-3}"])
+    early = jointwave.fit(changed(scene, TRUE), [curves], [f"clock={-late + 2e-3}"])
     assert early.estimates[0].value == pytest.approx(-late, abs=1e-3 * scene.interval, rel=0)
     assert early.before > 0.2 > 1e-6 > early.after
 
@@ -172,7 +173,7 @@ def test_clock_is_found_to_a_thousandth_of_an_interval(late, scene):
 def test_poor_start_is_left_for_another(scene):
     """A joint 30 times too soft hides the wave; the fit is found all the same."""
     curves = heard(scene)
-    found = compare.fit(scene, [curves], [f"{LAYER}=1.5e7", LOAD])
+    found = jointwave.fit(scene, [curves], [f"{LAYER}=1.5e7", LOAD])
     assert by_key(found)[LAYER].value == pytest.approx(TRUE[LAYER], rel=1e-6)
 
 
@@ -187,7 +188,7 @@ def test_waveforms_count_by_their_own_noise(scene):
         Place("stress", "", 1.0): poor + random.normal(scale=3e5, size=poor.size),
     }
     mixed = Curves("gauge.csv", "gauge.csv", both.time, waveforms)
-    one, two = (compare.fit(scene, [c], list(TRUE)).estimates[0] for c in (clean, mixed))
+    one, two = (jointwave.fit(scene, [c], list(TRUE)).estimates[0] for c in (clean, mixed))
     assert two.low < TRUE[LAYER] < two.high
     assert (two.high - two.low) < 1.3 * (one.high - one.low)
 
@@ -197,7 +198,7 @@ def test_what_waveforms_do_not_tell_apart_is_said(scene):
     velocity = Place("velocity", "y", 3.25)
     scene = scene.model_copy(update={"soft_layers": []})
     curves = heard(scene, places=(velocity,), values={LOAD: 1.3e6})
-    found = compare.fit(scene, [curves], ["rock.density", LOAD])
+    found = jointwave.fit(scene, [curves], ["rock.density", LOAD])
     assert found.after < 1e-6 and found.correlation[0, 1] > 0.999
     assert all(e.high == np.inf for e in found.estimates)
     assert any("not told apart: correlation +1.000" in note for note in found.notes)
@@ -206,14 +207,14 @@ def test_what_waveforms_do_not_tell_apart_is_said(scene):
 
 
 def test_a_key_that_nothing_depends_on_is_said(scene):
-    found = compare.fit(scene, [heard(scene, noise=white(1, 1e4))], [LOAD, "rock.intact_poisson"])
+    found = jointwave.fit(scene, [heard(scene, noise=white(1, 1e4))], [LOAD, "rock.intact_poisson"])
     estimates = by_key(found)
     assert estimates["rock.intact_poisson"].high == np.inf and estimates[LOAD].high < np.inf
     assert any("rock.intact_poisson is not determined" in note for note in found.notes)
 
 
 def test_a_bound_that_stops_a_fit_is_said(scene):
-    found = compare.fit(scene, [heard(scene)], [f"{LAYER}=3e8:4e8:4.5e8"])
+    found = jointwave.fit(scene, [heard(scene)], [f"{LAYER}=3e8:4e8:4.5e8"])
     assert found.estimates[0].at_bound and found.estimates[0].value == pytest.approx(4.5e8)
     assert "stopped at its bound, 4.5e+08" in found.notes[0]
 
@@ -223,14 +224,14 @@ def test_trials_without_a_solution_are_left_out(scene):
     true = {"rock.p_speed": 2200.0}
     curves = heard(scene, values=true)
     start = changed(scene, {"rock.p_speed": 925.0})
-    found = compare.fit(start, [curves], ["rock.p_speed"])
+    found = jointwave.fit(start, [curves], ["rock.p_speed"])
     assert found.estimates[0].value == pytest.approx(2200.0, rel=1e-6)
 
 
 def test_search_that_does_not_end_is_an_error(scene, monkeypatch):
     monkeypatch.setattr(fitting, "MOST", 2)
     with pytest.raises(StoppedError, match="not converged after"):
-        compare.fit(scene, [heard(scene)], list(TRUE))
+        jointwave.fit(scene, [heard(scene)], list(TRUE))
 
 
 def test_every_number_of_a_scene_is_free_or_refused(scene):
@@ -361,8 +362,8 @@ def test_one_solution_of_our_own_table_is_fitted(scene, tmp_path):
         file, np.c_[curves.time, 2 * values, values], "%.12g", ",", header=header, comments=""
     )
     with pytest.raises(SceneError, match=r"comparison\.csv:dem, comparison\.csv:lattice"):
-        compare.fit(scene, read_curves([str(file)], [scene]), list(TRUE))
-    found = compare.fit(scene, read_curves([f"{file}:lattice"], [scene]), list(TRUE))
+        jointwave.fit(scene, read_curves([str(file)], [scene]), list(TRUE))
+    found = jointwave.fit(scene, read_curves([f"{file}:lattice"], [scene]), list(TRUE))
     assert found.estimates[0].value == pytest.approx(TRUE[LAYER], rel=1e-6)
 
 
@@ -373,7 +374,7 @@ def test_figure_shows_everything_and_nothing_twice(scene):
     long = Curves(
         "a-rather-long-name-of-a-$-file-with-everything.csv", "x", curves.time, curves.waveforms
     )
-    figure = draw(compare.fit(scene, [long], [LAYER]))
+    figure = draw(jointwave.fit(scene, [long], [LAYER]))
     figure.draw_without_rendering()
     page = figure.bbox
     texts = [

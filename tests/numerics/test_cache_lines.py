@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from numerics.aligned import CACHE_LINE, zeros
+from numerics.cache_lines import CACHE_LINE, zeros
 
 
 @pytest.mark.parametrize("first", [0, 1, 7, 8])

@@ -1,4 +1,4 @@
-"""A long run in stretches, between which it is looked at: is it still sound, how far is it."""
+"""The time loop: a run in stretches, after each of which it is checked, saved and reported."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from results.dataset import Fields
 if TYPE_CHECKING:
     from results.snapshots import Film
 
-BLOCK_STEPS_BETWEEN_LOOKS = 20_000_000  # some 10 ms to 1 s: often enough for a progress bar
-STEPS_BETWEEN_LOOKS = 64  # at least: threads that follow one another need some to share
+BLOCK_STEPS_AT_ONCE = 20_000_000  # some 10 ms to 1 s: often enough for a progress bar
+LEAST_STEPS = 64  # at least: threads that follow one another need some to share
 
 
 class Run(NamedTuple):
@@ -38,18 +38,18 @@ class Run(NamedTuple):
     parts: Any
 
 
-def march_with_looks(
+def run_in_stretches(
     run: Run,
     progress: Callable[[float], None] | None = None,
     film: Film | None = None,
     keeper: Keeper | None = None,
 ) -> None:
-    """Take all samples of a run, and look at it after every stretch of them.
+    """Take all samples of a run, in stretches, after each of which it is checked.
 
     film : stops the run where it keeps a sample. keeper : sees all that changes.
     """
     time, parts = run.time, run.parts
-    steps = max(STEPS_BETWEEN_LOOKS, BLOCK_STEPS_BETWEEN_LOOKS // run.blocks)
+    steps = max(LEAST_STEPS, BLOCK_STEPS_AT_ONCE // run.blocks)
     stops = {time.samples, *range(0, time.samples, max(1, steps // time.stride))}
     if film is not None:
         stops.update(range(0, time.samples, film.every))
@@ -76,7 +76,7 @@ def followed(
     """Return the result of a run to its end; where it stops on its way, the error has the part
     that is sound. result : of how many samples are."""
     try:
-        march_with_looks(run, progress, film, keeper)
+        run_in_stretches(run, progress, film, keeper)
     except StoppedError as error:
         error.result = result(error.samples)
         raise
