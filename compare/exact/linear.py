@@ -6,6 +6,7 @@ give it everywhere to round-off; only f decides how the integral is taken, and i
 is not smooth (Moler & Van Loan, SIAM Review 45, 2003, for the exponential).
 """
 
+from collections.abc import Sequence
 from itertools import pairwise
 from math import ceil
 
@@ -79,6 +80,12 @@ def bound(one: np.ndarray, twin: np.ndarray) -> np.ndarray:
     """Return the bound of the root-mean-square error of waveforms [..., n] by their twins."""
     apart = np.sqrt(np.mean((one - twin) ** 2, axis=-1))
     return SAFETY * apart + 4 * np.finfo(float).eps * np.abs(one).max(axis=-1, initial=0.0)
+
+
+def errors(found: Sequence[np.ndarray], twin: Sequence[np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the bounds of stress, velocity and displacement [..., n] by their twins."""
+    bounds = [bound(one, other) for one, other in zip(found, twin, strict=True)]
+    return dict(zip(("stress", "velocity", "displacement"), bounds, strict=True))
 
 
 def advance(

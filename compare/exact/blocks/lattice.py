@@ -25,7 +25,7 @@ from cases.schema.scene import Scene
 from compare.exact.blocks.chain import Chain, chain, rates, receivers
 from compare.exact.conditions import DAMPED, LAYERS, holds
 from compare.exact.drive import drive
-from compare.exact.linear import bound, twins
+from compare.exact.linear import errors, twins
 from compare.solvers.record import BLOCKS, Answer, Kind, Rock, Solver, Words, thin
 from results.dataset import dataset
 
@@ -53,9 +53,7 @@ def solve(scene: Scene) -> xr.Dataset:
     out[..., : len(direct)] += np.outer(signal.value(times), direct)
     cuts = np.cumsum([len(scene.record.stress), len(scene.record.velocity)])
     found, twin = (np.split(x.T, cuts) for x in out)
-    bounds = [bound(a, b) for a, b in zip(found, twin, strict=True)]
-    errors = dict(zip(("stress", "velocity", "displacement"), bounds, strict=True))
-    return dataset(scene, SOLVER.name, times, *found, errors=errors)
+    return dataset(scene, SOLVER.name, times, *found, errors=errors(found, twin))
 
 
 def state_space(model: Chain) -> tuple[np.ndarray, np.ndarray]:

@@ -25,7 +25,7 @@ from cases.sampling import sample_times
 from cases.schema.scene import Scene
 from compare.exact.bar.images import ENTERS
 from compare.exact.conditions import holds, static_stress
-from compare.exact.linear import bound, twins
+from compare.exact.linear import errors, twins
 from compare.solvers.record import JOINTED, Answer, Rock, Solver, Words, no, thin
 from results.dataset import dataset
 
@@ -78,9 +78,7 @@ def solve(scene: Scene) -> xr.Dataset:
         return [stress, *((there - back) / p.impedance)]
 
     found, twin = waveforms(0), waveforms(1)
-    bounds = [bound(a, b) for a, b in zip(found, twin, strict=True)]
-    errors = dict(zip(("stress", "velocity", "displacement"), bounds, strict=True))
-    return dataset(scene, SOLVER.name, times, *found, errors=errors)
+    return dataset(scene, SOLVER.name, times, *found, errors=errors(found, twin))
 
 
 def around(

@@ -1,0 +1,63 @@
+"""The registry: an entry for each engine and exact solution, imported when it is asked for."""
+
+import inspect
+import subprocess
+import sys
+
+import pytest
+
+from cases.errors import SceneError
+from compare.engines import ENGINES, EXACT, exact_names, names, selection, solver, solvers
+from compare.misfit.pairs import pairs
+from compare.solvers.record import HEADINGS, Form
+
+
+def test_each_name_is_that_of_its_record():
+    assert [one.name for one in solvers()] == [*names()]
+    assert all(solver(name).exact and solver(name).form > Form.RUN for name in EXACT)
+    assert all(one.is_engine and not one.exact for one in ENGINES.values())
+
+
+def test_records_name_solvers_headings_and_arguments_that_there_are():
+    for one in solvers():
+        assert one.words.heading in HEADINGS
+        assert set(one.arguments) <= set(inspect.signature(one.run).parameters)
+        for others in (one.distances or {}).values():
+            assert set(others) <= set(names()) - {one.name}
+    assert len(set(pairs())) == len(pairs())
+
+
+def test_every_solver_is_selected_by_one_engine_and_model():
+    every = [name for models in selection().values() for name in models.values()]
+    assert sorted(every) == sorted(names())
+    assert [*selection()["exact"]] == [*exact_names()]
+
+
+def test_an_unknown_name_is_an_error():
+    with pytest.raises(SceneError, match="'truth' is unknown; allowed: dem, continuum-jointed"):
+        solver("truth")
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_a_run_is_prepared_as_it_is_made(pillar, name):
+    scene = pillar(time__duration=2e-3, record__velocity=[20.25])
+    found, made = solver(name).prepare(scene), solver(name).run(scene).attrs
+    assert (found.steps, found.dt, found.critical) == (
+        made["steps"],
+        made["dt"],
+        made["critical_dt"],
+    )
+    assert found.freedoms == made["degrees_of_freedom"] and found.scheme == made["scheme"]
+    assert set(solver(name).cost) <= set(found.settings) and found.bytes > 0
+    assert all(made[key] == found.settings[key] for key in solver(name).cost)
+
+
+def test_names_are_known_without_what_solves():
+    """Neither an exact solution, nor what it or an engine runs by, is imported for a name."""
+    script = (
+        "import sys; from compare.engines import names; names()\n"
+        "heavy = {'xarray', 'matplotlib', 'scipy', 'numba', 'dolfinx', 'dem', 'continuum'}\n"
+        "print(sorted(heavy & set(sys.modules)), [m for m in sys.modules if '.exact.' in m])"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert done.stdout.strip() == "[] []", done.stderr
