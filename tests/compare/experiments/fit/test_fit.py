@@ -16,7 +16,7 @@ from cases.schema.keys import keys
 from compare.cli.program import main
 from compare.engines import solve
 from compare.exact.blocks import lattice
-from compare.experiments.fit import fit as fitting
+from compare.experiments.fit import search
 from compare.experiments.fit.diagram import draw
 from compare.experiments.fit.keys import changed, free_keys
 from compare.experiments.fit.problem import problem_of
@@ -229,7 +229,7 @@ def test_trials_without_a_solution_are_left_out(scene):
 
 
 def test_search_that_does_not_end_is_an_error(scene, monkeypatch):
-    monkeypatch.setattr(fitting, "MOST", 2)
+    monkeypatch.setattr(search, "MOST", 2)
     with pytest.raises(StoppedError, match="not converged after"):
         jointwave.fit(scene, [heard(scene)], list(TRUE))
 
@@ -321,7 +321,7 @@ def test_fault_is_one_line_and_exit_2(arguments, words, files, monkeypatch, caps
 
 
 def test_no_convergence_is_exit_3(files, monkeypatch, capsys):
-    monkeypatch.setattr(fitting, "MOST", 1)
+    monkeypatch.setattr(search, "MOST", 1)
     code, _, err = run([*asked(files), "--free", LAYER], monkeypatch, capsys)
     assert code == 3 and "not converged" in err and "Traceback" not in err
 
