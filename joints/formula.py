@@ -1,74 +1,17 @@
-"""Formulas that are plain Python, and that numba compiles into the kernels that call them.
+"""Formulas that are plain Python, and that numba compiles into the kernels that call them."""
 
-A formula has no life of its own: it is typed once and becomes part of its callers. So numba is kept
-from optimising it and from making machine code of it, which it would do at every level of calls;
-the kernel as a whole is optimised once. And it takes only those passes over a formula that change
-anything there, in half the time.
-"""
+from typing import Any
 
-from numba._dynfunc import make_function
-from numba.core import compiler, compiler_machinery, typed_passes, untyped_passes
-from numba.core.codegen import JITCodeLibrary
+import numba
 from numba.extending import register_jitable
 
+#: Versions of numba whose inside the short pass list is known to fit; with others it takes longer.
+KNOWN = ((0, 68),)
 
-class _Part(JITCodeLibrary):
-    """The code of a formula, as it will be linked to that of its callers."""
+options: dict[str, Any] = {"forceinline": True, "error_model": "numpy"}
+if numba.version_info.short in KNOWN:
+    from joints.formula_compiler import FormulaCompiler
 
-    def _optimize_final_module(self):
-        pass
+    options["pipeline_class"] = FormulaCompiler
 
-    def _finalize_final_module(self):
-        self._finalize_dynamic_globals()
-        self._finalized = True
-
-
-@compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
-class _Lowering(typed_passes.NativeLowering):
-    """Write the code of a formula, and tell its callers where it is."""
-
-    _name = "lowering of a formula"
-
-    def run_pass(self, state):
-        """Return that the state has changed: by a library that has no machine code."""
-        state.library = _Part(state.targetctx.codegen(), state.func_id.func_qualname)
-        state.flags.no_compile = True
-        super().run_pass(state)
-        code, described = state.cr, state.cr.fndesc
-        nowhere = make_function(described.lookup_module(), described.qualname, "", 0, code.env, ())
-        state.targetctx.insert_user_function(nowhere, described, [state.library])
-        state.reload_init.extend(state.library._reload_init)
-        state.cr = code._replace(cfunc=nowhere)
-        return True
-
-
-PASSES = (
-    untyped_passes.TranslateByteCode,
-    untyped_passes.FixupArgs,
-    untyped_passes.IRProcessing,
-    untyped_passes.RewriteSemanticConstants,
-    untyped_passes.DeadBranchPrune,
-    untyped_passes.GenericRewrites,
-    untyped_passes.ReconstructSSA,
-    untyped_passes.DeadBranchPrune,
-    typed_passes.NopythonTypeInference,
-    typed_passes.PreLowerStripPhis,
-    typed_passes.IRLegalization,
-    _Lowering,
-    typed_passes.NoPythonBackend,
-)
-
-
-class _Compiler(compiler.CompilerBase):
-    """What a formula goes through."""
-
-    def define_pipelines(self):
-        """Return its passes."""
-        manager = compiler_machinery.PassManager("formula")
-        for one in PASSES:
-            manager.add_pass(one, one.__name__)
-        manager.finalize()
-        return [manager]
-
-
-formula = register_jitable(forceinline=True, error_model="numpy", pipeline_class=_Compiler)
+formula = register_jitable(**options)
