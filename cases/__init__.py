@@ -1,4 +1,4 @@
-"""What is simulated: the scene vocabulary, its calibration, and the scenes themselves.
+"""The scene: its vocabulary, its calibration, and the shipped scenes.
 
 `cases.load(path)` reads a scene file and returns one validated `Scene` per variant.
 """

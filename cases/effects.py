@@ -1,4 +1,4 @@
-"""What a scene calls for, and what is left out of the computation because it does not."""
+"""Effects that a scene calls for; all others are left out of the computation."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

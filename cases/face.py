@@ -1,4 +1,4 @@
-"""Where two blocks touch: the contact points of a face and their shares of its area."""
+"""Contact points of a face between two blocks, and their shares of its area."""
 
 from typing import Literal
 

@@ -1,4 +1,4 @@
-"""What a run would take of memory, told before any of it is made.
+"""Memory of a run, estimated before any of it is allocated.
 
 Each engine estimates what its arrays take, from the numbers of blocks, samples and steps alone, by
 the key of the scene that decides it. A run is refused where the sum is beyond `memory()`.

@@ -1,4 +1,4 @@
-"""What a load holds over frequency: the highest that matters, and the wave that it drives."""
+"""Spectrum of a load: the highest frequency that matters, and the wave that it drives."""
 
 from functools import lru_cache
 from math import asin, pi, tan

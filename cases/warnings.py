@@ -1,4 +1,4 @@
-"""What a scene may say but hardly means: a line for each slip, from the scene alone.
+"""Warnings of likely mistakes in a scene, a line each, from the scene alone.
 
 No rule refuses a scene: what is unusual may be meant. `--strict` takes each line for an error.
 """

@@ -1,4 +1,4 @@
-"""What acts on the two end faces: the load, what absorbs, and what is fixed."""
+"""Actions on the two end faces: load, absorbing and fixed ends."""
 
 import numpy as np
 

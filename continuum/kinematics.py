@@ -1,4 +1,4 @@
-"""What a scene asks of the continuum: its dimension, its components of motion, its rock."""
+"""Kinematics of a scene in the continuum: its dimension, components of motion, rock."""
 
 from math import sqrt
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""What runs of deformable rock take of memory, told before any of it is made."""
+"""Memory of runs of deformable rock, estimated before any of it is allocated."""
 
 from cases.sampling import Clock
 from cases.schema.scene import Scene

@@ -1,4 +1,4 @@
-"""Which scenes the continuum can simulate, and why not the others."""
+"""Scenes that the continuum can simulate, and the reasons why not others."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What a run has recorded, in the form of a result."""
+"""Recorded waveforms in the form of a result."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""What breaking joints leave of a row of blocks: when they broke, and the pieces between them."""
+"""Fragments of a row of blocks whose joints broke, and the times of breaking."""
 
 import json
 from typing import Any

@@ -1,4 +1,4 @@
-"""What runs of rigid blocks take of memory, told before any of it is made."""
+"""Memory of runs of rigid blocks, estimated before any of it is allocated."""
 
 from cases.sampling import Clock
 from cases.schema.scene import Scene

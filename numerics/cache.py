@@ -1,4 +1,4 @@
-"""Where compiled kernels are kept: a folder for each state of the sources, while it is in use."""
+"""The cache of compiled kernels: a folder for each state of the sources, while it is in use."""
 
 import hashlib
 import os

@@ -1,4 +1,4 @@
-"""What looks at a run from within its kernel, and stops it where its motion has lost its bound.
+"""The divergence monitor, which stops a run within its kernel where it exceeds its bounds.
 
 No speed can be more than all forces together can cause, and no energy come from nowhere. Kernels
 look at the speeds every 96 steps, which costs a look at every velocity in the time of 96 steps, and

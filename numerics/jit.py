@@ -1,4 +1,4 @@
-"""How every kernel is compiled: one set of options, one cache that follows the sources."""
+"""Compilation of kernels: one set of options, one cache that follows the sources."""
 
 import fcntl
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""What every variable and coordinate of a result is called and measured in, as plots label it."""
+"""Names and units of every variable and coordinate of a result, as plots label it."""
 
 #: By name: (long name, unit; "" where it is no quantity).
 LABELS = {

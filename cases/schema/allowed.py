@@ -1,4 +1,4 @@
-"""What a field of a model allows, in words: from its type and its constraints."""
+"""Allowed values of a model's field, in words: from its type and its constraints."""
 
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin

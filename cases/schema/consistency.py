@@ -1,4 +1,4 @@
-"""What the tables of a scene must not contradict in each other."""
+"""Contradictions between the tables of a scene."""
 
 from __future__ import annotations
 

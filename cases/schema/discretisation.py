@@ -1,4 +1,4 @@
-"""What [numerics.continuum] must not contradict in itself and in the rest of a scene."""
+"""Contradictions within [numerics.continuum], and with the rest of a scene."""
 
 from __future__ import annotations
 

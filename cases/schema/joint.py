@@ -1,4 +1,4 @@
-"""What joints can do: the law of all of them, and of single ones that differ."""
+"""Keys of the joint law: of all joints, and of single ones that differ."""
 
 from typing import Annotated, Any, Literal
 

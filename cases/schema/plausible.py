@@ -1,4 +1,4 @@
-"""What the constants of rock are like, and the unit that one far from it was likely meant in."""
+"""Plausible constants of rock, and the unit that one far from them was likely meant in."""
 
 from __future__ import annotations
 

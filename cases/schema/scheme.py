@@ -1,4 +1,4 @@
-"""What a scene must not call for where the rigid blocks take steps of fourth order."""
+"""Contradictions of a scene with steps of fourth order."""
 
 from __future__ import annotations
 

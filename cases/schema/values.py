@@ -1,4 +1,4 @@
-"""What a value in a scene file may be, and how a value that does not fit is reported."""
+"""Types of values in a scene file, and the message for a value that does not fit."""
 
 import re
 from typing import Annotated

@@ -1,4 +1,4 @@
-"""What `jointwave compare` shows: an answer in a few lines, every distance on request, or JSON."""
+"""Output of `jointwave compare`: a few lines, every distance on request, or JSON."""
 
 import json
 from collections.abc import Iterator

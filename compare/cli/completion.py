@@ -1,4 +1,4 @@
-"""What the shell completes: scenes, variants, keys with their values, models, studies.
+"""Shell completion: scenes, variants, keys with their values, models, studies.
 
 Each is called when a key is pressed: nothing heavy is imported, and what is wrong is no message.
 """

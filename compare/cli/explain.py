@@ -1,4 +1,4 @@
-"""What a scene is, before any run: its effects, its critical steps, its exact solutions."""
+"""A scene before any run: its effects, its critical steps, its exact solutions."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What each command shows: its findings as tables, or the same facts as JSON."""
+"""Output of each command: its findings as tables, or the same facts as JSON."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""What drives a scene's start: its end stress, or the velocity of its base."""
+"""The excitation of a scene's start: its end stress, or the velocity of its base."""
 
 from dataclasses import dataclass
 from typing import Protocol

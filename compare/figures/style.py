@@ -1,4 +1,4 @@
-"""How each engine and exact solution is drawn: one hue a model, one look a kind of solution.
+"""Styles of engines and exact solutions: one hue a model, one pattern a kind of solution.
 
 Engines are wide, light and solid, nested by width so that none hides another where they coincide;
 exact solutions are thin, dark and dashed over them. Hues are those of Okabe & Ito (2008), which

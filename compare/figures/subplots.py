@@ -1,5 +1,5 @@
-"""What the panels of a figure show: at each receiver the component that moves most, less its
-static state; and the table of every waveform in them, as it was recorded.
+"""Contents of a figure's panels: at each receiver the component that moves most, less its static
+state; and the table of every waveform in them, as it was recorded.
 """
 
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""Which column `--with` means: FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL.
+"""Columns selected by `--with`: FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL.
 
 COLUMN is a header of the file, or in a table of `jointwave compare --out`, whose headers are
 `solution | place | variant (unit)`, one or more of these parts.

@@ -1,4 +1,4 @@
-"""What every solution of a scene resolves, and the one that the others are held against.
+"""Ranking of solutions by what they resolve of a scene, and its reference.
 
 The reference of a scene is the solution that leaves out the least: the finest rock first, then an
 exact one before a computed one. A solution that lacks an effect of the scene is never a reference.

@@ -1,4 +1,4 @@
-"""What each engine's run takes, timed alone."""
+"""Cost of each engine's run, timed alone."""
 
 from __future__ import annotations
 

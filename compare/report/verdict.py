@@ -1,4 +1,4 @@
-"""Where an engine stands on a scene: its misfits, what they cost, and the verdict in one word."""
+"""Verdict on an engine for a scene: its misfits, their cost, and one word."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `jointwave run` is asked for, as jobs: one for each result, all of which can be made."""
+"""Jobs of `jointwave run`: one for each result, checked before any is run."""
 
 from pathlib import Path
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""How a process is joined to those that have freedoms in common with it."""
+"""Connection of a process to those that share freedoms with it."""
 
 import ctypes
 from typing import NamedTuple

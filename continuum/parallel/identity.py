@@ -1,4 +1,4 @@
-"""Which nodes of different processes are one and the same, told by the mesh alone.
+"""Identity of nodes of different processes, from the mesh alone.
 
 A node lies on a corner, an edge or a facet of its cell, or inside: the vertices of that, and where
 between them the node is, are the same from every cell that has the node. No two coordinates need

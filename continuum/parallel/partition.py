@@ -1,4 +1,4 @@
-"""Which process holds which cells of a mesh, and the part of the mesh that one of them holds."""
+"""Partition of a mesh: the cells of each process, and its part of the mesh."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""Where a point of the pillar lies in the mesh, and what the elements' functions are there."""
+"""Position of a point of the pillar in the mesh, and the elements' functions there."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""How motion and stress are read at any place along the pillar."""
+"""Receivers: motion and stress at any place along the pillar."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""Where a scene starts from: unloaded, under its prestress, or in equilibrium with gravity."""
+"""Initial state of a scene: unloaded, under its prestress, or in equilibrium with gravity."""
 
 from dataclasses import replace
 

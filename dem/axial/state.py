@@ -1,4 +1,4 @@
-"""What changes in a run; the arrays of absent effects are None."""
+"""The state of a run; the arrays of absent effects are None."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which effects a row has, and where a block's numbers lie: tiles of 64 blocks, a row for each.
+"""Memory layout of a row: tiles of 64 blocks, a line of numbers for each quantity.
 
 The motion of a tile and the history of its joints are flat arrays in which all distances between
 rows are constants: what lets the compiler work on several blocks at once. They are apart because

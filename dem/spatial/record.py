@@ -1,4 +1,4 @@
-"""What is recorded of a row in space: waveforms, snapshots of all blocks, fragments."""
+"""Records of a row in space: waveforms, snapshots of all blocks, fragments."""
 
 from collections.abc import Callable
 from typing import Any

@@ -1,4 +1,4 @@
-"""Where a spatial scene starts from: unloaded, under its prestress, at rest under gravity."""
+"""Initial state of a spatial scene: unloaded, under its prestress, at rest under gravity."""
 
 from dataclasses import replace
 

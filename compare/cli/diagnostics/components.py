@@ -1,4 +1,4 @@
-"""What `jointwave doctor` looks at, one part after the other, in a process that may break.
+"""Checks of `jointwave doctor`, one after the other, in a process that may crash.
 
 `python -m compare.cli.diagnostics.components NAME ...` prints a line of JSON for each: what is
 found, or why it is not. A library that ends the process takes only its own line with it, see

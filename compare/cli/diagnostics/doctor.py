@@ -1,4 +1,4 @@
-"""What there is of jointwave on this machine, and whether both engines give what they should.
+"""The installation on this machine, and whether both engines compute correctly here.
 
 Libraries are looked at in processes of their own: one that breaks is a line of the report.
 """

@@ -1,4 +1,4 @@
-"""What `jointwave doctor` shows."""
+"""Output of `jointwave doctor`."""
 
 from math import isnan
 from typing import Any

@@ -1,4 +1,4 @@
-"""Where and when a pulse first pulls one of the joints of deformable jointed rock apart.
+"""Place and time at which a pulse first opens one of the joints of deformable jointed rock.
 
 Until then the rock is linear: the first failure is that of the stress at all joints of
 `jointed_bar`, to the scene's interval between samples. Of the homogenised bar and of rigid blocks

@@ -1,4 +1,4 @@
-"""Where and when a pulse first pulls a bar with a free end apart, and the same in the chain.
+"""Place and time at which a pulse first breaks a bar with a free end, and the chain.
 
 At the distance x from the free end a pulse f, which entered the start at t = 0, and its reflection
 add up to the tension (Kolsky, Stress Waves in Solids, 1953)

@@ -1,4 +1,4 @@
-"""What of a pillar's cells can be seen: the faces on the outside of its blocks, and their edges."""
+"""The visible surface of a pillar's cells: the outer faces of its blocks, and their edges."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""How a scene is looked at: from which side, how much exaggerated, and what its colours say."""
+"""Settings of a view: its side, its exaggeration, and the meaning of its colours."""
 
 from math import floor, log10
 from typing import NamedTuple

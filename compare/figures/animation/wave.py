@@ -1,4 +1,4 @@
-"""What is drawn of one engine at each instant: polygons, edges, colours, and the wave along y."""
+"""One engine at each instant: polygons, edges, colours, and the wave along y."""
 
 from functools import cached_property
 

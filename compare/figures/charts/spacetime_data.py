@@ -1,5 +1,5 @@
-"""What space-time diagrams show: the motion along the pillar by an engine, and the differences
-between engines or from exact solutions, in numbers.
+"""Data of space-time diagrams: the motion along the pillar by an engine, and the differences
+between engines or from exact solutions.
 """
 
 from typing import NamedTuple

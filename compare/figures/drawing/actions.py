@@ -1,4 +1,4 @@
-"""What acts on the pillar, in the drawing of its side: load, gravity, prestress."""
+"""Actions on the pillar in the drawing of its side: load, gravity, prestress."""
 
 from matplotlib.axes import Axes
 

@@ -1,4 +1,4 @@
-"""Where the pillar stands in its drawing, whose unit is the inch."""
+"""Position of the pillar in its drawing, whose unit is the inch."""
 
 from typing import NamedTuple
 

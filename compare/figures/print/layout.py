@@ -1,4 +1,4 @@
-"""Where the parts of a figure for a paper stand: its panels, its titles, its legend."""
+"""Layout of a figure for a paper: its panels, its titles, its legend."""
 
 from __future__ import annotations
 

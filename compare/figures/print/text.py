@@ -1,4 +1,4 @@
-"""What the figures for papers say, in English and in Chinese."""
+"""Texts of figures for papers, in English and in Chinese."""
 
 from __future__ import annotations
 

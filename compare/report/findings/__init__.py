@@ -1,4 +1,4 @@
-"""What each figure of Guo & Li (2002) must show, measured on every engine and judged.
+"""Findings of each figure of Guo & Li (2002), measured on every engine and judged.
 
 A finding holds or it does not, by the numbers in its sentence; none is left out when it fails.
 What lies between the engines and the exact solutions is in the tables of misfits.

@@ -1,4 +1,4 @@
-"""What the whole page is about: how much of a distance is error, and how much is physics."""
+"""Finding of the whole page: how much of a distance is error, and how much is physics."""
 
 from compare.exact.bar import equivalent_bar, jointed_bar
 from compare.exact.blocks import lattice

@@ -1,4 +1,4 @@
-"""What is known of a run before it starts: is it made already, and where does it go on."""
+"""State of a run before it starts: done already, or the sample at which it resumes."""
 
 from __future__ import annotations
 

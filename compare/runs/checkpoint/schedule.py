@@ -1,4 +1,4 @@
-"""Who watches over a run of `jointwave run`: checkpoints by the clock, ends when asked to."""
+"""Checkpoints of `jointwave run` by the clock, and its end on request."""
 
 from __future__ import annotations
 

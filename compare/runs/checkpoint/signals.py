@@ -1,4 +1,4 @@
-"""What happens when the user or the machine asks this program to end."""
+"""Signals by which the user or the system ends this program."""
 
 from __future__ import annotations
 

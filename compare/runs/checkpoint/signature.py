@@ -1,4 +1,4 @@
-"""What decides the bits of a result: the scene, what computes it, and on how many processes."""
+"""Signature of a result: the scene, the program that computes it, its number of processes."""
 
 from __future__ import annotations
 
