@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from compare.exact.answer import YES
 
 import dem
 from cases.errors import SceneError
@@ -23,6 +22,7 @@ from compare.misfit.alignment import distance_at, distances, lay_beside
 from compare.misfit.external import Place, read_curves
 from compare.misfit.pairs import Comparison, compare, measure_curves
 from compare.report.report import write_comparisons
+from compare.solvers.record import YES
 
 SCENE = "guo-li-2002/fig-03"
 AT_20 = Place("stress", "", 20.0)

@@ -76,7 +76,7 @@ def test_more_processes_than_cells_are_refused(jointwave, said, tmp_path):
 SERIAL = """
 import sys
 from mpi4py import MPI
-from compare import cli
+from compare.cli import program
 from continuum import build
 from continuum.parallel import body
 
@@ -86,7 +86,7 @@ def broken(*arguments):
 if MPI.COMM_WORLD.rank == {rank}:
     {function} = broken
 sys.argv = ["jointwave", *sys.argv[1:]]
-cli.main()
+program.main()
 """
 
 

@@ -144,7 +144,7 @@ def test_an_svg_holds_a_glyph_for_every_letter(written, language):
 @needs_chinese
 def test_chinese_labels_have_glyphs(comparison):
     """Every letter of every label that there is, not only of those in one figure."""
-    words = [*CHINESE.solutions.values(), *CHINESE.quantities.values(), *CHINESE.parts.values()]
+    words = [*map(CHINESE.solution, names()), *CHINESE.quantities.values(), *CHINESE.parts.values()]
     text = "".join([*words, CHINESE.time, CHINESE.place, CHINESE.comma])
     left = fonts.missing(fonts.file_of("DejaVu Sans"), text)
     assert left and not fonts.missing(fonts.chinese_font().fname, "".join(left))
