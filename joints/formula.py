@@ -8,7 +8,7 @@ from numba.extending import register_jitable
 #: Versions of numba whose inside the short pass list is known to fit; with others it takes longer.
 KNOWN = ((0, 68),)
 
-options: dict[str, Any] = {"forceinline": True, "error_model": "numpy"}
+options: dict[str, Any] = {"forceinline": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 if numba.version_info.short in KNOWN:
     from joints.formula_compiler import FormulaCompiler
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import llvmlite.binding
 import numba
+from numba.core.runtime import rtsys
 
 from numerics.cache import cache_directory, make, mark_used
 
@@ -78,7 +79,23 @@ def _compiled(function: Callable, **options: bool) -> Callable:
         function
     )
     kernel._cache.save_overload = _one_at_a_time(kernel._cache.save_overload)
+    kernel._cache.load_overload = _without_registries(kernel._cache)
     return kernel
+
+
+def _without_registries(cache: Any) -> Callable:
+    """Return numba's loading of a cached kernel, without its registries of what it can compile.
+
+    They take a third of a second to read, and nothing of them is needed to call machine code; where
+    nothing is cached, the compiler reads them itself.
+    """
+
+    def load(signature: Any, target: Any) -> Any:
+        rtsys.initialize(target)
+        with cache._guard_against_spurious_io_errors():
+            return cache._load_overload(signature, target)
+
+    return load
 
 
 def _one_at_a_time(save: Callable) -> Callable:

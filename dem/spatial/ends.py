@@ -22,7 +22,7 @@ from cases.schema.scene import Scene
 from dem.spatial.finite import angular_velocity
 from dem.spatial.layout import ABOUT_X, LEFT, Form, X, Y, Z
 from dem.spatial.layout import STRIDE as R
-from dem.spatial.motion import Block
+from dem.spatial.motion import FALL, PUSH, Block
 from joints.ends import half_spring
 from joints.formula import formula
 
@@ -188,7 +188,8 @@ def ends_for(form: Form) -> tuple[Callable, Callable, Callable]:
         put_velocity(b, before, m, i)
         put_net_force(b, mean, q, i)
         for k in range(b.freedoms):  # the velocity after the step without the end
-            mean[k] = b.keep * before[k] + (b.push[k] * mean[k] + b.fall[k])
+            gain = b.rows[PUSH, k] * mean[k] + b.rows[FALL, k]
+            mean[k] = b.keep * before[k] + gain
         at_face(b, before, side)
         at_face(b, mean, side)
         for k in range(b.freedoms):

@@ -28,6 +28,7 @@ from dem.spatial.layout import (
 )
 from dem.spatial.layout import LANES as L
 from dem.spatial.layout import STRIDE as R
+from dem.spatial.motion import FACE, INERTIA, WEIGHT
 from joints.energy import elastic_energy, fracture_energy_spent
 from joints.formula import formula
 
@@ -85,7 +86,7 @@ def stored_for(form: Form) -> Callable:
         """
         if not by_points:
             for k in range(b.freedoms):
-                share, g = 0.5 * b.face[k], q[RELATIVE + k * R :]
+                share, g = 0.5 * b.rows[FACE, k], q[RELATIVE + k * R :]
                 for i in range(min(joints, L)):
                     if varied:
                         law = law_at(table, i)
@@ -108,7 +109,7 @@ def stored_for(form: Form) -> Callable:
                     ex, ez = slip_x - own[i], slip_z - own[L + i]
                     ledger[ELASTIC + i] += area * elastic_energy(law, parts, gap, opening, ex, ez)
         if gravity:
-            x, y, z = b.weight[0], b.weight[1], b.weight[2]
+            x, y, z = b.rows[WEIGHT, 0], b.rows[WEIGHT, 1], b.rows[WEIGHT, 2]
             for i in range(min(n, L)):
                 ledger[GRAVITY + i] -= x * m[X + i] + y * m[Y + i] + z * m[Z + i]
 
@@ -149,7 +150,7 @@ def work_for(form: Form) -> tuple[Callable, Callable]:
         net impulse of everything else; else the net impulse, that of the dashpots.
         """
         for k in range(b.freedoms):
-            inertia, weight = b.inertia[k], b.dt * b.weight[k]
+            inertia, weight = b.rows[INERTIA, k], b.dt * b.rows[WEIGHT, k]
             moved, own = m[velocity + k * R :], q[k * R :]
             for i in range(min(n, L)):
                 old, new, impulse = own[BEFORE + i], moved[i], own[NET + i]
@@ -177,7 +178,7 @@ def work_for(form: Form) -> tuple[Callable, Callable]:
             add_impulse(b, m, q, ledger, n, True)
         if sampled:  # m v[n-1/2] v[n+1/2] / 2, the form that leapfrog conserves
             for k in range(b.freedoms):
-                inertia = 0.5 if finite and k > 2 else 0.5 * b.inertia[k]
+                inertia = 0.5 if finite and k > 2 else 0.5 * b.rows[INERTIA, k]
                 energy = ledger[KINETIC if k < 3 else ROTATION :]
                 old, new = q[BEFORE + k * R :], m[velocity + k * R :]
                 for i in range(min(n, L)):

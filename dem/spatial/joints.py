@@ -43,6 +43,7 @@ from dem.spatial.layout import (
 )
 from dem.spatial.layout import LANES as L
 from dem.spatial.layout import STRIDE as R
+from dem.spatial.motion import FACE
 from joints.energy import friction_work
 from joints.formula import formula
 from joints.law import Law
@@ -154,7 +155,7 @@ def joints_for(form: Form) -> Callable:
     def face_forces(b, law, table, m, h, q, n):
         """Compute the forces of joints that always hold, from their stiffness as a whole, and keep
         their relative motion for the ledger."""
-        face = b.face[0], b.face[3], b.face[4]
+        face = b.rows[FACE, 0], b.rows[FACE, 3], b.rows[FACE, 4]
         for i in range(min(n, L)):
             if varied:
                 law = law_at(table, i)

@@ -55,13 +55,33 @@ class Block(NamedTuple):
         return rows
 
 
+class Constants(NamedTuple):
+    """A block as kernels use it: `rows` is the whole array, a quantity's row for each freedom.
+
+    One array, not five: every array makes every call that passes it longer to compile.
+    """
+
+    dt: float
+    arm: float
+    half_side: float
+    keep: float
+    local: float
+    mass: float
+    inertia_across: float
+    inertia_along: float
+    freedoms: int
+    rows: np.ndarray
+
+
+INERTIA, PUSH, FALL, WEIGHT, FACE = range(1, 6)  # rows
+
+
 @formula
-def block_of(c):
-    """Return the block of an array of its constants."""
-    return Block(
-        c[0, 0], c[0, 1], c[0, 2], c[0, 3], c[0, 4], c[0, 5], c[0, 6], c[0, 7],
-        int(c[0, 8]), c[1], c[2], c[3], c[4], c[5],
-    )  # fmt: skip
+def constants_of(c):
+    """Return the constants of a block from its array."""
+    return Constants(
+        c[0, 0], c[0, 1], c[0, 2], c[0, 3], c[0, 4], c[0, 5], c[0, 6], c[0, 7], int(c[0, 8]), c
+    )
 
 
 def motion_for(form: Form) -> Callable:
@@ -94,7 +114,7 @@ def motion_for(form: Form) -> Callable:
     @formula
     def turn(b, m, q, n):
         """Advance angular momenta by the moments of a step, and turn the blocks by them."""
-        gain = b.push[0] * b.mass  # dt, less by mass-proportional damping
+        gain = b.rows[PUSH, 0] * b.mass  # dt, less by mass-proportional damping
         for i in range(min(n, L)):
             momentum, at = three(m, velocity + ABOUT_X, i), i + 1 + LEFT
             moment = three(q, ABOUT_X, i)
@@ -115,7 +135,7 @@ def motion_for(form: Form) -> Callable:
 
         m : motion of the tile. q : its buffer, with the forces of all joints.
         """
-        push, (x, y, z) = b.push[0], (b.fall[0], b.fall[1], b.fall[2])
+        push, x, y, z = b.rows[PUSH, 0], b.rows[FALL, 0], b.rows[FALL, 1], b.rows[FALL, 2]
         for i in range(min(n, L)):
             advance_one(b, m, q, X + i, q[X + i] - q[X + i + 1], push, x)
             advance_one(b, m, q, Y + i, q[Y + i] - q[Y + i + 1], push, y)
@@ -123,7 +143,7 @@ def motion_for(form: Form) -> Callable:
         if finite:
             turn(b, m, q, n)
         elif turns:
-            across, along = b.push[3], b.push[4]
+            across, along = b.rows[PUSH, 3], b.rows[PUSH, 4]
             for i in range(min(n, L)):
                 x = q[ABOUT_X + i] - q[ABOUT_X + i + 1] - b.arm * (q[Z + i] + q[Z + i + 1])
                 z = q[ABOUT_Z + i] - q[ABOUT_Z + i + 1] + b.arm * (q[X + i] + q[X + i + 1])

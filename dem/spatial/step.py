@@ -13,7 +13,7 @@ from dem.spatial.joints import joints_for, law_at
 from dem.spatial.layout import DRAG, FORCE, LEFT, Form
 from dem.spatial.layout import LANES as L
 from dem.spatial.layout import STRIDE as R
-from dem.spatial.motion import block_of, motion_for
+from dem.spatial.motion import constants_of, motion_for
 from joints.formula import formula
 from numerics.divergence import EVERY, SPEED, exceeds, note
 
@@ -58,7 +58,7 @@ def step_for(form: Form) -> Callable:
         constants, table, points, stress, direction, base, ends = model
         motion, history, sliding, end_states = state
         contacts, centres, force, velocity, displacement = recorded
-        b, m, final = block_of(constants), motion[t], t == len(motion) - 1
+        b, m, final = constants_of(constants), motion[t], t == len(motion) - 1
         blocks = count - t * L if final else L
         joints = blocks - 1 if final else blocks
         sampled, sample = n % stride == 0, n // stride

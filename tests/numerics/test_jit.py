@@ -78,6 +78,40 @@ def test_one_process_at_a_time_enters_the_cache(tmp_path, monkeypatch):
     assert {path.suffix for path in tmp_path.rglob("*.nb?")} == {".nbi", ".nbc"}
 
 
+SUM = """
+import sys
+import numpy
+from numerics.jit import jitted
+
+@jitted
+def total(a):
+    found, rows = 0.0, numpy.zeros(a.size)
+    for i in range(a.size):
+        rows[i] = a[i] + 1.0
+        found += rows[i]
+    return found, rows
+
+found, rows = total(numpy.ones(3))
+assert found == 6.0 and rows.tolist() == [2.0, 2.0, 2.0]
+print(int(not total.stats.cache_hits), "numba.np.arraymath" in sys.modules)
+if len(sys.argv) > 1:
+    print(total(numpy.ones(3, dtype=numpy.float32))[0])
+"""
+
+
+def test_a_cached_kernel_runs_without_the_registries_of_the_compiler(tmp_path):
+    """They take longer to import than a short run; a kernel that must be compiled still finds
+    them, after another one has been loaded without them too."""
+    (tmp_path / "program.py").write_text(SUM)
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(tmp_path)}
+    command = [sys.executable, str(tmp_path / "program.py")]
+    said = [
+        subprocess.check_output([*command, *more], env=environment, text=True).split()
+        for more in ([], [], ["another type"])
+    ]
+    assert said == [["1", "True"], ["0", "False"], ["0", "False", "6.0"]]
+
+
 RUN = "import cases, dem; dem.simulate(cases.load_variant({scene!r}, '', {changes}))"
 
 
