@@ -18,6 +18,7 @@ from compare.exact.drive import Signal
 
 NEGLIGIBLE = 1e-18  # of a propagator whose largest entries are about 1: below round-off
 NOISE = 64 * float(np.finfo(float).eps)  # of the twin, in each interval
+BATCH = 256  # instants whose loads and outputs are worked out at once
 MORE_POINTS = 7  # of integration, for the twin
 SAFETY = 4.0  # on what a solution and its twin differ by
 
@@ -68,11 +69,15 @@ def twins(
         driven.append((G, _load_on_nodes(load, times[:-1], h, nodes, weights)))
     off = 1 + NOISE * np.random.default_rng(0).uniform(-1, 1, len(vector))
     off = np.stack([np.ones(len(vector)), off], axis=1)
-    x, out = np.zeros((len(vector), 2)), np.zeros((2, len(times), len(output)))
-    for n in range(1, len(times)):
-        share = np.stack([G @ shares[n - 1] for G, shares in driven], axis=1)
-        x = off * (P @ x + share)
-        out[:, n] = (output @ x).T
+    x = np.zeros((len(vector), 2))
+    out = np.zeros((2, len(times), len(output)))
+    for first in range(1, len(times), BATCH):
+        some = slice(first, min(first + BATCH, len(times)))
+        states = np.stack([F[some.start - 1 : some.stop - 1] @ G.T for G, F in driven], axis=-1)
+        for n, share in enumerate(states):
+            x = off * (P @ x + share)
+            states[n] = x
+        out[:, some] = (output @ states).transpose(2, 0, 1)
     return out
 
 

@@ -111,10 +111,11 @@ def response(
 def _convolution(root: complex, load: Sine, times: np.ndarray) -> np.ndarray:
     """Return C(r) = int_0^t f(s) e^{r (t - s)} ds at `times`."""
     omega, t, end = 2 * pi / load.period, np.maximum(times, 0.0), load.end
-    forced = omega * np.cos(omega * t) + root * np.sin(omega * t)
-    after = omega * np.exp(root * np.maximum(t - end, 0.0))
-    tail = np.where(t < end, forced, after)
-    return load.amplitude * (omega * np.exp(root * t) - tail) / (root**2 + omega**2)
+    on = t < end
+    found = omega * np.exp(root * np.where(on, t, t - end))
+    found[on] -= omega * np.cos(omega * t[on]) + root * np.sin(omega * t[on])
+    found[~on] *= np.expm1(root * end)
+    return load.amplitude / (root**2 + omega**2) * found
 
 
 def wavenumber(omega: np.ndarray | float, speed: float, eta: float) -> np.ndarray:

@@ -14,7 +14,7 @@ displacement adds its integral. The paper stops at n = 100. What a sum leaves ou
 Holds for shape "sine", free ends, no dashpots, no soft layers, every joint carrying tension.
 """
 
-from math import pi, sqrt
+from math import cos, pi, sin, sqrt
 
 import numpy as np
 import xarray as xr
@@ -90,11 +90,14 @@ def amplitude(mode: float, load: Sine, times: np.ndarray) -> tuple[np.ndarray, n
         )
         rate = np.where(on, t, end) * np.sin(omega * t)
         return load.amplitude * g / 2, load.amplitude * rate / 2
-    since = np.where(on, 0.0, t - end)
-    tail_sin = np.where(on, mode / omega * np.sin(omega * t), np.sin(mode * since))
-    tail_cos = np.where(on, np.cos(omega * t), np.cos(mode * since))
+    sine, cosine = np.sin(mode * t), np.cos(mode * t)
+    # sin(m t) - sin(m (t - end)) by angle addition, likewise the cosines.
+    c, s = cos(mode * end), sin(mode * end)
+    g, rate = sine - (sine * c - cosine * s), cosine - (cosine * c + sine * s)
+    g[on] = sine[on] - mode / omega * np.sin(omega * t[on])
+    rate[on] = cosine[on] - np.cos(omega * t[on])
     factor = load.amplitude * omega / (omega**2 - mode**2)
-    return factor * (np.sin(mode * t) - tail_sin), factor * (np.cos(mode * t) - tail_cos)
+    return factor * g, factor * rate
 
 
 def rigid(load: Sine, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
