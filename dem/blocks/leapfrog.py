@@ -1,0 +1,319 @@
+"""Leapfrog steps of rigid blocks in the plane: forces of the joints, then motion of the blocks.
+
+Displacements live at whole steps, velocities half a step before; dashpots of joints see rates that
+are extrapolated to the whole step, those beyond the domain the mean of both half steps. The ledger
+is exact at a step of any length: the work of a force from one whole step to the next is the mean of
+its two values times the displacement increment, the kinetic energy v[n-1/2] M v[n+1/2] / 2.
+
+A contact's force is written once and read by both its blocks, in the order of the contacts: every
+block does the same arithmetic however blocks are dealt out, so results are bit-identical.
+"""
+
+from collections.abc import Callable
+from functools import cache
+from math import copysign
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from dem.blocks.model import (
+    BENDING,
+    F_X,
+    F_Y,
+    I_X,
+    I_Y,
+    J_X,
+    J_Y,
+    LENGTH,
+    N_X,
+    N_Y,
+    ON_I,
+    ON_J,
+    STRETCH,
+    Form,
+    Model,
+    State,
+)
+from joints.energy import elastic_energy, fracture_energy_spent, friction_work
+from joints.formula import formula
+from joints.law import law_of
+from joints.normal import normal_traction, spring_traction
+from joints.shear import cohesion_left, shear_return, shear_strength
+from numerics.denormals import flush_tiny, restore_tiny
+from numerics.jit import jitted_for
+
+#: Columns of a point's history: what has slid, the largest opening and the cohesion.
+SLID, OPENING, COHESION = range(3)
+#: Running sums of the ledger.
+VISCOUS, FRICTION, BOUNDARY, WORK = range(4)
+#: Terms of the ledger at a sample, in the order of their rows.
+TERMS = (
+    "kinetic", "elastic", "viscous", "friction", "fracture", "boundary", "gravity", "work",
+)  # fmt: skip
+
+
+@formula
+def relative(x, i, j, k):
+    """Return opening, slip and turn of block j against block i at the centre of contact k."""
+    n_x, n_y = k[N_X], k[N_Y]
+    along_x = (x[j, 0] - x[j, 2] * k[J_Y]) - (x[i, 0] - x[i, 2] * k[I_Y])
+    along_y = (x[j, 1] + x[j, 2] * k[J_X]) - (x[i, 1] + x[i, 2] * k[I_X])
+    return n_x * along_x + n_y * along_y, n_x * along_y - n_y * along_x, x[j, 2] - x[i, 2]
+
+
+class Samples(NamedTuple):
+    """What is recorded: displacement and velocity of blocks [place, 3, sample], m and m/s, rad and
+    rad/s, and the ledger [term, sample], J; None without."""
+
+    displacement: np.ndarray
+    velocity: np.ndarray
+    energy: Any
+
+
+def samples_for(model: Model, count: int) -> Samples:
+    """Return room for so many samples."""
+    displacement, velocity = np.zeros((2, len(model.places), 3, count))
+    energy = np.zeros((len(TERMS), count)) if model.form.ledger else None
+    return Samples(displacement, velocity, energy)
+
+
+def march(
+    model: Model,
+    state: State,
+    samples: Samples,
+    stride: int,
+    steps: tuple[int, int],
+    drive: np.ndarray | None = None,
+) -> None:
+    """Take the steps first .. last - 1, with the samples that fall on them, `stride` steps apart.
+
+    drive : float array [last - first, h, 3], N and N m, what acts on held blocks in each step.
+    """
+    form, b, contacts, (first, last) = model.form, model.blocks, model.contacts, steps
+    held = model.held or (None, None, None, None)
+    if model.held is not None and drive is None:
+        drive = np.zeros((last - first, len(model.held.dashpot), 3))
+    loop_for(form)(
+        contacts.blocks, contacts.table, contacts.law, *model.adjacency, b.inertia, model.laws,
+        model.points, *held, *state, drive, model.places, *samples,
+        b.dt, b.keep, b.local, b.gravity_x, b.gravity_y, first, last, -(-first // stride), stride,
+    )  # fmt: skip
+
+
+@cache
+def loop_for(form: Form) -> Callable:
+    """Return the time loop of rock masses with these effects: what they lack is not compiled."""
+    parts, points = form.parts, form.points
+    dashpots, varied, softening = parts.dashpots, parts.varied, parts.softening
+    residual, held, ledger = parts.residual, form.held, form.ledger
+    mass_damping, local_damping, gravity = form.mass_damping, form.local_damping, form.gravity
+    damped, drags = form.mass_damping or form.local_damping, form.parts.dashpots and form.ledger
+
+    @jitted_for(form)
+    def loop(
+        pair, table, law_index, first_side, side, inertia, laws, rule, row, keeps, moves, dashpot,
+        u, v, force, rates, drag, history, sums, drive, places, displacement, velocity, energy,
+        dt, keep, local, g_x, g_y, first, last, s, stride,
+    ):  # fmt: skip
+        """Take steps first .. last - 1, and sample s at step s * stride.
+
+        drive : float array [last - first, h, 3], forces and moments on held blocks. The rest are
+        the arrays of `dem.blocks.model`, None for what the form does not have.
+        """
+        tiny = flush_tiny()
+        law = law_of(laws, 0)
+        for n in range(first, last):
+            sampled = n == s * stride
+            elastic, fracture, viscous, friction = 0.0, 0.0, 0.0, 0.0
+
+            # Forces of the joints.
+            for c in range(len(pair)):
+                i, j, k = pair[c, 0], pair[c, 1], table[c]
+                if varied:
+                    law = law_of(laws, law_index[c])
+                length = k[LENGTH]
+                bend = length * length * length / 12.0
+                gap, slip, turn = relative(u, i, j, k)
+                rate, slip_rate, spin, slide = 0.0, 0.0, 0.0, 0.0
+                if dashpots or points > 0:
+                    rate, slip_rate, spin = relative(v, i, j, k)
+                    slide = dt * slip_rate
+                if dashpots:
+                    last_rate = rates[c]
+                    if drags:
+                        last_drag = drag[c]
+                        work = last_drag[0] * rate + last_drag[1] * slip_rate
+                        viscous -= 0.5 * dt * (work + last_drag[2] * spin)
+                    now, slip_now = 1.5 * rate - 0.5 * last_rate[0], 1.5 * slip_rate
+                    slip_now, spin_now = slip_now - 0.5 * last_rate[1], 1.5 * spin
+                    spin_now -= 0.5 * last_rate[2]
+                    before, slip_before, spin_before = rate, slip_rate, spin
+                    last_rate[0], last_rate[1], last_rate[2] = rate, slip_rate, spin
+                    rate, slip_rate, spin = now, slip_now, spin_now
+                f_n, f_s, moment, stretch = 0.0, 0.0, 0.0, 0.0
+                d_n, d_s, d_m = 0.0, 0.0, 0.0
+                if points == 0:
+                    f_n = -law.normal_stiffness * length * gap
+                    f_s = -law.shear_stiffness * length * slip
+                    moment = -law.normal_stiffness * bend * turn
+                    if ledger and sampled:
+                        elastic -= 0.5 * (f_n * gap + f_s * slip + moment * turn)
+                    if dashpots:
+                        d_n = -law.normal_viscosity * length * rate
+                        d_s = -law.shear_viscosity * length * slip_rate
+                        d_m = -law.normal_viscosity * bend * spin
+                        f_n, f_s, moment = f_n + d_n, f_s + d_s, moment + d_m
+                else:
+                    for p in range(points):
+                        e, share, own = rule[0, p] * length, rule[1, p] * length, history[c, p]
+                        here, here_rate = gap - e * turn, rate - e * spin
+                        opening, cohesion = 0.0, 0.0
+                        if softening:
+                            opening = max(own[OPENING], here)
+                            own[OPENING] = opening
+                        if residual:
+                            cohesion = own[COHESION]
+                        t_n = normal_traction(law, parts, here, here_rate, opening)
+                        tau = shear_strength(law, parts, t_n, here, opening, cohesion)
+                        ex = slip - own[SLID]
+                        old = ex - slide
+                        t_s, _, left, _, slipped = shear_return(
+                            law, parts, ex, 0.0, old, 0.0, slip_rate, 0.0, tau, dt
+                        )
+                        if slipped:
+                            own[SLID] = slip - left
+                            if residual:
+                                own[COHESION] = cohesion_left(law, parts, cohesion, slipped)
+                        if ledger:
+                            friction += share * friction_work(law, old, 0.0, left, 0.0, slide, 0.0)
+                            if drags:
+                                spring = spring_traction(law, parts, here, opening)
+                                d_n += share * (t_n - spring)
+                                d_m -= e * share * (t_n - spring)
+                                d_s += share * (t_s + law.shear_stiffness * left)
+                            if sampled:
+                                elastic += share * elastic_energy(
+                                    law, parts, here, opening, left, 0.0
+                                )
+                                if softening:
+                                    fracture += share * fracture_energy_spent(law, opening)
+                        f_n, f_s = f_n + share * t_n, f_s + share * t_s
+                        moment, stretch = moment - e * share * t_n, stretch + e * share * t_s
+                if drags:
+                    last_drag = drag[c]
+                    last_drag[0], last_drag[1], last_drag[2] = d_n, d_s, d_m
+                    work = d_n * before + d_s * slip_before + d_m * spin_before
+                    viscous -= 0.5 * dt * work
+                f_x, f_y = k[N_X] * f_n - k[N_Y] * f_s, k[N_Y] * f_n + k[N_X] * f_s
+                f = force[c]
+                f[F_X], f[F_Y], f[BENDING], f[STRETCH] = f_x, f_y, moment, stretch
+                f[ON_J] = moment + (k[J_X] * f_y - k[J_Y] * f_x)
+                f[ON_I] = moment + (k[I_X] * f_y - k[I_Y] * f_x)
+
+            if sampled:
+                for r in range(len(places)):
+                    for q in range(3):
+                        displacement[r, q, s] = u[places[r], q]
+                        velocity[r, q, s] = 0.5 * v[places[r], q]
+
+            # Motion of the blocks.
+            kinetic, potential, behind = 0.0, 0.0, 0.0
+            boundary, boundary_behind, given, given_behind = 0.0, 0.0, 0.0, 0.0
+            for b in range(len(u)):
+                f_x, f_y, moment = 0.0, 0.0, 0.0
+                for a in range(first_side[b], first_side[b + 1]):
+                    f = force[side[a] >> 1]
+                    if side[a] & 1:
+                        f_x, f_y, moment = f_x + f[F_X], f_y + f[F_Y], moment + f[ON_J]
+                    else:
+                        f_x, f_y, moment = f_x - f[F_X], f_y - f[F_Y], moment - f[ON_I]
+                mass, about = inertia[b, 0], inertia[b, 1]
+                if gravity:
+                    f_x, f_y = f_x + mass * g_x, f_y + mass * g_y
+                    if sampled:
+                        potential -= mass * (g_x * u[b, 0] + g_y * u[b, 1])
+                h = -1
+                if held:
+                    h = row[b]
+                    if h >= 0:
+                        own_drive = drive[n - first, h]
+                        f_x, f_y = f_x + own_drive[0], f_y + own_drive[1]
+                        moment += own_drive[2]
+                v_x, v_y, spin = v[b, 0], v[b, 1], v[b, 2]
+                p_x, p_y, p_m = dt * f_x, dt * f_y, dt * moment
+                if local_damping:
+                    if v_x != 0.0:
+                        p_x -= local * copysign(abs(p_x), v_x)
+                    if v_y != 0.0:
+                        p_y -= local * copysign(abs(p_y), v_y)
+                    if spin != 0.0:
+                        p_m -= local * copysign(abs(p_m), spin)
+                new_x, new_y, new_spin = v_x, v_y, spin
+                if mass_damping:
+                    new_x, new_y, new_spin = keep * v_x, keep * v_y, keep * spin
+                    half = 0.5 * (1.0 + keep)
+                    p_x, p_y, p_m = half * p_x, half * p_y, half * p_m
+                new_x, new_y = new_x + p_x / mass, new_y + p_y / mass
+                new_spin += p_m / about
+                if held and h >= 0:
+                    # The velocity without its dashpots, then what they take of it.
+                    w, m = keeps[h], moves[h]
+                    a_x, a_y, a_m = new_x, new_y, new_spin
+                    new_x = w[0, 0] * v_x + w[0, 1] * v_y + w[0, 2] * spin
+                    new_y = w[1, 0] * v_x + w[1, 1] * v_y + w[1, 2] * spin
+                    new_spin = w[2, 0] * v_x + w[2, 1] * v_y + w[2, 2] * spin
+                    new_x += m[0, 0] * a_x + m[0, 1] * a_y + m[0, 2] * a_m
+                    new_y += m[1, 0] * a_x + m[1, 1] * a_y + m[1, 2] * a_m
+                    new_spin += m[2, 0] * a_x + m[2, 1] * a_y + m[2, 2] * a_m
+                if ledger:
+                    if sampled:
+                        kinetic += 0.5 * mass * (v_x * new_x + v_y * new_y)
+                        kinetic += 0.5 * about * spin * new_spin
+                    r_x, r_y, r_m = 0.0, 0.0, 0.0
+                    if held and h >= 0:
+                        d = dashpot[h]
+                        both_x, both_y = 0.5 * (v_x + new_x), 0.5 * (v_y + new_y)
+                        both = 0.5 * (spin + new_spin)
+                        r_x = -(d[0, 0] * both_x + d[0, 1] * both_y + d[0, 2] * both)
+                        r_y = -(d[1, 0] * both_x + d[1, 1] * both_y + d[1, 2] * both)
+                        r_m = -(d[2, 0] * both_x + d[2, 1] * both_y + d[2, 2] * both)
+                        boundary -= 0.5 * dt * (r_x * v_x + r_y * v_y + r_m * spin)
+                        boundary_behind -= 0.5 * dt * (r_x * new_x + r_y * new_y + r_m * new_spin)
+                        own_drive = drive[n - first, h]
+                        a_x, a_y, a_m = own_drive[0], own_drive[1], own_drive[2]
+                        given += 0.5 * dt * (a_x * v_x + a_y * v_y + a_m * spin)
+                        given_behind += 0.5 * dt * (a_x * new_x + a_y * new_y + a_m * new_spin)
+                    if damped:
+                        # What is missing in the block's momentum.
+                        lost_x = mass * (new_x - v_x) - dt * (f_x + r_x)
+                        lost_y = mass * (new_y - v_y) - dt * (f_y + r_y)
+                        lost_m = about * (new_spin - spin) - dt * (moment + r_m)
+                        viscous -= 0.5 * (lost_x * v_x + lost_y * v_y + lost_m * spin)
+                        behind -= 0.5 * (lost_x * new_x + lost_y * new_y + lost_m * new_spin)
+                v[b, 0], v[b, 1], v[b, 2] = new_x, new_y, new_spin
+                u[b, 0] += dt * new_x
+                u[b, 1] += dt * new_y
+                u[b, 2] += dt * new_spin
+
+            if ledger:
+                sums[VISCOUS] += viscous
+                sums[FRICTION] += friction
+                sums[BOUNDARY] += boundary
+                sums[WORK] += given
+            if sampled:
+                for r in range(len(places)):
+                    for q in range(3):
+                        velocity[r, q, s] += 0.5 * v[places[r], q]
+                if ledger:
+                    energy[0, s], energy[1, s], energy[2, s] = kinetic, elastic, sums[VISCOUS]
+                    energy[3, s], energy[4, s] = sums[FRICTION], fracture
+                    energy[5, s], energy[6, s] = sums[BOUNDARY], potential
+                    energy[7, s] = sums[WORK]
+                s += 1
+            if ledger:
+                sums[VISCOUS] += behind
+                sums[BOUNDARY] += boundary_behind
+                sums[WORK] += given_behind
+        restore_tiny(tiny)
+
+    return loop

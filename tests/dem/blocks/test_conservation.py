@@ -1,0 +1,144 @@
+"""What no law of a joint may change: momenta, energy, and the choice of axes."""
+
+import numpy as np
+import pytest
+
+from dem.blocks.leapfrog import TERMS, march, samples_for
+from dem.blocks.model import I_X, J_Y, state_at_rest
+from joints.law import Law
+
+STIFF = {"normal_stiffness": 9e9, "shear_stiffness": 4e9}
+DASHPOTS = {"normal_viscosity": 9e5, "shear_viscosity": 4e5}
+SLIP = {"cohesion": 2e4, "friction": 0.5}
+SOFTENING = {"tensile_strength": 5e4, "critical_opening": 3e-5}
+LAWS = {
+    "elastic": (STIFF, 0),
+    "elastic, by points": (STIFF, 2),
+    "dashpots": (STIFF | DASHPOTS, 0),
+    "dashpots, by points": (STIFF | DASHPOTS, 3),
+    "no tension": (STIFF | {"carries_tension": 0.0}, 2),
+    "slip": (STIFF | SLIP, 2),
+    "slip with dashpots and lost cohesion": (
+        STIFF | SLIP | DASHPOTS | {"residual_cohesion": 0.0},
+        2,
+    ),
+    "softening": (STIFF | SLIP | SOFTENING | DASHPOTS, 2),
+}
+EACH = pytest.mark.parametrize("law", LAWS)
+
+
+def kicked(model, turn=None, seed=0):
+    """Return a state with random velocities, turned with the patch."""
+    state = state_at_rest(model)
+    state.v[:] = 0.02 * np.random.default_rng(seed).standard_normal(state.v.shape)
+    if turn is not None:
+        state.v[:, :2] = state.v[:, :2] @ turn.T
+    return state
+
+
+@EACH
+def test_momentum_is_kept(law, lattice):
+    """The forces of a joint cancel. Across periodic sides angular momentum has no meaning."""
+    fields, points = LAWS[law]
+    model, _, _ = lattice(Law(**fields), points)
+    state, mass = kicked(model), model.blocks.inertia[:, :1]
+    before = (mass * state.v[:, :2]).sum(axis=0)
+    march(model, state, samples_for(model, 0), 1 << 40, (1, 2001))
+    off = (mass * state.v[:, :2]).sum(axis=0) - before
+    assert np.abs(off).max() < 1e-12 * np.abs(mass * state.v[:, :2]).sum()
+
+
+@EACH
+def test_moments_of_a_contact_cancel_about_any_point(law, lattice):
+    """Both blocks get one force at one place: about the origin its moments are opposite."""
+    fields, points = LAWS[law]
+    model, _, _ = lattice(Law(**fields), points)
+    state = kicked(model)
+    march(model, state, samples_for(model, 0), 1 << 40, (1, 101))
+    f, table = state.force, model.contacts.table
+    apart = table[:, I_X : I_X + 2] - table[:, J_Y - 1 : J_Y + 1]  # from i to j
+    about_i = f[:, 2] + (apart[:, 0] * f[:, 1] - apart[:, 1] * f[:, 0])
+    assert np.abs(about_i - f[:, 3]).max() < 1e-13 * np.abs(f[:, 2:4]).max()
+
+
+def ledger_of(law, lattice, step, count):
+    """Return the terms of a run of random velocities, and the total [samples], J."""
+    fields, points = LAWS[law]
+    model, _, _ = lattice(Law(**fields), points, ledger=True, step=step)
+    state, samples = kicked(model), samples_for(model, 101)
+    march(model, state, samples, count // 100, (0, count + 1))
+    energy = dict(zip(TERMS, samples.energy, strict=True))
+    return energy, samples.energy.sum(axis=0) - 2 * energy["work"]
+
+
+@pytest.mark.parametrize("law", [name for name in LAWS if name not in ("no tension", "softening")])
+def test_the_ledger_closes(law, lattice):
+    """What is stored and dissipated is what was there, to round-off; nothing is ever given back."""
+    fields, _ = LAWS[law]
+    energy, total = ledger_of(law, lattice, 0.25, 2000)
+    assert np.abs(total - total[0]).max() < 1e-11 * total[0]
+    for name in ("viscous", "friction"):
+        assert (np.diff(energy[name]) > -1e-12 * total[0]).all()
+    assert (energy["viscous"][-1] > 0.1 * total[0]) == ("normal_viscosity" in fields)
+    assert (energy["friction"][-1] > 1e-3 * total[0]) == ("friction" in fields)
+
+
+@pytest.mark.parametrize("law", ["no tension", "softening"])
+def test_the_ledger_of_joints_that_open_closes_at_second_order(law, lattice):
+    """In the step in which a joint opens its traction has a kink, and the mean of two values is off
+    by half of K times the square of the gap's increment: over a time in which a number of joints
+    open, by the square of the step, and 1e-3 of the whole here."""
+    found = []
+    for step, count in ((0.25, 1000), (0.25 / 4, 4000)):
+        energy, total = ledger_of(law, lattice, step, count)
+        found.append(np.abs(total - total[0]).max() / total[0])
+        spent = energy["fracture"][-1]
+        assert (spent > 1e-4 * total[0]) == (law == "softening")
+    assert found[0] < 2e-3 and found[1] < found[0] / 4
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_the_ledger_closes_with_gravity_damping_and_what_acts_on_held_blocks(seed, lattice):
+    """Forces that change at every step, dashpots of any shape, damping of blocks."""
+    random = np.random.default_rng(seed)
+    root = 1e3 * random.standard_normal((2, 3, 3))
+    model, _, _ = lattice(
+        Law(**STIFF, **SLIP), 2, True, mass_damping=200.0, local=0.1, gravity=(1.0, -9.0),
+        held=(root @ root.transpose(0, 2, 1), np.array([3, 17])),
+    )  # fmt: skip
+    state, samples = kicked(model), samples_for(model, 51)
+    drive = 1e5 * random.standard_normal((501, 2, 3))
+    march(model, state, samples, 10, (0, 501), drive)
+    energy = dict(zip(TERMS, samples.energy, strict=True))
+    total = samples.energy.sum(axis=0) - 2 * energy["work"]
+    assert np.abs(total - total[0]).max() < 1e-11 * np.abs(samples.energy).max()
+    for name in ("viscous", "boundary", "work"):
+        assert np.abs(energy[name]).max() > 1e-3 * np.abs(samples.energy).max()
+
+
+@EACH
+@pytest.mark.parametrize("turned", [0.3, np.pi / 2, 2.0])
+def test_a_rock_mass_that_is_turned_and_shifted_moves_alike(law, turned, lattice):
+    """Vectors turn with it, to the round-off of sines, cosines and 200 steps; which point slides
+    first, or opens, is decided alike."""
+    fields, points = LAWS[law]
+    one, _, _ = lattice(Law(**fields), points)
+    other, _, turn = lattice(Law(**fields), points, turned=turned, shifted=(300.0, -20.0))
+    states = kicked(one), kicked(other, turn)
+    for model, state in zip((one, other), states, strict=True):
+        march(model, state, samples_for(model, 0), 1 << 40, (1, 201))
+    u, twin = states[0].u.copy(), states[1].u.copy()
+    twin[:, :2] = twin[:, :2] @ turn
+    assert np.abs(u - twin).max() < 1e-11 * np.abs(u).max()
+
+
+@EACH
+def test_a_rigid_motion_makes_no_force(law, lattice):
+    """All blocks with one velocity: joints feel nothing, now and later."""
+    fields, points = LAWS[law]
+    model, _, _ = lattice(Law(**fields), points)
+    state = state_at_rest(model)
+    state.v[:, :2] = 3.0, -2.0
+    march(model, state, samples_for(model, 0), 1 << 40, (1, 101))
+    assert not state.force.any()
+    assert (state.v[:, :2] == [3.0, -2.0]).all() and not state.v[:, 2].any()
