@@ -122,10 +122,10 @@ def brickwork(
     head, bed : normal and shear stiffness of the upright and the lying joints, Pa/m.
     points : Gauss points of each contact; 2 have the whole bending stiffness of the joint.
     """
-    if not 0 <= offset < 1 or not min(length, height, density) > 0 or points < 1:
-        raise ValueError(
-            f"offset {offset} must lie in [0, 1), {length=}, {height=}, {density=}, {points=} above 0"
-        )
+    if not 0 <= offset < 1:
+        raise ValueError(f"offset is {offset}, must lie in [0, 1)")
+    if not min(length, height, density, points) > 0:
+        raise ValueError(f"{length=}, {height=}, {density=}, {points=} must be positive")
     mass = density * length * height
     rows = list(_joint((1, 0), (1.0, 0.0), (length / 2, -height / 2), height, head, points))
     beds = (((0, 1), offset - 0.5, 1 - offset), ((-1, 1), -0.5, offset))

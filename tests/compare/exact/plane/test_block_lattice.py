@@ -45,7 +45,7 @@ def test_midpoint_contacts_bend_less():
 
 def test_speeds_of_long_waves():
     """c_s^2 = k_s A^2 / 2 m and c_p^2 = k_n A^2 / m along x, off by (k A)^2; along the diagonal
-    c^2 = (k_n/2 + k_s/4 -+ (k_n/2 - k_s/4)) A^2 / m, as C_12 = 0; blocks turn at 2 k_s A^2 / I."""
+    k_n A^2 / 2 m and (k_n + k_s) A^2 / 2 m, as C_12 = 0; blocks turn at 2 k_s A^2 / I."""
     one, x = lattice(), 1e-3
     k_n, k_s = one.normal_stiffness, one.shear_stiffness
     for direction in ([1.0, 0.0], [0.0, -1.0]):
@@ -53,7 +53,7 @@ def test_speeds_of_long_waves():
         expected = A * np.sqrt(np.array([k_s / 2, k_n]) / MASS)
         assert omega[:2] * A / x == pytest.approx(expected, rel=1e-6)
         assert omega[2] == pytest.approx(np.sqrt(2 * k_s * A**2 / one.inertia), rel=1e-5)
-    # Christoffel with C_11 = k_n, C_66 = k_s / 2, C_12 = 0: diagonal (k_n + k_s/2) / 2, off k_s / 4.
+    # Christoffel with C_11 = k_n, C_66 = k_s / 2, C_12 = 0: (k_n + k_s/2) / 2, and k_s / 4 off it.
     omega, _ = modes(one, x / A * np.array([1.0, 1.0]) / np.sqrt(2))
     expected = A * np.sqrt(np.array([k_n / 2, k_n / 2 + k_s / 2]) / MASS)
     assert omega[:2] * A / x == pytest.approx(np.sort(expected), rel=1e-6)
@@ -165,7 +165,7 @@ def test_modes_have_unit_mass():
         (lambda: leapfrog(np.array([1.0, 3.0]), 1.0), "critical one, 0.666667 s"),
         (lambda: Lattice(A, 0.0, 1.0, 1.0, 1.0, 1.0), "mass is 0"),
         (lambda: Lattice(A, 1.0, 1.0, 1.0, -1.0, 1.0), "shear_stiffness is -1"),
-        (lambda: brickwork(1.0, 1.0, 1.0, 1.0, (1, 1), (1, 1)), "offset 1.0"),
+        (lambda: brickwork(1.0, 1.0, 1.0, 1.0, (1, 1), (1, 1)), "offset is 1.0"),
         (
             lambda: replace(
                 brickwork(1.0, 1.0, 0.5, 1.0, (1, 1), (1, 1)), normal=np.full((6, 2), 1.0)

@@ -105,7 +105,7 @@ def test_normal_incidence_in_closed_form(rock, kind):
 @pytest.mark.parametrize("degrees", [25.0, 50.0, 85.0])
 @pytest.mark.parametrize("x, y", [(0.0, -10.0), (4.0, 10.0)])
 def test_evanescent_waves_by_quadrature(rock, joint, directed, degrees, x, y):
-    """A Gaussian SV pulse, whose transform is a Gaussian, summed over real frequencies with 40 times
+    """A Gaussian SV pulse, whose transform is a Gaussian, summed over real frequencies by 40 times
     50 Gauss points; beyond 35.3 degrees its P waves are evanescent and its tails algebraic."""
     s, t0, times = 1e-3, 0.02, np.linspace(0, 0.04, 201)
     nodes, weights = leggauss(50)

@@ -69,8 +69,8 @@ def test_sixty_degrees_by_hand(rock):
 
 @KINDS
 def test_grazing_waves_come_back(rock, kind):
-    """Below 0.1 % within 10 degrees of the normal, nearly all along the face, the same on both sides
-    of the normal."""
+    """Below 0.1 % within 10 degrees of the normal, nearly all along the face, and the same on both
+    sides of the normal."""
     share = energy_flux(kind, ANGLES, rock, coefficients(kind, ANGLES, rock)).sum(axis=0)
     assert share[np.abs(ANGLES) < np.radians(10)].max() < 1e-3
     assert 0.95 < share[0] < 1
