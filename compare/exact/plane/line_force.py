@@ -1,5 +1,5 @@
-"""A line force in plane strain in rock without end (Eason, Fulton & Sneddon, Phil. Trans. A 248,
-1956; Achenbach, Wave Propagation in Elastic Solids, 1973, chapter 3).
+"""A line force in plane strain in rock without end (Achenbach, Wave Propagation in Elastic Solids,
+1973; Kausel, Fundamental Solutions in Elastodynamics, 2006).
 
 With gamma = x/r, s_c = sqrt(t^2 - r^2/c^2) from the arrival r/c on and 0 before, an impulse of
 1 N s per m of the line in direction j displaces along i
@@ -15,7 +15,7 @@ degree -1 in r and t, so that r dG/dr convolved with f is -(tau G) convolved wit
 strains and stresses. Holds for every place off the line and every time; stress tension positive.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -67,20 +67,14 @@ def motion(
     if len(breaks) < 2 or not (np.diff(breaks) > 0).all():
         raise ValueError(f"breaks are {breaks}, must be at least two, ascending")
     d = np.asarray(direction, dtype=float)
-    both = [
-        [
-            np.array(part)
-            for part in zip(
-                *(_motion(rock, d, force, rate, breaks, each, t, points) for each in x), strict=True
-            )
-        ]
+    found, rough = (
+        np.array([_motion(rock, d, force, rate, breaks, place, t, points) for place in x])
         for points in (POINTS, POINTS // 2)
-    ]
-    errors = (
-        SAFETY * np.abs(one - half).max(axis=-1) + FLOOR * np.abs(one).max(initial=0.0)
-        for one, half in zip(*both, strict=True)
     )
-    return Motion(*both[0], *errors)
+    parts = [found[:, rows] for rows in (slice(0, 2), slice(2, 4), slice(4, 7))]
+    off = np.split(SAFETY * np.abs(found - rough).max(axis=-1), [2, 4], axis=1)
+    errors = [e + FLOOR * np.abs(part).max() for e, part in zip(off, parts, strict=True)]
+    return Motion(*parts, *errors)
 
 
 def impulse(rock: Rock, offsets: np.ndarray, times: np.ndarray) -> np.ndarray:
@@ -132,24 +126,21 @@ def _tensor(rock: Rock, x: np.ndarray, P: np.ndarray, Q: np.ndarray) -> np.ndarr
     return (along + np.einsum("ij,mt->mijt", np.eye(2), Q)) / (2 * np.pi * rock.density)
 
 
-def _motion(rock, d, force, rate, breaks, x, t, points) -> tuple[np.ndarray, ...]:
-    """Return displacement [2, n], velocity [2, n] and stress [3, n] at one place."""
+def _motion(rock, d, force, rate, breaks, x, t, points) -> np.ndarray:
+    """Return displacement, velocity and stress [2 + 2 + 3, n] at one place."""
     r = float(np.hypot(*x))
     f, v, slope = (np.zeros((2, len(t))) for _ in range(3))
-    for tau, weights in _pieces(rock, r, breaks, t, points):
-        f += (weights * force(t[:, None] - tau)).sum(axis=-1)
-        moved = weights * rate(t[:, None] - tau)
-        v += moved.sum(axis=-1)
-        slope -= (moved * tau).sum(axis=-1) / r
+    for at, tau, weights in _pieces(rock, r, breaks, t, points):
+        moved = weights * rate(t[at, None] - tau)
+        f[:, at] += (weights * force(t[at, None] - tau)).sum(axis=-1)
+        v[:, at] += moved.sum(axis=-1)
+        slope[:, at] -= (moved * tau).sum(axis=-1) / r
     g, scale = x / r, 2 * np.pi * rock.density
-    displacement, velocity = (
-        (np.outer(g * (g @ d), P) + np.outer(d, Q)) / scale for P, Q in (f, v)
-    )
+    moves = [(np.outer(g * (g @ d), P) + np.outer(d, Q)) / scale for P, Q in (f, v)]
     gradient = _gradient(g, d, r, f, slope) / scale  # [i, k, n], of u_i along k
     dilation = rock.lame * np.trace(gradient)
-    tensor = rock.shear_modulus * (gradient + gradient.transpose(1, 0, 2))
-    stress = np.array([tensor[0, 0] + dilation, tensor[1, 1] + dilation, tensor[0, 1]])
-    return displacement, velocity, stress
+    (xx, xy), (yx, yy) = rock.shear_modulus * gradient
+    return np.concatenate([*moves, [dilation + 2 * xx, dilation + 2 * yy, xy + yx]])
 
 
 def _gradient(g, d, r, values, slopes) -> np.ndarray:
@@ -164,18 +155,19 @@ def _gradient(g, d, r, values, slopes) -> np.ndarray:
     )
 
 
-def _pieces(rock: Rock, r: float, breaks, t: np.ndarray, points: int):
-    """Yield delays tau [n, points] and weights [(P, Q), n, points] of what G does to f(t - tau)."""
-    arrivals = r / rock.p_speed, r / rock.s_speed
+def _pieces(rock: Rock, r: float, breaks, t: np.ndarray, points: int) -> Iterator[tuple]:
+    """Yield which times (indices [k]) some delays tau [k, points] matter to, and the weights
+    [(P, Q), k, points] of f(t - tau) there."""
+    nodes, weights = leggauss(points)
+    fast, slow = r / rock.p_speed, r / rock.s_speed
     for near, far in pairwise(breaks):
-        for region, (first, last) in enumerate(((arrivals[0], arrivals[1]), (arrivals[1], np.inf))):
-            latest = np.clip(t - near, first, last)
-            earliest = np.clip(t - far, first, last)
-            low, high = (np.arccosh(np.maximum(x / first, 1)) for x in (earliest, latest))
-            nodes, weights = leggauss(points)
-            eta = low[:, None] + (high - low)[:, None] * (nodes + 1) / 2
-            share = (high - low)[:, None] * weights / 2
-            yield first * np.cosh(eta), share * _kernel(rock, np.sinh(eta), region)
+        for region, (first, last) in enumerate(((fast, slow), (slow, np.inf))):
+            ends = (np.clip(t - end, first, last) / first for end in (far, near))
+            low, high = (np.arccosh(np.maximum(end, 1)) for end in ends)
+            at = np.flatnonzero(high > low)
+            half = (high - low)[at, None] / 2
+            eta = low[at, None] + half * (nodes + 1)
+            yield at, first * np.cosh(eta), half * weights * _kernel(rock, np.sinh(eta), region)
 
 
 def _kernel(rock: Rock, sinh: np.ndarray, region: int) -> np.ndarray:

@@ -1,11 +1,10 @@
 """P and SV waves at one linear-slip joint at any angle between equal half-spaces.
 
-Traction is continuous, [u_n] = tau_n / K_n and [u_s] = tau_s / K_s (Schoenberg, JASA 68, 1980; Gu,
-Nihei & Myer, JGR 101, 1996); dashpots take K to K - i omega eta. Axes, polarisations and signs are
-those of `waves`: waves come along +n, reflections leave along -n. The mirror symmetry about the
-joint splits the 4 x 4 system: with equal waves from both sides no shear stress acts and the joint
-opens (r), with opposite ones no normal stress acts and it slides (q), R = (r + q)/2,
-T = (r - q)/2. For P, with C = cos 2 phi, S = sin 2 phi, X = 2 s c,
+Traction is continuous, [u_n] = tau_n / K_n and [u_s] = tau_s / K_s (Schoenberg, JASA 68, 1980);
+dashpots take K to K - i omega eta. Axes, polarisations and signs are those of `waves`: waves come
+along +n, reflections leave along -n. The mirror symmetry about the joint splits the 4 x 4 system:
+with equal waves from both sides no shear stress acts and the joint opens (r), with opposite ones no
+normal stress acts and it slides (q), R = (r + q)/2, T = (r - q)/2. For P, with C = cos 2 phi, S = sin 2 phi, X = 2 s c,
 
     opening:  X (1 - r_p) - C r_s = 0
               i omega (Z_p C (1 + r_p) - Z_s S r_s) = -2 K_n (c (1 - r_p) + s r_s)

@@ -7,7 +7,7 @@ lies a stack of reflection R_{i+1}; from the last joint backwards
     Y_i = (I - R E_i R_{i+1} E_i)^-1 T,   R_i = R + T E_i R_{i+1} E_i Y_i
 
 and forwards the waves behind each joint are D_i = Y_i E_{i-1} D_{i-1} (Kennett, Seismic Wave
-Propagation in Stratified Media, 1983, chapter 6; at normal incidence Cai & Zhao, IJRMMS 37, 2000).
+Propagation in Stratified Media, 1983; at normal incidence Cai & Zhao, IJRMMS 37, 2000).
 Nothing grows: evanescent waves only decay. Axes, signs and validity are those of `oblique_joint`;
 joints may differ from each other.
 """

@@ -86,8 +86,8 @@ def test_normal_incidence_is_the_bar_of_one_joint(kind, viscosity):
 
 @KINDS
 def test_no_joint_and_free_faces(kind):
-    """K = inf passes everything; K = 0 is a free face (Aki & Richards, 2002, equations 5.27, 5.28,
-    5.31, 5.32) that passes nothing; both are limits."""
+    """K = inf passes everything; K = 0 is a free face (Aki & Richards, 2002, chapter 5) that passes
+    nothing; both are limits."""
     rock, angle = Rock(2600.0, 5000.0, 2900.0), np.radians(np.linspace(-89, 89, 90))
     passed = np.array(coefficients(kind, angle, OMEGA, rock, Joint(np.inf, np.inf)))
     assert np.abs(passed - np.eye(4)[2 + (kind == "SV")][:, None]).max() < 1e-13
