@@ -14,8 +14,8 @@ bin keep the tails from wrapping; an FFT sums over all bins at once for one poin
 
 What comes after the window is reduced to WRAPPED of itself; frequencies end at pi / step, rounded
 off by exp(-36 (omega step / pi)^8). A rougher inversion, of half of the window and every second
-sample of the pulse, is off by more: SAFETY times the largest difference bounds the error, with
-FLOOR times the largest motion for round-off.
+sample of the pulse, is off by more: SAFETY times the most that the two differ by within NEAR fine
+steps bounds the error, with FLOOR times the largest motion for round-off.
 """
 
 from collections.abc import Callable
@@ -30,8 +30,9 @@ STEPS = 4096  # of the time that is asked for, at least, of a pulse that is a fu
 GAUSS = 10  # points a bin
 SLOPE = 16  # bins, on which the path climbs
 CLIMB = 160  # points on them
-SAFETY = 2.0
-FLOOR = 2e-10
+NEAR = 9  # fine steps
+SAFETY = 2.0  # on the difference of the two inversions
+FLOOR = 2e-10  # of the largest motion
 
 Transfer = Callable[[np.ndarray], np.ndarray]
 Velocity = Callable[[np.ndarray], np.ndarray] | np.ndarray
@@ -52,23 +53,29 @@ class Window(NamedTuple):
 
 
 def inverse(
-    transfer: Transfer, pulse: Velocity, times: np.ndarray, delays: np.ndarray, causal: bool
+    transfer: Transfer, pulse: Velocity, times: np.ndarray, earliest: float, causal: bool
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return u [..., n] at `times` (s, equally spaced) and the bound of its error [...].
+    """Return u [..., n] at `times` (s, equally spaced) and the bound of its root-mean-square error
+    [...].
 
     transfer : H [..., k] at complex omega [k] (rad/s). pulse : f, as a function of time or as
-    samples at `times`, zero before the first. delays : of what arrives first, s.
+    samples at `times`, zero before the first. earliest : delay of what arrives first, s.
     """
+    from scipy.ndimage import maximum_filter1d
+
     require_equally_spaced(times)
     if not callable(pulse) and np.shape(pulse) != times.shape:
         raise ValueError(f"the pulse has {np.shape(pulse)} samples, the times are {times.shape}")
-    lead = max(0.0, -float(np.min(delays)))
+    windows = [window_of(times, pulse, size, max(0.0, -earliest)) for size in (2 * WINDOW, WINDOW)]
     found, rough = (
-        _inverse(transfer, pulse, times, window_of(times, pulse, size, lead), skip, causal)
-        for size, skip in ((2 * WINDOW, 1), (WINDOW, 2))
+        _inverse(transfer, sampled(pulse, window), window, len(times), skip, causal)
+        for window, skip in zip(windows, (1, 2), strict=True)
     )
-    error = SAFETY * np.abs(found - rough).max(axis=-1) + FLOOR * np.abs(found).max()
-    return found, error
+    stride = windows[0].stride
+    off = maximum_filter1d(np.abs(found - rough), NEAR, axis=-1)[..., ::stride]
+    peak = max(np.abs(found).max(), np.abs(sampled(pulse, windows[0])).max())
+    error = SAFETY * np.sqrt(np.mean(off**2, axis=-1)) + FLOOR * peak
+    return found[..., ::stride], error
 
 
 def require_equally_spaced(times: np.ndarray) -> None:
@@ -92,16 +99,16 @@ def window_of(times: np.ndarray, pulse: Velocity, size: float, lead: float) -> W
     return Window(times[0] + step * np.arange(count), step, stride, float(decay))
 
 
-def _inverse(transfer, pulse, times, window, skip, causal) -> np.ndarray:
-    """Return u [..., n] by every `skip`-th sample of the pulse."""
-    signal, n = sampled(pulse, window)[::skip], len(times)
+def _inverse(transfer, signal, window, n, skip, causal) -> np.ndarray:
+    """Return u at the fine steps of n samples, by every `skip`-th fine sample of the pulse."""
+    signal, keep = signal[::skip], slice(0, n * window.stride)
     if causal:
-        return _level(transfer, signal, window, n, skip, 0.5, 0)
+        return _level(transfer, signal, window, skip, 0.5, 0)[..., keep]
     bins = (
-        weight * _level(transfer, signal, window, n, skip, node, SLOPE)
+        weight * _level(transfer, signal, window, skip, node, SLOPE)[..., keep]
         for node, weight in zip(*_gauss(GAUSS), strict=True)
     )
-    return sum(bins) + _climb(transfer, signal, window, times - times[0])
+    return sum(bins) + _climb(transfer, signal, window, skip, keep)
 
 
 def sampled(pulse: Velocity, window: Window) -> np.ndarray:
@@ -111,7 +118,7 @@ def sampled(pulse: Velocity, window: Window) -> np.ndarray:
     return np.pad(np.asarray(pulse, dtype=float), (0, len(window.times) - len(pulse)))
 
 
-def _level(transfer, signal, window: Window, n: int, skip: int, node: float, first: int):
+def _level(transfer, signal, window: Window, skip: int, node: float, first: int) -> np.ndarray:
     """Return the integral over the level path from bin `first` on, with one point a bin."""
     t, step = window.times - window.times[0], skip * window.step
     width = window.bin_width
@@ -121,19 +128,16 @@ def _level(transfer, signal, window: Window, n: int, skip: int, node: float, fir
     F *= np.exp(-36 * (omega.real * step / np.pi) ** 8)
     spectrum = transfer(omega[first:]) * F[first:]
     padded = np.concatenate([np.zeros((*spectrum.shape[:-1], first)), spectrum], axis=-1)
-    keep = slice(0, window.stride * n, window.stride)
-    return width / np.pi * (np.fft.fft(padded, n=len(t))[..., keep] / turn[keep]).real
+    return width / np.pi * (np.fft.fft(padded, n=len(t)) / turn).real
 
 
-def _climb(transfer, signal, window: Window, t: np.ndarray) -> np.ndarray:
-    """Return the integral over the slope from 0 to the level path, at times t after the first."""
+def _climb(transfer, signal, window: Window, skip: int, keep: slice) -> np.ndarray:
+    """Return the integral over the slope from 0 to the level path, at the fine steps `keep`."""
     nodes, weights = _gauss(CLIMB)
-    end = SLOPE * window.bin_width + 1j * window.decay
-    fine = window.times - window.times[0]
-    skip = -(-len(fine) // len(signal))
-    F = np.exp(1j * end * np.outer(nodes, fine[::skip])) @ signal * (skip * window.step)
+    end, t = SLOPE * window.bin_width + 1j * window.decay, window.times - window.times[0]
+    F = np.exp(1j * end * np.outer(nodes, t[::skip])) @ signal * (skip * window.step)
     spectrum = transfer(end * nodes) * (F * weights * end)
-    return (spectrum @ np.exp(-1j * end * np.outer(nodes, t))).real / np.pi
+    return (spectrum @ np.exp(-1j * end * np.outer(nodes, t[keep]))).real / np.pi
 
 
 def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -4,7 +4,8 @@ Traction is continuous, [u_n] = tau_n / K_n and [u_s] = tau_s / K_s (Schoenberg,
 dashpots take K to K - i omega eta. Axes, polarisations and signs are those of `waves`: waves come
 along +n, reflections leave along -n. The mirror symmetry about the joint splits the 4 x 4 system:
 with equal waves from both sides no shear stress acts and the joint opens (r), with opposite ones no
-normal stress acts and it slides (q), R = (r + q)/2, T = (r - q)/2. For P, with C = cos 2 phi, S = sin 2 phi, X = 2 s c,
+normal stress acts and it slides (q), R = (r + q)/2, T = (r - q)/2. For P, with C = cos 2 phi,
+S = sin 2 phi, X = 2 s c,
 
     opening:  X (1 - r_p) - C r_s = 0
               i omega (Z_p C (1 + r_p) - Z_s S r_s) = -2 K_n (c (1 - r_p) + s r_s)
@@ -20,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compare.exact.plane.pulse import Fields, Layers, Pulse, axes_of, pulse_fields
+from compare.exact.plane.pulse import Axes, Fields, Layers, Pulse, axes_of, pulse_fields
 from compare.exact.plane.waves import (
     KINDS,
     Kind,
@@ -28,6 +29,7 @@ from compare.exact.plane.waves import (
     Values,
     cosines,
     face,
+    is_evanescent,
     slowness_along,
     solve_pair,
 )
@@ -135,11 +137,30 @@ def fields(
     axes = axes_of(rock, pulse, dip)
 
     def layers(omega: np.ndarray) -> Layers:
-        R, T = scattering(rock, joint, axes.slowness, omega)
-        incident = np.broadcast_to(axes.incident, R.shape[:-1])
-        behind = T @ axes.incident
-        return Layers(
-            np.stack([incident, behind]), np.stack([R @ axes.incident, np.zeros_like(behind)])
-        )
+        R, T = (x @ axes.incident for x in scattering(rock, joint, axes.slowness, omega))
+        nothing = np.zeros_like(R)
+        return Layers(np.stack([axes.incident + nothing, T]), np.stack([R, nothing]))
 
-    return pulse_fields(rock, pulse, axes, np.zeros(1), layers, np.subtract(points, point), times)
+    at_once = layers_at_once(rock, joint, axes, 1)
+    places = np.subtract(points, point)
+    return pulse_fields(rock, pulse, axes, np.zeros(1), layers, at_once, places, times)
+
+
+def layers_at_once(rock: Rock, first: Joint, axes: Axes, count: int) -> Layers:
+    """Return what the first of `count` joints returns and passes without delay: the limit of high
+    frequencies, in which springs do not act. Where P is evanescent only the incident wave is real.
+    """
+    down, up = np.zeros((2, count + 1, 2))
+    down[0] = axes.incident
+    if not is_evanescent(rock, axes.slowness):
+        R, T = scattering(rock, without_springs(first), axes.slowness, 1.0)
+        up[0], down[1] = (R @ axes.incident).real, (T @ axes.incident).real
+    return Layers(down, up)
+
+
+def without_springs(joint: Joint) -> Joint:
+    """Return a joint with its dashpots alone; infinite stiffness remains."""
+    K_n, K_s = (
+        np.where(np.isinf(K), K, 0.0) for K in (joint.normal_stiffness, joint.shear_stiffness)
+    )
+    return Joint(K_n, K_s, joint.normal_viscosity, joint.shear_viscosity)

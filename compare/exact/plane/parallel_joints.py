@@ -14,7 +14,13 @@ joints may differ from each other.
 
 import numpy as np
 
-from compare.exact.plane.oblique_joint import Coefficients, Joint, picked, scattering
+from compare.exact.plane.oblique_joint import (
+    Coefficients,
+    Joint,
+    layers_at_once,
+    picked,
+    scattering,
+)
 from compare.exact.plane.pulse import Fields, Layers, Pulse, axes_of, pulse_fields
 from compare.exact.plane.waves import Kind, Rock, Values, slowness_along, slownesses_across
 
@@ -99,7 +105,9 @@ def fields(
                 up.append((R[i + 1] @ meets[..., None])[..., 0])
         return Layers(np.stack(down), np.stack([*up, np.zeros_like(up[0])]))
 
-    return pulse_fields(rock, pulse, axes, depths, layers, np.subtract(points, point), times)
+    at_once = layers_at_once(rock, met[0], axes, len(met))
+    places = np.subtract(points, point)
+    return pulse_fields(rock, pulse, axes, depths, layers, at_once, places, times)
 
 
 def _phases(rock: Rock, spacings: np.ndarray, slowness: Values, omega: Values) -> list[np.ndarray]:

@@ -1,4 +1,4 @@
-"""A plane pulse among parallel joints in time: harmonic waves, layer by layer, put together.
+"""A plane pulse among parallel joints in time, put together from harmonic waves of each layer.
 
 In each layer waves along +n start at its first joint and waves along -n at its last one, so that
 every exponential of the sum decays. Points lie at (x, z) in the axes (t, n) of the joints, and
@@ -17,6 +17,7 @@ from compare.exact.plane.waves import (
     KINDS,
     Kind,
     Rock,
+    is_evanescent,
     polarisations,
     slownesses_across,
     speed_of,
@@ -44,7 +45,7 @@ class Pulse:
 
 class Fields(NamedTuple):
     """Motion at points, arrays [points, components, times], and bounds [points, components] of its
-    error at any time: velocity (x, y) in m/s, stress (xx, yy, xy) in Pa, tension positive.
+    root-mean-square error: velocity (x, y) in m/s, stress (xx, yy, xy) in Pa, tension positive.
     """
 
     velocity: np.ndarray
@@ -74,6 +75,8 @@ def axes_of(rock: Rock, pulse: Pulse, dip: float) -> Axes:
     direction = np.asarray(pulse.direction, dtype=float)
     if direction.shape != (2,) or not np.hypot(*direction) > 0:
         raise ValueError(f"direction is {pulse.direction}, must be a vector of the plane, not 0")
+    if np.ndim(rock.p_impedance):
+        raise ValueError("a pulse needs one rock, not arrays of its properties")
     direction = direction / np.hypot(*direction)
     n = np.array([-np.sin(dip), np.cos(dip)])
     n = n if direction @ n > 0 else -n
@@ -90,28 +93,38 @@ def pulse_fields(
     axes: Axes,
     depths: np.ndarray,
     layers: Callable[[np.ndarray], Layers],
+    at_once: Layers,
     points: np.ndarray,
     times: np.ndarray,
 ) -> Fields:
     """Return the fields of a pulse whose velocity is that at the origin.
 
-    depths : of the joints along n, ascending, m. layers : of omega (rad/s), for a unit incident
-    wave at the first joint. points : [m, 2], m. times : equally spaced, s.
+    Parameters
+    ----------
+    depths : of the joints along n, ascending, m.
+    layers : of omega (rad/s), for a unit incident wave at the first joint.
+    at_once : real amplitudes [layers, 2] that follow a pulse without delay; of one that is a
+        function they are summed in time, with all its kinks, and the smoother rest is inverted.
+    points : [m, 2], m. times : equally spaced, s.
     """
+    t, across = np.asarray(times, dtype=float), slownesses_across(rock, axes.slowness)
+    q = axes.incident @ across
     places = np.atleast_2d(points) @ axes.rows.T
-    across = slownesses_across(rock, axes.slowness)
+    waves = [_waves(place, depths, axes.slowness, across, q * depths[0]) for place in places]
     modes = _modes(rock, axes, across)
-    q = across[KINDS.index(pulse.kind)].real
-    delays = axes.slowness * places[:, 0] + q * np.minimum(places[:, 1], depths[0])
+    sharp = np.concatenate(at_once, axis=-1) * callable(pulse.velocity)
 
     def transfer(omega: np.ndarray) -> np.ndarray:
-        found = layers(omega)
-        lead = np.exp(1j * omega * q * depths[0])
-        waves = [lead * _at(place, omega, found, depths, axes, across) for place in places]
-        return np.einsum("awf,wc->acf", np.array(waves), modes)
+        amplitudes = np.concatenate(layers(omega), axis=-1) - sharp[:, None]
+        found = [_delayed(amplitudes[layer], omega, delays) for layer, delays in waves]
+        return np.einsum("mkw,wc->mck", np.array(found), modes)
 
-    causal = abs(axes.slowness) * float(rock.p_speed) <= 1
-    found, error = inverse(transfer, pulse.velocity, np.asarray(times), delays, causal)
+    earliest = axes.slowness * places[:, 0] + q.real * np.minimum(places[:, 1], depths[0])
+    causal = not is_evanescent(rock, axes.slowness)
+    found, error = inverse(transfer, pulse.velocity, t, earliest.min(), causal)
+    if callable(pulse.velocity):
+        for each, (layer, delays) in zip(found, waves, strict=True):
+            each += modes.real.T @ _shifted(pulse.velocity, t, delays.real, sharp[layer])
     unit = float(rock.p_impedance)
     return Fields(found[:, :2], unit * found[:, 2:], error[:, :2], unit * error[:, 2:])
 
@@ -126,14 +139,23 @@ def _modes(rock: Rock, axes: Axes, across: np.ndarray) -> np.ndarray:
     return np.concatenate([g, tensor[:, [0, 1, 0], [0, 1, 1]]], axis=1)
 
 
-def _at(place, omega, found: Layers, depths, axes: Axes, across) -> np.ndarray:
-    """Return the amplitudes [P+, SV+, P-, SV-; omega] at one place (t, n)."""
+def _waves(place, depths, slowness, across, lead) -> tuple[int, np.ndarray]:
+    """Return the layer of a place (t, n) and how late [P+, SV+, P-, SV-] come there from where
+    their amplitudes are given, complex, s; `lead` is that of the first joint."""
     x, z = place
     layer = int(np.searchsorted(depths, z))
     first, last = depths[max(layer - 1, 0)], depths[min(layer, len(depths) - 1)]
-    i = 1j * omega[:, None]
-    down, up = found.down[layer], found.up[layer]
-    forth = down * np.exp(np.where(down == 0, 0, i * across * (z - first)))
-    back = up * np.exp(np.where(up == 0, 0, i * across * (last - z)))
-    both = np.concatenate([forth, back], axis=1)
-    return (both * np.exp(i * axes.slowness * x)).T
+    late = np.concatenate([across * (z - first), across * (last - z)])
+    return layer, late + slowness * x + lead
+
+
+def _delayed(amplitudes: np.ndarray, omega: np.ndarray, delays: np.ndarray) -> np.ndarray:
+    """Return amplitudes [omega, wave] so much later (s)."""
+    phases = 1j * omega[:, None] * delays
+    return amplitudes * np.exp(np.where(amplitudes == 0, 0, phases))
+
+
+def _shifted(velocity, times, delays, amplitudes) -> np.ndarray:
+    """Return the waves [wave, times] of a pulse that is zero before the first of the times."""
+    t = times - delays[:, None]
+    return amplitudes[:, None] * np.where(t < times[0], 0, velocity(t))

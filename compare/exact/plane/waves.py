@@ -91,6 +91,11 @@ def cosines(rock: Rock, slowness: Values) -> tuple[np.ndarray, np.ndarray]:
     return c, k
 
 
+def is_evanescent(rock: Rock, slowness: float) -> bool:
+    """Return whether P waves of slowness p (s/m) decay away from the face."""
+    return bool(np.abs(rock.p_speed * slowness) > 1)
+
+
 def slownesses_across(rock: Rock, slowness: Values) -> np.ndarray:
     """Return c/a and k/b (s/m), complex array [..., 2]."""
     c, k = cosines(rock, slowness)
