@@ -1,0 +1,1 @@
+"""Jointed rock masses in plane strain: pure functions of arrays, stress tension positive."""

@@ -1,0 +1,154 @@
+"""Effective medium of joint sets: long waves in rock with any number of sets of parallel joints.
+
+Each set of unit normal n adds its mean jump to the strain (Schoenberg & Sayers, Geophysics 60,
+1995; Sayers & Kachanov, JGR 100, 1995):
+
+    S_ijkl = S0_ijkl + sum over sets of (alpha_ik n_j n_l + alpha_jk n_i n_l + alpha_il n_j n_k
+             + alpha_jl n_i n_k) / 4,   alpha = Z_T (I - n n) + Z_N n n
+    Z_N = 1/(spacing K_n),   Z_T = 1/(spacing K_s)
+
+Waves by Christoffel's equation, C_ijkl n_j n_l g_k = rho c^2 g_i. The normals have two components
+in plane strain and three in space; normals in the plane give the same plane either way. Holds
+where waves are long against the spacings, and for joints that do not stop one another.
+
+Voigt's form in the order 11, 22, 12 or 11, 22, 33, 23, 13, 12: C takes engineering shear strains,
+gamma_12 = 2 e_12, to stresses.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from compare.exact.plane.waves import Rock
+
+PAIRS = {2: ((0, 0), (1, 1), (0, 1)), 3: ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))}
+
+
+@dataclass(frozen=True)
+class JointSet:
+    """A set of parallel joints: unit normal [2] or [3], compliances Z_N and Z_T (1/Pa)."""
+
+    normal: np.ndarray
+    normal_compliance: float = 0.0
+    shear_compliance: float = 0.0
+
+    def __post_init__(self) -> None:
+        n = np.asarray(self.normal, dtype=float)
+        if n.shape not in ((2,), (3,)) or abs(n @ n - 1) > 1e-9:
+            raise ValueError(f"normal is {self.normal}, must be a unit vector of 2 or 3 components")
+        if not min(self.normal_compliance, self.shear_compliance) >= 0:
+            raise ValueError("compliances of a joint set must not be negative")
+
+
+def joint_set(
+    normal: np.ndarray, spacing: float, normal_stiffness: float, shear_stiffness: float
+) -> JointSet:
+    """Return a set by its spacing (m) and stiffnesses (Pa/m)."""
+    if not min(spacing, normal_stiffness, shear_stiffness) > 0:
+        raise ValueError("spacing and stiffnesses of a joint set must be positive")
+    return JointSet(normal, 1 / (spacing * normal_stiffness), 1 / (spacing * shear_stiffness))
+
+
+def compliance(rock: Rock, sets: list[JointSet], dimension: int = 2) -> np.ndarray:
+    """Return S in Kelvin's form (1/Pa), a tensor's orthogonal components: [3, 3] or [6, 6]."""
+    for one in sets:
+        if len(one.normal) != dimension:
+            raise ValueError(f"normal {one.normal} must have {dimension} components")
+    added = (
+        one.normal_compliance * opening(one.normal) + one.shear_compliance * sliding(one.normal)
+        for one in sets
+    )
+    return sum(added, start=np.linalg.inv(intact(rock, dimension)))
+
+
+def intact(rock: Rock, dimension: int = 2) -> np.ndarray:
+    """Return the stiffness of rock without joints in Kelvin's form, Pa."""
+    pairs = PAIRS[dimension]
+    isotropic = np.array([float(i == j) for i, j in pairs])
+    return rock.lame * np.outer(isotropic, isotropic) + 2 * rock.shear_modulus * np.eye(len(pairs))
+
+
+def opening(normal: np.ndarray) -> np.ndarray:
+    """Return the compliance of a set with Z_N = 1 and Z_T = 0, in Kelvin's form."""
+    n = np.asarray(normal, dtype=float)
+    return _kelvin(np.einsum("i,j,k,l->ijkl", n, n, n, n))
+
+
+def sliding(normal: np.ndarray) -> np.ndarray:
+    """Return the compliance of a set with Z_N = 0 and Z_T = 1, in Kelvin's form."""
+    n = np.asarray(normal, dtype=float)
+    one = np.einsum("ik,j,l->ijkl", np.eye(len(n)) - np.outer(n, n), n, n)
+    orders = (0, 1, 2, 3), (1, 0, 2, 3), (0, 1, 3, 2), (1, 0, 3, 2)
+    return _kelvin(sum(one.transpose(order) for order in orders) / 4)
+
+
+def stiffness(rock: Rock, sets: list[JointSet], dimension: int = 2) -> np.ndarray:
+    """Return C of the effective medium in Voigt's form, Pa: [3, 3] or [6, 6]."""
+    scale = _scale(dimension)
+    return np.linalg.inv(compliance(rock, sets, dimension)) / np.outer(scale, scale)
+
+
+def christoffel(C: np.ndarray, directions: np.ndarray) -> np.ndarray:
+    """Return C_ijkl n_j n_l, arrays [..., d, d] in Pa; C in Voigt's form, directions [..., d]."""
+    n = np.asarray(directions, dtype=float)
+    n = n / np.linalg.norm(n, axis=-1, keepdims=True)
+    return np.einsum("ijkl,...j,...l->...ik", tensor(C), n, n)
+
+
+def speeds(C: np.ndarray, density: float, directions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the phase speeds [..., d] (m/s), ascending, and polarisations [..., d, wave]."""
+    squares, shapes = np.linalg.eigh(christoffel(C, directions) / density)
+    if squares.min() < -1e-9 * squares.max():
+        raise ValueError("the stiffness is not positive: no real waves in some direction")
+    return np.sqrt(np.maximum(squares, 0.0)), shapes
+
+
+def plane_wave(
+    C: np.ndarray,
+    density: float,
+    direction: np.ndarray,
+    branch: int,
+    velocity: Callable[[np.ndarray], np.ndarray],
+    points: np.ndarray,
+    times: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return particle velocity [m, d, n] (m/s) and stress [m, Voigt, n] (Pa, tension positive).
+
+    Parameters
+    ----------
+    branch : 0 the slowest. Its polarisation g points along the travel or, for a shear wave, to
+        whatever side makes its largest component positive.
+    velocity : f(t) at the origin, m/s; v = g f(t - n.x/c), stress = -C:(n g) f / c.
+    points, times : [m, d] (m) and [n] (s).
+    """
+    n = np.asarray(direction, dtype=float) / np.linalg.norm(direction)
+    all_speeds, shapes = speeds(C, density, n)
+    c, g = all_speeds[branch], shapes[:, branch]
+    along = g @ n
+    g = g * np.sign(along if abs(along) > 0.5 else g[np.abs(g).argmax()])
+    f = velocity(np.asarray(times) - (np.asarray(points) @ n)[:, None] / c)
+    full = np.einsum("ijkl,k,l->ij", tensor(C), g, n) / c
+    stress = np.array([full[pair] for pair in PAIRS[len(n)]])
+    return f[:, None] * g[:, None], -f[:, None] * stress[:, None]
+
+
+def tensor(C: np.ndarray) -> np.ndarray:
+    """Return C_ijkl [d, d, d, d] of Voigt's form."""
+    d = {3: 2, 6: 3}[len(C)]
+    full = np.empty((d, d, d, d))
+    for (i, j), row in zip(PAIRS[d], C, strict=True):
+        for (k, m), value in zip(PAIRS[d], row, strict=True):
+            full[i, j, k, m] = full[j, i, k, m] = full[i, j, m, k] = full[j, i, m, k] = value
+    return full
+
+
+def _scale(dimension: int) -> np.ndarray:
+    """Return Kelvin's factors: sqrt(2) for shear components."""
+    return np.array([1.0 if i == j else np.sqrt(2) for i, j in PAIRS[dimension]])
+
+
+def _kelvin(full: np.ndarray) -> np.ndarray:
+    """Return Kelvin's form of a tensor [d, d, d, d] of all minor symmetries."""
+    pairs, scale = PAIRS[len(full)], _scale(len(full))
+    return np.array([[full[a + b] for b in pairs] for a in pairs]) * np.outer(scale, scale)

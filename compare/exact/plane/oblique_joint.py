@@ -1,0 +1,166 @@
+"""P and SV waves at one linear-slip joint at any angle between equal half-spaces.
+
+Traction is continuous, [u_n] = tau_n / K_n and [u_s] = tau_s / K_s (Schoenberg, JASA 68, 1980);
+dashpots take K to K - i omega eta. Axes, polarisations and signs are those of `waves`: waves come
+along +n, reflections leave along -n. The mirror symmetry about the joint splits the 4 x 4 system:
+with equal waves from both sides no shear stress acts and the joint opens (r), with opposite ones no
+normal stress acts and it slides (q), R = (r + q)/2, T = (r - q)/2. For P, with C = cos 2 phi,
+S = sin 2 phi, X = 2 s c,
+
+    opening:  X (1 - r_p) - C r_s = 0
+              i omega (Z_p C (1 + r_p) - Z_s S r_s) = -2 K_n (c (1 - r_p) + s r_s)
+    sliding:  Z_p C (1 + q_p) - Z_s S q_s = 0
+              i omega Z_s (X (1 - q_p) - C q_s) = -2 K_s (a' (1 + q_p) + k q_s)
+
+and the same with the columns of SV. Amplitudes are those of particle velocity. Holds for every
+angle below 90 degrees and every K from 0 (free faces) to inf (none).
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from compare.exact.plane.pulse import Axes, Fields, Layers, Pulse, axes_of, pulse_fields
+from compare.exact.plane.waves import (
+    KINDS,
+    Kind,
+    Rock,
+    Values,
+    cosines,
+    face,
+    is_evanescent,
+    slowness_along,
+    solve_pair,
+)
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint: stiffnesses (Pa/m, 0 to inf) and viscosities (Pa s/m), or arrays of them."""
+
+    normal_stiffness: Values
+    shear_stiffness: Values
+    normal_viscosity: Values = 0.0
+    shear_viscosity: Values = 0.0
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if not (np.asarray(value) >= 0).all():
+                raise ValueError(f"{name} is {value}, must not be negative")
+
+
+class Coefficients(NamedTuple):
+    """Complex amplitudes of particle velocity over that of the incident wave."""
+
+    R_p: np.ndarray
+    R_s: np.ndarray
+    T_p: np.ndarray
+    T_s: np.ndarray
+
+
+def coefficients(
+    incidence: Kind, angle: Values, omega: Values, rock: Rock, joint: Joint
+) -> Coefficients:
+    """Return R_p, R_s, T_p, T_s, all arguments broadcast together.
+
+    incidence : "P" or "SV". angle : of travel from the normal, rad. omega : rad/s, Re >= 0; with a
+    positive imaginary part it is a Laplace variable.
+    """
+    R, T = scattering(rock, joint, slowness_along(rock, incidence, angle), omega)
+    return picked(R, T, incidence)
+
+
+def picked(R: np.ndarray, T: np.ndarray, incidence: Kind) -> Coefficients:
+    """Return the column of one incidence of matrices [..., out, in]."""
+    i = KINDS.index(incidence)
+    return Coefficients(R[..., 0, i], R[..., 1, i], T[..., 0, i], T[..., 1, i])
+
+
+def scattering(
+    rock: Rock, joint: Joint, slowness: Values, omega: Values
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the matrices R and T, complex arrays [..., out, in] in the order P, SV.
+
+    slowness : p along the joint, s/m, below 1/a for P to be a wave and below 1/b for SV.
+    """
+    if not (np.real(np.asarray(omega)) >= 0).all():
+        raise ValueError("omega has a negative real part; conjugate the result of -conj(omega)")
+    w = face(rock, slowness)
+    normal, opening = _weighed(w.normal, w.normal_velocity, rock.p_impedance, omega, joint, 0)
+    shear, sliding = _weighed(w.shear, w.shear_velocity, rock.s_impedance, omega, joint, 1)
+    r = solve_pair((w.shear, normal - opening), (w.shear, -normal - opening))
+    q = solve_pair((w.normal, shear - sliding), (-w.normal, shear + sliding))
+    return (r + q) / 2, (r - q) / 2
+
+
+def _weighed(traction, velocity, impedance, omega, joint, axis) -> tuple[np.ndarray, np.ndarray]:
+    """Return the two terms of -i omega traction = 2 K velocity, over 2 K - i omega Z."""
+    K = (joint.normal_stiffness, joint.shear_stiffness)[axis]
+    eta = (joint.normal_viscosity, joint.shear_viscosity)[axis]
+    rigid = np.isinf(K)
+    K = np.where(rigid, 1.0, K) - 1j * np.multiply(omega, eta)
+    inertia = -1j * np.multiply(omega, impedance)
+    if (np.equal(inertia + 2 * K, 0)).any():
+        raise ValueError("omega and a stiffness are both 0: nothing determines the waves")
+    soft = np.where(rigid, 0, inertia / (inertia + 2 * K))
+    return (soft / impedance)[..., None] * traction, (1 - soft)[..., None] * velocity
+
+
+def energy_flux(incidence: Kind, angle: Values, rock: Rock, found: Coefficients) -> np.ndarray:
+    """Return the shares of the incident energy flux that R_p, R_s, T_p and T_s carry away from the
+    joint, array [4, ...]; evanescent waves carry none."""
+    c, k = (x.real for x in cosines(rock, slowness_along(rock, incidence, angle)))
+    carried = np.stack(np.broadcast_arrays(rock.p_impedance * c, rock.s_impedance * k))
+    shares = carried / carried[KINDS.index(incidence)]
+    return np.abs(np.stack(found)) ** 2 * np.concatenate([shares, shares])
+
+
+def fields(
+    rock: Rock,
+    joint: Joint,
+    pulse: Pulse,
+    point: np.ndarray,
+    dip: float,
+    points: np.ndarray,
+    times: np.ndarray,
+) -> Fields:
+    """Return particle velocity and stress of a plane pulse that meets the joint.
+
+    Parameters
+    ----------
+    pulse : its velocity is that of the incident wave at `point`.
+    point, dip : a point of the joint [2] (m), and its angle from x, anticlockwise (rad).
+    points : [m, 2], m; one on the joint counts to the side that the pulse comes from.
+    times : equally spaced, s.
+    """
+    axes = axes_of(rock, pulse, dip)
+
+    def layers(omega: np.ndarray) -> Layers:
+        R, T = (x @ axes.incident for x in scattering(rock, joint, axes.slowness, omega))
+        nothing = np.zeros_like(R)
+        return Layers(np.stack([axes.incident + nothing, T]), np.stack([R, nothing]))
+
+    at_once = layers_at_once(rock, joint, axes, 1)
+    places = np.subtract(points, point)
+    return pulse_fields(rock, pulse, axes, np.zeros(1), layers, at_once, places, times)
+
+
+def layers_at_once(rock: Rock, first: Joint, axes: Axes, count: int) -> Layers:
+    """Return what the first of `count` joints returns and passes without delay: the limit of high
+    frequencies, in which springs do not act. Where P is evanescent only the incident wave is real.
+    """
+    down, up = np.zeros((2, count + 1, 2))
+    down[0] = axes.incident
+    if not is_evanescent(rock, axes.slowness):
+        R, T = scattering(rock, without_springs(first), axes.slowness, 1.0)
+        up[0], down[1] = (R @ axes.incident).real, (T @ axes.incident).real
+    return Layers(down, up)
+
+
+def without_springs(joint: Joint) -> Joint:
+    """Return a joint with its dashpots alone; infinite stiffness remains."""
+    K_n, K_s = (
+        np.where(np.isinf(K), K, 0.0) for K in (joint.normal_stiffness, joint.shear_stiffness)
+    )
+    return Joint(K_n, K_s, joint.normal_viscosity, joint.shear_viscosity)

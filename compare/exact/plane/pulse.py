@@ -1,0 +1,161 @@
+"""A plane pulse among parallel joints in time, put together from harmonic waves of each layer.
+
+In each layer waves along +n start at its first joint and waves along -n at its last one, so that
+every exponential of the sum decays. Points lie at (x, z) in the axes (t, n) of the joints, and
+
+    v(t) = sum over waves of g A e^{i omega (p x +- q z)},   stress likewise (`waves.stress`).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from compare.exact.plane.inversion import inverse
+from compare.exact.plane.waves import (
+    KINDS,
+    Kind,
+    Rock,
+    is_evanescent,
+    polarisations,
+    slownesses_across,
+    speed_of,
+    stress,
+)
+
+
+@dataclass(frozen=True)
+class Pulse:
+    """A plane pulse.
+
+    Attributes
+    ----------
+    kind : "P" or "SV".
+    direction : of travel, [2], of any length.
+    velocity : of the particles at the place that the solution names, along `direction` (P) or along
+        `direction` turned anticlockwise by a right angle (SV), m/s: a function of times (s), or
+        samples at the times of the result. It is taken as zero before the first of these times.
+    """
+
+    kind: Kind
+    direction: np.ndarray
+    velocity: Callable[[np.ndarray], np.ndarray] | np.ndarray
+
+
+class Fields(NamedTuple):
+    """Motion at points, arrays [points, components, times], and bounds [points, components] of its
+    root-mean-square error: velocity (x, y) in m/s, stress (xx, yy, xy) in Pa, tension positive.
+    """
+
+    velocity: np.ndarray
+    stress: np.ndarray
+    velocity_error: np.ndarray
+    stress_error: np.ndarray
+
+
+class Axes(NamedTuple):
+    """Axes of the joints: rows t and n in x and y, n along the travel; p (s/m); incident [2]."""
+
+    rows: np.ndarray
+    slowness: float
+    incident: np.ndarray
+
+
+class Layers(NamedTuple):
+    """Amplitudes [layers, omega, (P, SV)] along +n at each layer's first joint, along -n at its
+    last; in the half-spaces both at their only joint."""
+
+    down: np.ndarray
+    up: np.ndarray
+
+
+def axes_of(rock: Rock, pulse: Pulse, dip: float) -> Axes:
+    """Return the axes of joints of this dip (rad) for a pulse."""
+    direction = np.asarray(pulse.direction, dtype=float)
+    if direction.shape != (2,) or not np.hypot(*direction) > 0:
+        raise ValueError(f"direction is {pulse.direction}, must be a vector of the plane, not 0")
+    if np.ndim(rock.p_impedance):
+        raise ValueError("a pulse needs one rock, not arrays of its properties")
+    direction = direction / np.hypot(*direction)
+    n = np.array([-np.sin(dip), np.cos(dip)])
+    n = n if direction @ n > 0 else -n
+    t = np.array([-n[1], n[0]])
+    if direction @ n < 1e-9:
+        raise ValueError("the pulse travels along the joint and never meets it")
+    slowness = direction @ t / speed_of(rock, pulse.kind)
+    return Axes(np.array([t, n]), float(slowness), np.eye(2)[KINDS.index(pulse.kind)])
+
+
+def pulse_fields(
+    rock: Rock,
+    pulse: Pulse,
+    axes: Axes,
+    depths: np.ndarray,
+    layers: Callable[[np.ndarray], Layers],
+    at_once: Layers,
+    points: np.ndarray,
+    times: np.ndarray,
+) -> Fields:
+    """Return the fields of a pulse whose velocity is that at the origin.
+
+    Parameters
+    ----------
+    depths : of the joints along n, ascending, m.
+    layers : of omega (rad/s), for a unit incident wave at the first joint.
+    at_once : real amplitudes [layers, 2] that follow a pulse without delay; of one that is a
+        function they are summed in time, with all its kinks, and the smoother rest is inverted.
+    points : [m, 2], m. times : equally spaced, s.
+    """
+    t, across = np.asarray(times, dtype=float), slownesses_across(rock, axes.slowness)
+    q = axes.incident @ across
+    places = np.atleast_2d(points) @ axes.rows.T
+    waves = [_waves(place, depths, axes.slowness, across, q * depths[0]) for place in places]
+    modes = _modes(rock, axes, across)
+    sharp = np.concatenate(at_once, axis=-1) * callable(pulse.velocity)
+
+    def transfer(omega: np.ndarray) -> np.ndarray:
+        amplitudes = np.concatenate(layers(omega), axis=-1) - sharp[:, None]
+        found = [_delayed(amplitudes[layer], omega, delays) for layer, delays in waves]
+        return np.einsum("mkw,wc->mck", np.array(found), modes)
+
+    earliest = axes.slowness * places[:, 0] + q.real * np.minimum(places[:, 1], depths[0])
+    causal = not is_evanescent(rock, axes.slowness)
+    found, error = inverse(transfer, pulse.velocity, t, earliest.min(), causal)
+    if callable(pulse.velocity):
+        for each, (layer, delays) in zip(found, waves, strict=True):
+            each += modes.real.T @ _shifted(pulse.velocity, t, delays.real, sharp[layer])
+    unit = float(rock.p_impedance)
+    return Fields(found[:, :2], unit * found[:, 2:], error[:, :2], unit * error[:, 2:])
+
+
+def _modes(rock: Rock, axes: Axes, across: np.ndarray) -> np.ndarray:
+    """Return velocity and stress over Z_p [P+, SV+, P-, SV-; (x, y, xx, yy, xy)] of unit waves."""
+    g = polarisations(rock, axes.slowness).reshape(4, 2)
+    along = np.full(4, axes.slowness)
+    s = np.stack([along, np.concatenate([across, -across])], axis=-1)
+    g, s = g @ axes.rows, s @ axes.rows
+    tensor = stress(rock, s, g) / rock.p_impedance
+    return np.concatenate([g, tensor[:, [0, 1, 0], [0, 1, 1]]], axis=1)
+
+
+def _waves(place, depths, slowness, across, lead) -> tuple[int, np.ndarray]:
+    """Return the layer of a place (t, n) and how late [P+, SV+, P-, SV-] come there from where
+    their amplitudes are given, complex, s; `lead` is that of the first joint."""
+    x, z = place
+    layer = int(np.searchsorted(depths, z))
+    first, last = depths[max(layer - 1, 0)], depths[min(layer, len(depths) - 1)]
+    late = np.concatenate([across * (z - first), across * (last - z)])
+    return layer, late + slowness * x + lead
+
+
+def _delayed(amplitudes: np.ndarray, omega: np.ndarray, delays: np.ndarray) -> np.ndarray:
+    """Return amplitudes [omega, wave] so much later (s)."""
+    phases = 1j * omega[:, None] * delays
+    return amplitudes * np.exp(np.where(amplitudes == 0, 0, phases))
+
+
+def _shifted(velocity, times, delays, amplitudes) -> np.ndarray:
+    """Return the waves [wave, times] of a pulse that is zero before the first of the times."""
+    t = times - delays[:, None]
+    return amplitudes[:, None] * np.where(t < times[0], 0, velocity(t))

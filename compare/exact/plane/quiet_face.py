@@ -1,0 +1,63 @@
+"""Reflection of P and SV waves from a viscous boundary, against the angle.
+
+Dashpots on the face, outward normal n: sigma_nn = -alpha rho a v_n, sigma_tn = -beta rho b v_t
+(Lysmer & Kuhlemeyer, J. Eng. Mech. Div. ASCE 95, 1969; alpha = beta = 1 is theirs). Waves travel
+along +n, reflections along -n, axes and polarisations as in `waves`; with C = cos 2 phi,
+S = sin 2 phi, X = 2 s c the amplitudes of particle velocity satisfy
+
+    -(C + alpha c) r_p + ((b/a) S + alpha s) r_s = C - alpha c  |  alpha s - (b/a) S
+     (X + beta a') r_p + (C + beta k) r_s        = X - beta a'  |  C - beta k
+
+for P | SV. They do not depend on frequency. alpha = beta = 0 is a free face, infinite ones hold it.
+"""
+
+import numpy as np
+
+from compare.exact.plane.waves import (
+    KINDS,
+    Kind,
+    Rock,
+    Values,
+    cosines,
+    face,
+    slowness_along,
+    solve_pair,
+)
+
+
+def coefficients(
+    incidence: Kind, angle: Values, rock: Rock, dashpots: tuple[float, float] = (1.0, 1.0)
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the complex r_p and r_s over the incident amplitude of particle velocity.
+
+    incidence : "P" or "SV". angle : of travel from the normal, rad, broadcasts with rock.
+    dashpots : alpha and beta, 0 to inf.
+    """
+    if not min(dashpots) >= 0:
+        raise ValueError(f"dashpots are {dashpots}, must not be negative")
+    r = reflection(rock, slowness_along(rock, incidence, angle), dashpots)
+    i = KINDS.index(incidence)
+    return r[..., 0, i], r[..., 1, i]
+
+
+def reflection(
+    rock: Rock, slowness: Values, dashpots: tuple[float, float] = (1.0, 1.0)
+) -> np.ndarray:
+    """Return the matrix [..., out, in] of both incidences in the order P, SV; slowness in s/m."""
+    w = face(rock, slowness)
+    normal, n = _weighed(w.normal, w.normal_velocity, rock.p_impedance, dashpots[0])
+    shear, t = _weighed(w.shear, w.shear_velocity, rock.s_impedance, dashpots[1])
+    return solve_pair((normal - n, t - shear), (-normal - n, -t - shear))
+
+
+def energy_flux(incidence: Kind, angle: Values, rock: Rock, found: tuple) -> np.ndarray:
+    """Return the shares [2, ...] of the incident energy flux that r_p and r_s carry back."""
+    c, k = (x.real for x in cosines(rock, slowness_along(rock, incidence, angle)))
+    carried = np.stack(np.broadcast_arrays(rock.p_impedance * c, rock.s_impedance * k))
+    return np.abs(np.stack(found)) ** 2 * carried / carried[KINDS.index(incidence)]
+
+
+def _weighed(traction, velocity, impedance, dashpot: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the terms of traction / Z + dashpot v = 0, over 1 + dashpot."""
+    share = 1 / (1 + dashpot)
+    return share * traction / np.asarray(impedance)[..., None], (1 - share) * velocity

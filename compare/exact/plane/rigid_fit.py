@@ -1,0 +1,48 @@
+"""Joint sets of rigid blocks that come nearest to a rock mass, and the part that they lack.
+
+Rigid blocks have no S0 of their own (`effective_medium`): all compliance is that of their joints,
+
+    minimise || sum over sets of (Z_N opening(n) + Z_T sliding(n)) - S ||,   Z_N, Z_T >= 0
+
+in the norm of the tensor S_ijkl, by non-negative least squares (Lawson & Hanson, Solving Least
+Squares Problems, 1974). Of equally good fits the one of least norm is taken: orthogonal sets share
+their shear compliance equally. What is left over is known before a run; of two orthogonal sets in
+isotropic rock it is C_12, their lack of a Poisson effect.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from compare.exact.plane.effective_medium import JointSet, opening, sliding
+
+LEAST = 1e-7  # weight of the fit's own norm
+
+
+class RigidFit(NamedTuple):
+    """The sets with their compliances, and what they lack of S over S (norms of tensors)."""
+
+    sets: list[JointSet]
+    left_over: float
+
+
+def rigid_fit(compliance: np.ndarray, normals: np.ndarray) -> RigidFit:
+    """Return the sets of rigid blocks nearest to a compliance.
+
+    compliance : S in Kelvin's form (1/Pa), [3, 3] or [6, 6]. normals : unit vectors [sets, d].
+    """
+    from scipy.optimize import nnls
+
+    S = np.asarray(compliance, dtype=float)
+    size = np.linalg.norm(S)
+    if not size > 0:
+        raise ValueError("the compliance is 0: rigid blocks are rigid joints already")
+    if len(S) != {2: 3, 3: 6}[np.shape(normals)[1]]:
+        raise ValueError(f"normals of {np.shape(normals)[1]} components with a matrix of {len(S)}")
+    parts = [form(n).ravel() for n in normals for form in (opening, sliding)]
+    A = np.concatenate([np.transpose(parts), LEAST * np.eye(len(parts))])
+    Z, _ = nnls(A, np.concatenate([S.ravel() / size, np.zeros(len(parts))]))
+    left_over = np.linalg.norm(Z @ parts - S.ravel() / size)
+    pairs = size * Z.reshape(-1, 2)
+    sets = [JointSet(n, *map(float, z)) for n, z in zip(normals, pairs, strict=True)]
+    return RigidFit(sets, float(left_over))

@@ -1,0 +1,144 @@
+"""Plane P and SV waves in isotropic rock in plane strain, as a plane face or joint meets them.
+
+Factor e^{-i omega t}; stress tension positive. The axes of the face are t along it and n across
+it, p is the slowness along t that all waves share (Aki & Richards, Quantitative Seismology, 2002,
+chapter 5). With the sines a' = a p, s = b p and the cosines c = sqrt(1 - a'^2), k = sqrt(1 - s^2),
+waves along +n and -n have the polarisations (t, n)
+
+    P+- = (a', +-c),   SV+ = (k, -s),   SV- = (k, s)
+
+so that a wave and its mirror image have the same amplitude. SV+ is its direction of travel turned
+by a right angle from n to t. Beyond the critical angle c is imaginary, +i |c|: for Re(omega) > 0
+the P wave decays away from the face. For negative frequencies take complex conjugates.
+"""
+
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+Kind = Literal["P", "SV"]
+KINDS = ("P", "SV")
+Values = float | np.ndarray
+
+
+@dataclass(frozen=True)
+class Rock:
+    """Isotropic rock: density (kg/m3) and the speeds of P and S waves (m/s), or arrays of them."""
+
+    density: Values
+    p_speed: Values
+    s_speed: Values
+
+    def __post_init__(self) -> None:
+        for name in ("density", "p_speed", "s_speed"):
+            if not (np.asarray(getattr(self, name)) > 0).all():
+                raise ValueError(f"{name} is {getattr(self, name)}, must be positive")
+        if not (np.asarray(self.p_speed) > self.s_speed).all():
+            raise ValueError(f"p_speed {self.p_speed} must be above s_speed {self.s_speed}")
+
+    @property
+    def p_impedance(self) -> Values:
+        """Z_p = rho a, Pa s/m."""
+        return self.density * self.p_speed
+
+    @property
+    def s_impedance(self) -> Values:
+        """Z_s = rho b, Pa s/m."""
+        return self.density * self.s_speed
+
+    @property
+    def shear_modulus(self) -> Values:
+        """mu = rho b^2, Pa."""
+        return self.density * self.s_speed**2
+
+    @property
+    def lame(self) -> Values:
+        """lambda = rho (a^2 - 2 b^2), Pa."""
+        return self.density * (self.p_speed**2 - 2 * self.s_speed**2)
+
+
+class Face(NamedTuple):
+    """A face under unit waves (m/s) along +n: complex arrays [..., 2], P and SV.
+
+    Waves along -n have `shear` and `normal_velocity` of the other sign.
+    """
+
+    normal: np.ndarray  # sigma_nn, Pa
+    shear: np.ndarray  # sigma_tn, Pa
+    normal_velocity: np.ndarray
+    shear_velocity: np.ndarray
+
+
+def speed_of(rock: Rock, kind: Kind) -> Values:
+    """Return the speed of a kind of wave, m/s."""
+    if kind not in KINDS:
+        raise ValueError(f"kind is {kind!r}, must be one of P, SV")
+    return rock.p_speed if kind == "P" else rock.s_speed
+
+
+def slowness_along(rock: Rock, kind: Kind, angle: Values) -> np.ndarray:
+    """Return p (s/m) of a wave that travels at `angle` (rad) from n towards t."""
+    if not (np.abs(angle) < np.pi / 2).all():
+        raise ValueError(f"angle is {angle}, must lie within a right angle of the normal, in rad")
+    return np.sin(angle) / np.asarray(speed_of(rock, kind))
+
+
+def cosines(rock: Rock, slowness: Values) -> tuple[np.ndarray, np.ndarray]:
+    """Return c and k, complex; slowness p in s/m."""
+    sines = np.asarray(rock.p_speed * slowness), np.asarray(rock.s_speed * slowness)
+    c, k = (np.sqrt((1 - x) * (1 + x) + 0j) for x in sines)
+    return c, k
+
+
+def is_evanescent(rock: Rock, slowness: float) -> bool:
+    """Return whether P waves of slowness p (s/m) decay away from the face."""
+    return bool(np.abs(rock.p_speed * slowness) > 1)
+
+
+def slownesses_across(rock: Rock, slowness: Values) -> np.ndarray:
+    """Return c/a and k/b (s/m), complex array [..., 2]."""
+    c, k = cosines(rock, slowness)
+    return np.stack(np.broadcast_arrays(c / rock.p_speed, k / rock.s_speed), axis=-1)
+
+
+def face(rock: Rock, slowness: Values) -> Face:
+    """Return what unit waves along +n of slowness p (s/m) do to a face."""
+    c, k = cosines(rock, slowness)
+    a, s = rock.p_speed * slowness, rock.s_speed * slowness
+    double = 1 - 2 * s * s  # cos 2 phi
+    pairs = (
+        (-rock.p_impedance * double, 2 * rock.s_impedance * s * k),
+        (-2 * rock.s_impedance * s * c, -rock.s_impedance * double),
+        (c, -s),
+        (a, k),
+    )
+    return Face(*(np.stack(np.broadcast_arrays(p, sv), axis=-1) + 0j for p, sv in pairs))
+
+
+def polarisations(rock: Rock, slowness: float) -> np.ndarray:
+    """Return those of P and SV waves along +n and along -n, complex array [2, 2, (t, n)]."""
+    c, k = cosines(rock, slowness)
+    a, s = rock.p_speed * slowness, rock.s_speed * slowness
+    return np.array([[[a, c], [k, -s]], [[a, -c], [k, s]]])
+
+
+def stress(rock: Rock, slowness: np.ndarray, polarisation: np.ndarray) -> np.ndarray:
+    """Return the stress of unit plane waves (1 m/s) in any axes, Pa, array [..., 2, 2].
+
+    slowness, polarisation : arrays [..., 2], s/m and 1. The velocity is g f(t - s.x), the stress
+    -(lambda (s.g) I + mu (s g + g s)) f.
+    """
+    sg = slowness[..., :, None] * polarisation[..., None, :]
+    trace = np.trace(sg, axis1=-2, axis2=-1)[..., None, None]
+    sheared = rock.shear_modulus * (sg + np.swapaxes(sg, -2, -1))
+    return -(rock.lame * trace * np.eye(2) + sheared)
+
+
+def solve_pair(rows: tuple, sides: tuple) -> np.ndarray:
+    """Return r [..., out, in] of rows[i] . r = sides[i], two rows and sides [..., 2] each."""
+    (one, two), (left, right) = rows, sides
+    det = one[..., :1] * two[..., 1:] - one[..., 1:] * two[..., :1]
+    p = left * two[..., 1:] - right * one[..., 1:]
+    s = one[..., :1] * right - two[..., :1] * left
+    return np.stack([p / det, s / det], axis=-2)

@@ -1,0 +1,224 @@
+"""A line force in plane strain: Hankel functions, statics, balance of momentum, closed forms."""
+
+import numpy as np
+import pytest
+from scipy.special import hankel1
+
+from compare.exact.plane import line_force
+from compare.exact.plane.line_force import impulse, motion, step
+from compare.exact.plane.waves import Rock
+
+ROCK = Rock(2600.0, 5800.0, 3800.0)
+PLACES = np.array([[12.0, 5.0], [-3.0, 20.0], [0.5, -0.2], [0.0, -40.0]])
+FREQUENCY, DELAY = 200.0, 0.0145
+
+
+def gaussian(t):
+    """Return a pulse that is below 1e-18 outside 0 to 2 DELAY."""
+    return np.exp(-((FREQUENCY * np.pi * (t - DELAY)) ** 2) / 2)
+
+
+def gaussian_rate(t):
+    return -((FREQUENCY * np.pi) ** 2) * (t - DELAY) * gaussian(t)
+
+
+BREAKS = DELAY * np.linspace(0, 2, 13)
+
+
+def of_gaussian(direction, places, times):
+    return motion(ROCK, direction, gaussian, gaussian_rate, BREAKS, places, times)
+
+
+def hankel(places, omega):
+    """Return the displacement tensor [m, i, j, omega] of the harmonic line force 1 N/m."""
+    r = np.hypot(*places.T)[:, None]
+    g = places / r
+    potentials = []
+    for speed in (ROCK.s_speed, ROCK.p_speed):
+        k = omega / speed
+        value, slope = 0.25j * hankel1(0, k * r), -0.25j * k * hankel1(1, k * r)
+        potentials.append((value, slope / r, -(k**2) * value - slope / r))
+    (shear, *_), k_b = potentials[0], omega / ROCK.s_speed
+    over_r, second = (potentials[0][i] - potentials[1][i] for i in (1, 2))
+    gg = np.einsum("mi,mj->mij", g, g)[..., None]
+    one = np.eye(2)[None, :, :, None]
+    double = gg * second[:, None, None] + (one - gg) * over_r[:, None, None]
+    return (one * shear[:, None, None] + double / k_b**2) / ROCK.shear_modulus
+
+
+def test_hankel_functions_agree():
+    """The Green's tensor of frequency domain (Achenbach, 1973), inverted over complex frequencies:
+    2^13 steps of 20 us, the pulse a Gaussian, whose transform is known."""
+    count, dt = 2**13, 2e-5
+    decay = 20 / (count * dt)
+    omega = 2 * np.pi * np.fft.rfftfreq(count, dt) + 1j * decay
+    times = dt * np.arange(2000)
+    width = 1 / (FREQUENCY * np.pi)
+    F = width * np.sqrt(2 * np.pi) * np.exp(-((width * omega) ** 2) / 2 + 1j * omega * DELAY)
+    spectrum = (hankel(PLACES, omega) * F).conj()
+    growth = np.exp(decay * times)
+    for j, direction in enumerate(np.eye(2)):
+        found = of_gaussian(direction, PLACES, times)
+        for values, part in ((found.displacement, 1), (found.velocity, -1j * omega)):
+            line = spectrum[:, :, j] * np.conj(part)
+            expected = np.fft.irfft(line, count)[..., :2000] / dt * growth
+            # The rest is what comes after the window, e^-20 of it.
+            assert np.abs(values - expected).max() < 3e-8 * np.abs(expected).max()
+
+
+def test_stress_is_hookes_law_of_the_displacement():
+    """Gradients by differences of fourth order over 1 cm: (k h)^4 / 30 at the wave fronts, and
+    what the place 0.54 m away has beyond it, (h / r)^4."""
+    h, times = 0.01, np.linspace(0, 0.04, 301)
+    steps = np.array([-2, -1, 1, 2])
+    weights = np.array([1, -8, 8, -1]) / (12 * h)
+    direction = np.array([0.6, 0.8])
+    found = of_gaussian(direction, PLACES, times)
+    for m, place in enumerate(PLACES):
+        around = [place + s * h * axis for axis in np.eye(2) for s in steps]
+        u = of_gaussian(direction, np.array(around), times).displacement.reshape(2, 4, 2, -1)
+        (xx, xy), (yx, yy) = np.einsum("s,ksit->ikt", weights, u)
+        dilation = ROCK.lame * (xx + yy)
+        mu = ROCK.shear_modulus
+        expected = [dilation + 2 * mu * xx, dilation + 2 * mu * yy, mu * (xy + yx)]
+        assert np.abs(found.stress[m] - expected).max() < 1e-6 * np.abs(expected).max()
+
+
+def test_momentum_of_the_rock():
+    """rho v' = div sigma away from the line, by differences."""
+    h, dt = 0.05, 2e-5
+    times = dt * np.arange(2000)
+    steps = np.array([-2, -1, 1, 2])
+    weights = np.array([1, -8, 8, -1]) / 12
+    for place in PLACES[[0, 1]]:
+        around = [place + s * h * axis for axis in np.eye(2) for s in steps]
+        s = of_gaussian([1, 0], np.array(around), times).stress.reshape(2, 4, 3, -1)
+        d = np.einsum("s,ksit->ikt", weights / h, s)
+        force = np.array([d[0, 0] + d[2, 1], d[2, 0] + d[1, 1]])[:, 2:-2]
+        v = of_gaussian([1, 0], place, times).velocity[0]
+        rate = sum(w / dt * v[:, 2 + n : 1998 + n] for w, n in zip(weights, steps, strict=True))
+        assert np.abs(force - 2600 * rate).max() < 1e-5 * np.abs(force).max()
+
+
+def test_the_force_is_balanced_at_last():
+    """Of a force that stays, the tractions on any circle tend to -f as its waves run away: what
+    the rock within it still gains in momentum falls as 1/t. They do not twist it."""
+    ramp = 1e-3
+    angles = 2 * np.pi * np.arange(60) / 60
+    n = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+
+    def force(t):
+        return 0.5 - 0.5 * np.cos(np.pi * np.clip(t, 0, ramp) / ramp)
+
+    def rate(t):
+        inside = (t > 0) & (t < ramp)
+        return np.where(inside, 0.5 * np.pi / ramp * np.sin(np.pi * t / ramp), 0.0)
+
+    found = motion(ROCK, [0.0, 1.0], force, rate, [0.0, ramp, np.inf], 2 * n, np.array([5.0, 10.0]))
+    xx, yy, xy = np.moveaxis(found.stress, 1, 0)
+    traction = np.array([xx * n[:, :1] + xy * n[:, 1:], xy * n[:, :1] + yy * n[:, 1:]])
+    total = 2 * np.pi * 2 / 60 * traction.sum(axis=1)
+    np.testing.assert_allclose(total[0], 0, atol=1e-10)
+    np.testing.assert_allclose(total[1], -1, atol=1e-6)
+    assert abs(total[1, 1] + 1) < 0.6 * abs(total[1, 0] + 1)
+
+
+def test_static_limit():
+    """Between two places the displacement of a step tends to Kelvin's, -(3 - 4 nu) ln(r) I +
+    gamma gamma over 8 pi mu (1 - nu), as (r / t)^2; the displacement itself grows as ln(t)."""
+    nu = ROCK.lame / (2 * (ROCK.lame + ROCK.shear_modulus))
+    r = np.hypot(*PLACES.T)
+    g = PLACES / r[:, None]
+    kelvin = np.einsum("mi,mj->mij", g, g) - (3 - 4 * nu) * np.log(r)[:, None, None] * np.eye(2)
+    kelvin /= 8 * np.pi * ROCK.shear_modulus * (1 - nu)
+    found = step(ROCK, PLACES, np.array([100.0]))[..., 0]
+    expected = kelvin - kelvin[0]
+    assert np.abs(found - found[0] - expected).max() < 1e-8 * np.abs(expected).max()
+
+
+def test_step_and_impulse_are_one():
+    """The rate of the step is the impulse, by differences, between and after the arrivals; nothing
+    moves before the P wave."""
+    for place in PLACES:
+        r = np.hypot(*place)
+        t = r * np.array([0.5 / 5800, 0.999 / 5800, 1.2 / 5800, 1.2 / 3800, 3 / 3800, 200 / 3800])
+        dt = 1e-4 * t
+        up, down = (step(ROCK, place, t + s * dt) for s in (1, -1))
+        expected = impulse(ROCK, place, t)
+        np.testing.assert_allclose(
+            (up - down) / (2 * dt), expected, rtol=0, atol=1e-6 * np.abs(expected).max()
+        )
+        assert not impulse(ROCK, place, t)[..., :2].any() and not step(ROCK, place, t)[..., 0].any()
+
+
+def test_a_step_by_quadrature():
+    """A ramp of 1 us is the step half of it late, but for its square, 0.1 ms behind the fronts."""
+    t = np.array([0.004, 0.02, 0.3])
+    found = motion(
+        ROCK,
+        [1.0, 0.0],
+        lambda t: np.clip(t / 1e-6, 0, 1),
+        lambda t: np.where((t > 0) & (t < 1e-6), 1e6, 0.0),
+        [0.0, 1e-6, np.inf],
+        PLACES,
+        t,
+    )
+    arrived = t > np.hypot(*PLACES.T)[:, None] / 3800 + 1e-4
+    u, v = (f(ROCK, PLACES, t - 0.5e-6)[:, :, 0] for f in (step, impulse))
+    off = np.where(arrived[:, None], found.displacement - u, 0)
+    assert np.abs(off).max() < 1e-8 * np.abs(u).max()
+    off = np.where(arrived[:, None], found.velocity - v, 0)
+    assert np.abs(off).max() < 1e-6 * np.abs(np.where(arrived[:, None], v, 0)).max()
+
+
+def test_symmetry_and_reciprocity():
+    """G_ij(x) = G_ji(-x), and a turned place and force turn the motion."""
+    t = np.linspace(0, 0.04, 100)
+    x, y = (of_gaussian(d, PLACES, t) for d in np.eye(2))
+    back = of_gaussian([1, 0], -PLACES, t)
+    np.testing.assert_allclose(
+        x.displacement[:, 1],
+        of_gaussian([0, 1], -PLACES, t).displacement[:, 0],
+        atol=1e-13 * np.abs(x.displacement).max(),
+    )
+    np.testing.assert_allclose(back.displacement, x.displacement, rtol=1e-12)
+    np.testing.assert_allclose(back.stress, -x.stress, rtol=1e-12)
+    Q = np.array([[0.8, -0.6], [0.6, 0.8]])
+    turned = of_gaussian(Q @ [1, 0], PLACES @ Q.T, t)
+    expected = np.einsum("ij,mjt->mit", Q, x.velocity)
+    np.testing.assert_allclose(turned.velocity, expected, atol=1e-12 * np.abs(expected).max())
+    assert np.abs(y.velocity).max() > 0
+
+
+def test_nothing_moves_before_the_first_arrival():
+    t = np.linspace(0, 0.04, 200)
+    found = of_gaussian([0, 1], PLACES, t)
+    early = t < np.hypot(*PLACES.T)[:, None] / 5800
+    for part in found[:3]:
+        assert not np.where(early[:, None], part, 0).any()
+
+
+@pytest.mark.parametrize("points", [16, 32])
+def test_the_error_is_bounded(monkeypatch, points):
+    """Twice the points lie within the bound; 64 are at round-off."""
+    t = np.linspace(0, 0.05, 200)
+    best = of_gaussian([0.6, 0.8], PLACES, t)
+    for error, part in zip(best[3:], best[:3], strict=True):
+        assert (error < 1e-11 * np.abs(part).max()).all()
+    monkeypatch.setattr(line_force, "POINTS", points)
+    found = of_gaussian([0.6, 0.8], PLACES, t)
+    for one, exact, error in zip(found[:3], best[:3], found[3:], strict=True):
+        assert (np.abs(one - exact).max(axis=-1) <= error).all()
+
+
+@pytest.mark.parametrize(
+    "change, message",
+    [
+        (lambda: step(ROCK, [[0.0, 0.0]], [1.0]), "on the line"),
+        (lambda: motion(ROCK, [1, 0], np.sin, np.cos, [0.0], PLACES, [1.0]), "at least two"),
+        (lambda: motion(ROCK, [1, 0], np.sin, np.cos, [1.0, 0.0], PLACES, [1.0]), "ascending"),
+    ],
+)
+def test_what_does_not_hold_is_refused(change, message):
+    with pytest.raises(ValueError, match=message):
+        change()

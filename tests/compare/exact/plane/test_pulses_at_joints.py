@@ -1,0 +1,249 @@
+"""Plane pulses at joints in time: what the fields satisfy, closed forms, and their own errors."""
+
+import numpy as np
+import pytest
+from numpy.polynomial.legendre import leggauss
+from scipy.special import erfc
+
+from compare.exact.plane import inversion, oblique_joint, parallel_joints
+from compare.exact.plane.oblique_joint import Joint, coefficients
+from compare.exact.plane.pulse import Pulse
+from compare.exact.plane.waves import Rock, polarisations
+
+TRAVELS = pytest.mark.parametrize(
+    "kind, degrees", [("P", 0), ("P", 50), ("P", 130), ("SV", 25), ("SV", -60), ("SV", 200)]
+)
+DIP = 0.3
+
+
+def differences(values, step, axis=-1):
+    """Return the derivative of fourth order, two values shorter at either end."""
+    v = np.moveaxis(values, axis, -1)
+    slope = (8 * (v[..., 3:-1] - v[..., 1:-3]) - (v[..., 4:] - v[..., :-4])) / (12 * step)
+    return np.moveaxis(slope, -1, axis)
+
+
+def turned(dip):
+    """Return the unit vectors along and across a joint."""
+    return np.array([[np.cos(dip), np.sin(dip)], [-np.sin(dip), np.cos(dip)]])
+
+
+@TRAVELS
+def test_the_joint_holds(rock, ricker, directed, kind, degrees):
+    """Traction is continuous, and its rate is K [v] + eta [v]', the rates by differences."""
+    t, n = turned(DIP)
+    joint = Joint(4e9, 2e9, 1e6, 3e6)
+    point, times = np.array([3.0, -2.0]), np.arange(0, 0.07, 2e-5)
+    sides = np.array([point + 7 * t + side * 1e-9 * n for side in (1, -1)])
+    pulse = Pulse(kind, directed(degrees), ricker)
+    found = oblique_joint.fields(rock, joint, pulse, point, DIP, sides, times)
+    xx, yy, xy = np.moveaxis(found.stress, 1, 0)
+    traction = np.array([xx * n[0] + xy * n[1], xy * n[0] + yy * n[1]])
+    traction = np.einsum("ac,cps->aps", np.array([n, t]), traction)
+    jump = np.array([n, t]) @ (found.velocity[0] - found.velocity[1])
+    peak = np.abs(traction).max()
+    assert np.abs(traction[:, 0] - traction[:, 1]).max() < 1e-8 * peak
+    K, eta = np.array([[4e9], [2e9]]), np.array([[1e6], [3e6]])
+    off = differences(traction[:, 0], 2e-5) - K * jump[:, 2:-2] - eta * differences(jump, 2e-5)
+    assert np.abs(off).max() < 1e-6 * 1000 * peak
+    assert np.abs(jump[1]).max() > (0.05 if degrees else -1)
+
+
+@TRAVELS
+@pytest.mark.parametrize("z", [-11.0, 6.0, 31.0])
+def test_the_rock_holds(rock, joint, ricker, directed, kind, degrees, z):
+    """rho v' = div sigma and Hooke's law, derivatives by differences over 0.2 m: (k h)^4 / 30 of
+    the shortest waves, in front of, between and behind two joints."""
+    t, n = turned(DIP)
+    times, h = np.arange(0, 0.05, 4e-5), 0.2
+    centre = 4 * t + z * n
+    steps = h * np.arange(-2, 3)
+    line = [centre + step * axis for axis in np.eye(2) for step in steps]
+    pulse = Pulse(kind, directed(degrees), ricker)
+    found = parallel_joints.fields(
+        rock, [joint, Joint(2e9, 3e9)], pulse, np.zeros(2), DIP, [0.0, 12.0], line, times
+    )
+    v, stress = (x.reshape(2, 5, -1, len(times)) for x in (found.velocity, found.stress))
+    v_x, v_y = differences(v[0], h, 0)[0], differences(v[1], h, 0)[0]
+    s_x, s_y = differences(stress[0], h, 0)[0], differences(stress[1], h, 0)[0]
+    force = np.array([s_x[0] + s_y[2], s_x[2] + s_y[1]])
+    inertia = rock.density * differences(v[0, 2], 4e-5)
+    assert np.abs(force[:, 2:-2] - inertia).max() < 1e-5 * np.abs(inertia).max()
+    M, lame = rock.lame + 2 * rock.shear_modulus, rock.lame
+    rates = np.array(
+        [
+            M * v_x[0] + lame * v_y[1],
+            lame * v_x[0] + M * v_y[1],
+            rock.shear_modulus * (v_x[1] + v_y[0]),
+        ]
+    )
+    expected = differences(stress[0, 2], 4e-5)
+    assert np.abs(rates[:, 2:-2] - expected).max() < 1e-5 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("kind", ["P", "SV"])
+def test_normal_incidence_in_closed_form(rock, kind):
+    """(Z/2K) v_T' + v_T = v_I for a Gaussian of deviation s is an exponentially modified Gaussian;
+    SV moves the particles along -x where it travels along y."""
+    K, s, t0 = 3e9, 1e-3, 0.01
+    Z = rock.p_impedance if kind == "P" else rock.s_impedance
+    c = rock.p_speed if kind == "P" else rock.s_speed
+    tau, times = Z / (2 * K), np.linspace(0, 0.05, 1001)
+    pulse = Pulse(kind, [0, 1], lambda t: np.exp(-(((t - t0) / s) ** 2) / 2))
+    found = oblique_joint.fields(
+        rock, Joint(K, K), pulse, np.zeros(2), 0.0, np.array([[8.0, 15.0]]), times
+    )
+    x = times - t0 - 15 / c
+    modified = np.exp(s**2 / (2 * tau**2) - x / tau) * erfc((s / tau - x / s) / np.sqrt(2))
+    expected = s / tau * np.sqrt(np.pi / 2) * modified
+    component, sign = (1, 1) if kind == "P" else (0, -1)
+    off = np.abs(found.velocity[0, component] - sign * expected).max()
+    assert off <= found.velocity_error[0, component] < 1e-9
+    row = 1 if kind == "P" else 2
+    off = np.abs(found.stress[0, row] + sign * Z * expected).max()
+    assert off <= found.stress_error[0, row] < 1e-9 * Z
+
+
+@pytest.mark.parametrize("eta", [0.0, 2e6])
+def test_half_a_sine_in_closed_form(rock, eta):
+    """P at normal incidence. With tau = (Z + 2 eta)/2K the share 2 eta/(Z + 2 eta) passes at once,
+    and the rest as s, tau s' + s = v_I; the kinks and the front are within the bound too."""
+    K, Z, T, times = 3e9, rock.p_impedance, 0.01, np.linspace(0, 0.05, 701)
+    tau, share, w = (Z + 2 * eta) / (2 * K), 2 * eta / (Z + 2 * eta), np.pi / T
+
+    def half_sine(t):
+        return np.where((t > 0) & (t < T), np.sin(w * t), 0.0)
+
+    def smooth(t):
+        x = np.clip(t, 0, T)
+        s = np.sin(w * x) - w * tau * (np.cos(w * x) - np.exp(-x / tau))
+        return s * np.exp(-np.maximum(t - T, 0) / tau) / (1 + (w * tau) ** 2)
+
+    def passed(t):
+        return share * half_sine(t) + (1 - share) * smooth(t)
+
+    found = oblique_joint.fields(
+        rock,
+        Joint(K, K, eta, eta),
+        Pulse("P", [0, 1], half_sine),
+        np.zeros(2),
+        0.0,
+        np.array([[0.0, -20.0], [3.0, 20.0]]),
+        times,
+    )
+    later, back = times - 20 / rock.p_speed, times + 20 / rock.p_speed
+    front = half_sine(back) * (back > times[0]) + half_sine(later) - passed(later)
+    for row, expected in enumerate((front, passed(later))):
+        off = np.sqrt(np.mean((found.velocity[row, 1] - expected) ** 2))
+        assert off <= found.velocity_error[row, 1] < 2e-5
+
+
+@pytest.mark.parametrize("degrees", [25.0, 50.0, 85.0])
+@pytest.mark.parametrize("x, y", [(0.0, -10.0), (4.0, 10.0)])
+def test_evanescent_waves_by_quadrature(rock, joint, directed, degrees, x, y):
+    """A Gaussian SV pulse, whose transform is a Gaussian, summed over real frequencies by 40 times
+    50 Gauss points; beyond 35.3 degrees its P waves are evanescent and its tails algebraic."""
+    s, t0, times = 1e-3, 0.02, np.linspace(0, 0.04, 201)
+    nodes, weights = leggauss(50)
+    omega = (112.5 * (nodes + 1 + 2 * np.arange(40)[:, None])).ravel()
+    weights = np.tile(112.5 * weights, 40)
+    F = s * np.sqrt(2 * np.pi) * np.exp(-((s * omega) ** 2) / 2 + 1j * omega * t0)
+    angle = np.radians(degrees)
+    p = np.sin(angle) / rock.s_speed
+    R_p, R_s, T_p, T_s = coefficients("SV", -angle, omega, rock, joint)
+    g = polarisations(rock, -p)
+    q_p, q_s = (np.sqrt(1 / c**2 - p**2 + 0j) for c in (rock.p_speed, rock.s_speed))
+    fast, slow = (np.exp(1j * omega * (p * x + q * abs(y))) for q in (q_p, q_s))
+    if y < 0:
+        there = np.exp(1j * omega * (p * x + q_s * y))
+        waves = [R_p * fast, R_s * slow, there]
+        shapes = [g[1, 0], g[1, 1], g[0, 1]]
+    else:
+        waves, shapes = [T_p * fast, T_s * slow], [g[0, 0], g[0, 1]]
+    spectrum = sum(np.outer(shape, wave) for shape, wave in zip(shapes, waves, strict=True))
+    summed = ((spectrum * F * weights) @ np.exp(-1j * np.outer(omega, times))).real / np.pi
+    expected = summed * np.array([[-1.0], [1.0]])  # t is -x where n is y
+    pulse = Pulse("SV", directed(degrees), lambda t: np.exp(-(((t - t0) / s) ** 2) / 2))
+    found = oblique_joint.fields(rock, joint, pulse, np.zeros(2), 0.0, np.array([[x, y]]), times)
+    off = np.abs(found.velocity[0] - expected).max(axis=-1)
+    assert (off <= found.velocity_error[0]).all() and off.max() < 1e-9
+
+
+@pytest.mark.parametrize("kind, degrees", [("P", 40), ("SV", 20), ("SV", 60)])
+@pytest.mark.parametrize("stiffness", [3e7, 3e9])
+@pytest.mark.parametrize("shape", ["ricker", "half-sine", "samples"])
+def test_the_error_is_bounded(monkeypatch, rock, ricker, directed, kind, degrees, stiffness, shape):
+    """Twice the window and twice the frequencies lie within the bound of the error, 1e-9 of smooth
+    pulses. The kinks of half a sine are summed in time but for their evanescent part."""
+    times = np.linspace(0, 0.06, 601)
+    monkeypatch.setattr(inversion, "STEPS", 1024)
+
+    def half_sine(t):
+        return np.where(t < 0.01, np.sin(np.pi * np.minimum(t, 0.01) / 0.01), 0.0)
+
+    velocity = {"ricker": ricker, "half-sine": half_sine, "samples": ricker(times)}[shape]
+    pulse = Pulse(kind, directed(degrees), velocity)
+    joints = [Joint(stiffness, stiffness / 2)] * 2
+    points = np.array([[0.0, -7.0], [2.0, 5.0], [-3.0, 30.0]])
+
+    def fields():
+        return parallel_joints.fields(
+            rock, joints, pulse, np.zeros(2), 0.1, [0.0, 9.0], points, times
+        )
+
+    found = fields()
+    monkeypatch.setattr(inversion, "WINDOW", 2 * inversion.WINDOW)
+    monkeypatch.setattr(inversion, "STEPS", 2 * inversion.STEPS)
+    finer = fields()
+    for part, error in (("velocity", "velocity_error"), ("stress", "stress_error")):
+        off = getattr(found, part) - getattr(finer, part)
+        assert (np.sqrt(np.mean(off**2, axis=-1)) <= getattr(found, error)).all()
+    assert found.velocity_error.max() < {"ricker": 1e-9, "half-sine": 1e-3, "samples": 1e-6}[shape]
+
+
+def test_incident_alone_without_joints(rock, ricker, directed):
+    """K = inf: f(t - s.x) along the direction, or turned by a right angle, also ahead of time."""
+    times = np.linspace(0, 0.08, 401)
+    points, point = np.array([[10.0, 4.0], [-70.0, -50.0], [0.0, 30.0]]), np.array([1.0, 2.0])
+    for kind, c in (("P", rock.p_speed), ("SV", rock.s_speed)):
+        for degrees in (20, 160, -60):
+            d = directed(degrees)
+            g = d if kind == "P" else np.array([-d[1], d[0]])
+            found = oblique_joint.fields(
+                rock, Joint(np.inf, np.inf), Pulse(kind, d, ricker), point, 0.2, points, times
+            )
+            arrival = (points - point) @ d / c
+            expected = ricker(times - arrival[:, None])[:, None] * g[:, None]
+            off = np.abs(found.velocity - expected).max(axis=-1)
+            assert (off <= found.velocity_error).all() and off.max() < 1e-9
+
+
+def test_one_of_many_joints_is_the_one_joint(rock, joint, ricker, directed):
+    """The same pulse by both, the joint away from the place that names the pulse."""
+    times, pulse = np.linspace(0, 0.05, 201), Pulse("SV", directed(150), ricker)
+    points, n = np.array([[3.0, -9.0], [5.0, 40.0]]), turned(DIP)[1]
+    many = parallel_joints.fields(rock, [joint], pulse, [0, 0], DIP, [6.0], points, times)
+    q = directed(150) / rock.s_speed
+    moved = Pulse("SV", directed(150), lambda t: ricker(t - 6.0 * n @ q))
+    one = oblique_joint.fields(rock, joint, moved, 6.0 * n, DIP, points, times)
+    assert np.abs(many.velocity - one.velocity).max() < 1e-8
+    assert np.abs(many.stress - one.stress).max() < 1e-8 * rock.p_impedance
+
+
+@pytest.mark.parametrize(
+    "change, message",
+    [
+        ({"direction": [1.0, 0.0]}, "never meets"),
+        ({"direction": [0.0, 0.0]}, "direction is"),
+        ({"times": np.array([0.0, 1.0, 3.0])}, "equally spaced"),
+        ({"times": np.array([0.0])}, "at least two"),
+        ({"velocity": np.zeros(7)}, "samples"),
+        ({"rock": Rock(2600.0, np.array([4000.0, 5000.0]), 3000.0)}, "one rock"),
+    ],
+)
+def test_what_does_not_hold_is_refused(rock, joint, change, message):
+    given = {"direction": [0, 1], "times": np.linspace(0, 1, 5), "velocity": np.sin, "rock": rock}
+    given |= change
+    pulse = Pulse("P", given["direction"], given["velocity"])
+    with pytest.raises(ValueError, match=message):
+        oblique_joint.fields(given["rock"], joint, pulse, [0, 0], 0.0, [[0.0, 1.0]], given["times"])
