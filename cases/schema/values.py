@@ -63,6 +63,10 @@ Positive = Annotated[float, Field(gt=0), AfterValidator(_magnitude)]
 NonNegative = Annotated[float, Field(ge=0), AfterValidator(_magnitude)]
 Poisson = Annotated[float, Field(gt=-1, lt=0.5)]
 Offset = Annotated[list[Number], Field(min_length=2, max_length=2)]
+Point = Annotated[list[Number], Field(min_length=2, max_length=2)]
+DirectionInPlane = Annotated[
+    list[Number], Field(min_length=2, max_length=2), AfterValidator(_unit)
+]
 Direction = Annotated[list[Number], Field(min_length=3, max_length=3), AfterValidator(_unit)]
 Pair = Annotated[str, AfterValidator(_pair)]
 
