@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -71,10 +72,9 @@ def ordered(sub: Subdivision, found: Rings) -> tuple[Subdivision, Rings]:
     first = np.append(0, np.cumsum(count))
     at = np.repeat(found.first[:-1][order] - first[:-1], count) + np.arange(first[-1])
     cells = number[sub.cells]
-    renumbered = Subdivision(
-        **{**vars(sub), "cells": cells, "count": len(order)},
+    return replace(sub, cells=cells, count=len(order)), Rings(
+        np.arange(len(order)), found.corners[at], first
     )
-    return renumbered, Rings(np.arange(len(order)), found.corners[at], first)
 
 
 def contacts(sub: Subdivision) -> Contacts:
@@ -100,7 +100,8 @@ def boundary(sub: Subdivision) -> BoundaryEdges:
     outer = np.flatnonzero(half.across == OUTSIDE)
     one = _joined(sub, np.stack([half.cell, side, line], axis=1), outer)
     block, side = half.cell[one.half], side[one.half]
-    return BoundaryEdges(block, one.start, one.end, one.normal, one.length, side)
+    along = sub.along[half.edge[one.half]]
+    return BoundaryEdges(block, one.start, one.end, one.normal, one.length, side, along)
 
 
 def _joined(sub: Subdivision, key: np.ndarray, chosen: np.ndarray) -> Joined:

@@ -42,6 +42,7 @@ class BoundaryEdges:
     normal : float array [b, 2], unit vector out of the block.
     length : float array [b], m.
     side : int array [b], index in the partition's `sides`.
+    joint_set : int array [b], index of the set whose joint lies along the edge, or NO_SET.
     """
 
     block: np.ndarray
@@ -50,6 +51,7 @@ class BoundaryEdges:
     normal: np.ndarray
     length: np.ndarray
     side: np.ndarray
+    joint_set: np.ndarray
 
     def __len__(self) -> int:
         return len(self.length)

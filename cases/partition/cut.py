@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -75,9 +76,6 @@ def _partition(
 def _named(edges: BoundaryEdges, outline: Outline) -> BoundaryEdges:
     """Return boundary edges with the outer ones told apart: those along the left, right, bottom and
     top of the domain, and others."""
-    side = np.where(edges.side == 0, len(SIDES) - 1, len(SIDES) - 1 + edges.side)
-    low_x, low_y, high_x, high_y = outline.bounds
-    for k, (axis, place) in enumerate([(0, low_x), (0, high_x), (1, low_y), (1, high_y)]):
-        off = np.maximum(abs(edges.start[:, axis] - place), abs(edges.end[:, axis] - place))
-        side[(edges.side == 0) & (off <= outline.tolerance)] = k
-    return BoundaryEdges(**{**vars(edges), "side": side})
+    outer = outline.sides_of(edges.start, edges.end)
+    side = np.where(edges.side == 0, outer, len(SIDES) - 1 + edges.side)
+    return replace(edges, side=side)

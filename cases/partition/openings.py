@@ -33,9 +33,10 @@ def check_convex(sub: Subdivision) -> None:
     """Raise NonConvex where a block had to be cut through intact rock."""
     cuts = np.flatnonzero(_through_rock(sub))
     if len(cuts):
-        at = sub.points[sub.ends[cuts[0]]].mean(axis=0)
+        ends = sub.ends[cuts[0]]
+        corner = np.isin(ends, sub.ends[(sub.cells == OUTSIDE).any(axis=1)])
         raise NonConvex(
-            at,
+            sub.points[ends[np.argmax(corner)]],
             "a block is not convex at an opening or a corner of the outline; "
             'let it be cut in convex parts by domain.non_convex = "cut"',
         )

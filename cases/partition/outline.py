@@ -25,6 +25,7 @@ class Outline:
 
     Attributes
     ----------
+    corners : float array [m, 2], of the domain with its openings, counter-clockwise, m.
     hull : float array [n, 2], convex, counter-clockwise, m.
     taken : what is taken out of the hull: polygons, each float array [k, 2], with the side that its
         edges become: 0 for a bay of the outline, 1 + k for opening k.
@@ -32,6 +33,7 @@ class Outline:
     tolerance : m.
     """
 
+    corners: np.ndarray
     hull: np.ndarray
     taken: list[tuple[np.ndarray, int]]
     shape: shapely.Geometry
@@ -42,10 +44,41 @@ class Outline:
         """Area of the domain less its openings, m2."""
         return float(self.shape.area)
 
+    def sides_of(self, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+        """Return the index in SIDES of edges of the outer boundary from `start` to `end`, float
+        arrays [n, 2], m: along the left, right, bottom or top of the domain, or elsewhere."""
+        low, high = self.corners.min(axis=0), self.corners.max(axis=0)
+        side = np.full(len(start), SIDES.index("outline"))
+        for k, (axis, place) in enumerate([(0, low), (0, high), (1, low), (1, high)]):
+            off = np.maximum(
+                np.abs(start[:, axis] - place[axis]), np.abs(end[:, axis] - place[axis])
+            )
+            side[off <= self.tolerance] = k
+        return side
+
     @property
-    def bounds(self) -> tuple[float, float, float, float]:
-        """Least x and y, largest x and y, m."""
-        return self.shape.bounds
+    def size(self) -> float:
+        """Diagonal of the bounding box, m."""
+        return float(np.hypot(*np.ptp(self.corners, axis=0)))
+
+    def edges(self, side: str | None = None, opening: int | None = None) -> np.ndarray:
+        """Return the edges of a side, or of an opening, from point to point [n, 2, 2], m."""
+        if opening is not None:
+            corners = next(corners for corners, k in self.taken if k == 1 + opening)
+            return np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
+        start, end = self.corners, np.roll(self.corners, -1, axis=0)
+        chosen = self.sides_of(start, end) == SIDES.index(side or "outline")
+        return np.stack([start, end], axis=1)[chosen]
+
+    def normals(self) -> dict[str, np.ndarray]:
+        """Return the unit normals [n, 2] out of the edges of each side that there is."""
+        found = {}
+        for side in SIDES:
+            along = np.diff(self.edges(side), axis=1)[:, 0]
+            if len(along):
+                outward = np.stack([along[:, 1], -along[:, 0]], axis=1)
+                found[side] = outward / np.hypot(*along.T)[:, None]
+        return found
 
     def holds(self, point: list[float]) -> bool:
         """Return whether a point lies in the domain or on its boundary, and in no opening."""
@@ -61,8 +94,9 @@ def outline_of(domain: Domain) -> Outline:
     _check_openings(whole, openings)
     hull = whole.convex_hull
     bays = [] if hull.equals(whole) else _parts(hull.difference(whole))
-    size = float(np.hypot(*np.ptp(_corners(hull), axis=0)))
+    size = float(np.hypot(*np.ptp(shapely.get_coordinates(hull), axis=0)))
     return Outline(
+        corners=_corners(whole),
         hull=_corners(hull),
         taken=[
             *((_corners(bay), 0) for bay in bays),

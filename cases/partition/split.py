@@ -12,7 +12,8 @@ import numpy as np
 
 from cases.partition.faults import Sliver
 from cases.partition.lines import Lines
-from cases.partition.subdivision import OUTSIDE, Subdivision
+from cases.partition.pieces import Pieces, cut_edges
+from cases.partition.subdivision import NO_SET, OUTSIDE, Subdivision
 
 
 class Split(NamedTuple):
@@ -33,7 +34,7 @@ def split(sub: Subdivision, lines: Lines, tolerance: float) -> Split:
     """
     empty = len(lines.first) - 2
     touched = (np.append(lines.family, empty)[sub.cells] != empty).any(axis=1)
-    pieces = _cut_edges(sub, lines, touched, tolerance)
+    pieces = cut_edges(sub, lines, touched, tolerance)
     slabs = _slabs(sub, lines, pieces)
     ends, cells = _new_edges(sub, lines, pieces, slabs)
     carrier = np.full(len(ends), len(sub.directions))
@@ -44,6 +45,7 @@ def split(sub: Subdivision, lines: Lines, tolerance: float) -> Split:
         cells=np.concatenate([sub.cells[old], slabs.of_pieces, cells]),
         line=np.concatenate([sub.line[old], sub.line[edge], carrier]),
         side=np.concatenate([sub.side[old], sub.side[edge], np.zeros(len(ends), np.int64)]),
+        along=np.concatenate([sub.along[old], _along(sub, lines, pieces), carrier * 0 + NO_SET]),
         directions=np.concatenate([sub.directions, lines.direction[None]]),
         joint_set=np.append(sub.joint_set, lines.joint_set),
         count=len(slabs.parent),
@@ -52,78 +54,12 @@ def split(sub: Subdivision, lines: Lines, tolerance: float) -> Split:
     return Split(found, slabs.parent, number)
 
 
-class _Pieces(NamedTuple):
-    """Edges after they are cut: points [p, 2], old ones first; ends [n, 2]; the edge that each is
-    part of [n]; its two cells before [n, 2], and the codes of its ends in their families
-    [n, side, end]."""
-
-    points: np.ndarray
-    ends: np.ndarray
-    edge: np.ndarray
-    cells: np.ndarray
-    codes: np.ndarray
-
-
-def _cut_edges(sub: Subdivision, lines: Lines, touched: np.ndarray, tolerance: float) -> _Pieces:
-    edge = np.flatnonzero(touched)
-    ends, cells = sub.ends[edge], sub.cells[edge]
-    family = np.append(lines.family, len(lines.first) - 2)[cells]
-    s = sub.points @ lines.normal
-    codes = lines.codes(
-        np.repeat(s[ends][:, None, :], 2, axis=1), np.repeat(family[:, :, None], 2, 2), tolerance
-    )
-    which, t = _crossings(lines, family, codes, s[ends])
-    chord = sub.points[ends[:, 1]] - sub.points[ends[:, 0]]
-    which, t = _distinct(which, t, np.hypot(*chord.T), tolerance / 2)
-    points = np.concatenate([sub.points, sub.points[ends[which, 0]] + t[:, None] * chord[which]])
-    nodes, part = _chains(ends, which, len(sub.points))
-    s = points @ lines.normal
-    codes = lines.codes(
-        np.repeat(s[nodes][:, None, :], 2, axis=1),
-        np.repeat(family[part][:, :, None], 2, 2),
-        tolerance,
-    )
-    return _Pieces(points, nodes, edge[part], cells[part], codes)
-
-
-def _crossings(
-    lines: Lines, family: np.ndarray, codes: np.ndarray, s: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return where lines cross edges: the edge, and how far along it, 0 to 1; any order."""
-    first, after = (codes.min(axis=2) + 1) // 2, codes.max(axis=2) // 2
-    number = np.maximum(after - first, 0).ravel()
-    where = np.repeat(np.arange(number.size), number)
-    line = np.arange(number.sum()) - np.repeat(np.cumsum(number) - number, number)
-    place = lines.places[lines.first[family.ravel()[where]] + first.ravel()[where] + line]
-    edge = where // 2
-    return edge, (place - s[edge, 0]) / (s[edge, 1] - s[edge, 0])
-
-
-def _distinct(
-    edge: np.ndarray, t: np.ndarray, length: np.ndarray, tolerance: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return crossings in order along their edges, those within the tolerance as one."""
-    order = np.lexsort([t, edge])
-    edge, t = edge[order], t[order]
-    new = np.ones(len(edge), bool)
-    new[1:] = (np.diff(edge) > 0) | (np.diff(t) * length[edge[1:]] > tolerance)
-    return edge[new], t[new]
-
-
-def _chains(ends: np.ndarray, which: np.ndarray, first: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the pieces [n, 2] of edges cut at new points, from index `first` on, in order along
-    the edges `which`; and the edge that each is part of [n]."""
-    number = np.bincount(which, minlength=len(ends))
-    begin = np.cumsum(number + 2) - (number + 2)
-    nodes = np.empty((number + 2).sum(), np.int64)
-    nodes[begin], nodes[begin + number + 1] = ends[:, 0], ends[:, 1]
-    inner = np.ones(len(nodes), bool)
-    inner[begin] = inner[begin + number + 1] = False
-    nodes[inner] = first + np.arange(len(which))
-    starts = np.ones(len(nodes), bool)
-    starts[begin + number + 1] = False
-    at = np.flatnonzero(starts)
-    return np.stack([nodes[at], nodes[at + 1]], axis=1), np.repeat(np.arange(len(ends)), number + 1)
+def _along(sub: Subdivision, lines: Lines, pieces: Pieces) -> np.ndarray:
+    """Return the joint set along each piece of the boundary [n], these lines' own included."""
+    one, other = np.moveaxis(pieces.codes, 2, 0)
+    inside = pieces.cells != OUTSIDE
+    on_line = ((one % 2 == 1) & (one == other) & inside).any(axis=1) & ~inside.all(axis=1)
+    return np.where(on_line, lines.joint_set, sub.along[pieces.edge])
 
 
 class _Slabs(NamedTuple):
@@ -138,7 +74,7 @@ class _Slabs(NamedTuple):
     first: np.ndarray
 
 
-def _slabs(sub: Subdivision, lines: Lines, pieces: _Pieces) -> _Slabs:
+def _slabs(sub: Subdivision, lines: Lines, pieces: Pieces) -> _Slabs:
     least, most = np.full(sub.count, np.iinfo(np.int64).max), np.full(sub.count, -1)
     for side in (0, 1):
         inside = pieces.cells[:, side] != OUTSIDE
@@ -162,7 +98,7 @@ def _cell_of(slabs: _Slabs, cell: np.ndarray, slab: np.ndarray) -> np.ndarray:
     return np.where(step == 0, cell, slabs.first[cell] + step - 1)
 
 
-def _beside(sub: Subdivision, pieces: _Pieces, slabs: _Slabs) -> np.ndarray:
+def _beside(sub: Subdivision, pieces: Pieces, slabs: _Slabs) -> np.ndarray:
     """Return the new cells on both sides of each piece [n, 2]."""
     cell, (one, other) = pieces.cells, np.moveaxis(pieces.codes, 2, 0)
     along = (one % 2 == 1) & (one == other)  # on a line: the whole cell lies on one side of it
@@ -171,13 +107,15 @@ def _beside(sub: Subdivision, pieces: _Pieces, slabs: _Slabs) -> np.ndarray:
     if inside.any():
         at = pieces.points[pieces.ends[np.flatnonzero(inside.any(axis=1))[0], 0]]
         raise Sliver(at, "joints meet at a grazing angle")
-    slab = np.where(one % 2 == 0, one // 2, np.where(other % 2 == 0, other // 2, (one + other) // 4))
+    slab = np.where(
+        one % 2 == 0, one // 2, np.where(other % 2 == 0, other // 2, (one + other) // 4)
+    )
     slab = np.where(along, one // 2 + (most > one), slab)
     return np.where(cell == OUTSIDE, OUTSIDE, _cell_of(slabs, cell, slab))
 
 
 def _new_edges(
-    sub: Subdivision, lines: Lines, pieces: _Pieces, slabs: _Slabs
+    sub: Subdivision, lines: Lines, pieces: Pieces, slabs: _Slabs
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the joints across cells: ends [n, 2], and cells to the left and right [n, 2]."""
     cell = np.repeat(pieces.cells[:, :, None], 2, axis=2).ravel()

@@ -6,7 +6,7 @@ cells fit together exactly: their areas add up, and each inner edge belongs to t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -41,6 +41,7 @@ class Subdivision:
     cells : int array [e, 2], the cells to its left and right, or OUTSIDE.
     line : int array [e], the direction of an edge in `directions`.
     side : int array [e], of an edge with OUTSIDE: 0 for the outer boundary, 1 + k for opening k.
+    along : int array [e], the joint set whose joint lies along such an edge, or NO_SET.
     directions : float array [l, 2], unit vectors. joint_set : int array [l], or NO_SET.
     count : cells are 0 to count - 1; some may have been removed.
     """
@@ -50,6 +51,7 @@ class Subdivision:
     cells: np.ndarray
     line: np.ndarray
     side: np.ndarray
+    along: np.ndarray
     directions: np.ndarray
     joint_set: np.ndarray
     count: int
@@ -66,6 +68,7 @@ class Subdivision:
             cells=np.stack([np.zeros(n, np.int64), np.full(n, OUTSIDE)], axis=1),
             line=at,
             side=np.zeros(n, np.int64),
+            along=np.full(n, NO_SET),
             directions=along / np.hypot(*along.T)[:, None],
             joint_set=np.full(n, NO_SET),
             count=1,
@@ -112,24 +115,18 @@ def removed(sub: Subdivision, cells: np.ndarray, side: int) -> Subdivision:
         sub,
         cells=np.where(was, OUTSIDE, sub.cells),
         side=np.where(changed, side, sub.side),
+        along=np.where(changed, sub.joint_set[sub.line], sub.along),
     )
 
 
 def joined(sub: Subdivision, root: np.ndarray) -> Subdivision:
     """Return a subdivision whose cells are joined to others: root, int array [count]."""
-    return kept(sub, cells=np.append(root, OUTSIDE)[sub.cells], side=sub.side)
+    return kept(sub, cells=np.append(root, OUTSIDE)[sub.cells])
 
 
-def kept(sub: Subdivision, cells: np.ndarray, side: np.ndarray) -> Subdivision:
-    """Return a subdivision with other cells beside its edges, without edges inside of a cell."""
-    holds = cells[:, 0] != cells[:, 1]
-    return Subdivision(
-        sub.points,
-        sub.ends[holds],
-        cells[holds],
-        sub.line[holds],
-        side[holds],
-        sub.directions,
-        sub.joint_set,
-        sub.count,
-    )
+def kept(sub: Subdivision, **changed: np.ndarray) -> Subdivision:
+    """Return a subdivision with arrays of its edges changed, without edges inside of a cell."""
+    of_edges = {name: getattr(sub, name) for name in ("ends", "cells", "line", "side", "along")}
+    of_edges |= changed
+    holds = of_edges["cells"][:, 0] != of_edges["cells"][:, 1]
+    return replace(sub, **{name: array[holds] for name, array in of_edges.items()})

@@ -13,7 +13,8 @@ class Domain(Table):
     #: m, width and height of a rectangle with its lower left corner at the origin
     size: Annotated[list[Positive], Field(min_length=2, max_length=2)] | None = None
     outline: list[Point] | None = None  #: m, corners of a polygon instead
-    openings: list[list[Point]] = []  #: m, corners of polygons that are taken out
+    #: m, corners of polygons that are taken out
+    openings: list[list[Point]] = Field(default_factory=list)
     #: blocks at openings that are not convex; cut: in convex parts, along the faces of the opening
     non_convex: Literal["refuse", "cut"] = "refuse"
     #: blocks thinner or more pointed than below; merge: with a neighbour, where that is convex

@@ -16,7 +16,7 @@ class JointSet(Joints):
     dip: Annotated[float, Field(ge=-180, le=180)]
     spacing: Positive | None = None  #: m, across the joints; absent: one joint, `through` a point
     through: Point | None = None  #: m, a point of one of the joints; absent: the origin
-    ends_at: list[str] = []  #: names of the sets whose joints these joints end at
+    ends_at: list[str] = Field(default_factory=list)  #: names of sets whose joints these end at
     #: of the spacing, from each joint that they end at to the next; 0.5: brickwork
     offset: Annotated[float, Field(ge=0, lt=1)] = 0.0
     #: standard deviation of the spacing over its mean; uniformly distributed
