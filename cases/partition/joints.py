@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
     from cases.schema.joint_set import JointSet
 
+#: Of the sets that one ends at, the signed number of the joint below each cell.
+Stops = dict[str, np.ndarray]
+
 #: Cosine and sine of dips, degrees, that are exact.
 EXACT = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0)}
 
@@ -37,7 +40,7 @@ def cut_by_sets(sub: Subdivision, sets: Sequence[JointSet], tolerance: float) ->
     for one in in_order(sets):
         i = index[one.name]
         stops = _stops(one, sets)
-        lines = _lines_of(sub, one, i, {name: numbers[name] for name in stops}, tolerance)
+        lines = _lines_of(sub, sets, i, {name: numbers[name] for name in stops}, tolerance)
         found = split(sub, lines, tolerance)
         if found.subdivision.count == sub.count:
             raise PartitionError(None, "cuts nothing of the domain", f"joint_sets[{i}]")
@@ -73,12 +76,13 @@ def _stops(one: JointSet, sets: Sequence[JointSet]) -> list[str]:
 
 
 def _lines_of(
-    sub: Subdivision, one: JointSet, index: int, stops: dict[str, np.ndarray], tolerance: float
+    sub: Subdivision, sets: Sequence[JointSet], index: int, stops: Stops, tolerance: float
 ) -> Lines:
     """Return the lines of a set in every region between the joints that it ends at.
 
     stops : of each set that it ends at, the signed number of the joint below each cell.
     """
+    one = sets[index]
     direction = direction_of(one.dip)
     normal = np.array([-direction[1], direction[0]])
     table = np.stack([*stops.values(), np.zeros(sub.count, np.int64)], axis=1)
@@ -88,7 +92,7 @@ def _lines_of(
     if one.spacing is None:
         return _single(sub, one, index, direction, through, family, tolerance)
     low, high = _extents(sub, normal, family, len(regions))
-    shifts = _shifts(one, list(stops), regions)
+    shifts = _shifts(one, normal, stops, regions, sets)
     return _spaced(one, index, direction, family, regions, through + shifts, low, high)
 
 
@@ -106,9 +110,11 @@ def _single(
     depth = np.full(sub.count, np.inf)
     inward = -((at - sub.points[half.start]) * half.outward).sum(axis=1)
     np.minimum.at(depth, half.cell, inward)
-    inside = int(np.argmax(depth))
+    inside, key = int(np.argmax(depth)), f"joint_sets[{index}].through"
     if depth[inside] < -tolerance:
-        raise PartitionError(at, "must lie in the domain", f"joint_sets[{index}].through")
+        raise PartitionError(at, "must lie in the domain", key)
+    if len(np.unique(family[depth > -tolerance])) > 1:
+        raise PartitionError(at, f"must lie on no joint of {', '.join(one.ends_at)}", key)
     here = np.where(family == family[inside], 0, 1)
     first, base = np.array([0, 1, 1]), np.zeros(2, np.int64)
     return Lines(direction, here, np.array([place]), first, base, index)
@@ -125,12 +131,17 @@ def _extents(
     return low, high
 
 
-def _shifts(one: JointSet, stops: list[str], regions: np.ndarray) -> np.ndarray:
-    """Return by how much joints are offset in each region, m: by a part of the spacing more from
-    each joint that they end at to the next."""
-    own = [k for k, name in enumerate(stops) if name in one.ends_at]
-    passed = regions[:, own].sum(axis=1)
-    return np.mod(one.offset * passed, 1.0) * (one.spacing or 0.0)
+def _shifts(
+    one: JointSet, normal: np.ndarray, stops: Stops, regions: np.ndarray, sets: Sequence[JointSet]
+) -> np.ndarray:
+    """Return by how much joints are offset in each region, m along the normal: by a part of the
+    spacing more from each joint that they end at to the next, in the direction of those joints."""
+    by_name, shift = {other.name: other for other in sets}, np.zeros(len(regions))
+    for k, name in enumerate(stops):
+        if name in one.ends_at:
+            towards = np.sign(normal @ direction_of(by_name[name].dip))
+            shift += np.mod(towards * one.offset * regions[:, k], 1.0)
+    return shift * (one.spacing or 0.0)
 
 
 def _spaced(

@@ -16,8 +16,10 @@ def block_at(partition: Partition, points: np.ndarray) -> np.ndarray:
     share it, the first."""
     ring = shapely.linearrings(_closed(partition), indices=_closed_owner(partition))
     size = float(np.hypot(*np.ptp(partition.corners, axis=0)))
-    found = _nearest(shapely.polygons(ring), points, TOLERANCE * size)
-    return np.where(found < 0, OUTSIDE, found)
+    which, block = shapely.STRtree(shapely.polygons(ring)).query(
+        shapely.points(points), predicate="dwithin", distance=TOLERANCE * size
+    )
+    return _first(which, block, len(points))
 
 
 def contact_at(
@@ -34,18 +36,16 @@ def contact_at(
     if not len(chosen):
         raise ValueError("there is no contact")
     ends = np.stack([contacts.start[chosen], contacts.end[chosen]], axis=1)
-    return chosen[_nearest(shapely.linestrings(ends), points, np.inf)]
+    tree = shapely.STRtree(shapely.linestrings(ends))
+    which, found = tree.query_nearest(shapely.points(points), all_matches=True)
+    return chosen[_first(which, found, len(points))]
 
 
-def _nearest(shapes: np.ndarray, points: np.ndarray, reach: float) -> np.ndarray:
-    """Return the nearest shape within reach of each point, the first of several; -1 for none."""
-    (which, shape), distance = shapely.STRtree(shapes).query_nearest(
-        shapely.points(points), all_matches=True, return_distance=True
-    )
-    found = np.full(len(points), len(shapes))
-    near = distance <= reach
-    np.minimum.at(found, which[near], shape[near])
-    return np.where(found == len(shapes), -1, found)
+def _first(which: np.ndarray, found: np.ndarray, count: int) -> np.ndarray:
+    """Return the least of what is found for each of `count` points, or OUTSIDE."""
+    least = np.full(count, np.iinfo(np.int64).max)
+    np.minimum.at(least, which, found)
+    return np.where(least == np.iinfo(np.int64).max, OUTSIDE, least)
 
 
 def _closed(partition: Partition) -> np.ndarray:
