@@ -36,7 +36,7 @@ def cut(domain: Domain, sets: Sequence[JointSet]) -> Partition:
     sub = cut_by_sets(Subdivision.of_polygon(outline.hull), sets, outline.tolerance)
     sub = taken_out(sub, outline.taken, outline.tolerance)
     if domain.non_convex == "refuse":
-        check_convex(sub)
+        check_convex(sub, outline.taken)
     limits = (least_width(domain, sets), domain.least_angle)
     joins = domain.slivers == "merge"
     sub, rings = without_slivers(sub, limits, joins, outline.tolerance)

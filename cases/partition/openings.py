@@ -29,14 +29,14 @@ def taken_out(
     return _rejoined(sub, whole, tolerance)
 
 
-def check_convex(sub: Subdivision) -> None:
-    """Raise NonConvex where a block had to be cut through intact rock."""
+def check_convex(sub: Subdivision, polygons: list[tuple[np.ndarray, int]]) -> None:
+    """Raise NonConvex where a block had to be cut through intact rock beside what was taken out."""
     cuts = np.flatnonzero(_through_rock(sub))
     if len(cuts):
-        ends = sub.ends[cuts[0]]
-        corner = np.isin(ends, sub.ends[(sub.cells == OUTSIDE).any(axis=1)])
+        corners = np.concatenate([corners for corners, _ in polygons])
+        away = sub.points[sub.ends[cuts[0]]][:, None] - corners
         raise NonConvex(
-            sub.points[ends[np.argmax(corner)]],
+            corners[np.argmin(np.hypot(*np.moveaxis(away, 2, 0)).min(axis=0))],
             "a block is not convex at an opening or a corner of the outline; "
             'let it be cut in convex parts by domain.non_convex = "cut"',
         )

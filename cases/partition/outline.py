@@ -110,7 +110,7 @@ def outline_of(domain: Domain) -> Outline:
 def _polygon(corners: list[list[float]], key: str) -> shapely.Polygon:
     polygon = shapely.Polygon(corners) if len(corners) > 2 else shapely.Polygon()
     if not polygon.is_valid or not polygon.area > 0:
-        why = shapely.is_valid_reason(polygon) if polygon.area else "it has no area"
+        why = "it has no area" if polygon.is_valid else shapely.is_valid_reason(polygon)
         raise PartitionError(None, f"must be a polygon that does not cross itself ({why})", key)
     return polygon
 
