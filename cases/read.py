@@ -1,16 +1,24 @@
-"""From a TOML file to validated scenes: overrides, variants, and errors in one line."""
+"""From a TOML file to validated scenes: overrides, variants, and errors in one line.
+
+A file with [pillar] holds a `Scene`, one with [domain] a `RockMass`; `load_any` reads both.
+"""
+
+from __future__ import annotations
 
 import re
 from copy import deepcopy
 from pathlib import Path
-from typing import Any
-
-from pydantic import ValidationError
+from typing import TYPE_CHECKING, Any
 
 from cases.errors import SceneError, nearest
 from cases.files import parse_toml, read_toml
 from cases.schema.scene import Scene
 from cases.schema.values import CONTROL
+from cases.unsolved import solved
+from cases.validate import validated
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
 
 LARGEST_FILE = 10_000_000  # bytes; a scene is a page of text
 #: It names a folder, beside what the scene's own results are called.
@@ -20,33 +28,6 @@ VARIANT_NAME = re.compile(
 
 MOST_VARIANTS = 1000
 
-#: Keys that name a file, which lies below the scene's folder unless an override names it.
-FILE_KEYS = ("load.file", "numerics.continuum.mesh")
-
-#: What is allowed, by pydantic's type of error.
-ALLOWED = {
-    "contradiction": "{allowed}",
-    "extra_forbidden": "unknown key; allowed: ",
-    "missing": "is required",
-    "model_type": "must be a table",
-    "dict_type": "must be a table",
-    "list_type": "must be a list",
-    "float_type": "must be a number",
-    "int_type": "must be a whole number",
-    "string_type": "must be a text",
-    "bool_type": "must be true or false",
-    "finite_number": "must be a finite number",
-    "literal_error": "must be {expected}",
-    "greater_than": "must be greater than {gt:g}",
-    "greater_than_equal": "must be at least {ge:g}",
-    "less_than": "must be less than {lt:g}",
-    "less_than_equal": "must be at most {le:g}",
-    "too_short": "must hold {min_length} numbers",
-    "too_long": "must hold {max_length} numbers",
-    "magnitude": "must lie between 1e-30 and 1e30 in size",
-    "pair": "must be 'a ~ b', two solvers by name",
-}
-
 
 def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[Scene]:
     """Read a scene file: the scene itself, then its variants, each validated on its own.
@@ -54,13 +35,20 @@ def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[Scen
     `overrides` maps dotted keys to values (`--set`) and holds for every variant.
     Raises SceneError, in one line, for anything that cannot be simulated.
     """
+    return [solved(scene) for scene in load_any(path, overrides)]
+
+
+def load_any(
+    path: str | Path, overrides: dict[str, Any] | None = None
+) -> list[Scene] | list[RockMass]:
+    """Read a scene file as `load` does, whether or not its kind of scene can be simulated."""
     path = Path(path)
     table, variants = _parts(_read_toml(path), path, overrides or {})
     given = frozenset(overrides or {})
-    scenes = [_validate(table, path, given)]
+    scenes: list[Any] = [validated(table, path, given)]
     for i, variant in enumerate(variants):
         merged = _variant(table, variant, path, i, overrides or {})
-        scenes.append(_validate(merged, path, given))
+        scenes.append(validated(merged, path, given))
     names = [scene.name for scene in scenes]
     for i, name in enumerate(names[1:]):
         if name in names[: i + 1]:
@@ -79,6 +67,16 @@ def load_variant(
 
     asked : whether the user gave the overrides, which may then name files anywhere.
     """
+    return solved(load_any_variant(path, name, overrides, asked))
+
+
+def load_any_variant(
+    path: str | Path,
+    name: str = "",
+    overrides: dict[str, Any] | None = None,
+    asked: bool = True,
+) -> Scene | RockMass:
+    """Read one variant as `load_variant` does, whether or not it can be simulated."""
     given = frozenset(overrides or {}) if asked else frozenset()
     return _one(_read_toml(Path(path)), Path(path), name, overrides or {}, given)
 
@@ -90,23 +88,24 @@ def load_tables(
 
     Files that it names lie in the working folder or below.
     """
-    return _one(deepcopy(tables), Path("scene"), name, overrides or {}, frozenset(overrides or {}))
+    given = frozenset(overrides or {})
+    return solved(_one(deepcopy(tables), Path("scene"), name, overrides or {}, given))
 
 
 def _one(
     whole: dict[str, Any], path: Path, name: str, overrides: dict[str, Any], given: frozenset[str]
-) -> Scene:
+) -> Scene | RockMass:
     """Return one variant of the tables of a whole file."""
     table, variants = _parts(whole, path, overrides)
     if not name:
-        return _validate(table, path, given)
+        return validated(table, path, given)
     names = [variant.get("name") for variant in variants]
     if name not in names:
         known = sorted(str(n) for n in ["", *names])
         allowed = f"must be one of {known}{nearest(name, known)}"
         raise SceneError(str(path), "variants.name", name, allowed)
     which = names.index(name)
-    return _validate(_variant(table, variants[which], path, which, overrides), path, given)
+    return validated(_variant(table, variants[which], path, which, overrides), path, given)
 
 
 def _parts(
@@ -159,56 +158,6 @@ def _variant(
     for key, value in overrides.items():
         _assign(table, key, value, str(path))
     return table
-
-
-def _validate(table: dict[str, Any], path: Path, given: frozenset[str]) -> Scene:
-    """Return a table as a scene; given : the keys, of tables too, that the user gave himself."""
-    asked = {key for key in FILE_KEYS if any(f"{key}.".startswith(f"{g}.") for g in given)}
-    where = f"{path} [{table['name']}]" if table.get("name") else str(path)
-    try:
-        scene = Scene.model_validate(table, context={"folder": path.parent, "asked": asked})
-    except ValidationError as error:
-        raise _scene_error(where, error) from None
-    scene._where = where
-    return scene
-
-
-def _scene_error(where: str, error: ValidationError) -> SceneError:
-    first, more = error.errors()[0], error.error_count() - 1
-    context = first.get("ctx", {})
-    kind, value = first["type"], first["input"]
-    key, allowed = _dotted(first["loc"]), ALLOWED.get(kind, first["msg"]).format(**context)
-    if kind == "contradiction":
-        key, value = context["key"], context["found"]
-    elif kind == "extra_forbidden":
-        known = _known_keys(first["loc"])
-        allowed += ", ".join(known) + nearest(str(first["loc"][-1]), known)
-    elif kind == "list_type" and isinstance(value, dict):
-        allowed = f"must be written [[{key}]]"
-    if isinstance(value, dict) or kind == "missing":
-        value = None
-    more_text = f" (and {more} more)" if more else ""
-    return SceneError(where, key, value, allowed + more_text)
-
-
-def _known_keys(location: tuple[int | str, ...]) -> list[str]:
-    model: Any = Scene
-    for part in location[:-1]:
-        if isinstance(part, str):
-            model = _table_of(model.model_fields[part].annotation)
-    return [k for k in model.model_fields if k != "name"]
-
-
-def _table_of(annotation: Any) -> Any:
-    options = getattr(annotation, "__args__", (annotation,))
-    return next(t for t in options if hasattr(t, "model_fields"))
-
-
-def _dotted(location: tuple[int | str, ...]) -> str:
-    text = ""
-    for part in location:
-        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
-    return text
 
 
 def _merge(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:

@@ -1,12 +1,18 @@
 """Scenes by path, or by the name of a shipped one, with the solvers that they name checked."""
 
+from __future__ import annotations
+
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import cases
+from cases import read as reader
 from cases.errors import SceneError, nearest
 from cases.schema.scene import Scene
 from compare import engines as registry
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
 
 SHIPPED = Path(cases.__file__).parent
 MOST = 1000  # files of a folder that a name is looked for among
@@ -46,7 +52,17 @@ def load_variant(
     return known(cases.load_variant(path, name, overrides))
 
 
-def known(scene: Scene) -> Scene:
+def load_any(
+    path: str | Path, name: str | None, overrides: dict[str, Any] | None = None
+) -> list[Scene] | list[RockMass]:
+    """Return a scene and its variants, or the one that is named, whether or not an engine solves
+    its kind; with [expect] checked."""
+    if name is None:
+        return [known(scene) for scene in reader.load_any(path, overrides)]
+    return [known(reader.load_any_variant(path, name, overrides))]
+
+
+def known(scene: Any) -> Any:
     """Return a scene; raises SceneError where its [expect] names what is no solver."""
     solvers = registry.names()
     for pair in scene.expect:

@@ -212,3 +212,24 @@ def test_a_run_without_scenes_imports_nothing_heavy(pytester):
         timeout=60,
     )
     assert done.returncode == 0, done.stdout
+
+
+def test_a_rock_mass_is_a_failing_test_as_long_as_no_engine_solves_it(run):
+    """It is collected, and says why in one line."""
+    mass = """
+title = "rows"
+[domain]
+size = [10.0, 6.0]
+[rock]
+density = 2600.0
+intact_modulus = 5.0e10
+[time]
+duration = 0.1
+[record]
+points = [[1.0, 3.5]]
+[expect]
+"dem ~ continuum-jointed" = 0.1
+"""
+    result = run(scene=mass)
+    result.assert_outcomes(failed=1)
+    result.stdout.re_match_lines([r"\S+scene.toml: domain: is a rock mass, which no engine"])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import ceil, floor, log10
 from typing import TYPE_CHECKING
 
 from pydantic_core import PydanticCustomError
@@ -15,14 +14,17 @@ from cases.schema.discretisation import check_discretisation
 from cases.schema.joint import JointLaw
 from cases.schema.plausible import INTACT, meant
 from cases.schema.scheme import check_scheme
+from cases.schema.shared_checks import (
+    SNAP,
+    check_fields,
+    check_strength,
+    check_time,
+    rounded_up,
+)
 from cases.schema.values import contradiction, is_extreme
 
 if TYPE_CHECKING:
     from cases.schema.scene import Scene
-
-MOST_SAMPLES = 10_000_000  # 80 MB for each section, point and energy term
-MOST_SNAPSHOTS = 10_000
-SNAP = 1 + 1e-6  # how far the fracture energy must stay from a vertical softening line
 
 
 def check(scene: Scene) -> None:
@@ -30,15 +32,15 @@ def check(scene: Scene) -> None:
     _check_layers(scene)
     _check_receivers(scene)
     _check_rock(scene)
-    _check_time(scene)
-    _check_fields(scene)
+    check_time(scene)
+    check_fields(scene)
     _check_lever(scene)
     _check_extreme(scene)
     _check_ends(scene)
     _check_damping(scene)
-    _check_strength("joints", scene.joints)
+    check_strength("joints", scene.joints)
     for i, layer in enumerate(scene.layers):
-        _check_strength(f"soft_layers[{i}]", layer)
+        check_strength(f"soft_layers[{i}]", layer)
     _check_fracture(scene)
     check_discretisation(scene)
     check_scheme(scene)
@@ -94,35 +96,6 @@ def _check_rock(scene: Scene) -> None:
             "rock.intact_modulus",
             intact,
             f"must exceed the rock mass's equivalent modulus {modulus:.4g}{meant(intact, INTACT)}",
-        )
-
-
-def _check_time(scene: Scene) -> None:
-    interval, duration = scene.interval, scene.time.duration
-    if interval > duration:
-        raise contradiction(
-            "record.interval", interval, f"must not exceed time.duration = {duration:g}"
-        )
-    if duration / interval > MOST_SAMPLES:
-        raise contradiction(
-            "record.interval", interval, f"must give at most {MOST_SAMPLES:,} samples"
-        )
-
-
-def _check_fields(scene: Scene) -> None:
-    fields, interval, duration = scene.record.fields, scene.interval, scene.time.duration
-    if fields is None:
-        return
-    if not interval * (1 - 1e-9) <= fields <= duration:
-        raise contradiction(
-            "record.fields",
-            fields,
-            f"must lie between the sampling interval {interval:g} s and time.duration = "
-            f"{duration:g}",
-        )
-    if duration / fields > MOST_SNAPSHOTS:
-        raise contradiction(
-            "record.fields", fields, f"must give at most {MOST_SNAPSHOTS:,} snapshots"
         )
 
 
@@ -196,23 +169,6 @@ def _check_damping(scene: Scene) -> None:
             )
 
 
-def _check_strength(table: str, law: JointLaw) -> None:
-    pair = ("tensile_strength", "fracture_energy")
-    for key, other in (pair, pair[::-1]):
-        if getattr(law, key) is None and getattr(law, other) is not None:
-            raise contradiction(f"{table}.{key}", None, f"is needed with {table}.{other}")
-    if law.tension is not None and law.tensile_strength is not None:
-        raise contradiction(
-            f"{table}.tension", law.tension, "tensile_strength says otherwise: give one of them"
-        )
-    residual, cohesion = law.residual_cohesion, law.cohesion
-    if residual is not None and (cohesion is None or residual > cohesion):
-        allowed = (
-            "needs a cohesion" if cohesion is None else f"at most the cohesion {cohesion:g} Pa"
-        )
-        raise contradiction(f"{table}.residual_cohesion", residual, allowed)
-
-
 def _check_fracture(scene: Scene) -> None:
     """A joint whose stress falls faster than it can unload would snap back."""
     laws = [scene.joints, *scene.layers]
@@ -230,11 +186,5 @@ def _check_fracture(scene: Scene) -> None:
                 f"soft_layers[{i - 1}].fracture_energy" if i else "joints.fracture_energy",
                 law.fracture_energy,
                 "must exceed tensile_strength^2 / (2 K'_n), or the joint snaps back: "
-                f"at least {_rounded_up(least):.4g} J/m2",
+                f"at least {rounded_up(least):.4g} J/m2",
             )
-
-
-def _rounded_up(x: float) -> float:
-    """Return the next number of four digits."""
-    digit = 10.0 ** (floor(log10(x)) - 3)
-    return ceil(x / digit) * digit

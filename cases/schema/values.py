@@ -63,6 +63,8 @@ Positive = Annotated[float, Field(gt=0), AfterValidator(_magnitude)]
 NonNegative = Annotated[float, Field(ge=0), AfterValidator(_magnitude)]
 Poisson = Annotated[float, Field(gt=-1, lt=0.5)]
 Offset = Annotated[list[Number], Field(min_length=2, max_length=2)]
+Point = Annotated[list[Number], Field(min_length=2, max_length=2)]
+DirectionInPlane = Annotated[list[Number], Field(min_length=2, max_length=2), AfterValidator(_unit)]
 Direction = Annotated[list[Number], Field(min_length=3, max_length=3), AfterValidator(_unit)]
 Pair = Annotated[str, AfterValidator(_pair)]
 
@@ -78,3 +80,11 @@ def contradiction(key: str, value: object, allowed: str) -> PydanticCustomError:
     return PydanticCustomError(
         "contradiction", "{allowed}", {"allowed": allowed, "key": key, "found": value}
     )
+
+
+def contradiction_here(key: str, value: object, allowed: str) -> PydanticCustomError:
+    """Return the error for a key that does not fit its own table, wherever that table stands.
+
+    The reader puts the table's path before the key, and in place of `{table}` in what is allowed.
+    """
+    return contradiction(f".{key}", value, allowed)

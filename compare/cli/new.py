@@ -12,11 +12,11 @@ from textwrap import wrap
 
 import cases
 from cases.errors import SceneError
-from cases.read import FILE_KEYS
 from cases.schema.allowed import in_words, model_in
 from cases.schema.field_docs import field_comments
 from cases.schema.keys import TableOf, default_of, tables
 from cases.schema.scene import Scene
+from cases.validate import FILE_KEYS
 from compare.runs.output import create
 from compare.scenes import find, load
 

@@ -4,7 +4,7 @@ import os
 import sys
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -15,6 +15,9 @@ from compare.cli import completion
 from compare.engines import selection
 from compare.runs.processes import started
 from compare.scenes import find
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
 
 app = typer.Typer(
     epilog="Start with: jointwave list, jointwave compare guo-li-2002/fig-03, jointwave report",
@@ -115,16 +118,21 @@ def load(
     scene: str, changes: list[str], variant: str | None, strict: bool = False
 ) -> list[cases.Scene]:
     """Return a file's variants, or the one that is named, with `--set` applied, warned of."""
+    from cases.unsolved import solved
+
+    found = [solved(one) for one in load_any(scene, changes, variant)]
+    warn(found, strict)
+    return found
+
+
+def load_any(
+    scene: str, changes: list[str], variant: str | None
+) -> list[cases.Scene] | list["RockMass"]:
+    """Return scenes as `load` does, of any kind, and without a warning."""
     from cases.read import parse_override
 
     overrides = dict(parse_override(text) for text in changes)
-    path = find(scene)
-    if variant is None:
-        found = scenes.load(path, overrides)
-    else:
-        found = [scenes.load_variant(path, variant, overrides)]
-    warn(found, strict)
-    return found
+    return scenes.load_any(find(scene), variant, overrides)
 
 
 def warn(scenes: list[cases.Scene], strict: bool = False) -> None:

@@ -44,12 +44,12 @@ def _is_scene(path: Path) -> bool:
     except (OSError, UnicodeDecodeError):
         return False
     except (ValueError, RecursionError):
-        return {"[pillar]", "[expect]"} <= {
-            line.split("#")[0].strip() for line in text.splitlines()
-        }
+        lines = {line.split("#")[0].strip() for line in text.splitlines()}
+        return "[expect]" in lines and not lines.isdisjoint({"[pillar]", "[domain]"})
     variants = table.get("variants", [])
     tables = [table, *(variants if isinstance(variants, list) else [])]
-    return "pillar" in table and any("expect" in t for t in tables if isinstance(t, dict))
+    kinds = {"pillar", "domain"}
+    return not kinds.isdisjoint(table) and any("expect" in t for t in tables if isinstance(t, dict))
 
 
 class SceneFile(pytest.File):

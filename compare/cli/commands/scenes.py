@@ -27,6 +27,8 @@ from compare.cli.options import (
     WorkersOption,
     app,
     load,
+    load_any,
+    warn,
 )
 from compare.runs.checkpoint.lock import locked
 from compare.runs.checkpoint.signals import watched
@@ -122,10 +124,13 @@ def explain(
     as_json: JsonOption = False,
 ) -> None:
     """Say what a scene calls for, its critical steps, which exact solutions hold, and which of them
-    is the reference."""
-    from compare.cli import views
+    is the reference; of a rock mass, the blocks that it is cut into."""
+    from compare.cli import partition_view, views
     from compare.cli.explain import explanation
 
-    scenes = load(scene, changes, variant if variant is not None else "", strict)
-    for one in scenes:
-        views.show_explanation(explanation(one, measured), as_json)
+    for one in load_any(scene, changes, variant if variant is not None else ""):
+        if isinstance(one, cases.Scene):
+            warn([one], strict)
+            views.show_explanation(explanation(one, measured), as_json)
+        else:
+            partition_view.show(one, as_json)

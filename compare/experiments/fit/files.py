@@ -13,9 +13,9 @@ import pandas as pd
 
 import cases
 from cases.errors import SceneError
-from cases.read import FILE_KEYS
 from cases.schema.scene import Scene
 from cases.size import value_of
+from cases.validate import FILE_KEYS
 from compare.experiments.fit.diagram import draw
 from compare.experiments.fit.fit import Fit
 from compare.experiments.fit.keys import CLOCK

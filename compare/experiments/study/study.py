@@ -12,6 +12,7 @@ import cases
 from cases.errors import SceneError, nearest
 from cases.files import read_toml
 from cases.schema.scene import Scene
+from cases.unsolved import refuse_unsolved
 from compare.experiments.study.check import ARGUMENTS, MOST_POINTS, plain, refuse_senseless
 from compare.scenes import find
 
@@ -189,7 +190,10 @@ def load(name: str) -> Study:
         raise _study_error(path, error) from None
     refuse_senseless(path, study)
     beside = path.parent / study.scene
-    return study.model_copy(update={"scene": str(beside)}) if beside.is_file() else study
+    if beside.is_file():
+        study = study.model_copy(update={"scene": str(beside)})
+    refuse_unsolved(find(study.scene), LARGEST_FILE)  # else each point would say so
+    return study
 
 
 def _study_error(path: Path, error: ValidationError) -> SceneError:

@@ -1,0 +1,81 @@
+"""A domain cut by joint sets: the steps from the scene's tables to the partition."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cases.partition import assemble
+from cases.partition.blocks import BoundaryEdges, Partition
+from cases.partition.joints import cut_by_sets
+from cases.partition.openings import check_convex, taken_out
+from cases.partition.outline import SIDES, Outline, outline_of
+from cases.partition.polygons import moments
+from cases.partition.slivers import without_slivers
+from cases.partition.subdivision import Subdivision
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from cases.schema.domain import Domain
+    from cases.schema.joint_set import JointSet
+
+#: Default least width of a block over the smallest spacing, or the size of the domain without one.
+THIN = 1e-2
+
+
+def cut(domain: Domain, sets: Sequence[JointSet]) -> Partition:
+    """Return a domain in convex blocks.
+
+    Raises PartitionError, with place and cause, where a set cuts nothing, a block is not convex or
+    a sliver is left.
+    """
+    outline = outline_of(domain)
+    sub = cut_by_sets(Subdivision.of_polygon(outline.hull), sets, outline.tolerance)
+    sub = taken_out(sub, outline.taken, outline.tolerance)
+    if domain.non_convex == "refuse":
+        check_convex(sub, outline.taken)
+    limits = (least_width(domain, sets), domain.least_angle)
+    joins = domain.slivers == "merge"
+    sub, rings = without_slivers(sub, limits, joins, outline.tolerance)
+    return _partition(*assemble.ordered(sub, rings), outline, sets, len(domain.openings))
+
+
+def least_width(domain: Domain, sets: Sequence[JointSet]) -> float:
+    """Return the width below which a block is a sliver, m."""
+    if domain.least_width is not None:
+        return domain.least_width
+    corners = np.array(domain.corners)
+    spacings = [one.spacing for one in sets if one.spacing is not None]
+    return THIN * min([*spacings, float(np.ptp(corners, axis=0).min())])
+
+
+def _partition(
+    sub: Subdivision,
+    rings: assemble.Rings,
+    outline: Outline,
+    sets: Sequence[JointSet],
+    openings: int,
+) -> Partition:
+    m = moments(rings.corners, rings.first)
+    return Partition(
+        corners=rings.corners,
+        first=rings.first,
+        area=m.area,
+        centroid=m.centroid,
+        second_moment=m.second,
+        contacts=assemble.contacts(sub),
+        boundary=_named(assemble.boundary(sub), outline),
+        sides=(*SIDES, *(f"opening {k}" for k in range(openings))),
+        joint_sets=tuple(one.name for one in sets),
+    )
+
+
+def _named(edges: BoundaryEdges, outline: Outline) -> BoundaryEdges:
+    """Return boundary edges with the outer ones told apart: those along the left, right, bottom and
+    top of the domain, and others."""
+    outer = outline.sides_of(edges.start, edges.end)
+    side = np.where(edges.side == 0, outer, len(SIDES) - 1 + edges.side)
+    return replace(edges, side=side)

@@ -1,0 +1,60 @@
+"""The block that a point lies in, and the contact that is nearest to it."""
+
+from __future__ import annotations
+
+import numpy as np
+import shapely
+
+from cases.partition.blocks import Partition
+from cases.partition.outline import TOLERANCE
+from cases.partition.polygons import owner
+from cases.partition.subdivision import OUTSIDE
+
+
+def block_at(partition: Partition, points: np.ndarray) -> np.ndarray:
+    """Return the block that each point (float array [m, 2], m) lies in, or OUTSIDE; of blocks that
+    share it, the first."""
+    ring = shapely.linearrings(_closed(partition), indices=_closed_owner(partition))
+    size = float(np.hypot(*np.ptp(partition.corners, axis=0)))
+    which, block = shapely.STRtree(shapely.polygons(ring)).query(
+        shapely.points(points), predicate="dwithin", distance=TOLERANCE * size
+    )
+    return _first(which, block, len(points))
+
+
+def contact_at(
+    partition: Partition, points: np.ndarray, joint_set: int | None = None
+) -> np.ndarray:
+    """Return the contact nearest to each point (float array [m, 2], m), of one joint set or of any;
+    of those as near, the first.
+
+    Raises ValueError where there is no such contact.
+    """
+    contacts = partition.contacts
+    of_set = contacts.joint_set >= 0 if joint_set is None else contacts.joint_set == joint_set
+    chosen = np.flatnonzero(of_set)
+    if not len(chosen):
+        raise ValueError("there is no contact")
+    ends = np.stack([contacts.start[chosen], contacts.end[chosen]], axis=1)
+    tree = shapely.STRtree(shapely.linestrings(ends))
+    which, found = tree.query_nearest(shapely.points(points), all_matches=True)
+    return chosen[_first(which, found, len(points))]
+
+
+def _first(which: np.ndarray, found: np.ndarray, count: int) -> np.ndarray:
+    """Return the least of what is found for each of `count` points, or OUTSIDE."""
+    least = np.full(count, np.iinfo(np.int64).max)
+    np.minimum.at(least, which, found)
+    return np.where(least == np.iinfo(np.int64).max, OUTSIDE, least)
+
+
+def _closed(partition: Partition) -> np.ndarray:
+    """Return the corners of all blocks, each ring with its first corner at its end again."""
+    return np.insert(
+        partition.corners, partition.first[1:], partition.corners[partition.first[:-1]], 0
+    )
+
+
+def _closed_owner(partition: Partition) -> np.ndarray:
+    whose = owner(partition.first)
+    return np.insert(whose, partition.first[1:], np.arange(partition.count))

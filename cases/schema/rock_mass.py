@@ -1,0 +1,61 @@
+"""The scene of a rock mass in the plane: a domain cut by joint sets, and what acts on it.
+
+A file with a table [domain] holds one; a file with [pillar] is a `Scene`. Tables that both have
+mean the same. SI units; x to the right, y upwards, plane strain.
+"""
+
+from pydantic import PrivateAttr, model_validator
+
+from cases.schema.damping import Damping
+from cases.schema.domain import Domain
+from cases.schema.joint_set import JointSet
+from cases.schema.plane import (
+    Boundaries,
+    GravityInPlane,
+    IntactRock,
+    RecordInPlane,
+    StressInPlane,
+)
+from cases.schema.rock_mass_checks import check
+from cases.schema.sources import PlaneLoad, Wave
+from cases.schema.tables import Time
+from cases.schema.values import Pair, Positive, Table, Words
+
+
+class RockMass(Table):
+    """A rock mass in the plane: its domain, its joints, what acts on it, and what is recorded."""
+
+    title: Words  #: what tables and figures call it
+    source: Words | None = None  #: where it is from
+    domain: Domain
+    rock: IntactRock
+    joint_sets: list[JointSet] = []
+    waves: list[Wave] = []
+    loads: list[PlaneLoad] = []
+    boundaries: Boundaries = Boundaries()
+    damping: Damping = Damping()
+    gravity: GravityInPlane | None = None
+    prestress: StressInPlane | None = None
+    time: Time
+    record: RecordInPlane
+    expect: dict[Pair, Positive] = {}  #: bounds on the relative L2 misfit of pairs
+    name: str = ""  #: of the variant; empty for the scene as it stands
+
+    _where: str = PrivateAttr(default="")
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> "RockMass":
+        check(self)
+        return self
+
+    @property
+    def where(self) -> str:
+        """The file and variant that the scene was read from, else its title: for messages."""
+        return self._where or self.title
+
+    @property
+    def interval(self) -> float:
+        """Time between samples, s."""
+        periods = [one.period for one in (*self.waves, *self.loads) if one.period]
+        default = min(periods) / 200 if periods else self.time.duration / 2000
+        return self.record.interval or default

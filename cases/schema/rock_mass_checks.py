@@ -1,0 +1,137 @@
+"""Contradictions between the tables of a rock mass."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cases.schema.joint_set_checks import check_sets
+from cases.schema.shared_checks import check_fields, check_time
+from cases.schema.values import contradiction
+
+if TYPE_CHECKING:
+    from cases.partition.outline import Outline
+    from cases.schema.rock_mass import RockMass
+    from cases.schema.sources import PlaneLoad
+
+GRAZING = 1e-9  # cosine below which a wave travels along a side
+PARTNER = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
+#: How far points that are named may be from the boundary, over the size of the domain.
+BESIDE = 1e-6
+
+
+def check(scene: RockMass) -> None:
+    """Raise the first contradiction of a rock mass whose tables are each right."""
+    check_sets(scene)
+    outline = _outline(scene)
+    _check_receivers(scene, outline)
+    check_time(scene)  # type: ignore[arg-type]
+    check_fields(scene)
+    _check_boundaries(scene, outline)
+    _check_waves(scene, outline)
+    for i, load in enumerate(scene.loads):
+        _check_load(f"loads[{i}]", load, scene, outline)
+    if scene.gravity is not None and scene.gravity.static and not _held(scene):
+        raise contradiction("gravity.static", True, "needs a fixed side, or gravity.static = false")
+
+
+def _outline(scene: RockMass) -> Outline:
+    from cases.partition.faults import PartitionError
+    from cases.partition.outline import outline_of
+
+    try:
+        return outline_of(scene.domain)
+    except PartitionError as error:
+        raise contradiction(error.key, None, str(error)) from None
+
+
+def _check_receivers(scene: RockMass, outline: Outline) -> None:
+    record = scene.record
+    if not (record.points or record.joints or record.fields):
+        raise contradiction("record", None, "give at least one of record.points, joints and fields")
+    if record.joints and not scene.joint_sets:
+        raise contradiction("record.joints", record.joints, "needs [[joint_sets]]")
+    for key in ("points", "joints"):
+        places = getattr(record, key)
+        for i, place in enumerate(places):
+            _check_in_rock(f"record.{key}[{i}]", place, outline)
+            if place in places[:i]:
+                raise contradiction(f"record.{key}[{i}]", place, "must not name a place twice")
+
+
+def _check_in_rock(key: str, place: list[float], outline: Outline) -> None:
+    if not outline.holds(place):
+        allowed = "must lie in the domain, and in none of its openings"
+        raise contradiction(key, place, allowed)
+
+
+def _check_boundaries(scene: RockMass, outline: Outline) -> None:
+    normals = outline.normals()
+    for side in scene.boundaries.model_fields_set:
+        key, held = f"boundaries.{side}", getattr(scene.boundaries, side)
+        if side not in normals:
+            known = ", ".join(normals)
+            raise contradiction(key, held, f"is no side of this domain, which has {known}")
+    for side, other in PARTNER.items():
+        held, across = getattr(scene.boundaries, side), getattr(scene.boundaries, other)
+        if held == "periodic" and across != "periodic":
+            allowed = f"needs boundaries.{other} = 'periodic', too"
+            raise contradiction(f"boundaries.{side}", held, allowed)
+
+
+def _check_waves(scene: RockMass, outline: Outline) -> None:
+    for i, wave in enumerate(scene.waves):
+        for side, normals in outline.normals().items():
+            held = getattr(scene.boundaries, side)
+            if held != "quiet" and (normals @ np.array(wave.direction)).min() < -GRAZING:
+                allowed = f"must be 'quiet': waves[{i}] enters there"
+                raise contradiction(f"boundaries.{side}", held, allowed)
+
+
+def _check_load(table: str, load: PlaneLoad, scene: RockMass, outline: Outline) -> None:
+    if load.at is not None:
+        _check_in_rock(f"{table}.at", load.at, outline)
+    if load.opening is not None and load.opening >= len(scene.domain.openings):
+        allowed = f"must be one of the {len(scene.domain.openings)} openings, counted from 0"
+        raise contradiction(f"{table}.opening", load.opening, allowed)
+    if load.side is not None:
+        _check_side(table, load, scene, outline)
+    if load.between is not None:
+        _check_part(table, load, outline)
+
+
+def _check_side(table: str, load: PlaneLoad, scene: RockMass, outline: Outline) -> None:
+    assert load.side is not None
+    key, held = f"{table}.side", getattr(scene.boundaries, load.side)
+    if load.side not in outline.normals():
+        known = ", ".join(outline.normals())
+        raise contradiction(key, load.side, f"must be a side of this domain, which has {known}")
+    if (held == "fixed") != (load.kind == "base") or held == "periodic":
+        wanted = "'fixed'" if load.kind == "base" else "'free' or 'quiet'"
+        allowed = f"needs boundaries.{load.side} = {wanted}, not '{held}'"
+        raise contradiction(key, load.side, allowed)
+
+
+def _check_part(table: str, load: PlaneLoad, outline: Outline) -> None:
+    """Refuse the ends of a part that are not on what the pressure acts on."""
+    assert load.between is not None
+    edges = outline.edges(load.side, load.opening)
+    for point in load.between:
+        if _distance(np.array(point), edges) > BESIDE * outline.size:
+            on = load.side or f"openings[{load.opening}]"
+            raise contradiction(f"{table}.between", point, f"must lie on {on}")
+    if load.between[0] == load.between[1]:
+        raise contradiction(f"{table}.between", load.between, "must be two points")
+
+
+def _distance(point: np.ndarray, edges: np.ndarray) -> float:
+    """Return the distance of a point from the nearest of some edges [n, 2, 2], m."""
+    start, along = edges[:, 0], edges[:, 1] - edges[:, 0]
+    t = ((point - start) * along).sum(axis=1) / (along**2).sum(axis=1)
+    foot = start + np.clip(t, 0, 1)[:, None] * along
+    return float(np.hypot(*(point - foot).T).min())
+
+
+def _held(scene: RockMass) -> bool:
+    return "fixed" in scene.boundaries.model_dump().values()

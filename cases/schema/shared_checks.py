@@ -1,0 +1,72 @@
+"""Contradictions that a pillar and a rock mass can have alike."""
+
+from __future__ import annotations
+
+from math import ceil, floor, log10
+from typing import TYPE_CHECKING
+
+from cases.schema.values import contradiction
+
+if TYPE_CHECKING:
+    from cases.schema.joint import JointLaw
+    from cases.schema.rock_mass import RockMass
+    from cases.schema.scene import Scene
+
+MOST_SAMPLES = 10_000_000  # 80 MB for each section, point and energy term
+MOST_SNAPSHOTS = 10_000
+SNAP = 1 + 1e-6  # how far the fracture energy must stay from a vertical softening line
+
+
+def check_time(scene: Scene | RockMass) -> None:
+    """Raise a contradiction between the sampling interval and the duration."""
+    interval, duration = scene.interval, scene.time.duration
+    if interval > duration:
+        raise contradiction(
+            "record.interval", interval, f"must not exceed time.duration = {duration:g}"
+        )
+    if duration / interval > MOST_SAMPLES:
+        raise contradiction(
+            "record.interval", interval, f"must give at most {MOST_SAMPLES:,} samples"
+        )
+
+
+def check_fields(scene: Scene | RockMass) -> None:
+    """Raise a contradiction between the times of snapshots, of samples and the duration."""
+    fields, interval, duration = scene.record.fields, scene.interval, scene.time.duration
+    if fields is None:
+        return
+    if not interval * (1 - 1e-9) <= fields <= duration:
+        raise contradiction(
+            "record.fields",
+            fields,
+            f"must lie between the sampling interval {interval:g} s and time.duration = "
+            f"{duration:g}",
+        )
+    if duration / fields > MOST_SNAPSHOTS:
+        raise contradiction(
+            "record.fields", fields, f"must give at most {MOST_SNAPSHOTS:,} snapshots"
+        )
+
+
+def check_strength(table: str, law: JointLaw) -> None:
+    """Raise a contradiction between the keys of strength in one table, given by its path."""
+    pair = ("tensile_strength", "fracture_energy")
+    for key, other in (pair, pair[::-1]):
+        if getattr(law, key) is None and getattr(law, other) is not None:
+            raise contradiction(f"{table}.{key}", None, f"is needed with {table}.{other}")
+    if law.tension is not None and law.tensile_strength is not None:
+        raise contradiction(
+            f"{table}.tension", law.tension, "tensile_strength says otherwise: give one of them"
+        )
+    residual, cohesion = law.residual_cohesion, law.cohesion
+    if residual is not None and (cohesion is None or residual > cohesion):
+        allowed = (
+            "needs a cohesion" if cohesion is None else f"at most the cohesion {cohesion:g} Pa"
+        )
+        raise contradiction(f"{table}.residual_cohesion", residual, allowed)
+
+
+def rounded_up(x: float) -> float:
+    """Return the next number of four digits."""
+    digit = 10.0 ** (floor(log10(x)) - 3)
+    return ceil(x / digit) * digit

@@ -1,0 +1,67 @@
+"""What acts on a rock mass in the plane: plane waves, pressures, forces and a shaken base."""
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from cases.schema.pulse import Pulse
+from cases.schema.values import DirectionInPlane, Number, Point, contradiction_here
+
+Side = Literal["left", "right", "bottom", "top", "outline"]
+
+#: The keys that a kind of load needs, and those that it may have, beside its pulse.
+KEYS = {
+    "pressure": (set(), {"side", "opening", "between"}),
+    "force": ({"at", "direction"}, set()),
+    "base": ({"side", "direction"}, set()),
+}
+QUANTITIES = {"pressure": {"stress"}, "force": {"force"}, "base": {"velocity", "acceleration"}}
+
+
+class Wave(Pulse):
+    """A plane wave that enters through the quiet sides that it meets."""
+
+    file_key: ClassVar[str] = "waves.file"
+
+    amplitude: Number  #: Pa or m/s by `quantity`; a factor on the history for "table"
+    #: stress: on the wave front, compression positive in P; velocity: of particles
+    quantity: Literal["stress", "velocity"] = "stress"  # type: ignore[assignment]
+    #: P: particles move along the direction; S: across it, to its left
+    kind: Literal["P", "S"]
+    direction: DirectionInPlane  #: x, y: of travel
+    #: m, where the pulse begins at t = 0; absent: the corner of the domain that is met first
+    through: Point | None = None
+
+
+class PlaneLoad(Pulse):
+    """A pressure on an opening or a side, a force at a point, or the motion of a fixed side."""
+
+    file_key: ClassVar[str] = "loads.file"
+
+    amplitude: Number  #: Pa, N/m, m/s or m/s2 by `quantity`; a factor on the history for "table"
+    #: stress of a pressure, force of a force, velocity or acceleration of a base
+    quantity: Literal["stress", "force", "velocity", "acceleration"] = "stress"  # type: ignore[assignment]
+    #: base: the motion of a side that is fixed
+    kind: Literal["pressure", "force", "base"]
+    side: Side | None = None  #: that a pressure acts on, or that is shaken
+    opening: Annotated[int, Field(ge=0)] | None = None  #: that a pressure acts in, from 0
+    #: m, two points of the boundary: the pressure acts on the part from one to the other alone
+    between: Annotated[list[Point], Field(min_length=2, max_length=2)] | None = None
+    at: Point | None = None  #: m, where a force acts
+    direction: DirectionInPlane | None = None  #: x, y: of a force or of the motion of a base
+
+    @model_validator(mode="after")
+    def _keys_of_kind(self) -> "PlaneLoad":
+        needed, taken = KEYS[self.kind]
+        for key in ("side", "opening", "between", "at", "direction"):
+            value = getattr(self, key)
+            if key in needed and value is None:
+                raise contradiction_here(key, None, f"is needed for {{table}}.kind = '{self.kind}'")
+            if value is not None and key not in needed | taken:
+                raise contradiction_here(key, value, f"has no meaning for kind '{self.kind}'")
+        if self.quantity not in QUANTITIES[self.kind]:
+            allowed = " or ".join(f"'{one}'" for one in sorted(QUANTITIES[self.kind]))
+            raise contradiction_here("quantity", self.quantity, f"must be {allowed} here")
+        if self.kind == "pressure" and (self.side is None) == (self.opening is None):
+            raise contradiction_here("side", self.side, "give exactly one of side and opening")
+        return self

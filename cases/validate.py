@@ -1,0 +1,109 @@
+"""From the table of a scene to its model; what is wrong is an error in one line."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from cases.errors import SceneError, nearest
+from cases.schema.scene import Scene
+
+#: Keys that name a file, which lies below the scene's folder unless an override names it.
+FILE_KEYS = ("load.file", "numerics.continuum.mesh")
+FILE_KEYS_OF_ROCK_MASSES = ("waves.file", "loads.file")
+PLACE = re.compile(r"\.\d+(?=\.)")  # in a list of tables, as in `waves.0.file`
+
+#: What is allowed, by pydantic's type of error.
+ALLOWED = {
+    "contradiction": "{allowed}",
+    "extra_forbidden": "unknown key; allowed: ",
+    "missing": "is required",
+    "model_type": "must be a table",
+    "dict_type": "must be a table",
+    "list_type": "must be a list",
+    "float_type": "must be a number",
+    "int_type": "must be a whole number",
+    "string_type": "must be a text",
+    "bool_type": "must be true or false",
+    "finite_number": "must be a finite number",
+    "literal_error": "must be {expected}",
+    "greater_than": "must be greater than {gt:g}",
+    "greater_than_equal": "must be at least {ge:g}",
+    "less_than": "must be less than {lt:g}",
+    "less_than_equal": "must be at most {le:g}",
+    "too_short": "must hold {min_length} numbers",
+    "too_long": "must hold {max_length} numbers",
+    "magnitude": "must lie between 1e-30 and 1e30 in size",
+    "pair": "must be 'a ~ b', two solvers by name",
+}
+
+
+def validated(table: dict[str, Any], path: Path, given: frozenset[str]) -> Any:
+    """Return a table as a scene; given : the keys, of tables too, that the user gave himself.
+
+    Raises SceneError, in one line, where it is none.
+    """
+    keys = {PLACE.sub("", g) for g in given}
+    files = (*FILE_KEYS, *FILE_KEYS_OF_ROCK_MASSES)
+    asked = {key for key in files if any(f"{key}.".startswith(f"{g}.") for g in keys)}
+    where = f"{path} [{table['name']}]" if table.get("name") else str(path)
+    model = _model_of(table, where)
+    try:
+        scene = model.model_validate(table, context={"folder": path.parent, "asked": asked})
+    except ValidationError as error:
+        raise _scene_error(where, error, model) from None
+    scene._where = where
+    return scene
+
+
+def _model_of(table: dict[str, Any], where: str) -> Any:
+    """Return the model of the kind of scene that a table holds."""
+    if "domain" not in table:
+        return Scene
+    if "pillar" in table:
+        raise SceneError(where, "pillar", None, "give [pillar] or [domain], not both")
+    from cases.schema.rock_mass import RockMass  # with shapely, which no pillar needs
+
+    return RockMass
+
+
+def _scene_error(where: str, error: ValidationError, model: Any) -> SceneError:
+    first, more = error.errors()[0], error.error_count() - 1
+    context = first.get("ctx", {})
+    kind, value = first["type"], first["input"]
+    table = _dotted(first["loc"])
+    key, allowed = table, ALLOWED.get(kind, first["msg"]).format(**context)
+    if kind == "contradiction":
+        key, value = context["key"], context["found"]
+        key = f"{table}{key}" if key.startswith(".") else key
+        allowed = allowed.replace("{table}", table)
+    elif kind == "extra_forbidden":
+        known = _known_keys(first["loc"], model)
+        allowed += ", ".join(known) + nearest(str(first["loc"][-1]), known)
+    elif kind == "list_type" and isinstance(value, dict):
+        allowed = f"must be written [[{key}]]"
+    if isinstance(value, dict) or kind == "missing":
+        value = None
+    more_text = f" (and {more} more)" if more else ""
+    return SceneError(where, key, value, allowed + more_text)
+
+
+def _known_keys(location: tuple[int | str, ...], model: Any) -> list[str]:
+    top = model
+    for part in location[:-1]:
+        if isinstance(part, str):
+            model = _table_of(model.model_fields[part].annotation)
+    return [k for k in model.model_fields if k != "name" or model is not top]
+
+
+def _table_of(annotation: Any) -> Any:
+    options = getattr(annotation, "__args__", (annotation,))
+    return next(t for t in options if hasattr(t, "model_fields"))
+
+
+def _dotted(location: tuple[int | str, ...]) -> str:
+    text = ""
+    for part in location:
+        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
+    return text

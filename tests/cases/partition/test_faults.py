@@ -1,0 +1,198 @@
+"""What is refused when a rock mass is cut: in one line, with file, key, place and cause."""
+
+import re
+
+import pytest
+
+from cases.errors import SceneError
+from cases.partition.cut import cut
+from cases.partition.faults import NonConvex, PartitionError, Sliver
+from cases.partition.periodic import periodic_contacts
+from cases.partition.scene import block_count, partition_bytes, partition_of
+from cases.read import load_any_variant
+
+SCENE = """\
+title = "rows"
+[domain]
+size = [10.0, 6.0]
+[rock]
+density = 2600.0
+intact_modulus = 5.0e10
+[[joint_sets]]
+name = "rows"
+dip = 0.0
+spacing = 1.0
+normal_stiffness = 1.0e10
+shear_stiffness = 4.0e9
+[time]
+duration = 0.1
+[record]
+points = [[4.0, 3.5]]
+"""
+
+
+@pytest.fixture
+def scene(tmp_path):
+    """Return a function of changes: the scene of six rows."""
+    path = tmp_path / "rows.toml"
+    path.write_text(SCENE)
+    return lambda **changes: load_any_variant(
+        path, "", {k.replace("__", "."): v for k, v in changes.items()}
+    )
+
+
+def line(scene):
+    """Return the one line that refuses a scene, without its file."""
+    with pytest.raises(SceneError) as error:
+        partition_of(scene)
+    said = str(error.value)
+    assert said.startswith(scene.where) and "\n" not in said
+    return said.removeprefix(f"{scene.where}: ")
+
+
+def test_the_scene_is_cut(scene):
+    assert partition_of(scene()).count == 6
+
+
+def test_a_set_that_cuts_nothing(scene):
+    """Its joints are further apart than the domain is high, and one lies along its bottom."""
+    assert line(scene(joint_sets__0__spacing=7.0)) == "joint_sets[0]: cuts nothing of the domain"
+
+
+def test_a_set_along_the_joints_of_another_cuts_nothing(scene):
+    law = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
+    sets = [{"name": n, "dip": 0.0, "spacing": s, **law} for n, s in (("a", 1.0), ("b", 2.0))]
+    assert line(scene(joint_sets=sets)).startswith("joint_sets[1]: cuts nothing")
+
+
+def test_one_joint_outside(scene):
+    """Through a point of no block."""
+    law = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
+    one = {"name": "one", "dip": 45.0, "through": [20.0, 3.0], **law}
+    said = line(scene(joint_sets=[one]))
+    assert said == "joint_sets[0].through: must lie in the domain, near [20, 3]"
+
+
+def test_one_joint_on_the_joint_that_it_ends_at(scene, joints):
+    from cases.schema.domain import Domain
+
+    sets = [joints("rows", 0.0, spacing=1.0)]
+    one = joints("one", 60.0, through=[5.0, 2.0], ends_at=["rows"])
+    with pytest.raises(
+        PartitionError, match=re.escape("must lie on no joint of rows, near [5, 2]")
+    ):
+        cut(Domain(size=[10.0, 6.0]), [*sets, one])
+
+
+def test_blocks_that_are_not_convex(scene):
+    """At a corner of the tunnel inside of a row, until cutting is asked for."""
+    tunnel = [[4.0, 1.0], [6.0, 1.0], [6.0, 2.5], [4.0, 2.5]]
+    said = line(scene(domain__openings=[tunnel], record__points=[[1.0, 1.0]]))
+    assert said.startswith("domain: a block is not convex") and 'domain.non_convex = "cut"' in said
+    assert re.search(r"near \[[46], 2.5\]$", said)
+    changes = {"domain__openings": [tunnel], "domain__non_convex": "cut"}
+    assert partition_of(scene(**changes, record__points=[[1.0, 1.0]])).count == 6 + 1 + 2
+
+
+def test_an_outline_that_is_not_convex(scene):
+    corners = [[0.0, 0.0], [10.0, 0.0], [10.0, 6.0], [7.0, 6.0], [4.0, 3.5], [0.0, 3.5]]
+    said = line(scene(domain={"outline": corners}))
+    assert said.endswith("near [4, 3.5]") and "corner of the outline" in said
+
+
+@pytest.mark.parametrize("slivers", ["merge", "refuse"])
+def test_a_row_that_is_too_thin(scene, slivers):
+    """Two joints 5 mm apart: joined to the row above or below, or refused where told to."""
+    law = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
+    near = {"name": "near", "dip": 0.0, "through": [0.0, 2.005], **law}
+    changed = scene(domain__slivers=slivers)
+    changed = changed.model_copy(
+        update={"joint_sets": [*changed.joint_sets, type(changed.joint_sets[0])(**near)]}
+    )
+    if slivers == "merge":
+        found = partition_of(changed)
+        assert found.count == 6 and found.area.sum() == pytest.approx(60, rel=1e-14)
+    else:
+        said = line(changed)
+        assert "is 0.005 m wide" in said and "domain.least_width = 0.01" in said
+        assert said.endswith("near [5, 2.0025]")
+
+
+def test_slivers_that_no_neighbour_takes(rectangle, joints):
+    """A thin row of bricks under rows with joints elsewhere."""
+    rows = joints("rows", 0.0, spacing=1.0)
+    cross = joints("cross", 90.0, spacing=2.0, ends_at=["rows"], offset=0.5)
+    with pytest.raises(Sliver, match="is convex with none of its neighbours, near"):
+        cut(rectangle(10.0, 3.005), [rows, cross])
+
+
+def test_a_corner_of_less_than_the_least_angle(rectangle, joints):
+    """One joint that leaves a corner at 0.5 degrees: joined, and nothing is left of the joint."""
+    one = joints("flat", 0.5, through=[0.0, 1.0])
+    found = cut(rectangle(2.0, 2.0, least_angle=0.4), [one])
+    assert found.count == 2
+    pointed = joints("flat", 0.5, through=[0.0, 0.0])
+    with pytest.raises(Sliver, match=r"an angle of 0\.5 degrees"):
+        cut(rectangle(2.0, 2.0, slivers="refuse", least_width=1e-6), [pointed])
+
+
+def test_periodic_sides_need_the_same_joint_on_both(rectangle, joints):
+    rows, columns = joints("rows", 0.0, spacing=1.0), joints("columns", 90.0, spacing=2.0)
+    found = cut(rectangle(10.0, 6.0), [rows, columns])
+    across = periodic_contacts(found, "left")
+    assert len(across) == 6 and set(across.joint_set) == {1}
+    assert (across.normal == [1.0, 0.0]).all() and (across.start[:, 0] == 10.0).all()
+    assert (across.end[:, 1] > across.start[:, 1]).all()
+    assert len(periodic_contacts(found, "bottom")) == 5
+    with pytest.raises(PartitionError, match="without a joint of one set along both sides"):
+        periodic_contacts(cut(rectangle(9.0, 6.0), [rows, columns]), "left")
+
+
+def test_periodic_sides_of_other_rows_split_each_other(rectangle, joints):
+    """Rows that climb by half a row from column to column: each block meets two across."""
+    columns = joints("columns", 90.0, spacing=2.0)
+    bricks = joints("bricks", 0.0, spacing=1.0, ends_at=["columns"], offset=0.5)
+    across = periodic_contacts(cut(rectangle(4.0, 4.0), [columns, bricks]), "left")
+    assert across.length.sum() == pytest.approx(4.0, rel=1e-14)
+    assert len(across) == 8 and across.length.max() == pytest.approx(0.5)
+
+
+def test_a_size_beyond_the_memory(scene, monkeypatch):
+    """Refused with the estimate, before anything is cut."""
+    monkeypatch.setenv("JOINTWAVE_MEMORY", "0.5")
+    said = line(scene(joint_sets__0__spacing=1e-5))
+    assert said.startswith("joint_sets[0].spacing = 1e-05: gives about 600,001 blocks")
+    assert "about 1.5 GB of memory; here are 500 MB" in said
+    tiny = line(scene(joint_sets__0__spacing=1e-30))
+    assert "e+" in tiny or len(tiny) < 400
+
+
+@pytest.mark.parametrize("spacing", [0.5, 0.1])
+def test_the_estimate_is_near_what_is_cut(rectangle, joints, spacing):
+    sets = [
+        joints("a", 30.0, spacing=spacing),
+        joints("b", -60.0, spacing=2 * spacing, ends_at=["a"], offset=0.5),
+        joints("c", 80.0, through=[5.0, 3.0]),
+    ]
+    domain = rectangle(10.0, 6.0)
+    assert block_count(domain, sets) == pytest.approx(cut(domain, sets).count, rel=0.2)
+
+
+def test_the_estimate_bounds_the_memory_that_is_taken(rectangle, joints, scene):
+    """What Python's allocator has given out while 20,000 blocks are cut."""
+    import tracemalloc
+
+    changed = scene(domain__size=[100.0, 100.0], joint_sets__0__spacing=0.7)
+    steep = joints("steep", 60.0, spacing=0.7)
+    changed = changed.model_copy(update={"joint_sets": [*changed.joint_sets, steep]})
+    partition_of(changed)  # whatever is imported
+    tracemalloc.start()
+    found = partition_of(changed)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert found.count > 15_000
+    assert found.nbytes < peak < partition_bytes(changed) < 4 * peak
+
+
+def test_faults_are_told_apart():
+    assert issubclass(Sliver, PartitionError) and issubclass(NonConvex, PartitionError)

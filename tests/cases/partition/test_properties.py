@@ -1,0 +1,281 @@
+"""What every partition has, over random domains and joint sets."""
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from cases.partition.cut import cut, least_width
+from cases.partition.faults import PartitionError, Sliver
+from cases.partition.joints import _scattered, direction_of
+from cases.partition.locate import block_at, contact_at
+from cases.partition.outline import outline_of
+from cases.partition.polygons import following, least_angles, owner, widths
+from cases.schema.domain import Domain
+from cases.schema.joint_set import JointSet
+
+LAW = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
+HEXAGON = [[0.0, 1.0], [4.0, 0.0], [9.0, 0.5], [10.0, 4.0], [6.0, 7.0], [1.0, 5.0]]
+SLOPE = [[0.0, 0.0], [10.0, 0.0], [10.0, 6.0], [7.0, 6.0], [4.0, 3.0], [0.0, 3.0]]
+ANGLES = np.linspace(0.1, 0.1 + 2 * np.pi, 12, endpoint=False)
+TUNNEL = np.round([6 + 1.1 * np.cos(ANGLES), 2.4 + 1.1 * np.sin(ANGLES)], 6).T.tolist()
+
+DOMAINS = [
+    {"size": [10.0, 6.0]},
+    {"outline": HEXAGON},
+    {"outline": SLOPE},
+    {"size": [10.0, 6.0], "openings": [TUNNEL]},
+    {"outline": HEXAGON, "openings": [[[3.0, 2.0], [4.0, 2.5], [3.5, 4.0]], TUNNEL]},
+]
+places = st.tuples(st.floats(2.0, 8.0), st.floats(1.0, 4.0)).map(list)
+
+
+@st.composite
+def joint_sets(draw, most=3):
+    """Up to three sets, spaced, scattered or single, some of which end at those before."""
+    found = []
+    for i in range(draw(st.integers(1, most))):
+        keys = {"dip": round(draw(st.floats(-90, 90)), 3), "through": draw(places)}
+        if not i or draw(st.booleans()):
+            keys["spacing"] = draw(st.floats(0.7, 3.0))
+            if draw(st.booleans()):
+                keys |= {"scatter": draw(st.floats(0.05, 0.5)), "seed": draw(st.integers(0, 99))}
+        if i and draw(st.booleans()):
+            keys["ends_at"] = [f"set {draw(st.integers(0, i - 1))}"]
+            if "spacing" in keys:
+                keys["offset"] = draw(st.floats(0, 0.9))
+        found.append(JointSet(name=f"set {i}", **keys, **LAW))
+    return found
+
+
+def shape_of(domain):
+    """The domain less its openings, by shapely alone."""
+    whole = shapely.Polygon(domain.corners)
+    return whole.difference(shapely.union_all([shapely.Polygon(o) for o in domain.openings]))
+
+
+def partition(domain, sets):
+    """A partition; a refusal must say where in the domain, and is no example."""
+    try:
+        return cut(domain, sets)
+    except PartitionError as error:
+        assert error.cause and error.key.startswith(("domain", "joint_sets"))
+        if error.key.startswith("domain"):
+            assert shapely.Point(error.at).distance(shape_of(domain)) < 1e-6
+        assume(False)
+
+
+domains = st.sampled_from([Domain(**keys, non_convex="cut", least_angle=0.5) for keys in DOMAINS])
+
+
+@settings(max_examples=40)
+@given(domain=domains, sets=joint_sets())
+def test_areas_add_up_to_the_domain(domain, sets):
+    found, shape = partition(domain, sets), shape_of(domain)
+    assert found.area.sum() == pytest.approx(shape.area, rel=1e-12)
+    whole = (found.area @ found.centroid) / shape.area
+    np.testing.assert_allclose(whole, shape.centroid.coords[0], rtol=1e-11)
+
+
+@settings(max_examples=40)
+@given(domain=domains, sets=joint_sets())
+def test_blocks_are_convex_and_no_slivers(domain, sets):
+    found = partition(domain, sets)
+    corners, whose, after = found.corners, owner(found.first), following(found.first)
+    along = corners[after] - corners
+    along /= np.hypot(*along.T)[:, None]
+    turn = along[:, 0] * along[after, 1] - along[:, 1] * along[after, 0]
+    assert turn.min() > 1e-9
+    total = np.bincount(whose, weights=np.arctan2(turn, (along * along[after]).sum(axis=1)))
+    np.testing.assert_allclose(total, 2 * np.pi, rtol=1e-9)  # once around
+    assert widths(corners, found.first).min() >= least_width(domain, sets)
+    assert least_angles(corners, found.first).min() >= domain.least_angle
+
+
+@settings(max_examples=40)
+@given(domain=domains, sets=joint_sets())
+def test_blocks_do_not_overlap_and_fill_the_domain(domain, sets):
+    """By shapely: the union of all blocks is the domain, so that no area is counted twice."""
+    found = partition(domain, sets)
+    blocks = [shapely.Polygon(found.corners_of(k)) for k in range(found.count)]
+    union, shape = shapely.union_all(blocks, grid_size=1e-10), shape_of(domain)
+    assert union.symmetric_difference(shape).area < 1e-7 * shape.area
+
+
+@settings(max_examples=40)
+@given(domain=domains, sets=joint_sets())
+def test_euler(domain, sets):
+    """V - E + F = 1 + C: corners and ends of contacts, the edges between them, and the blocks and
+    openings; C parts of the domain."""
+    found, shape = partition(domain, sets), shape_of(domain)
+    edges = [found.contacts, found.boundary]
+    segments = np.concatenate([np.stack([e.start, e.end], axis=1) for e in edges])
+    rounded = np.round(segments.reshape(-1, 2), 8) + 0.0
+    points, number = np.unique(rounded, axis=0, return_inverse=True)
+    number = number.reshape(-1, 2)
+    assert (number[:, 0] != number[:, 1]).all()
+    assert len(np.unique(np.sort(number, axis=1), axis=0)) == len(number)
+    parts = getattr(shape, "geoms", [shape])
+    loops = sum(1 + len(part.interiors) for part in parts)
+    touching = len(number) - len(points) - found.count  # 0 + openings - 1 for each part
+    assert touching == (loops - len(parts)) - len(parts)
+
+
+@settings(max_examples=40)
+@given(domain=domains, sets=joint_sets())
+def test_contacts_are_what_pairs_of_blocks_share(domain, sets):
+    """i < j, once a pair; from i to j; on both outlines; the set's own normal."""
+    found = partition(domain, sets)
+    contacts = found.contacts
+    i, j = contacts.blocks.T
+    assert (i < j).all() and len(np.unique(contacts.blocks, axis=0)) == len(contacts)
+    assert (np.lexsort([j, i]) == np.arange(len(i))).all()
+    chord = contacts.end - contacts.start
+    np.testing.assert_allclose(np.hypot(*chord.T), contacts.length, rtol=1e-12)
+    tangent = np.stack([-contacts.normal[:, 1], contacts.normal[:, 0]], axis=1)
+    np.testing.assert_allclose(tangent * contacts.length[:, None], chord, atol=1e-8)
+    for which, sign in ((i, -1), (j, 1)):
+        away = sign * ((found.centroid[which] - contacts.start) * contacts.normal).sum(axis=1)
+        assert away.min(initial=1.0) > 0
+    for k, one in enumerate(sets):
+        own = contacts.normal[contacts.joint_set == k]
+        normal = direction_of(one.dip)[::-1] * [-1, 1]
+        assert (np.abs(own) == np.abs(normal)).all() and (own @ normal != 0).all()
+
+
+@settings(max_examples=40)
+@given(domain=domains, sets=joint_sets())
+def test_each_outline_is_closed_by_its_contacts_and_boundary(domain, sets):
+    """The sum of n l around each block vanishes, and lengths make up the perimeter: every inner
+    edge belongs to two blocks and every outer one to one."""
+    found = partition(domain, sets)
+    c, b = found.contacts, found.boundary
+    total, around = np.zeros((found.count, 2)), np.zeros(found.count)
+    for block, sign, edges in ((c.blocks[:, 0], 1, c), (c.blocks[:, 1], -1, c), (b.block, 1, b)):
+        np.add.at(total, block, sign * edges.normal * edges.length[:, None])
+        np.add.at(around, block, edges.length)
+    assert np.abs(total).max() < 1e-8
+    after = following(found.first)
+    sides = np.hypot(*(found.corners[after] - found.corners).T)
+    np.testing.assert_allclose(around, np.add.reduceat(sides, found.first[:-1]), rtol=1e-8)
+    assert b.length.sum() == pytest.approx(shape_of(domain).length, rel=1e-9)
+
+
+@settings(max_examples=40)
+@given(domain=domains, sets=joint_sets())
+def test_moments_are_those_of_triangles(domain, sets):
+    """Against a fan of triangles about the centroid, each by its closed form."""
+    found = partition(domain, sets)
+    whose = owner(found.first)
+    one, other = (found.corners[k] - found.centroid[whose] for k in (..., following(found.first)))
+    double = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
+    parts = np.stack(
+        [
+            double
+            / 12
+            * (
+                one[:, p] * one[:, q]
+                + other[:, p] * other[:, q]
+                + (one + other)[:, p] * (one + other)[:, q]
+            )
+            / 2
+            for p, q in ((0, 0), (1, 1), (0, 1))
+        ],
+        axis=1,
+    )
+    expected = np.add.reduceat(parts, found.first[:-1])
+    np.testing.assert_allclose(found.second_moment, expected, rtol=1e-8, atol=1e-12)
+    np.testing.assert_allclose(np.add.reduceat(double / 2, found.first[:-1]), found.area, rtol=1e-9)
+
+
+@settings(max_examples=40)
+@given(domain=domains, sets=joint_sets())
+def test_points_are_found_in_their_blocks(domain, sets):
+    found = partition(domain, sets)
+    np.testing.assert_array_equal(block_at(found, found.centroid), np.arange(found.count))
+    assert block_at(found, np.array([[-1.0, 3.0], [5.0, 60.0]])).tolist() == [-1, -1]
+    for opening in domain.openings:
+        centre = np.mean(opening, axis=0)
+        assert block_at(found, centre[None]).tolist() == [-1]
+    inner = np.flatnonzero(found.contacts.joint_set >= 0)
+    middle = (found.contacts.start + found.contacts.end)[inner] / 2
+    np.testing.assert_array_equal(block_at(found, middle), found.contacts.blocks[inner, 0])
+    beside = middle + 1e-7 * found.contacts.normal[inner]
+    np.testing.assert_array_equal(contact_at(found, beside), inner)
+
+
+@settings(max_examples=40)
+@given(domain=domains, sets=joint_sets())
+def test_same_seed_same_blocks_to_the_bit(domain, sets):
+    one, other = partition(domain, sets), cut(domain, sets)
+    for a, b in ((one, other), (one.contacts, other.contacts), (one.boundary, other.boundary)):
+        for key, array in vars(a).items():
+            if isinstance(array, np.ndarray):
+                np.testing.assert_array_equal(array, vars(b)[key])
+
+
+@settings(max_examples=40)
+@given(sets=joint_sets(most=2), angle=st.floats(-20, 20))
+def test_a_turned_domain_is_cut_into_turned_blocks(sets, angle):
+    """Turned with its joint sets, openings included; the same blocks in any order."""
+    assume(all(abs(one.dip + angle) < 90 for one in sets))  # else rows are counted the other way
+    turn = np.array([direction_of(angle), direction_of(angle + 90)])
+    keys = {"non_convex": "cut", "least_width": 0.0123, "least_angle": 0.5123}
+    one = Domain(outline=HEXAGON, openings=[TUNNEL], **keys)
+    outline, tunnel = (np.round(np.array(x) @ turn, 12).tolist() for x in (HEXAGON, TUNNEL))
+    other = Domain(outline=outline, openings=[tunnel], **keys)
+    found = partition(one, sets)
+    keys = [{"dip": s.dip + angle, "through": (np.array(s.through) @ turn).tolist()} for s in sets]
+    turned = cut(other, [s.model_copy(update=k) for s, k in zip(sets, keys, strict=True)])
+    assert turned.count == found.count and len(turned.contacts) == len(found.contacts)
+    pair = block_at(turned, found.centroid @ turn)
+    assert sorted(pair) == list(range(found.count))
+    np.testing.assert_allclose(turned.centroid[pair], found.centroid @ turn, atol=1e-8)
+    np.testing.assert_allclose(turned.area[pair], found.area, rtol=1e-6)
+    np.testing.assert_allclose(turned.polar_moment[pair], found.polar_moment, rtol=1e-6)
+    known = {tuple(sorted(blocks)) for blocks in turned.contacts.blocks}
+    assert known == {tuple(sorted(pair[blocks])) for blocks in found.contacts.blocks}
+
+
+@settings(max_examples=40)
+@given(sets=joint_sets().filter(lambda sets: not any(one.ends_at for one in sets)))
+def test_blocks_are_those_of_polygonize(sets):
+    """Through-going sets against shapely's noding of lines, an independent way to cut."""
+    domain = Domain(size=[10.0, 6.0], slivers="refuse", least_width=1e-4, least_angle=0.0)
+    found, box = partition(domain, sets), shapely.box(0, 0, 10, 6)
+    lines = [box.exterior]
+    for one in sets:
+        along, at = direction_of(one.dip), np.array(one.through)
+        places = [0.0] if one.spacing is None else np.arange(-40, 41) * one.spacing
+        if one.scatter:
+            places = _scattered(one, np.array([0]), 0.0, -20.0, 20.0)[0]
+        across = np.array([-along[1], along[0]])
+        lines += [
+            shapely.LineString([at + s * across - 40 * along, at + s * across + 40 * along])
+            for s in places
+        ]
+    cells = shapely.get_parts(shapely.polygonize([shapely.union_all(lines)]))
+    inside = [cell.area for cell in cells if box.contains(cell.representative_point())]
+    areas = np.sort(
+        [area for area in inside if area > 1e-10]
+    )  # where three lines meet to round-off
+    assert len(areas) == found.count
+    np.testing.assert_allclose(np.sort(found.area), areas, rtol=1e-7, atol=1e-9)
+
+
+@settings(max_examples=40)
+@given(sets=joint_sets())
+def test_slivers_are_refused_with_place_and_cause(sets):
+    """Where merging is off, a partition has no block below the limits or says where one is."""
+    domain = Domain(size=[10.0, 6.0], slivers="refuse", least_width=0.2, least_angle=10.0)
+    try:
+        found = cut(domain, sets)
+    except Sliver as error:
+        assert outline_of(domain).holds(error.at.tolist())
+        assert "grazing" in error.cause or "domain.least_width" in error.cause
+    except PartitionError as error:
+        assert error.key.startswith("joint_sets")
+    else:
+        assert widths(found.corners, found.first).min() >= 0.2
+        assert least_angles(found.corners, found.first).min() >= 10.0

@@ -1,0 +1,380 @@
+"""Scenes of rock masses: what a file may say, and every contradiction as one line.
+
+A mistake is a change to a good scene: (what is replaced, by what, words that the line must hold).
+"""
+
+import subprocess
+import sys
+
+import pytest
+
+import cases
+from cases.errors import SceneError
+from cases.read import load_any, load_any_variant
+from cases.schema.rock_mass import RockMass
+
+GOOD = """\
+title = "good"
+
+[domain]
+size = [60.0, 40.0]
+openings = [[[25.0, 15.0], [35.0, 15.0], [35.0, 22.0], [25.0, 22.0]]]
+non_convex = "cut"
+
+[rock]
+density = 2600.0
+intact_modulus = 5.0e10
+intact_poisson = 0.25
+
+[[joint_sets]]
+name = "bedding"
+dip = 35.0
+spacing = 2.0
+through = [30.0, 20.0]
+scatter = 0.2
+seed = 1
+normal_stiffness = 1.0e10
+shear_stiffness = 4.0e9
+
+[[joint_sets]]
+name = "cross"
+dip = -55.0
+spacing = 3.0
+ends_at = ["bedding"]
+offset = 0.5
+normal_stiffness = 2.0e10
+shear_stiffness = 8.0e9
+friction_angle = 30.0
+
+[[waves]]
+kind = "P"
+direction = [0.0, 1.0]
+shape = "ricker"
+amplitude = 1.0e6
+period = 0.01
+
+[[loads]]
+kind = "pressure"
+opening = 0
+shape = "step"
+amplitude = 1.0e5
+
+[boundaries]
+bottom = "quiet"
+left = "quiet"
+right = "quiet"
+
+[prestress]
+xx = 5.0e6
+yy = 1.0e7
+
+[gravity]
+static = false
+
+[time]
+duration = 0.1
+
+[record]
+points = [[40.0, 30.0]]
+joints = [[31.0, 10.5]]
+
+[expect]
+"dem ~ continuum-jointed" = 1e-1
+
+[[variants]]
+name = "S"
+[[variants.waves]]
+kind = "S"
+direction = [0.0, 1.0]
+shape = "table"
+file = "pulse.csv"
+amplitude = 1.0e6
+"""
+
+PRESSURE = 'kind = "pressure"\nopening = 0'
+SHAPE = 'shape = "step"\namplitude = 1.0e5'
+
+MISTAKES = {
+    "unknown table": ("[time]", "[tme]\n[time]", ["tme", "unknown key", "did you mean time"]),
+    "unknown key of the domain": ("size =", "sise = 1\nsize =", ["domain.sise = 1", "mean size"]),
+    "unknown key of a set": ("dip = -55.0", "dip = -55.0\nspace = 3", ["joint_sets[1].space = 3"]),
+    "name is a key of a set": (
+        "dip = 35.0",
+        "dip = 35.0\ndipp = 1",
+        ["joint_sets[0].dipp", "name, dip"],
+    ),
+    "both kinds": ("[domain]", "[pillar]\n[domain]", ["pillar: give [pillar] or [domain]"]),
+    "no shape": ("size = [60.0, 40.0]", "", ["domain: give exactly one of domain.size"]),
+    "two shapes": ("size =", "outline = [[0.0, 0.0]]\nsize =", ["give exactly one of domain.size"]),
+    "size of one number": ("[60.0, 40.0]", "[60.0]", ["domain.size = [60.0]", "hold 2 numbers"]),
+    "negative size": (
+        "[60.0, 40.0]",
+        "[60.0, -40.0]",
+        ["domain.size[1] = -40.0", "greater than 0"],
+    ),
+    "NaN": ("size = [60.0, 40.0]", "size = [60.0, nan]", ["domain.size[1] = nan", "finite"]),
+    "crossing outline": (
+        "size = [60.0, 40.0]",
+        "outline = [[0.0, 0.0], [60.0, 40.0], [60.0, 0.0], [0.0, 40.0]]",
+        ["domain.outline", "does not cross itself", "Self-intersection[30 20]"],
+    ),
+    "outline of two points": (
+        "size = [60.0, 40.0]",
+        "outline = [[0.0, 0.0], [60.0, 40.0]]",
+        ["domain.outline", "it has no area"],
+    ),
+    "opening outside": (
+        "[35.0, 15.0]",
+        "[95.0, 15.0]",
+        ["domain.openings[0]", "lie in the domain"],
+    ),
+    "flat opening": (
+        "[35.0, 22.0], [25.0, 22.0]]",
+        "[30.0, 15.0]]",
+        ["domain.openings[0]", "must be a polygon"],
+    ),
+    "openings that overlap": (
+        "[25.0, 22.0]]]",
+        "[25.0, 22.0]], [[30.0, 20.0], [50.0, 20.0], [50.0, 30.0]]]",
+        ["domain.openings[1]", "must not overlap openings[0]"],
+    ),
+    "no rock left": (
+        "openings = [[[25.0, 15.0], [35.0, 15.0], [35.0, 22.0], [25.0, 22.0]]]",
+        "openings = [[[0.0, 0.0], [60.0, 0.0], [60.0, 40.0], [0.0, 40.0]]]",
+        ["domain.openings[0]", "must leave rock"],
+    ),
+    "no density": ("density = 2600.0", "", ["rock.density", "is required"]),
+    "speeds of a pillar": ("[rock]", "[rock]\np_speed = 2e3", ["rock.p_speed", "unknown key"]),
+    "Poisson's ratio": ("0.25", "0.5", ["rock.intact_poisson = 0.5", "less than 0.5"]),
+    "dip beyond a turn": (
+        "dip = 35.0",
+        "dip = 200.0",
+        ["joint_sets[0].dip = 200.0", "at most 180"],
+    ),
+    "same name": ('name = "cross"', 'name = "bedding"', ["joint_sets[1].name", "must be unique"]),
+    "ends at nothing": ('["bedding"]', '["fault"]', ["joint_sets[1].ends_at = 'fault'", "bedding"]),
+    "ends at itself": ('["bedding"]', '["cross"]', ["joint_sets[1].ends_at = 'cross'", "bedding"]),
+    "ends twice": ('["bedding"]', '["bedding", "bedding"]', ["ends_at", "not name a set twice"]),
+    "ends at each other": (
+        "scatter = 0.2",
+        'scatter = 0.2\nends_at = ["cross"]',
+        ["joint_sets", "sets end at each other: bedding, cross"],
+    ),
+    "offset of through-going joints": (
+        'ends_at = ["bedding"]',
+        "",
+        ["joint_sets[1].offset = 0.5", "without joint_sets[1].ends_at"],
+    ),
+    "neither spacing nor point": ("spacing = 3.0", "", ["joint_sets[1].spacing", "or through"]),
+    "scatter of one joint": ("spacing = 2.0", "", ["joint_sets[0].scatter = 0.2", "no meaning"]),
+    "scatter without seed": ("seed = 1", "", ["joint_sets[0].seed", "is needed with"]),
+    "seed without scatter": ("scatter = 0.2", "", ["joint_sets[0].seed = 1", "no meaning without"]),
+    "too much scatter": ("scatter = 0.2", "scatter = 0.6", ["scatter = 0.6", "at most 0.5"]),
+    "no stiffness": ("shear_stiffness = 4.0e9", "", ["joint_sets[0].shear_stiffness", "required"]),
+    "strength without energy": (
+        "friction_angle = 30.0",
+        "tensile_strength = 1e5",
+        ["joint_sets[1].fracture_energy", "is needed with"],
+    ),
+    "snap-back": (
+        "friction_angle = 30.0",
+        "tensile_strength = 1e5\nfracture_energy = 0.1",
+        ["joint_sets[1].fracture_energy = 0.1", "at least 0.2501 J/m2"],
+    ),
+    "two dashpots": (
+        "friction_angle = 30.0",
+        "damping_ratio = 0.1\n[damping.rayleigh]\nfrequencies = [1.0, 9.0]\nratios = [0.1, 0.1]",
+        ["joint_sets[1].damping_ratio = 0.1", "damping.rayleigh"],
+    ),
+    "receiver outside": ("[[40.0, 30.0]]", "[[40.0, 41.0]]", ["record.points[0] = [40.0, 41.0]"]),
+    "receiver in an opening": (
+        "[[40.0, 30.0]]",
+        "[[1.0, 1.0], [30.0, 20.0]]",
+        ["record.points[1] = [30.0, 20.0]", "in none of its openings"],
+    ),
+    "joint receiver in an opening": ("[[31.0, 10.5]]", "[[31.0, 20.0]]", ["record.joints[0]"]),
+    "receiver twice": (
+        "[[40.0, 30.0]]",
+        "[[40.0, 30.0], [40.0, 30.0]]",
+        ["record.points[1]", "must not name a place twice"],
+    ),
+    "three coordinates": ("[[40.0, 30.0]]", "[[4.0, 3.0, 1.0]]", ["record.points[0]", "2 numbers"]),
+    "nothing recorded": (
+        "points = [[40.0, 30.0]]\njoints = [[31.0, 10.5]]",
+        "",
+        ["record: give at least one of record.points"],
+    ),
+    "interval too long": ("[record]", "[record]\ninterval = 1.0", ["record.interval = 1.0"]),
+    "fields too rare": ("[record]", "[record]\nfields = 1.0", ["record.fields = 1.0"]),
+    "wave through a free side": (
+        'bottom = "quiet"',
+        "",
+        ["boundaries.bottom = 'free'", "waves[0]"],
+    ),
+    "wave without direction": (
+        'direction = [0.0, 1.0]\nshape = "ricker"',
+        'shape = "ricker"',
+        ["waves[0].direction", "is required"],
+    ),
+    "no unit vector": (
+        'direction = [0.0, 1.0]\nshape = "ricker"',
+        'direction = [1.0, 1.0]\nshape = "ricker"',
+        ["waves[0].direction = [1.0, 1.0]", "unit vector"],
+    ),
+    "wave without period": ("period = 0.01", "", ["waves[0].period", "waves[0].shape = 'ricker'"]),
+    "wave with cycles": (
+        "period = 0.01",
+        "period = 0.01\ncycles = 2",
+        ["waves[0].cycles = 2", "no meaning for shape 'ricker'"],
+    ),
+    "unknown kind of wave": ('kind = "P"', 'kind = "R"', ["waves[0].kind = 'R'", "'P' or 'S'"]),
+    "opening that is none": ("opening = 0", "opening = 1", ["loads[0].opening = 1", "of the 1 "]),
+    "pressure on nothing": (
+        "opening = 0",
+        "",
+        ["loads[0].side", "exactly one of side and opening"],
+    ),
+    "pressure on two": ("opening = 0", 'opening = 0\nside = "top"', ["exactly one of side and"]),
+    "part that is elsewhere": (
+        "opening = 0",
+        'side = "top"\nbetween = [[10.0, 40.0], [20.0, 39.0]]',
+        ["loads[0].between = [20.0, 39.0]", "must lie on top"],
+    ),
+    "force without a place": (
+        PRESSURE,
+        'kind = "force"',
+        ["loads[0].at", "loads[0].kind = 'force'"],
+    ),
+    "force in an opening": (
+        f"{PRESSURE}\n{SHAPE}",
+        'kind = "force"\nquantity = "force"\nat = [30.0, 20.0]\ndirection = [0.0, -1.0]\n' + SHAPE,
+        ["loads[0].at = [30.0, 20.0]", "in none of its openings"],
+    ),
+    "force with a pressure's unit": (
+        f"{PRESSURE}\n{SHAPE}",
+        'kind = "force"\nat = [30.0, 10.0]\ndirection = [0.0, -1.0]\n' + SHAPE,
+        ["loads[0].quantity = 'stress'", "must be 'force' here"],
+    ),
+    "base that is not held": (
+        f"{PRESSURE}\n{SHAPE}",
+        'kind = "base"\nside = "top"\nquantity = "velocity"\ndirection = [1.0, 0.0]\n' + SHAPE,
+        ["loads[0].side = 'top'", "needs boundaries.top = 'fixed', not 'free'"],
+    ),
+    "pressure on an outline that is none": (
+        "opening = 0",
+        'side = "outline"',
+        ["loads[0].side = 'outline'", "which has left, right, bottom, top"],
+    ),
+    "unknown side": ("[boundaries]", '[boundaries]\nfront = "free"', ["boundaries.front"]),
+    "side that is none": (
+        "[boundaries]",
+        '[boundaries]\noutline = "fixed"',
+        ["boundaries.outline = 'fixed'", "is no side of this domain"],
+    ),
+    "one periodic side": (
+        'bottom = "quiet"\nleft = "quiet"',
+        'bottom = "quiet"\nleft = "periodic"',
+        ["boundaries.left = 'periodic'", "needs boundaries.right = 'periodic'"],
+    ),
+    "gravity on nothing": ("static = false", "", ["gravity.static = true", "needs a fixed side"]),
+    "prestress without yy": ("yy = 1.0e7", "", ["prestress.yy", "is required"]),
+}
+
+
+@pytest.fixture
+def written(tmp_path):
+    """Return a function that writes a scene and the history that it names."""
+    (tmp_path / "pulse.csv").write_text("0.0, 0.0\n0.01, 1.0\n0.02, 0.0\n")
+
+    def write(text):
+        path = tmp_path / "mass.toml"
+        path.write_text(text)
+        return path
+
+    return write
+
+
+def test_the_good_scene_is_good(written):
+    one, other = load_any(written(GOOD))
+    assert isinstance(one, RockMass) and (one.name, other.name) == ("", "S")
+    assert one.where.endswith("mass.toml") and other.where.endswith("mass.toml [S]")
+    assert [s.name for s in one.joint_sets] == ["bedding", "cross"]
+    assert one.interval == 0.01 / 200 and other.interval == 0.1 / 2000
+    assert other.waves[0].history.stress.tolist() == [0.0, 1.0, 0.0]
+    assert one.boundaries.top == "free" and one.gravity.direction == [0.0, -1.0]
+    assert one.joint_sets[1].friction_angle == 30.0 and one.joint_sets[1].contact_points == 2
+
+
+@pytest.mark.parametrize("name", MISTAKES)
+def test_a_mistake_is_one_line(written, name):
+    old, new, words = MISTAKES[name]
+    assert GOOD.count(old), f"{old!r} is not in the good scene"
+    path = written(GOOD.replace(old, new, 1))
+    with pytest.raises(SceneError) as error:
+        load_any(path)
+    line = str(error.value)
+    assert line.startswith(f"{path}") and "\n" not in line and len(line) < len(str(path)) + 500
+    for word in words:
+        assert word in line
+
+
+def test_a_history_is_beside_the_scene_unless_it_is_asked_for(written, tmp_path):
+    path = written(GOOD)
+    elsewhere = tmp_path / "far" / "pulse.csv"
+    elsewhere.parent.mkdir()
+    elsewhere.write_text("0.0, 0.0\n0.01, 2.0\n")
+    with pytest.raises(SceneError, match=r"waves\[0\].file = '../pulse.csv': leaves the folder"):
+        load_any_variant(path, "S", {"waves.0.file": "../pulse.csv"}, asked=False)
+    found = load_any_variant(path, "S", {"waves.0.file": str(elsewhere)})
+    assert found.waves[0].history.stress.tolist() == [0.0, 2.0]
+    with pytest.raises(SceneError, match=r"waves\[0\].file = 'none.csv': cannot be read"):
+        load_any_variant(path, "S", {"waves.0.file": "none.csv"})
+
+
+@pytest.mark.parametrize(
+    ("load", "boundaries"),
+    [
+        ({"kind": "force", "quantity": "force", "at": [3.0, 9.0], "direction": [1.0, 0.0]}, {}),
+        ({"kind": "pressure", "side": "top", "between": [[1.0, 40.0], [9.0, 40.0]]}, {}),
+        ({"kind": "pressure", "opening": 0, "between": [[25.0, 16.0], [25.0, 20.0]]}, {}),
+        (
+            {"kind": "base", "side": "top", "quantity": "acceleration", "direction": [1.0, 0.0]},
+            {"boundaries.top": "fixed"},
+        ),
+    ],
+)
+def test_loads_of_every_kind(written, load, boundaries):
+    changes = {"loads": [{"shape": "step", "amplitude": 1e5, **load}], **boundaries}
+    found = load_any_variant(written(GOOD), "", changes)
+    assert found.loads[0].kind == load["kind"]
+
+
+def test_sides_of_a_slope(written):
+    """Left, right, bottom and top of an outline where it follows its bounding box; a wave from
+    below meets no free surface, one from the left does."""
+    slope = [[0.0, 0.0], [60.0, 0.0], [60.0, 40.0], [45.0, 40.0], [20.0, 14.0], [0.0, 14.0]]
+    changes = {"domain": {"outline": slope}, "loads": [], "record.joints": []}
+    path = written(GOOD)
+    assert load_any_variant(path, "", {**changes, "boundaries.outline": "free"}).boundaries
+    with pytest.raises(SceneError, match=r"boundaries\.outline = 'free': must be 'quiet': waves"):
+        load_any_variant(path, "", {**changes, "waves.0.direction": [1.0, 0.0]})
+
+
+def test_a_rock_mass_is_loaded_as_no_pillar(written):
+    """Whoever asks for what can be simulated is told, in one line, that this cannot be yet."""
+    path = written(GOOD)
+    for ask in (cases.load, cases.load_variant):
+        with pytest.raises(SceneError, match="is a rock mass, which no engine solves yet") as error:
+            ask(path)
+        assert str(error.value).startswith(f"{path}: domain: ")
+
+
+def test_a_pillar_imports_nothing_of_rock_masses(tmp_path):
+    """Neither shapely nor the tables."""
+    code = (
+        "import sys, cases; from pathlib import Path\n"
+        "cases.load(Path(cases.__file__).parent / 'guo-li-2002' / 'fig-03.toml')\n"
+        "print(*(m for m in sys.modules if 'shapely' in m or 'partition' in m or 'rock_mass' in m))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == []
