@@ -77,7 +77,7 @@ def discretise(scene: Scene, model: str, dim: int | None = None, comm=None) -> D
 
 
 def mesh_of(scene: Scene, p: Properties, model: str, motion: Kinematics) -> Mesh:
-    """Return the mesh of a scene's pillar: its own file, or blocks by gmsh."""
+    """Return the mesh of a scene's pillar: its own file, or blocks."""
     numerics = scene.numerics.continuum
     if numerics.mesh_path is not None:
         from continuum.mesh.given import given_mesh
@@ -93,8 +93,8 @@ def mesh_of(scene: Scene, p: Properties, model: str, motion: Kinematics) -> Mesh
             p, motion.dim, numerics.cell, elements, numerics.elements_across, cut, layers
         )
     except (ImportError, OSError) as error:
-        key = "numerics.continuum.dim"
-        raise SceneError(scene.where, key, motion.dim, f"needs gmsh ({error})") from None
+        key = "numerics.continuum.cell"
+        raise SceneError(scene.where, key, numerics.cell, f"needs gmsh ({error})") from None
 
 
 def elements_for(scene: Scene, p: Properties, model: str) -> int:

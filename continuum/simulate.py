@@ -145,7 +145,7 @@ def _about(
     scene: Scene, discrete: Discrete, model: str, choice: Choice, critical: float
 ) -> dict[str, Any]:
     """Return what a result says of its run."""
-    versions = {"numpy": np.__version__, "numba": numba.__version__, "dolfinx": compat.VERSION}
+    versions = {"numpy": np.__version__, "numba": numba.__version__, "basix": compat.VERSION}
     return {
         "model": model,
         "scheme": choice.scheme,

@@ -33,7 +33,7 @@ def march(
     """
     joints = model.interfaces
     constants = (None, None) if joints is None else (joints.parts, joints.directions)
-    kernel = leapfrog_for(*constants)
+    kernel = leapfrog_for(*constants, shared=link is not None)
     arrays = arguments(model, state, samples, limits, link)
     return lambda first, last: kernel(first, last, stride, model.dt, *arrays)
 

@@ -4,9 +4,9 @@ from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from petsc4py import PETSc  # started by `continuum.space.compat`
 
 from continuum.parallel.serial import SERIAL, Serial
+from continuum.petsc import PETSc
 
 MOST_ITERATIONS = 12
 #: Unknowns from which MUMPS outweighs what it costs to call; PETSc's own factors are quicker below.

@@ -1,9 +1,9 @@
 """The factorised matrix of an implicit step of rock that several processes share."""
 
 import numpy as np
-from petsc4py import PETSc  # started by `continuum.space.compat`
 
 from continuum.parallel.communicator import Communicator
+from continuum.petsc import PETSc
 
 PACKAGES = ("mumps", "superlu_dist")  # that factorise what several processes hold
 
