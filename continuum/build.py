@@ -28,7 +28,7 @@ from continuum.model import (
     State,
 )
 from continuum.size import refuse_large_file, refuse_large_mesh
-from continuum.space.body import Body, build_body, whole
+from continuum.space.body import Body, build_body, rock_matrices
 from continuum.space.elasticity import Material
 from continuum.space.interface import Jumps, jumps
 from continuum.space.receivers import points, sections
@@ -124,11 +124,8 @@ def critical_step_of(scene: Scene, discrete: Discrete, model: str) -> float:
 def operators(discrete: Discrete) -> tuple[csr_matrix, csr_matrix | None]:
     """Return the stiffness (N/m) and viscosity (N s/m) of rock and closed joints, None without
     dashpots."""
-    body, joints = discrete.body, discrete.joints
-    stiffness = whole(body.layout, body.mesh, body.blocks)
-    viscosity = None
-    if body.viscous_blocks:
-        viscosity = whole(body.layout, body.mesh, body.viscous_blocks)
+    stiffness, viscosity = rock_matrices(discrete.body)
+    joints = discrete.joints
     if joints is None:
         return stiffness, viscosity
     law = joints.law

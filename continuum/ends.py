@@ -10,7 +10,7 @@ from continuum.kinematics import impedances
 from continuum.mesh.description import Side
 from continuum.model import Ends, Fixed, HalfJoints, Loaded, Quiet
 from continuum.space.body import Body, along
-from continuum.space.evaluation import Places, places_in
+from continuum.space.evaluation import Places, on_freedoms, places_in
 from continuum.space.interface import Facets, facet_points
 from joints.ends import HalfSpring, half_spring
 
@@ -33,8 +33,8 @@ def load_on(scene: Scene, p: Properties, body: Body, time: Clock) -> Loaded | No
     # A moment is traction linear across the face: Lobatto's two points of linear elements miss it.
     points, place = _face(body, body.mesh.start, body.order + 1)
     direction = load_shape(scene, p, body, points.x)
-    weights = points.weight[:, None, None] * place.basis[:, :, None] * direction[:, None]
-    share = on_freedoms(body, place, weights)
+    weights = np.einsum("q,qk,qc->qkc", points.weight, place.basis, direction)
+    (share,) = on_freedoms(body, place.cell, weights[None])
     freedom = np.flatnonzero(share)
     pressure = step_means(load_history(scene), time.dt, time.steps + 1)
     return Loaded(freedom, share[freedom], pressure)
@@ -162,22 +162,9 @@ def fixed_ends(scene: Scene, body: Body, time: Clock | None = None) -> Fixed | N
 def face_area(body: Body, side: Side) -> np.ndarray:
     """Return the area (m2) of a face that each freedom stands for [components, freedoms]."""
     points, place = _face(body, side)
-    components = body.section.components
-    found = []
-    for c in range(components):
-        weights = np.zeros((*place.basis.shape, components))
-        weights[:, :, c] = points.weight[:, None] * place.basis
-        found.append(on_freedoms(body, place, weights))
-    return np.array(found)
-
-
-def on_freedoms(body: Body, place: Places, weights: np.ndarray) -> np.ndarray:
-    """Return the sum of weights [q, nodes per cell, components] on every freedom."""
-    node = np.broadcast_to(body.cells[place.cell][:, :, None], weights.shape)
-    component = np.broadcast_to(np.arange(weights.shape[2]), weights.shape)
-    here = node >= 0
-    freedom = body.freedom(node[here], component[here])
-    return np.bincount(freedom, weights[here], minlength=body.mass.size)
+    every = np.eye(body.section.components)
+    weights = np.einsum("q,qk,dc->dqkc", points.weight, place.basis, every)
+    return on_freedoms(body, place.cell, weights)
 
 
 def _face(body: Body, side: Side, degree: int | None = None) -> tuple[Facets, Places]:

@@ -65,11 +65,11 @@ def implicit_engine(
     scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, monitor: Monitor
 ) -> Engine:
     """Return the generalised-alpha method of the scene's spectral radius."""
-    from continuum.implicit.balance import rock_matrices
+    from continuum.implicit.balance import implicit_matrices
     from continuum.implicit.run import Implicit
 
     rho = scene.numerics.continuum.spectral_radius
-    run = Implicit(model, state, rock_matrices(discrete.body), rho)
+    run = Implicit(model, state, implicit_matrices(discrete.body), rho)
 
     def attributes() -> dict[str, Any]:
         return {

@@ -29,12 +29,15 @@ from continuum.monitor import Monitor
 from continuum.scheme import Choice, choose
 from continuum.size import refuse_large_run
 from continuum.space import compat
-from continuum.time_loop import run_in_stretches
 from continuum.validity import applies
 from continuum.waveforms import energy_terms, waveforms
 from numerics.checkpoint import Keeper
+from numerics.time_loop import run_in_stretches
 from results.arrays import changed, size_of
 from results.dataset import Fields, fields
+
+FREEDOM_STEPS_AT_ONCE = 10_000_000  # some 0.1 s: often enough for a progress bar
+LEAST_STRETCHES = 20  # however short the run
 
 if TYPE_CHECKING:
     from continuum.snapshots import RockFilm
@@ -99,10 +102,18 @@ def simulate(
         found = _recorded(scene, discrete, built, samples, time.times[:count], about | seconds)
         return xr.Dataset(*(found if film is None else film.developed(found)))
 
+    def march(first: int, last: int) -> None:
+        # Every stretch ends with the step of a sample: what follows it belongs to the next one.
+        engine.march(max(0, (first - 1) * time.stride + 1), (last - 1) * time.stride + 1)
+        monitor.check(first, last)
+        if film is not None:
+            film.look(last - 1)
+
     parts = state, samples, monitor.parts, engine.parts
-    work = engine.work * int(communicator.largest(state.u.size))
+    work = engine.work * int(communicator.largest(state.u.size)) * time.stride
+    chunk = min(FREEDOM_STEPS_AT_ONCE // work, time.samples // LEAST_STRETCHES)
     try:
-        run_in_stretches(time, work, engine.march, monitor.check, parts, progress, film, keeper)
+        run_in_stretches(time.samples, chunk, march, parts, progress, film, keeper, 1)
     except StoppedError as error:
         error.result = result(error.samples)
         raise

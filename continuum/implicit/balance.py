@@ -13,7 +13,7 @@ from scipy.sparse import csr_matrix, diags
 from continuum.explicit.march import mass_damping
 from continuum.model import STATES, Model, Samples, State
 from continuum.parallel.serial import SERIAL, Serial
-from continuum.space.body import Body, whole
+from continuum.space.body import Body, rock_matrices
 from continuum.space.tractions import joint_energy, joint_loads, joint_tangents
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.jit import jitted
@@ -32,19 +32,12 @@ class Matrices(NamedTuple):
     communicator: Serial = SERIAL
 
 
-def rock_matrices(body: Body) -> Matrices:
+def implicit_matrices(body: Body) -> Matrices:
     """Return the matrices of discretised rock."""
-    stiffness, viscosity = whole(body.layout, body.mesh, body.blocks), None
-    if body.viscous_blocks:
-        viscosity = whole(body.layout, body.mesh, body.viscous_blocks)
+    stiffness, viscosity = rock_matrices(body)
     mass = csr_matrix(diags(body.mass)) if body.consistent is None else body.consistent
     moves = body.communicator.total(stiffness.diagonal()) > 0
     return Matrices(stiffness, viscosity, mass, moves, body.communicator)
-
-
-def empty_tangents(model: Model) -> np.ndarray:
-    """Return an array for how the joints resist displacement, [6, q], N/m."""
-    return np.zeros((6, 0 if model.interfaces is None else model.interfaces.area.size))
 
 
 def balance(

@@ -53,7 +53,8 @@ class Piece(NamedTuple):
     """One piece of rock, discretised; freedom node * components + component.
 
     x : float array [nodes, dim], m. cells : int array [cells, nodes per cell] in the order of the
-    reference element. stiffness, N/m, and viscosity, N s/m (None without dashpots) : [n, n].
+    reference element. stiffness, N/m, and viscosity, N s/m (None where no material has dashpots) :
+    [n, n].
     mass : float array [nodes], kg, the diagonal; consistent : [n, n], kg, None where lumped.
     """
 
@@ -83,7 +84,8 @@ def discretise(
     moduli = np.array([elastic_moduli(m, x.shape[1], section.components) for m in of_kind])
     stiffness = section.extent * _stiffness(cell, order, corners, moduli)
     eta = np.array([m.time_constant for m in of_kind])
-    damped = _assembled(nodes, (eta[:, None, None] * stiffness)[kind]) if eta.any() else None
+    is_damped = any(m.time_constant for m in materials)
+    damped = _assembled(nodes, (eta[:, None, None] * stiffness)[kind]) if is_damped else None
     density = section.extent * np.array([m.density for m in of_kind])
     mass, whole = _mass(cell, order, corners, density, nodes, kind)
     if consistent and whole is not None:
