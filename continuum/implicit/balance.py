@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
-from continuum.explicit.march import mass_damping
 from continuum.model import STATES, Model, Samples, State
 from continuum.parallel.serial import SERIAL, Serial
 from continuum.space.body import Body, rock_matrices
@@ -170,8 +169,7 @@ def joint_energy_for(parts, directions):
 def record(
     model: Model,
     rock: Matrices,
-    contact: csr_matrix | None,
-    added: np.ndarray,
+    receivers: tuple[csr_matrix, np.ndarray],
     state: State,
     acceleration: np.ndarray,
     samples: Samples,
@@ -179,19 +177,13 @@ def record(
 ) -> None:
     """Record sample s of a state in balance: receivers and ledger.
 
-    contact, added : of `continuum.explicit.march.contact_rows`. acceleration : m/s2.
+    receivers : of `continuum.explicit.march.readings`, which take velocities half a step before and
+    after. acceleration : m/s2.
     """
-    receivers = model.receivers
-    moving = acceleration + mass_damping(model.rock.decay, model.dt) * state.v
-    stress = receivers.elastic @ state.u + receivers.inertia @ moving + added
-    if receivers.viscous is not None:
-        stress += receivers.viscous @ state.rate
-    if contact is not None:
-        loads = state.loads if state.drags is None else state.loads + state.drags
-        stress[: contact.shape[0]] += contact @ loads.ravel()
-    motion = [receivers.point @ state.v, receivers.point @ state.u]
-    turn = [] if receivers.turn is None else [receivers.turn @ state.u]
-    samples.waves[:, s] = np.concatenate([stress, *motion, *turn])
+    matrix, added = receivers
+    fields, half = state.fields.copy(), 0.5 * model.dt * acceleration
+    fields[state.at.v], fields[state.at.v_before] = state.v + half, state.v - half
+    samples.waves[:, s] = matrix @ fields + added
     if samples.energy is None:
         return
     stored, spent, joints = 0.0, 0.0, model.interfaces

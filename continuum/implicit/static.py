@@ -6,8 +6,6 @@ opens or breaks on the way depends on the way.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
-
 import numpy as np
 
 from cases.errors import SceneError
@@ -24,21 +22,12 @@ TOLERANCE = 1e-10  # what may be left of the largest force that is summed up
 LEAST_PART = 2.0**-10  # of the weight
 
 
-class Rest(NamedTuple):
-    """How a static state was reached: corrections made, largest unbalanced force over the largest
-    force at work."""
+def settle_static(scene: Scene, model: Model, state: State, body: Body) -> dict[str, float]:
+    """Bring a state to rest under gravity; raises SceneError where there is no static state.
 
-    steps: int
-    ratio: float
-
-    @property
-    def attributes(self) -> dict[str, Any]:
-        """What a result says of it."""
-        return {"static_steps": self.steps, "static_out_of_balance": self.ratio}
-
-
-def settle_static(scene: Scene, model: Model, state: State, body: Body) -> Rest:
-    """Bring a state to rest under gravity; raises SceneError where there is no static state."""
+    Returns what a result says of it: how many corrections were made, and the largest unbalanced
+    force over the largest force at work.
+    """
     system = _Static(model, state, body)
     done, part, steps = 0.0, 1.0, 0
     while done < 1:
@@ -51,7 +40,8 @@ def settle_static(scene: Scene, model: Model, state: State, body: Body) -> Rest:
         else:
             _refuse(scene, done)
     fill(state, system.state)
-    return Rest(steps, outcome.errors[-1] / body.communicator.largest(system.size))
+    ratio = outcome.errors[-1] / body.communicator.largest(system.size)
+    return {"static_steps": steps, "static_out_of_balance": ratio}
 
 
 def _refuse(scene: Scene, done: float) -> None:

@@ -10,8 +10,7 @@ from mpi4py import MPI
 from scipy.sparse import csr_matrix
 
 from continuum.explicit.march import march
-from continuum.parallel.connection import TAG, connect, release
-from continuum.parallel.exchange import add_shares
+from continuum.parallel.exchange import TAG, add_shares, connect, release
 from continuum.parallel.identity import Border, joined
 from continuum.parallel.serial import Pieces, Serial, T
 from numerics.divergence import EVERY

@@ -7,7 +7,7 @@ import numpy as np
 from continuum.mesh.description import Mesh
 from continuum.parallel.partition import Copies, copies_of
 from continuum.parallel.serial import Pieces
-from continuum.space.body import SAME
+from continuum.space.body import levels
 from continuum.space.nodes import corner_shares, node_numbers, numbered
 
 
@@ -70,11 +70,7 @@ def _levels(mesh: Mesh, copies: Copies, cell: np.ndarray, order: int) -> np.ndar
         here = copies.part[copy] == number
         corners = part.x[part.cells[(cell - copies.first[copy])[here]], along]
         y[here] = corners @ shape.T
-    place = np.argsort(y, axis=None)
-    apart = np.diff(y.ravel()[place]) > SAME * max(np.ptp(part.x) for part in mesh.parts)
-    level = np.empty(y.size, dtype=np.int64)
-    level[place] = np.concatenate([[0], np.cumsum(apart)])
-    level = level.reshape(y.shape)
+    level = levels(y, max(np.ptp(part.x) for part in mesh.parts))
     return numbered(np.stack([np.broadcast_to(copy[:, None], y.shape), level], axis=2))
 
 

@@ -104,7 +104,7 @@ def build_body(
     plane_wave : whether all nodes of a piece at one height move alike.
     """
     pieces = [discretise(p, mesh.cell, order, materials, section, consistent) for p in mesh.parts]
-    numbers = [_levels(p) if plane_wave else np.arange(len(p.x)) for p in pieces]
+    numbers = [_heights(p) if plane_wave else np.arange(len(p.x)) for p in pieces]
     ties = [_tie(number, section.components) for number in numbers]
     places = layout([part.copies for part in mesh.parts], [tie.shape[1] for tie in ties])
 
@@ -169,15 +169,18 @@ def whole(places: Layout, mesh: Mesh, blocks: list[csr_matrix]) -> csr_matrix:
     return csr_matrix((np.concatenate(values), ij), (size, size))
 
 
-def _levels(piece: Piece) -> np.ndarray:
+def _heights(piece: Piece) -> np.ndarray:
     """Return for each node the number of its height within the piece."""
     y = piece.x[:, axis(piece.x.shape[1])]
-    step = SAME * max(np.ptp(y), np.abs(piece.x).max())
-    order = np.argsort(y)
-    level = np.concatenate([[0], np.cumsum(np.diff(y[order]) > step)])
-    found = np.empty(len(y), dtype=np.int64)
-    found[order] = level
-    return found
+    return levels(y, max(np.ptp(y), np.abs(piece.x).max()))
+
+
+def levels(y: np.ndarray, size: float) -> np.ndarray:
+    """Return numbers of the different heights y, in a body of this size, of the shape of y."""
+    order = np.argsort(y, axis=None)
+    found = np.empty(y.size, dtype=np.int64)
+    found[order] = np.cumsum(np.diff(y.ravel()[order], prepend=-np.inf) > SAME * size) - 1
+    return found.reshape(y.shape)
 
 
 def _tie(number: np.ndarray, components: int) -> csr_matrix:

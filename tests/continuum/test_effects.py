@@ -13,7 +13,7 @@ from continuum.implicit.balance import joint_balance_for
 from continuum.implicit.pattern import empty_tangents
 from continuum.joints import interfaces
 from continuum.model import Quiet
-from continuum.simulate import steps_of
+from continuum.run import steps_of
 
 SUDDEN = {"direction": [0.0, 1.0, 0.0], "static": False}
 SHAKEN = {"shape": "sine", "amplitude": 0.1, "period": 1e-3, "quantity": "velocity"}
