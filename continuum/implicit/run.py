@@ -11,7 +11,7 @@ from continuum.explicit.march import readings
 from continuum.implicit.balance import Matrices, record
 from continuum.implicit.newton import Outcome
 from continuum.implicit.step import Moment, Stepper
-from continuum.implicit.substeps import motion_at, pressure_at
+from continuum.implicit.substeps import move, pressure_at
 from continuum.model import Model, Samples, State
 from continuum.monitor import Monitor
 from results.arrays import changed, copied, fill
@@ -85,9 +85,7 @@ class Implicit:
     def _begin(self) -> None:
         """Balance the forces of the first moment by its acceleration."""
         now, trial, stepper = self.now, self.trial, self.stepper
-        given = motion_at(stepper.fixed, 0, 0.0)
-        for values, motion in zip((now.state.u, now.state.v, now.acceleration), given, strict=True):
-            values[stepper.fixed.freedom] = motion
+        move(stepper.fixed, now.state, now.acceleration, 0, 0.0)
         fill(trial.state, now.state)
         stepper.set_forces(self.model, now, trial, 0, 0.0)
         trial.acceleration[:] = now.acceleration

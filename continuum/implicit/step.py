@@ -21,7 +21,7 @@ from continuum.implicit.pattern import System
 from continuum.implicit.substeps import (
     end_resistance,
     fixed_motion,
-    motion_at,
+    move,
     pressure_at,
     shortened,
 )
@@ -85,7 +85,7 @@ class Stepper:
         old, dt, free = now.state, length.model.dt, self.free
         drift = dt * old.v + (0.5 - beta) * dt**2 * now.acceleration
         before = alpha_f * old.force - alpha_m * (self.mass @ now.acceleration)
-        self._apply_fixed(trial, n, share)
+        move(self.fixed, trial.state, trial.acceleration, n, share)
 
         def residual(moved: np.ndarray) -> tuple[np.ndarray, float]:
             state, a = trial.state, trial.acceleration
@@ -125,13 +125,6 @@ class Stepper:
         self._system.factorise(self._pattern.fixed[0])
         self._factored = None
         moment.acceleration[self.free] += self._system.solve(rest[self.free])
-
-    def _apply_fixed(self, trial: Moment, n: int, share: float) -> None:
-        motion = motion_at(self.fixed, n, share)
-        for values, given in zip(
-            (trial.state.u, trial.state.v, trial.acceleration), motion, strict=True
-        ):
-            values[self.fixed.freedom] = given
 
     def _length(self, halvings: int) -> Length:
         if halvings not in self._lengths:
