@@ -1,4 +1,4 @@
-"""Deformable rock in dolfinx, with the joints as cohesive interfaces."""
+"""Deformable rock by dolfinx's elements, with the joints as cohesive interfaces."""
 
 from continuum.simulate import simulate
 from continuum.validity import applies

@@ -18,7 +18,6 @@ from continuum.mesh.description import Mesh
 from continuum.mesh.pillar import elements_in_block, pillar_mesh
 from continuum.model import (
     TERMS,
-    Fixed,
     Interfaces,
     Model,
     Places,
@@ -28,11 +27,12 @@ from continuum.model import (
     State,
 )
 from continuum.size import refuse_large_file, refuse_large_mesh
-from continuum.space.body import Body, build_body, whole
+from continuum.space.body import Body, build_body, rock_matrices
 from continuum.space.elasticity import Material
 from continuum.space.interface import Jumps, jumps
 from continuum.space.receivers import points, sections
 from continuum.space.simd import WIDTH
+from joints.law import Law, parts_of
 from numerics.cache_lines import zeros
 
 
@@ -77,7 +77,7 @@ def discretise(scene: Scene, model: str, dim: int | None = None, comm=None) -> D
 
 
 def mesh_of(scene: Scene, p: Properties, model: str, motion: Kinematics) -> Mesh:
-    """Return the mesh of a scene's pillar: its own file, or blocks by gmsh."""
+    """Return the mesh of a scene's pillar: its own file, or blocks."""
     numerics = scene.numerics.continuum
     if numerics.mesh_path is not None:
         from continuum.mesh.given import given_mesh
@@ -93,8 +93,8 @@ def mesh_of(scene: Scene, p: Properties, model: str, motion: Kinematics) -> Mesh
             p, motion.dim, numerics.cell, elements, numerics.elements_across, cut, layers
         )
     except (ImportError, OSError) as error:
-        key = "numerics.continuum.dim"
-        raise SceneError(scene.where, key, motion.dim, f"needs gmsh ({error})") from None
+        key = "numerics.continuum.cell"
+        raise SceneError(scene.where, key, numerics.cell, f"needs gmsh ({error})") from None
 
 
 def elements_for(scene: Scene, p: Properties, model: str) -> int:
@@ -124,11 +124,8 @@ def critical_step_of(scene: Scene, discrete: Discrete, model: str) -> float:
 def operators(discrete: Discrete) -> tuple[csr_matrix, csr_matrix | None]:
     """Return the stiffness (N/m) and viscosity (N s/m) of rock and closed joints, None without
     dashpots."""
-    body, joints = discrete.body, discrete.joints
-    stiffness = whole(body.layout, body.mesh, body.blocks)
-    viscosity = None
-    if body.viscous_blocks:
-        viscosity = whole(body.layout, body.mesh, body.viscous_blocks)
+    stiffness, viscosity = rock_matrices(discrete.body)
+    joints = discrete.joints
     if joints is None:
         return stiffness, viscosity
     law = joints.law
@@ -214,26 +211,36 @@ def receivers(scene: Scene, discrete: Discrete) -> Receivers:
 def state_at_rest(model: Model, keep_ledger: bool) -> State:
     """Return the state at rest, with no array for anything that the model does not have."""
     n, joints, (_, quiet, fixed) = model.rock.mass.size, model.interfaces, model.ends
-    damped = joints is not None and joints.parts.dashpots
-    viscous = damped or model.rock.viscosity is not None or model.receivers.viscous is not None
-    sprung = quiet is not None and quiet.springs is not None
-    shape = None if joints is None else (joints.directions, joints.area.size)
-    fields, at = _fields(n, viscous, shape, damped)
+    parts = parts_of(Law(0.0)) if joints is None else joints.parts
+    directions, q = (0, 0) if joints is None else (joints.directions, joints.area.size)
+    viscous = parts.dashpots or model.rock.viscosity is not None
+    viscous = viscous or model.receivers.viscous is not None
+
+    def array(is_asked: bool, *shape: int) -> np.ndarray | None:
+        return zeros(shape) if is_asked else None
+
+    cohesion = array(parts.residual and parts.shear, q)
+    if joints is not None and cohesion is not None:
+        cohesion[:] = joints.law.cohesion
+    ends = 0 if quiet is None else quiet.freedom.size
+    shape = None if joints is None else (directions, q)
+    fields, at = _fields(n, viscous, shape, parts.dashpots)
     return State(
         fields=fields,
         at=at,
         force=zeros(n),
-        drag=zeros(n) if viscous else None,
-        **_points_at_rest(joints),
-        closure=np.zeros(quiet.freedom.size) if sprung else None,
-        reaction=np.zeros(quiet.freedom.size) if quiet is not None else None,
-        base_force=np.zeros(fixed.freedom.size) if fixed is not None and _moves(fixed) else None,
-        ledger=np.zeros(4) if keep_ledger else None,
+        drag=array(viscous, n),
+        opening=array(parts.softening, q),
+        slide=array(parts.limited, directions - 1, q),
+        cohesion=cohesion,
+        jump=array(joints is not None, directions, q),
+        jump_rate=array(parts.dashpots, directions, q),
+        slip_rate=array(parts.limited, directions, q),
+        closure=array(quiet is not None and quiet.springs is not None, ends),
+        reaction=array(quiet is not None, ends),
+        base_force=None if fixed is None or fixed.step is None else zeros(fixed.freedom.size),
+        ledger=array(keep_ledger, 4),
     )
-
-
-def _moves(fixed: Fixed) -> bool:
-    return fixed.step is not None
 
 
 def _fields(
@@ -248,26 +255,6 @@ def _fields(
         places[name] = slice(begin, begin + size) if size else None
         begin += -(-size // WIDTH) * WIDTH
     return zeros(begin), Places(**places, shape=shape)  # type: ignore[arg-type]
-
-
-def _points_at_rest(joints: Interfaces | None) -> dict[str, np.ndarray | None]:
-    """Return the history and the jumps of the joints' points, None for what nothing asks for."""
-    names = "opening", "slide", "cohesion", "jump", "jump_rate", "slip_rate"
-    found: dict[str, np.ndarray | None] = dict.fromkeys(names)
-    if joints is not None:
-        parts, points = joints.parts, joints.area.size
-        jumps = (joints.directions, points)
-        found["jump"] = zeros(jumps)
-        if parts.dashpots:
-            found["jump_rate"] = zeros(jumps)
-        if parts.softening:
-            found["opening"] = np.zeros(points)
-        if parts.limited:
-            found["slide"] = np.zeros((joints.directions - 1, points))
-            found["slip_rate"] = zeros(jumps)
-        if parts.residual and parts.shear:
-            found["cohesion"] = np.zeros(points) + joints.law.cohesion
-    return found
 
 
 def empty_samples(model: Model, state: State, samples: int) -> Samples:

@@ -1,5 +1,7 @@
 """Actions on the two end faces: load, absorbing and fixed ends."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from cases.loads import base_steps, load_history, step_means
@@ -10,7 +12,7 @@ from continuum.kinematics import impedances
 from continuum.mesh.description import Side
 from continuum.model import Ends, Fixed, HalfJoints, Loaded, Quiet
 from continuum.space.body import Body, along
-from continuum.space.evaluation import Places, places_in
+from continuum.space.evaluation import Places, on_freedoms, places_in
 from continuum.space.interface import Facets, facet_points
 from joints.ends import HalfSpring, half_spring
 
@@ -33,8 +35,8 @@ def load_on(scene: Scene, p: Properties, body: Body, time: Clock) -> Loaded | No
     # A moment is traction linear across the face: Lobatto's two points of linear elements miss it.
     points, place = _face(body, body.mesh.start, body.order + 1)
     direction = load_shape(scene, p, body, points.x)
-    weights = points.weight[:, None, None] * place.basis[:, :, None] * direction[:, None]
-    share = on_freedoms(body, place, weights)
+    weights = np.einsum("q,qk,qc->qkc", points.weight, place.basis, direction)
+    (share,) = on_freedoms(body, place.cell, weights[None])
     freedom = np.flatnonzero(share)
     pressure = step_means(load_history(scene), time.dt, time.steps + 1)
     return Loaded(freedom, share[freedom], pressure)
@@ -74,18 +76,13 @@ def quiet_ends(
     In jointed rock a matched end has half a joint in front of it, as the rock beyond would have.
     """
     parts: list[tuple[np.ndarray, ...]] = []
-    for place in ("start", "end"):
-        kind = getattr(scene.ends, place)
-        if kind not in ("quiet", "matched"):
-            continue
-        area = face_area(body, getattr(body.mesh, place))
-        impedance = impedances(scene, p, model, body.dim, len(area))
-        sprung = kind == "matched" and model == "jointed"
-        springs = absorbing(scene, p, body, dt) if sprung else None
-        whole = body.communicator.total(area)
-        for c in range(len(area)):
-            spring = None if springs is None else springs[c]
-            parts.append(_absorber(impedance[c], area[c], whole[c], spring))
+    for area, springs in absorbers(scene, p, body, model, dt):
+        for share, whole, spring in zip(area, body.communicator.total(area), springs, strict=True):
+            freedom = np.flatnonzero(whole)
+            share, whole, alike = share[freedom], whole[freedom], np.ones(freedom.size)
+            viscosity, stiffness = share * spring.viscosity, share * spring.stiffness
+            rest = stiffness, spring.decay * alike, spring.gain * alike
+            parts.append((freedom, viscosity, whole * spring.viscosity, *rest))
     if not parts:
         return None
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
@@ -94,47 +91,40 @@ def quiet_ends(
     half_joints = HalfJoints(stiffness, decay, gain) if sprung else None
     braked = 1 + (p.mass_damping or 0.0) * dt / 2  # as in the step over the mass
     beta = whole * dt / (2 * braked * mass[freedom])
-    return Quiet(freedom.astype(np.int64), viscosity, beta, half_joints)
+    return Quiet(freedom, viscosity, beta, half_joints)
 
 
-def _absorber(
-    impedance: float, area: np.ndarray, whole: np.ndarray, spring: HalfSpring | None
-) -> tuple[np.ndarray, ...]:
-    """Return freedoms, viscosities, those of all processes together, and springs of one component
-    of one end face; area, whole : of the freedoms, here and in total."""
-    freedom = np.flatnonzero(whole)
-    share, whole, alike = area[freedom], whole[freedom], np.ones(freedom.size)
-    if spring is None:
-        return freedom, share * impedance, whole * impedance, 0 * alike, 0 * alike, 0 * alike
-    return (
-        freedom,
-        share * spring.viscosity,
-        whole * spring.viscosity,
-        share * spring.stiffness,
-        alike * spring.decay,
-        alike * spring.gain,
-    )
+def absorbers(
+    scene: Scene, p: Properties, body: Body, model: str, dt: float = 0.0
+) -> Iterator[tuple[np.ndarray, list[HalfSpring]]]:
+    """Yield for every absorbing end its area [components, freedoms] and what absorbs each component
+    per unit area: half a joint before the rock beyond, or a dashpot alone."""
+    components = body.section.components
+    for place in ("start", "end"):
+        kind = getattr(scene.ends, place)
+        if kind not in ("quiet", "matched"):
+            continue
+        sprung = kind == "matched" and model == "jointed"
+        springs = [
+            _half_joint(p, z, c == along(body.section), dt)
+            if sprung
+            else HalfSpring(0.0, z, 0.0, 0.0, 0.0)
+            for c, z in enumerate(impedances(scene, p, model, body.dim, components))
+        ]
+        yield face_area(body, getattr(body.mesh, place)), springs
 
 
-def absorbing(scene: Scene, p: Properties, body: Body, dt: float = 0.0) -> list[HalfSpring]:
-    """Return half a joint before the rock beyond, per unit area, for every component."""
-    found, components = [], body.section.components
-    for component, z in enumerate(impedances(scene, p, "jointed", body.dim, components)):
-        k = p.regular_own_stiffness
-        if component != along(body.section):
-            k = p.regular_own_shear_stiffness
-        found.append(half_spring(2 * k, p.time_constant or 0.0, z, dt))
-    return found
+def _half_joint(p: Properties, z: float, is_normal: bool, dt: float) -> HalfSpring:
+    k = p.regular_own_stiffness if is_normal else p.regular_own_shear_stiffness
+    return half_spring(2 * k, p.time_constant or 0.0, z, dt)
 
 
 def end_stiffness(scene: Scene, p: Properties, body: Body, model: str) -> np.ndarray:
     """Return what matched ends add to the stiffness at the critical step, N/m [freedoms]."""
     found = np.zeros(body.mass.size)
-    for place in ("start", "end"):
-        if getattr(scene.ends, place) == "matched" and model == "jointed":
-            area = face_area(body, getattr(body.mesh, place))
-            for share, spring in zip(area, absorbing(scene, p, body), strict=True):
-                found += share * spring.critical_stiffness
+    for area, springs in absorbers(scene, p, body, model):
+        for share, spring in zip(area, springs, strict=True):
+            found += share * spring.critical_stiffness
     return found
 
 
@@ -162,22 +152,9 @@ def fixed_ends(scene: Scene, body: Body, time: Clock | None = None) -> Fixed | N
 def face_area(body: Body, side: Side) -> np.ndarray:
     """Return the area (m2) of a face that each freedom stands for [components, freedoms]."""
     points, place = _face(body, side)
-    components = body.section.components
-    found = []
-    for c in range(components):
-        weights = np.zeros((*place.basis.shape, components))
-        weights[:, :, c] = points.weight[:, None] * place.basis
-        found.append(on_freedoms(body, place, weights))
-    return np.array(found)
-
-
-def on_freedoms(body: Body, place: Places, weights: np.ndarray) -> np.ndarray:
-    """Return the sum of weights [q, nodes per cell, components] on every freedom."""
-    node = np.broadcast_to(body.cells[place.cell][:, :, None], weights.shape)
-    component = np.broadcast_to(np.arange(weights.shape[2]), weights.shape)
-    here = node >= 0
-    freedom = body.freedom(node[here], component[here])
-    return np.bincount(freedom, weights[here], minlength=body.mass.size)
+    every = np.eye(body.section.components)
+    weights = np.einsum("q,qk,dc->dqkc", points.weight, place.basis, every)
+    return on_freedoms(body, place.cell, weights)
 
 
 def _face(body: Body, side: Side, degree: int | None = None) -> tuple[Facets, Places]:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from cases.schema.scene import Scene
-from continuum.build import Discrete
-from continuum.model import Model, Samples, State
+from continuum.model import Model, State
 from continuum.monitor import Monitor
+from continuum.run import Run
 from continuum.space.body import Body
 
 IMPLICIT_WORK = 100  # some corrections, each a triangular solve and often a factorisation
@@ -32,20 +31,19 @@ class Engine(NamedTuple):
     work: int = 1
 
 
-def explicit_engine(
-    scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, monitor: Monitor
-) -> Engine:
+def explicit_engine(run: Run, monitor: Monitor) -> Engine:
     """Return leapfrog."""
-    communicator = discrete.body.communicator
-    if scene.gravity is not None and not scene.gravity.static:
-        let_go(model, state, discrete.body)
-    march = communicator.leapfrog(model, state, samples, monitor.time.stride, monitor.guard)
+    gravity, time, communicator = run.scene.gravity, run.choice.time, run.communicator
+    if gravity is not None and not gravity.static:
+        let_go(run.model, run.state, run.discrete.body)
+    of_run = run.model, run.state, run.samples
+    march = communicator.leapfrog(*of_run, time.stride, monitor.guard)
 
     def compile() -> None:
         with communicator.in_turn():
             march(0, 0)
 
-    return Engine(compile, march, monitor.time.dt, dict)
+    return Engine(compile, march, time.dt, dict)
 
 
 def let_go(model: Model, state: State, body: Body) -> None:
@@ -61,29 +59,27 @@ def let_go(model: Model, state: State, body: Body) -> None:
     state.v[:], state.v_before[:] = -fall, -3 * fall
 
 
-def implicit_engine(
-    scene: Scene, discrete: Discrete, model: Model, state: State, samples: Samples, monitor: Monitor
-) -> Engine:
+def implicit_engine(run: Run, monitor: Monitor) -> Engine:
     """Return the generalised-alpha method of the scene's spectral radius."""
-    from continuum.implicit.balance import rock_matrices
+    from continuum.implicit.balance import implicit_matrices
     from continuum.implicit.run import Implicit
 
-    rho = scene.numerics.continuum.spectral_radius
-    run = Implicit(model, state, rock_matrices(discrete.body), rho)
+    rho, stride = run.scene.numerics.continuum.spectral_radius, run.choice.time.stride
+    steps = Implicit(run.model, run.state, implicit_matrices(run.discrete.body), rho)
 
     def attributes() -> dict[str, Any]:
         return {
             "spectral_radius": rho,
-            "newton_iterations": int(run.stepper.counts[0]),
-            "factorisations": int(run.stepper.counts[1]),
-            "halved_steps": run.halvings,
+            "newton_iterations": int(steps.stepper.counts[0]),
+            "factorisations": int(steps.stepper.counts[1]),
+            "halved_steps": steps.halvings,
         }
 
     return Engine(
-        lambda: run.compile(samples),
-        lambda first, last: run.run(samples, monitor.time.stride, first, last, monitor),
+        lambda: steps.compile(run.samples),
+        lambda first, last: steps.run(run.samples, stride, first, last, monitor),
         0.0,
         attributes,
-        run.parts,
+        steps.parts,
         IMPLICIT_WORK,
     )

@@ -87,12 +87,11 @@ def joint_law(p: Properties, joints: Resolved, joint: np.ndarray, shears: bool) 
 
 def interfaces(jumps: Jumps, law: Law, prestress: float | None) -> Interfaces:
     """Return the joints of a model."""
-    matrices = [m for m in (jumps.opening, jumps.slip_x, jumps.slip_z) if m is not None]
-    jump = csr_matrix(vstack(matrices))
+    jump = csr_matrix(vstack(jumps.matrices))
     return Interfaces(
         jump=jump,
         stencils=stencils(jump),
-        directions=len(matrices),
+        directions=len(jumps.matrices),
         area=jumps.weight,
         law=law,
         table=table_of(law),

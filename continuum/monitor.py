@@ -4,13 +4,7 @@ No node can be faster than all forces together can make it, and no energy come f
 
 import numpy as np
 
-from cases.material.calibrate import Properties
-from cases.sampling import Clock
-from cases.schema.scene import Scene
-from continuum.build import Discrete
-from continuum.model import Model, Samples, State
-from continuum.parallel.serial import Serial
-from continuum.scheme import Choice
+from continuum.run import Run
 from continuum.space.body import axis
 from numerics.divergence import CREATED, ENERGY, EVERY, LAST_DIGITS, guard, look, speed_that
 from numerics.instability import Sighting, stopped
@@ -23,36 +17,21 @@ class Monitor:
     ----------
     guard : `numerics.divergence.Guard`. energy : the whole ledger [term, sample], J; None when not
     kept.
-    parts : arrays that change with the run. time : its clock.
+    parts : arrays that change with the run.
     """
 
-    def __init__(
-        self,
-        scene: Scene,
-        discrete: Discrete,
-        model: Model,
-        state: State,
-        samples: Samples,
-        choice: Choice,
-        critical: float,
-    ) -> None:
-        self.scene, self.discrete, self.state = scene, discrete, state
-        self.communicator, self.time = discrete.body.communicator, choice.time
-        self.explicit, self.critical = choice.scheme == "explicit", critical
-        self.samples = samples
-        speed = highest_speed(
-            scene, discrete.properties, model, state, self.time, self.communicator
-        )
-        self.guard = guard(speed)
-        self.energy = samples.energy
+    def __init__(self, run: Run) -> None:
+        self.run, self.time, self.communicator = run, run.choice.time, run.communicator
+        self.explicit, energy = run.choice.scheme == "explicit", run.samples.energy
+        self.guard, self.energy = guard(highest_speed(run)), energy
         self.parts: tuple = (self.guard,)
-        if samples.energy is not None and self.communicator.size > 1:
-            self.energy = np.zeros_like(samples.energy)
+        if energy is not None and self.communicator.size > 1:
+            self.energy = np.zeros_like(energy)
             self.parts = self.guard, self.energy
 
     def look(self, n: int) -> bool:
         """Look at the speeds after n steps, and return whether the run is lost."""
-        look(self.guard, np.abs(self.state.v).max(initial=0.0), n)
+        look(self.guard, np.abs(self.run.state.v).max(initial=0.0), n)
         return self.communicator.any(bool(self.guard.found[0] >= 0))
 
     def finds(self, n: int) -> bool:
@@ -66,8 +45,10 @@ class Monitor:
         """Look for energy from nowhere in samples first .. last - 1 of the ledger."""
         if self.energy is None or first == last:
             return
-        if self.energy is not self.samples.energy:
-            self.energy[:, first:last] = self.communicator.sum(self.samples.energy[:, first:last])
+        if self.energy is not self.run.samples.energy:
+            self.energy[:, first:last] = self.communicator.sum(
+                self.run.samples.energy[:, first:last]
+            )
         energy, (_, peak, found), stride = self.energy[:, first:last], self.guard, self.time.stride
         with np.errstate(over="ignore", invalid="ignore"):
             gained = energy - self.energy[:, :1]
@@ -100,28 +81,28 @@ class Monitor:
             bool(self.communicator.any(what == ENERGY)),
             self.fastest(),
         )
-        raise stopped(self.scene, self.time, self.critical if self.explicit else np.inf, seen)
+        critical = self.run.critical if self.explicit else np.inf
+        raise stopped(self.run.scene, self.time, critical, seen)
 
     def fastest(self) -> float:
         """Return where along the pillar (m) the fastest node is."""
-        body = self.discrete.body
+        body = self.run.discrete.body
         freedoms = body.freedom(np.arange(len(body.x))[:, None], np.arange(body.section.components))
-        speed = np.nan_to_num(np.abs(self.state.v[freedoms]).max(axis=1), nan=np.inf)
+        speed = np.nan_to_num(np.abs(self.run.state.v[freedoms]).max(axis=1), nan=np.inf)
         node = int(speed.argmax())
         return self.communicator.of_largest(
             float(speed[node]), float(body.x[node, axis(body.x.shape[1])])
         )
 
 
-def highest_speed(
-    scene: Scene, p: Properties, model: Model, state: State, time: Clock, communicator: Serial
-) -> float:
+def highest_speed(run: Run) -> float:
     """Return a bound on the speed of any node, m/s.
 
     Where forces F put energy in, d sqrt(2 E) / dt is at most |F| in the norm of 1 / m, and m v^2 of
     any node at most 2 E. Of a node that several processes share, the shares of F^2 / m add up to no
     less than the whole: (a + b)^2 / (m + n) <= a^2 / m + b^2 / n.
     """
+    model, time, communicator = run.model, run.choice.time, run.communicator
     mass, loaded, fixed = model.rock.mass, model.ends.loaded, model.ends.fixed
     rock = mass > 0
     least = np.sqrt(communicator.largest(1 / mass[rock].min()))
@@ -135,20 +116,17 @@ def highest_speed(
         shaken = np.abs(speed).sum() * np.sqrt(communicator.sum(mass[rock].sum()))
     if model.weight is not None:
         weight = np.sqrt(communicator.sum((model.weight[rock] ** 2 / mass[rock]).sum()))
-        stored = np.sqrt(2 * abs(communicator.sum(model.weight @ state.u)))
+        stored = np.sqrt(2 * abs(communicator.sum(model.weight @ run.state.u)))
     with np.errstate(over="ignore"):
-        pressed = _prestressed(scene, p) + duration * least * _pressing(scene, p)
+        pressed = _prestressed(run, duration * least)
         return least * speed_that(pushed, shaken, duration * weight, stored, pressed)
 
 
-def _prestressed(scene: Scene, p: Properties) -> float:
-    """Return the root of twice the energy that a prestress keeps in rock and joints, sqrt(J)."""
-    if scene.prestress is None:
+def _prestressed(run: Run, pushing: float) -> float:
+    """Return the root of twice the energy (sqrt(J)) that a prestress keeps in rock and joints, and
+    that rock gives off by pushing on both sides of a joint that opens, so long (s/sqrt(kg))."""
+    if run.scene.prestress is None:
         return 0.0
+    p, prestress = run.discrete.properties, abs(run.scene.prestress.normal)
     softness = p.block_count * p.spacing / p.modulus + np.abs(p.excess_compliance).sum()
-    return abs(scene.prestress.normal) * np.sqrt(p.area * softness)
-
-
-def _pressing(scene: Scene, p: Properties) -> float:
-    """Return what prestressed rock can push with on the two sides of a joint that opens, N."""
-    return 0.0 if scene.prestress is None else 2 * abs(scene.prestress.normal) * p.area
+    return prestress * np.sqrt(p.area * softness) + pushing * 2 * prestress * p.area

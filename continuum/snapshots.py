@@ -85,5 +85,5 @@ def axial_stress(discrete: Discrete, cells: np.ndarray, parts: np.ndarray) -> cs
     centres = nodes[parts].mean(axis=1)
     cell = np.repeat(cells, len(parts))
     point = at_reference(body, cell, np.tile(centres, (cells.size, 1)))
-    weights = -section_tractions(body, discrete.materials, point)[0]
+    weights = -section_tractions(body, discrete.materials, point)[:1]
     return matrix_of(body, np.arange(cell.size), cell, weights, cell.size)

@@ -19,22 +19,23 @@ def waveforms(scene: Scene, discrete: Discrete, samples: Samples) -> dict[str, A
     What a mesh in two dimensions has no room for is zero.
     """
     components = discrete.body.section.components
-    force = _by_component(samples.stress, components)
+    force = samples.stress.reshape(components, -1, samples.waves.shape[1])
     stress = force[0] + _prestress(scene, discrete)[:, None]
     motion = {"velocity": samples.velocity, "displacement": samples.displacement}
     if components == 1:
         return {"stress": stress, **motion}
-    found = {
-        "stress": stress,
-        "shear": np.moveaxis(_padded(force[1:], 2), 0, 2),
-        **{
-            name: np.moveaxis(_padded(_by_component(wave, components), 3), 0, 2)
-            for name, wave in motion.items()
-        },
-    }
+    found = {"stress": stress, "shear": _vectors(force[1:], components - 1, 2)}
+    found |= {name: _vectors(wave, components, 3) for name, wave in motion.items()}
     if samples.turn.size:
-        found["rotation"] = np.moveaxis(_by_component(samples.turn, 3), 0, 2)
+        found["rotation"] = _vectors(samples.turn, 3, 3)
     return found
+
+
+def _vectors(waves: np.ndarray, components: int, size: int) -> np.ndarray:
+    """Return [place, sample, size] of rows that hold all places of one component together, with
+    zeros for components that are not there."""
+    found = waves.reshape(components, -1, waves.shape[-1])
+    return np.moveaxis(np.pad(found, ((0, size - components), (0, 0), (0, 0))), 0, 2)
 
 
 def _prestress(scene: Scene, discrete: Discrete) -> np.ndarray:
@@ -44,17 +45,6 @@ def _prestress(scene: Scene, discrete: Discrete) -> np.ndarray:
         return np.zeros(places.size)
     on_joint = np.array([is_on_joint(discrete.body, place) for place in places], dtype=bool)
     return np.where(on_joint, 0.0, scene.prestress.normal)
-
-
-def _by_component(waves: np.ndarray, components: int) -> np.ndarray:
-    """Return [component, place, sample] of rows that hold all places of one component together."""
-    return waves.reshape(components, -1, waves.shape[1])
-
-
-def _padded(waves: np.ndarray, components: int) -> np.ndarray:
-    """Return the same with zeros for components that are not there."""
-    missing = np.zeros((components - len(waves), *waves.shape[1:]))
-    return np.concatenate([waves, missing])
 
 
 def energy_terms(

@@ -1,10 +1,9 @@
-"""The time loop: a run in stretches, after each of which it is checked, saved and reported."""
+"""A run of rigid blocks from its first sample to its result."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numba
@@ -12,9 +11,10 @@ import numpy as np
 
 from cases.errors import StoppedError
 from cases.sampling import Clock
-from numerics.checkpoint import Keeper, begin, show
+from numerics.checkpoint import Keeper
 from numerics.divergence import ENERGY, Guard
 from numerics.instability import Sighting
+from numerics.time_loop import run_in_stretches
 from results.dataset import Fields
 
 if TYPE_CHECKING:
@@ -38,34 +38,6 @@ class Run(NamedTuple):
     parts: Any
 
 
-def run_in_stretches(
-    run: Run,
-    progress: Callable[[float], None] | None = None,
-    film: Film | None = None,
-    keeper: Keeper | None = None,
-) -> None:
-    """Take all samples of a run, in stretches, after each of which it is checked.
-
-    film : stops the run where it keeps a sample. keeper : sees all that changes.
-    """
-    time, parts = run.time, run.parts
-    steps = max(LEAST_STEPS, BLOCK_STEPS_AT_ONCE // run.blocks)
-    stops = {time.samples, *range(0, time.samples, max(1, steps // time.stride))}
-    if film is not None:
-        stops.update(range(0, time.samples, film.every))
-        parts = (parts, film.shots)
-    done = begin(keeper, film, parts)
-    for first, last in pairwise(sorted({done, *(stop for stop in stops if stop > done)})):
-        if film is not None:
-            film.look(first)
-        run.march(first, last)
-        run.check(last)
-        if keeper is not None:
-            show(keeper, last, parts)
-        if progress:
-            progress(last / time.samples)
-
-
 def followed(
     run: Run,
     result: Callable[[int], Fields],
@@ -75,8 +47,16 @@ def followed(
 ) -> Fields:
     """Return the result of a run to its end; where it stops on its way, the error has the part
     that is sound. result : of how many samples are."""
+
+    def march(first: int, last: int) -> None:
+        if film is not None:
+            film.look(first)
+        run.march(first, last)
+        run.check(last)
+
+    chunk = max(LEAST_STEPS, BLOCK_STEPS_AT_ONCE // run.blocks) // run.time.stride
     try:
-        run_in_stretches(run, progress, film, keeper)
+        run_in_stretches(run.time.samples, chunk, march, run.parts, progress, film, keeper)
     except StoppedError as error:
         error.result = result(error.samples)
         raise

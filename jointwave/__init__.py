@@ -7,7 +7,7 @@
     print(jw.misfit(blocks, rock))
 
 Results are xarray Datasets in SI units, compression positive. What a function needs is imported
-when it is first called: dolfinx, for one, takes a second.
+when it is first called.
 """
 
 from __future__ import annotations

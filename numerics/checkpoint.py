@@ -12,7 +12,13 @@ from cases.errors import InterruptedRun
 
 
 class Film(Protocol):
-    """Snapshots of a run, of which those of an earlier part may be there already."""
+    """Snapshots of every `every`-th sample, of which those of an earlier part may be there already.
+
+    shots : what is kept of each.
+    """
+
+    every: int
+    shots: list[Any]
 
     def expect(self, samples: int) -> None:
         """Take the snapshots of so many samples for taken."""

@@ -13,7 +13,7 @@ import dem
 from cases import SceneError
 from compare.runs import field_files
 from compare.runs.field_files import read_pvd, refuse_vtx, write_pvd, write_vtx
-from continuum.space import compat
+from continuum.space import forms
 from results.snapshots import snapshots, snapshots_of
 
 SPALL = {
@@ -173,7 +173,7 @@ def test_vtx_needs_snapshots(tmp_path):
 
 
 def test_vtx_is_written_where_dolfinx_can_and_refused_where_not(tmp_path):
-    can = compat.vtx_writer() is not None
+    can = forms.vtx_writer() is not None
     options = ("--variant", "", "--vtx", "--out", tmp_path / "out")
     done = jointwave("run", *SCENE, *FIELDS, *options, code=0 if can else 2)
     if can:
@@ -187,8 +187,8 @@ def test_vtx_is_written_where_dolfinx_can_and_refused_where_not(tmp_path):
 
 
 def test_vtx_is_refused_where_there_is_no_dolfinx(monkeypatch):
-    monkeypatch.setitem(sys.modules, "continuum.space.compat", None)
-    monkeypatch.delattr("continuum.space.compat", raising=False)
+    monkeypatch.setitem(sys.modules, "continuum.space.forms", None)
+    monkeypatch.delattr("continuum.space.forms", raising=False)
     with pytest.raises(SceneError, match="--vtx: dolfinx cannot be imported"):
         refuse_vtx()
 
@@ -215,7 +215,7 @@ def test_vtx_gets_every_value_at_its_node(two_cells, kind, tmp_path, monkeypatch
             values = [f.x.array.reshape(-1, 3).copy() for f in self.functions]
             seen.append((time, at, *values))
 
-    monkeypatch.setattr(compat, "vtx_writer", lambda: Recorder)
+    monkeypatch.setattr(forms, "vtx_writer", lambda: Recorder)
     monkeypatch.setattr(field_files, "write_folder", lambda path, save: save(tmp_path / "made"))
     write_vtx(tmp_path / "dem.bp", found)
     assert [time for time, *_ in seen] == found.time.tolist()

@@ -7,7 +7,7 @@ import continuum
 import dem
 from cases.errors import StoppedError
 from cases.material.calibrate import calibrate
-from continuum.simulate import steps_of
+from continuum.run import steps_of
 from dem.axial.bound import highest_speed
 from dem.axial.leapfrog import run
 from dem.axial.model import build

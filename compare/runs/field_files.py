@@ -75,22 +75,22 @@ def read_pvd(path: Path) -> Snapshots:
 def refuse_vtx() -> None:
     """Raise SceneError where no VTX file can be written."""
     try:
-        from continuum.space import compat
+        from continuum.space import forms
     except ImportError as error:
         raise SceneError("--vtx", "", None, f"dolfinx cannot be imported ({error})") from None
-    if compat.vtx_writer() is None:
+    if forms.vtx_writer() is None:
         allowed = "this dolfinx is built without ADIOS2; the .pvd file needs neither"
         raise SceneError("--vtx", "", None, allowed)
 
 
 def write_vtx(path: Path, s: Snapshots) -> Path:
     """Write displacement (m) and velocity (m/s) of all instants as one ADIOS2 file, NAME.bp."""
-    from continuum.space import compat
+    from continuum.space import forms
 
     displacement, velocity, at, nodes = _functions(s)
 
     def save(new: Path) -> None:
-        with compat.vtx_writer()(compat.MPI.COMM_SELF, str(new), [displacement, velocity]) as file:
+        with forms.vtx_writer()(forms.MPI.COMM_SELF, str(new), [displacement, velocity]) as file:
             for i, time in enumerate(s.time.tolist()):
                 displacement.x.array.reshape(-1, 3)[at] = s.displacement[i, nodes]
                 velocity.x.array.reshape(-1, 3)[at] = s.velocity[i, nodes]
@@ -102,12 +102,12 @@ def write_vtx(path: Path, s: Snapshots) -> Path:
 def _functions(s: Snapshots) -> tuple[Any, Any, np.ndarray, np.ndarray]:
     """Return dolfinx functions for displacement and velocity, and which of their values
     [cells, corners] are those of which nodes [cells, corners]."""
-    from continuum.space import compat
+    from continuum.space import forms
 
     cells = s.cells[:, TENSOR_ORDER.get(s.kind, slice(None))].astype(np.int64)
-    domain = compat.cell_mesh(CELLS.get(s.kind, s.kind), cells, s.points)
-    space = compat.lagrange_space(domain, 1, 3)
-    functions = [compat.fem.Function(space, dtype=np.float64) for _ in range(2)]
+    domain = forms.cell_mesh(CELLS.get(s.kind, s.kind), cells, s.points)
+    space = forms.lagrange_space(domain, 1, 3)
+    functions = [forms.fem.Function(space, dtype=np.float64) for _ in range(2)]
     for function, name in zip(functions, ("displacement", "velocity"), strict=True):
         function.name = name
-    return *functions, compat.cell_nodes(space), cells[compat.input_cells(domain)]
+    return *functions, forms.cell_nodes(space), cells[forms.input_cells(domain)]

@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 
 
 def applies(scene: Scene, model: str) -> Answer:
-    """Return whether dolfinx is there and the model holds for the scene."""
+    """Return whether basix is there and the model holds for the scene."""
     try:
         from continuum import applies as reason_against
     except ImportError as error:
-        return no(f"dolfinx cannot be imported ({error})")
+        return no(f"basix cannot be imported ({error})")
     reason = reason_against(scene, model)
     return no(reason) if reason else YES
 
@@ -67,10 +67,10 @@ def prepare(scene: Scene, model: str) -> Prepared:
 
 
 def libraries() -> dict[str, str]:
-    """Return the version of dolfinx."""
+    """Return the version of basix."""
     from continuum.space import compat
 
-    return {"dolfinx": compat.VERSION}
+    return {"basix": compat.VERSION}
 
 
 def _of(model: str, **about: Any) -> Solver:

@@ -8,7 +8,7 @@ from scipy.sparse import csr_matrix, diags
 from scipy.sparse.linalg import eigsh
 
 from continuum.space.body import Body
-from continuum.space.evaluation import matrix_of
+from continuum.space.evaluation import on_freedoms
 
 FEW = 200  # degrees of freedom up to which the dense solver is the quicker one
 
@@ -81,9 +81,8 @@ def any_motion(body: Body) -> np.ndarray:
     random, (count, nodes) = np.random.default_rng(0), body.cells.shape
     shape = random.standard_normal((nodes, body.section.components))
     size = random.standard_normal(count)
-    cells, one_row = np.arange(count), np.zeros(count, dtype=np.int64)
-    found = matrix_of(body, one_row, cells, size[:, None, None] * shape, 1)
-    return body.communicator.total(found.toarray()[0])
+    found = on_freedoms(body, np.arange(count), size[None, :, None, None] * shape)
+    return body.communicator.total(found[0])
 
 
 def _highest_mode(matrix, start: np.ndarray) -> tuple[np.ndarray, float]:

@@ -8,28 +8,32 @@ leapfrog conserves exactly.
 """
 
 from functools import cache
+from typing import Any
 
-from continuum.parallel.exchange import receive, send
 from continuum.space.operator import multiply
 from continuum.space.stencils import add_transposed, multiply_stencils
 from continuum.space.tractions import joint_energy, joint_loads
 from joints.formula import formula
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.divergence import EVERY, SPEED
-from numerics.jit import jitted
+from numerics.jit import jitted_for
 
 
 @cache
-def leapfrog_for(parts, directions):
+def leapfrog_for(parts, directions, shared=False):
     """Return the kernel for joints of a law with these parts (`joints.law.Parts`) and jumps
-    in so many directions; both None without joints.
+    in so many directions, both None without joints; shared : by several processes.
 
     Its arguments are those of `continuum.explicit.march.arguments`; what a model lacks is None.
     """
 
     shears = True if directions != 1 else None
+    send: Any = None
+    receive: Any = None
+    if shared:
+        from continuum.parallel.exchange import receive, send
 
-    @jitted
+    @jitted_for(parts, directions, shared)
     def leapfrog(
         first, last, stride, dt,
         u, v, v_before, force, rate, drag,

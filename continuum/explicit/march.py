@@ -33,7 +33,7 @@ def march(
     """
     joints = model.interfaces
     constants = (None, None) if joints is None else (joints.parts, joints.directions)
-    kernel = leapfrog_for(*constants)
+    kernel = leapfrog_for(*constants, shared=link is not None)
     arrays = arguments(model, state, samples, limits, link)
     return lambda first, last: kernel(first, last, stride, model.dt, *arrays)
 
@@ -46,6 +46,7 @@ def arguments(
     tiles, *stiffness = rock.stiffness
     springs = None if quiet is None else quiet.springs
     jumps: tuple[Any, ...] = 8 * (None,)
+    read, added = readings(model, state)
     if joints is not None:
         along = int(np.searchsorted(joints.stencils.first, joints.area.size))
         jumps = *joints.stencils, along, joints.table, joints.area, joints.prestress
@@ -64,7 +65,7 @@ def arguments(
         state.closure,
         *(3 * (None,) if fixed is None else fixed),
         state.base_force,
-        *(state.fields, *readings(model, state), samples.waves),
+        *(state.fields, read.indptr, read.indices, read.data, added, samples.waves),
         *(state.ledger, samples.energy),
         *(2 * (None,) if limits is None else (limits.limit.view(float)[0], limits.found)),
         link,
@@ -75,9 +76,9 @@ def _flat(points: np.ndarray | None) -> np.ndarray | None:
     return None if points is None else points.reshape(-1)
 
 
-def readings(model: Model, state: State) -> tuple[np.ndarray, ...]:
-    """Return how the rows of `Samples.waves` follow from `State.fields`: start, column and value of
-    a sparse matrix, and what is added.
+def readings(model: Model, state: State) -> tuple[csr_matrix, np.ndarray]:
+    """Return how the rows of `Samples.waves` follow from `State.fields`: a matrix, and what is
+    added.
 
     Velocity at the step is the mean of those half a step before and after, acceleration their
     difference over dt.
@@ -85,7 +86,7 @@ def readings(model: Model, state: State) -> tuple[np.ndarray, ...]:
     r, at, dt = model.receivers, state.at, model.dt
     alpha = mass_damping(model.rock.decay, dt)
     sections, points = r.elastic.shape[0], r.point.shape[0]
-    contact, added = contact_rows(model)
+    contact, added = _contact_rows(model)
     entries = [
         (0, r.elastic, at.u),
         (0, r.viscous, at.rate),
@@ -108,10 +109,10 @@ def readings(model: Model, state: State) -> tuple[np.ndarray, ...]:
     value = np.concatenate([part.data for _, part, _ in parts])
     count = sections + 2 * points + (0 if r.turn is None else r.turn.shape[0])
     matrix = csr_matrix((value, (row, column)), (count, state.fields.size))
-    return matrix.indptr, matrix.indices, matrix.data, np.append(added, np.zeros(count - sections))
+    return matrix, np.append(added, np.zeros(count - sections))
 
 
-def contact_rows(model: Model) -> tuple[csr_matrix | None, np.ndarray]:
+def _contact_rows(model: Model) -> tuple[csr_matrix | None, np.ndarray]:
     """Return how sections on joints read the joints' forces, and what is added to all sections."""
     r, joints = model.receivers, model.interfaces
     added = np.zeros(r.elastic.shape[0])

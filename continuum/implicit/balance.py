@@ -10,10 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
-from continuum.explicit.march import mass_damping
 from continuum.model import STATES, Model, Samples, State
 from continuum.parallel.serial import SERIAL, Serial
-from continuum.space.body import Body, whole
+from continuum.space.body import Body, rock_matrices
 from continuum.space.tractions import joint_energy, joint_loads, joint_tangents
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.jit import jitted
@@ -32,19 +31,12 @@ class Matrices(NamedTuple):
     communicator: Serial = SERIAL
 
 
-def rock_matrices(body: Body) -> Matrices:
+def implicit_matrices(body: Body) -> Matrices:
     """Return the matrices of discretised rock."""
-    stiffness, viscosity = whole(body.layout, body.mesh, body.blocks), None
-    if body.viscous_blocks:
-        viscosity = whole(body.layout, body.mesh, body.viscous_blocks)
+    stiffness, viscosity = rock_matrices(body)
     mass = csr_matrix(diags(body.mass)) if body.consistent is None else body.consistent
     moves = body.communicator.total(stiffness.diagonal()) > 0
     return Matrices(stiffness, viscosity, mass, moves, body.communicator)
-
-
-def empty_tangents(model: Model) -> np.ndarray:
-    """Return an array for how the joints resist displacement, [6, q], N/m."""
-    return np.zeros((6, 0 if model.interfaces is None else model.interfaces.area.size))
 
 
 def balance(
@@ -177,8 +169,7 @@ def joint_energy_for(parts, directions):
 def record(
     model: Model,
     rock: Matrices,
-    contact: csr_matrix | None,
-    added: np.ndarray,
+    receivers: tuple[csr_matrix, np.ndarray],
     state: State,
     acceleration: np.ndarray,
     samples: Samples,
@@ -186,19 +177,13 @@ def record(
 ) -> None:
     """Record sample s of a state in balance: receivers and ledger.
 
-    contact, added : of `continuum.explicit.march.contact_rows`. acceleration : m/s2.
+    receivers : of `continuum.explicit.march.readings`, which take velocities half a step before and
+    after. acceleration : m/s2.
     """
-    receivers = model.receivers
-    moving = acceleration + mass_damping(model.rock.decay, model.dt) * state.v
-    stress = receivers.elastic @ state.u + receivers.inertia @ moving + added
-    if receivers.viscous is not None:
-        stress += receivers.viscous @ state.rate
-    if contact is not None:
-        loads = state.loads if state.drags is None else state.loads + state.drags
-        stress[: contact.shape[0]] += contact @ loads.ravel()
-    motion = [receivers.point @ state.v, receivers.point @ state.u]
-    turn = [] if receivers.turn is None else [receivers.turn @ state.u]
-    samples.waves[:, s] = np.concatenate([stress, *motion, *turn])
+    matrix, added = receivers
+    fields, half = state.fields.copy(), 0.5 * model.dt * acceleration
+    fields[state.at.v], fields[state.at.v_before] = state.v + half, state.v - half
+    samples.waves[:, s] = matrix @ fields + added
     if samples.energy is None:
         return
     stored, spent, joints = 0.0, 0.0, model.interfaces

@@ -1,11 +1,14 @@
-"""Sparse matrices on one common pattern, so that sums of them are sums of arrays."""
+"""The equations of implicit steps: matrices on one common pattern, so that their sums are sums of
+arrays, and the factors of such a sum."""
 
 from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from continuum.model import Interfaces
+from continuum.implicit.balance import Matrices
+from continuum.implicit.factors import Factors
+from continuum.model import Interfaces, Model
 from continuum.space.tractions import NN, XN, XX, XZ, ZN, ZZ
 
 
@@ -21,7 +24,7 @@ class Pattern(NamedTuple):
     """The places that any of the matrices fills, CSR: start [n + 1], column [nnz].
 
     fixed : float array [matrices, nnz], each of the matrices on it.
-    joints : [nnz, 6 q], times the joints' stiffness of `balance.balance` [6 q] gives B^T D B on
+    joints : [nnz, 6 q], times the joints' stiffness of `System.tangents` [6 q] gives B^T D B on
         it.
     diagonal : int array [n], which of the places are on the diagonal.
     """
@@ -59,6 +62,53 @@ def pattern(matrices: list[csr_matrix], interfaces: Interfaces | None, free: np.
         joints=csr_matrix((joints.value, (at[-1], source)), (places.size, size)),
         diagonal=np.searchsorted(places, own),
     )
+
+
+class System:
+    """The equations of the freedoms that move.
+
+    Attributes
+    ----------
+    free : int array [n], these freedoms. pattern : of the matrices and of the joints among them.
+    tangents : how the joints resist displacement, [6, q], N/m, of the last trial.
+    """
+
+    def __init__(
+        self, model: Model, rock: Matrices, fixed: np.ndarray, matrices: list[csr_matrix]
+    ) -> None:
+        moves = rock.moves.copy()
+        moves[fixed] = False
+        self.free = np.flatnonzero(moves)
+        self.pattern = pattern(matrices, model.interfaces, self.free)
+        self.tangents = empty_tangents(model)
+        self._factors = self._factors_of(rock)
+
+    def with_joints(self, values: np.ndarray, share: float = 1.0) -> np.ndarray:
+        """Return values on the pattern [nnz] with a share of the joints' tangents."""
+        return values + share * (self.pattern.joints @ self.tangents.ravel())
+
+    def factorise(self, values: np.ndarray) -> None:
+        """Take the matrix of these values on the pattern [nnz], summed up over all processes."""
+        self._factors.factorise(values)
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """Return x of A x = right, [n]."""
+        return self._factors.solve(right)
+
+    def _factors_of(self, rock: Matrices) -> Factors:
+        start, column, communicator = self.pattern.start, self.pattern.column, rock.communicator
+        if communicator.size == 1:
+            return Factors(start, column)
+        from continuum.parallel.communicator import Communicator
+        from continuum.parallel.factors import SharedFactors
+
+        assert isinstance(communicator, Communicator)
+        return SharedFactors(start, column, self.free, communicator)
+
+
+def empty_tangents(model: Model) -> np.ndarray:
+    """Return an array for how the joints resist displacement, [6, q], N/m."""
+    return np.zeros((6, 0 if model.interfaces is None else model.interfaces.area.size))
 
 
 def _both(entries: Entries, number: np.ndarray) -> np.ndarray:

@@ -7,14 +7,14 @@ longer ones again, so that whole steps end on the clock.
 import numpy as np
 
 from cases.errors import StoppedError
-from continuum.explicit.march import contact_rows
+from continuum.explicit.march import readings
 from continuum.implicit.balance import Matrices, record
 from continuum.implicit.newton import Outcome
 from continuum.implicit.step import Moment, Stepper
-from continuum.implicit.substeps import motion_at, pressure_at
+from continuum.implicit.substeps import move, pressure_at
 from continuum.model import Model, Samples, State
 from continuum.monitor import Monitor
-from results.arrays import copied, fill
+from results.arrays import changed, copied, fill
 
 HALVINGS = 10
 WHOLE = 1 << HALVINGS
@@ -43,13 +43,11 @@ class Implicit:
         self.now, self.trial = (
             Moment(s, np.zeros_like(state.u), np.zeros(1)) for s in (state, copied(state))
         )
-        self.communicator, mass = (
-            matrices.communicator,
-            matrices.communicator.total(model.rock.mass),
-        )
+        self.communicator = matrices.communicator
+        mass = self.communicator.total(model.rock.mass)
         self.mass = np.where(mass > 0, mass, np.inf)  # what no rock is part of does not move
         self.counts = np.array([0, -1])
-        self.contact = contact_rows(model)
+        self.receivers = readings(model, state)
         self.outcome: Outcome | None = None
         self.parts = self.now[1:], self.trial, self.counts, self.stepper.counts
 
@@ -78,27 +76,16 @@ class Implicit:
     def compile(self, samples: Samples) -> None:
         """Compile every kernel of the run, and change nothing."""
         spare = Moment(copied(self.state), np.zeros(1), np.zeros(1))
-        one = samples._replace(waves=samples.waves[:, :1].copy())
-        if samples.energy is not None:
-            one = one._replace(energy=samples.energy[:, :1].copy())
+        one, rock = changed(samples, lambda rows: rows[:, :1].copy()), self.stepper.rock
+        still = np.zeros_like(self.state.u)
         with self.communicator.in_turn():
             self.stepper.set_forces(self.model, self.now, spare, 0, 0.0)
-            record(
-                self.model,
-                self.stepper.rock,
-                *self.contact,
-                spare.state,
-                np.zeros_like(self.state.u),
-                one,
-                0,
-            )
+            record(self.model, rock, self.receivers, spare.state, still, one, 0)
 
     def _begin(self) -> None:
         """Balance the forces of the first moment by its acceleration."""
         now, trial, stepper = self.now, self.trial, self.stepper
-        given = motion_at(stepper.fixed, 0, 0.0)
-        for values, motion in zip((now.state.u, now.state.v, now.acceleration), given, strict=True):
-            values[stepper.fixed.freedom] = motion
+        move(stepper.fixed, now.state, now.acceleration, 0, 0.0)
         fill(trial.state, now.state)
         stepper.set_forces(self.model, now, trial, 0, 0.0)
         trial.acceleration[:] = now.acceleration
@@ -170,4 +157,4 @@ class Implicit:
         state, fixed = self.now.state, self.stepper.fixed.freedom
         balancing = self.communicator.total(state.force) / self.mass
         balancing[fixed] = self.now.acceleration[fixed]
-        record(self.model, self.stepper.rock, *self.contact, state, balancing, samples, s)
+        record(self.model, self.stepper.rock, self.receivers, state, balancing, samples, s)

@@ -6,15 +6,13 @@ opens or breaks on the way depends on the way.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
-
 import numpy as np
 
 from cases.errors import SceneError
 from cases.schema.scene import Scene
-from continuum.implicit.balance import balance, empty_tangents, rock_matrices
-from continuum.implicit.newton import Outcome, factors_of, newton
-from continuum.implicit.pattern import pattern
+from continuum.implicit.balance import balance, implicit_matrices
+from continuum.implicit.newton import Outcome, newton
+from continuum.implicit.pattern import System
 from continuum.model import Model, State
 from continuum.space.body import Body
 from continuum.space.tractions import NN, XX, ZZ
@@ -24,21 +22,12 @@ TOLERANCE = 1e-10  # what may be left of the largest force that is summed up
 LEAST_PART = 2.0**-10  # of the weight
 
 
-class Rest(NamedTuple):
-    """How a static state was reached: corrections made, largest unbalanced force over the largest
-    force at work."""
+def settle_static(scene: Scene, model: Model, state: State, body: Body) -> dict[str, float]:
+    """Bring a state to rest under gravity; raises SceneError where there is no static state.
 
-    steps: int
-    ratio: float
-
-    @property
-    def attributes(self) -> dict[str, Any]:
-        """What a result says of it."""
-        return {"static_steps": self.steps, "static_out_of_balance": self.ratio}
-
-
-def settle_static(scene: Scene, model: Model, state: State, body: Body) -> Rest:
-    """Bring a state to rest under gravity; raises SceneError where there is no static state."""
+    Returns what a result says of it: how many corrections were made, and the largest unbalanced
+    force over the largest force at work.
+    """
     system = _Static(model, state, body)
     done, part, steps = 0.0, 1.0, 0
     while done < 1:
@@ -51,7 +40,8 @@ def settle_static(scene: Scene, model: Model, state: State, body: Body) -> Rest:
         else:
             _refuse(scene, done)
     fill(state, system.state)
-    return Rest(steps, outcome.errors[-1] / body.communicator.largest(system.size))
+    ratio = outcome.errors[-1] / body.communicator.largest(system.size)
+    return {"static_steps": steps, "static_out_of_balance": ratio}
 
 
 def _refuse(scene: Scene, done: float) -> None:
@@ -71,37 +61,29 @@ class _Static:
     """
 
     def __init__(self, model: Model, state: State, body: Body) -> None:
-        self.rock = matrices = rock_matrices(body)
+        self.rock = implicit_matrices(body)
         self.model = model._replace(ends=model.ends._replace(quiet=None, loaded=None))
         self.state, self.trial, self.size = copied(state), copied(state), 0.0
-        moves = matrices.moves.copy()
-        if model.ends.fixed is not None:
-            moves[model.ends.fixed.freedom] = False
-        self.free = np.flatnonzero(moves)
-        self.pattern = pattern([matrices.stiffness], model.interfaces, self.free)
-        self.communicator = body.communicator
-        self.factors = factors_of(
-            self.pattern.start, self.pattern.column, self.free, self.communicator
-        )
-        self.tangents = empty_tangents(model)
+        fixed = np.zeros(0, dtype=int) if model.ends.fixed is None else model.ends.fixed.freedom
+        self.system = System(model, self.rock, fixed, [self.rock.stiffness])
 
     def balance(self, share: float) -> Outcome:
         """Try to balance a share of the weight; what comes of it is kept where that succeeds."""
         model = self.model._replace(weight=share * self.model.weight)
+        system, communicator = self.system, self.rock.communicator
 
         def residual(u: np.ndarray) -> tuple[np.ndarray, float]:
-            self.trial.u[self.free] = u
-            self.size = balance(model, self.rock, self.state, self.trial, 0.0, 0.0, self.tangents)
-            return self.communicator.total(self.trial.force)[self.free], TOLERANCE * self.size
+            self.trial.u[system.free] = u
+            self.size = balance(model, self.rock, self.state, self.trial, 0.0, 0.0, system.tangents)
+            return communicator.total(self.trial.force)[system.free], TOLERANCE * self.size
 
         def correction(rest: np.ndarray) -> np.ndarray:
             if not self.trial.u.any():
                 self._stick_joints()
-            of_joints = self.pattern.joints @ self.tangents.ravel()
-            self.factors.factorise(self.pattern.fixed[0] + of_joints)
-            return self.factors.solve(rest)
+            system.factorise(system.with_joints(system.pattern.fixed[0]))
+            return system.solve(rest)
 
-        outcome = newton(residual, correction, self.state.u[self.free], self.communicator)
+        outcome = newton(residual, correction, self.state.u[system.free], communicator)
         if outcome.converged:
             self.trial.v_before[:] = 0.0
             fill(self.state, self.trial)
@@ -110,8 +92,8 @@ class _Static:
     def _stick_joints(self) -> None:
         """Give all joints their elastic stiffness: one that nothing presses has no friction, and
         rock at rest on such joints could be anywhere."""
-        joints = self.model.interfaces
+        joints, tangents = self.model.interfaces, self.system.tangents
         if joints is not None:
-            self.tangents[NN] = joints.area * joints.law.normal_stiffness
+            tangents[NN] = joints.area * joints.law.normal_stiffness
             shear = joints.law.shear_stiffness
-            self.tangents[[XX, ZZ]] = 0.0 if shear is None else joints.area * shear
+            tangents[[XX, ZZ]] = 0.0 if shear is None else joints.area * shear

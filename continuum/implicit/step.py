@@ -14,14 +14,14 @@ from typing import NamedTuple
 import numpy as np
 
 from continuum.explicit.march import mass_damping
-from continuum.implicit.balance import Matrices, balance, empty_tangents
+from continuum.implicit.balance import Matrices, balance
 from continuum.implicit.generalised_alpha import scheme
-from continuum.implicit.newton import Outcome, factors_of, newton
-from continuum.implicit.pattern import pattern
+from continuum.implicit.newton import Outcome, newton
+from continuum.implicit.pattern import System
 from continuum.implicit.substeps import (
     end_resistance,
     fixed_motion,
-    motion_at,
+    move,
     pressure_at,
     shortened,
 )
@@ -69,15 +69,10 @@ class Stepper:
         self.rock, self.mass, self.communicator = matrices, matrices.mass, matrices.communicator
         self.mass_damping = mass_damping(model.rock.decay, model.dt)
         self.fixed = fixed_motion(model.ends.fixed, model.dt)
-        moves = matrices.moves.copy()
-        moves[self.fixed.freedom] = False
-        self.free = np.flatnonzero(moves)
         viscosity = 0 * matrices.mass if matrices.viscosity is None else matrices.viscosity
         parts = [matrices.mass, matrices.stiffness, viscosity]
-        self._pattern = pattern(parts, model.interfaces, self.free)
-        place = self._pattern.start, self._pattern.column, self.free
-        self._factors = factors_of(*place, self.communicator)
-        self._tangents = empty_tangents(model)
+        self._system = System(model, matrices, self.fixed.freedom, parts)
+        self.free, self._pattern = self._system.free, self._system.pattern
         self._factored: tuple[Length, np.ndarray] | None = None
         self._weight = np.zeros(self.free.size)
         self._lengths: dict[int, Length] = {}
@@ -90,7 +85,7 @@ class Stepper:
         old, dt, free = now.state, length.model.dt, self.free
         drift = dt * old.v + (0.5 - beta) * dt**2 * now.acceleration
         before = alpha_f * old.force - alpha_m * (self.mass @ now.acceleration)
-        self._apply_fixed(trial, n, share)
+        move(self.fixed, trial.state, trial.acceleration, n, share)
 
         def residual(moved: np.ndarray) -> tuple[np.ndarray, float]:
             state, a = trial.state, trial.acceleration
@@ -107,7 +102,7 @@ class Stepper:
         def correction(rest: np.ndarray) -> np.ndarray:
             self._factorise(length)
             self.counts[0] += 1
-            return self._factors.solve(rest)
+            return self._system.solve(rest)
 
         start = (drift + beta * dt**2 * now.acceleration)[free]
         return newton(residual, correction, start, self.communicator)
@@ -118,23 +113,18 @@ class Stepper:
         """Set the forces and tangents of a trial moment whose displacement and velocity are given;
         r : rate factor, 1/s."""
         state, pressure = trial.state, pressure_at(self.model, n, share)
-        trial.size[0] = balance(model, self.rock, now.state, state, pressure, r, self._tangents)
+        trial.size[0] = balance(
+            model, self.rock, now.state, state, pressure, r, self._system.tangents
+        )
         if self.mass_damping:
             state.force[:] -= self.mass_damping * (self.mass @ state.v)
 
     def balance(self, moment: Moment) -> None:
         """Set the acceleration of the freedoms that move by the forces of a moment."""
         rest = self.communicator.total(moment.state.force - self.mass @ moment.acceleration)
-        self._factors.factorise(self._pattern.fixed[0])
+        self._system.factorise(self._pattern.fixed[0])
         self._factored = None
-        moment.acceleration[self.free] += self._factors.solve(rest[self.free])
-
-    def _apply_fixed(self, trial: Moment, n: int, share: float) -> None:
-        motion = motion_at(self.fixed, n, share)
-        for values, given in zip(
-            (trial.state.u, trial.state.v, trial.acceleration), motion, strict=True
-        ):
-            values[self.fixed.freedom] = given
+        moment.acceleration[self.free] += self._system.solve(rest[self.free])
 
     def _length(self, halvings: int) -> Length:
         if halvings not in self._lengths:
@@ -158,13 +148,14 @@ class Stepper:
         """Take the matrix of the last trial moment, unless it is that of the one before."""
         if self._factored is not None:
             last, tangents = self._factored
-            if last is length and self.communicator.all(np.array_equal(tangents, self._tangents)):
+            if last is length and self.communicator.all(
+                np.array_equal(tangents, self._system.tangents)
+            ):
                 return
-        of_joints = self._pattern.joints @ self._tangents.ravel()
-        values = length.fixed + (1 - self.scheme.alpha_f) * of_joints
-        self._factors.factorise(values)
+        values = self._system.with_joints(length.fixed, 1 - self.scheme.alpha_f)
+        self._system.factorise(values)
         self.counts[1] += 1
         diagonal = np.zeros(self.mass.shape[0])
         diagonal[self.free] = (values - length.inertia)[self._pattern.diagonal]
         self._weight = np.abs(self.communicator.total(diagonal)[self.free])
-        self._factored = length, self._tangents.copy()
+        self._factored = length, self._system.tangents.copy()

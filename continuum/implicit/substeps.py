@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum.model import Fixed, HalfJoints, Model, Quiet
+from continuum.model import Fixed, HalfJoints, Model, Quiet, State
 
 
 class FixedMotion(NamedTuple):
@@ -34,13 +34,18 @@ def fixed_motion(fixed: Fixed | None, dt: float) -> FixedMotion:
     return FixedMotion(fixed.freedom, fixed.direction, np.array(motion))
 
 
-def motion_at(fixed_motion: FixedMotion, n: int, share: float) -> np.ndarray:
-    """Return displacement, velocity and acceleration [3, k] at step n and a share of the next."""
-    if fixed_motion.motion is None:
-        return np.zeros((3, fixed_motion.freedom.size))
-    first = fixed_motion.motion[:, n]
-    last = fixed_motion.motion[:, n + 1] if share else first
-    return np.outer((1 - share) * first + share * last, fixed_motion.direction)
+def move(
+    fixed_motion: FixedMotion, state: State, acceleration: np.ndarray, n: int, share: float
+) -> None:
+    """Give fixed freedoms their displacement, velocity and acceleration at step n and a share of
+    the next."""
+    given: np.ndarray = np.zeros(3)
+    if fixed_motion.motion is not None:
+        first = fixed_motion.motion[:, n]
+        last = fixed_motion.motion[:, n + 1] if share else first
+        given = (1 - share) * first + share * last
+    for values, value in zip((state.u, state.v, acceleration), given, strict=True):
+        values[fixed_motion.freedom] = value * fixed_motion.direction
 
 
 def pressure_at(model: Model, n: int, share: float) -> float:

@@ -102,25 +102,22 @@ def _column(
     in_layer: int,
 ) -> Column:
     """Return the rows of elements of blocks `first` to `last` - 1 and of the layers within."""
-    inside = {joint: h for joint, h in layers.items() if first <= joint < last - 1}
-    joint = np.array([*inside], dtype=np.int64) - first
-    half = np.zeros(last - first + 1)
-    half[joint + 1] = np.array([*inside.values()]) / 2
-    y, count = p.spacing * np.arange(half.size), np.full(half.size - 1, in_block)
-    begin, end = (y + half)[:-1], (y - half)[1:]
-    material = 1 + np.searchsorted([*layers], [*inside])
-    begin, end, count, material = (
-        np.insert(blocks, joint + 1, of_layers)
-        for blocks, of_layers in (
-            (begin, end[joint]),
-            (end, begin[joint + 1]),
-            (count, np.full(joint.size, in_layer)),
-            (np.zeros_like(count), material),
-        )
-    )
-    within = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
-    edges = np.repeat(begin, count) + within * np.repeat((end - begin) / count, count)
-    return Column(np.r_[edges, end[-1]], np.repeat(material, count))
+    edges, material, number = [], [], [*layers]
+
+    def half(joint: int) -> float:
+        return layers.get(joint, 0.0) / 2 if first <= joint < last - 1 else 0.0
+
+    def add(begin: float, length: float, count: int, of: int) -> None:
+        edges.append(begin + length / count * np.arange(count))
+        material.append(np.full(count, of))
+
+    for block in range(first, last):
+        y, before, after = p.spacing * (block - first), half(block - 1), half(block)
+        add(y + before, p.spacing - before - after, in_block, 0)
+        if after:
+            add(y + p.spacing - after, 2 * after, in_layer, 1 + number.index(block))
+    edges.append(np.array([p.spacing * (last - first)]))
+    return Column(np.concatenate(edges), np.concatenate(material))
 
 
 def _joined(p: Properties, kind: str, parts: tuple[Part, ...], layers: tuple[int, ...]) -> Mesh:

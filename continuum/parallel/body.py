@@ -8,12 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum.mesh.description import Mesh, Part
-from continuum.parallel.communicator import Communicator, in_turn
+from continuum.mesh.description import Mesh
+from continuum.parallel.communicator import Communicator
 from continuum.parallel.identity import Border, border
 from continuum.parallel.partition import Share, ranks_of_cells, restrict
 from continuum.space.body import Body, build_body, cell_geometry
-from continuum.space.elasticity import Material, Section, discretise
+from continuum.space.elasticity import Material, Section
 from continuum.space.interface import Jumps, jumps
 
 NOTHING = Material(0.0, 0.0, 0.0)  # of which ghosts are made
@@ -34,8 +34,6 @@ def share_of(
     """
     rank_of = ranks_of_cells(mesh, comm.size)
     share = restrict(mesh, rank_of, comm.rank)
-    with in_turn(comm):
-        _compile(mesh, order, materials, section, consistent)
     asked = order, materials, section, plane_wave, consistent
     held, across = held_share(mesh, share, *asked)
     own = np.where(rank_of[:, None] == comm.rank, held.cells, -1)
@@ -67,16 +65,6 @@ def held_share(
     return held, jumps(held._replace(mesh=local._replace(joints=share.joints)))
 
 
-def _compile(
-    mesh: Mesh, order: int, materials: list[Material], section: Section, consistent: bool
-) -> None:
-    """Discretise a single cell, for which the form compiler does all that it does for many."""
-    part = mesh.parts[0]
-    corners = part.cells.shape[1]
-    one = Part(part.x[part.cells[0]], np.arange(corners)[None], part.material[:1], part.shifts[:1])
-    discretise(one, mesh.cell, order, materials, section, consistent)
-
-
 class Names(NamedTuple):
     """The freedoms that a process's cells or joints have; those of them on the border, and what
     each of these is called on every process, ascending; int arrays."""
@@ -90,8 +78,7 @@ def _names(held: Body, own: np.ndarray, across: Jumps | None, border: Border) ->
     """Return the names of what is held by these cells (own) and joints."""
     reached = [_freedoms(held, own[own[:, 0] >= 0])]
     if across is not None:
-        matrices = across.opening, across.slip_x, across.slip_z
-        reached += [np.unique(m.indices) for m in matrices if m is not None]
+        reached += [np.unique(matrix.indices) for matrix in across.matrices]
     freedom = np.unique(np.concatenate(reached))
     node = held.cells[border.cell]
     components = np.arange(held.section.components)

@@ -10,15 +10,15 @@ from mpi4py import MPI
 from scipy.sparse import csr_matrix
 
 from continuum.explicit.march import march
-from continuum.parallel.connection import TAG, connect, release
-from continuum.parallel.exchange import add_shares
+from continuum.parallel.exchange import TAG, add_shares, connect, release
 from continuum.parallel.identity import Border, joined
 from continuum.parallel.serial import Pieces, Serial, T
 from numerics.divergence import EVERY
 
 
 class Communicator(Serial):
-    """Several processes, each with a share of the rock and of the joints.
+    """Several processes, each with a share of the rock and of the joints; what they do together is
+    as `Serial` says.
 
     Parameters
     ----------
@@ -52,30 +52,24 @@ class Communicator(Serial):
         weakref.finalize(self, release, self._all)
 
     def total(self, share: np.ndarray) -> np.ndarray:
-        """Return values on the freedoms [..., n], summed up over all who have each of them."""
         found = np.array(share, dtype=float)
         for values in found.reshape(-1, self.length):
             _check(add_shares(self._all.link, values))
         return found
 
     def sum(self, value: float) -> float:
-        """Return the sum of one number of every process."""
         return self.comm.allreduce(value)
 
     def largest(self, value: float) -> float:
-        """Return the largest of one number of every process."""
         return self.comm.allreduce(value, MPI.MAX)
 
     def of_largest(self, value: float, about: T) -> T:
-        """Return what the process with the largest number says of it."""
         return max(self.comm.allgather((value, -self.rank, about)))[2]
 
     def all(self, holds: bool) -> bool:
-        """Return whether something holds on every process."""
         return self.comm.allreduce(bool(holds), MPI.LAND)
 
     def same(self, value: T) -> T:
-        """Return what the first process has."""
         return self.comm.bcast(value)
 
     def assembled(self, share: csr_matrix) -> csr_matrix | None:
@@ -98,7 +92,6 @@ class Communicator(Serial):
         waves[:] = whole
 
     def joined(self, pieces: Pieces) -> Pieces | None:
-        """Return the pieces of all processes as one; the first process alone, None on others."""
         cell, table, of_cells, of_nodes = pieces
         found = self._sent_to_first([cell, table, *of_cells, *of_nodes])
         last = 2 + len(of_cells)
@@ -107,9 +100,16 @@ class Communicator(Serial):
 
     @contextmanager
     def in_turn(self) -> Iterator[None]:
-        """Let the first process of every machine compile: the others find it in the cache."""
-        with in_turn(self.comm):
+        local = self.comm.Split_type(MPI.COMM_TYPE_SHARED)
+        if local.rank:
+            local.barrier()
+        try:
             yield
+        finally:
+            if not local.rank:
+                local.barrier()
+            self.comm.barrier()
+            local.Free()
 
     def leapfrog(self, model, state, samples, stride, limits) -> Callable[[int, int], object]:
         """Return a function of (first, last) that takes steps, as `explicit.march.march` does.
@@ -140,13 +140,15 @@ class Communicator(Serial):
     @cached_property
     def number(self) -> np.ndarray:
         """Numbers of all freedoms together, int array [length]; -1 for padding and mere ghosts."""
-        first = self.comm.exscan(self.mine.size) or 0
+        found = np.full(self.length, -1)
+        found[self.freedom] = self.numbered(self.mine)[self.freedom]
+        return found
+
+    def numbered(self, mine: np.ndarray) -> np.ndarray:
+        """Return numbers [length] of what is `mine` on each process, one after the other."""
         found = np.zeros(self.length)
-        found[self.mine] = first + np.arange(self.mine.size)
-        found = self.total(found)
-        number = np.full(self.length, -1)
-        number[self.freedom] = np.rint(found[self.freedom])
-        return number
+        found[mine] = (self.comm.exscan(mine.size) or 0) + np.arange(mine.size)
+        return np.rint(self.total(found)).astype(np.int64)
 
     @cached_property
     def degrees_of_freedom(self) -> int:
@@ -158,7 +160,6 @@ class Communicator(Serial):
         return self.degrees_of_freedom
 
     def critical_step(self, *assembled) -> float:
-        """Return the critical step (s), from what each process has assembled."""
         from continuum.parallel.critical import shared_critical_step
 
         return shared_critical_step(self, *assembled)
@@ -192,18 +193,3 @@ class Communicator(Serial):
 def _check(code: int) -> None:
     if code:
         raise MPI.Exception(code)
-
-
-@contextmanager
-def in_turn(comm) -> Iterator[None]:
-    """Let the first process of every machine go before the others, and leave together."""
-    local = comm.Split_type(MPI.COMM_TYPE_SHARED)
-    if local.rank:
-        local.barrier()
-    try:
-        yield
-    finally:
-        if not local.rank:
-            local.barrier()
-        comm.barrier()
-        local.Free()

@@ -1,22 +1,14 @@
-"""Identity of nodes of different processes, from the mesh alone.
-
-A node lies on a corner, an edge or a facet of its cell, or inside: the vertices of that, and where
-between them the node is, are the same from every cell that has the node. No two coordinates need
-to be compared, which could not tell the two sides of a joint apart.
-"""
+"""Identity of nodes of different processes, from the mesh alone."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from continuum.mesh.description import Mesh
-from continuum.mesh.facets import row_numbers
 from continuum.parallel.partition import Copies, copies_of
 from continuum.parallel.serial import Pieces
-from continuum.space import compat
-from continuum.space.body import SAME
-
-STEPS = 1_000_000  # of a place between vertices: nodes are much farther apart than one of them
+from continuum.space.body import levels
+from continuum.space.nodes import corner_shares, node_numbers, numbered
 
 
 class Border(NamedTuple):
@@ -46,7 +38,7 @@ def border(mesh: Mesh, rank_of: np.ndarray, order: int, plane_wave: bool = False
     vertices = _vertices(mesh, copies, np.flatnonzero(cut))
     is_there[np.flatnonzero(cut)[_meet_others(vertices, rank_of[cut])]] = True
     cell = np.flatnonzero(is_there)
-    return Border(cell, _nodes(mesh, copies, cell, order))
+    return Border(cell, node_numbers(mesh.cell, order, _vertices(mesh, copies, cell)))
 
 
 def _meet_others(vertices: np.ndarray, rank: np.ndarray) -> np.ndarray:
@@ -69,31 +61,17 @@ def _vertices(mesh: Mesh, copies: Copies, cell: np.ndarray) -> np.ndarray:
     return found
 
 
-def _nodes(mesh: Mesh, copies: Copies, cell: np.ndarray, order: int) -> np.ndarray:
-    """Return the numbers of the nodes of cells by the vertices around them."""
-    weight = np.rint(STEPS * _shape(mesh, order)).astype(np.int64)
-    vertices = _vertices(mesh, copies, cell)[:, None]
-    around = np.where(weight == 0, -1, vertices)
-    turn = np.argsort(around, axis=2)
-    rows = [np.take_along_axis(a, turn, axis=2) for a in (around, weight[None] + 0 * around)]
-    return _numbered(np.concatenate(rows, axis=2))
-
-
 def _levels(mesh: Mesh, copies: Copies, cell: np.ndarray, order: int) -> np.ndarray:
     """Return the numbers of the nodes of cells by their copy and height."""
-    copy, shape = copies.of(cell), _shape(mesh, order)
+    copy, shape = copies.of(cell), corner_shares(mesh.cell, order)
     y = np.empty((cell.size, shape.shape[0]))
     along = min(1, mesh.parts[0].x.shape[1] - 1)
     for number, part in enumerate(mesh.parts):
         here = copies.part[copy] == number
         corners = part.x[part.cells[(cell - copies.first[copy])[here]], along]
         y[here] = corners @ shape.T
-    place = np.argsort(y, axis=None)
-    apart = np.diff(y.ravel()[place]) > SAME * max(np.ptp(part.x) for part in mesh.parts)
-    level = np.empty(y.size, dtype=np.int64)
-    level[place] = np.concatenate([[0], np.cumsum(apart)])
-    level = level.reshape(y.shape)
-    return _numbered(np.stack([np.broadcast_to(copy[:, None], y.shape), level], axis=2))
+    level = levels(y, max(np.ptp(part.x) for part in mesh.parts))
+    return numbered(np.stack([np.broadcast_to(copy[:, None], y.shape), level], axis=2))
 
 
 def joined(pieces: list[Pieces], border: Border) -> Pieces:
@@ -112,16 +90,3 @@ def joined(pieces: list[Pieces], border: Border) -> Pieces:
     return Pieces(
         np.arange(len(table)), number.reshape(table.shape), tuple(of_cells), tuple(of_nodes)
     )
-
-
-def _numbered(keys: np.ndarray) -> np.ndarray:
-    """Return a number for every key [cells, nodes, entries], the same for equal ones."""
-    if not keys.size:
-        return np.empty(keys.shape[:2], dtype=np.int64)
-    return row_numbers(keys.reshape(-1, keys.shape[2])).reshape(keys.shape[:2])
-
-
-def _shape(mesh: Mesh, order: int) -> np.ndarray:
-    """Return how much each corner of a cell counts in the place of each node [nodes, corners]."""
-    nodes = compat.reference_element(mesh.cell, order).points
-    return compat.tabulate(mesh.cell, 1, nodes)[0]

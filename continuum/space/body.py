@@ -5,7 +5,8 @@ plane wave is asked for in two or three dimensions, all nodes of a piece at the 
 freedoms, and the rock moves as if it were of infinite extent.
 """
 
-from typing import NamedTuple
+from collections.abc import Iterable
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix, kron
@@ -103,23 +104,24 @@ def build_body(
     plane_wave : whether all nodes of a piece at one height move alike.
     """
     pieces = [discretise(p, mesh.cell, order, materials, section, consistent) for p in mesh.parts]
-    numbers = [_levels(p) if plane_wave else np.arange(len(p.x)) for p in pieces]
+    numbers = [_heights(p) if plane_wave else np.arange(len(p.x)) for p in pieces]
     ties = [_tie(number, section.components) for number in numbers]
-    counts = [part.copies for part in mesh.parts]
-    places = layout(counts, [tie.shape[1] for tie in ties])
-    viscous = any(piece.viscosity is not None for piece in pieces)
-    masses = [
-        tie.T @ np.repeat(piece.mass, section.components)
-        for tie, piece in zip(ties, pieces, strict=True)
-    ]
-    x, cells = _copies(mesh, pieces)
-    corners, material, piece = cell_geometry(mesh)
-    first, stride = _numbering(places, counts, numbers, section.components)
-    blocks = [tie.T @ piece.stiffness @ tie for tie, piece in zip(ties, pieces, strict=True)]
-    dashpots = _viscosities(pieces, ties) if viscous else []
-    mass = spread(places, masses)
+    places = layout([part.copies for part in mesh.parts], [tie.shape[1] for tie in ties])
+
+    def tied(matrices: Iterable[Any]) -> list[csr_matrix]:
+        pairs = zip(ties, matrices, strict=True)
+        return [csr_matrix(tie.T @ m @ tie) for tie, m in pairs if m is not None]
+
+    mass = spread(
+        places,
+        [t.T @ np.repeat(p.mass, section.components) for t, p in zip(ties, pieces, strict=True)],
+    )
     # Padding moves under no force: any mass will do, but none.
     mass[mass == 0] = mass.max()
+    blocks, dashpots = tied(p.stiffness for p in pieces), tied(p.viscosity for p in pieces)
+    whole_mass = tied(p.consistent for p in pieces)
+    x, first, stride, cells = _nodes(mesh, pieces, places, numbers, section.components)
+    corners, material, piece = cell_geometry(mesh)
     return Body(
         mesh=mesh,
         order=order,
@@ -133,12 +135,20 @@ def build_body(
         material=material,
         piece=piece,
         stiffness=operator(places, blocks),
-        viscosity=operator(places, dashpots) if viscous else None,
+        viscosity=operator(places, dashpots) if dashpots else None,
         blocks=blocks,
         viscous_blocks=dashpots,
         mass=mass,
-        consistent=_consistent(places, mesh, pieces, ties) if consistent else None,
+        consistent=whole(places, mesh, whole_mass) if whole_mass else None,
     )
+
+
+def rock_matrices(body: Body) -> tuple[csr_matrix, csr_matrix | None]:
+    """Return the stiffness (N/m) and viscosity (N s/m) of all copies; None without dashpots."""
+    stiffness = whole(body.layout, body.mesh, body.blocks)
+    if not body.viscous_blocks:
+        return stiffness, None
+    return stiffness, whole(body.layout, body.mesh, body.viscous_blocks)
 
 
 def whole(places: Layout, mesh: Mesh, blocks: list[csr_matrix]) -> csr_matrix:
@@ -159,23 +169,18 @@ def whole(places: Layout, mesh: Mesh, blocks: list[csr_matrix]) -> csr_matrix:
     return csr_matrix((np.concatenate(values), ij), (size, size))
 
 
-def _viscosities(pieces: list[Piece], ties: list[csr_matrix]) -> list[csr_matrix]:
-    """Return the viscosity of one copy of each part, empty where the rock has no dashpots."""
-    return [
-        tie.T @ (csr_matrix(p.stiffness.shape) if p.viscosity is None else p.viscosity) @ tie
-        for p, tie in zip(pieces, ties, strict=True)
-    ]
-
-
-def _levels(piece: Piece) -> np.ndarray:
+def _heights(piece: Piece) -> np.ndarray:
     """Return for each node the number of its height within the piece."""
     y = piece.x[:, axis(piece.x.shape[1])]
-    step = SAME * max(np.ptp(y), np.abs(piece.x).max())
-    order = np.argsort(y)
-    level = np.concatenate([[0], np.cumsum(np.diff(y[order]) > step)])
-    found = np.empty(len(y), dtype=np.int64)
-    found[order] = level
-    return found
+    return levels(y, max(np.ptp(y), np.abs(piece.x).max()))
+
+
+def levels(y: np.ndarray, size: float) -> np.ndarray:
+    """Return numbers of the different heights y, in a body of this size, of the shape of y."""
+    order = np.argsort(y, axis=None)
+    found = np.empty(y.size, dtype=np.int64)
+    found[order] = np.cumsum(np.diff(y.ravel()[order], prepend=-np.inf) > SAME * size) - 1
+    return found.reshape(y.shape)
 
 
 def _tie(number: np.ndarray, components: int) -> csr_matrix:
@@ -197,38 +202,19 @@ def cell_geometry(mesh: Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return np.concatenate(corners), np.concatenate(material), piece
 
 
-def _copies(mesh: Mesh, pieces: list[Piece]) -> tuple[np.ndarray, np.ndarray]:
-    """Return nodes and cells of all copies, one copy after the other."""
-    x, cells, base = [], [], 0
-    for part, piece in zip(mesh.parts, pieces, strict=True):
-        nodes, copies = len(piece.x), part.copies
-        x.append((piece.x + part.shifts[:, None]).reshape(-1, piece.x.shape[1]))
-        numbers = base + nodes * np.arange(copies)[:, None, None] + piece.cells
-        cells.append(numbers.reshape(-1, piece.cells.shape[1]))
-        base += nodes * copies
-    return np.concatenate(x), np.concatenate(cells)
-
-
-def _numbering(
-    places: Layout, counts: list[int], numbers: list[np.ndarray], components: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the first freedom of every node and how far apart its components are."""
-    first, stride, base = [], [], 0
-    for count, number in zip(counts, numbers, strict=True):
-        of_block = slice(base, base + count)
-        step = places.stride[of_block, None]
-        first.append((places.first[of_block, None] + step * components * number).ravel())
-        stride.append(np.repeat(step, number.size))
-        base += count
-    return np.concatenate(first), np.concatenate(stride)
-
-
-def _consistent(
-    places: Layout, mesh: Mesh, pieces: list[Piece], ties: list[csr_matrix]
-) -> csr_matrix:
-    """Return the consistent mass of all copies."""
-    masses = []
-    for piece, tie in zip(pieces, ties, strict=True):
-        assert piece.consistent is not None
-        masses.append(tie.T @ piece.consistent @ tie)
-    return whole(places, mesh, masses)
+def _nodes(
+    mesh: Mesh, pieces: list[Piece], places: Layout, numbers: list[np.ndarray], components: int
+) -> tuple[np.ndarray, ...]:
+    """Return the nodes of all copies, one copy after the other, the first freedom of each and how
+    far apart its components are, and the nodes of the cells."""
+    found, nodes, copies = [], 0, 0
+    for part, piece, number in zip(mesh.parts, pieces, numbers, strict=True):
+        here = slice(copies, copies + part.copies)
+        stride = places.stride[here, None] + 0 * number
+        first = places.first[here, None] + stride * components * number
+        x = piece.x + part.shifts[:, None]
+        cells = nodes + len(piece.x) * np.arange(part.copies)[:, None, None] + piece.cells
+        parts = x.reshape(-1, x.shape[2]), first.ravel(), stride.ravel()
+        found.append((*parts, cells.reshape(-1, piece.cells.shape[1])))
+        nodes, copies = nodes + first.size, copies + part.copies
+    return tuple(np.concatenate(columns) for columns in zip(*found, strict=True))

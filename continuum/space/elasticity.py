@@ -1,4 +1,4 @@
-"""Stiffness and mass of one piece of rock, by dolfinx.
+"""Stiffness and mass of one piece of rock: integrals over its cells, B^T C B and rho N.
 
 On intervals, quadrilaterals and hexahedra stiffness and mass are integrated at the
 Gauss-Lobatto-Legendre nodes: the mass is diagonal at every order, and both as accurate as the
@@ -13,13 +13,16 @@ consistent one, scaled to the true mass (Hinton, Rock & Zienkiewicz, Earthq. Eng
 from typing import NamedTuple
 
 import numpy as np
-import ufl
 from scipy.sparse import csr_matrix, kron
 
 from continuum.mesh.description import Part
+from continuum.mesh.facets import row_numbers
 from continuum.space import compat
+from continuum.space.nodes import nodes_of
+from continuum.space.operator import without_round_off
 
-AT_ONCE = 500  # cells whose nodes are put in order together
+AT_ONCE = 64  # cells that are integrated together
+ALIKE = 1e-14  # of the piece: what coordinates are rounded to where shapes of cells are compared
 TENSOR = ("interval", "quadrilateral", "hexahedron")
 
 
@@ -50,7 +53,8 @@ class Piece(NamedTuple):
     """One piece of rock, discretised; freedom node * components + component.
 
     x : float array [nodes, dim], m. cells : int array [cells, nodes per cell] in the order of the
-    reference element. stiffness, N/m, and viscosity, N s/m (None without dashpots) : [n, n].
+    reference element. stiffness, N/m, and viscosity, N s/m (None where no material has dashpots) :
+    [n, n].
     mass : float array [nodes], kg, the diagonal; consistent : [n, n], kg, None where lumped.
     """
 
@@ -74,32 +78,35 @@ def discretise(
 
     materials : of `part.material`. consistent : whether to keep the consistent mass of simplices.
     """
-    domain = compat.cell_mesh(cell, part.cells, part.x)
-    space = compat.lagrange_space(domain, order)
-    of_cell = [materials[m] for m in part.material]
-    etas = np.array([m.time_constant for m in of_cell])
-    stiffness = _stiffness(domain, cell, order, of_cell, np.ones(len(of_cell)), section)
-    viscosity = None
-    if etas.any():
-        same = (etas == etas[0]).all()
-        viscosity = etas[0] * stiffness if same else None
-        if viscosity is None:
-            viscosity = _stiffness(domain, cell, order, of_cell, etas, section)
-    density = np.array([m.density for m in of_cell])
-    mass, whole = _mass(space, cell, order, density, section, consistent)
-    x = space.tabulate_dof_coordinates()[:, : part.x.shape[1]].copy()
-    nodes = _in_reference_order(space, part, cell, order, x)
-    return Piece(x, nodes, stiffness, viscosity, mass, whole)
+    x, nodes = nodes_of(part, cell, order)
+    first, kind = _alike(part)
+    corners, of_kind = part.x[part.cells[first]], [materials[m] for m in part.material[first]]
+    moduli = np.array([elastic_moduli(m, x.shape[1], section.components) for m in of_kind])
+    stiffness = section.extent * _stiffness(cell, order, corners, moduli)
+    eta = np.array([m.time_constant for m in of_kind])
+    is_damped = any(m.time_constant for m in materials)
+    damped = _assembled(nodes, (eta[:, None, None] * stiffness)[kind]) if is_damped else None
+    density = section.extent * np.array([m.density for m in of_kind])
+    mass, whole = _mass(cell, order, corners, density, nodes, kind)
+    if consistent and whole is not None:
+        whole = csr_matrix(kron(whole, np.eye(section.components)))
+    return Piece(
+        x, nodes, _assembled(nodes, stiffness[kind]), damped, mass, whole if consistent else None
+    )
 
 
-def strain(u):
-    """Return the small strain tensor of a displacement."""
-    return ufl.sym(ufl.grad(u))
+def elastic_moduli(material: Material, dim: int, components: int) -> np.ndarray:
+    """Return C [components, dim, components, dim], Pa: stress C : grad u in a mesh of `dim`.
 
-
-def stress(u, lame, shear):
-    """Return the stress tensor of Lame's constants lambda and G."""
-    return lame * ufl.tr(strain(u)) * ufl.Identity(len(u)) + 2 * shear * strain(u)
+    In dim 2 plane stress; in dim 1 Young's modulus along the bar, G across it.
+    """
+    shear = material.shear_modulus
+    if dim == 1:
+        moduli = [material.modulus] if components == 1 else [shear, material.modulus, shear]
+        return np.diag(moduli)[:, None, :, None]
+    lame, one = lame_constants(material, dim)[0], np.eye(dim)
+    turned = np.einsum("ab,ij->aibj", one, one) + np.einsum("aj,ib->aibj", one, one)
+    return lame * np.einsum("ai,bj->aibj", one, one) + shear * turned
 
 
 def lame_constants(material: Material, dim: int) -> tuple[float, float]:
@@ -109,71 +116,69 @@ def lame_constants(material: Material, dim: int) -> tuple[float, float]:
     return lame, material.shear_modulus
 
 
-def _stiffness(domain, cell, order, of_cell, factor, section: Section) -> csr_matrix:
-    """Return the stiffness matrix, each cell's share times its factor."""
-    dim, (degree, lobatto) = domain.geometry.dim, stiffness_rule(cell, order)
-    dx = measure(cell, order) if lobatto else ufl.dx(metadata={"quadrature_degree": degree})
-    if dim == 1:
-        return _of_bar(domain, order, dx, of_cell, factor, section)
-    space = compat.lagrange_space(domain, order, dim)
-    u, w = ufl.TrialFunction(space), ufl.TestFunction(space)
-    constants = np.array([lame_constants(m, dim) for m in of_cell]).T * factor
-    lame, shear = (compat.cell_values(domain, section.extent * c) for c in constants)
-    return compat.matrix(ufl.inner(stress(u, lame, shear), strain(w)) * dx)
-
-
-def _of_bar(domain, order, dx, of_cell, factor, section: Section) -> csr_matrix:
-    """Return the stiffness of a bar: E along it, and G across it where it moves in space."""
-    space = compat.lagrange_space(domain, order)
-    u, w = ufl.TrialFunction(space), ufl.TestFunction(space)
-
-    def stiffness(moduli: list[float]) -> csr_matrix:
-        modulus = compat.cell_values(domain, section.extent * np.array(moduli) * factor)
-        return compat.matrix(modulus * ufl.inner(ufl.grad(u), ufl.grad(w)) * dx)
-
-    along = stiffness([m.modulus for m in of_cell])
-    if section.components == 1:
-        return along
-    across = stiffness([m.shear_modulus for m in of_cell])
-    x_z, y = np.diag([1.0, 0.0, 1.0]), np.diag([0.0, 1.0, 0.0])
-    return csr_matrix(kron(across, x_z) + kron(along, y))
-
-
-def measure(cell: str, order: int) -> ufl.Measure:
-    """Return the measure of integrals over rock: Lobatto's points on tensor-product cells."""
-    if cell not in TENSOR:
-        return ufl.dx
-    rule = {"quadrature_rule": "GLL", "quadrature_degree": max(2 * order - 1, 1)}
-    return ufl.dx(metadata=rule)
+def mass_rule(order: int) -> tuple[int, bool]:
+    """Return the degree to which tensor-product cells' mass is integrated, at Lobatto's points."""
+    return max(2 * order - 1, 1), True
 
 
 def stiffness_rule(cell: str, order: int) -> tuple[int, bool]:
     """Return the degree that the stiffness is integrated to, and whether at Lobatto's points."""
     lobatto = cell in TENSOR and (cell, order) != ("hexahedron", 1)
-    return (max(2 * order - 1, 1) if lobatto else 2 * order), lobatto
+    return mass_rule(order) if lobatto else (2 * order, False)
 
 
-def _mass(space, cell, order, density, section: Section, consistent: bool):
-    """Return the diagonal of the mass matrix, kg, and the consistent one where it is asked for."""
-    rho = compat.cell_values(space.mesh, section.extent * density)
-    w = ufl.TestFunction(space)
+def _alike(part: Part) -> tuple[np.ndarray, np.ndarray]:
+    """Return the first cell of every shape and material, and which of these each cell is like."""
+    edges = part.x[part.cells[:, 1:]] - part.x[part.cells[:, :1]]
+    size = ALIKE * max(np.abs(part.x).max(), np.ptp(part.x, axis=0).max())
+    shape = np.rint(edges.reshape(len(edges), -1) / size)
+    number = row_numbers(np.column_stack([part.material, shape]))
+    return np.unique(number, return_index=True, return_inverse=True)[1:]
+
+
+def _stiffness(cell: str, order: int, corners: np.ndarray, moduli: np.ndarray) -> np.ndarray:
+    """Return the stiffness of cells with these corners, per unit extent [cells, n, n]."""
+    at, weight = compat.quadrature(cell, *stiffness_rule(cell, order))
+    _, local = compat.tabulate(cell, order, at)
+    found = []
+    for some in np.array_split(np.arange(len(corners)), 1 + len(corners) // AT_ONCE):
+        jacobian = _jacobians(cell, corners[some], at)
+        volume = weight * np.abs(np.linalg.det(jacobian))
+        slope = np.einsum("qkr,cqri->cqki", local, np.linalg.inv(jacobian))
+        count, _, nodes, dim = slope.shape
+        flat = slope.reshape(count, -1, nodes * dim)
+        products = (volume[..., None] * flat).swapaxes(1, 2) @ flat
+        products = products.reshape(count, nodes, dim, nodes, dim)
+        stiffness = np.einsum("caibj,ckilj->ckalb", moduli[some], products)
+        found.append(stiffness.reshape(count, nodes * moduli.shape[1], -1))
+    return np.concatenate(found)
+
+
+def _jacobians(cell: str, corners: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Return dx/dX [cells, q, dim, dim] at points [q, dim] of the reference cell."""
+    return np.einsum("cvi,qvr->cqir", corners, compat.tabulate(cell, 1, at)[1])
+
+
+def _mass(cell, order, corners, density, nodes, kind) -> tuple[np.ndarray, csr_matrix | None]:
+    """Return the diagonal of the mass of nodes, kg, and of simplices the whole matrix."""
+    at, weight = compat.quadrature(cell, *(mass_rule(order) if cell in TENSOR else (2 * order,)))
+    basis, _ = compat.tabulate(cell, order, at)
+    volume = np.abs(np.linalg.det(_jacobians(cell, corners, at)))
+    share = density[:, None] * weight * volume
     if cell in TENSOR:
-        return compat.vector(rho * w * measure(cell, order)), None
-    whole = compat.matrix(rho * ufl.TrialFunction(space) * w * ufl.dx)
+        return np.bincount(nodes.ravel(), (share @ basis)[kind].ravel()), None
+    whole = _assembled(nodes, np.einsum("cq,qk,ql->ckl", share, basis, basis)[kind])
     # The scale is that of every cell: simplices of one order are affine images of each other.
     diagonal = whole.diagonal()
-    lumped = diagonal * (whole.sum() / diagonal.sum()) if diagonal.any() else diagonal
-    return lumped, kron(whole, np.eye(section.components)).tocsr() if consistent else None
+    return diagonal * (whole.sum() / diagonal.sum()) if diagonal.any() else diagonal, whole
 
 
-def _in_reference_order(space, part: Part, cell: str, order: int, x: np.ndarray) -> np.ndarray:
-    """Return each cell's node numbers in the order of the reference element, cells as in `part`."""
-    nodes = np.empty_like(compat.cell_nodes(space))
-    nodes[compat.input_cells(space.mesh)] = compat.cell_nodes(space)
-    reference = compat.reference_element(cell, order).points
-    shape, _ = compat.tabulate(cell, 1, reference)
-    for some in np.array_split(np.arange(len(nodes)), 1 + len(nodes) // AT_ONCE):
-        places = np.einsum("kv,cvd->ckd", shape, part.x[part.cells[some]])
-        distance = np.linalg.norm(places[:, :, None] - x[nodes[some]][:, None], axis=3)
-        nodes[some] = np.take_along_axis(nodes[some], distance.argmin(axis=2), 1)
-    return nodes
+def _assembled(nodes: np.ndarray, matrices: np.ndarray) -> csr_matrix:
+    """Return the sum of the matrices [cells, n, n] of cells with these nodes, without round-off."""
+    components = matrices.shape[1] // nodes.shape[1]
+    freedom = (components * nodes[:, :, None] + np.arange(components)).reshape(len(nodes), -1)
+    place = freedom.astype(np.int32)
+    row, column = (np.broadcast_to(p, matrices.shape) for p in (place[:, :, None], place[:, None]))
+    size = components * (1 + nodes.max())
+    whole = csr_matrix((matrices.ravel(), (row.ravel(), column.ravel())), (size, size))
+    return without_round_off(whole)

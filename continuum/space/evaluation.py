@@ -39,6 +39,18 @@ def at_reference(body: Body, cell: np.ndarray, at: np.ndarray) -> Places:
     return Places(cell, basis, np.einsum("nkd,nde->nke", gradient, inverse))
 
 
+def quadrature_in(
+    body: Body, cells: np.ndarray, degree: int, lobatto: bool = False
+) -> tuple[Places, np.ndarray, np.ndarray]:
+    """Return the quadrature points of cells, where they are [n, dim] (m), and volumes [n] (m3)."""
+    at, weight = compat.quadrature(body.mesh.cell, degree, lobatto)
+    cell, at = np.repeat(cells, len(at)), np.tile(at, (cells.size, 1))
+    corners = body.corners[cell]
+    x = np.einsum("nv,nvd->nd", compat.tabulate(body.mesh.cell, 1, at)[0], corners)
+    size = np.abs(np.linalg.det(jacobians(body.mesh.cell, corners, at)))
+    return at_reference(body, cell, at), x, body.section.extent * size * np.tile(weight, cells.size)
+
+
 def jacobians(cell: str, corners: np.ndarray, at: np.ndarray) -> np.ndarray:
     """Return dx/dX [n, dim, dim] of cells with these corners [n, corners, dim] at points [n, dim]
     of the reference cell."""
@@ -82,13 +94,23 @@ def _is_inside(cell: str, at: np.ndarray) -> np.ndarray:
 
 
 def matrix_of(body: Body, rows: np.ndarray, cell: np.ndarray, weights: np.ndarray, count: int):
-    """Return the matrix [count, freedoms] of weights [n, nodes per cell, components] in rows [n].
+    """Return the matrix [directions * count, freedoms] of weights [directions, n, nodes per cell,
+    components] in rows [n] of each direction.
 
     What falls on one place is added up; cells without nodes here have none.
     """
     node = np.broadcast_to(body.cells[cell][:, :, None], weights.shape)
-    component = np.broadcast_to(np.arange(weights.shape[2]), weights.shape)
-    row = np.broadcast_to(rows[:, None, None], weights.shape)
-    there = (weights != 0.0) & (node >= 0)
-    column = body.freedom(node[there], component[there])
-    return csr_matrix((weights[there], (row[there], column)), (count, body.mass.size))
+    component = np.broadcast_to(np.arange(weights.shape[3]), weights.shape)
+    row = rows[:, None, None] + count * np.arange(len(weights))[:, None, None, None]
+    row, there = np.broadcast_to(row, weights.shape), (weights != 0.0) & (node >= 0)
+    column, shape = (
+        body.freedom(node[there], component[there]),
+        (len(weights) * count, body.mass.size),
+    )
+    return csr_matrix((weights[there], (row[there], column)), shape)
+
+
+def on_freedoms(body: Body, cell: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Return sums of weights [directions, n, nodes per cell, components] on every freedom
+    [directions, freedoms]."""
+    return matrix_of(body, np.zeros(cell.size, dtype=np.int64), cell, weights, 1).toarray()

@@ -39,15 +39,13 @@ class Facets(NamedTuple):
 class Jumps(NamedTuple):
     """The jumps at the quadrature points of the joints.
 
-    opening, slip_x, slip_z : B [q, freedoms], far side less near side; gap along the normal from
-        the near to the far side; None where the motion has no such component.
+    matrices : B [q, freedoms] along the normal from the near to the far side, the gap, then along
+        x and z where the motion has these components; far side less near side.
     weight : W [q], m2. joint : int array [q], which of the pillar's joints.
     x : [q, dim], m. flat : bool array [q], whether the joint is square to the axis there.
     """
 
-    opening: csr_matrix
-    slip_x: csr_matrix | None
-    slip_z: csr_matrix | None
+    matrices: list[csr_matrix]
     weight: np.ndarray
     joint: np.ndarray
     x: np.ndarray
@@ -96,22 +94,16 @@ def jumps(body: Body) -> Jumps:
     frames = _frames(body)[points.facet]
     count, rows = points.weight.size, np.arange(points.weight.size)
 
-    def jump(direction: int) -> csr_matrix:
-        parts = [
-            sign * side.basis[:, :, None] * frames[:, None, direction]
-            for sign, side in ((1.0, far), (-1.0, near))
-        ]
-        return matrix_of(body, rows, right, parts[0], count) + matrix_of(
-            body, rows, left, parts[1], count
-        )
+    def side(cell: np.ndarray, basis: np.ndarray, direction: int) -> csr_matrix:
+        weights = np.einsum("qk,qc->qkc", basis, frames[:, direction])
+        return matrix_of(body, rows, cell, weights[None], count)
 
-    matrices = [jump(direction) for direction in range(frames.shape[1])]
+    matrices = [
+        side(right, far.basis, d) - side(left, near.basis, d) for d in range(frames.shape[1])
+    ]
     kept, group = distinct(matrices)
-    opening, slip_x, slip_z = (*(m[kept] for m in matrices), None, None)[:3]
     return Jumps(
-        opening=opening,
-        slip_x=slip_x,
-        slip_z=slip_z,
+        matrices=[matrix[kept] for matrix in matrices],
         weight=np.bincount(group, points.weight, kept.size),
         joint=joints.joint[points.facet[kept]],
         x=points.x[kept],

@@ -90,7 +90,7 @@ def spread(numbering: Layout, values) -> np.ndarray:
 
 def operator(numbering: Layout, matrices) -> Operator:
     """Return the operator of parts with these matrices of one block, [size, size] each."""
-    whole = csr_matrix(block_diag([without_round_off(matrix) for matrix in matrices]))
+    whole = csr_matrix(block_diag(matrices))
     whole.sort_indices()
     size = np.array([matrix.shape[0] for matrix in matrices], dtype=np.int64)
     row = np.cumsum(size) - size

@@ -2,6 +2,7 @@
 
 from typing import Any, NamedTuple
 
+import meshio
 import numpy as np
 import pytest
 
@@ -17,7 +18,9 @@ from continuum.build import (
     state_at_rest,
 )
 from continuum.explicit.march import run
+from continuum.mesh.cells import DIMENSION, FROM_GMSH
 from continuum.mesh.pillar import pillar_mesh
+from continuum.mesh.tagged import FACET_NAMES, KINDS
 from continuum.space.body import build_body
 from continuum.space.elasticity import Material, Section
 from continuum.waveforms import waveforms
@@ -125,3 +128,45 @@ def moved(mesh, bent):
     joints = mesh.joints._replace(corners=bent(mesh.joints.corners))
     start, end = (s._replace(corners=bent(s.corners)) for s in (mesh.start, mesh.end))
     return mesh._replace(parts=tuple(parts), joints=joints, start=start, end=end)
+
+
+@pytest.fixture
+def exported(tmp_path):
+    """Return a function that saves a mesh without layers as a gmsh file, all its copies."""
+
+    def save(mesh):
+        x, cells, first = [], [], 0
+        for part in mesh.parts:
+            x.append((part.shifts[:, None] + part.x).reshape(-1, part.x.shape[1]))
+            copy = first + len(part.x) * np.arange(part.copies)[:, None, None]
+            cells.append((copy + part.cells).reshape(-1, part.cells.shape[1]))
+            first += len(x[-1])
+        x, cells = np.concatenate(x), np.concatenate(cells)
+        name = next(name for name, kind in KINDS.items() if kind == mesh.cell)
+        groups = {"rock": (name, cells[:, np.argsort(FROM_GMSH[mesh.cell])])}
+        joints, facet = mesh.joints, FACET_NAMES[mesh.cell]
+        for joint in np.unique(joints.joint):
+            here = joints.joint == joint
+            sides = [(side[here], joints.corners[here]) for side in (joints.left, joints.right)]
+            found = [vertices(x, cells, *side) for side in sides]
+            groups[f"joint {joint}"] = facet, np.concatenate(found)
+        for end in ("start", "end"):
+            groups[end] = facet, vertices(x, cells, *getattr(mesh, end))
+        tags = [np.full(len(found), 1 + k) for k, (_, found) in enumerate(groups.values())]
+        dims = [DIMENSION[mesh.cell] - (name != "rock") for name in groups]
+        file = meshio.Mesh(
+            np.pad(x, ((0, 0), (0, 3 - x.shape[1]))),
+            list(groups.values()),
+            cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags},
+            field_data={n: np.array([1 + k, dims[k]]) for k, n in enumerate(groups)},
+        )
+        meshio.write(tmp_path / "pillar.msh", file, "gmsh22")
+        return tmp_path / "pillar.msh"
+
+    return save
+
+
+def vertices(x, cells, cell, corners):
+    """Return which vertices of these cells are at the corners of facets [facets, corners]."""
+    apart = np.linalg.norm(x[cells[cell]][:, None] - corners[:, :, None], axis=-1)
+    return np.take_along_axis(cells[cell], apart.argmin(axis=2), axis=1)

@@ -6,7 +6,7 @@ import pytest
 from cases.errors import SceneError, UnstableError
 from cases.material.calibrate import calibrate
 from continuum import simulate
-from continuum.simulate import steps_of
+from continuum.run import steps_of
 
 QUIET = {
     "load__amplitude": 0.0,

@@ -9,10 +9,11 @@ from continuum import applies, simulate
 from continuum.build import discretise, state_at_rest
 from continuum.explicit.leapfrog import leapfrog_for
 from continuum.explicit.march import arguments
-from continuum.implicit.balance import empty_tangents, joint_balance_for
+from continuum.implicit.balance import joint_balance_for
+from continuum.implicit.pattern import empty_tangents
 from continuum.joints import interfaces
 from continuum.model import Quiet
-from continuum.simulate import steps_of
+from continuum.run import steps_of
 
 SUDDEN = {"direction": [0.0, 1.0, 0.0], "static": False}
 SHAKEN = {"shape": "sine", "amplitude": 0.1, "period": 1e-3, "quantity": "velocity"}

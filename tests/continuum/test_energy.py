@@ -117,7 +117,7 @@ def test_ledger_closes_but_for_the_corners_of_the_law(short, ready, joints):
     the gap delta, is cut by at most A (K + K_soft) delta^2 / 8: the chord under two lines.
     """
     run = ready(in_space(short, 2, {"joints": joints}), "jointed", 2, fraction=0.2, samples=600)
-    opening, gaps = run.discrete.jumps.opening, []
+    opening, gaps = run.discrete.jumps.matrices[0], []
     for n in range(run.time.samples):
         gaps.append(opening @ run.state.u)
         run.take(n, n + 1)

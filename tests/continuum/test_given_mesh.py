@@ -6,7 +6,6 @@ import pytest
 from cases.material.calibrate import calibrate
 from continuum.build import mesh_of
 from continuum.kinematics import kinematics
-from continuum.mesh.export import export
 
 BLOW = {
     2: {"load__direction": [0.6, 0.8, 0.0], "load__at": [0.1, 0.0]},
@@ -21,13 +20,12 @@ ACTING = {
 @pytest.mark.parametrize(
     ("dim", "cell"), [(2, "hexahedron"), (2, "simplex"), (3, "hexahedron"), (3, "simplex")]
 )
-def test_exported_pillar_reads_back_and_moves_alike(dim, cell, short, ready, tmp_path):
+def test_exported_pillar_reads_back_and_moves_alike(dim, cell, short, ready, exported):
     """Blocks that stand once instead of copies of one: other numbers, the same motion to 1e-10 of
     the largest, with every joint sliding and opening."""
     across = {"numerics__continuum__elements_across": 2, "numerics__continuum__cell": cell}
     built = short(**BLOW[dim], **ACTING, **across)
-    path = tmp_path / "pillar.msh"
-    export(mesh_of(built, calibrate(built), "jointed", kinematics(built, dim)), path)
+    path = exported(mesh_of(built, calibrate(built), "jointed", kinematics(built, dim)))
     given = short(**BLOW[dim], **ACTING, numerics__continuum__mesh=str(path))
     one, other = (ready(scene, "jointed", dim, samples=201) for scene in (built, given))
     assert len(other.discrete.body.mesh.parts) == 4 > len(one.discrete.body.mesh.parts)

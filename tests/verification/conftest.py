@@ -6,14 +6,12 @@ import numpy as np
 import pytest
 
 from compare.exact.solid.manufactured import Manufactured
-from continuum.ends import on_freedoms
 from continuum.mesh.cells import CORNERS, DIMENSION, oriented
 from continuum.mesh.description import Joints, Mesh, Part, Side
 from continuum.mesh.facets import Facets, normals, outer_facets
-from continuum.space import compat
 from continuum.space.body import Body, build_body
 from continuum.space.elasticity import Material, Section, lame_constants
-from continuum.space.evaluation import at_reference, jacobians, places_in
+from continuum.space.evaluation import on_freedoms, places_in, quadrature_in
 from continuum.space.interface import facet_points
 
 PERIOD = 0.01  # s, of the Ricker wavelet's peak frequency
@@ -134,14 +132,7 @@ KUHN = [[0, a, a + b, 7] for a in (1, 2, 4) for b in (1, 2, 4) if a != b]
 
 def quadrature(body: Body):
     """Return points in all cells, their places x (m) and volumes (m2 or m3), exact to 2 p + 4."""
-    at, weight = compat.quadrature(body.mesh.cell, 2 * body.order + 4)
-    cells = np.arange(len(body.cells))
-    at, cell = np.tile(at, (cells.size, 1)), np.repeat(cells, len(at))
-    point = at_reference(body, cell, at)
-    shape, _ = compat.tabulate(body.mesh.cell, 1, at)
-    x = np.einsum("qv,qvd->qd", shape, body.corners[cell])
-    size = np.linalg.det(jacobians(body.mesh.cell, body.corners[cell], at))
-    return point, x, np.tile(weight, cells.size) * np.abs(size)
+    return quadrature_in(body, np.arange(len(body.cells)), 2 * body.order + 4)
 
 
 def loads(body: Body, motion: Manufactured, material: Material) -> tuple[np.ndarray, np.ndarray]:
@@ -150,7 +141,8 @@ def loads(body: Body, motion: Manufactured, material: Material) -> tuple[np.ndar
     point, x, volume = quadrature(body)
 
     def work(place, weight, values):
-        return on_freedoms(body, place, weight[:, None, None] * place.basis[:, :, None] * values)
+        weights = weight[:, None, None] * place.basis[:, :, None] * values
+        return on_freedoms(body, place.cell, weights[None])[0]
 
     inertia = work(point, volume, material.density * motion.displacement(x)[:, None])
     elastic = work(point, volume, -motion.divergence(x, *lame)[:, None])

@@ -7,7 +7,7 @@ from scipy.sparse import csr_matrix
 from continuum.build import empty_samples, state_at_rest
 from continuum.explicit.critical import critical_time_step
 from continuum.explicit.march import march
-from continuum.implicit.balance import rock_matrices
+from continuum.implicit.balance import implicit_matrices
 from continuum.implicit.run import Implicit
 from continuum.model import Ends, Model, Receivers, Rock
 from continuum.space.body import whole
@@ -76,7 +76,7 @@ def drive_implicitly(problem, dt, steps, frequency, rho=1.0):
     speed = frequency * np.cos(motion.start)
     state.u[:], state.v[:] = motion.history(0.0) * start, speed * start
     samples = empty_samples(model, state, 1)
-    stepper = Implicit(model, state, rock_matrices(problem.body), rho)
+    stepper = Implicit(model, state, implicit_matrices(problem.body), rho)
     for k in range(steps + 1):
         load = problem.elastic - frequency**2 * problem.inertia
         model.weight[:] = motion.history(k * dt) * load

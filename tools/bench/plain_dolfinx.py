@@ -12,7 +12,7 @@ import numpy as np
 import ufl
 from dolfinx import fem
 
-from continuum.space import compat
+from continuum.space import forms
 
 
 class Pillar(NamedTuple):
@@ -93,7 +93,7 @@ def assembled(pillar: Pillar) -> Steps:
 def compiled(form: ufl.Form):
     """Return a form compiled with -O2 and nothing else."""
     key = "jit_params" if "jit_params" in inspect.signature(fem.form).parameters else "jit_options"
-    with compat.quiet_logging():
+    with forms.quiet_logging():
         options = {"cffi_extra_compile_args": ["-O2"]}
         return fem.form(form, dtype=np.float64, **{key: options})
 
@@ -110,10 +110,10 @@ def vector_space(pillar: Pillar):
     of_block = np.arange(pillar.blocks)[:, None, None]
     vertices = cube + of_block * np.array([0.0, pillar.d, 0.0])
     numbers = cells + of_block * len(cube)
-    domain = compat.cell_mesh(
+    domain = forms.cell_mesh(
         "hexahedron", numbers.reshape(-1, 8).astype(np.int64), vertices.reshape(-1, 3)
     )
-    return compat.lagrange_space(domain, pillar.p, 3)
+    return forms.lagrange_space(domain, pillar.p, 3)
 
 
 def internal_work(pillar: Pillar, space, u) -> ufl.Form:
@@ -136,14 +136,14 @@ def nodal_mass(pillar: Pillar, space) -> np.ndarray:
     """Return the mass of every node, kg."""
     along = ufl.as_vector([1.0, 0.0, 0.0])
     work = pillar.density * ufl.inner(along, ufl.TestFunction(space)) * at_nodes(pillar)
-    return compat.vector(work)[::3]
+    return forms.vector(work)[::3]
 
 
 def block_of_nodes(pillar: Pillar, space) -> np.ndarray:
     """Return for each node the block that it belongs to."""
     block = np.empty(len(space.tabulate_dof_coordinates()), dtype=np.int64)
-    cells = compat.input_cells(space.mesh) // pillar.n**3
-    block[compat.cell_nodes(space)] = cells[:, None]
+    cells = forms.input_cells(space.mesh) // pillar.n**3
+    block[forms.cell_nodes(space)] = cells[:, None]
     return block
 
 

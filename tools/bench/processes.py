@@ -13,7 +13,7 @@ from mpi4py import MPI
 from rock import scene_of
 
 from continuum import simulate
-from continuum.simulate import steps_of
+from continuum.run import steps_of
 
 ROUNDS = 5
 STEPS = 4000  # some seconds

@@ -11,7 +11,7 @@ from compare.experiments.cost.step_cost import changed
 from continuum.build import Discrete, build_model, discretise, empty_samples, state_at_rest
 from continuum.explicit.march import run
 from continuum.model import Model, Samples, State
-from continuum.simulate import steps_of
+from continuum.run import steps_of
 
 BLOCKS = 100
 SAME_STEPS = 200  # of the motion that all must share

@@ -72,25 +72,20 @@ def _mpi() -> str:
     return f"{library}, mpi4py {own}"
 
 
-def _dolfinx() -> str:
-    if not _is_there("dolfinx"):
-        raise Missing("is not installed")
-    import dolfinx
+def _versioned(module: str) -> Callable[[], str]:
+    """Return what imports a module and says the version that it has itself."""
 
-    return dolfinx.__version__
+    def probe() -> str:
+        if not _is_there(module):
+            raise Missing("is not installed")
+        return import_module(module).__version__
 
-
-def _gmsh() -> str:
-    if not _is_there("gmsh"):
-        raise Missing("is not installed")
-    import gmsh
-
-    return gmsh.__version__
+    return probe
 
 
 def _adios() -> str:
-    _dolfinx()
-    from continuum.space.compat import vtx_writer
+    _versioned("dolfinx")()
+    from continuum.space.forms import vtx_writer
 
     if vtx_writer() is None:
         raise Missing("dolfinx is built without it")
@@ -129,10 +124,9 @@ PROBES: dict[str, Callable[[], str]] = {
         for name in ("numpy", "numba", "scipy", "pydantic", "xarray", "matplotlib", "obspy")
     },
     "threads": _threads,
-    "dolfinx": _dolfinx,
+    **{name: _versioned(name) for name in ("basix", "dolfinx", "gmsh")},
     "PETSc": _petsc,
     "MPI": _mpi,
-    "gmsh": _gmsh,
     "ADIOS2": _adios,
     "pyvista": _imported("pyvista"),
     "ffmpeg": _ffmpeg,

@@ -30,16 +30,17 @@ if MPI.COMM_WORLD.rank == 0:  # one speaks: lines of several ranks may run into 
 
 GROUPS = {
     "program": ("numpy", "numba", "scipy", "pydantic", "xarray", "matplotlib", "obspy"),
-    "continuum": ("dolfinx", "PETSc", "gmsh", "MPI", "ADIOS2"),
+    "continuum": ("basix", "PETSc", "gmsh", "MPI", "dolfinx", "ADIOS2"),
     "machine": ("threads",),
     "optional": ("pyvista", "ffmpeg", "Chinese font", "chromium"),
 }
 
 #: How to get what is not there.
 HINTS = {
-    "dolfinx": "make setup; or apt install python3-dolfinx; or fenics-dolfinx of conda-forge",
-    "PETSc": "comes with dolfinx",
-    "gmsh": "pip install gmsh; only meshes in two and three dimensions need it",
+    "basix": "make setup; or apt install python3-dolfinx; or fenics-basix of PyPI or conda-forge",
+    "dolfinx": "apt install python3-dolfinx; only --vtx and studies of a plain loop need it",
+    "PETSc": "comes with dolfinx; implicit steps and static states need it",
+    "gmsh": "pip install gmsh; only tetrahedra need it",
     "MPI": "comes with dolfinx; or pip install mpi4py",
     "ADIOS2": "only --vtx needs it; dolfinx of conda-forge has it",
     "mpiexec": "apt install openmpi-bin; or conda install -c conda-forge mpich",

@@ -26,7 +26,7 @@ def signature(scene: Scene, name: str, processes: int) -> Signature:
         "engine": name,
         "number of processes": str(processes),
         "program": program(),
-        "version of numpy, numba or dolfinx": _versions(name),
+        "version of numpy, numba or basix": _versions(name),
     }
 
 

@@ -45,7 +45,7 @@ def test_everything_is_a_line_and_all_is_well_here():
     lines = {part["part"]: part for part in facts["parts"]}
     looked_at = {name for names in GROUPS.values() for name in names}
     assert looked_at | {"jointwave", "mpiexec", "cores", "memory", "kernel cache"} == lines.keys()
-    assert lines["dolfinx"]["state"] == lines["threads"]["state"] == "found"
+    assert lines["basix"]["state"] == lines["threads"]["state"] == "found"
     assert "rm -r" in lines["kernel cache"]["found"]
     for part in facts["parts"]:
         assert part["state"] in ("found", "missing", "broken") and part["found"]
@@ -75,17 +75,17 @@ def test_a_library_that_breaks_is_a_line_of_its_own(broken):
     assert [p.part for p in parts] == [name for names in GROUPS.values() for name in names]
 
 
-def test_broken_dolfinx_is_told_and_fails_the_check_of_the_rock_alone(broken):
+def test_broken_basix_is_told_and_fails_the_check_of_the_rock_alone(broken):
     """Exit 1, one line with the reason, and the blocks are right all the same."""
-    broken("dolfinx", "raise ImportError('libdolfinx.so: cannot open shared object file')")
+    broken("basix", "raise ImportError('libbasix.so: cannot open shared object file')")
     done = run()
     facts = json.loads(done.stdout)
     assert done.returncode == 1 and not facts["well"]
     blocks, rock = facts["self_check"]
     assert blocks["holds"] and not rock["holds"]
-    assert rock["misfit"] is None and "libdolfinx.so" in rock["reason"]
+    assert rock["misfit"] is None and "libbasix.so" in rock["reason"]
     lines = {part["part"]: part for part in facts["parts"]}
-    assert lines["dolfinx"]["state"] == "broken" and "apt" in lines["dolfinx"]["hint"]
+    assert lines["basix"]["state"] == "broken" and "apt" in lines["basix"]["hint"]
 
 
 def test_no_launcher_and_one_that_starts_nothing(tmp_path, monkeypatch):

@@ -7,7 +7,7 @@ import pytest
 
 from cases.sampling import Clock
 from continuum.build import build_model, discretise, empty_samples, state_at_rest
-from continuum.implicit.balance import rock_matrices
+from continuum.implicit.balance import implicit_matrices
 from continuum.implicit.run import Implicit
 from continuum.model import TERMS
 
@@ -45,7 +45,7 @@ def implicit():
         model = build_model(scene, discrete, kind, clock)
         model = model if change is None else change(model)
         state = state_at_rest(model, ledger)
-        stepper = Implicit(model, state, rock_matrices(discrete.body), rho)
+        stepper = Implicit(model, state, implicit_matrices(discrete.body), rho)
         return Run(discrete, model, state, empty_samples(model, state, samples), clock, stepper)
 
     return make

@@ -9,7 +9,7 @@ from compare.exact.bar import images, jointed_bar
 from compare.exact.schemes import generalised_alpha as theory
 from continuum.build import critical_step_of, discretise, operators
 from continuum.explicit.march import run as run_explicit
-from continuum.implicit.balance import rock_matrices
+from continuum.implicit.balance import implicit_matrices
 from continuum.implicit.generalised_alpha import scheme
 
 RICKER = {"load": {"shape": "ricker", "amplitude": 1e6, "period": 0.01}}
@@ -19,7 +19,7 @@ ACROSS = {"motion__rotation": "none", "load__direction": [0.6, 0.8, 0.0]}
 def modes(run):
     """Return frequencies [n], rad/s, and shapes [freedoms, n] of unit modal mass of a run's linear
     rock and joints."""
-    matrices, free = rock_matrices(run.discrete.body), run.implicit.stepper.free
+    matrices, free = implicit_matrices(run.discrete.body), run.implicit.stepper.free
     stiffness = operators(run.discrete)[0][free][:, free].toarray()
     square, shapes = eigh(stiffness, matrices.mass[free][:, free].toarray())
     # Rigid motion has the round-off of the highest frequency.

@@ -5,7 +5,8 @@ import pytest
 from scipy.sparse import csr_matrix, random
 
 from continuum.implicit import step as implicit_step
-from continuum.implicit.newton import MOST_ITERATIONS, Factors, newton
+from continuum.implicit.factors import Factors
+from continuum.implicit.newton import MOST_ITERATIONS, newton
 from continuum.implicit.pattern import pattern
 
 

@@ -33,7 +33,7 @@ def to_whole(body, held):
 
 def bonds(across):
     """Return B^T W B of all directions, as joints of one stiffness would have it."""
-    matrices = [m for m in (across.opening, across.slip_x, across.slip_z) if m is not None]
+    matrices = across.matrices
     return sum(m.T @ diags(across.weight) @ m for m in matrices)
 
 

@@ -125,19 +125,19 @@ def _bar(scene: Scene) -> Bar:
     from dolfinx import fem
 
     from continuum.build import elements_for
-    from continuum.space import compat
+    from continuum.space import forms
 
     p, order = calibrate(scene), scene.numerics.continuum.order
     per_block = scene.numerics.continuum.elements_per_block
     count = p.block_count * (per_block or elements_for(scene, p, str(EQUIVALENT_ROCK.model)))
     y = np.linspace(0.0, scene.pillar.length, count + 1)[:, None]
     cells = np.arange(count)[:, None] + np.arange(2)
-    space = compat.lagrange_space(compat.cell_mesh("interval", cells, y), order)
+    space = forms.lagrange_space(forms.cell_mesh("interval", cells, y), order)
     w, motion = ufl.TestFunction(space), fem.Function(space, dtype=np.float64)
     stiffness = p.modulus * ufl.inner(ufl.grad(ufl.TrialFunction(space)), ufl.grad(w)) * ufl.dx
     rule = {"quadrature_rule": "GLL", "quadrature_degree": max(2 * order - 1, 1)}
-    mass = compat.vector(p.density * w * ufl.dx(metadata=rule))
-    with compat.quiet_logging():
+    mass = forms.vector(p.density * w * ufl.dx(metadata=rule))
+    with forms.quiet_logging():
         form = fem.form(-ufl.action(stiffness, motion), dtype=np.float64)
     at = space.tabulate_dof_coordinates()[:, 0]
     places = (scene.ends.start, int(at.argmin())), (scene.ends.end, int(at.argmax()))
@@ -146,7 +146,7 @@ def _bar(scene: Scene) -> Bar:
         dashpot[freedom] = p.impedance if kind in ("quiet", "matched") else 0.0
     held = [freedom for kind, freedom in places if kind == "fixed"]
     eta = p.time_constant or 0.0
-    critical = _critical(compat.matrix(stiffness), mass, eta)
+    critical = _critical(forms.matrix(stiffness), mass, eta)
     return Bar(space, form, motion, mass, dashpot, int(at.argmin()), held, eta, critical)
 
 
@@ -173,9 +173,9 @@ def _receivers(scene: Scene, bar: Bar) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _row(bar: Bar, y: float, derivative: int) -> np.ndarray:
-    from continuum.space import compat
+    from continuum.space import compat, forms
 
-    nodes = compat.cell_nodes(bar.space)
+    nodes = forms.cell_nodes(bar.space)
     at = bar.space.tabulate_dof_coordinates()[:, 0][nodes]
     low, length = at.min(axis=1), np.ptp(at, axis=1)
     local = (y - low) / length
