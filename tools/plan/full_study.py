@@ -11,7 +11,7 @@ from cases.errors import SceneError
 from cases.schema.scene import Scene
 from compare.experiments.planner.families import FAMILIES, Family, effort
 from compare.experiments.planner.planner import FAILURES, furthest_off, reason_of, too_far
-from compare.experiments.planner.reference import Own, References
+from compare.experiments.planner.reference import OwnModel, References
 from compare.experiments.planner.trials import (
     FINEST,
     Choice,
@@ -64,7 +64,7 @@ class Study:
             rates[family.name] = min(rates.get(family.name, inf), each)
             self.points.append(measured(self.scene, family, trial, own))
 
-    def _trials(self, family: Family, own: Own) -> Iterator[Trial]:
+    def _trials(self, family: Family, own: OwnModel) -> Iterator[Trial]:
         """Yield runs of a family from the coarsest on, until no finer one can be of use; what meets
         all misfits is followed by one finer run."""
         first = last = first_trial(self.scene, family, own)

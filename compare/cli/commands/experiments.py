@@ -54,8 +54,7 @@ def effects(
 
     wanted = _cases(scene, changes, variant, strict)
     if dry:
-        from compare.experiments.cost.dry_run import show_parts
-        from compare.experiments.cost.experiment_cost import parts_of_effects
+        from compare.experiments.cost.experiment_cost import parts_of_effects, show_parts
 
         show_parts(parts_of_effects(wanted, out), as_json)
         return
@@ -115,8 +114,7 @@ def study(
     engines to hard cases, each with a criterion from theory.
     """
     if dry:
-        from compare.experiments.cost.dry_run import show_parts
-        from compare.experiments.cost.experiment_cost import parts_of_study
+        from compare.experiments.cost.experiment_cost import parts_of_study, show_parts
 
         show_parts(parts_of_study(name, out), as_json)
         return
@@ -184,8 +182,7 @@ def report(
     from compare.report.report import build
 
     if dry:
-        from compare.experiments.cost.dry_run import show_parts
-        from compare.experiments.cost.experiment_cost import parts_of_report
+        from compare.experiments.cost.experiment_cost import parts_of_report, show_parts
 
         show_parts(parts_of_report(scenes or (), out), as_json)
         return
@@ -196,11 +193,11 @@ def report(
 
 def _cases(scene: str | None, changes: list[str], variant: str | None, strict: bool) -> list[Any]:
     """Return the variants whose effects are asked for; without a scene all that are shipped."""
-    from compare.experiments.ablation.runner import Case, all_shipped
+    from compare.experiments.ablation.runner import Variant, all_shipped
 
     if scene is not None:
         return [
-            Case(scene, one)
+            Variant(scene, one)
             for one in load(scene, changes, variant if variant is not None else "", strict)
         ]
     if changes or variant is not None:

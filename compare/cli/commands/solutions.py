@@ -78,8 +78,7 @@ def compare(
         from compare.experiments.sweep.case import Comparing
 
         asked = command.ask(scene, changes, variant, swept, out)
-        swept_scenes = [case.scene for case in asked.cases if case.scene is not None]
-        curves = _read_curves(given, swept_scenes, align)
+        curves = _read_curves(given, asked.scenes, align)
         work = Comparing(spectral, curves, align, out is not None)
         command.sweep(asked, work, workers, dry, as_json, strict)
         return

@@ -87,7 +87,7 @@ def prepare(scene: Scene) -> list[Dropped]:
     """Return the results without each effect, and compile all that is timed."""
     result = dem.simulate(scene)
     dropped = [_drop(scene, name, result) for name in active_effects(scene)]
-    _step(only(scene, None))
+    stretch(only(scene, None))[0]()
     _runs(lambda: solve(ROCK, scene))
     return dropped
 
@@ -99,12 +99,9 @@ def _drop(scene: Scene, name: str, result: Any) -> Dropped:
     except FAILURES as error:
         return Dropped(name, nan, nan, False, False, getattr(error, "allowed", str(error)))
     steps = result.attrs["steps"] / without.attrs["steps"]
-    alone, rock = _runs(lambda: _step(only(scene, name))), _runs(lambda: solve(ROCK, one))
+    alone = _runs(lambda: stretch(only(scene, name))[0]())
+    rock = _runs(lambda: solve(ROCK, one))
     return Dropped(name, misfit(without, result), float(steps), alone, rock, "")
-
-
-def _step(scene: Scene) -> None:
-    stretch(scene)[0]()
 
 
 def _runs(work: Callable[[], object]) -> bool:
@@ -121,12 +118,12 @@ def ablate(name: str, scene: Scene, dropped: list[Dropped]) -> Ablation:
     name : of the scene, as its user knows it. dropped : what `prepare` returned.
     """
     alone = {one.effect: only(scene, one.effect) for one in dropped if one.alone}
-    without = _without(scene, dropped)
+    without = {one.effect: left_out(scene, one.effect) for one in dropped if not one.reason}
     first = [everything(scene.pillar.block_count), only(scene, None), scene]
     full, bare, own, *rest = in_turns([*first, *alone.values(), *without.values()])
     ns_alone = dict(zip(alone, rest, strict=False))
     ns_without = dict(zip(without, rest[len(alone) :], strict=True))
-    rock = _ns_in_rock(scene, dropped)
+    rock = _ns_in_rock(scene, {one.effect: without[one.effect] for one in dropped if one.rock})
     found = [
         Effect(
             one.effect,
@@ -143,16 +140,10 @@ def ablate(name: str, scene: Scene, dropped: list[Dropped]) -> Ablation:
     return Ablation(name, scene.title, scene.name, bare, own, full, rock.get(OWN, nan), found)
 
 
-def _without(scene: Scene, dropped: list[Dropped]) -> dict[str, Scene]:
-    """Return the scene without each effect that can be left out."""
-    return {one.effect: left_out(scene, one.effect) for one in dropped if not one.reason}
-
-
-def _ns_in_rock(scene: Scene, dropped: list[Dropped]) -> dict[str, float]:
+def _ns_in_rock(scene: Scene, without: dict[str, Scene]) -> dict[str, float]:
     """Return the ns of a freedom-step of jointed rock, as the scene stands and without each effect;
     empty where that rock does not apply."""
     if not applies(ROCK, scene):
         return {}
-    others = _without(scene, dropped)
-    timed = {OWN: scene} | {one.effect: others[one.effect] for one in dropped if one.rock}
+    timed = {OWN: scene} | without
     return dict(zip(timed, freedoms_in_turns(ROCK, list(timed.values())), strict=True))

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-import matplotlib
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from compare.experiments.ablation.ablation import Ablation, Effect
-from compare.figures.style import RC, WIDTH
+from compare.figures.blank import blank
 
 LEAST_SHARE = 0.5  # %, of a step: less does not stand out of the clock's noise
 LEAST_MISFIT = 0.01  # %: less is drawn here, as is none
@@ -36,9 +34,7 @@ def draw(found: list[Ablation]) -> Figure:
         for w in b.effects:
             if not w.reason:
                 by_effect.setdefault(w.effect, []).append((number, w))
-    with matplotlib.rc_context(RC):
-        figure = Figure(figsize=(WIDTH, max(4.6, 0.6 + 0.17 * (len(found) + len(by_effect)))))
-        FigureCanvasAgg(figure)
+    with blank(max(4.6, 0.6 + 0.17 * (len(found) + len(by_effect)))) as figure:
         ax = figure.subplots()
         drawn = [_draw_effect(ax, k, *one) for k, one in enumerate(by_effect.items())]
         _finish(ax)

@@ -28,7 +28,6 @@ COLUMNS = [
     "jointed rock (ns)",
     "why it stays",
 ]
-Pair = tuple[Ablation, Effect]
 
 
 def summarise(folder: Path, found: list[Ablation]) -> Summary:
@@ -41,7 +40,7 @@ def summarise(folder: Path, found: list[Ablation]) -> Summary:
         table(found),
         sentences(found),
         [],
-        [csv, *(figure.file(kind) for kind in ("svg", "pdf", "png"))],
+        [csv, *figure.drawings],
         found,
         figure,
         about="; ".join(a.label for a in found),
@@ -118,26 +117,20 @@ def sentences(found: list[Ablation]) -> list[str]:
     idle = [(a, e) for a, e in every if e.misfit == 0]
     active = [(a, e) for a, e in every if e.misfit > 0]
     if idle:
-        a, e = max(idle, key=_share)
+        a, e = max(idle, key=lambda pair: pair[1].share)
         said.append(
             f"The dearest effect that changes nothing of the result is the {e.effect}: "
             f"{percent(e.share)} % of a step of {a.label}."
         )
     if active:
+        dearest = max(active, key=lambda pair: pair[1].share)
+        most = max(active, key=lambda pair: pair[1].misfit)
+        least = min(active, key=lambda pair: pair[1].misfit)
         said.append(
-            f"Of those that change it, the dearest is {_of_effect(*max(active, key=_share))}; "
-            f"the most influential is {_of_effect(*max(active, key=_misfit))}; "
-            f"the least is {_of_effect(*min(active, key=_misfit))}."
+            f"Of those that change it, the dearest is {_of_effect(*dearest)}; "
+            f"the most influential is {_of_effect(*most)}; the least is {_of_effect(*least)}."
         )
     return said
-
-
-def _share(pair: Pair) -> float:
-    return pair[1].share
-
-
-def _misfit(pair: Pair) -> float:
-    return pair[1].misfit
 
 
 def _of_sets(found: list[Ablation]) -> str:

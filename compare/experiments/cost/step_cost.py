@@ -115,7 +115,7 @@ def stretches(scene: Scene, guarded: tuple[bool, ...], threads: int = 1) -> list
 def _along_axis(scene: Scene, guarded: tuple[bool, ...]) -> list[Stretch]:
     from dem.axial.samples import buffers
     from dem.axial.simulate import scheme_of
-    from numerics.divergence import guard
+    from numerics.divergence import Guard, guard
 
     scheme = scheme_of(scene)
     model, state, time, _ = scheme.build(scene)
@@ -123,11 +123,10 @@ def _along_axis(scene: Scene, guarded: tuple[bool, ...]) -> list[Stretch]:
     samples, block_steps = buffers(model, state, count), count * time.stride * state.u.size
     run = scheme.runner(scene, time)
 
-    def timed(held: bool) -> Stretch:
-        monitor = guard(inf) if held else None
+    def timed(monitor: Guard | None) -> Stretch:
         return lambda: run(model, state, samples, time.stride, 0, count, monitor), block_steps
 
-    return [timed(held) for held in guarded]
+    return [timed(guard(inf) if held else None) for held in guarded]
 
 
 def _in_space(scene: Scene, guarded: tuple[bool, ...], threads: int) -> list[Stretch]:

@@ -26,7 +26,7 @@ from compare.experiments.planner.families import (
     effort,
     is_finer,
 )
-from compare.experiments.planner.reference import Own, Reference, References
+from compare.experiments.planner.reference import OwnModel, References
 from compare.experiments.planner.trials import (
     FINEST,
     LONGEST,
@@ -39,6 +39,7 @@ from compare.experiments.planner.trials import (
     timed,
     trial_at,
 )
+from compare.experiments.references import ErrorReference
 from compare.misfit.metrics import misfit as misfit_of
 
 #: A family is not tried where it would be too dear at this share of the least seconds that a
@@ -48,7 +49,7 @@ SAFETY = 0.5
 #: the error.
 MARGIN = 0.95
 DEAR = "would cost more than what is known to do"
-FAILURES = (SceneError, UnstableError, StoppedError)
+FAILURES = (SceneError, UnstableError)
 
 
 class Plan(NamedTuple):
@@ -62,13 +63,13 @@ class Plan(NamedTuple):
     """
 
     scene: Scene
-    reference: Reference
+    reference: ErrorReference
     reason: str
     trials: int
     planning: float
     skipped: dict[str, str]
     chosen: Choice | None = None
-    own: Reference | None = None
+    own: ErrorReference | None = None
     obtained: Choice | None = None
 
     @property
@@ -105,20 +106,20 @@ class Search:
     def try_family(self, family: Family) -> None:
         """Run a family until it meets the misfit, is predicted, or costs too much."""
         if any(is_finer(family, other) for other in self.dear):
-            raise SceneError(self.scene.where, "", None, DEAR)
+            raise StoppedError(DEAR)
         asked = effort(self.scene, family)
         if SAFETY * self._rate(family) * asked.work > self.limit:
             self.dear.append(family)
-            raise SceneError(self.scene.where, "", None, DEAR)
+            raise StoppedError(DEAR)
         own = self.references.own(family.name)
         if own.least >= self.misfit and self.seconds is None:
-            raise SceneError(self.scene.where, "", None, too_far(family, own))
+            raise StoppedError(too_far(family, own))
         trials = self._run(family, asked, own)
         self.choices += [measured(self.scene, family, trial, own) for trial in trials]
         if len(trials) > 1:
             self.choices += predicted(self.scene, family, trials, own)
 
-    def _run(self, family: Family, asked: Effort, own: Own) -> list[Trial]:
+    def _run(self, family: Family, asked: Effort, own: OwnModel) -> list[Trial]:
         trials = [first_trial(self.scene, family, own)]
         while not self._is_enough(family, trials, self.misfit - own.least):
             finer = 2 * trials[-1].per_sample
@@ -156,7 +157,7 @@ class Search:
         )
 
 
-def too_far(family: Family, own: Own) -> str:
+def too_far(family: Family, own: OwnModel) -> str:
     """Return why no step of a family comes within a misfit below its modelling error."""
     return f"the modelling error of {family.name} alone is {100 * own.least:.3g} %"
 
@@ -176,9 +177,7 @@ def plan(
     chosen, obtained = _run_cheapest(search)
     spent = perf_counter() - began
     found = Plan(scene, references.finest, references.reason, search.trials, spent, skipped)
-    if chosen is None:
-        return found
-    own = references.own(chosen.family.name).reference
+    own = None if chosen is None else references.own(chosen.family.name).reference
     return found._replace(chosen=chosen, own=own, obtained=obtained)
 
 

@@ -17,7 +17,7 @@ import xarray as xr
 from cases.schema.scene import Scene
 from compare.engines import solve
 from compare.experiments.planner.families import COARSEST, Family, configured, settings
-from compare.experiments.planner.reference import Own
+from compare.experiments.planner.reference import OwnModel
 from compare.misfit.metrics import Stack, stacked
 
 SHORT = 0.05  # s: a shorter run is timed three times more, as it is noise alone
@@ -79,20 +79,20 @@ def timed(name: str, scene: Scene) -> tuple[xr.Dataset, float]:
     return result, seconds
 
 
-def first_trial(scene: Scene, family: Family, own: Own) -> Trial:
+def first_trial(scene: Scene, family: Family, own: OwnModel) -> Trial:
     """Run a family at the coarsest of its steps."""
-    start = {} if family.is_implicit else {"step_fraction": COARSEST}
+    start: dict[str, Any] = {"step_fraction": COARSEST}
     if family.is_implicit:
         start = settings(scene, family, 1, scene.interval)
     return _trial(scene, family, start, own)
 
 
-def trial_at(scene: Scene, family: Family, per_sample: int, first: Trial, own: Own) -> Trial:
+def trial_at(scene: Scene, family: Family, per_sample: int, first: Trial, own: OwnModel) -> Trial:
     """Run a family at so many steps per sample, after its first trial."""
     return _trial(scene, family, settings(scene, family, per_sample, first.critical), own)
 
 
-def _trial(scene: Scene, family: Family, numerics: dict[str, Any], own: Own) -> Trial:
+def _trial(scene: Scene, family: Family, numerics: dict[str, Any], own: OwnModel) -> Trial:
     result, seconds = timed(family.name, configured(scene, family, numerics))
     per_sample = round(scene.interval / float(result.attrs["dt"]))
     waves = stacked(result, own.reference.result)
@@ -138,12 +138,11 @@ def rate(trials: list[Trial], order: int) -> np.ndarray:
     return np.where((before > 0) & (after > 0), found, order)
 
 
-def measured(scene: Scene, family: Family, trial: Trial, own: Own) -> Choice:
+def measured(scene: Scene, family: Family, trial: Trial, own: OwnModel) -> Choice:
     """Return the configuration of a trial, with what it gave."""
     numerics = settings(scene, family, trial.per_sample, trial.critical)
-    numerical = trial.misfit + own.reference.error
-    about = family, numerics, trial.per_sample
-    return Choice(*about, numerical, own.modelling, trial.seconds, True)
+    errors = trial.misfit + own.reference.error, own.modelling
+    return Choice(family, numerics, trial.per_sample, *errors, trial.seconds, True)
 
 
 def forecast(trials: list[Trial], order: int) -> Callable[[float], np.ndarray]:
@@ -154,15 +153,15 @@ def forecast(trials: list[Trial], order: int) -> Callable[[float], np.ndarray]:
     return lambda n: wave - part * (1 - (fine.per_sample / n) ** q)
 
 
-def predicted(scene: Scene, family: Family, trials: list[Trial], own: Own) -> Iterator[Choice]:
+def predicted(scene: Scene, family: Family, trials: list[Trial], own: OwnModel) -> Iterator[Choice]:
     """Yield the configurations of a family from the last trial but one on, as predicted."""
     coarse, fine = trials[-2:]
     told, (start, each) = forecast(trials, family.order), seconds_of(coarse, fine)
     for n in steps(coarse.per_sample, trials[0].per_sample * FINEST, 4):
-        about = family, settings(scene, family, n, fine.critical), n
+        numerics = settings(scene, family, n, fine.critical)
         numerical = _largest(fine.waves.distances(told(n), fine.waves.other))
-        numerical += own.reference.error
-        yield Choice(*about, numerical, own.modelling, start + each * n)
+        errors = numerical + own.reference.error, own.modelling
+        yield Choice(family, numerics, n, *errors, start + each * n)
 
 
 def seconds_of(coarse: Trial, fine: Trial) -> tuple[float, float]:
@@ -175,9 +174,7 @@ def seconds_of(coarse: Trial, fine: Trial) -> tuple[float, float]:
 def steps(least: int, most: int, per_octave: int) -> list[int]:
     """Return steps per sample from `least` on, so many to a doubling."""
     octaves = ceil(per_octave * log2(most / least))
-    return list(
-        dict.fromkeys(ceil(least * 2 ** (k / per_octave) - 1e-9) for k in range(octaves + 1))
-    )
+    return sorted({ceil(least * 2 ** (k / per_octave) - 1e-9) for k in range(octaves + 1)})
 
 
 def _largest(distances: np.ndarray) -> float:

@@ -11,7 +11,7 @@ from compare.engines import names, solvers
 from compare.experiments.study.methods.catalogue import METHODS
 
 if TYPE_CHECKING:
-    from compare.experiments.study.study import Curve, Reference, Study
+    from compare.experiments.study.study import Curve, FineRun, Study
 
 MOST_POINTS = 10_000
 #: Settings that are no keys of a scene, with their type.
@@ -49,7 +49,7 @@ def refuse_senseless(path: Path, study: Study) -> None:
 
 
 def _refuse_unknown(
-    path: Path, key: str, named: str | Reference | None, known: tuple[str, ...]
+    path: Path, key: str, named: str | FineRun | None, known: tuple[str, ...]
 ) -> None:
     """Raise SceneError for what solves nothing: a name, or the method of a fine run."""
     method = named if named is None or isinstance(named, str) else named.method

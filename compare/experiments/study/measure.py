@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from cases.errors import SceneError, StoppedError, UnstableError
+from cases.errors import SceneError, UnstableError
 from cases.schema.scene import Scene
 from compare.engines import applies, solve, solver
 from compare.experiments.study.methods.catalogue import METHODS
@@ -19,7 +19,7 @@ from compare.solvers.record import Answer
 LONG = 0.5  # s: a run that takes as long, its set-up included, is timed once more at most
 
 
-class Row(NamedTuple):
+class PointRow(NamedTuple):
     """A point in the table of a study; numbers that a method does not have are nan.
 
     state : "done" or "failed", with the reason in `message`.
@@ -62,15 +62,15 @@ class Row(NamedTuple):
 TIMED = ("seconds", "spread", "setup", "compile")  # all other columns are the same in every run
 
 
-def measure(point: Point) -> Row:
+def measure(point: Point) -> PointRow:
     """Run a point and return its row; what cannot be run is a row that says why."""
     try:
         return _measured(point)
-    except (SceneError, UnstableError, StoppedError) as error:
+    except (SceneError, UnstableError) as error:
         return _row(point, "failed", str(error))
 
 
-def _measured(point: Point) -> Row:
+def _measured(point: Point) -> PointRow:
     scene, study = point.scene, point.study
     run = runner(point, scene)
     result = run()
@@ -147,8 +147,8 @@ def _repeated(run: Callable[[], xr.Dataset], repeats: int) -> list[float]:
     return found
 
 
-def _row(point: Point, state: str, message: str, **numbers: float) -> Row:
+def _row(point: Point, state: str, message: str, **numbers: float) -> PointRow:
     about = (point.curve.label, point.curve.method, point.settings, state, message)
-    names = Row._fields[len(about) : -2]  # what is judged is known once the curve is
+    names = PointRow._fields[len(about) : -2]  # what is judged is known once the curve is
     values = (numbers.get(name, math.nan) for name in names)
-    return Row._make((*about, *values, math.nan, False))
+    return PointRow._make((*about, *values, math.nan, False))

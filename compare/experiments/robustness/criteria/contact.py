@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from math import inf
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 
-from cases.material.calibrate import calibrate
-from compare.experiments.robustness.case import STEP, Finding, Trial, criterion
-from compare.experiments.robustness.criteria.accuracy import EPS
+from compare.experiments.robustness.case import EPS, STEP, Finding, Trial, criterion
 from compare.experiments.robustness.criteria.energies import ROUND_OFF, SPENT
 from compare.misfit.metrics import relative_l2
 from compare.solvers.continuum import JOINTED_ROCK
@@ -23,14 +22,6 @@ if TYPE_CHECKING:
 KINKS = 1e-3
 
 
-def every_step(trial: Trial) -> dict[str, Any]:
-    """Return the changes that record every joint at every step."""
-    scene = trial.scene()
-    dt = trial.case.changes[STEP] * trial.critical
-    joints = calibrate(scene).joint_y
-    return {"record__interval": dt, "record__stress": joints.tolist(), "record__velocity": []}
-
-
 @criterion("misfit from elastic joints under the same prestress")
 def just_closed(trial: Trial) -> Finding:
     """A prestress of just the largest tension of the wave leaves every joint closed.
@@ -38,7 +29,8 @@ def just_closed(trial: Trial) -> Finding:
     The elastic pillar under the same prestress, p, tells that tension; joints that bar tension meet
     it with a traction of zero, to round-off, and do what elastic ones do.
     """
-    clock = every_step(trial)
+    joints = trial.properties.joint_y.tolist()
+    clock = {"record__interval": trial.dt, "record__stress": joints, "record__velocity": []}
     free = trial.run(**clock, joints__tension=True, prestress__normal=0.0)
     p = -float(free["stress"].values.min())
     bound, barred = (
@@ -64,8 +56,7 @@ def ledger(trial: Trial) -> Finding:
     """No energy is made or lost where joints open, close, slide and break."""
     from results.dataset import energy_residual
 
-    result = trial.run()
-    return Finding(energy_residual(result), KINKS, _spent(result))
+    return Finding(energy_residual(trial.result), KINKS, _spent(trial.result))
 
 
 def _spent(result: xr.Dataset) -> str:
@@ -83,11 +74,11 @@ def whole_joints(trial: Trial) -> Finding:
     Just short of a snap-back a joint softens over a thousandth of its opening, so none is caught on
     the way and the energy is that of a whole number of joints, of which there are N - 1.
     """
-    result, scene = trial.run(), trial.scene()
-    p, energy = calibrate(scene), scene.joints.fracture_energy or 0.0
-    joints = float(result["energy"].sel(term="fracture").values[-1]) / (energy * p.area)
+    p, energy = trial.properties, trial.scene.joints.fracture_energy or 0.0
+    spent = float(trial.result["energy"].sel(term="fracture").values[-1])
+    joints = spent / (energy * p.area)
     if not 0.5 < joints < p.block_count - 0.5:
-        return Finding(float("inf"), KINKS, f"{joints:.3g} of {p.block_count - 1} joints")
+        return Finding(inf, KINKS, f"{joints:.3g} of {p.block_count - 1} joints")
     return Finding(abs(joints - round(joints)), KINKS, f"of a joint; {round(joints)} broke")
 
 
@@ -99,11 +90,13 @@ def just_held(trial: Trial) -> Finding:
     same and friction has done no work. At a thousandth less it has. Implicit steps are the same to
     round-off: an iterate on the way may slide where the step does not.
     """
-    (layer,) = trial.scene().soft_layers
+    (layer,) = trial.scene.soft_layers
+    # The joint is recorded at every step, whatever that is.
+    every_step = {"record__interval": float(trial.result.attrs["dt"]), STEP: 1.0}
 
     def run(cohesion: float) -> xr.Dataset:
         layers = [{"y": layer.y, "cohesion": cohesion}]
-        return trial.run(soft_layers=layers, record__stress=[layer.y], **_fine(trial))
+        return trial.run(soft_layers=layers, record__stress=[layer.y], **every_step)
 
     free = run(1e12)
     peak = float(np.abs(free["shear"].values).max())
@@ -111,18 +104,12 @@ def just_held(trial: Trial) -> Finding:
     work = [float(r["energy"].sel(term="friction").values[-1]) for r in (held, slid)]
     found = relative_l2(held["shear"].values, free["shear"].values)
     if not (work[0] == 0 and work[1] > 0):
-        return Finding(float("inf"), 0.0, f"friction work {work[0]:.3g} and {work[1]:.3g} J")
-    bound = ROUND_OFF * float(held.attrs["steps"]) if trial.solver.scheme == "implicit" else 0.0
+        return Finding(inf, 0.0, f"friction work {work[0]:.3g} and {work[1]:.3g} J")
+    bound = ROUND_OFF * float(held.attrs["steps"]) if trial.is_implicit else 0.0
     return Finding(found, bound, f"misfit; a thousandth below it friction takes {work[1]:.2g} J")
 
 
 KEEP = 1e-12
-
-
-def _fine(trial: Trial) -> dict[str, Any]:
-    """Return the changes that record the joint at every step, whatever that is."""
-    dt = float(trial.run().attrs["dt"])
-    return {"record__interval": dt, STEP: 1.0}
 
 
 @criterion("traction that should not be there, Pa")
@@ -149,13 +136,12 @@ def _normal_law(trial: Trial) -> tuple[float, Callable[[float, float], float]]:
 
 
 def _joint_law(trial: Trial) -> Law:
-    scene = trial.scene()
-    if trial.solver.is_rigid:
+    if trial.engine.has_rigid_blocks:
         from dem.axial.model import law_of_joints
 
-        return law_of_joints(calibrate(scene))
+        return law_of_joints(trial.properties)
     from continuum.build import discretise
 
-    interface = discretise(scene, str(JOINTED_ROCK.model)).joints
+    interface = discretise(trial.scene, str(JOINTED_ROCK.model)).joints
     assert interface is not None
     return interface.law

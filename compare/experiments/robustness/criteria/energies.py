@@ -8,9 +8,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from compare.experiments.robustness.case import STEP, Criterion, Finding, Trial, criterion
+from compare.experiments.robustness.case import EPS, Criterion, Finding, Trial, criterion
 
-EPS = 2.2e-16
 SAMPLES = 1000
 
 
@@ -25,20 +24,17 @@ def drift(trial: Trial, steps: int) -> Drift:
     """Return the energy of an undamped pillar over so many steps, from the end of its load on."""
     result = trial.run(**_clock(trial, steps))
     energy = result["energy"].sel(term=["kinetic", "elastic"]).sum("term").values
-    until = 3 * (trial.scene().load.period or 0.0)
-    after = result["time"].values > until
+    after = result["time"].values > 3 * (trial.scene.load.period or 0.0)
     mean = energy[after].mean()
     return Drift(result["time"].values[after] / float(result.attrs["dt"]), energy[after] / mean - 1)
 
 
 def _clock(trial: Trial, steps: int) -> dict:
     """Return the changes for so many steps at the fraction of the critical step, in samples."""
-    dt, stride = trial.case.changes[STEP] * trial.critical, steps // SAMPLES
+    dt, stride = trial.dt, steps // SAMPLES
     found = {"record__interval": stride * dt, "time__duration": steps * dt * (1 + 1e-9)}
-    if trial.solver.scheme == "implicit":
-        period = trial.scene().load.period or 0.0
-        found["numerics__continuum__steps_per_period"] = period / dt
-        found.pop(STEP, None)
+    if trial.is_implicit:
+        found["numerics__continuum__steps_per_period"] = (trial.scene.load.period or 0.0) / dt
     return found
 
 
@@ -63,7 +59,7 @@ def no_trend(steps: int) -> Criterion:
         slope = np.polynomial.Polynomial.fit(x, found.energy, 1)
         swing = float(np.std(found.energy - slope(x)))
         trend = abs(float(slope(1.0) - slope(0.0)))
-        walk = EPS * (steps if trial.solver.scheme == "implicit" else 4 * sqrt(steps))
+        walk = EPS * (steps if trial.is_implicit else 4 * sqrt(steps))
         bound = walk + 4 * sqrt(12 / len(x)) * swing
         return Finding(trend, bound, f"of the energy over {steps:,} steps; swing {swing:.1e}")
 
@@ -79,8 +75,8 @@ def passive(trial: Trial) -> Finding:
     may: where a joint slides, a dashpot whose spring unloads pushes the slide on, at the cost of
     friction. The boundary term is left out where springs hold the ends.
     """
-    result = trial.run()
-    return Finding(largest_fall(result), ROUND_OFF * float(result.attrs["steps"]), "of the work")
+    bound = ROUND_OFF * float(trial.result.attrs["steps"])
+    return Finding(largest_fall(trial.result), bound, "of the work")
 
 
 ROUND_OFF = 1e-15

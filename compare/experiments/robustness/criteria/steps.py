@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from math import acosh, ceil, log, sqrt
+from math import acosh, ceil, inf, log, sqrt
 from typing import Any
 
 import numpy as np
@@ -11,16 +11,15 @@ import xarray as xr
 
 from cases.errors import SceneError, UnstableError
 from cases.loads import load_history
-from cases.material.calibrate import calibrate
 from cases.sampling import sample_times
-from compare.experiments.robustness.case import ALLOW, STEP, Finding, Trial, criterion
+from compare.experiments.robustness.case import ALLOW, Finding, Trial, criterion
 
 RANGE = log(1.7e308) - log(2.2e-308)  # all numbers, from the least to the largest
 
 
 def exactly(trial: Trial, steps: int) -> dict[str, Any]:
     """Return the changes that make one sample a step, of exactly the fraction asked for."""
-    dt = trial.case.changes[STEP] * trial.critical
+    dt = trial.dt
     return {"record__interval": dt, "time__duration": dt * steps * (1 + 1e-9)}
 
 
@@ -34,9 +33,9 @@ def impulse_bound(trial: Trial) -> Finding:
     integral of |F| and s = 1 / sqrt(m) of the loaded point; at x = 1 the mode alternates and grows
     by at most 2 I s a step. The highest x is the step over the critical one.
     """
-    steps = STEPS if trial.case.changes[STEP] < 1 else STEPS_AT_THE_CRITICAL
+    steps = STEPS if trial.fraction < 1 else STEPS_AT_THE_CRITICAL
     result = trial.run(**exactly(trial, steps))
-    x = float(result.attrs["dt"]) / float(result.attrs["critical_dt"])
+    x = _over_critical(result)
     gain = _gain_of_composition(x, steps) if _is_fourth(trial) else _gain(x, steps)
     said = f"step {x:.6f} of the critical; speeds in m/s"
     return Finding(_speed(trial, result), gain * _fastest(trial), said)
@@ -61,7 +60,7 @@ def _speed(trial: Trial, result: xr.Dataset) -> float:
 
 
 def _is_fourth(trial: Trial) -> bool:
-    return trial.solver.scheme == "fourth-order"
+    return trial.scheme == "fourth-order"
 
 
 def _gain_of_composition(x: float, steps: int) -> float:
@@ -92,10 +91,9 @@ def _fastest(trial: Trial) -> float:
     A block has its whole mass on its one freedom. GLL elements of order p give 1 / (p (p + 1)) of
     theirs to a node at their end.
     """
-    scene = trial.scene()
-    p, times = calibrate(scene), sample_times(scene)
+    scene, p, times = trial.scene, trial.properties, sample_times(trial.scene)
     impulse = p.area * np.trapz(np.abs(load_history(scene).value(times)), times)
-    if trial.solver.is_rigid:
+    if trial.engine.has_rigid_blocks:
         return impulse / p.block_mass
     n = scene.numerics.continuum
     mass = p.block_mass / (n.elements_per_block or 1) / (n.order * (n.order + 1))
@@ -110,40 +108,35 @@ def caught(trial: Trial) -> Finding:
     exp(acosh |h|), h half the trace of its step). It cannot stay finite for longer than from the
     smallest to the largest number.
     """
-    x = float(trial.case.changes[STEP])
+    x = trial.fraction
     steps = ceil(RANGE / _growth(trial, x))
     changes = exactly(trial, steps * 3 // 2)
-    if _refusal(trial, changes) is None:
-        return Finding(float("inf"), steps, "the step was not refused")
+    try:
+        trial.run(**changes)
+        return Finding(inf, steps, "the step was not refused")
+    except SceneError:
+        pass
     try:
         trial.run(**changes, **{ALLOW: True})
     except UnstableError as error:
-        return Finding(_steps_until(trial, str(error), x), 2 * steps, f"steps; {error}")
-    return Finding(float("inf"), 2 * steps, "the run was not stopped")
+        return Finding(_steps_until(trial, str(error)), 2 * steps, f"steps; {error}")
+    return Finding(inf, 2 * steps, "the run was not stopped")
 
 
 def _growth(trial: Trial, x: float) -> float:
     """Return the logarithm of what a step at x of the critical one multiplies the mode by."""
-    if trial.solver.scheme != "fourth-order":
+    if not _is_fourth(trial):
         return 2 * acosh(x)
     from dem.axial.fourth_order import half_trace, stability_limit
 
     return acosh(abs(half_trace()((x * stability_limit()) ** 2)))
 
 
-def _refusal(trial: Trial, changes: dict[str, Any]) -> str | None:
-    try:
-        trial.run(**changes)
-    except SceneError as error:
-        return str(error)
-    return None
-
-
-def _steps_until(trial: Trial, message: str, x: float) -> float:
+def _steps_until(trial: Trial, message: str) -> float:
     """Return the step at which a run was stopped, by the time that its message names."""
     found = re.search(r"t = ([-+.\de]+) s", message)
     assert found is not None, message
-    return round(float(found[1]) / (x * trial.critical))
+    return round(float(found[1]) / trial.dt)
 
 
 @criterion("energy after the load, over that at its end")
@@ -153,14 +146,14 @@ def never_grows(trial: Trial) -> Finding:
     The generalised-alpha method is unconditionally stable and its modes only decay: the most of
     the second half of the run is no more than that of the first, up to round-off of every step.
     """
-    result = trial.run()
+    result = trial.result
     energy = result["energy"].sel(term=["kinetic", "elastic"]).sum("term").values
-    after = energy[result["time"].values > 3 * (trial.scene().load.period or 0.0)]
+    after = energy[result["time"].values > 3 * (trial.scene.load.period or 0.0)]
     half = after.size // 2
     ratio = float(after[half:].max() / after[:half].max())
     bound = 1 + 1e-14 * float(result.attrs["steps"])
-    return Finding(ratio, bound, f"step {_steps_over(result):.3g} critical ones")
+    return Finding(ratio, bound, f"step {_over_critical(result):.3g} critical ones")
 
 
-def _steps_over(result: xr.Dataset) -> float:
+def _over_critical(result: xr.Dataset) -> float:
     return float(result.attrs["dt"]) / float(result.attrs["critical_dt"])

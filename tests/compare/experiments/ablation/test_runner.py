@@ -12,7 +12,7 @@ from compare.cli.program import main
 from compare.experiments.ablation import runner
 from compare.experiments.ablation.ablation import Ablation, Dropped, Effect
 from compare.experiments.ablation.diagram import draw
-from compare.experiments.ablation.runner import Case, all_shipped, reported, run
+from compare.experiments.ablation.runner import Variant, all_shipped, reported, run
 from compare.experiments.ablation.summary import sentences, summarise, table
 
 LEDGER = Effect("energy ledger", 1.0, 3.0, 0.75, 1.0, nan, 0.0, "")
@@ -43,9 +43,9 @@ def counted(monkeypatch):
 
 def test_what_is_done_is_not_done_again(counted, pillar, tmp_path):
     """The second run reads what the first has written, nan and all, and measures what is new."""
-    wanted = [Case("a/b", pillar())]
+    wanted = [Variant("a/b", pillar())]
     first, fractions = run(wanted, tmp_path, None, None), []
-    more = [*wanted, Case("a/c", pillar(time__duration=0.01))]
+    more = [*wanted, Variant("a/c", pillar(time__duration=0.01))]
     again = run(more, tmp_path, None, fractions.append)
     assert [name for name, _ in counted] == ["a/b", "a/c"]
     assert repr(again[0]) == repr(first[0])
@@ -56,7 +56,7 @@ def test_what_is_done_is_not_done_again(counted, pillar, tmp_path):
 
 def test_an_interrupted_run_keeps_what_was_solved(counted, pillar, tmp_path, monkeypatch):
     """Answers that are there are taken; only the timing is left to do."""
-    wanted = [Case("a/b", pillar())]
+    wanted = [Variant("a/b", pillar())]
     timed = runner.ablate
     monkeypatch.setattr(runner, "ablate", lambda *case: (_ for _ in ()).throw(KeyboardInterrupt))
     with pytest.raises(KeyboardInterrupt):
@@ -68,8 +68,8 @@ def test_an_interrupted_run_keeps_what_was_solved(counted, pillar, tmp_path, mon
 
 
 def test_cases_are_told_apart_by_all_that_decides_them(pillar):
-    one, other = Case("a/b", pillar()), Case("a/b", pillar(joints__damping_ratio=0.01))
-    assert one.key == Case("a/b", pillar()).key
+    one, other = Variant("a/b", pillar()), Variant("a/b", pillar(joints__damping_ratio=0.01))
+    assert one.key == Variant("a/b", pillar()).key
     assert len({one.key, other.key, one._replace(name="a/c").key}) == 3
 
 

@@ -11,8 +11,7 @@ from cases.errors import SceneError
 from cases.size import LIMIT, estimates, refuse_beyond_memory
 from compare.engines import solve
 from compare.experiments.cost import timings
-from compare.experiments.cost.dry_run import in_words
-from compare.experiments.cost.run_cost import forecast, seconds_of
+from compare.experiments.cost.dry_run import forecast, in_words, seconds_of
 
 SHORT = {"time__duration": 0.01, "record__velocity": [20.25]}
 SPACE = {"load__direction": [0.6, 0.8, 0.0]}

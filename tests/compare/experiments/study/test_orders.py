@@ -5,18 +5,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from compare.engines import applies
-from compare.experiments.study.measure import Row, method_applies
+from compare.experiments.study.measure import PointRow, method_applies
 from compare.experiments.study.orders import orders
 from compare.experiments.study.pareto import cheapest, digits_per_second, floor, front, judged
 from compare.experiments.study.reference import finest_of, own_of
 from compare.experiments.study.runner import run
-from compare.experiments.study.study import Reference, load, shipped
+from compare.experiments.study.study import FineRun, load, shipped
 
 
 def row(**numbers):
     """Return a row that was done, with these numbers."""
-    empty = dict.fromkeys(Row._fields, float("nan"))
-    return Row(**(empty | {"curve": "a", "settings": {}, "state": "done"} | numbers))
+    empty = dict.fromkeys(PointRow._fields, float("nan"))
+    return PointRow(**(empty | {"curve": "a", "settings": {}, "state": "done"} | numbers))
 
 
 def test_leapfrog_is_of_second_order(study, tmp_path):
@@ -135,7 +135,7 @@ def test_every_point_of_shipped_studies_can_be_run(name):
         own, finest = own_of(point), finest_of(study)
         assert own is not None
         for against, physics in ((own, point.physics), (finest, {})):
-            if isinstance(against, Reference):
+            if isinstance(against, FineRun):
                 for changes in (against.changes, against.changes | against.coarser):
                     assert applies(against.method, study.changed(physics | changes))
             elif against is not None:
