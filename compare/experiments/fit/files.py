@@ -39,10 +39,9 @@ def write_fit(found: Fit, given: Scene, folder: Path) -> list[Path]:
         write_text(folder / "fit.json", json.dumps(facts(found), indent=2) + "\n"),
         *_write_scene(found, given, scene),
     ]
-    drawn = save(
-        draw(found), folder, "fit-waveforms", f"{found.scene.title}, fitted", curves(found)
-    )
-    return [*files, *(drawn.file(kind) for kind in ("svg", "pdf", "png", "csv"))]
+    title = f"{found.scene.title}, fitted"
+    drawn = save(draw(found), folder, "fit-waveforms", title, curves(found))
+    return [*files, *drawn.drawings, drawn.file("csv")]
 
 
 def table(found: Fit) -> pd.DataFrame:

@@ -12,12 +12,7 @@ from cases.errors import SceneError
 from cases.schema.scene import Scene
 from compare.engines import Progress
 from compare.experiments.fit.keys import CLOCK, Free, changed, free_keys
-from compare.experiments.fit.problem import (
-    clock_reach,
-    problem_of,
-    solver_of,
-    started_clock,
-)
+from compare.experiments.fit.problem import clock_reach, problem_of, solver_of, started_clock
 from compare.experiments.fit.search import Search, misfits
 from compare.experiments.fit.statistics import known, not_told_apart
 from compare.misfit.external import Curves
@@ -104,7 +99,7 @@ def fit(
     without having converged.
     """
     keys = free_keys(list(free), scene)
-    first = changed(scene, _scene_values(keys, [k.start or 0.0 for k in keys]))
+    first = changed(scene, _scene_values(keys, [k.start for k in keys]))
     name = solver_of(first, solver)
     mine = [curve for curve in curves if curve.holds_for(scene)]
     if not mine or not keys:
@@ -138,25 +133,15 @@ def _with_clock(
     clock = next((key for key in keys if key.key == CLOCK), None)
     if clock is None:
         return keys, None
-    start = clock.start
-    if start is None:
-        start = started_clock(scene, solver, curves)
+    start = started_clock(scene, solver, curves) if np.isnan(clock.start) else clock.start
     reach = clock_reach(scene)
     low, high = max(clock.low, start - reach), min(clock.high, start + reach)
     if not low <= start <= high:
         start = (low + high) / 2 if low < high else (clock.low + clock.high) / 2
         low, high = max(clock.low, start - reach), min(clock.high, start + reach)
-    moved = _Clock(CLOCK, start, low, high, False, "s")
-    return [moved if key.key == CLOCK else key for key in keys], start
-
-
-class _Clock(Free):
-    """The clock, whose unknown is in units of its reach wherever it begins."""
-
-    @property
-    def size(self) -> float:
-        """Half of what it may move by."""
-        return (self.high - self.low) / 2
+    # Its unknown is in units of its reach wherever it begins.
+    moved = clock._replace(start=start, low=low, high=high, size=(high - low) / 2)
+    return [moved if key is clock else key for key in keys], start
 
 
 def _finished(scene: Scene, search: Search, x: np.ndarray) -> Fit:
@@ -168,7 +153,7 @@ def _finished(scene: Scene, search: Search, x: np.ndarray) -> Fit:
     bounds = zip(x, search.low, search.high, strict=True)
     stopped = [bool(min(u - a, b - u) <= NEAR) for u, a, b in bounds]
     estimates = [
-        Estimate(key.key, value, *_interval(key, u, r), key.start or 0.0, key.unit, at_bound)
+        Estimate(key.key, value, *_interval(key, u, r), key.start, key.unit, at_bound)
         for key, value, u, r, at_bound in zip(keys, values, x, about.reach, stopped, strict=True)
     ]
     clock = next((e.value for e in estimates if e.key == CLOCK), 0.0)
@@ -188,9 +173,9 @@ def _interval(key: Free, unknown: float, reach: float) -> tuple[float, float]:
     if not np.isfinite(reach):
         return (0.0, np.inf) if key.logarithmic else (-np.inf, np.inf)
     if key.logarithmic:
-        start = key.start or 0.0
-        return start * float(np.exp(unknown - reach)), start * float(np.exp(unknown + reach))
-    middle = (key.start or 0.0) + key.size * unknown
+        low, high = (key.start * float(np.exp(unknown + r)) for r in (-reach, reach))
+        return low, high
+    middle = key.start + key.size * unknown
     return middle - key.size * float(reach), middle + key.size * float(reach)
 
 
