@@ -1,7 +1,5 @@
 """The summary of an experiment, the same for the terminal, the page and JSON."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """The tables of experiments: one row a point or an effect, as CSV and as NetCDF."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable, Sequence
 from math import isfinite

@@ -5,8 +5,6 @@ applies; the influence is the relative L2 misfit of the rigid blocks without the
 those of the scene as it stands.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import nan
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """Influence over cost of every effect, both axes logarithmic: one point an effect of a scene."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from matplotlib.axes import Axes

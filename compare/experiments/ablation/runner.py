@@ -1,7 +1,5 @@
 """The ablation of many scenes: solved and compiled on any executor, then timed one at a time."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The summary of an ablation: the table, the diagram, and sentences of their numbers."""
 
-from __future__ import annotations
-
 from math import isfinite
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`--dry-run` of commands over many runs: the parts of a study, of the report, of the effects."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path

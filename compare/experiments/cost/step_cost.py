@@ -1,7 +1,5 @@
 """The cost of a step of one block or one freedom, with the effects that a scene calls for."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import inf
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The figure of a fit: each waveform as measured and as fitted, and its residual."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

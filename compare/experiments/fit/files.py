@@ -1,7 +1,5 @@
 """The files of a fit: a table, the fitted scene, and the figure of waveforms and residuals."""
 
-from __future__ import annotations
-
 import filecmp
 import json
 import shutil

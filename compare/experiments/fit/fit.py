@@ -1,7 +1,5 @@
 """Fit keys of a scene to measured waveforms by nonlinear least squares."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple

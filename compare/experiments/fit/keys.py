@@ -1,7 +1,5 @@
 """The keys that a fit may change: where each begins, and between which bounds it stays."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """The problem of a fit: waveforms of a solution at the times of measured ones, key by key."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple

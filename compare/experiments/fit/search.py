@@ -1,7 +1,5 @@
 """The search of a fit: nonlinear least squares, each waveform weighed by its own noise."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from cases.errors import StoppedError

@@ -1,7 +1,5 @@
 """The output of `jointwave fit`."""
 
-from __future__ import annotations
-
 import math
 import shlex
 from pathlib import Path

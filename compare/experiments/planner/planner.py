@@ -9,8 +9,6 @@ on until finer steps can be predicted (see `plan_trials`). What by its freedom-s
 than what is known to meet the misfit is not tried at all, nor what its modelling error bars.
 """
 
-from __future__ import annotations
-
 from math import inf
 from time import perf_counter
 from typing import NamedTuple

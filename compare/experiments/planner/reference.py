@@ -3,8 +3,6 @@
 Either is an exact solution that knows itself well enough, or a run that has converged to itself.
 """
 
-from __future__ import annotations
-
 from functools import cached_property
 from math import inf
 from typing import Any, NamedTuple

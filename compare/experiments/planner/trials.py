@@ -5,8 +5,6 @@ is w + c n^-q (Richardson): from two runs its misfit from the engine's own model
 n. From three, so is q: half the steps leave 2^q times the difference. Seconds are a + b n.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from math import ceil, inf, log2
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """The stability maps with the line that theory draws, and the energy of a million steps."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap

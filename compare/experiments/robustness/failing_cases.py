@@ -1,7 +1,5 @@
 """Hard cases of joints that open, close, slide and break."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from compare.experiments.robustness.case import STEP, HardCase, rock_is_spared

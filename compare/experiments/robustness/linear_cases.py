@@ -1,7 +1,5 @@
 """Hard cases of elastic joints: steps, stiffness contrasts, layers, damping, very many steps."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from compare.experiments.robustness.case import STEP, HardCase, rock_is_spared

@@ -5,8 +5,6 @@ damping ratio is zeta = eta omega / 2, and in x = omega dt / 2, the step over th
 one, the critical step of `joints.stability` reads x = sqrt(1 + 4 zeta^2) - 2 zeta.
 """
 
-from __future__ import annotations
-
 from math import pi
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Run the robustness suite: every case on every engine and scheme once, and the stability maps."""
 
-from __future__ import annotations
-
 from math import inf, isfinite, nan
 from pathlib import Path
 from time import perf_counter

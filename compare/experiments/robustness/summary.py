@@ -1,7 +1,5 @@
 """The summary of the robustness suite: every row with its margin, the maps, the long energies."""
 
-from __future__ import annotations
-
 from math import inf
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Blocks or rock set in motion without a load, and stepped at will."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Values of a swept key: `--sweep KEY=FROM:TO:COUNT`, `KEY=log:FROM:TO:COUNT` or `KEY=A,B,C`."""
 
-from __future__ import annotations
-
 import json
 import re
 from math import isfinite, prod

@@ -1,7 +1,5 @@
 """`--sweep` of a command: from what the user gives to the table."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from cases.errors import SceneError

@@ -1,7 +1,5 @@
 """Run a sweep: every variant at every point once, on any executor."""
 
-from __future__ import annotations
-
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """The summary of a sweep: a tidy table, and a grid with the swept keys as dimensions."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path

@@ -4,8 +4,6 @@ Near a critical step, beside stiff joints or at a resonance an unstable scheme i
 being infinite. So every such run is held to the error that a stable one can have.
 """
 
-from __future__ import annotations
-
 from math import pi, sqrt
 
 import numpy as np

@@ -10,8 +10,6 @@ zero. That is at omega_d t = pi - 2 asin(zeta), and there the speed is, over tha
 (Schwager & Poeschel, Granular Matter 9, 2007, of the same contact).
 """
 
-from __future__ import annotations
-
 from math import asin, inf, isfinite, log, pi, sqrt
 
 import numpy as np

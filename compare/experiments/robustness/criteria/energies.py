@@ -1,7 +1,5 @@
 """Criteria of energy over very many steps: no drift, no trend, never more than there was."""
 
-from __future__ import annotations
-
 from math import sqrt
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Criteria for loads, sizes and shapes at the edge of what numbers and elements can hold."""
 
-from __future__ import annotations
-
 from math import pi, sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Criteria for joints that all but part, or all but vanish."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Criteria at the critical step: stable below, bounded on it, caught above."""
 
-from __future__ import annotations
-
 import re
 from math import acosh, ceil, inf, log, sqrt
 from typing import Any
