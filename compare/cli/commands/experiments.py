@@ -49,8 +49,7 @@ def effects(
     """
     from compare.experiments.ablation import runner
     from compare.experiments.ablation.summary import summarise
-    from compare.experiments.pool import shared
-    from compare.experiments.summary import show
+    from compare.experiments.summary import run_and_show
 
     wanted = _cases(scene, changes, variant, strict)
     if dry:
@@ -58,14 +57,13 @@ def effects(
 
         show_parts(parts_of_effects(wanted, out), as_json)
         return
-    found = shared(
+    run_and_show(
         f"{len(wanted)} variants",
         out,
         workers,
-        lambda pool, advance: runner.run(wanted, out, pool, advance),
+        lambda pool, advance: summarise(out, runner.run(wanted, out, pool, advance)),
+        as_json,
     )
-    assert found is not None  # one process only: see root
-    show(summarise(out, found), as_json)
 
 
 @app.command()
@@ -118,39 +116,27 @@ def study(
 
         show_parts(parts_of_study(name, out), as_json)
         return
+    from compare.experiments.summary import run_and_show
+
+    folder = out / Path(name).stem
     if name == "stability":
-        _study_stability(out, workers, as_json)
-        return
-    from compare.experiments.pool import shared
-    from compare.experiments.study.runner import run as run_points
-    from compare.experiments.study.study import load
-    from compare.experiments.study.summary import summarise
-    from compare.experiments.summary import show
+        from compare.experiments.robustness.summary import TITLE as title
+        from compare.experiments.robustness.summary import make_study
 
-    asked, stem = load(name), Path(name).stem
-    rows = shared(
-        asked.title,
-        out / stem,
-        workers,
-        lambda pool, advance: run_points(asked, out / stem, pool, advance),
-    )
-    if rows is not None:
-        show(summarise(out, stem, asked, rows), as_json)
+        def work(pool: Any, advance: Any) -> Any:
+            return make_study(out, pool, progress=advance)
+    else:
+        from compare.experiments.study.runner import run
+        from compare.experiments.study.study import load
+        from compare.experiments.study.summary import summarise
 
+        asked = load(name)
+        title = asked.title
 
-def _study_stability(out: Path, workers: int, as_json: bool) -> None:
-    from compare.experiments.pool import shared
-    from compare.experiments.robustness.summary import NAME, TITLE, make_study
-    from compare.experiments.summary import show
+        def work(pool: Any, advance: Any) -> Any:
+            return summarise(out, folder.name, asked, run(asked, folder, pool, advance))
 
-    found = shared(
-        TITLE,
-        out / NAME,
-        workers,
-        lambda pool, advance: make_study(out, pool, progress=advance),
-    )
-    if found is not None:
-        show(found, as_json)
+    run_and_show(title, folder, workers, work, as_json)
 
 
 @app.command()

@@ -2,15 +2,16 @@
 
 from pathlib import Path
 
-from cases.errors import SceneError
 from cases.read import parse_override
 from compare.cli.options import warn
+from compare.engines import Progress
 from compare.experiments.cost import dry_run
-from compare.experiments.pool import shared
-from compare.experiments.summary import show
-from compare.experiments.sweep import runner, summary
+from compare.experiments.pool import Pool
+from compare.experiments.summary import Summary, run_and_show
+from compare.experiments.sweep import runner
 from compare.experiments.sweep.case import Work
 from compare.experiments.sweep.runner import Sweep
+from compare.experiments.sweep.summary import summarise
 
 
 def ask(
@@ -31,18 +32,11 @@ def sweep(
     if dry:
         _foresee(asked, work, as_json)
         return
-    found = shared(
-        f"{len(asked.cases)} points",
-        asked.out,
-        workers,
-        lambda pool, advance: runner.run(asked, work, pool, advance),
-    )
-    if found is None:  # not the first process
-        return
-    if all(one.state == "failed" for one in found):
-        allowed = f"all {len(found)} points fail: {found[0].message}"
-        raise SceneError(asked.scene, "", None, allowed)
-    show(summary.summarise(asked, found), as_json)
+
+    def done(pool: Pool | None, advance: Progress) -> Summary:
+        return summarise(asked, runner.run(asked, work, pool, advance))
+
+    run_and_show(f"{len(asked.cases)} points", asked.out, workers, done, as_json)
 
 
 def _foresee(asked: Sweep, work: Work, as_json: bool) -> None:

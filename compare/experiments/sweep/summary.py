@@ -8,6 +8,7 @@ from typing import Any
 import pandas as pd
 import xarray as xr
 
+from cases.errors import SceneError
 from compare.experiments.summary import Summary
 from compare.experiments.sweep.case import Outcome
 from compare.experiments.sweep.runner import Sweep
@@ -48,12 +49,18 @@ def table(asked: Sweep, found: list[Outcome]) -> pd.DataFrame:
 
 
 def summarise(asked: Sweep, found: list[Outcome]) -> Summary:
-    """Return the summary of a sweep; write sweep.csv and, where anything is done, sweep.nc."""
+    """Return the summary of a sweep; write sweep.csv and sweep.nc.
+
+    Raises SceneError where all cases have failed.
+    """
+    if all(one.state == "failed" for one in found):
+        allowed = f"all {len(found)} points fail: {found[0].message}"
+        raise SceneError(asked.scene, "", None, allowed)
     rows, axes = table(asked, found), asked.axes
     done, failed = rows[rows.state == "done"], rows[rows.state == "failed"]
     files: list[Path] = []
     if asked.out is not None:
-        data = None if done.empty else grid(axes, done).assign_attrs(scene=asked.scene)
+        data = grid(axes, done).assign_attrs(scene=asked.scene)
         files = write_tables(asked.out, NAME, rows, data)
     columns = SHOWN_OF_PAIRS if "one" in rows else SHOWN_OF_RUNS
 
