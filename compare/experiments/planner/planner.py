@@ -5,7 +5,7 @@ own model, and the modelling one, of that model from the finest physics. So an e
 cancel the other is no accuracy.
 
 Families of configurations are tried from coarse elements to fine ones, each from its coarsest step
-on until finer steps can be predicted (see `plan_trials`). What by its freedom-steps would cost more
+on until finer steps can be predicted (see `trials`). What by its freedom-steps would cost more
 than what is known to meet the misfit is not tried at all, nor what its modelling error bars.
 """
 
@@ -16,6 +16,7 @@ from typing import NamedTuple
 from cases.errors import SceneError, StoppedError, UnstableError
 from cases.schema.scene import Scene
 from compare.engines import Progress
+from compare.experiments.planner.choices import MARGIN, Choice, cheapest, measured, predicted
 from compare.experiments.planner.families import (
     FAMILIES,
     Effort,
@@ -28,12 +29,9 @@ from compare.experiments.planner.reference import OwnModel, References
 from compare.experiments.planner.trials import (
     FINEST,
     LONGEST,
-    Choice,
     Trial,
     first_trial,
     is_trusted,
-    measured,
-    predicted,
     timed,
     trial_at,
 )
@@ -43,9 +41,6 @@ from compare.misfit.metrics import misfit as misfit_of
 #: A family is not tried where it would be too dear at this share of the least seconds that a
 #: freedom-step has taken so far.
 SAFETY = 0.5
-#: What is only predicted must be below this part of the misfit: two steps leave the next term of
-#: the error.
-MARGIN = 0.95
 DEAR = "would cost more than what is known to do"
 FAILURES = (SceneError, UnstableError)
 
@@ -208,34 +203,3 @@ def _tried(search: Search, progress: Progress | None) -> dict[str, str]:
 def reason_of(error: Exception) -> str:
     """Return why something could not be run, without where."""
     return getattr(error, "allowed", str(error))
-
-
-def cheapest(choices: list[Choice], misfit: float, seconds: float | None) -> Choice | None:
-    """Return the cheapest that meets the misfit; else, or where it costs more, the best in time.
-
-    One meets it where all finer steps of its family do, as far as they are known or predicted.
-    """
-    meets = [c for c in choices if _meets(c, misfit) and furthest_off(c, choices) <= misfit]
-    best = min(meets, key=lambda c: c.seconds, default=None)
-    if seconds is None or (best is not None and best.seconds <= seconds):
-        return best
-    in_time = [c for c in choices if c.seconds <= seconds]
-    return min(in_time, key=lambda c: furthest_off(c, choices), default=None)
-
-
-def _meets(choice: Choice, misfit: float) -> bool:
-    margin = 1.0 if choice.measured else MARGIN
-    return choice.numerical <= margin * (misfit - choice.modelling)
-
-
-def furthest_off(choice: Choice, choices: list[Choice]) -> float:
-    """Return the largest misfit of a choice and of the finer steps of its family."""
-    return max(
-        c.misfit for c in choices if c.family == choice.family and c.per_sample >= choice.per_sample
-    )
-
-
-def options_of(choice: Choice) -> list[str]:
-    """Return the `--set` options that make a configuration."""
-    found = {**choice.family.changes, **choice.settings}
-    return [f"numerics.{choice.family.engine}.{key}={value}" for key, value in found.items()]

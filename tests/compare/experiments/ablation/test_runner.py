@@ -2,13 +2,11 @@
 
 import json
 import re
-import sys
 from math import nan
 
 import pandas as pd
 import pytest
 
-from compare.cli.program import main
 from compare.experiments.ablation import runner
 from compare.experiments.ablation.ablation import Ablation, Dropped, Effect
 from compare.experiments.ablation.diagram import draw
@@ -120,38 +118,24 @@ def test_files_hold_every_number(tmp_path):
     assert all(file.is_file() for file in section.files)
 
 
-def command(monkeypatch, *arguments):
-    """Run `jointwave` with these arguments and return its exit code."""
-    monkeypatch.setattr(sys, "argv", ["jointwave", *arguments])
-    with pytest.raises(SystemExit) as ended:
-        main()
-    return ended.value.code
-
-
-def test_command_prints_a_scene_and_keeps_its_files(counted, monkeypatch, tmp_path, capsys):
-    out = tmp_path / "effects"
+def test_command_prints_a_scene_and_keeps_its_files(counted, command, tmp_path):
     scene = ["effects", "guo-li-2002/fig-09", "--variant", "no tension", "--workers", "1"]
-    assert command(monkeypatch, *scene, "--out", str(out)) == 0
-    said = capsys.readouterr().out
+    said = command(*scene).out
     assert "energy ledger" in said and "10.0 % of 40 ns" in said
-    assert "effects.csv" in said and (out / "effects.csv").is_file()
-    assert command(monkeypatch, *scene, "--out", str(out), "--json") == 0
-    facts = json.loads(capsys.readouterr().out)
+    assert "effects.csv" in said and (tmp_path / "effects" / "effects.csv").is_file()
+    facts = json.loads(command(*scene, "--json").out)
     assert facts[0]["effects"][0]["misfit"] == 0 and facts[0]["effects"][1]["cost"] is None
     assert len(counted) == 1
 
 
 @pytest.mark.parametrize("option", [("--variant", "x"), ("--set", "joints.tension=false")])
-def test_options_of_a_scene_need_one(option, monkeypatch, capsys):
-    assert command(monkeypatch, "effects", *option) == 2
-    said = capsys.readouterr().err
+def test_options_of_a_scene_need_one(option, command):
+    said = command("effects", *option, code=2).err
     assert said.count("\n") == 1 and option[0] in said and "needs a scene" in said
 
 
-def test_wrong_table_of_other_codes_is_one_line(tmp_path, monkeypatch, capsys):
+def test_wrong_table_of_other_codes_is_one_line(tmp_path, command):
     """Before anything is solved."""
-    arguments = ["report", "--out", str(tmp_path / "report"), "--peers", str(tmp_path / "none.csv")]
-    assert command(monkeypatch, *arguments) == 2
-    said = capsys.readouterr().err
+    said = command("report", "--peers", "none.csv", code=2).err
     assert said.count("\n") == 1 and "none.csv" in said and "cannot be read" in said
     assert not (tmp_path / "report").exists()

@@ -29,11 +29,12 @@ order = 2
 """
 
 
-def command(*arguments, code=0, before=(), env=None):
-    jointwave = [sys.executable, "-m", "compare", "study", *map(str, arguments)]
-    done = subprocess.run([*before, *jointwave], capture_output=True, text=True, env=env)
-    assert done.returncode == code, done.stderr
-    return done
+def facts_of(*arguments, before=(), env=None):
+    """Return what a study's command prints as JSON."""
+    command = [*before, sys.executable, "-m", "compare", "study", *map(str, arguments), "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, env=env)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
 
 
 @pytest.mark.parametrize(
@@ -81,9 +82,9 @@ def test_a_curve_for_each_value_is_one_as_written_out(study):
         study([{**one, "each": {"a": list(range(1000)), "b": list(range(1000))}}])
 
 
-def test_a_study_that_is_not_there_names_those_that_are(tmp_path):
-    done = command("no-such", "--out", tmp_path, code=2)
-    assert done.stderr.startswith("jointwave: no-such: is no file, nor one of column-3d")
+def test_a_study_that_is_not_there_names_those_that_are(command):
+    said = command("study", "no-such", code=2).err
+    assert said.startswith("jointwave: no-such: is no file, nor one of column-3d")
 
 
 @pytest.fixture(scope="module")
@@ -91,8 +92,7 @@ def made(tmp_path_factory):
     """Return the folder of a study that the command has run, and what it printed."""
     folder = tmp_path_factory.mktemp("study")
     (folder / "mine.toml").write_text(GOOD)
-    done = command(folder / "mine.toml", "--out", folder / "out", "--json", "--workers", 1)
-    return folder, json.loads(done.stdout)
+    return folder, facts_of(folder / "mine.toml", "--out", folder / "out", "--workers", 1)
 
 
 def test_command_writes_what_it_prints(made):
@@ -107,13 +107,9 @@ def test_command_writes_what_it_prints(made):
 
 def test_two_ranks_give_the_table_of_one_process(made, tmp_path, mpiexec):
     (folder, facts), (launcher, env) = made, mpiexec
-    ranks = {"before": (launcher, "-n", "2"), "env": env}
-    done = command(folder / "mine.toml", "--out", tmp_path, "--json", **ranks)
+    ranks = facts_of(folder / "mine.toml", "--out", tmp_path, before=(launcher, "-n", "2"), env=env)
     keys = ("numerical", "total", "steps", "work")
-    one, two = (
-        [[row[key] for key in keys] for row in found["rows"]]
-        for found in (facts, json.loads(done.stdout))
-    )
+    one, two = ([[row[key] for key in keys] for row in f["rows"]] for f in (facts, ranks))
     assert one == two
 
 
