@@ -92,13 +92,8 @@ def facts(found: Fit) -> dict[str, Any]:
         ],
         "trials": found.trials,
         "notes": found.notes,
-        "set": settings(found),
+        "set": found.settings,
     }
-
-
-def settings(found: Fit) -> list[str]:
-    """Return the fitted keys of the scene as `--set` takes them."""
-    return [f"{e.key}={e.value:.12g}" for e in found.estimates if e.key != CLOCK]
 
 
 def _write_scene(found: Fit, given: Scene, path: Path) -> list[Path]:

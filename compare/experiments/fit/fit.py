@@ -67,6 +67,11 @@ class Fit:
     notes: list[str]
 
     @property
+    def settings(self) -> list[str]:
+        """The fitted keys of the scene as `--set` takes them."""
+        return [f"{e.key}={e.value:.12g}" for e in self.estimates if e.key != CLOCK]
+
+    @property
     def before(self) -> float:
         """Misfit of the waveform that was furthest off at the start."""
         return max(one.before for one in self.waveforms)

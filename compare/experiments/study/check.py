@@ -34,11 +34,10 @@ def plain(value: Any) -> Any:
 
 def refuse_senseless(path: Path, study: Study) -> None:
     """Raise SceneError for what no point could be made of, or too many."""
-    count = sum(prod(len(values) for values in curve.vary.values()) for curve in study.curves)
+    count = sum(prod(map(len, curve.vary.values())) for curve in study.curves)
     if count > MOST_POINTS:
-        raise SceneError(
-            str(path), "curves", None, f"give {count:.6g} points, at most {MOST_POINTS}"
-        )
+        allowed = f"give {count:.6g} points, at most {MOST_POINTS}"
+        raise SceneError(str(path), "curves", None, allowed)
     solvers = names()
     _refuse_unknown(path, "finest", study.finest, (*solvers, "none"))
     for i, curve in enumerate(study.curves):

@@ -71,11 +71,14 @@ def measure(point: Point) -> PointRow:
 
 
 def _measured(point: Point) -> PointRow:
-    scene, study = point.scene, point.study
-    run = runner(point, scene)
+    study, run = point.study, runner(point, point.scene)
     result = run()
-    first = result.attrs
-    seconds = [float(first.get("seconds_stepping", math.nan))]
+
+    def counted(*names: str) -> float:
+        """Return the first of some attributes of the result that it has."""
+        return float(next((result.attrs[x] for x in names if x in result.attrs), math.nan))
+
+    seconds = [counted("seconds_stepping")]
     if study.timed:
         seconds = _repeated(run, study.repeats)
     own = known(own_of(point), study, point.physics)
@@ -83,7 +86,9 @@ def _measured(point: Point) -> PointRow:
     numerical = error(result, own, study)
     modelling = UNKNOWN if own is None else error(own.result, finest, study)
     floor = numerical.floor + modelling.floor
-    steps, freedoms = first.get("steps", math.nan), first.get("degrees_of_freedom", math.nan)
+    freedoms = counted("degrees_of_freedom")
+    # All forces are evaluated in stages, by Newton's method, or once a step.
+    evaluations = counted("force_evaluations", "newton_iterations", "steps")
     return _row(
         point,
         "done",
@@ -94,22 +99,16 @@ def _measured(point: Point) -> PointRow:
         measured=error(result, finest, study).misfit,
         numerical_floor=numerical.floor,
         total_floor=floor,
-        dt=float(first.get("dt", math.nan)),
-        steps=float(steps),
-        freedoms=float(freedoms),
-        work=_evaluations(first) * float(freedoms),
-        bytes=float(first.get("bytes", math.nan)),
+        dt=counted("dt"),
+        steps=counted("steps"),
+        freedoms=freedoms,
+        work=evaluations * freedoms,
+        bytes=counted("bytes"),
         seconds=median(seconds),
         spread=(max(seconds) - min(seconds)) / 2,
-        setup=float(first.get("seconds_setup", math.nan)),
-        compile=float(first.get("seconds_compile", math.nan)),
+        setup=counted("seconds_setup"),
+        compile=counted("seconds_compile"),
     )
-
-
-def _evaluations(attributes: dict[str, Any]) -> float:
-    """Return how often all forces were evaluated: in stages, by Newton's method, once a step."""
-    names = ("force_evaluations", "newton_iterations", "steps")
-    return float(next((attributes[name] for name in names if name in attributes), math.nan))
 
 
 def runner(point: Point, scene: Scene) -> Callable[[], xr.Dataset]:
@@ -149,6 +148,6 @@ def _repeated(run: Callable[[], xr.Dataset], repeats: int) -> list[float]:
 
 def _row(point: Point, state: str, message: str, **numbers: float) -> PointRow:
     about = (point.curve.label, point.curve.method, point.settings, state, message)
-    names = PointRow._fields[len(about) : -2]  # what is judged is known once the curve is
-    values = (numbers.get(name, math.nan) for name in names)
+    # What is judged, the last two, is known once the curve is.
+    values = (numbers.get(name, math.nan) for name in PointRow._fields[len(about) : -2])
     return PointRow._make((*about, *values, math.nan, False))

@@ -79,7 +79,7 @@ class Curve(StudyTable):
 
 def each_expanded(curves: list[Curve]) -> list[Curve]:
     """Return the curves without `each`; raises ValueError for more than a study may have."""
-    count = sum(prod(len(values) for values in curve.each.values()) for curve in curves)
+    count = sum(prod(map(len, curve.each.values())) for curve in curves)
     if count > MOST_POINTS:
         raise ValueError(f"give {count:.6g} curves, at most {MOST_POINTS}")
     return [one for curve in curves for one in curve.expanded()]
