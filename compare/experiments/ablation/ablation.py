@@ -40,7 +40,7 @@ class Dropped(NamedTuple):
     reason: str
 
 
-class Effect(NamedTuple):
+class EffectCost(NamedTuple):
     """One effect of a scene; numbers that there are not are nan.
 
     alone : ns of a block-step that it adds to the scene without any other. cost : ns that it adds
@@ -73,7 +73,7 @@ class Ablation(NamedTuple):
     own: float
     everything: float
     rock: float
-    effects: list[Effect]
+    effects: list[EffectCost]
 
     @property
     def label(self) -> str:
@@ -123,7 +123,7 @@ def ablate(name: str, scene: Scene, dropped: list[Dropped]) -> Ablation:
     ns_without = dict(zip(without, rest[len(alone) :], strict=True))
     rock = _ns_in_rock(scene, {one.effect: without[one.effect] for one in dropped if one.rock})
     found = [
-        Effect(
+        EffectCost(
             one.effect,
             ns_alone.get(one.effect, nan) - bare,
             (cost := own - ns_without.get(one.effect, nan)),

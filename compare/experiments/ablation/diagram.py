@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from compare.experiments.ablation.ablation import Ablation, Effect
+from compare.experiments.ablation.ablation import Ablation, EffectCost
 from compare.figures.blank import blank
 
 LEAST_SHARE = 0.5  # %, of a step: less does not stand out of the clock's noise
@@ -27,7 +27,7 @@ def draw(found: list[Ablation]) -> Figure:
     Points at an edge lie there or beyond, and are hollow. The points of the k-th effect are the SVG
     group effects-points-k.
     """
-    by_effect: dict[str, list[tuple[int, Effect]]] = {}
+    by_effect: dict[str, list[tuple[int, EffectCost]]] = {}
     for number, b in enumerate(found, start=1):
         for w in b.effects:
             if not w.reason:
@@ -45,7 +45,7 @@ def draw(found: list[Ablation]) -> Figure:
 
 
 def _draw_effect(
-    ax: Axes, k: int, effect: str, ones: list[tuple[int, Effect]]
+    ax: Axes, k: int, effect: str, ones: list[tuple[int, EffectCost]]
 ) -> list[tuple[int, Place]]:
     """Draw the points of an effect; return the number of each and where it is."""
     marks: dict[str, Any] = {

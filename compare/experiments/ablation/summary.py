@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from compare.experiments.ablation.ablation import Ablation, Effect
+from compare.experiments.ablation.ablation import Ablation, EffectCost
 from compare.experiments.ablation.diagram import draw
 from compare.experiments.summary import Summary
 from compare.experiments.tables import number
@@ -88,11 +88,11 @@ def _heading(a: Ablation) -> str:
     return f"{text}; jointed rock {a.rock:.2g} ns a freedom-step" if isfinite(a.rock) else text
 
 
-def _dearest(e: Effect) -> tuple[bool, float]:
+def _dearest(e: EffectCost) -> tuple[bool, float]:
     return bool(e.reason), -e.cost if isfinite(e.cost) else 0
 
 
-def _cells(e: Effect) -> list[str]:
+def _cells(e: EffectCost) -> list[str]:
     """Return an effect's numbers as text, under `COLUMNS`."""
     if e.reason:
         return [e.effect, *[""] * 6, e.reason]
@@ -140,6 +140,6 @@ def _of_sets(found: list[Ablation]) -> str:
     )
 
 
-def _of_effect(a: Ablation, e: Effect) -> str:
+def _of_effect(a: Ablation, e: EffectCost) -> str:
     share = f"{percent(e.share)} % of a step" if e.share > RESOLVED else "nothing that shows"
     return f"{e.effect} in {a.label} ({share}, misfit {percent(e.misfit)} % without)"

@@ -11,7 +11,7 @@ from cases.schema.scene import Scene
 from compare.engines import Progress
 from compare.experiments.fit.keys import CLOCK, Free, changed, free_keys
 from compare.experiments.fit.problem import clock_reach, problem_of, solver_of, started_clock
-from compare.experiments.fit.search import Search, misfits
+from compare.experiments.fit.search import FitSearch, misfits
 from compare.experiments.fit.statistics import known, not_told_apart
 from compare.misfit.external import Curves
 
@@ -111,7 +111,7 @@ def fit(
     keys, clock = _with_clock(keys, first, name, mine)
     reach = clock_reach(scene) if clock is not None else 0.0
     problem = problem_of(first, name, mine, clock, reach)
-    search = Search(problem, keys, progress)
+    search = FitSearch(problem, keys, progress)
     unknowns = search.best()
     return _finished(scene, search, unknowns)
 
@@ -147,7 +147,7 @@ def _with_clock(
     return [moved if key is clock else key for key in keys], start
 
 
-def _finished(scene: Scene, search: Search, x: np.ndarray) -> Fit:
+def _finished(scene: Scene, search: FitSearch, x: np.ndarray) -> Fit:
     residuals = search.residuals(x)
     assert residuals is not None
     measured, keys = search.problem.measured, search.keys
@@ -183,7 +183,7 @@ def _interval(key: Free, unknown: float, reach: float) -> tuple[float, float]:
 
 
 def _notes(
-    estimates: list[Estimate], correlation: np.ndarray, waveforms: list[Fitted], search: Search
+    estimates: list[Estimate], correlation: np.ndarray, waveforms: list[Fitted], search: FitSearch
 ) -> list[str]:
     """Return what a reader of the values must know."""
     found = [

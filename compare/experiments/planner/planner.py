@@ -76,7 +76,7 @@ class Plan(NamedTuple):
         return 0.0 if self.obtained is None else self.obtained.seconds
 
 
-class Search:
+class PlanSearch:
     """Trials so far of one scene, and the choices that they leave."""
 
     def __init__(
@@ -165,7 +165,7 @@ def plan(
     """
     began = perf_counter()
     references = References(scene, misfit)
-    search = Search(scene, references, misfit, seconds)
+    search = PlanSearch(scene, references, misfit, seconds)
     skipped = _tried(search, progress)
     chosen, obtained = _run_cheapest(search)
     spent = perf_counter() - began
@@ -174,7 +174,7 @@ def plan(
     return found._replace(chosen=chosen, own=own, obtained=obtained)
 
 
-def _run_cheapest(search: Search) -> tuple[Choice | None, Choice | None]:
+def _run_cheapest(search: PlanSearch) -> tuple[Choice | None, Choice | None]:
     """Return the cheapest choice and what came of it; one that is not what was predicted of it
     counts as a trial, and the next is run."""
     chosen = obtained = None
@@ -187,7 +187,7 @@ def _run_cheapest(search: Search) -> tuple[Choice | None, Choice | None]:
     return chosen, obtained
 
 
-def _tried(search: Search, progress: Progress | None) -> dict[str, str]:
+def _tried(search: PlanSearch, progress: Progress | None) -> dict[str, str]:
     """Try all families; return the reasons of those that were not run."""
     skipped = {}
     for i, family in enumerate(FAMILIES):

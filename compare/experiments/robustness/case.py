@@ -22,7 +22,7 @@ ALLOW = "allow_unstable"
 EPS = 2.2e-16
 
 
-class Stepper(NamedTuple):
+class EngineScheme(NamedTuple):
     """An engine with one of its schemes of time steps."""
 
     engine: Solver
@@ -34,11 +34,11 @@ class Stepper(NamedTuple):
         return f"{self.engine.name} {self.scheme}"
 
 
-STEPPERS = tuple(Stepper(one, scheme) for one in ENGINES.values() for scheme in one.schemes)
-LEAPFROG, FOURTH, JOINTED, _, EQUIVALENT, _ = STEPPERS
+SCHEMES = tuple(EngineScheme(one, scheme) for one in ENGINES.values() for scheme in one.schemes)
+LEAPFROG, FOURTH, JOINTED, _, EQUIVALENT, _ = SCHEMES
 
 
-class Finding(NamedTuple):
+class Judgement(NamedTuple):
     """The finding of a criterion: it holds where value <= bound; `said` adds to the message."""
 
     value: float
@@ -50,10 +50,10 @@ class Criterion(NamedTuple):
     """A bound from theory. words : what it bounds. judge : measures it on one engine."""
 
     words: str
-    judge: Callable[[Trial], Finding]
+    judge: Callable[[CaseTrial], Judgement]
 
 
-def criterion(words: str) -> Callable[[Callable[[Trial], Finding]], Criterion]:
+def criterion(words: str) -> Callable[[Callable[[CaseTrial], Judgement]], Criterion]:
     """Return the decorator that makes a function of a trial a criterion."""
     return partial(Criterion, words)
 
@@ -73,7 +73,7 @@ class HardCase(NamedTuple):
     slow: bool = False
     scene: str = SHORT
 
-    def why_spared(self, stepper: Stepper) -> str | None:
+    def why_spared(self, stepper: EngineScheme) -> str | None:
         """Return why an engine is not put to this case; None where it is."""
         names = stepper.name, stepper.engine.name, stepper.scheme
         return next((self.spared[name] for name in names if name in self.spared), None)
@@ -84,10 +84,10 @@ def rock_is_spared(reason: str) -> dict[str, str]:
     return {name: reason for name, engine in ENGINES.items() if not engine.has_rigid_blocks}
 
 
-class Trial:
+class CaseTrial:
     """One case on one engine: its scene, with more changes where a criterion needs them."""
 
-    def __init__(self, case: HardCase, stepper: Stepper) -> None:
+    def __init__(self, case: HardCase, stepper: EngineScheme) -> None:
         self.case = case
         self.engine, self.scheme = stepper
 

@@ -12,7 +12,7 @@ import numpy as np
 
 import cases
 from cases.schema.scene import Scene
-from compare.engines import ENGINES, Progress
+from compare.engines import ENGINES
 from compare.experiments.robustness.case import SHORT
 from compare.experiments.robustness.unloaded import Unloaded, unloaded
 from compare.scenes import find
@@ -63,7 +63,7 @@ def boundary(ratio: np.ndarray) -> np.ndarray:
     return 1 / (np.sqrt(1 + 4 * ratio**2) + 2 * ratio)
 
 
-def make_map(engine: str, cells: int = CELLS, progress: Progress | None = None) -> StabilityMap:
+def make_map(engine: str, cells: int = CELLS) -> StabilityMap:
     """Return the map of an engine."""
     ratio, step = np.geomspace(1e-3, 10, cells), np.geomspace(0.02, 2, cells)
     critical = ENGINES[engine].prepare(_scene(0.0)).critical
@@ -71,8 +71,6 @@ def make_map(engine: str, cells: int = CELLS, progress: Progress | None = None) 
     for j, zeta in enumerate(ratio):
         body = unloaded(ENGINES[engine], _scene(zeta * critical))  # eta = 2 zeta / omega
         stable[:, j] = [_growth(body, x * critical) < BOUND for x in step]
-        if progress:
-            progress((j + 1) / cells)
     return StabilityMap(engine, ratio, step, stable)
 
 

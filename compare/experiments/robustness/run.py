@@ -11,7 +11,13 @@ from cases.errors import SceneError, UnstableError
 from compare.engines import ENGINES, Progress
 from compare.experiments import store
 from compare.experiments.pool import Pool
-from compare.experiments.robustness.case import STEPPERS, Finding, HardCase, Stepper, Trial
+from compare.experiments.robustness.case import (
+    SCHEMES,
+    CaseTrial,
+    EngineScheme,
+    HardCase,
+    Judgement,
+)
 from compare.experiments.robustness.extreme_cases import EXTREME
 from compare.experiments.robustness.failing_cases import FAILING
 from compare.experiments.robustness.linear_cases import LINEAR
@@ -57,15 +63,15 @@ class Cells(NamedTuple):
 def places(slow: bool = True) -> list[Place]:
     """Return the places of all rows, in the order of the report; slow : also of long ones."""
     wanted = [i for i, case in enumerate(CASES) if slow or not case.slow]
-    return [(i, j) for i in wanted for j in range(len(STEPPERS))]
+    return [(i, j) for i in wanted for j in range(len(SCHEMES))]
 
 
 def row_at(place: Place) -> CaseRow:
     """Return the row of one place."""
-    return row_of(CASES[place[0]], STEPPERS[place[1]])
+    return row_of(CASES[place[0]], SCHEMES[place[1]])
 
 
-def row_of(case: HardCase, stepper: Stepper) -> CaseRow:
+def row_of(case: HardCase, stepper: EngineScheme) -> CaseRow:
     """Return the row of a case on an engine; nothing that a run can meet escapes it."""
     began = perf_counter()
     state, (value, bound, said) = _judged(case, stepper)
@@ -75,31 +81,31 @@ def row_of(case: HardCase, stepper: Stepper) -> CaseRow:
     return CaseRow(*about, bound, value, margin, state, said, seconds, case.scene, case.changes)
 
 
-def _judged(case: HardCase, stepper: Stepper) -> tuple[str, Finding]:
+def _judged(case: HardCase, stepper: EngineScheme) -> tuple[str, Judgement]:
     """Return the state of a row and what was found."""
     reason = case.why_spared(stepper) or _why_not(case, stepper)
     if reason:
-        return NONE, Finding(nan, nan, reason)
+        return NONE, Judgement(nan, nan, reason)
     try:
-        finding = case.criterion.judge(Trial(case, stepper))
+        finding = case.criterion.judge(CaseTrial(case, stepper))
     except (SceneError, UnstableError) as error:
-        return FAILED, Finding(nan, nan, str(error))
+        return FAILED, Judgement(nan, nan, str(error))
     # A bound that is not finite bounds nothing, and nan is at most nothing.
     holds = isfinite(finding.bound) and finding.value <= finding.bound
     return (HELD if holds else FAILED), finding
 
 
-def _why_not(case: HardCase, stepper: Stepper) -> str:
+def _why_not(case: HardCase, stepper: EngineScheme) -> str:
     """Return why the engine and its scheme cannot solve the scene; "" where they can."""
     try:
-        return stepper.engine.applies(Trial(case, stepper).scene).reason
+        return stepper.engine.applies(CaseTrial(case, stepper).scene).reason
     except SceneError as error:
         return f"the scheme {error.allowed}" if error.key.endswith(".scheme") else ""
 
 
 def key(place: Place) -> str:
     """Return what tells rows apart: everything that decides one."""
-    case, stepper = CASES[place[0]], STEPPERS[place[1]]
+    case, stepper = CASES[place[0]], SCHEMES[place[1]]
     return store.key(case.name, case.scene, case.changes, stepper.name)
 
 

@@ -7,7 +7,7 @@ import pandas as pd
 
 from compare.engines import Progress
 from compare.experiments.pool import Pool
-from compare.experiments.robustness.case import EQUIVALENT, JOINTED, LEAPFROG, Trial
+from compare.experiments.robustness.case import EQUIVALENT, JOINTED, LEAPFROG, CaseTrial
 from compare.experiments.robustness.criteria.energies import Drift, drift
 from compare.experiments.robustness.diagram import draw
 from compare.experiments.robustness.linear_cases import MILLION
@@ -57,7 +57,9 @@ def make_study(
 def drifts() -> dict[str, Drift]:
     """Return the energies over a million steps where leapfrog's energy holds, by engine and
     scheme."""
-    return {s.name: drift(Trial(MILLION, s), 1_000_000) for s in (LEAPFROG, JOINTED, EQUIVALENT)}
+    return {
+        s.name: drift(CaseTrial(MILLION, s), 1_000_000) for s in (LEAPFROG, JOINTED, EQUIVALENT)
+    }
 
 
 def table(rows: list[CaseRow]) -> Table:

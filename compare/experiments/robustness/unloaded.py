@@ -11,7 +11,7 @@ from cases.schema.scene import Scene
 from compare.solvers.record import Solver
 
 
-class Motion(NamedTuple):
+class FreeMotion(NamedTuple):
     """A body in motion.
 
     v : float array [freedoms], m/s. advance : takes so many steps.
@@ -30,7 +30,7 @@ class Unloaded(NamedTuple):
 
     mass: np.ndarray
     second: np.ndarray
-    begin: Callable[[float, np.ndarray], Motion]
+    begin: Callable[[float, np.ndarray], FreeMotion]
 
 
 def unloaded(engine: Solver, scene: Scene) -> Unloaded:
@@ -45,13 +45,13 @@ def _blocks(scene: Scene) -> Unloaded:
 
     p = calibrate(scene)
 
-    def begin(dt: float, v: np.ndarray) -> Motion:
+    def begin(dt: float, v: np.ndarray) -> FreeMotion:
         model = build_model(scene, p, Clock(dt, 1, 2))
         state = state_at_rest(model.effects, p.block_count, False)
         state.v[:] = v
         if state.gap_rate is not None:
             state.gap_rate[:] = np.diff(v)
-        return Motion(state.v, lambda steps: march(model, state, 0, steps))
+        return FreeMotion(state.v, lambda steps: march(model, state, 0, steps))
 
     return Unloaded(np.ones(p.block_count), np.array([1]), begin)
 
@@ -63,13 +63,13 @@ def _rock(scene: Scene, kind: str) -> Unloaded:
     discrete, d = discretise(scene, kind), scene.pillar.block
     body = discrete.body
 
-    def begin(dt: float, v: np.ndarray) -> Motion:
+    def begin(dt: float, v: np.ndarray) -> FreeMotion:
         model = build_model(scene, discrete, kind, Clock(dt, 1, 2))
         state = state_at_rest(model, False)
         state.v[:] = state.v_before[:] = v
         samples = empty_samples(model, state, 2)
         # No step of these is one of a sample.
-        return Motion(state.v, lambda n: run(model, state, samples, n + 2, 1, n + 1))
+        return FreeMotion(state.v, lambda n: run(model, state, samples, n + 2, 1, n + 1))
 
     heights = body.corners[:, :, 0].mean(axis=1)
     nodes = np.unique(body.cells[(heights > d) & (heights < 2 * d)])

@@ -13,7 +13,7 @@ from cases.schema.scene import Scene
 from compare.engines import applies, solve, solver
 from compare.experiments.study.methods.catalogue import METHODS
 from compare.experiments.study.reference import UNKNOWN, error, finest_of, known, own_of
-from compare.experiments.study.study import Point
+from compare.experiments.study.study import StudyPoint
 from compare.solvers.record import Answer
 
 LONG = 0.5  # s: a run that takes as long, its set-up included, is timed once more at most
@@ -59,10 +59,7 @@ class PointRow(NamedTuple):
     cancels: bool
 
 
-TIMED = ("seconds", "spread", "setup", "compile")  # all other columns are the same in every run
-
-
-def measure(point: Point) -> PointRow:
+def measure(point: StudyPoint) -> PointRow:
     """Run a point and return its row; what cannot be run is a row that says why."""
     try:
         return _measured(point)
@@ -70,7 +67,7 @@ def measure(point: Point) -> PointRow:
         return _row(point, "failed", str(error))
 
 
-def _measured(point: Point) -> PointRow:
+def _measured(point: StudyPoint) -> PointRow:
     study, run = point.study, runner(point, point.scene)
     result = run()
 
@@ -111,7 +108,7 @@ def _measured(point: Point) -> PointRow:
     )
 
 
-def runner(point: Point, scene: Scene) -> Callable[[], xr.Dataset]:
+def runner(point: StudyPoint, scene: Scene) -> Callable[[], xr.Dataset]:
     """Return the function that solves a point once."""
     method, arguments = point.curve.method, point.arguments
     if not (answer := method_applies(point, scene)):
@@ -123,7 +120,7 @@ def runner(point: Point, scene: Scene) -> Callable[[], xr.Dataset]:
     return lambda: _timed(lambda: solve(method, scene))
 
 
-def method_applies(point: Point, scene: Scene) -> Answer:
+def method_applies(point: StudyPoint, scene: Scene) -> Answer:
     """Return whether a point's method holds for its scene, or the reason why not."""
     method = point.curve.method
     return METHODS[method].applies(scene) if method in METHODS else applies(method, scene)
@@ -146,7 +143,7 @@ def _repeated(run: Callable[[], xr.Dataset], repeats: int) -> list[float]:
     return found
 
 
-def _row(point: Point, state: str, message: str, **numbers: float) -> PointRow:
+def _row(point: StudyPoint, state: str, message: str, **numbers: float) -> PointRow:
     about = (point.curve.label, point.curve.method, point.settings, state, message)
     # What is judged, the last two, is known once the curve is.
     values = (numbers.get(name, math.nan) for name in PointRow._fields[len(about) : -2])

@@ -11,7 +11,7 @@ from cases.schema.tables import Numerics
 from compare.engines import ENGINES, applies, exact_names, solve, solver
 from compare.experiments.references import ErrorReference
 from compare.experiments.study.methods.catalogue import METHODS
-from compare.experiments.study.study import FINEST, NONE, FineRun, Point, Study
+from compare.experiments.study.study import FINEST, NONE, FineRun, Study, StudyPoint
 from compare.misfit.metrics import Pairing, pairings, relative_l2, worst
 from compare.misfit.ranking import applicable, finest, own_exact
 from results.dataset import scene_hash
@@ -37,7 +37,7 @@ def finest_of(study: Study) -> str | FineRun | None:
     return None if found is None or found.name in ENGINES else found.name
 
 
-def own_of(point: Point) -> str | FineRun | None:
+def own_of(point: StudyPoint) -> str | FineRun | None:
     """Return what a point's numerical error is from: as its curve says, else the exact solution of
     its own model, else a run of its engine as fine as the study's fine run; None without."""
     own, study = point.curve.own, point.study

@@ -9,7 +9,7 @@ from compare.experiments.pool import Pool, alone
 from compare.experiments.store import Store
 from compare.experiments.study.measure import PointRow, measure
 from compare.experiments.study.pareto import judged
-from compare.experiments.study.study import Point, Study
+from compare.experiments.study.study import Study, StudyPoint
 
 
 def run(
@@ -31,7 +31,7 @@ def rate(study: Study) -> str:
     return f"point of {study.title}"
 
 
-def key(point: Point) -> str:
+def key(point: StudyPoint) -> str:
     """Return what tells points apart: everything that decides a row."""
     study = point.study.model_dump(mode="json", exclude={"title", "curves"})
     return store.key(study, point.curve.model_dump(mode="json"), point.settings)

@@ -117,17 +117,17 @@ class Study(StudyTable):
         changes = self.changes | changes | {"expect": {}}
         return cases.load_variant(find(self.scene), self.variant, changes, asked=False)
 
-    def points(self) -> list["Point"]:
+    def points(self) -> list["StudyPoint"]:
         """Return all points, curve by curve."""
         return [
-            Point(self, curve, settings)
+            StudyPoint(self, curve, settings)
             for curve in self.curves
             for settings in combinations(curve.vary)
         ]
 
 
 @dataclass(frozen=True)
-class Point:
+class StudyPoint:
     """One run of a study: a curve with one value of each varied key."""
 
     study: Study

@@ -39,7 +39,7 @@ class SweepCase(NamedTuple):
         return "" if self.scene is None else self.scene.name
 
 
-class Outcome(NamedTuple):
+class SweepOutcome(NamedTuple):
     """The outcome of a case: "done" with its rows, or "failed" with the reason."""
 
     state: str
@@ -83,9 +83,14 @@ class Comparing(NamedTuple):
 
     @property
     def about(self) -> list[Any]:
-        """All that decides a row beside the scene and the samples of the curves."""
+        """All that decides a row beside the scene, of the curves their samples too."""
         named = [[c.file, c.name, c.variant, list(map(str, c.waveforms))] for c in self.curves]
-        return [self.spectral, self.align, self.writes, named]
+        samples = [
+            sha256(np.asarray(values).tobytes()).hexdigest()
+            for curve in self.curves
+            for values in (curve.time, *curve.waveforms.values())
+        ]
+        return [self.spectral, self.align, self.writes, named, samples]
 
     def solvers(self, scene: Scene) -> list[str]:
         """Return the names of what would solve a scene."""
@@ -112,29 +117,22 @@ class Comparing(NamedTuple):
 Work = Running | Comparing
 
 
-def outcome(case: SweepCase, work: Work) -> Outcome:
+def outcome(case: SweepCase, work: Work) -> SweepOutcome:
     """Return the outcome of a case; of one that cannot be solved the reason."""
     if case.scene is None:
-        return Outcome("failed", case.message, [])
+        return SweepOutcome("failed", case.message, [])
     try:
-        return Outcome("done", "", work(case.scene, case.folder))
+        return SweepOutcome("done", "", work(case.scene, case.folder))
     except InterruptedRun:
         raise
     except (SceneError, UnstableError, MemoryError) as error:
-        return Outcome("failed", str(error) or "not enough memory", [])
+        return SweepOutcome("failed", str(error) or "not enough memory", [])
 
 
 def key(case: SweepCase, work: Work) -> str:
     """Return what tells cases apart: everything that decides a row."""
     scene = case.message if case.scene is None else scene_hash(case.scene)
-    curves = work.curves if isinstance(work, Comparing) else []
-    samples = [
-        sha256(np.asarray(values).tobytes()).hexdigest()
-        for curve in curves
-        for values in (curve.time, *curve.waveforms.values())
-    ]
-    about = [str(case.folder), case.variant, scene, type(work).__name__, work.about]
-    return store.key(*about, samples)
+    return store.key(str(case.folder), case.variant, scene, type(work).__name__, work.about)
 
 
 def _of_run(done: Any) -> Rows:

@@ -10,12 +10,14 @@ from compare.experiments.combinations import combinations
 from compare.experiments.pool import Pool
 from compare.experiments.store import Store
 from compare.experiments.sweep.axis import axes
-from compare.experiments.sweep.case import Outcome, SweepCase, Work, key, outcome
+from compare.experiments.sweep.case import SweepCase, SweepOutcome, Work, key, outcome
 from compare.scenes import find, load, load_variant
 
 POINTS = "points"  # the folder of what is done
 LONGEST = 100  # characters of a folder's name
-LOST = Outcome("failed", "its process has ended before it was done, maybe for want of memory", [])
+LOST = SweepOutcome(
+    "failed", "its process has ended before it was done, maybe for want of memory", []
+)
 
 
 class Sweep(NamedTuple):
@@ -71,13 +73,15 @@ def _folder(setting: dict[str, Any], number: int) -> str:
 
 def run(
     asked: Sweep, work: Work, pool: Pool | None = None, progress: Progress | None = None
-) -> list[Outcome]:
+) -> list[SweepOutcome]:
     """Return the outcomes of all cases, in order; those that are done are taken from its folder."""
-    outcomes: Store[Outcome] = Store(Outcome, asked.out and asked.out / POINTS, _has_files)
+    outcomes: Store[SweepOutcome] = Store(
+        SweepOutcome, asked.out and asked.out / POINTS, _has_files
+    )
     key_of, outcome_of = partial(key, work=work), partial(outcome, work=work)
     return outcomes.compute(asked.cases, key_of, outcome_of, pool, progress, lost=LOST)
 
 
-def _has_files(found: Outcome) -> bool:
+def _has_files(found: SweepOutcome) -> bool:
     """Return whether the results of a case are still there."""
     return all(Path(str(row["file"])).is_file() for row in found.rows if "file" in row)

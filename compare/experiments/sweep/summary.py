@@ -10,7 +10,7 @@ import xarray as xr
 
 from cases.errors import SceneError
 from compare.experiments.summary import Summary
-from compare.experiments.sweep.case import Outcome
+from compare.experiments.sweep.case import SweepOutcome
 from compare.experiments.sweep.runner import Sweep
 from compare.experiments.tables import cell, grouped, number, write_tables
 from compare.misfit.metrics import Distance
@@ -38,7 +38,7 @@ SHOWN_OF_PAIRS = (
 )
 
 
-def table(asked: Sweep, found: list[Outcome]) -> pd.DataFrame:
+def table(asked: Sweep, found: list[SweepOutcome]) -> pd.DataFrame:
     """Return one row for each receiver of each run or pair, or for each case that failed; SI."""
     rows: list[dict[str, Any]] = []
     for case, one in zip(asked.cases, found, strict=True):
@@ -48,7 +48,7 @@ def table(asked: Sweep, found: list[Outcome]) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def summarise(asked: Sweep, found: list[Outcome]) -> Summary:
+def summarise(asked: Sweep, found: list[SweepOutcome]) -> Summary:
     """Return the summary of a sweep; write sweep.csv and sweep.nc.
 
     Raises SceneError where all cases have failed.

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from compare.engines import solve, solvers
-from compare.experiments.robustness.case import EPS, Finding, Trial, criterion
+from compare.experiments.robustness.case import EPS, CaseTrial, Judgement, criterion
 from compare.misfit.metrics import misfit
 from compare.solvers.continuum import JOINTED_ROCK
 
@@ -25,7 +25,7 @@ ERROR = {"leapfrog": 1 / 24, "fourth-order": 1 / 24, "explicit": 1 / 24, "implic
 REFEREE = 5e-6  # of the exact bars: their inversion takes the mean load of steps, 6e-7 at the peak
 
 
-def phase_error(trial: Trial, result: xr.Dataset) -> float:
+def phase_error(trial: CaseTrial, result: xr.Dataset) -> float:
     """Return the misfit that the steps of a second-order scheme leave at the end of a run.
 
     A relative error e of the frequency omega is the phase e omega t at time t, and a wave that is
@@ -37,7 +37,7 @@ def phase_error(trial: Trial, result: xr.Dataset) -> float:
     return ERROR[trial.scheme] * step**2 * CUBES * omega * trial.scene.time.duration
 
 
-def element_error(trial: Trial) -> float:
+def element_error(trial: CaseTrial) -> float:
     """Return the misfit that quadratic GLL elements leave at the end of a run; none in blocks.
 
     Their phase speed is wrong by (omega tau)^4 / 2880, tau the time through an element (Ainsworth &
@@ -55,7 +55,7 @@ def element_error(trial: Trial) -> float:
     return phase + 10 * EPS * float(read.max()) * 2 * t / p.impedance
 
 
-def corner_error(trial: Trial, result: xr.Dataset) -> float:
+def corner_error(trial: CaseTrial, result: xr.Dataset) -> float:
     """Return the misfit from the two corners of a sine that starts and ends; none of a wavelet.
 
     A change of slope s has the spectrum s / omega^2; what of it is beyond the w of `lost_after` is
@@ -69,7 +69,7 @@ def corner_error(trial: Trial, result: xr.Dataset) -> float:
     return sqrt(square / ((load.cycles or 1) * (load.period or 0.0) / 2))
 
 
-def lost_after(trial: Trial, result: xr.Dataset) -> float:
+def lost_after(trial: CaseTrial, result: xr.Dataset) -> float:
     """Return 1 / w (s): frequencies beyond w have lost their phase by the end of a run.
 
     That of the steps is C (w dt)^2 w t = 1, that of elements (w tau)^4 w t / 2880 = 1.
@@ -81,12 +81,12 @@ def lost_after(trial: Trial, result: xr.Dataset) -> float:
     return lost + (time_of_element(trial) ** 4 * t / 2880) ** (1 / 5)
 
 
-def peak(trial: Trial) -> float:
+def peak(trial: CaseTrial) -> float:
     """Return the angular frequency of the peak of the load's spectrum, rad/s."""
     return 2 * pi / (trial.scene.load.period or trial.scene.time.duration)
 
 
-def time_of_element(trial: Trial) -> float:
+def time_of_element(trial: CaseTrial) -> float:
     """Return how long a wave takes through an element of the rock, s."""
     from continuum.build import elements_for
 
@@ -97,7 +97,7 @@ def time_of_element(trial: Trial) -> float:
     return p.spacing / count / sqrt((modulus or p.modulus) / p.density)
 
 
-def referee(trial: Trial) -> tuple[str, float]:
+def referee(trial: CaseTrial) -> tuple[str, float]:
     """Return the first exact solution of the model that the engine discretises, and the misfit of
     the engine's result from it."""
     own = (one for one in solvers() if one.exact and one.discretised)
@@ -108,9 +108,9 @@ def referee(trial: Trial) -> tuple[str, float]:
 
 
 @criterion(SECOND_ORDER)
-def near_exact(trial: Trial) -> Finding:
+def near_exact(trial: CaseTrial) -> Judgement:
     """The misfit from the exact solution is at most the scheme's phase error (and elements')."""
     name, found = referee(trial)
     bound = phase_error(trial, trial.result) + element_error(trial) + REFEREE
     bound += corner_error(trial, trial.result)
-    return Finding(found, bound, f"misfit from {name}")
+    return Judgement(found, bound, f"misfit from {name}")

@@ -15,7 +15,7 @@ from math import asin, inf, isfinite, log, pi, sqrt
 import numpy as np
 
 from cases.errors import UnstableError
-from compare.experiments.robustness.case import Finding, Trial, criterion
+from compare.experiments.robustness.case import CaseTrial, Judgement, criterion
 from compare.experiments.robustness.unloaded import unloaded
 
 IMPACTS = 10_000
@@ -25,7 +25,7 @@ EDGE = 1 - np.cos(pi / SAMPLES / 2)
 
 
 @criterion("logarithm of the last speed over the first, off that of ten thousand dashpots' impacts")
-def restitution(trial: Trial) -> Finding:
+def restitution(trial: CaseTrial) -> Judgement:
     """After n impacts the speed is e^n of the first, and it never grows.
 
     An impact begins and ends within a step, where the trapezoid of the force is off by k (v dt)^2/8
@@ -43,12 +43,12 @@ def restitution(trial: Trial) -> Finding:
     softer = float(p.stiffness[p.soft[0]] / p.regular_stiffness)
     bound = (len(peaks) - 1) * (kinks + abs(e) * softer) + EDGE
     if rise > 2 * kinks + EDGE:
-        return Finding(inf, bound, f"the speed grows by {rise:.3g} at an impact")
+        return Judgement(inf, bound, f"the speed grows by {rise:.3g} at an impact")
     said = f"after {len(peaks) - 1:,} impacts; e^n = {peaks[-1] / peaks[0]:.4f}"
-    return Finding(off, bound, said)
+    return Judgement(off, bound, said)
 
 
-def _peaks(trial: Trial, stride: int) -> np.ndarray:
+def _peaks(trial: CaseTrial, stride: int) -> np.ndarray:
     """Return the largest speed of the loose block's mass between one impact and the next, m/s, of
     all impacts, from 1 m/s on; it is looked at once in so many steps."""
     body = unloaded(trial.engine, trial.scene)

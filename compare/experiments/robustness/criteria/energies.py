@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from compare.experiments.robustness.case import EPS, Criterion, Finding, Trial, criterion
+from compare.experiments.robustness.case import EPS, CaseTrial, Criterion, Judgement, criterion
 
 SAMPLES = 1000
 
@@ -18,7 +18,7 @@ class Drift(NamedTuple):
     energy: np.ndarray
 
 
-def drift(trial: Trial, steps: int) -> Drift:
+def drift(trial: CaseTrial, steps: int) -> Drift:
     """Return the energy of an undamped pillar over so many steps, from the end of its load on."""
     result = trial.run(**_clock(trial, steps))
     energy = result["energy"].sel(term=["kinetic", "elastic"]).sum("term").values
@@ -27,7 +27,7 @@ def drift(trial: Trial, steps: int) -> Drift:
     return Drift(result["time"].values[after] / float(result.attrs["dt"]), energy[after] / mean - 1)
 
 
-def _clock(trial: Trial, steps: int) -> dict:
+def _clock(trial: CaseTrial, steps: int) -> dict:
     """Return the changes for so many steps at the fraction of the critical step, in samples."""
     dt, stride = trial.dt, steps // SAMPLES
     found = {"record__interval": stride * dt, "time__duration": steps * dt * (1 + 1e-9)}
@@ -51,7 +51,7 @@ def no_trend(steps: int) -> Criterion:
     @criterion(
         "linear trend of the energy, at most a random walk of round-off and the fit's own error"
     )
-    def judge(trial: Trial) -> Finding:
+    def judge(trial: CaseTrial) -> Judgement:
         found = drift(trial, steps)
         x = found.steps / found.steps[-1]
         slope = np.polynomial.Polynomial.fit(x, found.energy, 1)
@@ -59,13 +59,13 @@ def no_trend(steps: int) -> Criterion:
         trend = abs(float(slope(1.0) - slope(0.0)))
         walk = EPS * (steps if trial.is_implicit else 4 * sqrt(steps))
         bound = walk + 4 * sqrt(12 / len(x)) * swing
-        return Finding(trend, bound, f"of the energy over {steps:,} steps; swing {swing:.1e}")
+        return Judgement(trend, bound, f"of the energy over {steps:,} steps; swing {swing:.1e}")
 
     return judge
 
 
 @criterion("fall of what is spent, over the work")
-def passive(trial: Trial) -> Finding:
+def passive(trial: CaseTrial) -> Judgement:
     """What is dissipated never comes back, and energy is neither made nor lost.
 
     Of the second law: what sliding and opening have taken, and all that is spent (viscous,
@@ -74,7 +74,7 @@ def passive(trial: Trial) -> Finding:
     friction. The boundary term is left out where springs hold the ends.
     """
     bound = ROUND_OFF * float(trial.result.attrs["steps"])
-    return Finding(largest_fall(trial.result), bound, "of the work")
+    return Judgement(largest_fall(trial.result), bound, "of the work")
 
 
 ROUND_OFF = 1e-15

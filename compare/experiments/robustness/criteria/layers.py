@@ -11,7 +11,7 @@ from cases.sampling import interpolation
 from cases.schema.joint import SoftLayer
 from compare.exact.bar import jointed_bar
 from compare.exact.schemes.leapfrog import modes, of_modes
-from compare.experiments.robustness.case import Finding, Trial, criterion
+from compare.experiments.robustness.case import CaseTrial, Judgement, criterion
 from compare.experiments.robustness.criteria.accuracy import (
     REFEREE,
     SECOND_ORDER,
@@ -23,7 +23,7 @@ from compare.misfit.metrics import relative_l2
 
 
 @criterion("misfit in front of it from a pillar that ends there, at most what the layer leaks")
-def free_end(trial: Trial) -> Finding:
+def free_end(trial: CaseTrial) -> Judgement:
     """In front of a layer of almost no stiffness the pillar ends free.
 
     The layer passes K times its gap. A face moves no further than twice the incident velocity takes
@@ -40,7 +40,7 @@ def free_end(trial: Trial) -> Finding:
     leak += 2 * _impedance(layer, p) / p.impedance
     passes = p.bar_speed * t / layer.y
     found = relative_l2(whole["stress"].values, short["stress"].values)
-    return Finding(found, passes * leak + 2 * _of_steps(trial, whole, short), "misfit")
+    return Judgement(found, passes * leak + 2 * _of_steps(trial, whole, short), "misfit")
 
 
 def _impedance(layer: SoftLayer, p: Properties) -> float:
@@ -48,7 +48,7 @@ def _impedance(layer: SoftLayer, p: Properties) -> float:
     return sqrt((layer.normal_stiffness or 0.0) * (layer.thickness or 0.0) * p.density)
 
 
-def _of_steps(trial: Trial, one: xr.Dataset, other: xr.Dataset) -> float:
+def _of_steps(trial: CaseTrial, one: xr.Dataset, other: xr.Dataset) -> float:
     """Return what two runs may differ by through their steps: round-off where these are equal."""
     if one.attrs["dt"] == other.attrs["dt"]:
         return 1e-15 * float(one.attrs["steps"])
@@ -56,7 +56,7 @@ def _of_steps(trial: Trial, one: xr.Dataset, other: xr.Dataset) -> float:
 
 
 @criterion("misfit from the exact bar without it, at most its delay and the phase error")
-def no_layer(trial: Trial) -> Finding:
+def no_layer(trial: CaseTrial) -> Judgement:
     """A joint of almost no compliance leaves whole rock.
 
     It lets a wave of frequency omega pass with 1 / |T| - 1 < (Z omega / 2 K)^2 / 2 and a delay of
@@ -70,11 +70,11 @@ def no_layer(trial: Trial) -> Finding:
     passes = p.bar_speed * scene.time.duration / scene.pillar.length
     found = relative_l2(result["stress"].values, exact["stress"].values)
     bound = passes * delay + phase_error(trial, result) + element_error(trial) + REFEREE
-    return Finding(found, bound, "misfit from the bar without it")
+    return Judgement(found, bound, "misfit from the bar without it")
 
 
 @criterion("misfit from the chain in which the two blocks are one")
-def welded_blocks(trial: Trial) -> Finding:
+def welded_blocks(trial: CaseTrial) -> Judgement:
     """Two rigid blocks on a joint of almost no compliance are one block.
 
     The exact chain has their masses as one (modes of the assembled chain, leapfrog in closed form);
@@ -83,11 +83,11 @@ def welded_blocks(trial: Trial) -> Finding:
     (layer,), p = trial.scene.soft_layers, trial.properties
     compliance = p.regular_stiffness / p.stiffness[p.soft[0]]
     bound = phase_error(trial, trial.result) + compliance
-    return Finding(_off_chain(trial, layer.y), bound, "misfit of displacements")
+    return Judgement(_off_chain(trial, layer.y), bound, "misfit of displacements")
 
 
 @criterion(SECOND_ORDER)
-def as_chain(trial: Trial) -> Finding:
+def as_chain(trial: CaseTrial) -> Judgement:
     """The displacements are those of leapfrog on this chain in closed form.
 
     For leapfrog to round-off, an eps each step; the fourth-order scheme, beside leapfrog at its
@@ -96,13 +96,13 @@ def as_chain(trial: Trial) -> Finding:
     bound = phase_error(trial, trial.result)
     if trial.scheme == "leapfrog":
         bound = ROUND_OFF * float(trial.result.attrs["steps"])
-    return Finding(_off_chain(trial), bound, "misfit of displacements from the closed form")
+    return Judgement(_off_chain(trial), bound, "misfit of displacements from the closed form")
 
 
 ROUND_OFF = 2e-15  # some operations of eps each
 
 
-def _off_chain(trial: Trial, weld: float | None = None) -> float:
+def _off_chain(trial: CaseTrial, weld: float | None = None) -> float:
     """Return the misfit of the displacements from those of leapfrog in closed form, at a step for
     each evaluation of the forces. weld : y of a joint whose blocks are one, m."""
     about = trial.result.attrs
@@ -111,7 +111,7 @@ def _off_chain(trial: Trial, weld: float | None = None) -> float:
     return relative_l2(trial.result["displacement"].values[..., 0], exact)
 
 
-def _displacements(trial: Trial, dt: float, weld: float | None) -> np.ndarray:
+def _displacements(trial: CaseTrial, dt: float, weld: float | None) -> np.ndarray:
     """Return the displacements [points, n] (m) of an undamped chain of free ends at the result's
     times, of any joints, by leapfrog at a step of dt (s): round-off is all that is left."""
     scene, p = trial.scene, trial.properties

@@ -10,19 +10,19 @@ import xarray as xr
 from cases.errors import SceneError, UnstableError
 from cases.loads import load_history
 from cases.sampling import sample_times
-from compare.experiments.robustness.case import ALLOW, Finding, Trial, criterion
+from compare.experiments.robustness.case import ALLOW, CaseTrial, Judgement, criterion
 
 RANGE = log(1.7e308) - log(2.2e-308)  # all numbers, from the least to the largest
 
 
-def exactly(trial: Trial, steps: int) -> dict[str, Any]:
+def exactly(trial: CaseTrial, steps: int) -> dict[str, Any]:
     """Return the changes that make one sample a step, of exactly the fraction asked for."""
     dt = trial.dt
     return {"record__interval": dt, "time__duration": dt * steps * (1 + 1e-9)}
 
 
 @criterion("fastest block or node, m/s, at most what the impulse gives at this step")
-def impulse_bound(trial: Trial) -> Finding:
+def impulse_bound(trial: CaseTrial) -> Judgement:
     """No point moves faster than the load's impulse can make it, amplified as at this step.
 
     A mode of frequency omega, driven at steps k by F_k, has the velocity (leapfrog in closed form)
@@ -36,7 +36,7 @@ def impulse_bound(trial: Trial) -> Finding:
     x = _over_critical(result)
     gain = _gain_of_composition(x, steps) if _is_fourth(trial) else _gain(x, steps)
     said = f"step {x:.6f} of the critical; speeds in m/s"
-    return Finding(_speed(trial, result), gain * _fastest(trial), said)
+    return Judgement(_speed(trial, result), gain * _fastest(trial), said)
 
 
 STEPS = 20_000
@@ -48,7 +48,7 @@ def _gain(x: float, steps: int) -> float:
     return 2.0 * steps if x >= 1 - 1e-9 else min(2.0 * steps, 1 / sqrt(1 - x * x))
 
 
-def _speed(trial: Trial, result: xr.Dataset) -> float:
+def _speed(trial: CaseTrial, result: xr.Dataset) -> float:
     """Return the highest recorded speed, m/s, of leapfrog at half steps, where it has velocities:
     the mean of two of them would hide a mode that alternates."""
     if _is_fourth(trial):
@@ -57,7 +57,7 @@ def _speed(trial: Trial, result: xr.Dataset) -> float:
     return float(np.abs(ways).max()) / float(result.attrs["dt"])
 
 
-def _is_fourth(trial: Trial) -> bool:
+def _is_fourth(trial: CaseTrial) -> bool:
     return trial.scheme == "fourth-order"
 
 
@@ -83,7 +83,7 @@ def _gain_of_composition(x: float, steps: int) -> float:
     return float(max(abs(v) + abs(whole[1, 0] * u) * most for u, v in left))
 
 
-def _fastest(trial: Trial) -> float:
+def _fastest(trial: CaseTrial) -> float:
     """Return the speed (m/s) that the integral of the load's magnitude gives the lightest node.
 
     A block has its whole mass on its one freedom. GLL elements of order p give 1 / (p (p + 1)) of
@@ -99,7 +99,7 @@ def _fastest(trial: Trial) -> float:
 
 
 @criterion("refused; forced, stopped before it can have passed all numbers")
-def caught(trial: Trial) -> Finding:
+def caught(trial: CaseTrial) -> Judgement:
     """A step above the critical one is refused; forced, it is stopped within the range of numbers.
 
     The highest mode grows by exp(2 acosh(x)) a step (leapfrog; the fourth-order scheme by
@@ -111,17 +111,17 @@ def caught(trial: Trial) -> Finding:
     changes = exactly(trial, steps * 3 // 2)
     try:
         trial.run(**changes)
-        return Finding(inf, steps, "the step was not refused")
+        return Judgement(inf, steps, "the step was not refused")
     except SceneError:
         pass
     try:
         trial.run(**changes, **{ALLOW: True})
     except UnstableError as error:
-        return Finding(_steps_until(trial, str(error)), 2 * steps, f"steps; {error}")
-    return Finding(inf, 2 * steps, "the run was not stopped")
+        return Judgement(_steps_until(trial, str(error)), 2 * steps, f"steps; {error}")
+    return Judgement(inf, 2 * steps, "the run was not stopped")
 
 
-def _growth(trial: Trial, x: float) -> float:
+def _growth(trial: CaseTrial, x: float) -> float:
     """Return the logarithm of what a step at x of the critical one multiplies the mode by."""
     if not _is_fourth(trial):
         return 2 * acosh(x)
@@ -130,7 +130,7 @@ def _growth(trial: Trial, x: float) -> float:
     return acosh(abs(half_trace()((x * stability_limit()) ** 2)))
 
 
-def _steps_until(trial: Trial, message: str) -> float:
+def _steps_until(trial: CaseTrial, message: str) -> float:
     """Return the step at which a run was stopped, by the time that its message names."""
     found = re.search(r"t = ([-+.\de]+) s", message)
     assert found is not None, message
@@ -138,7 +138,7 @@ def _steps_until(trial: Trial, message: str) -> float:
 
 
 @criterion("energy after the load, over that at its end")
-def never_grows(trial: Trial) -> Finding:
+def never_grows(trial: CaseTrial) -> Judgement:
     """Once the load has ended, implicit steps of any length never add energy.
 
     The generalised-alpha method is unconditionally stable and its modes only decay: the most of
@@ -150,7 +150,7 @@ def never_grows(trial: Trial) -> Finding:
     half = after.size // 2
     ratio = float(after[half:].max() / after[:half].max())
     bound = 1 + 1e-14 * float(result.attrs["steps"])
-    return Finding(ratio, bound, f"step {_over_critical(result):.3g} critical ones")
+    return Judgement(ratio, bound, f"step {_over_critical(result):.3g} critical ones")
 
 
 def _over_critical(result: xr.Dataset) -> float:

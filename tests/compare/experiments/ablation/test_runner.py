@@ -8,15 +8,15 @@ import pandas as pd
 import pytest
 
 from compare.experiments.ablation import runner
-from compare.experiments.ablation.ablation import Ablation, Dropped, Effect
+from compare.experiments.ablation.ablation import Ablation, Dropped, EffectCost
 from compare.experiments.ablation.diagram import draw
 from compare.experiments.ablation.runner import Variant, all_shipped, reported, run
 from compare.experiments.ablation.summary import sentences, summarise, table
 
-LEDGER = Effect("energy ledger", 1.0, 3.0, 0.75, 1.0, nan, 0.0, "")
-LAYER = Effect("joints that differ", 0.1, -0.1, -0.025, 1.0, nan, 0.8, "")
-DAMPED = Effect("dashpots", 0.2, 2.0, 0.5, 4.0, 1.5, 0.05, "")
-SPACE = Effect("spatial motion", nan, nan, nan, nan, nan, nan, "is what the scene is about")
+LEDGER = EffectCost("energy ledger", 1.0, 3.0, 0.75, 1.0, nan, 0.0, "")
+LAYER = EffectCost("joints that differ", 0.1, -0.1, -0.025, 1.0, nan, 0.8, "")
+DAMPED = EffectCost("dashpots", 0.2, 2.0, 0.5, 4.0, 1.5, 0.05, "")
+SPACE = EffectCost("spatial motion", nan, nan, nan, nan, nan, nan, "is what the scene is about")
 FOUND = [
     Ablation("set/one", "One", "", 0.5, 4.0, 40.0, nan, [LAYER, LEDGER]),
     Ablation("set/two", "Two", "hard", 0.5, 4.0, 20.0, 3.0, [SPACE, DAMPED]),

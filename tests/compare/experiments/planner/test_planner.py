@@ -34,7 +34,7 @@ def planned(scene_with):
     short = {key.replace("__", "."): value for key, value in SHORT.items()} | {"load": RICKER}
 
     @cache
-    def found(target, damped=False):
+    def found(target, damped):
         return plan(scene_with(**short, **(DAMPED if damped else {})), target)
 
     return found
@@ -54,13 +54,13 @@ def test_what_is_predicted_is_obtained(target, damped, planned):
 
 def test_coarse_demands_are_met_by_rigid_blocks_and_fine_ones_by_rock(planned):
     """Rigid blocks end at their modelling error, 0.2 %."""
-    assert planned(0.05).chosen.family.name == "dem"
-    assert planned(1e-3).chosen.family.name == "continuum-jointed"
+    assert planned(0.05, False).chosen.family.name == "dem"
+    assert planned(1e-3, False).chosen.family.name == "continuum-jointed"
 
 
 def test_options_make_the_configuration(planned):
     """What is printed gives the misfit that is printed."""
-    found = planned(0.01)
+    found = planned(0.01, False)
     scene = found.scene
     overrides = {key.replace("__", "."): value for key, value in SHORT.items()}
     overrides |= {"load": RICKER, "record.interval": scene.interval, "record.energy": False}

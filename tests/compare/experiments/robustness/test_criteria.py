@@ -9,10 +9,10 @@ from compare.experiments.robustness.case import (
     FOURTH,
     LEAPFROG,
     STEP,
+    CaseTrial,
     Criterion,
-    Finding,
     HardCase,
-    Trial,
+    Judgement,
 )
 from compare.experiments.robustness.criteria import accuracy, energies, steps
 from compare.experiments.robustness.linear_cases import BLOW, JOINT, TINY
@@ -35,7 +35,7 @@ def test_unstable_step_breaks_the_bound_of_the_stable_one(monkeypatch):
 def test_step_that_is_never_stopped_is_not_caught():
     """A stable step that is asked for as an unstable one runs to its end: the criterion says so."""
 
-    class Sound(Trial):
+    class Sound(CaseTrial):
         def run(self, **more):
             return super().run(**more | {STEP: 0.9})
 
@@ -46,13 +46,15 @@ def test_step_that_is_never_stopped_is_not_caught():
 def test_wrong_stiffness_breaks_the_accuracy():
     """Joints one part in a hundred too stiff are further off than the phase error."""
 
-    class Stiffer(Trial):
+    class Stiffer(CaseTrial):
         def run(self, **more):
             layers = [{"y": 0.5 * j, "normal_stiffness": 1.05 * JOINT} for j in range(1, 20)]
             return super().run(soft_layers=layers, **more)
 
     case = HardCase("a case", accuracy.near_exact)
-    sound, wrong = (accuracy.near_exact.judge(kind(case, LEAPFROG)) for kind in (Trial, Stiffer))
+    sound, wrong = (
+        accuracy.near_exact.judge(kind(case, LEAPFROG)) for kind in (CaseTrial, Stiffer)
+    )
     assert sound.value < sound.bound and wrong.value > wrong.bound
 
 
@@ -75,7 +77,7 @@ def test_dissipated_energy_that_comes_back_is_seen(pillar):
 
 def test_bound_that_bounds_nothing_fails():
     """A bound of infinity or nan, and a value of nan, hold nothing."""
-    for finding in (Finding(1.0, np.inf), Finding(1.0, np.nan), Finding(np.nan, 1.0)):
+    for finding in (Judgement(1.0, np.inf), Judgement(1.0, np.nan), Judgement(np.nan, 1.0)):
         assert judged(Criterion("", lambda trial, found=finding: found), {}).state == FAILED
 
 
