@@ -9,9 +9,10 @@ from math import inf
 
 from cases.errors import SceneError
 from cases.schema.scene import Scene
+from compare.experiments.failures import FAILURES, reason_of
 from compare.experiments.planner.choices import Choice, furthest_off, measured, steps
 from compare.experiments.planner.families import FAMILIES, Family, effort
-from compare.experiments.planner.planner import FAILURES, reason_of, too_far
+from compare.experiments.planner.planner import too_far
 from compare.experiments.planner.reference import OwnModel, References
 from compare.experiments.planner.trials import FINEST, Trial, first_trial, is_hopeless, trial_at
 

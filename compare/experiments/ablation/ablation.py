@@ -11,15 +11,14 @@ from typing import Any, NamedTuple
 
 import dem
 from cases.effects import active_effects
-from cases.errors import SceneError, UnstableError
 from cases.schema.scene import Scene
 from compare.engines import applies, solve
 from compare.experiments.ablation.variants import left_out, only
 from compare.experiments.cost.step_cost import everything, freedoms_in_turns, in_turns, stretch
+from compare.experiments.failures import FAILURES, reason_of
 from compare.misfit.metrics import misfit
 from compare.solvers.continuum import JOINTED_ROCK
 
-FAILURES = (SceneError, UnstableError)  # of a scene that cannot be so
 ROCK = JOINTED_ROCK.name
 OWN = "own"  # the scene as it stands, among those without one of its effects
 
@@ -95,7 +94,7 @@ def _drop(scene: Scene, name: str, result: Any) -> Dropped:
         one = left_out(scene, name)
         without = dem.simulate(one)
     except FAILURES as error:
-        return Dropped(name, nan, nan, False, False, getattr(error, "allowed", str(error)))
+        return Dropped(name, nan, nan, False, False, reason_of(error))
     steps = result.attrs["steps"] / without.attrs["steps"]
     alone = _runs(lambda: stretch(only(scene, name))[0]())
     rock = _runs(lambda: solve(ROCK, one))

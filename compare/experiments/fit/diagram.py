@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from compare.experiments.fit.fit import Fit, Fitted
+from compare.experiments.fit.result import Fit, Fitted
 from compare.figures.blank import blank
 from compare.figures.overlays import UNITS
 from compare.figures.style import GIVEN, style

@@ -15,8 +15,8 @@ from cases.read import FILE_KEYS
 from cases.schema.scene import Scene
 from cases.size import value_of
 from compare.experiments.fit.diagram import draw
-from compare.experiments.fit.fit import Fit
 from compare.experiments.fit.keys import CLOCK
+from compare.experiments.fit.result import Fit
 from compare.experiments.fit.scene_text import scene_text
 from compare.experiments.store import finite
 from compare.figures.export import save, write_csv

@@ -10,6 +10,7 @@ from cases.errors import SceneError, UnstableError
 from cases.schema.scene import Scene
 from compare.engines import applies, solve, solver
 from compare.exact.blocks import lattice
+from compare.experiments.failures import FAILURES
 from compare.experiments.fit.keys import CLOCK, changed
 from compare.experiments.planner.families import COARSEST
 from compare.misfit.alignment import INSTANT, static_level
@@ -57,7 +58,7 @@ class Problem:
         try:
             scene = changed(self.scene, {k: v for k, v in values.items() if k != CLOCK})
             result = solve(self.solver, self._stepped(scene))
-        except (SceneError, UnstableError):
+        except FAILURES:
             return None
         time, found = result.time.values, []
         for one in self.measured:

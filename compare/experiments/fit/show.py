@@ -5,7 +5,7 @@ import shlex
 from pathlib import Path
 
 from compare.cli.terminal import say, show_numbers
-from compare.experiments.fit.fit import Estimate, Fit
+from compare.experiments.fit.result import Estimate, Fit
 
 
 def show_fit(found: Fit, scene: str, variant: str, files: list[Path]) -> None:

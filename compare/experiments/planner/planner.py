@@ -13,9 +13,10 @@ from math import inf
 from time import perf_counter
 from typing import NamedTuple
 
-from cases.errors import SceneError, StoppedError, UnstableError
+from cases.errors import StoppedError
 from cases.schema.scene import Scene
 from compare.engines import Progress
+from compare.experiments.failures import FAILURES, reason_of
 from compare.experiments.planner.choices import MARGIN, Choice, cheapest, measured, predicted
 from compare.experiments.planner.families import (
     FAMILIES,
@@ -42,7 +43,6 @@ from compare.misfit.metrics import misfit as misfit_of
 #: freedom-step has taken so far.
 SAFETY = 0.5
 DEAR = "would cost more than what is known to do"
-FAILURES = (SceneError, UnstableError)
 
 
 class Plan(NamedTuple):
@@ -198,8 +198,3 @@ def _tried(search: PlanSearch, progress: Progress | None) -> dict[str, str]:
         if progress:
             progress((i + 1) / (len(FAMILIES) + 1))
     return skipped
-
-
-def reason_of(error: Exception) -> str:
-    """Return why something could not be run, without where."""
-    return getattr(error, "allowed", str(error))

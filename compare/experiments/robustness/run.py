@@ -7,9 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.errors import SceneError, UnstableError
+from cases.errors import SceneError
 from compare.engines import ENGINES, Progress
 from compare.experiments import store
+from compare.experiments.failures import FAILURES
 from compare.experiments.pool import Pool
 from compare.experiments.robustness.case import (
     SCHEMES,
@@ -88,7 +89,7 @@ def _judged(case: HardCase, stepper: EngineScheme) -> tuple[str, Judgement]:
         return NONE, Judgement(nan, nan, reason)
     try:
         finding = case.criterion.judge(CaseTrial(case, stepper))
-    except (SceneError, UnstableError) as error:
+    except FAILURES as error:
         return FAILED, Judgement(nan, nan, str(error))
     # A bound that is not finite bounds nothing, and nan is at most nothing.
     holds = isfinite(finding.bound) and finding.value <= finding.bound

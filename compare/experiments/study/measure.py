@@ -8,9 +8,10 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from cases.errors import SceneError, UnstableError
+from cases.errors import SceneError
 from cases.schema.scene import Scene
 from compare.engines import applies, solve, solver
+from compare.experiments.failures import FAILURES
 from compare.experiments.study.methods.catalogue import METHODS
 from compare.experiments.study.reference import UNKNOWN, error, finest_of, known, own_of
 from compare.experiments.study.study import StudyPoint
@@ -63,7 +64,7 @@ def measure(point: StudyPoint) -> PointRow:
     """Run a point and return its row; what cannot be run is a row that says why."""
     try:
         return _measured(point)
-    except (SceneError, UnstableError) as error:
+    except FAILURES as error:
         return _row(point, "failed", str(error))
 
 
