@@ -1,8 +1,5 @@
-"""`--sweep` of a command: from what the user gives to the table."""
+"""`--sweep` of a command: what would run, or the table of what has."""
 
-from pathlib import Path
-
-from cases.read import parse_override
 from compare.cli.options import warn
 from compare.engines import Progress
 from compare.experiments.cost import dry_run
@@ -12,13 +9,6 @@ from compare.experiments.sweep import runner
 from compare.experiments.sweep.case import Work
 from compare.experiments.sweep.runner import Sweep
 from compare.experiments.sweep.summary import summarise
-
-
-def ask(
-    scene: str, changes: list[str], variant: str | None, given: list[str], out: Path | None
-) -> Sweep:
-    """Return what `--sweep` asks for; raises SceneError, in one line."""
-    return runner.sweep_of(scene, dict(map(parse_override, changes)), variant, given, out)
 
 
 def sweep(

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cases.errors import SceneError
+from cases.read import parse_override
 from compare.engines import Progress
 from compare.experiments.combinations import combinations
 from compare.experiments.pool import Pool
@@ -39,14 +40,15 @@ class Sweep(NamedTuple):
 
 
 def sweep_of(
-    scene: str, changes: dict[str, Any], variant: str | None, given: list[str], out: Path | None
+    scene: str, changes: list[str], variant: str | None, given: list[str], out: Path | None
 ) -> Sweep:
-    """Return what `--sweep` asks for; raises SceneError in one line, also where there is no scene
-    at any point."""
-    values = axes(given, list(changes))
+    """Return what `--set`, `--variant` and `--sweep` ask for; raises SceneError in one line, also
+    where there is no scene at any point."""
+    fixed = dict(map(parse_override, changes))
+    values = axes(given, list(fixed))
     path, found, errors = find(scene), [], []
     for i, setting in enumerate(combinations(values)):
-        folder, overrides = (out or Path()) / _folder(setting, i), {**changes, **setting}
+        folder, overrides = (out or Path()) / _folder(setting, i), {**fixed, **setting}
         try:
             scenes = (
                 load(path, overrides)
