@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from cases.material.calibrate import Properties
     from cases.schema.scene import Scene
-    from compare.experiments.fit.fit import Fit
+    from compare.experiments.fit.result import Fit
     from compare.experiments.planner.planner import Plan
     from compare.misfit.external import Curves
     from compare.misfit.pairs import Comparison

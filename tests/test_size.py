@@ -20,7 +20,7 @@ from cases.schema.history import History
 from cases.size import LIMIT, memory, refuse_beyond_memory, waveform_bytes
 from compare.engines import solve
 from compare.exact.bar import images
-from compare.experiments.study.measure import Row
+from compare.experiments.study.measure import PointRow
 from compare.misfit.external_files import DIMENSIONS, read_columns
 from compare.report import peers
 from compare.runs.checkpoint.files import Checkpoints
@@ -266,7 +266,7 @@ def scene_of(path):
 
 def kept(path, text):
     path.write_text(text)
-    return read_kept(path, Row)
+    return read_kept(path, PointRow)
 
 
 def resumed(path, *content):
@@ -297,7 +297,7 @@ BOMBS = {
     "a checkpoint that is short": lambda p: resumed(
         p / "a.nc", (50_000_000,), 8_000_000, zipfile.ZIP_STORED
     ),
-    "a row": lambda p: read_kept(hollow(p / "a.json", b"{"), Row),
+    "a row": lambda p: read_kept(hollow(p / "a.json", b"{"), PointRow),
     "a row of lists": lambda p: kept(p / "a.json", "[" + "[]," * 2_000_000 + "0]"),
     "a row of depth": lambda p: kept(p / "a.json", "[" * 500_000),
     "a table of peers": lambda p: peers.read(hollow(p / "a.csv", b"curve\n")),

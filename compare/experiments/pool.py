@@ -1,7 +1,5 @@
 """Executors of experiments: processes of this machine, or of a cluster by mpi4py."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import ExitStack, contextmanager

@@ -4,8 +4,6 @@ A point is saved as a JSON file whose name is a hash of all that decides its res
 included. So an experiment that was interrupted resumes, and one that has changed starts anew.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -1,12 +1,12 @@
 """The summary of an experiment, the same for the terminal, the page and JSON."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from compare.cli.terminal import print_json, say, show_numbers, show_table
+from compare.engines import Progress
+from compare.experiments.pool import Pool, shared
 from compare.experiments.store import plain
 from compare.figures.export import Drawn
 from compare.report.tables import Table
@@ -36,6 +36,19 @@ class Summary(NamedTuple):
     about: str = ""
     timed: bool = False
     has_text: bool = False
+
+
+def run_and_show(
+    label: str,
+    out: Path | None,
+    workers: int,
+    work: Callable[[Pool | None, Progress], Summary],
+    as_json: bool,
+) -> None:
+    """Show the summary that `work` makes of a pool and a progress bar, see `pool.shared`; of
+    several MPI processes the first alone."""
+    if (found := shared(label, out, workers, work)) is not None:
+        show(found, as_json)
 
 
 def show(found: Summary, as_json: bool) -> None:

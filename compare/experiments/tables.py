@@ -1,9 +1,7 @@
 """The tables of experiments: one row a point or an effect, as CSV and as NetCDF."""
 
-from __future__ import annotations
-
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -31,11 +29,17 @@ def write_tables(
     files = [write_csv(folder / f"{name}.csv", table)]
     if data is not None:
         texts = {k: v.astype(str) for k, v in data.variables.items() if v.dtype == object}
-        safe = data.assign({k: texts[k] for k in texts if k not in data.coords})
-        safe = safe.assign_coords({k: texts[k] for k in texts if k in data.coords})
-        place = folder / f"{name}.nc"
+        safe, place = data.assign(texts), folder / f"{name}.nc"
         files.append(write(place, lambda path: safe.to_netcdf(path, engine="scipy")))
     return files
+
+
+def grouped(rows: Iterable[tuple[str, list[str]]]) -> dict[str, list[list[str]]]:
+    """Return rows of cells by the heading that comes with each, headings in their order."""
+    found: dict[str, list[list[str]]] = {}
+    for heading, cells in rows:
+        found.setdefault(heading, []).append(cells)
+    return found
 
 
 def number(value: float, form: str, missing: str = "") -> str:

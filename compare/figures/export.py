@@ -35,6 +35,11 @@ class Drawn(NamedTuple):
         """Return the figure's file of a kind, "pdf"."""
         return self.folder / f"{self.name}.{kind}"
 
+    @property
+    def drawings(self) -> list[Path]:
+        """The files of its drawings where it has pixels too."""
+        return [self.file(kind) for kind in ("svg", "pdf", "png")]
+
 
 def save(
     figure: Figure,

@@ -9,19 +9,12 @@ from math import inf
 
 from cases.errors import SceneError
 from cases.schema.scene import Scene
+from compare.experiments.failures import FAILURES, reason_of
+from compare.experiments.planner.choices import Choice, furthest_off, measured, steps
 from compare.experiments.planner.families import FAMILIES, Family, effort
-from compare.experiments.planner.planner import FAILURES, furthest_off, reason_of, too_far
-from compare.experiments.planner.reference import Own, References
-from compare.experiments.planner.trials import (
-    FINEST,
-    Choice,
-    Trial,
-    first_trial,
-    is_hopeless,
-    measured,
-    steps,
-    trial_at,
-)
+from compare.experiments.planner.planner import too_far
+from compare.experiments.planner.reference import OwnModel, References
+from compare.experiments.planner.trials import FINEST, Trial, first_trial, is_hopeless, trial_at
 
 #: A family ends where a run takes so many times the seconds of the cheapest that does, as finer
 #: steps cost more. It is not begun where it would even at half the seconds that a freedom-step has
@@ -64,7 +57,7 @@ class Study:
             rates[family.name] = min(rates.get(family.name, inf), each)
             self.points.append(measured(self.scene, family, trial, own))
 
-    def _trials(self, family: Family, own: Own) -> Iterator[Trial]:
+    def _trials(self, family: Family, own: OwnModel) -> Iterator[Trial]:
         """Yield runs of a family from the coarsest on, until no finer one can be of use; what meets
         all misfits is followed by one finer run."""
         first = last = first_trial(self.scene, family, own)

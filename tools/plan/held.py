@@ -7,10 +7,11 @@ from full_study import Study
 
 from cases.schema.scene import Scene
 from compare.engines import solve
+from compare.experiments.failures import FAILURES, reason_of
+from compare.experiments.planner.choices import Choice, options_of
 from compare.experiments.planner.families import configured
-from compare.experiments.planner.planner import FAILURES, Plan, options_of, plan, reason_of
+from compare.experiments.planner.planner import Plan, plan
 from compare.experiments.planner.reference import References
-from compare.experiments.planner.trials import Choice
 
 RIVALS = 4  # of the study: the cheapest by their own timing, which is noise for short runs
 SHORT = 0.05  # s: the longest run that takes part in all rounds; three are enough above

@@ -49,24 +49,21 @@ def effects(
     """
     from compare.experiments.ablation import runner
     from compare.experiments.ablation.summary import summarise
-    from compare.experiments.pool import shared
-    from compare.experiments.summary import show
+    from compare.experiments.summary import run_and_show
 
     wanted = _cases(scene, changes, variant, strict)
     if dry:
-        from compare.experiments.cost.dry_run import show_parts
-        from compare.experiments.cost.experiment_cost import parts_of_effects
+        from compare.experiments.cost.experiment_cost import parts_of_effects, show_parts
 
         show_parts(parts_of_effects(wanted, out), as_json)
         return
-    found = shared(
+    run_and_show(
         f"{len(wanted)} variants",
         out,
         workers,
-        lambda pool, advance: runner.run(wanted, out, pool, advance),
+        lambda pool, advance: summarise(out, runner.run(wanted, out, pool, advance)),
+        as_json,
     )
-    assert found is not None  # one process only: see root
-    show(summarise(out, found), as_json)
 
 
 @app.command()
@@ -115,44 +112,31 @@ def study(
     engines to hard cases, each with a criterion from theory.
     """
     if dry:
-        from compare.experiments.cost.dry_run import show_parts
-        from compare.experiments.cost.experiment_cost import parts_of_study
+        from compare.experiments.cost.experiment_cost import parts_of_study, show_parts
 
         show_parts(parts_of_study(name, out), as_json)
         return
+    from compare.experiments.summary import run_and_show
+
+    folder = out / Path(name).stem
     if name == "stability":
-        _study_stability(out, workers, as_json)
-        return
-    from compare.experiments.pool import shared
-    from compare.experiments.study.runner import run as run_points
-    from compare.experiments.study.study import load
-    from compare.experiments.study.summary import summarise
-    from compare.experiments.summary import show
+        from compare.experiments.robustness.summary import TITLE as title
+        from compare.experiments.robustness.summary import make_study
 
-    asked, stem = load(name), Path(name).stem
-    rows = shared(
-        asked.title,
-        out / stem,
-        workers,
-        lambda pool, advance: run_points(asked, out / stem, pool, advance),
-    )
-    if rows is not None:
-        show(summarise(out, stem, asked, rows), as_json)
+        def work(pool: Any, advance: Any) -> Any:
+            return make_study(out, pool, progress=advance)
+    else:
+        from compare.experiments.study.runner import run
+        from compare.experiments.study.study import load
+        from compare.experiments.study.summary import summarise
 
+        asked = load(name)
+        title = asked.title
 
-def _study_stability(out: Path, workers: int, as_json: bool) -> None:
-    from compare.experiments.pool import shared
-    from compare.experiments.robustness.summary import NAME, TITLE, make_study
-    from compare.experiments.summary import show
+        def work(pool: Any, advance: Any) -> Any:
+            return summarise(out, folder.name, asked, run(asked, folder, pool, advance))
 
-    found = shared(
-        TITLE,
-        out / NAME,
-        workers,
-        lambda pool, advance: make_study(out, pool, progress=advance),
-    )
-    if found is not None:
-        show(found, as_json)
+    run_and_show(title, folder, workers, work, as_json)
 
 
 @app.command()
@@ -184,8 +168,7 @@ def report(
     from compare.report.report import build
 
     if dry:
-        from compare.experiments.cost.dry_run import show_parts
-        from compare.experiments.cost.experiment_cost import parts_of_report
+        from compare.experiments.cost.experiment_cost import parts_of_report, show_parts
 
         show_parts(parts_of_report(scenes or (), out), as_json)
         return
@@ -196,11 +179,11 @@ def report(
 
 def _cases(scene: str | None, changes: list[str], variant: str | None, strict: bool) -> list[Any]:
     """Return the variants whose effects are asked for; without a scene all that are shipped."""
-    from compare.experiments.ablation.runner import Case, all_shipped
+    from compare.experiments.ablation.runner import Variant, all_shipped
 
     if scene is not None:
         return [
-            Case(scene, one)
+            Variant(scene, one)
             for one in load(scene, changes, variant if variant is not None else "", strict)
         ]
     if changes or variant is not None:

@@ -90,11 +90,12 @@ def run(
 
     wanted = jobs.wanted([e.value for e in engine], model or [])
     if swept:
-        from compare.experiments.sweep import command
         from compare.experiments.sweep.case import Running
+        from compare.experiments.sweep.command import sweep
+        from compare.experiments.sweep.runner import sweep_of
 
-        asked_for = command.ask(scene, changes, variant, swept, out)
-        command.sweep(asked_for, Running(wanted, vtx), workers, dry, as_json, strict)
+        asked_for = sweep_of(scene, changes, variant, swept, out)
+        sweep(asked_for, Running(wanted, vtx), workers, dry, as_json, strict)
         return
     scenes = load(scene, changes, variant, strict)
     asked = jobs.plan(scenes, wanted, out)

@@ -74,14 +74,14 @@ def compare(
     from compare.misfit.ranking import deciding
 
     if swept:
-        from compare.experiments.sweep import command
         from compare.experiments.sweep.case import Comparing
+        from compare.experiments.sweep.command import sweep
+        from compare.experiments.sweep.runner import sweep_of
 
-        asked = command.ask(scene, changes, variant, swept, out)
-        swept_scenes = [case.scene for case in asked.cases if case.scene is not None]
-        curves = _read_curves(given, swept_scenes, align)
+        asked = sweep_of(scene, changes, variant, swept, out)
+        curves = _read_curves(given, asked.scenes, align)
         work = Comparing(spectral, curves, align, out is not None)
-        command.sweep(asked, work, workers, dry, as_json, strict)
+        sweep(asked, work, workers, dry, as_json, strict)
         return
     scenes = load(scene, changes, variant, strict)
     curves = _read_curves(given, scenes, align)

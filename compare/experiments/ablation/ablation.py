@@ -5,23 +5,20 @@ applies; the influence is the relative L2 misfit of the rigid blocks without the
 those of the scene as it stands.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import nan
 from typing import Any, NamedTuple
 
 import dem
 from cases.effects import active_effects
-from cases.errors import SceneError, UnstableError
 from cases.schema.scene import Scene
 from compare.engines import applies, solve
 from compare.experiments.ablation.variants import left_out, only
 from compare.experiments.cost.step_cost import everything, freedoms_in_turns, in_turns, stretch
+from compare.experiments.failures import FAILURES, reason_of
 from compare.misfit.metrics import misfit
 from compare.solvers.continuum import JOINTED_ROCK
 
-FAILURES = (SceneError, UnstableError)  # of a scene that cannot be so
 ROCK = JOINTED_ROCK.name
 OWN = "own"  # the scene as it stands, among those without one of its effects
 
@@ -42,7 +39,7 @@ class Dropped(NamedTuple):
     reason: str
 
 
-class Effect(NamedTuple):
+class EffectCost(NamedTuple):
     """One effect of a scene; numbers that there are not are nan.
 
     alone : ns of a block-step that it adds to the scene without any other. cost : ns that it adds
@@ -75,7 +72,7 @@ class Ablation(NamedTuple):
     own: float
     everything: float
     rock: float
-    effects: list[Effect]
+    effects: list[EffectCost]
 
     @property
     def label(self) -> str:
@@ -87,7 +84,7 @@ def prepare(scene: Scene) -> list[Dropped]:
     """Return the results without each effect, and compile all that is timed."""
     result = dem.simulate(scene)
     dropped = [_drop(scene, name, result) for name in active_effects(scene)]
-    _step(only(scene, None))
+    stretch(only(scene, None))[0]()
     _runs(lambda: solve(ROCK, scene))
     return dropped
 
@@ -97,14 +94,11 @@ def _drop(scene: Scene, name: str, result: Any) -> Dropped:
         one = left_out(scene, name)
         without = dem.simulate(one)
     except FAILURES as error:
-        return Dropped(name, nan, nan, False, False, getattr(error, "allowed", str(error)))
+        return Dropped(name, nan, nan, False, False, reason_of(error))
     steps = result.attrs["steps"] / without.attrs["steps"]
-    alone, rock = _runs(lambda: _step(only(scene, name))), _runs(lambda: solve(ROCK, one))
+    alone = _runs(lambda: stretch(only(scene, name))[0]())
+    rock = _runs(lambda: solve(ROCK, one))
     return Dropped(name, misfit(without, result), float(steps), alone, rock, "")
-
-
-def _step(scene: Scene) -> None:
-    stretch(scene)[0]()
 
 
 def _runs(work: Callable[[], object]) -> bool:
@@ -121,14 +115,14 @@ def ablate(name: str, scene: Scene, dropped: list[Dropped]) -> Ablation:
     name : of the scene, as its user knows it. dropped : what `prepare` returned.
     """
     alone = {one.effect: only(scene, one.effect) for one in dropped if one.alone}
-    without = _without(scene, dropped)
+    without = {one.effect: left_out(scene, one.effect) for one in dropped if not one.reason}
     first = [everything(scene.pillar.block_count), only(scene, None), scene]
     full, bare, own, *rest = in_turns([*first, *alone.values(), *without.values()])
     ns_alone = dict(zip(alone, rest, strict=False))
     ns_without = dict(zip(without, rest[len(alone) :], strict=True))
-    rock = _ns_in_rock(scene, dropped)
+    rock = _ns_in_rock(scene, {one.effect: without[one.effect] for one in dropped if one.rock})
     found = [
-        Effect(
+        EffectCost(
             one.effect,
             ns_alone.get(one.effect, nan) - bare,
             (cost := own - ns_without.get(one.effect, nan)),
@@ -143,16 +137,10 @@ def ablate(name: str, scene: Scene, dropped: list[Dropped]) -> Ablation:
     return Ablation(name, scene.title, scene.name, bare, own, full, rock.get(OWN, nan), found)
 
 
-def _without(scene: Scene, dropped: list[Dropped]) -> dict[str, Scene]:
-    """Return the scene without each effect that can be left out."""
-    return {one.effect: left_out(scene, one.effect) for one in dropped if not one.reason}
-
-
-def _ns_in_rock(scene: Scene, dropped: list[Dropped]) -> dict[str, float]:
+def _ns_in_rock(scene: Scene, without: dict[str, Scene]) -> dict[str, float]:
     """Return the ns of a freedom-step of jointed rock, as the scene stands and without each effect;
     empty where that rock does not apply."""
     if not applies(ROCK, scene):
         return {}
-    others = _without(scene, dropped)
-    timed = {OWN: scene} | {one.effect: others[one.effect] for one in dropped if one.rock}
+    timed = {OWN: scene} | without
     return dict(zip(timed, freedoms_in_turns(ROCK, list(timed.values())), strict=True))

@@ -1,18 +1,14 @@
 """Influence over cost of every effect, both axes logarithmic: one point an effect of a scene."""
 
-from __future__ import annotations
-
 from typing import Any
 
-import matplotlib
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from compare.experiments.ablation.ablation import Ablation, Effect
-from compare.figures.style import RC, WIDTH
+from compare.experiments.ablation.ablation import Ablation, EffectCost
+from compare.figures.blank import blank
 
 LEAST_SHARE = 0.5  # %, of a step: less does not stand out of the clock's noise
 LEAST_MISFIT = 0.01  # %: less is drawn here, as is none
@@ -31,14 +27,12 @@ def draw(found: list[Ablation]) -> Figure:
     Points at an edge lie there or beyond, and are hollow. The points of the k-th effect are the SVG
     group effects-points-k.
     """
-    by_effect: dict[str, list[tuple[int, Effect]]] = {}
+    by_effect: dict[str, list[tuple[int, EffectCost]]] = {}
     for number, b in enumerate(found, start=1):
         for w in b.effects:
             if not w.reason:
                 by_effect.setdefault(w.effect, []).append((number, w))
-    with matplotlib.rc_context(RC):
-        figure = Figure(figsize=(WIDTH, max(4.6, 0.6 + 0.17 * (len(found) + len(by_effect)))))
-        FigureCanvasAgg(figure)
+    with blank(max(4.6, 0.6 + 0.17 * (len(found) + len(by_effect)))) as figure:
         ax = figure.subplots()
         drawn = [_draw_effect(ax, k, *one) for k, one in enumerate(by_effect.items())]
         _finish(ax)
@@ -51,7 +45,7 @@ def draw(found: list[Ablation]) -> Figure:
 
 
 def _draw_effect(
-    ax: Axes, k: int, effect: str, ones: list[tuple[int, Effect]]
+    ax: Axes, k: int, effect: str, ones: list[tuple[int, EffectCost]]
 ) -> list[tuple[int, Place]]:
     """Draw the points of an effect; return the number of each and where it is."""
     marks: dict[str, Any] = {

@@ -1,7 +1,5 @@
 """The ablation of many scenes: solved and compiled on any executor, then timed one at a time."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import NamedTuple
 
@@ -28,7 +26,7 @@ REPORTED = {
 }
 
 
-class Case(NamedTuple):
+class Variant(NamedTuple):
     """One variant of a scene, and the scene's name as its user knows it."""
 
     name: str
@@ -40,26 +38,26 @@ class Case(NamedTuple):
         return store.key(self.name, self.scene.name, scene_hash(self.scene))
 
 
-def all_shipped() -> list[Case]:
+def all_shipped() -> list[Variant]:
     """Return every variant of every shipped scene."""
     return [
-        Case(f"{path.parent.name}/{path.stem}", scene)
+        Variant(f"{path.parent.name}/{path.stem}", scene)
         for path in shipped()
         for scene in cases.load(path)
     ]
 
 
-def reported() -> list[Case]:
+def reported() -> list[Variant]:
     """Return the cases of the report's page."""
     return [
-        Case(name, cases.load_variant(find(name), variant))
+        Variant(name, cases.load_variant(find(name), variant))
         for name, variants in REPORTED.items()
         for variant in variants
     ]
 
 
 def run(
-    wanted: list[Case], folder: Path, pool: Pool | None = None, progress: Progress | None = None
+    wanted: list[Variant], folder: Path, pool: Pool | None = None, progress: Progress | None = None
 ) -> list[Ablation]:
     """Return the ablation of all cases, in order; what is done is taken from `folder`.
 
@@ -70,7 +68,7 @@ def run(
     new = [case for case in wanted if not done.has(case.key)]
     with timings.timing(RATE, len(new)):
         results = prepared.compute(
-            new, _key_of_prepared, _prepared, pool, lambda part: tell(PREPARING * part)
+            new, lambda case: f"{case.key}-prepared", _prepared, pool, lambda x: tell(PREPARING * x)
         )
         dropped = {case.key: one for case, one in zip(new, results, strict=True)}
         with alone():
@@ -87,9 +85,5 @@ def ablations(folder: Path) -> Store[Ablation]:
     return Store(Ablation, folder)
 
 
-def _key_of_prepared(case: Case) -> str:
-    return f"{case.key}-prepared"
-
-
-def _prepared(case: Case) -> list[Dropped]:
+def _prepared(case: Variant) -> list[Dropped]:
     return prepare(case.scene)

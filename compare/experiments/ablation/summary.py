@@ -1,13 +1,11 @@
 """The summary of an ablation: the table, the diagram, and sentences of their numbers."""
 
-from __future__ import annotations
-
 from math import isfinite
 from pathlib import Path
 
 import pandas as pd
 
-from compare.experiments.ablation.ablation import Ablation, Effect
+from compare.experiments.ablation.ablation import Ablation, EffectCost
 from compare.experiments.ablation.diagram import draw
 from compare.experiments.summary import Summary
 from compare.experiments.tables import number
@@ -28,7 +26,6 @@ COLUMNS = [
     "jointed rock (ns)",
     "why it stays",
 ]
-Pair = tuple[Ablation, Effect]
 
 
 def summarise(folder: Path, found: list[Ablation]) -> Summary:
@@ -41,7 +38,7 @@ def summarise(folder: Path, found: list[Ablation]) -> Summary:
         table(found),
         sentences(found),
         [],
-        [csv, *(figure.file(kind) for kind in ("svg", "pdf", "png"))],
+        [csv, *figure.drawings],
         found,
         figure,
         about="; ".join(a.label for a in found),
@@ -91,11 +88,11 @@ def _heading(a: Ablation) -> str:
     return f"{text}; jointed rock {a.rock:.2g} ns a freedom-step" if isfinite(a.rock) else text
 
 
-def _dearest(e: Effect) -> tuple[bool, float]:
+def _dearest(e: EffectCost) -> tuple[bool, float]:
     return bool(e.reason), -e.cost if isfinite(e.cost) else 0
 
 
-def _cells(e: Effect) -> list[str]:
+def _cells(e: EffectCost) -> list[str]:
     """Return an effect's numbers as text, under `COLUMNS`."""
     if e.reason:
         return [e.effect, *[""] * 6, e.reason]
@@ -118,26 +115,20 @@ def sentences(found: list[Ablation]) -> list[str]:
     idle = [(a, e) for a, e in every if e.misfit == 0]
     active = [(a, e) for a, e in every if e.misfit > 0]
     if idle:
-        a, e = max(idle, key=_share)
+        a, e = max(idle, key=lambda pair: pair[1].share)
         said.append(
             f"The dearest effect that changes nothing of the result is the {e.effect}: "
             f"{percent(e.share)} % of a step of {a.label}."
         )
     if active:
+        dearest = max(active, key=lambda pair: pair[1].share)
+        most = max(active, key=lambda pair: pair[1].misfit)
+        least = min(active, key=lambda pair: pair[1].misfit)
         said.append(
-            f"Of those that change it, the dearest is {_of_effect(*max(active, key=_share))}; "
-            f"the most influential is {_of_effect(*max(active, key=_misfit))}; "
-            f"the least is {_of_effect(*min(active, key=_misfit))}."
+            f"Of those that change it, the dearest is {_of_effect(*dearest)}; "
+            f"the most influential is {_of_effect(*most)}; the least is {_of_effect(*least)}."
         )
     return said
-
-
-def _share(pair: Pair) -> float:
-    return pair[1].share
-
-
-def _misfit(pair: Pair) -> float:
-    return pair[1].misfit
 
 
 def _of_sets(found: list[Ablation]) -> str:
@@ -149,6 +140,6 @@ def _of_sets(found: list[Ablation]) -> str:
     )
 
 
-def _of_effect(a: Ablation, e: Effect) -> str:
+def _of_effect(a: Ablation, e: EffectCost) -> str:
     share = f"{percent(e.share)} % of a step" if e.share > RESOLVED else "nothing that shows"
     return f"{e.effect} in {a.label} ({share}, misfit {percent(e.misfit)} % without)"

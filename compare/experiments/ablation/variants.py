@@ -1,7 +1,5 @@
 """Variants of a scene: without one of its effects, or with one alone."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

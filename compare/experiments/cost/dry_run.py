@@ -1,26 +1,54 @@
-"""The output of `--dry-run`."""
+"""`--dry-run`: the steps, size, seconds and memory of runs before they are made."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
-from dataclasses import asdict
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
 from cases.errors import SceneError
 from cases.schema.scene import Scene
 from cases.size import spoken
 from compare.cli.terminal import print_json, progress, say, show_table
-from compare.engines import applies, names
-from compare.experiments.cost.run_cost import Forecast, forecast, seconds_of
-
-if TYPE_CHECKING:
-    from compare.experiments.cost.experiment_cost import Part
+from compare.engines import applies, names, solver
+from compare.experiments.cost import timings
 
 COLUMNS = ["", "variant", "engine", "scheme", "steps", "size", "time", "memory"]
 UNKNOWN = "no estimate"  # where nothing of the kind was ever timed here
-
-
 Run = tuple[str, Scene, str]  # the point of a sweep, empty without; the scene; what solves it
+
+
+class Forecast(NamedTuple):
+    """A run that is not made.
+
+    steps : of time, exactly; 0 of exact solutions. size : blocks or freedoms of the rock, in words.
+    seconds : of stepping, at the rate last measured here; None where none was. bytes : of memory,
+        as the run itself would estimate it before it begins; of exact solutions their waveforms,
+        which is the least that they take.
+    """
+
+    variant: str
+    engine: str
+    steps: int
+    size: str
+    scheme: str
+    seconds: float | None
+    bytes: float
+
+
+def forecast(scene: Scene, name: str) -> Forecast:
+    """Return what a run of an engine or exact solution would take.
+
+    Raises SceneError where it cannot be made, as the run would.
+    """
+    one = solver(name)
+    run = one.prepare(scene)
+    seconds = timings.stepping(name, scene, run.settings, run.steps, run.freedoms)
+    size = f"{one.units(scene, run.freedoms):,} {one.unit}" if run.steps else "-"
+    return Forecast(scene.name, name, run.steps, size, run.scheme, seconds, run.bytes)
+
+
+def seconds_of(found: Iterable[Forecast]) -> tuple[float, int]:
+    """Return the seconds of all that were ever timed here, and how many were not."""
+    known = [one.seconds for one in found]
+    return sum(s for s in known if s is not None), known.count(None)
 
 
 def show_all(scenes: list[Scene], as_json: bool) -> None:
@@ -47,36 +75,34 @@ def show_runs(
                     raise
                 failed[point] = str(error)
             advance((i + 1) / len(wanted))
-    _show_forecasts(found, failed, as_json)
+    (_print_facts if as_json else _print_table)(found, failed)
 
 
-def _show_forecasts(
-    found: list[tuple[str, Forecast]], failed: dict[str, str], as_json: bool
-) -> None:
+def _print_facts(found: list[tuple[str, Forecast]], failed: dict[str, str]) -> None:
     seconds, unknown = seconds_of(one for _, one in found)
-    if as_json:
-        runs = [{"point": point, **one._asdict()} for point, one in found]
-        failing = [{"point": point, "message": message} for point, message in failed.items()]
-        print_json({"runs": runs, "seconds": seconds, "untimed": unknown, "failing": failing})
-        return
+    runs = [{"point": point, **one._asdict()} for point, one in found]
+    failing = [{"point": point, "message": message} for point, message in failed.items()]
+    print_json({"runs": runs, "seconds": seconds, "untimed": unknown, "failing": failing})
+
+
+def _print_table(found: list[tuple[str, Forecast]], failed: dict[str, str]) -> None:
     first = 0 if any(point for point, _ in found) else 1
     show_table(COLUMNS[first:], [_cells(point, one)[first:] for point, one in found])
     for point, message in failed.items():
         say(f"would fail: {point}: {message}", "red")
     most = max((one.bytes for _, one in found), default=0.0)
     say(
-        f"{len(found)} would run, {together(seconds, unknown)}; the largest takes about "
-        f"{spoken(most)} of memory; nothing has been run or written"
+        f"{len(found)} would run, {_together(*seconds_of(one for _, one in found))}; the largest "
+        f"takes about {spoken(most)} of memory; nothing has been run or written"
     )
 
 
-def together(seconds: float, unknown: int) -> str:
+def _together(seconds: float, unknown: int) -> str:
     """Return in words the seconds of runs one after the other, of which some were never timed."""
-    if not unknown:
-        return f"about {in_words(seconds)} of computing"
-    if not seconds:
+    if unknown and not seconds:
         return f"{UNKNOWN} of the time: none of the kind was ever timed here"
-    return f"about {in_words(seconds)} of computing, and {unknown} that were never timed here"
+    others = f", and {unknown} that were never timed here" if unknown else ""
+    return f"about {in_words(seconds)} of computing{others}"
 
 
 def in_words(seconds: float) -> str:
@@ -98,20 +124,3 @@ def _cells(point: str, one: Forecast) -> list[str]:
         UNKNOWN if one.seconds is None else in_words(one.seconds),
         spoken(one.bytes) if one.steps else f"over {spoken(one.bytes)}",
     ]
-
-
-def show_parts(found: Sequence[Part], as_json: bool) -> None:
-    """Print the parts of a command that is more than runs: how many points, how many to do."""
-    if as_json:
-        print_json([asdict(one) for one in found])
-        return
-    rows = [
-        [
-            one.part,
-            f"{one.to_do} of {one.count} to do",
-            UNKNOWN if one.seconds is None else f"about {in_words(one.seconds)}",
-        ]
-        for one in found
-    ]
-    show_table(["part", "", "time"], rows)
-    say("nothing has been run or written")

@@ -1,25 +1,24 @@
-"""The cost of commands over many runs: the parts of a study, of the report, of the effects."""
-
-from __future__ import annotations
+"""`--dry-run` of commands over many runs: the parts of a study, of the report, of the effects."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from compare.cli.terminal import print_json, say, show_table
 from compare.experiments.ablation import runner as ablation
 from compare.experiments.cost import timings
+from compare.experiments.cost.dry_run import UNKNOWN, in_words
 from compare.experiments.robustness import run as robustness
-from compare.experiments.robustness.row import Row as HardRow
 from compare.experiments.robustness.summary import NAME as HARD_CASES
 from compare.experiments.store import Store
 from compare.experiments.study import runner as studies
-from compare.experiments.study.measure import Row
+from compare.experiments.study.measure import PointRow
 from compare.experiments.study.study import load
 from compare.experiments.study.summary import REPORTED
 
 
 @dataclass(frozen=True)
-class Part:
+class CommandPart:
     """A part of a command: how many points it has, and how many of them are to do; seconds : of
     those, None where none was ever timed here."""
 
@@ -29,19 +28,19 @@ class Part:
     seconds: float | None
 
 
-def _part(part: str, store: Store, keys: Sequence[str], rate: str) -> Part:
+def _part(part: str, store: Store, keys: Sequence[str], rate: str) -> CommandPart:
     """Return a part; rate : what the seconds of a point are remembered by."""
     left, each = sum(not store.has(key) for key in keys), timings.whole(rate)
     seconds = 0.0 if not left else None if each is None else each * left
-    return Part(part, len(keys), left, seconds)
+    return CommandPart(part, len(keys), left, seconds)
 
 
-def parts_of_study(name: str, out: Path) -> list[Part]:
+def parts_of_study(name: str, out: Path) -> list[CommandPart]:
     """Return the curves of a study, or the rows of the hard cases."""
     if name == HARD_CASES:
         return [_hard_cases(out, slow=True)]
     study, stem = load(name), Path(name).stem
-    rows, parts = Store[Row](Row, out / stem), []
+    rows, parts = Store[PointRow](PointRow, out / stem), []
     for curve in study.curves:
         points = study.model_copy(update={"curves": [curve]}).points()
         label = f"{stem}: {curve.label} ({curve.method})"
@@ -49,13 +48,13 @@ def parts_of_study(name: str, out: Path) -> list[Part]:
     return parts
 
 
-def _hard_cases(out: Path, slow: bool) -> Part:
+def _hard_cases(out: Path, slow: bool) -> CommandPart:
     keys = [robustness.key(place) for place in robustness.places(slow)]
-    rows = Store[HardRow](HardRow, out / HARD_CASES)
+    rows = Store[robustness.CaseRow](robustness.CaseRow, out / HARD_CASES)
     return _part("hard cases", rows, keys, robustness.RATE)
 
 
-def parts_of_effects(wanted: Sequence[ablation.Case], out: Path) -> list[Part]:
+def parts_of_effects(wanted: Sequence[ablation.Variant], out: Path) -> list[CommandPart]:
     """Return the variants whose effects would be measured."""
     done = ablation.ablations(out)
     return [
@@ -64,7 +63,7 @@ def parts_of_effects(wanted: Sequence[ablation.Case], out: Path) -> list[Part]:
     ]
 
 
-def parts_of_report(scenes: Sequence[str], out: Path) -> list[Part]:
+def parts_of_report(scenes: Sequence[str], out: Path) -> list[CommandPart]:
     """Return the parts of the report of some scenes; without any, of the paper's and the studies.
 
     Raises SceneError for a scene that there is not.
@@ -82,3 +81,15 @@ def parts_of_report(scenes: Sequence[str], out: Path) -> list[Part]:
         _hard_cases(out / "studies", slow=False),
         _part("effects", ablation.ablations(out / "effects"), effects, ablation.RATE),
     ]
+
+
+def show_parts(found: Sequence[CommandPart], as_json: bool) -> None:
+    """Print the parts of a command: how many points, how many to do."""
+    if as_json:
+        print_json([asdict(one) for one in found])
+        return
+    times = [UNKNOWN if x.seconds is None else f"about {in_words(x.seconds)}" for x in found]
+    points = [f"{one.to_do} of {one.count} to do" for one in found]
+    rows = [[one.part, *cells] for one, *cells in zip(found, points, times, strict=True)]
+    show_table(["part", "", "time"], rows)
+    say("nothing has been run or written")

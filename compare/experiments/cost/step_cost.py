@@ -1,7 +1,5 @@
 """The cost of a step of one block or one freedom, with the effects that a scene calls for."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import inf
 from pathlib import Path
@@ -115,7 +113,7 @@ def stretches(scene: Scene, guarded: tuple[bool, ...], threads: int = 1) -> list
 def _along_axis(scene: Scene, guarded: tuple[bool, ...]) -> list[Stretch]:
     from dem.axial.samples import buffers
     from dem.axial.simulate import scheme_of
-    from numerics.divergence import guard
+    from numerics.divergence import Guard, guard
 
     scheme = scheme_of(scene)
     model, state, time, _ = scheme.build(scene)
@@ -123,11 +121,10 @@ def _along_axis(scene: Scene, guarded: tuple[bool, ...]) -> list[Stretch]:
     samples, block_steps = buffers(model, state, count), count * time.stride * state.u.size
     run = scheme.runner(scene, time)
 
-    def timed(held: bool) -> Stretch:
-        monitor = guard(inf) if held else None
+    def timed(monitor: Guard | None) -> Stretch:
         return lambda: run(model, state, samples, time.stride, 0, count, monitor), block_steps
 
-    return [timed(held) for held in guarded]
+    return [timed(guard(inf) if held else None) for held in guarded]
 
 
 def _in_space(scene: Scene, guarded: tuple[bool, ...], threads: int) -> list[Stretch]:

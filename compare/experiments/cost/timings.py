@@ -3,8 +3,6 @@
 They are saved beside the kernels, so that those of another state of the program do not count.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress

@@ -64,7 +64,7 @@ def fit(
     """
     from compare.cli import terminal
     from compare.experiments.fit.fit import fit as fitted
-    from compare.experiments.fit.show import facts_of, show_fit
+    from compare.experiments.fit.show import show_fit
     from compare.misfit.external import read_curves
     from compare.runs.checkpoint.lock import locked
 
@@ -76,13 +76,11 @@ def fit(
             held.enter_context(locked(out))
         with terminal.progress(one.name or one.title) as advance:
             found = fitted(one, curves, free, solver, advance)
-        files = []
-        if out is not None:
-            from compare.experiments.fit.files import write_fit
+        from compare.experiments.fit.files import facts, write_fit
 
-            files = write_fit(found, one, out)
+        files = write_fit(found, one, out) if out is not None else []
     if as_json:
-        terminal.print_json(facts_of(found, files))
+        terminal.print_json({**facts(found), "files": list(map(str, files))})
     else:
         show_fit(found, scene, one.name, files)
 

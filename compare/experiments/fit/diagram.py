@@ -1,17 +1,14 @@
 """The figure of a fit: each waveform as measured and as fitted, and its residual."""
 
-from __future__ import annotations
-
 from typing import Any
 
-import matplotlib
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from compare.experiments.fit.fit import Fit, Fitted
+from compare.experiments.fit.result import Fit, Fitted
+from compare.figures.blank import blank
 from compare.figures.overlays import UNITS
-from compare.figures.style import GIVEN, RC, style
+from compare.figures.style import GIVEN, style
 
 IN = {**UNITS, "displacement": (1e3, "mm")}  # what is drawn: factor from SI, and the unit
 WIDTH, PANEL, AROUND = 7.5, 2.6, 0.8  # inches: the figure, a waveform with its residual, the rest
@@ -21,9 +18,7 @@ MOST_MARKS = 250  # samples that are drawn one by one
 def draw(found: Fit) -> Figure:
     """Return the figure: each waveform as measured and fitted, and below it what is left."""
     count = len(found.waveforms)
-    with matplotlib.rc_context(RC):
-        figure = Figure(figsize=(WIDTH, AROUND + count * PANEL), layout="constrained")
-        FigureCanvasAgg(figure)
+    with blank(AROUND + count * PANEL, WIDTH) as figure:
         axes = figure.subplots(2 * count, sharex=True, height_ratios=[3, 1] * count, squeeze=False)
         for i, one in enumerate(found.waveforms):
             _draw_waveform(axes[2 * i, 0], axes[2 * i + 1, 0], one, found.solver, i)

@@ -1,7 +1,5 @@
 """The files of a fit: a table, the fitted scene, and the figure of waveforms and residuals."""
 
-from __future__ import annotations
-
 import filecmp
 import json
 import shutil
@@ -17,8 +15,8 @@ from cases.schema.scene import Scene
 from cases.size import value_of
 from cases.validate import FILE_KEYS
 from compare.experiments.fit.diagram import draw
-from compare.experiments.fit.fit import Fit
 from compare.experiments.fit.keys import CLOCK
+from compare.experiments.fit.result import Fit
 from compare.experiments.fit.scene_text import scene_text
 from compare.experiments.store import finite
 from compare.figures.export import save, write_csv
@@ -39,10 +37,9 @@ def write_fit(found: Fit, given: Scene, folder: Path) -> list[Path]:
         write_text(folder / "fit.json", json.dumps(facts(found), indent=2) + "\n"),
         *_write_scene(found, given, scene),
     ]
-    drawn = save(
-        draw(found), folder, "fit-waveforms", f"{found.scene.title}, fitted", curves(found)
-    )
-    return [*files, *(drawn.file(kind) for kind in ("svg", "pdf", "png", "csv"))]
+    title = f"{found.scene.title}, fitted"
+    drawn = save(draw(found), folder, "fit-waveforms", title, curves(found))
+    return [*files, *drawn.drawings, drawn.file("csv")]
 
 
 def table(found: Fit) -> pd.DataFrame:
@@ -95,13 +92,8 @@ def facts(found: Fit) -> dict[str, Any]:
         ],
         "trials": found.trials,
         "notes": found.notes,
-        "set": settings(found),
+        "set": found.settings,
     }
-
-
-def settings(found: Fit) -> list[str]:
-    """Return the fitted keys of the scene as `--set` takes them."""
-    return [f"{e.key}={e.value:.12g}" for e in found.estimates if e.key != CLOCK]
 
 
 def _write_scene(found: Fit, given: Scene, path: Path) -> list[Path]:

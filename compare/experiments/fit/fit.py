@@ -1,10 +1,6 @@
 """Fit keys of a scene to measured waveforms by nonlinear least squares."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -12,76 +8,14 @@ from cases.errors import SceneError
 from cases.schema.scene import Scene
 from compare.engines import Progress
 from compare.experiments.fit.keys import CLOCK, Free, changed, free_keys
-from compare.experiments.fit.problem import (
-    clock_reach,
-    problem_of,
-    solver_of,
-    started_clock,
-)
-from compare.experiments.fit.search import Search, misfits
+from compare.experiments.fit.problem import clock_reach, problem_of, solver_of, started_clock
+from compare.experiments.fit.result import Estimate, Fit, Fitted
+from compare.experiments.fit.search import FitSearch, misfits
 from compare.experiments.fit.statistics import known, not_told_apart
 from compare.misfit.external import Curves
 
 NEAR = 1e-6  # of an unknown to its bound
 ROUND_OFF = 1e-6  # of a waveform: what is left then is no noise
-
-
-class Estimate(NamedTuple):
-    """A fitted key: its value, its 95 % interval, infinite where the waveforms do not bound it,
-    and where the search began; unit "" of a ratio; at_bound : whether a bound stopped it."""
-
-    key: str
-    value: float
-    low: float
-    high: float
-    start: float
-    unit: str
-    at_bound: bool
-
-
-class Fitted(NamedTuple):
-    """One measured waveform [n] and the fitted one at the same times, s on the scene's clock, SI.
-
-    before, after : relative L2 misfit of the motion at the start and at the end. independent : how
-    many samples the residual's autocorrelation leaves.
-    """
-
-    name: str
-    place: object
-    time: np.ndarray
-    measured: np.ndarray
-    fitted: np.ndarray
-    before: float
-    after: float
-    independent: float
-
-
-@dataclass(frozen=True)
-class Fit:
-    """The result of a fit.
-
-    scene : with the fitted keys, else as it was given. solver : the engine or exact solution.
-    estimates : a key each. correlation : [p, p] of the keys. waveforms : as measured and as fitted.
-    trials : how often the scene was solved. notes : what a reader must know, a sentence each.
-    """
-
-    scene: Scene
-    solver: str
-    estimates: list[Estimate]
-    correlation: np.ndarray
-    waveforms: list[Fitted]
-    trials: int
-    notes: list[str]
-
-    @property
-    def before(self) -> float:
-        """Misfit of the waveform that was furthest off at the start."""
-        return max(one.before for one in self.waveforms)
-
-    @property
-    def after(self) -> float:
-        """Misfit of the waveform that is furthest off at the end."""
-        return max(one.after for one in self.waveforms)
 
 
 def fit(
@@ -104,7 +38,7 @@ def fit(
     without having converged.
     """
     keys = free_keys(list(free), scene)
-    first = changed(scene, _scene_values(keys, [k.start or 0.0 for k in keys]))
+    first = changed(scene, _scene_values(keys, [k.start for k in keys]))
     name = solver_of(first, solver)
     mine = [curve for curve in curves if curve.holds_for(scene)]
     if not mine or not keys:
@@ -113,7 +47,7 @@ def fit(
     keys, clock = _with_clock(keys, first, name, mine)
     reach = clock_reach(scene) if clock is not None else 0.0
     problem = problem_of(first, name, mine, clock, reach)
-    search = Search(problem, keys, progress)
+    search = FitSearch(problem, keys, progress)
     unknowns = search.best()
     return _finished(scene, search, unknowns)
 
@@ -138,28 +72,18 @@ def _with_clock(
     clock = next((key for key in keys if key.key == CLOCK), None)
     if clock is None:
         return keys, None
-    start = clock.start
-    if start is None:
-        start = started_clock(scene, solver, curves)
+    start = started_clock(scene, solver, curves) if np.isnan(clock.start) else clock.start
     reach = clock_reach(scene)
     low, high = max(clock.low, start - reach), min(clock.high, start + reach)
     if not low <= start <= high:
         start = (low + high) / 2 if low < high else (clock.low + clock.high) / 2
         low, high = max(clock.low, start - reach), min(clock.high, start + reach)
-    moved = _Clock(CLOCK, start, low, high, False, "s")
-    return [moved if key.key == CLOCK else key for key in keys], start
+    # Its unknown is in units of its reach wherever it begins.
+    moved = clock._replace(start=start, low=low, high=high, size=(high - low) / 2)
+    return [moved if key is clock else key for key in keys], start
 
 
-class _Clock(Free):
-    """The clock, whose unknown is in units of its reach wherever it begins."""
-
-    @property
-    def size(self) -> float:
-        """Half of what it may move by."""
-        return (self.high - self.low) / 2
-
-
-def _finished(scene: Scene, search: Search, x: np.ndarray) -> Fit:
+def _finished(scene: Scene, search: FitSearch, x: np.ndarray) -> Fit:
     residuals = search.residuals(x)
     assert residuals is not None
     measured, keys = search.problem.measured, search.keys
@@ -168,7 +92,7 @@ def _finished(scene: Scene, search: Search, x: np.ndarray) -> Fit:
     bounds = zip(x, search.low, search.high, strict=True)
     stopped = [bool(min(u - a, b - u) <= NEAR) for u, a, b in bounds]
     estimates = [
-        Estimate(key.key, value, *_interval(key, u, r), key.start or 0.0, key.unit, at_bound)
+        Estimate(key.key, value, *_interval(key, u, r), key.start, key.unit, at_bound)
         for key, value, u, r, at_bound in zip(keys, values, x, about.reach, stopped, strict=True)
     ]
     clock = next((e.value for e in estimates if e.key == CLOCK), 0.0)
@@ -188,14 +112,14 @@ def _interval(key: Free, unknown: float, reach: float) -> tuple[float, float]:
     if not np.isfinite(reach):
         return (0.0, np.inf) if key.logarithmic else (-np.inf, np.inf)
     if key.logarithmic:
-        start = key.start or 0.0
-        return start * float(np.exp(unknown - reach)), start * float(np.exp(unknown + reach))
-    middle = (key.start or 0.0) + key.size * unknown
+        low, high = (key.start * float(np.exp(unknown + r)) for r in (-reach, reach))
+        return low, high
+    middle = key.start + key.size * unknown
     return middle - key.size * float(reach), middle + key.size * float(reach)
 
 
 def _notes(
-    estimates: list[Estimate], correlation: np.ndarray, waveforms: list[Fitted], search: Search
+    estimates: list[Estimate], correlation: np.ndarray, waveforms: list[Fitted], search: FitSearch
 ) -> list[str]:
     """Return what a reader of the values must know."""
     found = [

@@ -1,15 +1,12 @@
 """The keys that a fit may change: where each begins, and between which bounds it stays."""
 
-from __future__ import annotations
-
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from itertools import pairwise
-from math import exp, inf, isfinite, log, nextafter
-from types import UnionType
-from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin
+from math import exp, inf, isfinite, log, nan, nextafter
+from typing import Annotated, Any, NamedTuple
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from cases.errors import SceneError
@@ -28,33 +25,29 @@ LOADS = {"stress": "Pa", "velocity": "m/s", "acceleration": "m/s2"}  # by load.q
 
 
 class Free(NamedTuple):
-    """A key that is fitted. start : None where it is to be found, of the clock alone.
+    """A key that is fitted.
 
-    low, high : bounds. logarithmic : whether it is positive and sought on such a scale. unit : ""
-    of a ratio.
+    start : nan where it is to be found, of the clock alone. low, high : bounds. logarithmic :
+    whether it is positive and sought on such a scale. size : on a linear one the change of the
+    value for a change of 1 in the unknown. unit : "" of a ratio.
     """
 
     key: str
-    start: float | None
+    start: float
     low: float
     high: float
     logarithmic: bool
+    size: float
     unit: str
-
-    @property
-    def size(self) -> float:
-        """The change of the value for a change of 1 in the unknown, on a linear scale."""
-        return abs(self.start or 0.0) or (self.high - self.low if isfinite(self.high) else 1.0)
 
     def unknown(self, value: float) -> float:
         """Return the number of the search that stands for a value."""
-        start = self.start or 0.0
-        return log(value / start) if self.logarithmic else (value - start) / self.size
+        return log(value / self.start) if self.logarithmic else (value - self.start) / self.size
 
     def value(self, unknown: float) -> float:
         """Return the value that a number of the search stands for."""
-        start = self.start or 0.0
-        found = start * exp(unknown) if self.logarithmic else start + self.size * unknown
+        linear = self.start + self.size * unknown
+        found = self.start * exp(unknown) if self.logarithmic else linear
         return min(max(found, self.low), self.high)
 
 
@@ -116,11 +109,12 @@ def _free(key: str, numbers: list[float], scene: Scene) -> Free:
     """Return a key with its start and bounds: given, else of the scene and its models."""
     if key == CLOCK:
         start, low, high = _three(numbers, None, -inf, inf)
-        return Free(key, start, low, high, False, "s")
+        return Free(key, nan if start is None else start, low, high, False, 1.0, "s")
     field, model, old = _find(key, scene)
-    if not _is_number(field.annotation) or any(_matches(key, fixed) for fixed in FIXED):
+    number = _number(field)
+    if number is None or any(_matches(key, fixed) for fixed in FIXED):
         raise SceneError("--free", key, None, "must be a number that can change by a little")
-    least, most, logarithmic = _bounds(field)
+    least, most, logarithmic = number
     if old is None and not numbers:
         allowed = f"is not in {scene.where}: give a start, --free {key}=START"
         raise SceneError("--free", key, None, allowed)
@@ -132,7 +126,8 @@ def _free(key: str, numbers: list[float], scene: Scene) -> Free:
         raise SceneError("--free", key, start, allowed)
     if logarithmic:
         low, high = max(low, start * 10**-DECADES), min(high, start * 10**DECADES)
-    return Free(key, start, low, high, logarithmic, _unit(key, model, scene))
+    size = abs(start) or (high - low if isfinite(high) else 1.0)
+    return Free(key, start, low, high, logarithmic, size, _unit(key, model, scene))
 
 
 def _unit(key: str, model: type[BaseModel], scene: Scene) -> str:
@@ -184,32 +179,15 @@ def _matches(key: str, fixed: str) -> bool:
     )
 
 
-def _is_number(kind: Any) -> bool:
-    if get_origin(kind) in (Annotated, Union, UnionType):
-        return any(_is_number(part) for part in get_args(kind))
-    return kind is float
-
-
-def _bounds(field: FieldInfo) -> tuple[float, float, bool]:
-    """Return the least and largest value that a field allows, and whether it is above zero."""
-    low, high, logarithmic = -inf, inf, False
-    for one in _constraints(field.annotation, field.metadata):
-        if (least := getattr(one, "gt", None)) is not None:
-            low, logarithmic = nextafter(least, inf), least == 0
-        if (least := getattr(one, "ge", None)) is not None:
-            low = least
-        if (most := getattr(one, "lt", None)) is not None:
-            high = nextafter(most, -inf)
-        if (most := getattr(one, "le", None)) is not None:
-            high = most
-    return low, high, logarithmic
-
-
-def _constraints(kind: Any, metadata: Any) -> Iterator[Any]:
-    for one in metadata:
-        yield from one.metadata if isinstance(one, FieldInfo) else [one]
-    if get_origin(kind) is Annotated:
-        yield from _constraints(get_args(kind)[0], get_args(kind)[1:])
-    elif get_origin(kind) in (Union, UnionType):
-        for part in get_args(kind):
-            yield from _constraints(part, ())
+def _number(field: FieldInfo) -> tuple[float, float, bool] | None:
+    """Return the least and largest number that a field allows, and whether it is above zero; None
+    where it holds none."""
+    kind: Any = Annotated[field.annotation, field]
+    allowed = TypeAdapter(kind).json_schema()
+    for one in allowed.get("anyOf", [allowed]):
+        if one.get("type") == "number":
+            above, below = one.get("exclusiveMinimum"), one.get("exclusiveMaximum")
+            low = one.get("minimum", -inf) if above is None else nextafter(above, inf)
+            high = one.get("maximum", inf) if below is None else nextafter(below, -inf)
+            return low, high, above == 0
+    return None

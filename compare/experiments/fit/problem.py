@@ -1,18 +1,16 @@
 """The problem of a fit: waveforms of a solution at the times of measured ones, key by key."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from cases.errors import SceneError, UnstableError
 from cases.schema.scene import Scene
 from compare.engines import applies, solve, solver
 from compare.exact.blocks import lattice
+from compare.experiments.failures import FAILURES
 from compare.experiments.fit.keys import CLOCK, changed
 from compare.experiments.planner.families import COARSEST
 from compare.misfit.alignment import INSTANT, static_level
@@ -53,30 +51,23 @@ class Problem:
     measured: list[Measured]
     steps: int = 0
 
-    def waveforms(self, values: Mapping[str, float]) -> list[np.ndarray]:
-        """Return the solution at the measured times [n] of each waveform; raises SceneError and
-        UnstableError where there is none for these values."""
+    def residual(self, values: Mapping[str, float]) -> list[np.ndarray] | None:
+        """Return solution less measured [n] of each waveform; None where there is no solution."""
         from scipy.interpolate import CubicSpline
 
-        clock = values.get(CLOCK, 0.0)
-        scene = changed(self.scene, {k: v for k, v in values.items() if k != CLOCK})
-        result = solve(self.solver, self._stepped(scene))
+        try:
+            scene = changed(self.scene, {k: v for k, v in values.items() if k != CLOCK})
+            result = solve(self.solver, self._stepped(scene))
+        except FAILURES:
+            return None
         time, found = result.time.values, []
         for one in self.measured:
             ours = one.place.waveform(result)
             assert ours is not None
             # At rest before its first sample.
-            at = np.clip(one.time + clock, time[0], time[-1])
-            found.append(CubicSpline(time, ours)(at))
+            at = np.clip(one.time + values.get(CLOCK, 0.0), time[0], time[-1])
+            found.append(CubicSpline(time, ours)(at) - one.values)
         return found
-
-    def residual(self, values: Mapping[str, float]) -> list[np.ndarray] | None:
-        """Return solution less measured [n] of each waveform; None where there is no solution."""
-        try:
-            found = self.waveforms(values)
-        except (SceneError, UnstableError):
-            return None
-        return [f - one.values for f, one in zip(found, self.measured, strict=True)]
 
     @property
     def step(self) -> float:
@@ -131,9 +122,8 @@ def problem_of(
             level = static_level(place, result)
             found.append(Measured(one.name, place, one.time[inside], values[inside], level))
     _require_samples(found, curves, scene)
-    if name != DEM.name:
-        return Problem(base, name, found)
-    return Problem(base, name, found, round(interval / float(result.attrs["dt"])))
+    steps = round(interval / float(result.attrs["dt"])) if name == DEM.name else 0
+    return Problem(base, name, found, steps)
 
 
 def _require_samples(found: list[Measured], curves: list[Curves], scene: Scene) -> None:
@@ -152,8 +142,7 @@ def started_clock(scene: Scene, solver: str, curves: list[Curves]) -> float:
     """Return the shift of the first file's clock that correlates best with the solution, s."""
     from compare.misfit.alignment import lay_beside
 
-    results: dict[str, xr.Dataset] = {solver: solve(solver, scene)}
-    shift = lay_beside(curves[0], scene, results, align=True).shift
+    shift = lay_beside(curves[0], scene, {solver: solve(solver, scene)}, align=True).shift
     return shift.seconds if shift else 0.0
 
 

@@ -1,7 +1,5 @@
 """A scene as the text of a scene file."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

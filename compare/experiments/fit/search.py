@@ -1,7 +1,5 @@
 """The search of a fit: nonlinear least squares, each waveform weighed by its own noise."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from cases.errors import StoppedError
@@ -18,7 +16,7 @@ OTHERS = 2  # of them, the best
 LEAST_WEIGHT = 0.01  # of the largest relative noise: no waveform is trusted beyond
 
 
-class Search:
+class FitSearch:
     """A least-squares search in the unknowns of some keys, with weights by waveform."""
 
     def __init__(self, problem: Problem, keys: list[Free], progress: Progress | None) -> None:

@@ -1,20 +1,15 @@
 """The output of `jointwave fit`."""
 
-from __future__ import annotations
-
 import math
 import shlex
 from pathlib import Path
-from typing import Any
 
 from compare.cli.terminal import say, show_numbers
-from compare.experiments.fit.fit import Estimate, Fit
+from compare.experiments.fit.result import Estimate, Fit
 
 
 def show_fit(found: Fit, scene: str, variant: str, files: list[Path]) -> None:
     """Print values with intervals, correlations, misfits, and the command that goes on."""
-    from compare.experiments.fit.files import settings
-
     worst = max(found.waveforms, key=lambda one: one.after)
     say(
         f"{found.scene.title} {found.scene.name}".strip() + f", fitted by {found.solver} in "
@@ -42,7 +37,7 @@ def show_fit(found: Fit, scene: str, variant: str, files: list[Path]) -> None:
         "The intervals hold if the model is right: jointwave compare says how far models are apart."
     )
     arguments = ["jointwave", "compare", scene, *(["--variant", variant] if variant else [])]
-    for setting in settings(found):
+    for setting in found.settings:
         arguments += ["--set", setting]
     say(f"run it: {shlex.join(arguments)}")
     for path in files:
@@ -63,10 +58,3 @@ def _digits(value: float, e: Estimate) -> str:
         return f"{value:.6g}"
     digits = math.ceil(math.log10(max(abs(value), width) / width)) + 2
     return f"{value:.{min(max(digits, 3), 10)}g}"
-
-
-def facts_of(found: Fit, files: list[Path]) -> dict[str, Any]:
-    """Return the same for a machine."""
-    from compare.experiments.fit.files import facts
-
-    return {**facts(found), "files": [str(path) for path in files]}

@@ -8,8 +8,6 @@ as n / tau, tau the residual's integrated autocorrelation, summed while pairs of
 (Geyer, Statist. Sci. 7, 1992), and the covariance is tau times as large.
 """
 
-from __future__ import annotations
-
 from math import inf
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Families of configurations: an engine, its scheme and elements, at any number of steps."""
 
-from __future__ import annotations
-
 from math import ceil
 from typing import Any, NamedTuple
 

@@ -5,19 +5,19 @@ own model, and the modelling one, of that model from the finest physics. So an e
 cancel the other is no accuracy.
 
 Families of configurations are tried from coarse elements to fine ones, each from its coarsest step
-on until finer steps can be predicted (see `plan_trials`). What by its freedom-steps would cost more
+on until finer steps can be predicted (see `trials`). What by its freedom-steps would cost more
 than what is known to meet the misfit is not tried at all, nor what its modelling error bars.
 """
-
-from __future__ import annotations
 
 from math import inf
 from time import perf_counter
 from typing import NamedTuple
 
-from cases.errors import SceneError, StoppedError, UnstableError
+from cases.errors import StoppedError
 from cases.schema.scene import Scene
 from compare.engines import Progress
+from compare.experiments.failures import FAILURES, reason_of
+from compare.experiments.planner.choices import MARGIN, Choice, cheapest, measured, predicted
 from compare.experiments.planner.families import (
     FAMILIES,
     Effort,
@@ -26,29 +26,23 @@ from compare.experiments.planner.families import (
     effort,
     is_finer,
 )
-from compare.experiments.planner.reference import Own, Reference, References
+from compare.experiments.planner.reference import OwnModel, References
 from compare.experiments.planner.trials import (
     FINEST,
     LONGEST,
-    Choice,
     Trial,
     first_trial,
     is_trusted,
-    measured,
-    predicted,
     timed,
     trial_at,
 )
+from compare.experiments.references import ErrorReference
 from compare.misfit.metrics import misfit as misfit_of
 
 #: A family is not tried where it would be too dear at this share of the least seconds that a
 #: freedom-step has taken so far.
 SAFETY = 0.5
-#: What is only predicted must be below this part of the misfit: two steps leave the next term of
-#: the error.
-MARGIN = 0.95
 DEAR = "would cost more than what is known to do"
-FAILURES = (SceneError, UnstableError, StoppedError)
 
 
 class Plan(NamedTuple):
@@ -62,13 +56,13 @@ class Plan(NamedTuple):
     """
 
     scene: Scene
-    reference: Reference
+    reference: ErrorReference
     reason: str
     trials: int
     planning: float
     skipped: dict[str, str]
     chosen: Choice | None = None
-    own: Reference | None = None
+    own: ErrorReference | None = None
     obtained: Choice | None = None
 
     @property
@@ -82,7 +76,7 @@ class Plan(NamedTuple):
         return 0.0 if self.obtained is None else self.obtained.seconds
 
 
-class Search:
+class PlanSearch:
     """Trials so far of one scene, and the choices that they leave."""
 
     def __init__(
@@ -105,20 +99,20 @@ class Search:
     def try_family(self, family: Family) -> None:
         """Run a family until it meets the misfit, is predicted, or costs too much."""
         if any(is_finer(family, other) for other in self.dear):
-            raise SceneError(self.scene.where, "", None, DEAR)
+            raise StoppedError(DEAR)
         asked = effort(self.scene, family)
         if SAFETY * self._rate(family) * asked.work > self.limit:
             self.dear.append(family)
-            raise SceneError(self.scene.where, "", None, DEAR)
+            raise StoppedError(DEAR)
         own = self.references.own(family.name)
         if own.least >= self.misfit and self.seconds is None:
-            raise SceneError(self.scene.where, "", None, too_far(family, own))
+            raise StoppedError(too_far(family, own))
         trials = self._run(family, asked, own)
         self.choices += [measured(self.scene, family, trial, own) for trial in trials]
         if len(trials) > 1:
             self.choices += predicted(self.scene, family, trials, own)
 
-    def _run(self, family: Family, asked: Effort, own: Own) -> list[Trial]:
+    def _run(self, family: Family, asked: Effort, own: OwnModel) -> list[Trial]:
         trials = [first_trial(self.scene, family, own)]
         while not self._is_enough(family, trials, self.misfit - own.least):
             finer = 2 * trials[-1].per_sample
@@ -156,7 +150,7 @@ class Search:
         )
 
 
-def too_far(family: Family, own: Own) -> str:
+def too_far(family: Family, own: OwnModel) -> str:
     """Return why no step of a family comes within a misfit below its modelling error."""
     return f"the modelling error of {family.name} alone is {100 * own.least:.3g} %"
 
@@ -171,18 +165,16 @@ def plan(
     """
     began = perf_counter()
     references = References(scene, misfit)
-    search = Search(scene, references, misfit, seconds)
+    search = PlanSearch(scene, references, misfit, seconds)
     skipped = _tried(search, progress)
     chosen, obtained = _run_cheapest(search)
     spent = perf_counter() - began
     found = Plan(scene, references.finest, references.reason, search.trials, spent, skipped)
-    if chosen is None:
-        return found
-    own = references.own(chosen.family.name).reference
+    own = None if chosen is None else references.own(chosen.family.name).reference
     return found._replace(chosen=chosen, own=own, obtained=obtained)
 
 
-def _run_cheapest(search: Search) -> tuple[Choice | None, Choice | None]:
+def _run_cheapest(search: PlanSearch) -> tuple[Choice | None, Choice | None]:
     """Return the cheapest choice and what came of it; one that is not what was predicted of it
     counts as a trial, and the next is run."""
     chosen = obtained = None
@@ -195,7 +187,7 @@ def _run_cheapest(search: Search) -> tuple[Choice | None, Choice | None]:
     return chosen, obtained
 
 
-def _tried(search: Search, progress: Progress | None) -> dict[str, str]:
+def _tried(search: PlanSearch, progress: Progress | None) -> dict[str, str]:
     """Try all families; return the reasons of those that were not run."""
     skipped = {}
     for i, family in enumerate(FAMILIES):
@@ -206,39 +198,3 @@ def _tried(search: Search, progress: Progress | None) -> dict[str, str]:
         if progress:
             progress((i + 1) / (len(FAMILIES) + 1))
     return skipped
-
-
-def reason_of(error: Exception) -> str:
-    """Return why something could not be run, without where."""
-    return getattr(error, "allowed", str(error))
-
-
-def cheapest(choices: list[Choice], misfit: float, seconds: float | None) -> Choice | None:
-    """Return the cheapest that meets the misfit; else, or where it costs more, the best in time.
-
-    One meets it where all finer steps of its family do, as far as they are known or predicted.
-    """
-    meets = [c for c in choices if _meets(c, misfit) and furthest_off(c, choices) <= misfit]
-    best = min(meets, key=lambda c: c.seconds, default=None)
-    if seconds is None or (best is not None and best.seconds <= seconds):
-        return best
-    in_time = [c for c in choices if c.seconds <= seconds]
-    return min(in_time, key=lambda c: furthest_off(c, choices), default=None)
-
-
-def _meets(choice: Choice, misfit: float) -> bool:
-    margin = 1.0 if choice.measured else MARGIN
-    return choice.numerical <= margin * (misfit - choice.modelling)
-
-
-def furthest_off(choice: Choice, choices: list[Choice]) -> float:
-    """Return the largest misfit of a choice and of the finer steps of its family."""
-    return max(
-        c.misfit for c in choices if c.family == choice.family and c.per_sample >= choice.per_sample
-    )
-
-
-def options_of(choice: Choice) -> list[str]:
-    """Return the `--set` options that make a configuration."""
-    found = {**choice.family.changes, **choice.settings}
-    return [f"numerics.{choice.family.engine}.{key}={value}" for key, value in found.items()]

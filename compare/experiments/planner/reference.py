@@ -3,8 +3,6 @@
 Either is an exact solution that knows itself well enough, or a run that has converged to itself.
 """
 
-from __future__ import annotations
-
 from functools import cached_property
 from math import inf
 from typing import Any, NamedTuple
@@ -15,6 +13,7 @@ from cases.errors import SceneError
 from cases.schema.scene import Scene
 from compare.engines import ENGINES, solve
 from compare.experiments.planner.families import Family, configured, plain, settings
+from compare.experiments.references import ErrorReference
 from compare.misfit import ranking
 from compare.misfit.metrics import JUDGED, misfit, worst
 
@@ -23,32 +22,14 @@ LONGEST = 20.0  # s of stepping of the finest run
 LEVELS = 10
 
 
-class Reference(NamedTuple):
-    """A reference of errors; settings : of an engine's run, "" where the solution is exact.
-
-    error : relative, of the reference itself: the bound that a computed solution gives; of a run,
-    how far it is from the one before; 0 of a closed form.
-    """
-
-    name: str
-    result: xr.Dataset
-    settings: str = ""
-    error: float = 0.0
-
-    @property
-    def is_exact(self) -> bool:
-        """Whether it is an exact solution."""
-        return not self.settings
-
-
-class Own(NamedTuple):
+class OwnModel(NamedTuple):
     """The model of one engine.
 
     reference : what its numerical errors are from. modelling : how far that is at most from the
     finest physics, the error of the latter included; 0 where it is the finest physics itself.
     """
 
-    reference: Reference
+    reference: ErrorReference
     modelling: float
 
     @property
@@ -66,7 +47,7 @@ class References:
 
     def __init__(self, scene: Scene, asked: float) -> None:
         self.scene, self.asked = scene, asked
-        self._own: dict[str, Own] = {}
+        self._own: dict[str, OwnModel] = {}
         found = ranking.finest(self._names, scene)
         if found is None:
             raise SceneError(scene.where, "", None, "nothing here resolves all that the scene has")
@@ -76,44 +57,31 @@ class References:
     def _names(self) -> list[str]:
         return [name for name, answer in ranking.applicable(self.scene).items() if answer]
 
-    def own(self, engine: str) -> Own:
+    def own(self, engine: str) -> OwnModel:
         """Return the model of an engine; raises SceneError where no run of it has converged."""
         if engine not in self._own:
             self._own[engine] = self._find_own(engine)
         return self._own[engine]
 
-    def _find_own(self, engine: str) -> Own:
-        exact = ranking.own_exact(engine, self._names, self.scene)
-        if self.finest.name in (engine, exact):
-            return Own(self.finest, 0.0)
-        reference = (
-            self._reference(exact)
-            if exact
-            else _converged(self.scene, engine, self.asked, self.finest.result)
-        )
-        apart = misfit(reference.result, self.finest.result)
-        return Own(reference, apart + self.finest.error)
+    def _find_own(self, engine: str) -> OwnModel:
+        finest, exact = self.finest, ranking.own_exact(engine, self._names, self.scene)
+        if finest.name in (engine, exact):
+            return OwnModel(finest, 0.0)
+        reference = self._reference(exact or engine, finest.result)
+        return OwnModel(reference, misfit(reference.result, finest.result) + finest.error)
 
-    def _reference(self, name: str) -> Reference:
+    def _reference(self, name: str, finest: xr.Dataset | None = None) -> ErrorReference:
         """Return an exact solution, or the run of an engine that has converged."""
         if name in ENGINES:
-            return _converged(self.scene, name, self.asked)
+            return _converged(self.scene, name, self.asked, finest)
         result = solve(name, plain(self.scene))
         error = worst(result, result).floor
         if error > SHARE * self.asked:
-            raise SceneError(
-                self.scene.where,
-                "",
-                None,
-                f"{name} knows itself to {100 * error:.2g} %, not to "
-                f"{100 * SHARE * self.asked:.2g} %: ask for a larger --misfit",
-            )
-        return Reference(name, result, "", error)
+            raise _not_known(self.scene, f"{name} knows itself", error, self.asked)
+        return ErrorReference(name, result, error)
 
 
-def _converged(
-    scene: Scene, name: str, asked: float, finest: xr.Dataset | None = None
-) -> Reference:
+def _converged(scene: Scene, name: str, asked: float, finest: xr.Dataset | None) -> ErrorReference:
     """Return an engine's run that differs from the one before by little enough.
 
     Each has at most half the step, and half the elements' size, of the one before. Its error is at
@@ -123,26 +91,24 @@ def _converged(
     before, apart = None, inf
     for level in range(LEVELS):
         family = _family(name, level)
-        numerics, result = _at_most(scene, family, _half(before))
+        most = inf if before is None else float(before.attrs["dt"]) / 2
+        numerics, result = _at_most(scene, family, most)
         apart = inf if before is None else misfit(before, result)
         is_far = finest is not None and misfit(result, finest) - apart > asked
         if apart < SHARE * asked or is_far:
             made = ", ".join(f"{k} {v}" for k, v in (family.changes | numerics).items())
-            return Reference(name, result, made, apart)
+            return ErrorReference(name, result, apart, made)
         before = result
         if float(result.attrs["seconds_stepping"]) * 4 > LONGEST:
             break
-    raise SceneError(
-        scene.where,
-        "",
-        None,
-        f"no exact solution to plan by, and {name} within {LONGEST:g} s a run converges to "
-        f"{100 * apart:.2g} %, not to {100 * SHARE * asked:.2g} %: ask for a larger --misfit",
-    )
+    what = f"no exact solution to plan by, and {name} within {LONGEST:g} s a run converges"
+    raise _not_known(scene, what, apart, asked)
 
 
-def _half(before: xr.Dataset | None) -> float:
-    return inf if before is None else float(before.attrs["dt"]) / 2
+def _not_known(scene: Scene, what: str, error: float, asked: float) -> SceneError:
+    """Return the refusal of a reference that is too far off itself."""
+    share = f"to {100 * error:.2g} %, not to {100 * SHARE * asked:.2g} %"
+    return SceneError(scene.where, "", None, f"{what} {share}: ask for a larger --misfit")
 
 
 def _family(name: str, level: int) -> Family:

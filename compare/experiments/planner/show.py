@@ -3,9 +3,9 @@
 from typing import Any
 
 from compare.cli.terminal import print_json, say, show_table
-from compare.experiments.planner.planner import Plan, options_of
-from compare.experiments.planner.reference import Reference
-from compare.experiments.planner.trials import Choice
+from compare.experiments.planner.choices import Choice, options_of
+from compare.experiments.planner.planner import Plan
+from compare.experiments.references import ErrorReference
 from compare.report.tables import percent
 
 
@@ -48,7 +48,7 @@ def _numbers(choice: Choice) -> list[str]:
     return [*map(percent, errors), f"{choice.seconds:.3g}"]
 
 
-def _named(reference: Reference) -> str:
+def _named(reference: ErrorReference) -> str:
     """Say what errors are from, how well it is known, and until when."""
     until = reference.result.attrs.get("known_until")
     known = "" if until is None else f", known until {float(until):.3g} s"
@@ -82,7 +82,7 @@ def _plan_facts(one: Plan, misfit: float) -> dict[str, Any]:
     }
 
 
-def _reference_facts(reference: Reference) -> dict[str, Any]:
+def _reference_facts(reference: ErrorReference) -> dict[str, Any]:
     return {
         "name": reference.name,
         "exact": reference.is_exact,

@@ -5,10 +5,8 @@ is w + c n^-q (Richardson): from two runs its misfit from the engine's own model
 n. From three, so is q: half the steps leave 2^q times the difference. Seconds are a + b n.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable, Iterator
-from math import ceil, inf, log2
+from collections.abc import Callable
+from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +15,7 @@ import xarray as xr
 from cases.schema.scene import Scene
 from compare.engines import solve
 from compare.experiments.planner.families import COARSEST, Family, configured, settings
-from compare.experiments.planner.reference import Own
+from compare.experiments.planner.reference import OwnModel
 from compare.misfit.metrics import Stack, stacked
 
 SHORT = 0.05  # s: a shorter run is timed three times more, as it is noise alone
@@ -44,28 +42,7 @@ class Trial(NamedTuple):
     @property
     def misfit(self) -> float:
         """That of the waveform which is furthest off: the numerical error."""
-        return _largest(self.misfits)
-
-
-class Choice(NamedTuple):
-    """One configuration and what it gives; measured or predicted.
-
-    numerical : relative L2 misfit from the engine's own model, with what that is not known to.
-    modelling : of the own model from the finest physics. seconds : of stepping.
-    """
-
-    family: Family
-    settings: dict[str, Any]
-    per_sample: int
-    numerical: float
-    modelling: float
-    seconds: float
-    measured: bool = False
-
-    @property
-    def misfit(self) -> float:
-        """Numerical and modelling error together: what counts, whatever cancels in the sum."""
-        return self.numerical + self.modelling
+        return largest(self.misfits)
 
 
 def timed(name: str, scene: Scene) -> tuple[xr.Dataset, float]:
@@ -79,20 +56,20 @@ def timed(name: str, scene: Scene) -> tuple[xr.Dataset, float]:
     return result, seconds
 
 
-def first_trial(scene: Scene, family: Family, own: Own) -> Trial:
+def first_trial(scene: Scene, family: Family, own: OwnModel) -> Trial:
     """Run a family at the coarsest of its steps."""
-    start = {} if family.is_implicit else {"step_fraction": COARSEST}
+    start: dict[str, Any] = {"step_fraction": COARSEST}
     if family.is_implicit:
         start = settings(scene, family, 1, scene.interval)
     return _trial(scene, family, start, own)
 
 
-def trial_at(scene: Scene, family: Family, per_sample: int, first: Trial, own: Own) -> Trial:
+def trial_at(scene: Scene, family: Family, per_sample: int, first: Trial, own: OwnModel) -> Trial:
     """Run a family at so many steps per sample, after its first trial."""
     return _trial(scene, family, settings(scene, family, per_sample, first.critical), own)
 
 
-def _trial(scene: Scene, family: Family, numerics: dict[str, Any], own: Own) -> Trial:
+def _trial(scene: Scene, family: Family, numerics: dict[str, Any], own: OwnModel) -> Trial:
     result, seconds = timed(family.name, configured(scene, family, numerics))
     per_sample = round(scene.interval / float(result.attrs["dt"]))
     waves = stacked(result, own.reference.result)
@@ -114,7 +91,7 @@ def is_trusted(trials: list[Trial], order: int, asked: float) -> bool:
     last = trials[-1].waves
     told, limit = forecast(trials[:-1], order)(trials[-1].per_sample), forecast(trials, order)(inf)
     off, left = last.distances(told, last.one), last.distances(limit, last.other)
-    return _largest(off) < HIT * max(asked, _largest(left))
+    return largest(off) < HIT * max(asked, largest(left))
 
 
 def is_hopeless(trials: list[Trial], asked: float) -> bool:
@@ -138,14 +115,6 @@ def rate(trials: list[Trial], order: int) -> np.ndarray:
     return np.where((before > 0) & (after > 0), found, order)
 
 
-def measured(scene: Scene, family: Family, trial: Trial, own: Own) -> Choice:
-    """Return the configuration of a trial, with what it gave."""
-    numerics = settings(scene, family, trial.per_sample, trial.critical)
-    numerical = trial.misfit + own.reference.error
-    about = family, numerics, trial.per_sample
-    return Choice(*about, numerical, own.modelling, trial.seconds, True)
-
-
 def forecast(trials: list[Trial], order: int) -> Callable[[float], np.ndarray]:
     """Return a function from steps per sample to waveforms, w + c n^-q through the last trials."""
     coarse, fine = trials[-2:]
@@ -154,31 +123,6 @@ def forecast(trials: list[Trial], order: int) -> Callable[[float], np.ndarray]:
     return lambda n: wave - part * (1 - (fine.per_sample / n) ** q)
 
 
-def predicted(scene: Scene, family: Family, trials: list[Trial], own: Own) -> Iterator[Choice]:
-    """Yield the configurations of a family from the last trial but one on, as predicted."""
-    coarse, fine = trials[-2:]
-    told, (start, each) = forecast(trials, family.order), seconds_of(coarse, fine)
-    for n in steps(coarse.per_sample, trials[0].per_sample * FINEST, 4):
-        about = family, settings(scene, family, n, fine.critical), n
-        numerical = _largest(fine.waves.distances(told(n), fine.waves.other))
-        numerical += own.reference.error
-        yield Choice(*about, numerical, own.modelling, start + each * n)
-
-
-def seconds_of(coarse: Trial, fine: Trial) -> tuple[float, float]:
-    """Return (a, b) of seconds a + b n, both at least 0, that give the finer trial's."""
-    each = (fine.seconds - coarse.seconds) / (fine.per_sample - coarse.per_sample)
-    each = min(max(each, 0.0), fine.seconds / fine.per_sample)
-    return fine.seconds - each * fine.per_sample, each
-
-
-def steps(least: int, most: int, per_octave: int) -> list[int]:
-    """Return steps per sample from `least` on, so many to a doubling."""
-    octaves = ceil(per_octave * log2(most / least))
-    return list(
-        dict.fromkeys(ceil(least * 2 ** (k / per_octave) - 1e-9) for k in range(octaves + 1))
-    )
-
-
-def _largest(distances: np.ndarray) -> float:
+def largest(distances: np.ndarray) -> float:
+    """Return the largest of distances [waveform], 0 of none."""
     return float(np.max(distances, initial=0.0))

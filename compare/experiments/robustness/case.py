@@ -1,4 +1,4 @@
-"""Hard cases: a scene with changes, the solvers it is put to, and the criterion that judges it."""
+"""Hard cases: a scene with changes, the engines it is put to, and the criterion that judges it."""
 
 from __future__ import annotations
 
@@ -9,54 +9,36 @@ from typing import Any, NamedTuple
 import xarray as xr
 
 import cases
-from cases.errors import SceneError
+from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
 from compare.engines import ENGINES, solve
 from compare.scenes import find
+from compare.solvers.record import Solver
 
 SHORT = "hard/short-pillar"  # the scene of most cases
 #: In a case's changes: numerics.dem.step_fraction or numerics.continuum.step_fraction.
 STEP = "step_fraction"
 ALLOW = "allow_unstable"
+EPS = 2.2e-16
 
 
-class Solver(NamedTuple):
-    """An engine with one of its schemes; `changes` are the dotted keys that ask for it."""
+class EngineScheme(NamedTuple):
+    """An engine with one of its schemes of time steps."""
 
-    engine: str
+    engine: Solver
     scheme: str
-    changes: dict[str, Any]
-
-    @property
-    def part(self) -> str:
-        """The table of [numerics] that is this engine's."""
-        return ENGINES[self.engine].engine
-
-    @property
-    def model(self) -> str:
-        """The model of the rock, "" of rigid blocks."""
-        return ENGINES[self.engine].model or ""
-
-    @property
-    def is_rigid(self) -> bool:
-        """Whether its blocks are rigid, so that it has no elements."""
-        return ENGINES[self.engine].has_rigid_blocks
 
     @property
     def name(self) -> str:
-        """The solver in words, as cases name those that they spare."""
-        return f"{self.engine} {self.scheme}"
+        """Both in words, as cases name those that they spare."""
+        return f"{self.engine.name} {self.scheme}"
 
 
-SOLVERS = tuple(
-    Solver(name, scheme, {f"numerics.{engine.engine}.scheme": scheme})
-    for name, engine in ENGINES.items()
-    for scheme in engine.schemes
-)
-LEAPFROG, FOURTH, JOINTED, _, EQUIVALENT, _ = SOLVERS
+SCHEMES = tuple(EngineScheme(one, scheme) for one in ENGINES.values() for scheme in one.schemes)
+LEAPFROG, FOURTH, JOINTED, _, EQUIVALENT, _ = SCHEMES
 
 
-class Finding(NamedTuple):
+class Judgement(NamedTuple):
     """The finding of a criterion: it holds where value <= bound; `said` adds to the message."""
 
     value: float
@@ -65,27 +47,23 @@ class Finding(NamedTuple):
 
 
 class Criterion(NamedTuple):
-    """A bound from theory. words : what it bounds. judge : measures it on one solver."""
+    """A bound from theory. words : what it bounds. judge : measures it on one engine."""
 
     words: str
-    judge: Callable[[Trial], Finding]
-
-    def __call__(self, trial: Trial) -> Finding:
-        """Return what the criterion finds."""
-        return self.judge(trial)
+    judge: Callable[[CaseTrial], Judgement]
 
 
-def criterion(words: str) -> Callable[[Callable[[Trial], Finding]], Criterion]:
+def criterion(words: str) -> Callable[[Callable[[CaseTrial], Judgement]], Criterion]:
     """Return the decorator that makes a function of a trial a criterion."""
     return partial(Criterion, words)
 
 
-class Case(NamedTuple):
+class HardCase(NamedTuple):
     """A hard case.
 
     name : in words. changes : of the scene, dotted keys; those of [numerics] may be `STEP` and
-    `ALLOW`. spared : why a solver is not put to the case, by its name or its engine's or its
-    scheme's. slow : takes long; run by `make test-all` and the study alone. scene : a shipped one.
+    `ALLOW`. spared : why an engine is not put to the case, by its name, its scheme's or both.
+    slow : takes long; run by `make test-all` and the study alone. scene : a shipped one.
     """
 
     name: str
@@ -95,49 +73,69 @@ class Case(NamedTuple):
     slow: bool = False
     scene: str = SHORT
 
-    def why_spared(self, solver: Solver) -> str | None:
-        """Return why a solver is not put to this case; None where it is."""
-        for key in (solver.name, solver.engine, solver.scheme):
-            if key in self.spared:
-                return self.spared[key]
-        return None
+    def why_spared(self, stepper: EngineScheme) -> str | None:
+        """Return why an engine is not put to this case; None where it is."""
+        names = stepper.name, stepper.engine.name, stepper.scheme
+        return next((self.spared[name] for name in names if name in self.spared), None)
 
 
 def rock_is_spared(reason: str) -> dict[str, str]:
-    """Return the reason why no deformable rock is put to a case, as `Case.spared` has it."""
+    """Return the reason why no deformable rock is put to a case, as `HardCase.spared` has it."""
     return {name: reason for name, engine in ENGINES.items() if not engine.has_rigid_blocks}
 
 
-class Trial:
-    """One case on one solver: its scene, with more changes where a criterion needs them."""
+class CaseTrial:
+    """One case on one engine: its scene, with more changes where a criterion needs them."""
 
-    def __init__(self, case: Case, solver: Solver) -> None:
-        self.case, self.solver = case, solver
+    def __init__(self, case: HardCase, stepper: EngineScheme) -> None:
+        self.case = case
+        self.engine, self.scheme = stepper
 
-    def scene(self, **more: Any) -> Scene:
+    def changed(self, **more: Any) -> Scene:
         """Return the scene with more dotted keys (dots written __) changed."""
+        part = f"numerics.{self.engine.engine}"
         extra = {key.replace("__", "."): value for key, value in more.items()}
-        keys = self.solver.changes | self.case.changes | extra
+        keys = {f"{part}.scheme": self.scheme} | self.case.changes | extra
         for key in (STEP, ALLOW):
             if key in keys:
-                keys[f"numerics.{self.solver.part}.{key}"] = keys.pop(key)
+                keys[f"{part}.{key}"] = keys.pop(key)
         return cases.load_variant(find(self.case.scene), "", keys)
 
     def run(self, **more: Any) -> xr.Dataset:
-        """Return the solver's result for the scene with more keys changed."""
-        return solve(self.solver.engine, self.scene(**more))
+        """Return the engine's result for the scene with more keys changed."""
+        return solve(self.engine.name, self.changed(**more))
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene of the case."""
+        return self.changed()
+
+    @cached_property
+    def properties(self) -> Properties:
+        """The calibrated scene."""
+        return calibrate(self.scene)
+
+    @cached_property
+    def result(self) -> xr.Dataset:
+        """The engine's result for the scene of the case."""
+        return self.run()
 
     @cached_property
     def critical(self) -> float:
         """The critical step of explicit steps of this scene, s."""
-        return critical_step(self.solver, self.scene(**{STEP: 0.5}))
+        return self.engine.prepare(self.changed(**{STEP: 0.5})).critical
 
+    @property
+    def fraction(self) -> float:
+        """The fraction of the critical step that the case asks for."""
+        return float(self.case.changes[STEP])
 
-def critical_step(solver: Solver, scene: Scene) -> float:
-    """Return the critical step (s) of a solver's explicit steps."""
-    return ENGINES[solver.engine].prepare(scene).critical
+    @property
+    def dt(self) -> float:
+        """The step that the case asks for, s."""
+        return self.fraction * self.critical
 
-
-def is_refusal_of_scheme(error: SceneError) -> bool:
-    """Return whether a scene calls for what the solver's scheme does not have."""
-    return error.key.endswith(".scheme")
+    @property
+    def is_implicit(self) -> bool:
+        """Whether the engine's steps are implicit."""
+        return self.scheme == "implicit"

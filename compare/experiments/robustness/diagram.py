@@ -1,17 +1,14 @@
 """The stability maps with the line that theory draws, and the energy of a million steps."""
 
-from __future__ import annotations
-
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
 from compare.experiments.robustness.criteria.energies import Drift
 from compare.experiments.robustness.map import StabilityMap, boundary
-from compare.figures.style import RC, WIDTH, style
+from compare.figures.blank import blank
+from compare.figures.style import style
 
 LIGHT = "#eceff2"  # of unstable cells
 
@@ -22,19 +19,16 @@ def draw(maps: list[StabilityMap], drifts: dict[str, Drift]) -> Figure:
     drifts : by "engine scheme". The cells of map k are the SVG group stability-map-k, the line over
     them stability-line-k, the energy k stability-energy-k.
     """
-    with matplotlib.rc_context(RC):
-        figure = Figure(figsize=(WIDTH, 3.6 + 2.6 * bool(drifts)))
-        FigureCanvasAgg(figure)
-        above, *below = figure.subfigures(
-            2 if drifts else 1, 1, height_ratios=[3.4, 2.6][: 1 + bool(drifts)], squeeze=False
-        )[:, 0]
+    heights = [3.4, 2.6] if drifts else [3.4]
+    with blank(3.6 + 2.6 * bool(drifts)) as figure:
+        parts = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)
+        above, *below = parts[:, 0]
         axes = above.subplots(1, len(maps), squeeze=False, sharey=True)[0]
         for k, (ax, one) in enumerate(zip(axes, maps, strict=True)):
             _draw_map(ax, one, k)
         axes[0].set_ylabel("step over undamped critical step")
         if below:
             _draw_drifts(below[0].subplots(), drifts)
-        figure.set_layout_engine("constrained")
     return figure
 
 

@@ -1,17 +1,15 @@
 """Hard cases of loads, sizes and shapes."""
 
-from __future__ import annotations
-
 from typing import Any
 
-from compare.experiments.robustness.case import STEP, Case, rock_is_spared
+from compare.experiments.robustness.case import STEP, HardCase, rock_is_spared
 from compare.experiments.robustness.criteria import accuracy, extremes, layers
 
 CUT_OFF = 1.1636e-3  # s, pi d / c of the short pillar: the blocks pass no shorter period
 RESONANCE = 0.0148146  # s, 2 L / c of the short pillar
 
 
-def _periods() -> list[Case]:
+def _periods() -> list[HardCase]:
     fine: dict[str, Any] = {
         "numerics.dem.step_fraction": 0.02,
         "numerics.continuum.step_fraction": 0.1,
@@ -25,8 +23,8 @@ def _periods() -> list[Case]:
         name, changes = f"load {words} the lattice cut-off", fine | {"load.period": period}
         cycles = {"load.shape": "sine", "load.cycles": 10}
         found += [
-            Case(f"{name}, rigid blocks", layers.as_chain, changes | cycles, rock),
-            Case(f"{name}, deformable rock", accuracy.near_exact, changes, blocks),
+            HardCase(f"{name}, rigid blocks", layers.as_chain, changes | cycles, rock),
+            HardCase(f"{name}, deformable rock", accuracy.near_exact, changes, blocks),
         ]
     ringing = {
         "load.shape": "sine",
@@ -34,15 +32,17 @@ def _periods() -> list[Case]:
         "load.period": RESONANCE,
         "time.duration": 0.3,
     }
-    found.append(Case("load at the first resonance of the free bar", accuracy.near_exact, ringing))
+    found.append(
+        HardCase("load at the first resonance of the free bar", accuracy.near_exact, ringing)
+    )
     return found
 
 
-def _loads() -> list[Case]:
+def _loads() -> list[HardCase]:
     step = {"load": {"shape": "step", "amplitude": 1e6}, "time.duration": 0.02}
     broken = {"joints.tensile_strength": 1e5, "joints.fracture_energy": 1e2}
     scaled = [
-        Case(
+        HardCase(
             f"amplitude {text} Pa",
             extremes.scaled,
             {"load.amplitude": float(text), "record.energy": False},
@@ -50,26 +50,26 @@ def _loads() -> list[Case]:
         for text in ("1e-300", "1e-200", "1e200", "1e300")
     ]
     return [
-        Case("step in stress", extremes.shock, step),
+        HardCase("step in stress", extremes.shock, step),
         *scaled,
-        Case(
+        HardCase(
             "amplitude 1e300 Pa on joints with a strength",
             extremes.refused,
             {"load.amplitude": 1e300} | broken,
             {"continuum-equivalent": "it has no joints that break"},
         ),
-        Case("zero load", extremes.nothing, {"load.amplitude": 0.0}),
+        HardCase("zero load", extremes.nothing, {"load.amplitude": 0.0}),
     ]
 
 
-def _sizes() -> list[Case]:
+def _sizes() -> list[HardCase]:
     many = {"pillar.length": 5e5, "time.duration": 0.01, "record.velocity": [], STEP: 0.9}
     implicit = {"implicit": "implicit steps pass on all blocks at once"}
     rock, blocks = rock_is_spared("see the hundred thousand"), {"dem": "see the million"}
     fewer = many | {"pillar.length": 5e4}
     return [
-        Case("a million blocks", extremes.untouched_far_end, many, implicit | rock),
-        Case(
+        HardCase("a million blocks", extremes.untouched_far_end, many, implicit | rock),
+        HardCase(
             "a hundred thousand blocks",
             extremes.untouched_far_end,
             fewer,
@@ -79,7 +79,7 @@ def _sizes() -> list[Case]:
     ]
 
 
-def _shapes() -> list[Case]:
+def _shapes() -> list[HardCase]:
     solid = {
         "numerics.continuum.dim": 3,
         "record.velocity": [],
@@ -102,13 +102,13 @@ def _shapes() -> list[Case]:
     slender = solid | {"pillar.side": 0.0005, "pillar.length": 2.0, "record.stress": [1.0]}
     axial = {"dem": "its blocks along the axis have no section"}
     return [
-        Case("Poisson's ratio 0.49999", extremes.as_bar, incompressible, axial),
-        Case("hexahedra of aspect 1000", extremes.as_bar, slender, axial),
+        HardCase("Poisson's ratio 0.49999", extremes.as_bar, incompressible, axial),
+        HardCase("hexahedra of aspect 1000", extremes.as_bar, slender, axial),
         *(_off_axis(ratio) for ratio in (0.01, 0.1, 10, 100)),
     ]
 
 
-def _off_axis(ratio: float) -> Case:
+def _off_axis(ratio: float) -> HardCase:
     """Return the case of blocks so many times as wide as thick."""
     side = 0.5 * ratio
     changes = {
@@ -121,7 +121,7 @@ def _off_axis(ratio: float) -> Case:
         "record.velocity": [3.75],
     }
     name = f"blocks {ratio:g} as wide as thick, loaded off their axis"
-    return Case(name, extremes.in_space, changes, rock_is_spared("see the slender hexahedra"))
+    return HardCase(name, extremes.in_space, changes, rock_is_spared("see the slender hexahedra"))
 
 
 EXTREME = [*_periods(), *_loads(), *_sizes(), *_shapes()]

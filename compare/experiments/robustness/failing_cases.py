@@ -1,10 +1,8 @@
 """Hard cases of joints that open, close, slide and break."""
 
-from __future__ import annotations
-
 from typing import Any
 
-from compare.experiments.robustness.case import STEP, Case, rock_is_spared
+from compare.experiments.robustness.case import STEP, HardCase, rock_is_spared
 from compare.experiments.robustness.criteria import chatter, contact, energies, extremes, layers
 
 BARRED: dict[str, Any] = {"joints.tension": False, "time.duration": 0.03}
@@ -17,39 +15,41 @@ STAGES = {
 }
 
 
-def _opening() -> list[Case]:
+def _opening() -> list[HardCase]:
     thin = {"soft_layers": [{"y": 5.0, "normal_stiffness": 8.7482e4, "thickness": 0.05}]}
     return [
-        Case(
+        HardCase(
             "prestress that cancels the wave",
             contact.just_closed,
             BARRED | {STEP: 0.5},
             HOMOGENEOUS | STAGES,
         ),
-        Case("gap of the smallest number", contact.one_ulp, BARRED, HOMOGENEOUS),
-        Case("joints that open and close by 1e-40 m", contact.scales_by_two, BARRED, HOMOGENEOUS),
-        Case("thin meshed layer a millionth as stiff as the rock", layers.free_end, thin),
+        HardCase("gap of the smallest number", contact.one_ulp, BARRED, HOMOGENEOUS),
+        HardCase(
+            "joints that open and close by 1e-40 m", contact.scales_by_two, BARRED, HOMOGENEOUS
+        ),
+        HardCase("thin meshed layer a millionth as stiff as the rock", layers.free_end, thin),
     ]
 
 
-def _breaking() -> list[Case]:
+def _breaking() -> list[HardCase]:
     tough, brittle = (BRITTLE | {"joints.fracture_energy": g} for g in (14.3, 14.2))
     mixed = "joints that open, close, slip and break"
     return [
-        Case("softening just short of a snap-back", contact.whole_joints, tough, HOMOGENEOUS),
-        Case("softening that snaps back", extremes.refused, brittle, HOMOGENEOUS),
-        Case(mixed, energies.passive, {}, HOMOGENEOUS, scene=ALL),
-        Case(f"the ledger of {mixed}", contact.ledger, {}, HOMOGENEOUS, scene=ALL),
+        HardCase("softening just short of a snap-back", contact.whole_joints, tough, HOMOGENEOUS),
+        HardCase("softening that snaps back", extremes.refused, brittle, HOMOGENEOUS),
+        HardCase(mixed, energies.passive, {}, HOMOGENEOUS, scene=ALL),
+        HardCase(f"the ledger of {mixed}", contact.ledger, {}, HOMOGENEOUS, scene=ALL),
     ]
 
 
-def _sliding() -> Case:
+def _sliding() -> HardCase:
     strong = {"soft_layers": [{"y": 2.0, "cohesion": 1e12}], "joints": {"damping_ratio": 0.05}}
     same = {"continuum-equivalent": "its joint is that of the jointed rock: see there"}
-    return Case("stick-slip at the exact threshold", contact.just_held, strong, same, scene=ALL)
+    return HardCase("stick-slip at the exact threshold", contact.just_held, strong, same, scene=ALL)
 
 
-def _chatter() -> list[Case]:
+def _chatter() -> list[HardCase]:
     loose = {"normal_stiffness": 8.7482e3, "tension": False, "damping_ratio": 1e-4}
     changes = {
         "pillar.length": 1.5,
@@ -67,8 +67,8 @@ def _chatter() -> list[Case]:
     blocks = hours | {"dem": "see the loose rigid block"}
     impacts = chatter.restitution
     return [
-        Case("a loose rigid block between walls", impacts, changes, rock),
-        Case("a loose block of rock between walls", impacts, changes, blocks, slow=True),
+        HardCase("a loose rigid block between walls", impacts, changes, rock),
+        HardCase("a loose block of rock between walls", impacts, changes, blocks, slow=True),
     ]
 
 

@@ -1,10 +1,8 @@
 """Hard cases of elastic joints: steps, stiffness contrasts, layers, damping, very many steps."""
 
-from __future__ import annotations
-
 from typing import Any
 
-from compare.experiments.robustness.case import STEP, Case, rock_is_spared
+from compare.experiments.robustness.case import STEP, HardCase, rock_is_spared
 from compare.experiments.robustness.criteria import accuracy, energies, layers, steps
 
 #: A blow with its peak at 1 kHz, above the 860 Hz that the blocks pass, so that all modes ring.
@@ -13,10 +11,10 @@ JOINT = 8.748e9  # Pa/m, K'_n of an ordinary joint of the short pillar
 RIGID = {"rock.intact_modulus": 1e29, "time.duration": 0.02, STEP: 0.9}
 
 
-def _steps() -> list[Case]:
+def _steps() -> list[HardCase]:
     no_limit = {"implicit": "implicit steps have no critical step"}
     below = [
-        Case(f"step at {x} of the critical", steps.impulse_bound, {STEP: x} | BLOW, no_limit)
+        HardCase(f"step at {x} of the critical", steps.impulse_bound, {STEP: x} | BLOW, no_limit)
         for x in (0.9, 0.999, 1.0)
     ]
     above = {STEP: 1.001} | BLOW
@@ -33,12 +31,12 @@ def _steps() -> list[Case]:
     }
     return [
         *below,
-        Case("step at 1.001 of the critical", steps.caught, above, no_limit),
-        Case("implicit steps far above the critical", steps.never_grows, long, explicit),
+        HardCase("step at 1.001 of the critical", steps.caught, above, no_limit),
+        HardCase("implicit steps far above the critical", steps.never_grows, long, explicit),
     ]
 
 
-def _contrasts() -> list[Case]:
+def _contrasts() -> list[HardCase]:
     deforms = rock_is_spared("its rock deforms: see the case of deformable blocks")
     stiff = {"dem": "stiff joints of blocks as stiff as rock: see the case of rigid blocks"}
     rock = {"time.duration": 0.02, STEP: 0.9, "record.velocity": []}
@@ -48,8 +46,8 @@ def _contrasts() -> list[Case]:
         joints = {"soft_layers": [{"y": 0.5 + i, "normal_stiffness": k} for i in range(10)]}
         name = f"every second joint {c} as stiff"
         found += [
-            Case(f"{name}, rigid blocks", layers.as_chain, joints | RIGID, deforms),
-            Case(name, accuracy.near_exact, joints | rock, stiff),
+            HardCase(f"{name}, rigid blocks", layers.as_chain, joints | RIGID, deforms),
+            HardCase(name, accuracy.near_exact, joints | rock, stiff),
         ]
     return found
 
@@ -58,7 +56,7 @@ def _layer(stiffness: float) -> dict[str, Any]:
     return {"soft_layers": [{"y": 5.0, "normal_stiffness": stiffness}]}
 
 
-def _layers() -> list[Case]:
+def _layers() -> list[HardCase]:
     whole = {
         "dem": "blocks are rigid: see the two blocks that are one",
         "continuum-equivalent": "its ordinary joint would have to be taken out",
@@ -68,17 +66,19 @@ def _layers() -> list[Case]:
     rock = rock_is_spared("see the layer of deformable rock")
     soft = "soft layer of 1e-12 of a joint's stiffness"
     return [
-        Case(soft, layers.free_end, _layer(1e-12 * JOINT)),
-        Case("soft layer of 1e-30 Pa/m", layers.free_end, _layer(1e-30)),
-        Case("layer 1e5 as stiff as a joint", layers.no_layer, stiff, whole),
-        Case("layer 1e12 as stiff as a joint", layers.no_layer, _layer(1e12 * JOINT), whole | many),
-        Case("two blocks on a joint 1e8 as stiff", layers.welded_blocks, welded, rock),
+        HardCase(soft, layers.free_end, _layer(1e-12 * JOINT)),
+        HardCase("soft layer of 1e-30 Pa/m", layers.free_end, _layer(1e-30)),
+        HardCase("layer 1e5 as stiff as a joint", layers.no_layer, stiff, whole),
+        HardCase(
+            "layer 1e12 as stiff as a joint", layers.no_layer, _layer(1e12 * JOINT), whole | many
+        ),
+        HardCase("two blocks on a joint 1e8 as stiff", layers.welded_blocks, welded, rock),
     ]
 
 
-def _damping() -> list[Case]:
+def _damping() -> list[HardCase]:
     return [
-        Case(
+        HardCase(
             f"damping ratio {zeta:g}",
             accuracy.near_exact,
             {"joints.damping_ratio": zeta, STEP: 0.9 if zeta > 1 else 0.1},
@@ -94,13 +94,13 @@ TINY = BLOW | {
     "record.velocity": [],
     "numerics.continuum.spectral_radius": 1.0,
 }
-MILLION = Case(
+MILLION = HardCase(
     "a million undamped steps",
     energies.no_trend(1_000_000),
     TINY,
     {"implicit": "a million implicit steps take minutes: see the hundred thousand"},
 )
-IMPLICIT_LONG = Case(
+IMPLICIT_LONG = HardCase(
     "a hundred thousand undamped implicit steps",
     energies.no_trend(100_000),
     TINY,

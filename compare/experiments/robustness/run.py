@@ -1,23 +1,56 @@
-"""Run the robustness suite: every case on every solver once, and the stability maps."""
+"""Run the robustness suite: every case on every engine and scheme once, and the stability maps."""
 
-from __future__ import annotations
-
+from math import inf, isfinite, nan
 from pathlib import Path
+from time import perf_counter
 from typing import NamedTuple
 
 import numpy as np
 
+from cases.errors import SceneError
 from compare.engines import ENGINES, Progress
 from compare.experiments import store
+from compare.experiments.failures import FAILURES
 from compare.experiments.pool import Pool
-from compare.experiments.robustness.case import SOLVERS
+from compare.experiments.robustness.case import (
+    SCHEMES,
+    CaseTrial,
+    EngineScheme,
+    HardCase,
+    Judgement,
+)
+from compare.experiments.robustness.extreme_cases import EXTREME
+from compare.experiments.robustness.failing_cases import FAILING
+from compare.experiments.robustness.linear_cases import LINEAR
 from compare.experiments.robustness.map import StabilityMap, make_map
-from compare.experiments.robustness.row import Row, row_of
-from compare.experiments.robustness.suite import CASES
 from compare.experiments.store import Store
 
 RATE = "hard case"  # what the seconds of rows are remembered by
-Place = tuple[int, int]  # the numbers of a case and of a solver
+HELD, FAILED, NONE = "held", "failed", "does not apply"
+CASES: list[HardCase] = [*LINEAR, *EXTREME, *FAILING]  # in the order of the report
+Place = tuple[int, int]  # the numbers of a case and of an engine with its scheme
+
+
+class CaseRow(NamedTuple):
+    """One case on one engine and scheme, judged.
+
+    bound, value : what the criterion bounds and what was found; nan where nothing was.
+    margin : bound over value; infinite where the value is zero.
+    state : "held", "failed" or "does not apply"; message : why, or more about the value.
+    """
+
+    case: str
+    engine: str
+    scheme: str
+    criterion: str
+    bound: float
+    value: float
+    margin: float
+    state: str
+    message: str
+    seconds: float
+    scene: str
+    changes: dict
 
 
 class Cells(NamedTuple):
@@ -30,20 +63,51 @@ class Cells(NamedTuple):
 
 def places(slow: bool = True) -> list[Place]:
     """Return the places of all rows, in the order of the report; slow : also of long ones."""
-    return [
-        (i, j) for i, case in enumerate(CASES) if slow or not case.slow for j in range(len(SOLVERS))
-    ]
+    wanted = [i for i, case in enumerate(CASES) if slow or not case.slow]
+    return [(i, j) for i in wanted for j in range(len(SCHEMES))]
 
 
-def row_at(place: Place) -> Row:
+def row_at(place: Place) -> CaseRow:
     """Return the row of one place."""
-    return row_of(CASES[place[0]], SOLVERS[place[1]])
+    return row_of(CASES[place[0]], SCHEMES[place[1]])
+
+
+def row_of(case: HardCase, stepper: EngineScheme) -> CaseRow:
+    """Return the row of a case on an engine; nothing that a run can meet escapes it."""
+    began = perf_counter()
+    state, (value, bound, said) = _judged(case, stepper)
+    margin = bound / value if value > 0 else (inf if value == 0 else nan)
+    about = case.name, stepper.engine.name, stepper.scheme, case.criterion.words
+    seconds = perf_counter() - began
+    return CaseRow(*about, bound, value, margin, state, said, seconds, case.scene, case.changes)
+
+
+def _judged(case: HardCase, stepper: EngineScheme) -> tuple[str, Judgement]:
+    """Return the state of a row and what was found."""
+    reason = case.why_spared(stepper) or _why_not(case, stepper)
+    if reason:
+        return NONE, Judgement(nan, nan, reason)
+    try:
+        finding = case.criterion.judge(CaseTrial(case, stepper))
+    except FAILURES as error:
+        return FAILED, Judgement(nan, nan, str(error))
+    # A bound that is not finite bounds nothing, and nan is at most nothing.
+    holds = isfinite(finding.bound) and finding.value <= finding.bound
+    return (HELD if holds else FAILED), finding
+
+
+def _why_not(case: HardCase, stepper: EngineScheme) -> str:
+    """Return why the engine and its scheme cannot solve the scene; "" where they can."""
+    try:
+        return stepper.engine.applies(CaseTrial(case, stepper).scene).reason
+    except SceneError as error:
+        return f"the scheme {error.allowed}" if error.key.endswith(".scheme") else ""
 
 
 def key(place: Place) -> str:
     """Return what tells rows apart: everything that decides one."""
-    case, solver = CASES[place[0]], SOLVERS[place[1]]
-    return store.key(case.name, case.scene, case.changes, solver.name)
+    case, stepper = CASES[place[0]], SCHEMES[place[1]]
+    return store.key(case.name, case.scene, case.changes, stepper.name)
 
 
 def run(
@@ -51,18 +115,16 @@ def run(
     slow: bool = True,
     progress: Progress | None = None,
     folder: Path | None = None,
-) -> list[Row]:
+) -> list[CaseRow]:
     """Return all rows; folder : where they are saved; None: nowhere."""
-    rows: Store[Row] = Store(Row, folder)
+    rows: Store[CaseRow] = Store(CaseRow, folder)
     return rows.compute(places(slow), key, row_at, pool, progress, RATE)
 
 
 def run_maps(pool: Pool | None, folder: Path) -> list[StabilityMap]:
     """Return the maps of all engines, saved in `folder`."""
-    maps: Store[Cells] = Store(Cells, folder)
-    names = list(ENGINES)
-    found = maps.compute(names, store.key, cells, pool)
-    return [StabilityMap(e, *map(np.array, one)) for e, one in zip(names, found, strict=True)]
+    found = Store[Cells](Cells, folder).compute(list(ENGINES), store.key, cells, pool)
+    return [StabilityMap(e, *map(np.array, one)) for e, one in zip(ENGINES, found, strict=True)]
 
 
 def cells(engine: str) -> Cells:

@@ -1,7 +1,5 @@
 """The summary of the robustness suite: every row with its margin, the maps, the long energies."""
 
-from __future__ import annotations
-
 from math import inf
 from pathlib import Path
 
@@ -9,15 +7,14 @@ import pandas as pd
 
 from compare.engines import Progress
 from compare.experiments.pool import Pool
-from compare.experiments.robustness.case import EQUIVALENT, JOINTED, LEAPFROG, Trial
+from compare.experiments.robustness.case import EQUIVALENT, JOINTED, LEAPFROG, CaseTrial
 from compare.experiments.robustness.criteria.energies import Drift, drift
 from compare.experiments.robustness.diagram import draw
 from compare.experiments.robustness.linear_cases import MILLION
 from compare.experiments.robustness.map import StabilityMap
-from compare.experiments.robustness.row import FAILED, HELD, NONE, Row
-from compare.experiments.robustness.run import run, run_maps
+from compare.experiments.robustness.run import FAILED, HELD, NONE, CaseRow, run, run_maps
 from compare.experiments.summary import Summary
-from compare.experiments.tables import frame, number, write_tables
+from compare.experiments.tables import frame, grouped, number, write_tables
 from compare.figures.export import save
 from compare.report.tables import Table
 
@@ -58,20 +55,19 @@ def make_study(
 
 
 def drifts() -> dict[str, Drift]:
-    """Return the energies over a million steps of the solvers that leapfrog's energy holds for."""
-    solvers = LEAPFROG, JOINTED, EQUIVALENT
-    return {s.name: drift(Trial(MILLION, s), 1_000_000) for s in solvers}
+    """Return the energies over a million steps where leapfrog's energy holds, by engine and
+    scheme."""
+    return {
+        s.name: drift(CaseTrial(MILLION, s), 1_000_000) for s in (LEAPFROG, JOINTED, EQUIVALENT)
+    }
 
 
-def table(rows: list[Row]) -> Table:
+def table(rows: list[CaseRow]) -> Table:
     """Return the rows under headings of case and criterion."""
-    groups: dict[str, list[list[str]]] = {}
-    for row in rows:
-        groups.setdefault(f"{row.case}: {row.criterion}", []).append(_cells(row))
-    return Table(COLUMNS, groups)
+    return Table(COLUMNS, grouped((f"{row.case}: {row.criterion}", _cells(row)) for row in rows))
 
 
-def _cells(row: Row) -> list[str]:
+def _cells(row: CaseRow) -> list[str]:
     name = f"{row.engine}, {row.scheme}"
     if row.state == NONE:
         return [name, "", "", "", f"{NONE}: {row.message}"]
@@ -80,11 +76,9 @@ def _cells(row: Row) -> list[str]:
     return [name, number(row.value, ".3g"), number(row.bound, ".3g"), margin, said]
 
 
-def sentences(rows: list[Row], maps: list[StabilityMap]) -> list[str]:
+def sentences(rows: list[CaseRow], maps: list[StabilityMap]) -> list[str]:
     """Return how many rows hold, the least margin, and the cells of maps that theory denies."""
-    held, failed, none = (
-        [row for row in rows if row.state == state] for state in (HELD, FAILED, NONE)
-    )
+    held, failed, none = ([r for r in rows if r.state == state] for state in (HELD, FAILED, NONE))
     found = [
         f"{len(held)} of {len(held) + len(failed)} rows hold; {len(none)} do not apply, each with "
         "its reason."
@@ -101,7 +95,7 @@ def sentences(rows: list[Row], maps: list[StabilityMap]) -> list[str]:
     ]
 
 
-def failures(rows: list[Row]) -> list[str]:
+def failures(rows: list[CaseRow]) -> list[str]:
     """Return a line for each row that does not hold."""
     return [
         f"{row.case}, {row.engine}, {row.scheme}: {row.criterion}: {row.value:.3g} above "
@@ -111,7 +105,7 @@ def failures(rows: list[Row]) -> list[str]:
     ]
 
 
-def write(folder: Path, rows: list[Row], maps: list[StabilityMap]) -> list[Path]:
+def write(folder: Path, rows: list[CaseRow], maps: list[StabilityMap]) -> list[Path]:
     """Write stability.csv, a line a row, and stability-map.csv, a line a cell."""
     names = ["damping ratio", "step over undamped critical step", "stable", "wrong side", "engine"]
     cells = [
@@ -121,6 +115,6 @@ def write(folder: Path, rows: list[Row], maps: list[StabilityMap]) -> list[Path]
         for i, step in enumerate(m.step)
     ]
     return [
-        *write_tables(folder, NAME, frame(rows, Row)),
+        *write_tables(folder, NAME, frame(rows, CaseRow)),
         *write_tables(folder, f"{NAME}-map", pd.DataFrame(cells, columns=names)),
     ]

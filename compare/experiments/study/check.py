@@ -11,7 +11,7 @@ from compare.engines import names, solvers
 from compare.experiments.study.methods.catalogue import METHODS
 
 if TYPE_CHECKING:
-    from compare.experiments.study.study import Curve, Reference, Study
+    from compare.experiments.study.study import Curve, FineRun, Study
 
 MOST_POINTS = 10_000
 #: Settings that are no keys of a scene, with their type.
@@ -34,11 +34,10 @@ def plain(value: Any) -> Any:
 
 def refuse_senseless(path: Path, study: Study) -> None:
     """Raise SceneError for what no point could be made of, or too many."""
-    count = sum(prod(len(values) for values in curve.vary.values()) for curve in study.curves)
+    count = sum(prod(map(len, curve.vary.values())) for curve in study.curves)
     if count > MOST_POINTS:
-        raise SceneError(
-            str(path), "curves", None, f"give {count:.6g} points, at most {MOST_POINTS}"
-        )
+        allowed = f"give {count:.6g} points, at most {MOST_POINTS}"
+        raise SceneError(str(path), "curves", None, allowed)
     solvers = names()
     _refuse_unknown(path, "finest", study.finest, (*solvers, "none"))
     for i, curve in enumerate(study.curves):
@@ -49,7 +48,7 @@ def refuse_senseless(path: Path, study: Study) -> None:
 
 
 def _refuse_unknown(
-    path: Path, key: str, named: str | Reference | None, known: tuple[str, ...]
+    path: Path, key: str, named: str | FineRun | None, known: tuple[str, ...]
 ) -> None:
     """Raise SceneError for what solves nothing: a name, or the method of a fine run."""
     method = named if named is None or isinstance(named, str) else named.method

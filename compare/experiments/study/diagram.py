@@ -9,19 +9,18 @@ from math import isnan
 from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from compare.engines import names
-from compare.experiments.study.measure import Row
+from compare.experiments.study.measure import PointRow
 from compare.experiments.study.pareto import floor, front, is_known, measured
 from compare.experiments.study.study import Study
+from compare.figures.blank import blank
 from compare.figures.export import Drawn, save
-from compare.figures.style import RC, WIDTH, style
+from compare.figures.style import style
 
 ERRORS = {
     "numerical": "numerical error (own model)",
@@ -38,7 +37,9 @@ SMALL: dict[str, Any] = {"fontsize": 6.5, "color": "#8a9299", "va": "bottom", "z
 OTHERS = ("#6b6b6b", "#cc79a7", "#8a6d00", "#7a4fbf", "#000000")
 
 
-def draw(name: str, study: Study, rows: list[Row], costs: dict[str, str] | None = None) -> Figure:
+def draw(
+    name: str, study: Study, rows: list[PointRow], costs: dict[str, str] | None = None
+) -> Figure:
     """Return a study's diagrams: a row an error, a column a cost.
 
     costs : attributes of the rows, with the words for each; absent: counted work, and seconds
@@ -46,41 +47,32 @@ def draw(name: str, study: Study, rows: list[Row], costs: dict[str, str] | None 
     """
     errors = [e for e in ERRORS if any(measured(rows, e, "work"))]
     costs = costs or {c: text for c, text in COSTS.items() if study.timed or c != "seconds"}
-    with matplotlib.rc_context(RC):
-        figure = Figure(figsize=(WIDTH, 0.6 + 0.09 * len(study.curves) + 3.4 * len(errors)))
-        FigureCanvasAgg(figure)
+    with blank(0.6 + 0.09 * len(study.curves) + 3.4 * len(errors)) as figure:
         axes = figure.subplots(len(errors), len(costs), squeeze=False, sharey="row")
         for i, error in enumerate(errors):
             for j, cost in enumerate(costs):
                 _draw_panel(axes[i, j], study, rows, error, cost, f"{name}-{i}-{j}")
                 axes[i, j].set_xlabel(costs[cost])
             axes[i, 0].set_ylabel(ERRORS[error])
-        labelled = [
-            dict(zip(*ax.get_legend_handles_labels()[::-1], strict=True)) for ax in axes.flat
-        ]
-        entries = {label: handle for one in labelled for label, handle in one.items()}
-        labels, handles = list(entries), list(entries.values())
-        columns, size = (3, 9.0) if max(map(len, labels)) < LONG else (2, 7.5)
-        figure.legend(
-            handles,
-            labels,
-            loc="outside upper center",
-            ncols=columns,
-            fontsize=size,
-            frameon=False,
-        )
-        figure.set_layout_engine("constrained")
+        entries: dict[str, Any] = {}
+        for ax in axes.flat:
+            entries |= zip(*ax.get_legend_handles_labels()[::-1], strict=True)
+        columns, size = (3, 9.0) if max(map(len, entries)) < LONG else (2, 7.5)
+        about: dict[str, Any] = {"ncols": columns, "fontsize": size, "frameon": False}
+        figure.legend(entries.values(), entries, loc="outside upper center", **about)
     return figure
 
 
-def write_diagram(folder: Path, name: str, study: Study, rows: list[Row]) -> Drawn | None:
+def write_diagram(folder: Path, name: str, study: Study, rows: list[PointRow]) -> Drawn | None:
     """Write the diagram into a folder; None where no error is known."""
     if not any(measured(rows, error, "work") for error in ERRORS):
         return None
     return save(draw(name, study, rows), folder, name, study.title)
 
 
-def _draw_panel(ax: Axes, study: Study, rows: list[Row], error: str, cost: str, name: str) -> None:
+def _draw_panel(
+    ax: Axes, study: Study, rows: list[PointRow], error: str, cost: str, name: str
+) -> None:
     least = floor(rows, error)
     best = [r for r in front(rows, error, cost) if is_known(r, error)]
     best = best if study.timed and len(study.curves) > 1 else []
@@ -108,7 +100,7 @@ def _draw_panel(ax: Axes, study: Study, rows: list[Row], error: str, cost: str, 
         _draw_digits_per_second(ax)
 
 
-def _draw_cancelling(ax: Axes, rows: list[Row], error: str, cost: str, name: str) -> None:
+def _draw_cancelling(ax: Axes, rows: list[PointRow], error: str, cost: str, name: str) -> None:
     """Cross what is measured where errors cancel: far below the sum that counts."""
     shown = "measured" if error == "total" else error
     found = [r for r in measured(rows, shown, cost) if r.cancels and _is_crossed(r, error)]
@@ -119,7 +111,7 @@ def _draw_cancelling(ax: Axes, rows: list[Row], error: str, cost: str, name: str
         line.set_gid(f"{name}-cancels")
 
 
-def _is_crossed(row: Row, error: str) -> bool:
+def _is_crossed(row: PointRow, error: str) -> bool:
     """Return whether a point that cancels is crossed: its numerical error if finer ones are worse
     and nothing finer is known."""
     return error == "total" or isnan(row.total)

@@ -2,7 +2,7 @@
 
 from math import isfinite, isnan
 
-from compare.experiments.study.measure import Row
+from compare.experiments.study.measure import PointRow
 from compare.experiments.study.pareto import (
     Cheapest,
     cheapest,
@@ -10,11 +10,11 @@ from compare.experiments.study.pareto import (
     floor,
     most_digits_per_second,
 )
-from compare.experiments.study.study import Reference, Study
+from compare.experiments.study.study import FineRun, Study
 from compare.report.tables import percent
 
 
-def sentences(study: Study, rows: list[Row]) -> list[str]:
+def sentences(study: Study, rows: list[PointRow]) -> list[str]:
     """Return the findings of a timed study: what is cheapest within each misfit, and how much more
     the next best curve takes; what gives the most digits a second; where errors cancel; and how
     well the finest physics is known, where it is a fine run."""
@@ -27,7 +27,7 @@ def sentences(study: Study, rows: list[Row]) -> list[str]:
             f"at {percent(best.held)} %."
         )
     found += _cancelling([row for row in rows if row.cancels])
-    if isinstance(study.finest, Reference):
+    if isinstance(study.finest, FineRun):
         found.append(
             f"The finest physics is a fine run of {study.finest.method}; a coarser one is "
             f"{percent(floor(rows, 'total'))} % from it."
@@ -52,13 +52,13 @@ def _cheapest(target: Cheapest) -> str:
     )
 
 
-def _errors(row: Row) -> str:
+def _errors(row: PointRow) -> str:
     """Return the errors of a point, in words that add up."""
     parts = f"numerical {percent(row.numerical)} % + modelling {percent(row.modelling)} %"
     return f"{parts} = {percent(row.total)} %"
 
 
-def _costs(row: Row) -> str:
+def _costs(row: PointRow) -> str:
     """Return what a point costs: each run its set-up and steps, the first one its compiling."""
     named = {"set-up": row.setup, "compiling": row.compile, "stepping": row.seconds}
     said = {name: _seconds(value) for name, value in named.items() if isfinite(value)}
@@ -69,7 +69,7 @@ def _seconds(value: float) -> str:
     return f"{value:.2g} s" if value >= 0.1 else f"{max(1e3 * value, 0.1):.2g} ms"
 
 
-def _cancelling(rows: list[Row]) -> list[str]:
+def _cancelling(rows: list[PointRow]) -> list[str]:
     """Return that errors cancel at some points, and where they do so most."""
     near = [row for row in rows if row.measured > 0]
     if not near:

@@ -8,18 +8,19 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from cases.errors import SceneError, StoppedError, UnstableError
+from cases.errors import SceneError
 from cases.schema.scene import Scene
 from compare.engines import applies, solve, solver
+from compare.experiments.failures import FAILURES
 from compare.experiments.study.methods.catalogue import METHODS
 from compare.experiments.study.reference import UNKNOWN, error, finest_of, known, own_of
-from compare.experiments.study.study import Point
+from compare.experiments.study.study import StudyPoint
 from compare.solvers.record import Answer
 
 LONG = 0.5  # s: a run that takes as long, its set-up included, is timed once more at most
 
 
-class Row(NamedTuple):
+class PointRow(NamedTuple):
     """A point in the table of a study; numbers that a method does not have are nan.
 
     state : "done" or "failed", with the reason in `message`.
@@ -59,23 +60,23 @@ class Row(NamedTuple):
     cancels: bool
 
 
-TIMED = ("seconds", "spread", "setup", "compile")  # all other columns are the same in every run
-
-
-def measure(point: Point) -> Row:
+def measure(point: StudyPoint) -> PointRow:
     """Run a point and return its row; what cannot be run is a row that says why."""
     try:
         return _measured(point)
-    except (SceneError, UnstableError, StoppedError) as error:
+    except FAILURES as error:
         return _row(point, "failed", str(error))
 
 
-def _measured(point: Point) -> Row:
-    scene, study = point.scene, point.study
-    run = runner(point, scene)
+def _measured(point: StudyPoint) -> PointRow:
+    study, run = point.study, runner(point, point.scene)
     result = run()
-    first = result.attrs
-    seconds = [float(first.get("seconds_stepping", math.nan))]
+
+    def counted(*names: str) -> float:
+        """Return the first of some attributes of the result that it has."""
+        return float(next((result.attrs[x] for x in names if x in result.attrs), math.nan))
+
+    seconds = [counted("seconds_stepping")]
     if study.timed:
         seconds = _repeated(run, study.repeats)
     own = known(own_of(point), study, point.physics)
@@ -83,7 +84,9 @@ def _measured(point: Point) -> Row:
     numerical = error(result, own, study)
     modelling = UNKNOWN if own is None else error(own.result, finest, study)
     floor = numerical.floor + modelling.floor
-    steps, freedoms = first.get("steps", math.nan), first.get("degrees_of_freedom", math.nan)
+    freedoms = counted("degrees_of_freedom")
+    # All forces are evaluated in stages, by Newton's method, or once a step.
+    evaluations = counted("force_evaluations", "newton_iterations", "steps")
     return _row(
         point,
         "done",
@@ -94,25 +97,19 @@ def _measured(point: Point) -> Row:
         measured=error(result, finest, study).misfit,
         numerical_floor=numerical.floor,
         total_floor=floor,
-        dt=float(first.get("dt", math.nan)),
-        steps=float(steps),
-        freedoms=float(freedoms),
-        work=_evaluations(first) * float(freedoms),
-        bytes=float(first.get("bytes", math.nan)),
+        dt=counted("dt"),
+        steps=counted("steps"),
+        freedoms=freedoms,
+        work=evaluations * freedoms,
+        bytes=counted("bytes"),
         seconds=median(seconds),
         spread=(max(seconds) - min(seconds)) / 2,
-        setup=float(first.get("seconds_setup", math.nan)),
-        compile=float(first.get("seconds_compile", math.nan)),
+        setup=counted("seconds_setup"),
+        compile=counted("seconds_compile"),
     )
 
 
-def _evaluations(attributes: dict[str, Any]) -> float:
-    """Return how often all forces were evaluated: in stages, by Newton's method, once a step."""
-    names = ("force_evaluations", "newton_iterations", "steps")
-    return float(next((attributes[name] for name in names if name in attributes), math.nan))
-
-
-def runner(point: Point, scene: Scene) -> Callable[[], xr.Dataset]:
+def runner(point: StudyPoint, scene: Scene) -> Callable[[], xr.Dataset]:
     """Return the function that solves a point once."""
     method, arguments = point.curve.method, point.arguments
     if not (answer := method_applies(point, scene)):
@@ -124,7 +121,7 @@ def runner(point: Point, scene: Scene) -> Callable[[], xr.Dataset]:
     return lambda: _timed(lambda: solve(method, scene))
 
 
-def method_applies(point: Point, scene: Scene) -> Answer:
+def method_applies(point: StudyPoint, scene: Scene) -> Answer:
     """Return whether a point's method holds for its scene, or the reason why not."""
     method = point.curve.method
     return METHODS[method].applies(scene) if method in METHODS else applies(method, scene)
@@ -147,8 +144,8 @@ def _repeated(run: Callable[[], xr.Dataset], repeats: int) -> list[float]:
     return found
 
 
-def _row(point: Point, state: str, message: str, **numbers: float) -> Row:
+def _row(point: StudyPoint, state: str, message: str, **numbers: float) -> PointRow:
     about = (point.curve.label, point.curve.method, point.settings, state, message)
-    names = Row._fields[len(about) : -2]  # what is judged is known once the curve is
-    values = (numbers.get(name, math.nan) for name in names)
-    return Row._make((*about, *values, math.nan, False))
+    # What is judged, the last two, is known once the curve is.
+    values = (numbers.get(name, math.nan) for name in PointRow._fields[len(about) : -2])
+    return PointRow._make((*about, *values, math.nan, False))

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compare.experiments.study.measure import Row
+from compare.experiments.study.measure import PointRow
 from compare.experiments.study.study import Curve, Study
 
 ROUND_OFF = 1e-11  # below, an error no longer falls
@@ -24,13 +24,13 @@ class Order(NamedTuple):
     theory: float
 
 
-def orders(study: Study, rows: list[Row]) -> list[Order]:
+def orders(study: Study, rows: list[PointRow]) -> list[Order]:
     """Return the orders of all curves that have one in theory, and two points at least."""
     found = [_order(curve, [r for r in rows if r.curve == curve.label]) for curve in study.curves]
     return [order for order in found if order is not None]
 
 
-def _order(curve: Curve, rows: list[Row]) -> Order | None:
+def _order(curve: Curve, rows: list[PointRow]) -> Order | None:
     numeric = [k for k, v in curve.vary.items() if len(v) > 1 and np.isreal(v[0])]
     done = [r for r in rows if r.state == "done" and r.numerical > _least(r)]
     if curve.order is None or len(numeric) != 1:
@@ -46,11 +46,11 @@ def _order(curve: Curve, rows: list[Row]) -> Order | None:
     return Order(curve.label, key, steps[-1], steps, curve.order) if steps else None
 
 
-def _least(row: Row) -> float:
+def _least(row: PointRow) -> float:
     floor = row.numerical_floor
     return ROUND_OFF if math.isnan(floor) else max(ROUND_OFF, KNOWN * floor)
 
 
-def _size(row: Row, key: str) -> float:
+def _size(row: PointRow, key: str) -> float:
     """Return the step that was taken where a key of steps is varied, else the key's value."""
     return row.dt if "step" in key else float(row.settings[key])

@@ -5,19 +5,20 @@ undoes was luck.
 """
 
 import math
-from typing import NamedTuple
+from operator import itemgetter
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from compare.experiments.study.check import ARGUMENTS
-from compare.experiments.study.measure import Row
+from compare.experiments.study.measure import PointRow
 from compare.misfit.metrics import JUDGED
 
 TARGETS = (0.1, 0.01, 1e-3, 1e-4)
 CLEARLY = 0.9  # of what it should be: below, an error is small by cancellation
 
 
-def judged(rows: list[Row]) -> list[Row]:
+def judged(rows: list[PointRow]) -> list[PointRow]:
     """Return the rows with what each counts for, and whether errors cancel in it."""
     totals, numericals = assured(rows, "total"), assured(rows, "numerical")
     found = []
@@ -27,35 +28,26 @@ def judged(rows: list[Row]) -> list[Row]:
     return found
 
 
-def _cancels(row: Row, held: float) -> bool:
+def _cancels(row: PointRow, held: float) -> bool:
     """Return whether a point is nearer than the larger of its errors, or than a finer point."""
     alone = max(row.numerical, row.modelling)
     return row.measured < CLEARLY * alone or _counted(row) < CLEARLY * held
 
 
-def _counted(row: Row) -> float:
+def _counted(row: PointRow) -> float:
     return row.numerical if math.isnan(row.total) else row.total
 
 
-def assured(rows: list[Row], error: str) -> list[float]:
+def assured(rows: list[PointRow], error: str) -> list[float]:
     """Return the largest error of each row and of all finer points of its curve; nan where a point
     has none."""
-    found = [math.nan] * len(rows)
-    for curve in dict.fromkeys(row.curve for row in rows):
-        mine = [i for i, row in enumerate(rows) if row.curve == curve]
-        for i, value in zip(mine, _assured([rows[i] for i in mine], error), strict=True):
-            found[i] = value
-    return found
-
-
-def _assured(curve: list[Row], error: str) -> list[float]:
-    errors = np.array([getattr(r, error) if r.state == "done" else math.nan for r in curve])
-    size = np.array([(r.freedoms, r.steps) for r in curve])
-    model = np.array([_model(r) for r in curve])
+    errors = np.array([getattr(r, error) if r.state == "done" else math.nan for r in rows])
+    size = np.array([(r.freedoms, r.steps) for r in rows])
+    model = np.array([f"{r.curve} {_physics(r)}" for r in rows])
     least = np.nan_to_num(errors, nan=0.0)
     return [
         float(np.max(least, where=_finer(size, i) & (model == model[i]), initial=errors[i]))
-        for i in range(len(curve))
+        for i in range(len(rows))
     ]
 
 
@@ -67,22 +59,22 @@ def _finer(size: np.ndarray, i: int) -> np.ndarray:
     return (size >= size[i]).all(axis=1)
 
 
-def _model(row: Row) -> str:
+def _physics(row: PointRow) -> dict[str, Any]:
     """Return what is varied beside the numerics and the size of blocks: another problem."""
     free = {"pillar.block", *ARGUMENTS}
-    physics = {k: v for k, v in row.settings.items() if k not in free and k[:9] != "numerics."}
-    return str(sorted(physics.items()))
+    found = sorted(row.settings.items())
+    return {k: v for k, v in found if k not in free and not k.startswith("numerics.")}
 
 
 class Cheapest(NamedTuple):
     """The cheapest point within a misfit, and that of another curve; None where there is none."""
 
     misfit: float
-    row: Row
-    next_best: Row | None
+    row: PointRow
+    next_best: PointRow | None
 
 
-def measured(rows: list[Row], error: str, cost: str) -> list[Row]:
+def measured(rows: list[PointRow], error: str, cost: str) -> list[PointRow]:
     """Return the rows that have both numbers, of points that were done."""
     return [
         row
@@ -91,23 +83,21 @@ def measured(rows: list[Row], error: str, cost: str) -> list[Row]:
     ]
 
 
-def front(rows: list[Row], error: str = "total", cost: str = "seconds") -> list[Row]:
+def front(rows: list[PointRow], error: str = "total", cost: str = "seconds") -> list[PointRow]:
     """Return the points that no other one beats in both, the cheapest first (Pareto's front), each
     by the error that it counts for."""
-    found: list[Row] = []
+    found: list[PointRow] = []
     least = math.inf
-    known = {id(row): value for row, value in zip(rows, assured(rows, error), strict=True)}
-    ordered = sorted(
-        measured(rows, error, cost), key=lambda row: (getattr(row, cost), known[id(row)])
-    )
-    for row in ordered:
-        if known[id(row)] < least:
-            least = known[id(row)]
+    held = {id(row): value for row, value in zip(rows, assured(rows, error), strict=True)}
+    points = [(getattr(row, cost), held[id(row)], row) for row in measured(rows, error, cost)]
+    for _, value, row in sorted(points, key=itemgetter(0, 1)):
+        if value < least:
+            least = value
             found.append(row)
     return found
 
 
-def cheapest(rows: list[Row]) -> list[Cheapest]:
+def cheapest(rows: list[PointRow]) -> list[Cheapest]:
     """Return the cheapest point within each of `TARGETS`, as far as there are any, and as what
     errors are measured from is known to a tenth of it."""
     found, rows = [], sorted(judged(measured(rows, "total", "seconds")), key=lambda r: r.seconds)
@@ -120,7 +110,7 @@ def cheapest(rows: list[Row]) -> list[Cheapest]:
     return found
 
 
-def floor(rows: list[Row], error: str) -> float:
+def floor(rows: list[PointRow], error: str) -> float:
     """Return the error below which these are not known; 0 against exact solutions. Of totals that
     of the finest physics, without what is not known of each curve's own model."""
     if error == "total":
@@ -133,18 +123,18 @@ def _largest(floors: list[float]) -> float:
     return max((value for value in floors if not math.isnan(value)), default=0.0)
 
 
-def is_known(row: Row, error: str) -> bool:
+def is_known(row: PointRow, error: str) -> bool:
     """Return whether a point's error is not below what it is measured against is known to."""
     return getattr(row, error) >= floor([row], error)
 
 
-def most_digits_per_second(rows: list[Row]) -> Row | None:
+def most_digits_per_second(rows: list[PointRow]) -> PointRow | None:
     """Return the point that gets the most digits of the finest physics a second, None without."""
     known = measured(rows, "total", "seconds")
     return max(judged(known), key=digits_per_second, default=None)
 
 
-def digits_per_second(row: Row) -> float:
+def digits_per_second(row: PointRow) -> float:
     """Return the decimal digits that a judged point gets right over the seconds that it steps: of
     the finest physics where that is known, else of its own model; nan without either."""
     return -math.log10(row.held) / row.seconds if row.held > 0 and row.seconds > 0 else math.nan

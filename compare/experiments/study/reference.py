@@ -9,8 +9,9 @@ import xarray as xr
 from cases.schema.scene import Scene
 from cases.schema.tables import Numerics
 from compare.engines import ENGINES, applies, exact_names, solve, solver
+from compare.experiments.references import ErrorReference
 from compare.experiments.study.methods.catalogue import METHODS
-from compare.experiments.study.study import FINEST, NONE, Point, Reference, Study
+from compare.experiments.study.study import FINEST, NONE, FineRun, Study, StudyPoint
 from compare.misfit.metrics import Pairing, pairings, relative_l2, worst
 from compare.misfit.ranking import applicable, finest, own_exact
 from results.dataset import scene_hash
@@ -26,14 +27,7 @@ class Error(NamedTuple):
 UNKNOWN = Error(math.nan, math.nan)
 
 
-class Known(NamedTuple):
-    """A reference of errors, and its own relative error."""
-
-    result: xr.Dataset
-    error: float
-
-
-def finest_of(study: Study) -> str | Reference | None:
+def finest_of(study: Study) -> str | FineRun | None:
     """Return what total errors are from: as the study says, else the finest exact solution; None
     where the finest that applies is an engine, whose fine run the study does not give."""
     if study.finest is not None:
@@ -43,7 +37,7 @@ def finest_of(study: Study) -> str | Reference | None:
     return None if found is None or found.name in ENGINES else found.name
 
 
-def own_of(point: Point) -> str | Reference | None:
+def own_of(point: StudyPoint) -> str | FineRun | None:
     """Return what a point's numerical error is from: as its curve says, else the exact solution of
     its own model, else a run of its engine as fine as the study's fine run; None without."""
     own, study = point.curve.own, point.study
@@ -55,28 +49,30 @@ def own_of(point: Point) -> str | Reference | None:
     return exact or _as_fine(engine, study.finest)
 
 
-def _as_fine(engine: str, finest: str | Reference | None) -> Reference | None:
+def _as_fine(engine: str, finest: str | FineRun | None) -> FineRun | None:
     """Return the run of an engine at the numerics of a fine run, where those are its own too."""
-    if not isinstance(finest, Reference):
+    if not isinstance(finest, FineRun):
         return None
     alike = solver(engine).engine == solver(finest.method).engine
     return finest.model_copy(update={"method": engine}) if alike else None
 
 
-def known(against: str | Reference | None, study: Study, physics: dict[str, Any]) -> Known | None:
+def known(
+    against: str | FineRun | None, study: Study, physics: dict[str, Any]
+) -> ErrorReference | None:
     """Return a reference of the study's scene with some physics changed; None without."""
     if against is None:
         return None
     if isinstance(against, str):
         exact = reference(against, study.changed(physics))
-        return Known(exact, worst(exact, exact).floor)
+        return ErrorReference(against, exact, worst(exact, exact).floor)
     changes = physics | against.changes
     fine = _solved(against.method, study.changed(changes))
     coarse = _solved(against.method, study.changed(changes | against.coarser))
-    return Known(fine, _misfit(coarse, fine, study))
+    return ErrorReference(against.method, fine, _misfit(coarse, fine, study), str(against.changes))
 
 
-def error(result: xr.Dataset, against: Known | None, study: Study) -> Error:
+def error(result: xr.Dataset, against: ErrorReference | None, study: Study) -> Error:
     """Return the error of a result, over the quantity of the study; 0 of a reference itself,
     unknown without one."""
     if against is None:

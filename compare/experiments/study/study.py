@@ -1,7 +1,7 @@
 """Studies: a scene, curves of varied keys, and the references of errors."""
 
 from collections.abc import Iterator
-from itertools import product
+from dataclasses import dataclass
 from math import prod
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -13,6 +13,7 @@ from cases.errors import SceneError, nearest
 from cases.files import read_toml
 from cases.schema.scene import Scene
 from cases.unsolved import refuse_unsolved
+from compare.experiments.combinations import combinations
 from compare.experiments.study.check import ARGUMENTS, MOST_POINTS, plain, refuse_senseless
 from compare.scenes import find
 
@@ -25,13 +26,13 @@ Value = Annotated[Any, AfterValidator(plain)]
 Values = Annotated[list[Value], Field(min_length=1)]
 
 
-class Table(BaseModel):
+class StudyTable(BaseModel):
     """A table of a study's file; unknown keys are errors."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class Reference(Table):
+class FineRun(StudyTable):
     """The reference of errors where there is no exact solution: an engine's fine run.
 
     changes : of the scene, its numerics above all. coarser : changes on top of these; how far that
@@ -43,7 +44,7 @@ class Reference(Table):
     coarser: dict[str, Value]
 
 
-class Curve(Table):
+class Curve(StudyTable):
     """One way to solve the scene, with what of it is varied.
 
     method : an engine, an exact solution, or a method of
@@ -64,12 +65,8 @@ class Curve(Table):
     changes: dict[str, Value] = Field(default_factory=dict)
     vary: dict[str, Values] = Field(default_factory=dict)
     each: dict[str, Values] = Field(default_factory=dict)
-    own: str | Reference | None = None
+    own: str | FineRun | None = None
     order: float | None = None
-
-    def settings(self) -> Iterator[dict[str, Any]]:
-        """Yield the varied keys of every point."""
-        return combinations(self.vary)
 
     def expanded(self) -> Iterator["Curve"]:
         """Yield the curves that `each` makes of this one."""
@@ -81,21 +78,15 @@ class Curve(Table):
             yield self.model_copy(update={"label": label, "changes": changes, "each": {}})
 
 
-def combinations(values: dict[str, list[Any]]) -> Iterator[dict[str, Any]]:
-    """Yield all combinations of the values of some keys."""
-    for one in product(*values.values()):
-        yield dict(zip(values, one, strict=True))
-
-
 def each_expanded(curves: list[Curve]) -> list[Curve]:
     """Return the curves without `each`; raises ValueError for more than a study may have."""
-    count = sum(prod(len(values) for values in curve.each.values()) for curve in curves)
+    count = sum(prod(map(len, curve.each.values())) for curve in curves)
     if count > MOST_POINTS:
         raise ValueError(f"give {count:.6g} curves, at most {MOST_POINTS}")
     return [one for curve in curves for one in curve.expanded()]
 
 
-class Study(Table):
+class Study(StudyTable):
     """A scene, the finest physics that it is known by, and curves.
 
     finest : what modelling errors are measured against: an exact solution or a fine run; "none";
@@ -110,7 +101,7 @@ class Study(Table):
     scene: str
     variant: str = ""
     changes: dict[str, Value] = Field(default_factory=dict)
-    finest: str | Reference | None = None
+    finest: str | FineRun | None = None
     quantity: Literal["stress", "velocity", "displacement"] | None = None
     note: str = ""
     timed: bool = False
@@ -127,16 +118,17 @@ class Study(Table):
         changes = self.changes | changes | {"expect": {}}
         return cases.load_variant(find(self.scene), self.variant, changes, asked=False)
 
-    def points(self) -> list["Point"]:
+    def points(self) -> list["StudyPoint"]:
         """Return all points, curve by curve."""
         return [
-            Point(study=self, curve=curve, settings=settings)
+            StudyPoint(self, curve, settings)
             for curve in self.curves
-            for settings in curve.settings()
+            for settings in combinations(curve.vary)
         ]
 
 
-class Point(Table):
+@dataclass(frozen=True)
+class StudyPoint:
     """One run of a study: a curve with one value of each varied key."""
 
     study: Study
@@ -144,26 +136,25 @@ class Point(Table):
     settings: dict[str, Any]
 
     @property
+    def changes(self) -> dict[str, Any]:
+        """All that is changed, keys of the scene and arguments."""
+        return self.curve.changes | self.settings
+
+    @property
     def scene(self) -> Scene:
         """The scene that is solved; raises SceneError where there is none."""
-        changes = self.curve.changes | self.settings
-        return self.study.changed({k: v for k, v in changes.items() if k not in ARGUMENTS})
+        return self.study.changed({k: v for k, v in self.changes.items() if k not in ARGUMENTS})
 
     @property
     def physics(self) -> dict[str, Any]:
         """The changes of the scene besides its numerics."""
-        changes = self.curve.changes | self.settings
-        return {
-            key: value
-            for key, value in changes.items()
-            if key not in ARGUMENTS and not key.startswith("numerics.")
-        }
+        of_scene = {k: v for k, v in self.changes.items() if k not in ARGUMENTS}
+        return {k: v for k, v in of_scene.items() if not k.startswith("numerics.")}
 
     @property
     def arguments(self) -> dict[str, Any]:
         """The settings that are no keys of the scene, such as the terms of a series."""
-        everything = self.curve.changes | self.settings
-        return {key: value for key, value in everything.items() if key in ARGUMENTS}
+        return {k: v for k, v in self.changes.items() if k in ARGUMENTS}
 
 
 def shipped() -> dict[str, Path]:

@@ -6,13 +6,13 @@ from compare.engines import Progress
 from compare.experiments.cost.machine import machine
 from compare.experiments.study.diagram import write_diagram
 from compare.experiments.study.findings import sentences
-from compare.experiments.study.measure import Row
+from compare.experiments.study.measure import PointRow
 from compare.experiments.study.orders import Order, orders
 from compare.experiments.study.pareto import digits_per_second
 from compare.experiments.study.runner import run
 from compare.experiments.study.study import Study, load
 from compare.experiments.summary import Summary
-from compare.experiments.tables import frame, number, write_tables
+from compare.experiments.tables import frame, grouped, number, write_tables
 from compare.report.tables import Table
 
 #: The studies of the report, in its order.
@@ -28,23 +28,20 @@ LEGEND = (
 )
 
 
-def summarise(folder: Path, name: str, study: Study, rows: list[Row]) -> Summary:
+def summarise(folder: Path, name: str, study: Study, rows: list[PointRow]) -> Summary:
     """Return the summary of a study; write NAME.csv, NAME.nc and the diagram into `folder`."""
-    table = frame(rows, Row)
+    table = frame(rows, PointRow)
     data = table.rename_axis("point").to_xarray()
     data = data.assign_attrs(title=study.title, study=study.model_dump_json(), **machine())
     files = write_tables(folder, name, table, data)
     figure = write_diagram(folder, name, study, rows)
-    files += [figure.file(kind) for kind in ("svg", "pdf", "png")] if figure else []
+    files += figure.drawings if figure else []
     found = orders(study, rows)
-    groups: dict[str, list[list[str]]] = {}
-    for row in rows:
-        groups.setdefault(row.curve, []).append(cells(row))
     return Summary(
         name,
         study.title,
-        Table(COLUMNS, groups),
-        sentences(study, rows) + [_of_order(order) for order in found],
+        Table(COLUMNS, grouped((row.curve, cells(row)) for row in rows)),
+        sentences(study, rows) + [_in_words(order) for order in found],
         [f"{_of_point(r)}: {r.message}" for r in rows if r.state == "failed"],
         files,
         {"rows": rows, "orders": found, "files": [str(file) for file in files]},
@@ -69,13 +66,11 @@ def reported(
     return found
 
 
-def cells(row: Row) -> list[str]:
+def cells(row: PointRow) -> list[str]:
     """Return a row as text, under `COLUMNS`."""
     return [
         _settings(row) or "as it stands",
-        number(100 * row.numerical, ".3g"),
-        number(100 * row.modelling, ".3g"),
-        number(100 * row.total, ".3g"),
+        *(number(100 * error, ".3g") for error in (row.numerical, row.modelling, row.total)),
         number(100 * row.measured, ".3g") + (f" {CANCELS}" if row.cancels else ""),
         number(row.steps, ".0f"),
         number(row.work, ".2e"),
@@ -88,16 +83,13 @@ def cells(row: Row) -> list[str]:
     ]
 
 
-def _of_order(order: Order) -> str:
-    """Return a measured order beside that of theory."""
-    return (
-        f"{order.curve}: order {order.measured:.2f} with {order.key}, in theory {order.theory:g}."
-    )
+def _in_words(one: Order) -> str:
+    return f"{one.curve}: order {one.measured:.2f} with {one.key}, in theory {one.theory:g}."
 
 
-def _settings(row: Row) -> str:
+def _settings(row: PointRow) -> str:
     return ", ".join(f"{k.rpartition('.')[2]} {v}" for k, v in row.settings.items())
 
 
-def _of_point(row: Row) -> str:
+def _of_point(row: PointRow) -> str:
     return ", ".join(filter(None, [row.curve, _settings(row)]))

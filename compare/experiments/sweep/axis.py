@@ -1,12 +1,9 @@
 """Values of a swept key: `--sweep KEY=FROM:TO:COUNT`, `KEY=log:FROM:TO:COUNT` or `KEY=A,B,C`."""
 
-from __future__ import annotations
-
 import json
 import re
-from itertools import product
 from math import isfinite, prod
-from typing import Any, NamedTuple
+from typing import Any
 
 from cases.errors import SceneError
 from cases.files import parse_toml
@@ -17,37 +14,25 @@ FORMS = "must be KEY=FROM:TO:COUNT, KEY=log:FROM:TO:COUNT or KEY=A,B,C"
 RANGE = re.compile(r"""(log:)?([^:,"'\[{]+):([^:,"'\[{]+):([^:,"'\[{]+)""")
 
 
-class Axis(NamedTuple):
-    """A dotted key of the scene and its values, no two of them alike."""
-
-    key: str
-    values: list[Any]
-
-
-def axes(given: list[str], fixed: list[str]) -> list[Axis]:
-    """Return what `--sweep` names; `fixed` are the keys that `--set` gives.
+def axes(given: list[str], fixed: list[str]) -> dict[str, list[Any]]:
+    """Return the values of every key that `--sweep` names, no two of a key alike; `fixed` are the
+    keys that `--set` gives.
 
     Raises SceneError, in one line.
     """
-    found = [_axis(text) for text in given]
-    keys = [axis.key for axis in found]
-    for i, (text, key) in enumerate(zip(given, keys, strict=True)):
-        if key in keys[:i] or key in fixed:
+    found: dict[str, list[Any]] = {}
+    pairs = [(text, *_axis(text)) for text in given]
+    for text, key, values in pairs:
+        if key in found or key in fixed:
             raise SceneError("--sweep", text, None, f"{key} is given already")
-    count = prod(len(axis.values) for axis in found)
+        found[key] = values
+    count = prod(map(len, found.values()))
     if count > MOST:
         raise SceneError("--sweep", "", None, f"gives {count:,} points; at most {MOST:,}")
     return found
 
 
-def settings(found: list[Axis]) -> list[dict[str, Any]]:
-    """Return every combination of the values, the last key first to change."""
-    keys = [axis.key for axis in found]
-    values = product(*(axis.values for axis in found))
-    return [dict(zip(keys, one, strict=True)) for one in values]
-
-
-def _axis(text: str) -> Axis:
+def _axis(text: str) -> tuple[str, list[Any]]:
     key, equals, spec = (part.strip() for part in text.partition("="))
     if not equals or not key or not spec:
         raise SceneError("--sweep", text, None, f"{FORMS}, e.g. joints.damping_ratio=0.01:0.5:8")
@@ -57,22 +42,20 @@ def _axis(text: str) -> Axis:
     values = _listed(spec) if between is None else _between(text, *between.groups())
     if len({json.dumps(value, default=str) for value in values}) < len(values):
         raise SceneError("--sweep", text, None, "must give every value once")
-    return Axis(key, values)
+    return key, values
 
 
 def _listed(spec: str) -> list[Any]:
     """Return values as TOML, or what is none as text."""
-    try:
-        return parse_toml(f"values = [{spec}]")["values"]
-    except (ValueError, RecursionError):
-        return [_value(part.strip()) for part in spec.split(",")]
+    parts = [part.strip() for part in spec.split(",")]
+    return _toml(f"[{spec}]", None) or [_toml(part, part) for part in parts]
 
 
-def _value(text: str) -> Any:
+def _toml(text: str, otherwise: Any) -> Any:
     try:
         return parse_toml(f"value = {text}")["value"]
     except (ValueError, RecursionError):
-        return text
+        return otherwise
 
 
 def _between(text: str, log: str | None, first: str, last: str, count: str) -> list[Any]:

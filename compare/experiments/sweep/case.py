@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 Rows = list[dict[str, Any]]
 
 
-class Case(NamedTuple):
+class SweepCase(NamedTuple):
     """A scene with its swept keys set. folder : for its files; variants have their own in it.
 
     scene : None where there is none, for the reason in `message`.
@@ -39,7 +39,7 @@ class Case(NamedTuple):
         return "" if self.scene is None else self.scene.name
 
 
-class Outcome(NamedTuple):
+class SweepOutcome(NamedTuple):
     """The outcome of a case: "done" with its rows, or "failed" with the reason."""
 
     state: str
@@ -58,21 +58,19 @@ class Running(NamedTuple):
         """All that decides a row beside the scene."""
         return [self.runs, self.vtx]
 
-    def solvers(self, case: Case) -> list[str]:
-        """Return the names of what would solve a case."""
+    def solvers(self, scene: Scene) -> list[str]:
+        """Return the names of what would solve a scene."""
         from compare.runs import jobs
 
-        assert case.scene is not None
-        return [job.name for job in jobs.plan([case.scene], self.runs, case.folder)]
+        return [job.name for job in jobs.plan([scene], self.runs, Path())]
 
-    def __call__(self, case: Case) -> Rows:
-        """Write the results of a case and return a row for each receiver of each."""
+    def __call__(self, scene: Scene, folder: Path) -> Rows:
+        """Write the results of a scene into a folder and return a row for each receiver of each."""
         from compare.runs import jobs
         from compare.runs import run as runs
 
-        assert case.scene is not None
-        asked = jobs.plan([case.scene], self.runs, case.folder)
-        return [row for done in runs.execute(asked, _silent, self.vtx) for row in _of_run(done)]
+        done = runs.execute(jobs.plan([scene], self.runs, folder), _silent, self.vtx)
+        return [row for one in done for row in _of_run(one)]
 
 
 class Comparing(NamedTuple):
@@ -85,27 +83,30 @@ class Comparing(NamedTuple):
 
     @property
     def about(self) -> list[Any]:
-        """All that decides a row beside the scene and the samples of the curves."""
+        """All that decides a row beside the scene, of the curves their samples too."""
         named = [[c.file, c.name, c.variant, list(map(str, c.waveforms))] for c in self.curves]
-        return [self.spectral, self.align, self.writes, named]
+        samples = [
+            sha256(np.asarray(values).tobytes()).hexdigest()
+            for curve in self.curves
+            for values in (curve.time, *curve.waveforms.values())
+        ]
+        return [self.spectral, self.align, self.writes, named, samples]
 
-    def solvers(self, case: Case) -> list[str]:
-        """Return the names of what would solve a case."""
+    def solvers(self, scene: Scene) -> list[str]:
+        """Return the names of what would solve a scene."""
         from compare.engines import applies, names
 
-        assert case.scene is not None
-        return [name for name in names() if applies(name, case.scene)]
+        return [name for name in names() if applies(name, scene)]
 
-    def __call__(self, case: Case) -> Rows:
+    def __call__(self, scene: Scene, folder: Path) -> Rows:
         """Return a row for each distance."""
         from compare.misfit import pairs
 
-        assert case.scene is not None
-        found = pairs.compare(case.scene, None, self.spectral, self.curves, self.align)
+        found = pairs.compare(scene, None, self.spectral, self.curves, self.align)
         if self.writes:
             from compare.report.report import write_comparisons
 
-            write_comparisons([found], case.folder / case.variant)
+            write_comparisons([found], folder / scene.name)
         rows = [
             {**r.pair._asdict(), "quantity": r.quantity, "y": r.y, **r.distance._asdict()}
             for r in found.rows
@@ -116,29 +117,22 @@ class Comparing(NamedTuple):
 Work = Running | Comparing
 
 
-def outcome(case: Case, work: Work) -> Outcome:
+def outcome(case: SweepCase, work: Work) -> SweepOutcome:
     """Return the outcome of a case; of one that cannot be solved the reason."""
     if case.scene is None:
-        return Outcome("failed", case.message, [])
+        return SweepOutcome("failed", case.message, [])
     try:
-        return Outcome("done", "", work(case))
+        return SweepOutcome("done", "", work(case.scene, case.folder))
     except InterruptedRun:
         raise
     except (SceneError, UnstableError, MemoryError) as error:
-        return Outcome("failed", str(error) or "not enough memory", [])
+        return SweepOutcome("failed", str(error) or "not enough memory", [])
 
 
-def key(case: Case, work: Work) -> str:
+def key(case: SweepCase, work: Work) -> str:
     """Return what tells cases apart: everything that decides a row."""
     scene = case.message if case.scene is None else scene_hash(case.scene)
-    curves = work.curves if isinstance(work, Comparing) else []
-    samples = [
-        sha256(np.asarray(values).tobytes()).hexdigest()
-        for curve in curves
-        for values in (curve.time, *curve.waveforms.values())
-    ]
-    about = [str(case.folder), case.variant, scene, type(work).__name__, work.about]
-    return store.key(*about, samples)
+    return store.key(str(case.folder), case.variant, scene, type(work).__name__, work.about)
 
 
 def _of_run(done: Any) -> Rows:
@@ -155,8 +149,8 @@ def _of_run(done: Any) -> Rows:
         "file": str(done.job.path),
     }
     peaks = [*_peaks(result, "stress"), *_peaks(result, "velocity")]
-    nowhere = [{"quantity": "", "y": nan, "peak": nan, "time_of_peak": nan}]
-    return [{**about, **peak} for peak in peaks or nowhere]
+    nowhere = {"quantity": "", "y": nan, "peak": nan, "time_of_peak": nan}
+    return [about | peak for peak in peaks or [nowhere]]
 
 
 def _real(value: float | None) -> float:
@@ -170,15 +164,12 @@ def _peaks(result: xr.Dataset, quantity: str) -> Rows:
     """
     rows = []
     for y, wave in zip(result[f"{quantity}_y"].values, result[quantity].values, strict=True):
-        values = wave if wave.ndim == 1 else wave[:, 0] if wave.shape[1] == 1 else _speed(wave)
+        in_space = wave.ndim == 2 and wave.shape[1] > 1
+        values = np.linalg.norm(wave, axis=1) if in_space else wave.ravel()
         at = int(np.argmax(np.abs(values)))
         peak, time = float(values[at]), float(result.time.values[at])
         rows.append({"quantity": quantity, "y": float(y), "peak": peak, "time_of_peak": time})
     return rows
-
-
-def _speed(wave: np.ndarray) -> np.ndarray:
-    return np.linalg.norm(wave, axis=1)
 
 
 def _silent(fraction: float) -> None:

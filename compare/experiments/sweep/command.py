@@ -1,68 +1,35 @@
-"""`--sweep` of a command: from what the user gives to the table."""
+"""`--sweep` of a command: what would run, or the table of what has."""
 
-from __future__ import annotations
-
-from pathlib import Path
-from typing import NamedTuple
-
-from cases.errors import SceneError
-from cases.read import parse_override
 from compare.cli.options import warn
+from compare.engines import Progress
 from compare.experiments.cost import dry_run
-from compare.experiments.pool import shared
-from compare.experiments.summary import show
-from compare.experiments.sweep import runner, summary
-from compare.experiments.sweep.axis import Axis, axes
-from compare.experiments.sweep.case import Case, Work
-
-
-class Asked(NamedTuple):
-    """A sweep: the scene's name, what is swept, every case of it, and the folder; None writes
-    nothing."""
-
-    scene: str
-    axes: list[Axis]
-    cases: list[Case]
-    out: Path | None
-
-
-def ask(
-    scene: str, changes: list[str], variant: str | None, given: list[str], out: Path | None
-) -> Asked:
-    """Return what `--sweep` asks for; raises SceneError, in one line."""
-    fixed = dict(parse_override(text) for text in changes)
-    found = axes(given, list(fixed))
-    wanted = runner.cases_of(scene, fixed, variant, found, out or Path())
-    return Asked(scene, found, wanted, out)
+from compare.experiments.pool import Pool
+from compare.experiments.summary import Summary, run_and_show
+from compare.experiments.sweep import runner
+from compare.experiments.sweep.case import Work
+from compare.experiments.sweep.runner import Sweep
+from compare.experiments.sweep.summary import summarise
 
 
 def sweep(
-    asked: Asked, work: Work, workers: int, dry: bool, as_json: bool, strict: bool = False
+    asked: Sweep, work: Work, workers: int, dry: bool, as_json: bool, strict: bool = False
 ) -> None:
     """Run every case, write the table, and show it; dry : only say what would run.
 
     strict : refuse scenes that are warned of. Raises SceneError where all fail.
     """
-    warn([case.scene for case in asked.cases if case.scene is not None], strict)
+    warn(asked.scenes, strict)
     if dry:
         _foresee(asked, work, as_json)
         return
-    found = shared(
-        f"{len(asked.cases)} points",
-        asked.out,
-        workers,
-        lambda pool, advance: runner.run(asked.cases, work, asked.out, pool, advance),
-    )
-    if found is None:  # not the first process
-        return
-    if all(one.state == "failed" for one in found):
-        allowed = f"all {len(found)} points fail: {found[0].message}"
-        raise SceneError(asked.scene, "", None, allowed)
-    rows = summary.table(asked.axes, asked.cases, found)
-    show(summary.summarise(asked.out, asked.scene, asked.axes, rows), as_json)
+
+    def done(pool: Pool | None, advance: Progress) -> Summary:
+        return summarise(asked, runner.run(asked, work, pool, advance))
+
+    run_and_show(f"{len(asked.cases)} points", asked.out, workers, done, as_json)
 
 
-def _foresee(asked: Asked, work: Work, as_json: bool) -> None:
+def _foresee(asked: Sweep, work: Work, as_json: bool) -> None:
     """Show what every case would take, and which would fail before they begin."""
     wanted: list[dry_run.Run] = []
     failing: list[tuple[str, str]] = []
@@ -71,5 +38,5 @@ def _foresee(asked: Asked, work: Work, as_json: bool) -> None:
         if case.scene is None:
             failing.append((point, case.message))
         else:
-            wanted += [(point, case.scene, name) for name in work.solvers(case)]
+            wanted += [(point, case.scene, name) for name in work.solvers(case.scene)]
     dry_run.show_runs(wanted, as_json, failing)

@@ -1,33 +1,54 @@
 """Run a sweep: every variant at every point once, on any executor."""
 
-from __future__ import annotations
-
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from cases.errors import SceneError
+from cases.read import parse_override
 from compare.engines import Progress
+from compare.experiments.combinations import combinations
 from compare.experiments.pool import Pool
 from compare.experiments.store import Store
-from compare.experiments.sweep.axis import Axis, settings
-from compare.experiments.sweep.case import Case, Outcome, Work, key, outcome
+from compare.experiments.sweep.axis import axes
+from compare.experiments.sweep.case import SweepCase, SweepOutcome, Work, key, outcome
 from compare.scenes import find, load, load_variant
 
 POINTS = "points"  # the folder of what is done
 LONGEST = 100  # characters of a folder's name
+LOST = SweepOutcome(
+    "failed", "its process has ended before it was done, maybe for want of memory", []
+)
 
 
-def cases_of(
-    scene: str, changes: dict[str, Any], variant: str | None, axes: list[Axis], out: Path
-) -> list[Case]:
-    """Return the variants of a scene at every point.
+class Sweep(NamedTuple):
+    """A sweep of a scene.
 
-    Raises SceneError where there is no scene at any point.
+    scene : its name. axes : the values by swept key. cases : all variants at every point. out : the
+    folder; None writes nothing.
     """
+
+    scene: str
+    axes: dict[str, list[Any]]
+    cases: list[SweepCase]
+    out: Path | None
+
+    @property
+    def scenes(self) -> list[Any]:
+        """The scenes of all cases that have one."""
+        return [case.scene for case in self.cases if case.scene is not None]
+
+
+def sweep_of(
+    scene: str, changes: list[str], variant: str | None, given: list[str], out: Path | None
+) -> Sweep:
+    """Return what `--set`, `--variant` and `--sweep` ask for; raises SceneError in one line, also
+    where there is no scene at any point."""
+    fixed = dict(map(parse_override, changes))
+    values = axes(given, list(fixed))
     path, found, errors = find(scene), [], []
-    for i, setting in enumerate(settings(axes)):
-        folder, overrides = out / _folder(setting, i), {**changes, **setting}
+    for i, setting in enumerate(combinations(values)):
+        folder, overrides = (out or Path()) / _folder(setting, i), {**fixed, **setting}
         try:
             scenes = (
                 load(path, overrides)
@@ -36,12 +57,12 @@ def cases_of(
             )
         except SceneError as error:
             errors.append(error)
-            found.append(Case(setting, folder, None, str(error)))
+            found.append(SweepCase(setting, folder, None, str(error)))
         else:
-            found += [Case(setting, folder, one) for one in scenes]
+            found += [SweepCase(setting, folder, one) for one in scenes]
     if errors and len(errors) == len(found):
         raise errors[0]
-    return found
+    return Sweep(scene, values, found, out)
 
 
 def _folder(setting: dict[str, Any], number: int) -> str:
@@ -53,24 +74,16 @@ def _folder(setting: dict[str, Any], number: int) -> str:
 
 
 def run(
-    wanted: list[Case],
-    work: Work,
-    out: Path | None,
-    pool: Pool | None = None,
-    progress: Progress | None = None,
-) -> list[Outcome]:
-    """Return the outcomes of all cases, in order; those that are done are taken from `out`.
-
-    out : None: nothing is saved.
-    """
-    outcomes: Store[Outcome] = Store(Outcome, out and out / POINTS, _has_files)
+    asked: Sweep, work: Work, pool: Pool | None = None, progress: Progress | None = None
+) -> list[SweepOutcome]:
+    """Return the outcomes of all cases, in order; those that are done are taken from its folder."""
+    outcomes: Store[SweepOutcome] = Store(
+        SweepOutcome, asked.out and asked.out / POINTS, _has_files
+    )
     key_of, outcome_of = partial(key, work=work), partial(outcome, work=work)
-    return outcomes.compute(wanted, key_of, outcome_of, pool, progress, lost=LOST)
+    return outcomes.compute(asked.cases, key_of, outcome_of, pool, progress, lost=LOST)
 
 
-LOST = Outcome("failed", "its process has ended before it was done, maybe for want of memory", [])
-
-
-def _has_files(found: Outcome) -> bool:
+def _has_files(found: SweepOutcome) -> bool:
     """Return whether the results of a case are still there."""
     return all(Path(str(row["file"])).is_file() for row in found.rows if "file" in row)

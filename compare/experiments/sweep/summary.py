@@ -1,19 +1,18 @@
 """The summary of a sweep: a tidy table, and a grid with the swept keys as dimensions."""
 
-from __future__ import annotations
-
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 import xarray as xr
 
+from cases.errors import SceneError
 from compare.experiments.summary import Summary
-from compare.experiments.sweep.axis import Axis
-from compare.experiments.sweep.case import Case, Outcome
-from compare.experiments.tables import cell, number, write_tables
+from compare.experiments.sweep.case import SweepOutcome
+from compare.experiments.sweep.runner import Sweep
+from compare.experiments.tables import cell, grouped, number, write_tables
 from compare.misfit.metrics import Distance
 from compare.report.tables import Table
 
@@ -39,45 +38,51 @@ SHOWN_OF_PAIRS = (
 )
 
 
-def table(axes: list[Axis], wanted: list[Case], found: list[Outcome]) -> pd.DataFrame:
+def table(asked: Sweep, found: list[SweepOutcome]) -> pd.DataFrame:
     """Return one row for each receiver of each run or pair, or for each case that failed; SI."""
     rows: list[dict[str, Any]] = []
-    for case, one in zip(wanted, found, strict=True):
-        point = {axis.key: cell(case.settings[axis.key]) for axis in axes}
-        about = {**point, "variant": case.variant, "state": one.state, "message": one.message}
-        rows += [{**about, **row} for row in one.rows or [{}]]
+    for case, one in zip(asked.cases, found, strict=True):
+        point = {key: cell(value) for key, value in case.settings.items()}
+        about = point | {"variant": case.variant, "state": one.state, "message": one.message}
+        rows += [about | row for row in one.rows or [{}]]
     return pd.DataFrame(rows)
 
 
-def summarise(folder: Path | None, scene: str, axes: list[Axis], rows: pd.DataFrame) -> Summary:
-    """Return the summary of a sweep; write sweep.csv and, where anything is done, sweep.nc.
+def summarise(asked: Sweep, found: list[SweepOutcome]) -> Summary:
+    """Return the summary of a sweep; write sweep.csv and sweep.nc.
 
-    folder : None writes nothing.
+    Raises SceneError where all cases have failed.
     """
+    if all(one.state == "failed" for one in found):
+        allowed = f"all {len(found)} points fail: {found[0].message}"
+        raise SceneError(asked.scene, "", None, allowed)
+    rows, axes = table(asked, found), asked.axes
     done, failed = rows[rows.state == "done"], rows[rows.state == "failed"]
     files: list[Path] = []
-    if folder is not None:
-        data = None if done.empty else grid(axes, done).assign_attrs(scene=scene)
-        files = write_tables(folder, NAME, rows, data)
+    if asked.out is not None:
+        data = grid(axes, done).assign_attrs(scene=asked.scene)
+        files = write_tables(asked.out, NAME, rows, data)
     columns = SHOWN_OF_PAIRS if "one" in rows else SHOWN_OF_RUNS
-    groups: dict[str, list[list[str]]] = {}
-    for row in done.to_dict("records"):
-        numbers = [number(float(row[name]), form, "-") for name, _, form in columns]
-        groups.setdefault(_heading(row), []).append([_point(axes, row), *numbers])
+
+    def cells(row: dict[str, Any]) -> list[str]:
+        numbers = (number(float(row[name]), form, "-") for name, _, form in columns)
+        return [_point(row, axes), *numbers]
+
+    groups = grouped((_heading(row), cells(row)) for row in done.to_dict("records"))
     return Summary(
         NAME,
-        scene,
-        Table([", ".join(a.key for a in axes), *(head for _, head, _ in columns)], groups),
+        asked.scene,
+        Table([", ".join(axes), *(head for _, head, _ in columns)], groups),
         [],
-        [f"{_point(axes, r)} {r['variant']}: {r['message']}" for r in failed.to_dict("records")],
+        [f"{_point(r, axes)} {r['variant']}: {r['message']}" for r in failed.to_dict("records")],
         files,
         {"rows": json.loads(rows.to_json(orient="records")), "files": list(map(str, files))},
     )
 
 
-def grid(axes: list[Axis], done: pd.DataFrame) -> xr.Dataset:
+def grid(axes: dict[str, list[Any]], done: pd.DataFrame) -> xr.Dataset:
     """Return rows on the grid of swept keys, variants, and engines or pairs; nan where none is."""
-    point = [*(axis.key for axis in axes), "variant"]
+    point = [*axes, "variant"]
     if "one" in done:
         pairs = done.assign(pair=done["one"] + " ~ " + done["other"])
         found = _on_grid(pairs, [*point, "pair", "quantity", "y"], OF_PAIRS)
@@ -85,7 +90,7 @@ def grid(axes: list[Axis], done: pd.DataFrame) -> xr.Dataset:
         found = _on_grid(done, [*point, "engine", "quantity", "y"], OF_RECEIVERS)
         runs = done.drop_duplicates([*point, "engine"])
         found = found.merge(_on_grid(runs, [*point, "engine"], OF_RUNS))
-    found = found.reindex({axis.key: list(map(cell, axis.values)) for axis in axes})
+    found = found.reindex({key: list(map(cell, values)) for key, values in axes.items()})
     for name in UNITS.keys() & found.variables.keys():
         found[name].attrs["units"] = UNITS[name]
     return found
@@ -101,6 +106,6 @@ def _heading(row: dict[str, Any]) -> str:
     return f"{row['variant']}: {solved}{place}" if row["variant"] else f"{solved}{place}"
 
 
-def _point(axes: list[Axis], row: dict[str, Any]) -> str:
-    values = (row[axis.key] for axis in axes)
+def _point(row: dict[str, Any], axes: Iterable[str]) -> str:
+    values = (row[key] for key in axes)
     return ", ".join(f"{v:.6g}" if isinstance(v, float) else str(v) for v in values)

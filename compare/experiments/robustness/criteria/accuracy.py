@@ -4,17 +4,13 @@ Near a critical step, beside stiff joints or at a resonance an unstable scheme i
 being infinite. So every such run is held to the error that a stable one can have.
 """
 
-from __future__ import annotations
-
 from math import pi, sqrt
 
 import numpy as np
 import xarray as xr
 
-from cases.material.calibrate import calibrate
-from cases.schema.scene import Scene
-from compare.engines import ENGINES, solve, solvers
-from compare.experiments.robustness.case import Finding, Trial, criterion
+from compare.engines import solve, solvers
+from compare.experiments.robustness.case import EPS, CaseTrial, Judgement, criterion
 from compare.misfit.metrics import misfit
 from compare.solvers.continuum import JOINTED_ROCK
 
@@ -27,23 +23,21 @@ CUBES, FIFTHS = 2.22, 6.64
 #: tan(W dt/2) = omega dt/2; generalised alpha lags a little more.
 ERROR = {"leapfrog": 1 / 24, "fourth-order": 1 / 24, "explicit": 1 / 24, "implicit": 1 / 6}
 REFEREE = 5e-6  # of the exact bars: their inversion takes the mean load of steps, 6e-7 at the peak
-EPS = 2.2e-16
 
 
-def phase_error(trial: Trial, result: xr.Dataset) -> float:
+def phase_error(trial: CaseTrial, result: xr.Dataset) -> float:
     """Return the misfit that the steps of a second-order scheme leave at the end of a run.
 
     A relative error e of the frequency omega is the phase e omega t at time t, and a wave that is
     wrong by a small phase is wrong by as much relative to itself: C (omega dt)^2 omega t, in the
     mean over the spectrum.
     """
-    scene = trial.scene()
     omega = peak(trial)
     step = omega * float(result.attrs["dt"])
-    return ERROR[trial.solver.scheme] * step**2 * CUBES * omega * scene.time.duration
+    return ERROR[trial.scheme] * step**2 * CUBES * omega * trial.scene.time.duration
 
 
-def element_error(trial: Trial) -> float:
+def element_error(trial: CaseTrial) -> float:
     """Return the misfit that quadratic GLL elements leave at the end of a run; none in blocks.
 
     Their phase speed is wrong by (omega tau)^4 / 2880, tau the time through an element (Ainsworth &
@@ -51,24 +45,23 @@ def element_error(trial: Trial) -> float:
     round-off of its gap, eps K u, with u no more than 2 p t / Z under a stress p; ten operations of
     this are allowed.
     """
-    if trial.solver.is_rigid:
+    if trial.engine.has_rigid_blocks:
         return 0.0
-    scene, omega = trial.scene(), peak(trial)
-    p, t = calibrate(scene), scene.time.duration
+    p, omega, t = trial.properties, peak(trial), trial.scene.time.duration
     phase = (omega * time_of_element(trial)) ** 4 / 2880 * FIFTHS * omega * t
-    own = p.own_stiffness if trial.solver.engine == JOINTED_ROCK.name else p.stiffness
+    own = p.own_stiffness if trial.engine is JOINTED_ROCK else p.stiffness
     assert own is not None
-    read = own[np.rint(np.array(scene.record.stress) / p.spacing).astype(int) - 1]
+    read = own[np.rint(np.array(trial.scene.record.stress) / p.spacing).astype(int) - 1]
     return phase + 10 * EPS * float(read.max()) * 2 * t / p.impedance
 
 
-def corner_error(trial: Trial, result: xr.Dataset) -> float:
+def corner_error(trial: CaseTrial, result: xr.Dataset) -> float:
     """Return the misfit from the two corners of a sine that starts and ends; none of a wavelet.
 
     A change of slope s has the spectrum s / omega^2; what of it is beyond the w of `lost_after` is
     lost: by Parseval s^2 (4 + 1/5) / (3 pi w^3), against cycles T / 2 of the sine.
     """
-    load, omega = trial.scene().load, peak(trial)
+    load, omega = trial.scene.load, peak(trial)
     if load.shape != "sine":
         return 0.0
     w = 1 / lost_after(trial, result)
@@ -76,50 +69,48 @@ def corner_error(trial: Trial, result: xr.Dataset) -> float:
     return sqrt(square / ((load.cycles or 1) * (load.period or 0.0) / 2))
 
 
-def lost_after(trial: Trial, result: xr.Dataset) -> float:
+def lost_after(trial: CaseTrial, result: xr.Dataset) -> float:
     """Return 1 / w (s): frequencies beyond w have lost their phase by the end of a run.
 
     That of the steps is C (w dt)^2 w t = 1, that of elements (w tau)^4 w t / 2880 = 1.
     """
-    t, dt = trial.scene().time.duration, float(result.attrs["dt"])
-    lost = (ERROR[trial.solver.scheme] * dt**2 * t) ** (1 / 3)
-    if trial.solver.is_rigid:
+    t, dt = trial.scene.time.duration, float(result.attrs["dt"])
+    lost = (ERROR[trial.scheme] * dt**2 * t) ** (1 / 3)
+    if trial.engine.has_rigid_blocks:
         return lost
     return lost + (time_of_element(trial) ** 4 * t / 2880) ** (1 / 5)
 
 
-def peak(trial: Trial) -> float:
+def peak(trial: CaseTrial) -> float:
     """Return the angular frequency of the peak of the load's spectrum, rad/s."""
-    scene = trial.scene()
-    return 2 * pi / (scene.load.period or scene.time.duration)
+    return 2 * pi / (trial.scene.load.period or trial.scene.time.duration)
 
 
-def time_of_element(trial: Trial) -> float:
+def time_of_element(trial: CaseTrial) -> float:
     """Return how long a wave takes through an element of the rock, s."""
     from continuum.build import elements_for
 
-    scene, model = trial.scene(), trial.solver.model
-    p = calibrate(scene)
-    modulus = p.intact_modulus if model == JOINTED_ROCK.model else p.modulus
-    count = scene.numerics.continuum.elements_per_block or elements_for(scene, p, model)
+    scene, p = trial.scene, trial.properties
+    modulus = p.intact_modulus if trial.engine is JOINTED_ROCK else p.modulus
+    count = scene.numerics.continuum.elements_per_block
+    count = count or elements_for(scene, p, str(trial.engine.model))
     return p.spacing / count / sqrt((modulus or p.modulus) / p.density)
 
 
-def referee(trial: Trial, scene: Scene) -> str:
-    """Return the first exact solution of the model that the engine discretises."""
-    rock = ENGINES[trial.solver.engine].rock
-    for one in solvers():
-        if one.exact and one.discretised and one.rock is rock and one.applies(scene):
-            return one.name
+def referee(trial: CaseTrial) -> tuple[str, float]:
+    """Return the first exact solution of the model that the engine discretises, and the misfit of
+    the engine's result from it."""
+    own = (one for one in solvers() if one.exact and one.discretised)
+    for one in own:
+        if one.rock is trial.engine.rock and one.applies(trial.scene):
+            return one.name, misfit(trial.result, solve(one.name, trial.scene))
     raise LookupError(f"no exact solution applies to {trial.case.name}")
 
 
 @criterion(SECOND_ORDER)
-def near_exact(trial: Trial) -> Finding:
+def near_exact(trial: CaseTrial) -> Judgement:
     """The misfit from the exact solution is at most the scheme's phase error (and elements')."""
-    result, scene = trial.run(), trial.scene()
-    name = referee(trial, scene)
-    found = misfit(result, solve(name, scene))
-    bound = phase_error(trial, result) + element_error(trial) + REFEREE
-    bound += corner_error(trial, result)
-    return Finding(found, bound, f"misfit from {name}")
+    name, found = referee(trial)
+    bound = phase_error(trial, trial.result) + element_error(trial) + REFEREE
+    bound += corner_error(trial, trial.result)
+    return Judgement(found, bound, f"misfit from {name}")

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from math import inf
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 
-from cases.material.calibrate import calibrate
-from compare.experiments.robustness.case import STEP, Finding, Trial, criterion
-from compare.experiments.robustness.criteria.accuracy import EPS
+from compare.experiments.robustness.case import EPS, STEP, CaseTrial, Judgement, criterion
 from compare.experiments.robustness.criteria.energies import ROUND_OFF, SPENT
 from compare.misfit.metrics import relative_l2
 from compare.solvers.continuum import JOINTED_ROCK
@@ -23,22 +22,15 @@ if TYPE_CHECKING:
 KINKS = 1e-3
 
 
-def every_step(trial: Trial) -> dict[str, Any]:
-    """Return the changes that record every joint at every step."""
-    scene = trial.scene()
-    dt = trial.case.changes[STEP] * trial.critical
-    joints = calibrate(scene).joint_y
-    return {"record__interval": dt, "record__stress": joints.tolist(), "record__velocity": []}
-
-
 @criterion("misfit from elastic joints under the same prestress")
-def just_closed(trial: Trial) -> Finding:
+def just_closed(trial: CaseTrial) -> Judgement:
     """A prestress of just the largest tension of the wave leaves every joint closed.
 
     The elastic pillar under the same prestress, p, tells that tension; joints that bar tension meet
     it with a traction of zero, to round-off, and do what elastic ones do.
     """
-    clock = every_step(trial)
+    joints = trial.properties.joint_y.tolist()
+    clock = {"record__interval": trial.dt, "record__stress": joints, "record__velocity": []}
     free = trial.run(**clock, joints__tension=True, prestress__normal=0.0)
     p = -float(free["stress"].values.min())
     bound, barred = (
@@ -46,26 +38,25 @@ def just_closed(trial: Trial) -> Finding:
         for tension in (True, False)
     )
     steps = float(free.attrs["steps"])
-    return Finding(relative_l2(barred, bound), 10 * EPS * steps, f"misfit at {p:.3g} Pa")
+    return Judgement(relative_l2(barred, bound), 10 * EPS * steps, f"misfit at {p:.3g} Pa")
 
 
 @criterion("misfit from a load 2^99 times as large, over that")
-def scales_by_two(trial: Trial) -> Finding:
+def scales_by_two(trial: CaseTrial) -> Judgement:
     """Joints that bar tension know no scale: a load smaller by a power of two does the same in
     every digit, with gaps down to 1e-40 m that open and close as those of a large one do."""
     small = 2.0**-99
     one, other = (trial.run(load__amplitude=a) for a in (1.0, small))
     found = relative_l2(other["stress"].values / small, one["stress"].values)
-    return Finding(found, 0.0, f"misfit; smallest load {small:.2g} Pa")
+    return Judgement(found, 0.0, f"misfit; smallest load {small:.2g} Pa")
 
 
 @criterion("imbalance over the work")
-def ledger(trial: Trial) -> Finding:
+def ledger(trial: CaseTrial) -> Judgement:
     """No energy is made or lost where joints open, close, slide and break."""
     from results.dataset import energy_residual
 
-    result = trial.run()
-    return Finding(energy_residual(result), KINKS, _spent(result))
+    return Judgement(energy_residual(trial.result), KINKS, _spent(trial.result))
 
 
 def _spent(result: xr.Dataset) -> str:
@@ -77,33 +68,35 @@ def _spent(result: xr.Dataset) -> str:
 
 
 @criterion("fracture energy spent over that of a joint, off a whole number")
-def whole_joints(trial: Trial) -> Finding:
+def whole_joints(trial: CaseTrial) -> Judgement:
     """Breaking costs each joint its fracture energy, G_c times the section, and no more.
 
     Just short of a snap-back a joint softens over a thousandth of its opening, so none is caught on
     the way and the energy is that of a whole number of joints, of which there are N - 1.
     """
-    result, scene = trial.run(), trial.scene()
-    p, energy = calibrate(scene), scene.joints.fracture_energy or 0.0
-    joints = float(result["energy"].sel(term="fracture").values[-1]) / (energy * p.area)
+    p, energy = trial.properties, trial.scene.joints.fracture_energy or 0.0
+    spent = float(trial.result["energy"].sel(term="fracture").values[-1])
+    joints = spent / (energy * p.area)
     if not 0.5 < joints < p.block_count - 0.5:
-        return Finding(float("inf"), KINKS, f"{joints:.3g} of {p.block_count - 1} joints")
-    return Finding(abs(joints - round(joints)), KINKS, f"of a joint; {round(joints)} broke")
+        return Judgement(inf, KINKS, f"{joints:.3g} of {p.block_count - 1} joints")
+    return Judgement(abs(joints - round(joints)), KINKS, f"of a joint; {round(joints)} broke")
 
 
 @criterion("misfit from a joint that cannot slide, where the cohesion is just the largest shear")
-def just_held(trial: Trial) -> Finding:
+def just_held(trial: CaseTrial) -> Judgement:
     """At a cohesion of just the largest shear a joint holds, just below it slides.
 
     A joint of any cohesion tells the largest shear; at that and an eps each step the run is the
     same and friction has done no work. At a thousandth less it has. Implicit steps are the same to
     round-off: an iterate on the way may slide where the step does not.
     """
-    (layer,) = trial.scene().soft_layers
+    (layer,) = trial.scene.soft_layers
+    # The joint is recorded at every step, whatever that is.
+    every_step = {"record__interval": float(trial.result.attrs["dt"]), STEP: 1.0}
 
     def run(cohesion: float) -> xr.Dataset:
         layers = [{"y": layer.y, "cohesion": cohesion}]
-        return trial.run(soft_layers=layers, record__stress=[layer.y], **_fine(trial))
+        return trial.run(soft_layers=layers, record__stress=[layer.y], **every_step)
 
     free = run(1e12)
     peak = float(np.abs(free["shear"].values).max())
@@ -111,22 +104,16 @@ def just_held(trial: Trial) -> Finding:
     work = [float(r["energy"].sel(term="friction").values[-1]) for r in (held, slid)]
     found = relative_l2(held["shear"].values, free["shear"].values)
     if not (work[0] == 0 and work[1] > 0):
-        return Finding(float("inf"), 0.0, f"friction work {work[0]:.3g} and {work[1]:.3g} J")
-    bound = ROUND_OFF * float(held.attrs["steps"]) if trial.solver.scheme == "implicit" else 0.0
-    return Finding(found, bound, f"misfit; a thousandth below it friction takes {work[1]:.2g} J")
+        return Judgement(inf, 0.0, f"friction work {work[0]:.3g} and {work[1]:.3g} J")
+    bound = ROUND_OFF * float(held.attrs["steps"]) if trial.is_implicit else 0.0
+    return Judgement(found, bound, f"misfit; a thousandth below it friction takes {work[1]:.2g} J")
 
 
 KEEP = 1e-12
 
 
-def _fine(trial: Trial) -> dict[str, Any]:
-    """Return the changes that record the joint at every step, whatever that is."""
-    dt = float(trial.run().attrs["dt"])
-    return {"record__interval": dt, STEP: 1.0}
-
-
 @criterion("traction that should not be there, Pa")
-def one_ulp(trial: Trial) -> Finding:
+def one_ulp(trial: CaseTrial) -> Judgement:
     """A gap of the smallest number is open and carries nothing; the same closed pushes back."""
     stiffness, traction = _normal_law(trial)
     least = float(np.finfo(float).tiny)
@@ -134,10 +121,10 @@ def one_ulp(trial: Trial) -> Finding:
     for closed in (-least, -1e-9, np.nextafter(-1e-9, 0.0)):
         wrong.append(traction(closed, 0.0) + stiffness * closed)
     wrong.append(traction(least, -1e9))
-    return Finding(float(np.abs(wrong).max()), 0.0, "Pa, of gaps of 2e-308 and 1e-9 m")
+    return Judgement(float(np.abs(wrong).max()), 0.0, "Pa, of gaps of 2e-308 and 1e-9 m")
 
 
-def _normal_law(trial: Trial) -> tuple[float, Callable[[float, float], float]]:
+def _normal_law(trial: CaseTrial) -> tuple[float, Callable[[float, float], float]]:
     """Return the stiffness (Pa/m) of the first joint, as the solver has it, and its traction (Pa)
     at a gap (m) and its rate (m/s)."""
     from joints.law import law_of, parts_of, table_of
@@ -148,14 +135,13 @@ def _normal_law(trial: Trial) -> tuple[float, Callable[[float, float], float]]:
     return first.normal_stiffness, lambda gap, rate: normal_traction(first, parts, gap, rate, 0.0)
 
 
-def _joint_law(trial: Trial) -> Law:
-    scene = trial.scene()
-    if trial.solver.is_rigid:
+def _joint_law(trial: CaseTrial) -> Law:
+    if trial.engine.has_rigid_blocks:
         from dem.axial.model import law_of_joints
 
-        return law_of_joints(calibrate(scene))
+        return law_of_joints(trial.properties)
     from continuum.build import discretise
 
-    interface = discretise(scene, str(JOINTED_ROCK.model)).joints
+    interface = discretise(trial.scene, str(JOINTED_ROCK.model)).joints
     assert interface is not None
     return interface.law

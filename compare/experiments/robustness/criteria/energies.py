@@ -1,16 +1,13 @@
 """Criteria of energy over very many steps: no drift, no trend, never more than there was."""
 
-from __future__ import annotations
-
 from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from compare.experiments.robustness.case import STEP, Criterion, Finding, Trial, criterion
+from compare.experiments.robustness.case import EPS, CaseTrial, Criterion, Judgement, criterion
 
-EPS = 2.2e-16
 SAMPLES = 1000
 
 
@@ -21,24 +18,21 @@ class Drift(NamedTuple):
     energy: np.ndarray
 
 
-def drift(trial: Trial, steps: int) -> Drift:
+def drift(trial: CaseTrial, steps: int) -> Drift:
     """Return the energy of an undamped pillar over so many steps, from the end of its load on."""
     result = trial.run(**_clock(trial, steps))
     energy = result["energy"].sel(term=["kinetic", "elastic"]).sum("term").values
-    until = 3 * (trial.scene().load.period or 0.0)
-    after = result["time"].values > until
+    after = result["time"].values > 3 * (trial.scene.load.period or 0.0)
     mean = energy[after].mean()
     return Drift(result["time"].values[after] / float(result.attrs["dt"]), energy[after] / mean - 1)
 
 
-def _clock(trial: Trial, steps: int) -> dict:
+def _clock(trial: CaseTrial, steps: int) -> dict:
     """Return the changes for so many steps at the fraction of the critical step, in samples."""
-    dt, stride = trial.case.changes[STEP] * trial.critical, steps // SAMPLES
+    dt, stride = trial.dt, steps // SAMPLES
     found = {"record__interval": stride * dt, "time__duration": steps * dt * (1 + 1e-9)}
-    if trial.solver.scheme == "implicit":
-        period = trial.scene().load.period or 0.0
-        found["numerics__continuum__steps_per_period"] = period / dt
-        found.pop(STEP, None)
+    if trial.is_implicit:
+        found["numerics__continuum__steps_per_period"] = (trial.scene.load.period or 0.0) / dt
     return found
 
 
@@ -57,21 +51,21 @@ def no_trend(steps: int) -> Criterion:
     @criterion(
         "linear trend of the energy, at most a random walk of round-off and the fit's own error"
     )
-    def judge(trial: Trial) -> Finding:
+    def judge(trial: CaseTrial) -> Judgement:
         found = drift(trial, steps)
         x = found.steps / found.steps[-1]
         slope = np.polynomial.Polynomial.fit(x, found.energy, 1)
         swing = float(np.std(found.energy - slope(x)))
         trend = abs(float(slope(1.0) - slope(0.0)))
-        walk = EPS * (steps if trial.solver.scheme == "implicit" else 4 * sqrt(steps))
+        walk = EPS * (steps if trial.is_implicit else 4 * sqrt(steps))
         bound = walk + 4 * sqrt(12 / len(x)) * swing
-        return Finding(trend, bound, f"of the energy over {steps:,} steps; swing {swing:.1e}")
+        return Judgement(trend, bound, f"of the energy over {steps:,} steps; swing {swing:.1e}")
 
     return judge
 
 
 @criterion("fall of what is spent, over the work")
-def passive(trial: Trial) -> Finding:
+def passive(trial: CaseTrial) -> Judgement:
     """What is dissipated never comes back, and energy is neither made nor lost.
 
     Of the second law: what sliding and opening have taken, and all that is spent (viscous,
@@ -79,8 +73,8 @@ def passive(trial: Trial) -> Finding:
     may: where a joint slides, a dashpot whose spring unloads pushes the slide on, at the cost of
     friction. The boundary term is left out where springs hold the ends.
     """
-    result = trial.run()
-    return Finding(largest_fall(result), ROUND_OFF * float(result.attrs["steps"]), "of the work")
+    bound = ROUND_OFF * float(trial.result.attrs["steps"])
+    return Judgement(largest_fall(trial.result), bound, "of the work")
 
 
 ROUND_OFF = 1e-15

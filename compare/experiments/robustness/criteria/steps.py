@@ -1,9 +1,7 @@
 """Criteria at the critical step: stable below, bounded on it, caught above."""
 
-from __future__ import annotations
-
 import re
-from math import acosh, ceil, log, sqrt
+from math import acosh, ceil, inf, log, sqrt
 from typing import Any
 
 import numpy as np
@@ -11,21 +9,20 @@ import xarray as xr
 
 from cases.errors import SceneError, UnstableError
 from cases.loads import load_history
-from cases.material.calibrate import calibrate
 from cases.sampling import sample_times
-from compare.experiments.robustness.case import ALLOW, STEP, Finding, Trial, criterion
+from compare.experiments.robustness.case import ALLOW, CaseTrial, Judgement, criterion
 
 RANGE = log(1.7e308) - log(2.2e-308)  # all numbers, from the least to the largest
 
 
-def exactly(trial: Trial, steps: int) -> dict[str, Any]:
+def exactly(trial: CaseTrial, steps: int) -> dict[str, Any]:
     """Return the changes that make one sample a step, of exactly the fraction asked for."""
-    dt = trial.case.changes[STEP] * trial.critical
+    dt = trial.dt
     return {"record__interval": dt, "time__duration": dt * steps * (1 + 1e-9)}
 
 
 @criterion("fastest block or node, m/s, at most what the impulse gives at this step")
-def impulse_bound(trial: Trial) -> Finding:
+def impulse_bound(trial: CaseTrial) -> Judgement:
     """No point moves faster than the load's impulse can make it, amplified as at this step.
 
     A mode of frequency omega, driven at steps k by F_k, has the velocity (leapfrog in closed form)
@@ -34,12 +31,12 @@ def impulse_bound(trial: Trial) -> Finding:
     integral of |F| and s = 1 / sqrt(m) of the loaded point; at x = 1 the mode alternates and grows
     by at most 2 I s a step. The highest x is the step over the critical one.
     """
-    steps = STEPS if trial.case.changes[STEP] < 1 else STEPS_AT_THE_CRITICAL
+    steps = STEPS if trial.fraction < 1 else STEPS_AT_THE_CRITICAL
     result = trial.run(**exactly(trial, steps))
-    x = float(result.attrs["dt"]) / float(result.attrs["critical_dt"])
+    x = _over_critical(result)
     gain = _gain_of_composition(x, steps) if _is_fourth(trial) else _gain(x, steps)
     said = f"step {x:.6f} of the critical; speeds in m/s"
-    return Finding(_speed(trial, result), gain * _fastest(trial), said)
+    return Judgement(_speed(trial, result), gain * _fastest(trial), said)
 
 
 STEPS = 20_000
@@ -51,7 +48,7 @@ def _gain(x: float, steps: int) -> float:
     return 2.0 * steps if x >= 1 - 1e-9 else min(2.0 * steps, 1 / sqrt(1 - x * x))
 
 
-def _speed(trial: Trial, result: xr.Dataset) -> float:
+def _speed(trial: CaseTrial, result: xr.Dataset) -> float:
     """Return the highest recorded speed, m/s, of leapfrog at half steps, where it has velocities:
     the mean of two of them would hide a mode that alternates."""
     if _is_fourth(trial):
@@ -60,8 +57,8 @@ def _speed(trial: Trial, result: xr.Dataset) -> float:
     return float(np.abs(ways).max()) / float(result.attrs["dt"])
 
 
-def _is_fourth(trial: Trial) -> bool:
-    return trial.solver.scheme == "fourth-order"
+def _is_fourth(trial: CaseTrial) -> bool:
+    return trial.scheme == "fourth-order"
 
 
 def _gain_of_composition(x: float, steps: int) -> float:
@@ -86,16 +83,15 @@ def _gain_of_composition(x: float, steps: int) -> float:
     return float(max(abs(v) + abs(whole[1, 0] * u) * most for u, v in left))
 
 
-def _fastest(trial: Trial) -> float:
+def _fastest(trial: CaseTrial) -> float:
     """Return the speed (m/s) that the integral of the load's magnitude gives the lightest node.
 
     A block has its whole mass on its one freedom. GLL elements of order p give 1 / (p (p + 1)) of
     theirs to a node at their end.
     """
-    scene = trial.scene()
-    p, times = calibrate(scene), sample_times(scene)
+    scene, p, times = trial.scene, trial.properties, sample_times(trial.scene)
     impulse = p.area * np.trapz(np.abs(load_history(scene).value(times)), times)
-    if trial.solver.is_rigid:
+    if trial.engine.has_rigid_blocks:
         return impulse / p.block_mass
     n = scene.numerics.continuum
     mass = p.block_mass / (n.elements_per_block or 1) / (n.order * (n.order + 1))
@@ -103,64 +99,59 @@ def _fastest(trial: Trial) -> float:
 
 
 @criterion("refused; forced, stopped before it can have passed all numbers")
-def caught(trial: Trial) -> Finding:
+def caught(trial: CaseTrial) -> Judgement:
     """A step above the critical one is refused; forced, it is stopped within the range of numbers.
 
     The highest mode grows by exp(2 acosh(x)) a step (leapfrog; the fourth-order scheme by
     exp(acosh |h|), h half the trace of its step). It cannot stay finite for longer than from the
     smallest to the largest number.
     """
-    x = float(trial.case.changes[STEP])
+    x = trial.fraction
     steps = ceil(RANGE / _growth(trial, x))
     changes = exactly(trial, steps * 3 // 2)
-    if _refusal(trial, changes) is None:
-        return Finding(float("inf"), steps, "the step was not refused")
+    try:
+        trial.run(**changes)
+        return Judgement(inf, steps, "the step was not refused")
+    except SceneError:
+        pass
     try:
         trial.run(**changes, **{ALLOW: True})
     except UnstableError as error:
-        return Finding(_steps_until(trial, str(error), x), 2 * steps, f"steps; {error}")
-    return Finding(float("inf"), 2 * steps, "the run was not stopped")
+        return Judgement(_steps_until(trial, str(error)), 2 * steps, f"steps; {error}")
+    return Judgement(inf, 2 * steps, "the run was not stopped")
 
 
-def _growth(trial: Trial, x: float) -> float:
+def _growth(trial: CaseTrial, x: float) -> float:
     """Return the logarithm of what a step at x of the critical one multiplies the mode by."""
-    if trial.solver.scheme != "fourth-order":
+    if not _is_fourth(trial):
         return 2 * acosh(x)
     from dem.axial.fourth_order import half_trace, stability_limit
 
     return acosh(abs(half_trace()((x * stability_limit()) ** 2)))
 
 
-def _refusal(trial: Trial, changes: dict[str, Any]) -> str | None:
-    try:
-        trial.run(**changes)
-    except SceneError as error:
-        return str(error)
-    return None
-
-
-def _steps_until(trial: Trial, message: str, x: float) -> float:
+def _steps_until(trial: CaseTrial, message: str) -> float:
     """Return the step at which a run was stopped, by the time that its message names."""
     found = re.search(r"t = ([-+.\de]+) s", message)
     assert found is not None, message
-    return round(float(found[1]) / (x * trial.critical))
+    return round(float(found[1]) / trial.dt)
 
 
 @criterion("energy after the load, over that at its end")
-def never_grows(trial: Trial) -> Finding:
+def never_grows(trial: CaseTrial) -> Judgement:
     """Once the load has ended, implicit steps of any length never add energy.
 
     The generalised-alpha method is unconditionally stable and its modes only decay: the most of
     the second half of the run is no more than that of the first, up to round-off of every step.
     """
-    result = trial.run()
+    result = trial.result
     energy = result["energy"].sel(term=["kinetic", "elastic"]).sum("term").values
-    after = energy[result["time"].values > 3 * (trial.scene().load.period or 0.0)]
+    after = energy[result["time"].values > 3 * (trial.scene.load.period or 0.0)]
     half = after.size // 2
     ratio = float(after[half:].max() / after[:half].max())
     bound = 1 + 1e-14 * float(result.attrs["steps"])
-    return Finding(ratio, bound, f"step {_steps_over(result):.3g} critical ones")
+    return Judgement(ratio, bound, f"step {_over_critical(result):.3g} critical ones")
 
 
-def _steps_over(result: xr.Dataset) -> float:
+def _over_critical(result: xr.Dataset) -> float:
     return float(result.attrs["dt"]) / float(result.attrs["critical_dt"])

@@ -31,7 +31,7 @@ ENGINE = EQUIVALENT_ROCK.name
 ARGUMENTS: tuple[str, ...] = ()
 
 
-class Bar(NamedTuple):
+class PlainBar(NamedTuple):
     """The bar in space.
 
     space, form : of dolfinx; the form assembles the internal force of `motion`, u + eta v.
@@ -98,7 +98,7 @@ def solve(scene: Scene) -> xr.Dataset:
     )
 
 
-def _march(scene: Scene, bar: Bar, time: Clock) -> tuple[np.ndarray, np.ndarray]:
+def _march(scene: Scene, bar: PlainBar, time: Clock) -> tuple[np.ndarray, np.ndarray]:
     """Return displacements and velocities [samples, freedoms] at the sample times."""
     from dolfinx import fem
 
@@ -120,7 +120,7 @@ def _march(scene: Scene, bar: Bar, time: Clock) -> tuple[np.ndarray, np.ndarray]
     return sampled[0], sampled[1]
 
 
-def _bar(scene: Scene) -> Bar:
+def _bar(scene: Scene) -> PlainBar:
     import ufl
     from dolfinx import fem
 
@@ -147,7 +147,7 @@ def _bar(scene: Scene) -> Bar:
     held = [freedom for kind, freedom in places if kind == "fixed"]
     eta = p.time_constant or 0.0
     critical = _critical(forms.matrix(stiffness), mass, eta)
-    return Bar(space, form, motion, mass, dashpot, int(at.argmin()), held, eta, critical)
+    return PlainBar(space, form, motion, mass, dashpot, int(at.argmin()), held, eta, critical)
 
 
 def _critical(stiffness, mass: np.ndarray, eta: float) -> float:
@@ -163,7 +163,7 @@ def _critical(stiffness, mass: np.ndarray, eta: float) -> float:
     return 2 / omega * (sqrt(1 + xi**2) - xi)
 
 
-def _receivers(scene: Scene, bar: Bar) -> tuple[np.ndarray, np.ndarray]:
+def _receivers(scene: Scene, bar: PlainBar) -> tuple[np.ndarray, np.ndarray]:
     """Return rows [receivers, freedoms] of the slope at the sections of the stress, the mean of
     both sides between two elements, and of the value at the points of the velocity."""
     record = scene.record
@@ -172,7 +172,7 @@ def _receivers(scene: Scene, bar: Bar) -> tuple[np.ndarray, np.ndarray]:
     return slopes, values
 
 
-def _row(bar: Bar, y: float, derivative: int) -> np.ndarray:
+def _row(bar: PlainBar, y: float, derivative: int) -> np.ndarray:
     from continuum.space import compat, forms
 
     nodes = forms.cell_nodes(bar.space)

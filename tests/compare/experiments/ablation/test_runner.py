@@ -2,23 +2,21 @@
 
 import json
 import re
-import sys
 from math import nan
 
 import pandas as pd
 import pytest
 
-from compare.cli.program import main
 from compare.experiments.ablation import runner
-from compare.experiments.ablation.ablation import Ablation, Dropped, Effect
+from compare.experiments.ablation.ablation import Ablation, Dropped, EffectCost
 from compare.experiments.ablation.diagram import draw
-from compare.experiments.ablation.runner import Case, all_shipped, reported, run
+from compare.experiments.ablation.runner import Variant, all_shipped, reported, run
 from compare.experiments.ablation.summary import sentences, summarise, table
 
-LEDGER = Effect("energy ledger", 1.0, 3.0, 0.75, 1.0, nan, 0.0, "")
-LAYER = Effect("joints that differ", 0.1, -0.1, -0.025, 1.0, nan, 0.8, "")
-DAMPED = Effect("dashpots", 0.2, 2.0, 0.5, 4.0, 1.5, 0.05, "")
-SPACE = Effect("spatial motion", nan, nan, nan, nan, nan, nan, "is what the scene is about")
+LEDGER = EffectCost("energy ledger", 1.0, 3.0, 0.75, 1.0, nan, 0.0, "")
+LAYER = EffectCost("joints that differ", 0.1, -0.1, -0.025, 1.0, nan, 0.8, "")
+DAMPED = EffectCost("dashpots", 0.2, 2.0, 0.5, 4.0, 1.5, 0.05, "")
+SPACE = EffectCost("spatial motion", nan, nan, nan, nan, nan, nan, "is what the scene is about")
 FOUND = [
     Ablation("set/one", "One", "", 0.5, 4.0, 40.0, nan, [LAYER, LEDGER]),
     Ablation("set/two", "Two", "hard", 0.5, 4.0, 20.0, 3.0, [SPACE, DAMPED]),
@@ -43,9 +41,9 @@ def counted(monkeypatch):
 
 def test_what_is_done_is_not_done_again(counted, pillar, tmp_path):
     """The second run reads what the first has written, nan and all, and measures what is new."""
-    wanted = [Case("a/b", pillar())]
+    wanted = [Variant("a/b", pillar())]
     first, fractions = run(wanted, tmp_path, None, None), []
-    more = [*wanted, Case("a/c", pillar(time__duration=0.01))]
+    more = [*wanted, Variant("a/c", pillar(time__duration=0.01))]
     again = run(more, tmp_path, None, fractions.append)
     assert [name for name, _ in counted] == ["a/b", "a/c"]
     assert repr(again[0]) == repr(first[0])
@@ -56,7 +54,7 @@ def test_what_is_done_is_not_done_again(counted, pillar, tmp_path):
 
 def test_an_interrupted_run_keeps_what_was_solved(counted, pillar, tmp_path, monkeypatch):
     """Answers that are there are taken; only the timing is left to do."""
-    wanted = [Case("a/b", pillar())]
+    wanted = [Variant("a/b", pillar())]
     timed = runner.ablate
     monkeypatch.setattr(runner, "ablate", lambda *case: (_ for _ in ()).throw(KeyboardInterrupt))
     with pytest.raises(KeyboardInterrupt):
@@ -68,8 +66,8 @@ def test_an_interrupted_run_keeps_what_was_solved(counted, pillar, tmp_path, mon
 
 
 def test_cases_are_told_apart_by_all_that_decides_them(pillar):
-    one, other = Case("a/b", pillar()), Case("a/b", pillar(joints__damping_ratio=0.01))
-    assert one.key == Case("a/b", pillar()).key
+    one, other = Variant("a/b", pillar()), Variant("a/b", pillar(joints__damping_ratio=0.01))
+    assert one.key == Variant("a/b", pillar()).key
     assert len({one.key, other.key, one._replace(name="a/c").key}) == 3
 
 
@@ -120,38 +118,24 @@ def test_files_hold_every_number(tmp_path):
     assert all(file.is_file() for file in section.files)
 
 
-def command(monkeypatch, *arguments):
-    """Run `jointwave` with these arguments and return its exit code."""
-    monkeypatch.setattr(sys, "argv", ["jointwave", *arguments])
-    with pytest.raises(SystemExit) as ended:
-        main()
-    return ended.value.code
-
-
-def test_command_prints_a_scene_and_keeps_its_files(counted, monkeypatch, tmp_path, capsys):
-    out = tmp_path / "effects"
+def test_command_prints_a_scene_and_keeps_its_files(counted, command, tmp_path):
     scene = ["effects", "guo-li-2002/fig-09", "--variant", "no tension", "--workers", "1"]
-    assert command(monkeypatch, *scene, "--out", str(out)) == 0
-    said = capsys.readouterr().out
+    said = command(*scene).out
     assert "energy ledger" in said and "10.0 % of 40 ns" in said
-    assert "effects.csv" in said and (out / "effects.csv").is_file()
-    assert command(monkeypatch, *scene, "--out", str(out), "--json") == 0
-    facts = json.loads(capsys.readouterr().out)
+    assert "effects.csv" in said and (tmp_path / "effects" / "effects.csv").is_file()
+    facts = json.loads(command(*scene, "--json").out)
     assert facts[0]["effects"][0]["misfit"] == 0 and facts[0]["effects"][1]["cost"] is None
     assert len(counted) == 1
 
 
 @pytest.mark.parametrize("option", [("--variant", "x"), ("--set", "joints.tension=false")])
-def test_options_of_a_scene_need_one(option, monkeypatch, capsys):
-    assert command(monkeypatch, "effects", *option) == 2
-    said = capsys.readouterr().err
+def test_options_of_a_scene_need_one(option, command):
+    said = command("effects", *option, code=2).err
     assert said.count("\n") == 1 and option[0] in said and "needs a scene" in said
 
 
-def test_wrong_table_of_other_codes_is_one_line(tmp_path, monkeypatch, capsys):
+def test_wrong_table_of_other_codes_is_one_line(tmp_path, command):
     """Before anything is solved."""
-    arguments = ["report", "--out", str(tmp_path / "report"), "--peers", str(tmp_path / "none.csv")]
-    assert command(monkeypatch, *arguments) == 2
-    said = capsys.readouterr().err
+    said = command("report", "--peers", "none.csv", code=2).err
     assert said.count("\n") == 1 and "none.csv" in said and "cannot be read" in said
     assert not (tmp_path / "report").exists()

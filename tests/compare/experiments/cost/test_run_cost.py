@@ -1,8 +1,6 @@
 """What `--dry-run` says comes true: steps exactly, sizes exactly, memory within a factor."""
 
 import json
-import subprocess
-import sys
 import tracemalloc
 
 import pytest
@@ -11,8 +9,7 @@ from cases.errors import SceneError
 from cases.size import LIMIT, estimates, refuse_beyond_memory
 from compare.engines import solve
 from compare.experiments.cost import timings
-from compare.experiments.cost.dry_run import in_words
-from compare.experiments.cost.run_cost import forecast, seconds_of
+from compare.experiments.cost.dry_run import forecast, in_words, seconds_of
 
 SHORT = {"time__duration": 0.01, "record__velocity": [20.25]}
 SPACE = {"load__direction": [0.6, 0.8, 0.0]}
@@ -139,39 +136,42 @@ def test_times_in_words():
     assert {seconds: in_words(seconds) for seconds in words} == words
 
 
-def dry(tmp_path, *arguments, code=0):
-    command = [sys.executable, "-m", "compare", *arguments, "--dry-run"]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
-    assert done.returncode == code and "Traceback" not in done.stderr, done.stderr
-    assert not list(tmp_path.iterdir())
-    return done
+@pytest.fixture
+def dry(tmp_path, command):
+    """Return a function that gives what a command would do, and sees that it writes nothing."""
+
+    def run(*arguments, code=0):
+        said = command(*arguments, "--dry-run", code=code)
+        assert not list(tmp_path.iterdir())
+        return said
+
+    return run
 
 
-def test_nothing_is_run_or_written(tmp_path):
+def test_nothing_is_run_or_written(dry):
     """Whatever the command: only what would be done is said."""
-    said = dry(tmp_path, "run", SCENE, "--engine", "dem", "--engine", "continuum").stdout
+    said = dry("run", SCENE, "--engine", "dem", "--engine", "continuum").out
     assert "12 would run" in said and "7,200" in said and "100 blocks" in said
-    said = dry(tmp_path, "compare", SCENE, "--variant", "").stdout
+    said = dry("compare", SCENE, "--variant", "").out
     assert "8 would run" in said and "lattice" in said
-    said = dry(tmp_path, "effects", SCENE, "--variant", "zeta 0.05").stdout
+    said = dry("effects", SCENE, "--variant", "zeta 0.05").out
     assert f"{SCENE} zeta 0.05" in said and "1 of 1 to do" in said
-    assert "jointed rock, order 3" in dry(tmp_path, "study", "free-pillar").stdout
-    said = dry(tmp_path, "report").stdout
+    assert "jointed rock, order 3" in dry("study", "free-pillar").out
+    said = dry("report").out
     assert "9 of 9 to do" in said and "hard cases" in said
 
 
-def test_every_point_of_a_sweep_is_told_and_which_would_fail(tmp_path):
+def test_every_point_of_a_sweep_is_told_and_which_would_fail(dry):
     options = ("--sweep", "joints.damping_ratio=-1,0.1", "--variant", "", "--json")
-    facts = json.loads(dry(tmp_path, "run", SCENE, *options).stdout)
+    facts = json.loads(dry("run", SCENE, *options).out)
     assert [run["point"] for run in facts["runs"]] == ["joints.damping_ratio=0.1"]
     (failing,) = facts["failing"]
     assert "must be at least 0" in failing["message"]
 
 
-def test_a_scene_that_cannot_run_is_one_line(tmp_path):
-    wrong = ("run", SCENE, "--set", "numerics.dem.step_fraction=1.5")
-    done = dry(tmp_path, *wrong, code=2)
-    assert done.stderr.count("\n") == 1 and "critical step" in done.stderr
+def test_a_scene_that_cannot_run_is_one_line(dry):
+    said = dry("run", SCENE, "--set", "numerics.dem.step_fraction=1.5", code=2).err
+    assert said.count("\n") == 1 and "critical step" in said
 
 
 def test_what_is_done_of_a_study_is_known(tmp_path, monkeypatch):

@@ -9,19 +9,19 @@ from compare.experiments.robustness.case import (
     FOURTH,
     LEAPFROG,
     STEP,
-    Case,
+    CaseTrial,
     Criterion,
-    Finding,
-    Trial,
+    HardCase,
+    Judgement,
 )
 from compare.experiments.robustness.criteria import accuracy, energies, steps
 from compare.experiments.robustness.linear_cases import BLOW, JOINT, TINY
-from compare.experiments.robustness.row import FAILED, HELD, NONE, row_of
+from compare.experiments.robustness.run import FAILED, HELD, NONE, row_of
 
 
-def judged(judge, changes, solver=LEAPFROG, **about):
+def judged(judge, changes, stepper=LEAPFROG, **about):
     """Return the row of a case of one's own."""
-    return row_of(Case("a case", judge, changes, **about), solver)
+    return row_of(HardCase("a case", judge, changes, **about), stepper)
 
 
 def test_unstable_step_breaks_the_bound_of_the_stable_one(monkeypatch):
@@ -35,24 +35,26 @@ def test_unstable_step_breaks_the_bound_of_the_stable_one(monkeypatch):
 def test_step_that_is_never_stopped_is_not_caught():
     """A stable step that is asked for as an unstable one runs to its end: the criterion says so."""
 
-    class Sound(Trial):
+    class Sound(CaseTrial):
         def run(self, **more):
             return super().run(**more | {STEP: 0.9})
 
-    case = Case("a case", steps.caught, {STEP: 1.001} | BLOW)
-    assert not np.isfinite(steps.caught(Sound(case, LEAPFROG)).value)
+    case = HardCase("a case", steps.caught, {STEP: 1.001} | BLOW)
+    assert not np.isfinite(steps.caught.judge(Sound(case, LEAPFROG)).value)
 
 
 def test_wrong_stiffness_breaks_the_accuracy():
     """Joints one part in a hundred too stiff are further off than the phase error."""
 
-    class Stiffer(Trial):
+    class Stiffer(CaseTrial):
         def run(self, **more):
             layers = [{"y": 0.5 * j, "normal_stiffness": 1.05 * JOINT} for j in range(1, 20)]
             return super().run(soft_layers=layers, **more)
 
-    case = Case("a case", accuracy.near_exact)
-    sound, wrong = (accuracy.near_exact(kind(case, LEAPFROG)) for kind in (Trial, Stiffer))
+    case = HardCase("a case", accuracy.near_exact)
+    sound, wrong = (
+        accuracy.near_exact.judge(kind(case, LEAPFROG)) for kind in (CaseTrial, Stiffer)
+    )
     assert sound.value < sound.bound and wrong.value > wrong.bound
 
 
@@ -75,7 +77,7 @@ def test_dissipated_energy_that_comes_back_is_seen(pillar):
 
 def test_bound_that_bounds_nothing_fails():
     """A bound of infinity or nan, and a value of nan, hold nothing."""
-    for finding in (Finding(1.0, np.inf), Finding(1.0, np.nan), Finding(np.nan, 1.0)):
+    for finding in (Judgement(1.0, np.inf), Judgement(1.0, np.nan), Judgement(np.nan, 1.0)):
         assert judged(Criterion("", lambda trial, found=finding: found), {}).state == FAILED
 
 

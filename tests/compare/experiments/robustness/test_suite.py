@@ -1,20 +1,18 @@
-"""Every row of the battery holds, or says why it does not apply."""
+"""Every row of the suite holds, or says why it does not apply."""
 
 from math import isfinite
 
 import pytest
 
-from compare.experiments.robustness.case import SOLVERS
-from compare.experiments.robustness.row import HELD, NONE
-from compare.experiments.robustness.run import places, row_at
-from compare.experiments.robustness.suite import CASES
+from compare.experiments.robustness.case import SCHEMES
+from compare.experiments.robustness.run import CASES, HELD, NONE, places, row_at
 
 
 def rows():
     for i, j in places():
-        case, solver = CASES[i], SOLVERS[j]
+        case, stepper = CASES[i], SCHEMES[j]
         marks = [pytest.mark.slow] if case.slow else []
-        yield pytest.param((i, j), id=f"{case.name}, {solver.name}", marks=marks)
+        yield pytest.param((i, j), id=f"{case.name}, {stepper.name}", marks=marks)
 
 
 @pytest.mark.parametrize("place", list(rows()))
@@ -31,8 +29,8 @@ def test_row_holds_or_says_why_not(place):
 
 def test_no_row_is_skipped():
     """Every case has a row on every solver, and is held by at least one of them."""
-    assert places() == [(i, j) for i in range(len(CASES)) for j in range(len(SOLVERS))]
-    assert all(any(case.why_spared(s) is None for s in SOLVERS) for case in CASES)
+    assert places() == [(i, j) for i in range(len(CASES)) for j in range(len(SCHEMES))]
+    assert all(any(case.why_spared(s) is None for s in SCHEMES) for case in CASES)
 
 
 def test_cases_have_names_of_their_own():

@@ -8,9 +8,7 @@ import pytest
 from compare.experiments.robustness import diagram, summary
 from compare.experiments.robustness.criteria.energies import Drift
 from compare.experiments.robustness.map import make_map
-from compare.experiments.robustness.row import FAILED
-from compare.experiments.robustness.run import places, row_at
-from compare.experiments.robustness.suite import CASES
+from compare.experiments.robustness.run import CASES, FAILED, places, row_at
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,6 @@
 """Files of studies, the command, and what it writes."""
 
 import json
-import os
 import subprocess
 import sys
 
@@ -30,15 +29,12 @@ order = 2
 """
 
 
-def command(*arguments, code=0, before=()):
-    done = subprocess.run(
-        [*before, sys.executable, "-m", "compare", "study", *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        env={**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"},
-    )
-    assert done.returncode == code, done.stderr
-    return done
+def facts_of(*arguments, before=(), env=None):
+    """Return what a study's command prints as JSON."""
+    command = [*before, sys.executable, "-m", "compare", "study", *map(str, arguments), "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, env=env)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
 
 
 @pytest.mark.parametrize(
@@ -86,33 +82,34 @@ def test_a_curve_for_each_value_is_one_as_written_out(study):
         study([{**one, "each": {"a": list(range(1000)), "b": list(range(1000))}}])
 
 
-def test_a_study_that_is_not_there_names_those_that_are(tmp_path):
-    done = command("no-such", "--out", tmp_path, code=2)
-    assert done.stderr.startswith("jointwave: no-such: is no file, nor one of column-3d")
+def test_a_study_that_is_not_there_names_those_that_are(command):
+    said = command("study", "no-such", code=2).err
+    assert said.startswith("jointwave: no-such: is no file, nor one of column-3d")
 
 
-def test_command_writes_what_it_prints(tmp_path):
-    path = tmp_path / "mine.toml"
-    path.write_text(GOOD)
-    done = command(path, "--out", tmp_path / "out", "--json", "--workers", 1)
-    facts = json.loads(done.stdout)
-    table = pd.read_csv(tmp_path / "out" / "mine.csv")
-    data = xr.load_dataset(tmp_path / "out" / "mine.nc")
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Return the folder of a study that the command has run, and what it printed."""
+    folder = tmp_path_factory.mktemp("study")
+    (folder / "mine.toml").write_text(GOOD)
+    return folder, facts_of(folder / "mine.toml", "--out", folder / "out", "--workers", 1)
+
+
+def test_command_writes_what_it_prints(made):
+    folder, facts = made
+    table = pd.read_csv(folder / "out" / "mine.csv")
+    data = xr.load_dataset(folder / "out" / "mine.nc")
     assert [r["numerical"] for r in facts["rows"]] == pytest.approx(list(table.numerical), rel=1e-8)
     assert list(data.numerical.values) == pytest.approx(list(table.numerical), rel=1e-8)
     assert data.attrs["processor"] and json.loads(data.attrs["study"])["title"] == "two steps"
     assert facts["orders"][0]["measured"] == pytest.approx(2, abs=0.1)
 
 
-def test_two_ranks_give_the_table_of_one_process(tmp_path):
-    path = tmp_path / "mine.toml"
-    path.write_text(GOOD)
-    tables = []
-    for i, before in enumerate(((), ("mpiexec", "-n", "2", "--oversubscribe"))):
-        done = command(path, "--out", tmp_path / str(i), "--json", before=before)
-        tables.append(json.loads(done.stdout)["rows"])
+def test_two_ranks_give_the_table_of_one_process(made, tmp_path, mpiexec):
+    (folder, facts), (launcher, env) = made, mpiexec
+    ranks = facts_of(folder / "mine.toml", "--out", tmp_path, before=(launcher, "-n", "2"), env=env)
     keys = ("numerical", "total", "steps", "work")
-    one, two = ([[row[k] for k in keys] for row in table] for table in tables)
+    one, two = ([[row[key] for key in keys] for row in f["rows"]] for f in (facts, ranks))
     assert one == two
 
 

@@ -6,13 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cases.errors import SceneError
-from compare.experiments.sweep.axis import Axis, axes, settings
+from compare.experiments.combinations import combinations
+from compare.experiments.sweep.axis import axes
 
 KEY = "joints.damping_ratio"
 
 
 def values(spec):
-    ((key, found),) = axes([f"{KEY}={spec}"], [])
+    ((key, found),) = axes([f"{KEY}={spec}"], []).items()
     assert key == KEY
     return found
 
@@ -99,8 +100,8 @@ def test_a_key_is_given_once():
 
 def test_several_keys_make_all_combinations():
     found = axes(["a=1,2", "b=x,y,z"], ["c"])
-    assert found == [Axis("a", [1, 2]), Axis("b", ["x", "y", "z"])]
-    points = settings(found)
+    assert found == {"a": [1, 2], "b": ["x", "y", "z"]}
+    points = list(combinations(found))
     assert len(points) == 6 and points[1] == {"a": 1, "b": "y"}
     with pytest.raises(SceneError, match=r"20,000 points; at most 10,000"):
         axes(["a=1:2:100", "b=1:2:200"], [])

@@ -16,22 +16,24 @@ from dem import simulate
 SCENE = "guo-li-2002/fig-03"
 SHORT = ("--set", "time.duration=0.02", "--set", "record.velocity=[20.25]")
 RATIO = "joints.damping_ratio"
-
-
-def jointwave(*arguments, code=0, cwd=None):
-    command = [sys.executable, "-m", "compare", *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=cwd)
-    assert done.returncode == code, done.stderr
-    assert "Traceback" not in done.stderr
-    return done
+KEYS = ("--sweep", f"{RATIO}=-1,0.02,0.1", "--sweep", "ends.end=free,quiet")
+SWEPT = ("run", SCENE, "--variant", "", *SHORT, *KEYS)
+ALONE = ("--workers", 1)
+#: A comparison solves by everything that applies: it gets a short pillar.
+PAIRS = ("--variant", "", "--no-spectral", *ALONE, "--set", "pillar.length=10.0")
+PAIRS += ("--set", "time.duration=0.02", "--set", "record.stress=[4.0]")
+PAIRS += ("--set", "record.velocity=[]")
 
 
 @pytest.fixture(scope="module")
 def swept(tmp_path_factory):
-    """Return the folder of a sweep of two keys, one point of which fails, and what was said."""
+    """Return the folder of a sweep of two keys by two processes, two points of which fail, and
+    what was said."""
     out = tmp_path_factory.mktemp("sweep")
-    keys = ("--sweep", f"{RATIO}=-1,0.02,0.1", "--sweep", "ends.end=free,quiet")
-    done = jointwave("run", SCENE, "--variant", "", *SHORT, *keys, "--out", out)
+    arguments = [*SWEPT, "--workers", "2", "--out", str(out)]
+    command = [sys.executable, "-m", "compare", *arguments]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr
     return out, done.stdout
 
 
@@ -75,50 +77,45 @@ def test_a_point_that_fails_is_listed_and_stops_nobody(swept):
     assert np.isnan(xr.load_dataset(out / "sweep.nc").peak.sel({RATIO: -1.0})).all()
 
 
-def test_what_is_done_is_not_run_again(swept):
+def test_what_is_done_is_not_run_again(swept, command):
     """Nor is it when its result was removed: then it is made anew."""
     out, _ = swept
     file = out / f"{RATIO}=0.02,ends.end=free" / "dem.nc"
     other = out / f"{RATIO}=0.1,ends.end=free" / "dem.nc"
     before, kept = xr.load_dataset(file), other.stat().st_mtime_ns
     file.unlink()
-    keys = ("--sweep", f"{RATIO}=-1,0.02,0.1", "--sweep", "ends.end=free,quiet")
-    options = ("--workers", 1, "--json", "--out", out)
-    done = jointwave("run", SCENE, "--variant", "", *SHORT, *keys, *options)
-    assert len(json.loads(done.stdout)["rows"]) == 10
+    done = command(*SWEPT, *ALONE, "--json", "--out", out)
+    assert len(json.loads(done.out)["rows"]) == 10
     assert xr.load_dataset(file).equals(before) and other.stat().st_mtime_ns == kept
 
 
-def test_a_comparison_is_swept(tmp_path):
+def test_a_comparison_is_swept(command, tmp_path):
     """Misfits of every pair over the key, and the figure of each point."""
-    options = (*SHORT, "--no-spectral", "--variant", "", "--out", tmp_path / "out")
-    done = jointwave("compare", SCENE, "--sweep", "ends.start=free,quiet", *options)
-    assert "dem ~ lattice, stress at y = 20 m" in done.stdout
+    done = command("compare", SCENE, "--sweep", "ends.start=free,quiet", *PAIRS, "--out", "out")
+    assert "dem ~ lattice, stress at y = 4 m" in done.out
     data = xr.load_dataset(tmp_path / "out" / "sweep.nc")
     assert data.misfit.dims == ("ends.start", "variant", "pair", "quantity", "y")
-    found = data.misfit.sel(pair="dem ~ lattice", quantity="stress", y=20.0, variant="")
+    found = data.misfit.sel(pair="dem ~ lattice", quantity="stress", y=4.0, variant="")
     assert ((found > 0) & (found < 5e-3)).all() and float(np.ptp(found.values)) > 0
     assert (tmp_path / "out" / "ends.start=quiet" / "comparison.svg").is_file()
 
 
-def test_curves_of_others_are_swept_too(tmp_path):
+def test_curves_of_others_are_swept_too(command, tmp_path):
     """A file that has changed since is compared anew."""
-    sweep = (*SHORT, "--no-spectral", "--variant", "", "--out", tmp_path / "out", "--workers", 1)
-    sweep = (*sweep, "--sweep", "ends.start=free", "--with", "curve.csv", "--json")
+    sweep = ("--sweep", "ends.start=free", "--with", "curve.csv", "--json", "--out", "out")
     found = []
     for peak in (0.1, 0.2, 0.2):
-        text = f"time [ms], stress@20 [MPa]\n0, 0\n10, {peak}\n19, 0\n"
+        text = f"time [ms], stress@4 [MPa]\n0, 0\n10, {peak}\n19, 0\n"
         (tmp_path / "curve.csv").write_text(text)
-        rows = json.loads(jointwave("compare", SCENE, *sweep, cwd=tmp_path).stdout)["rows"]
+        rows = json.loads(command("compare", SCENE, *PAIRS, *sweep).out)["rows"]
         found.append([row["misfit"] for row in rows if row["one"] == "curve.csv"])
     assert found[0] and found[0] != found[1] == found[2]
     assert len(list((tmp_path / "out" / "points").iterdir())) == 2
 
 
-def test_a_comparison_without_a_folder_writes_nothing(tmp_path):
-    options = (*SHORT, "--no-spectral", "--variant", "", "--json", "--workers", 1)
-    done = jointwave("compare", SCENE, "--sweep", "ends.start=free", *options, cwd=tmp_path)
-    facts = json.loads(done.stdout)
+def test_a_comparison_without_a_folder_writes_nothing(command, tmp_path):
+    sweep = ("--sweep", "ends.start=free", "--json")
+    facts = json.loads(command("compare", SCENE, *PAIRS, *sweep).out)
     assert facts["files"] == [] and facts["rows"] and not list(tmp_path.iterdir())
 
 
@@ -131,25 +128,25 @@ def test_a_comparison_without_a_folder_writes_nothing(tmp_path):
         ("time.duration=1,2", "is given already"),
     ],
 )
-def test_a_sweep_of_nothing_is_one_line(tmp_path, spec, words):
+def test_a_sweep_of_nothing_is_one_line(command, tmp_path, spec, words):
     """And nothing is written."""
-    done = jointwave("run", SCENE, *SHORT, "--sweep", spec, code=2, cwd=tmp_path)
-    assert done.stderr.count("\n") == 1 and words in done.stderr
+    said = command("run", SCENE, *SHORT, "--sweep", spec, code=2).err
+    assert said.count("\n") == 1 and words in said
     assert not list(tmp_path.iterdir())
 
 
-def test_points_that_all_fail_as_they_run_are_one_line(tmp_path):
+def test_points_that_all_fail_as_they_run_are_one_line(command):
     """A step above the critical one is found out when the run is made."""
-    spec = "numerics.dem.step_fraction=1.5,2.0"
-    done = jointwave("run", SCENE, *SHORT, "--variant", "", "--sweep", spec, code=2, cwd=tmp_path)
-    assert done.stderr.count("\n") == 1
-    assert "all 2 points fail" in done.stderr and "critical step" in done.stderr
+    spec = ("--sweep", "numerics.dem.step_fraction=1.5,2.0")
+    said = command("run", SCENE, *SHORT, "--variant", "", *spec, *ALONE, code=2).err
+    assert said.count("\n") == 1
+    assert "all 2 points fail" in said and "critical step" in said
 
 
-def test_a_value_that_makes_no_name_has_a_number(tmp_path):
+def test_a_value_that_makes_no_name_has_a_number(command, tmp_path):
     """A list, of which a folder's name would be unreadable."""
-    spec = "record.stress=[10.0],[20.0]"
-    jointwave("run", SCENE, "--variant", "", *SHORT, "--sweep", spec, "--out", tmp_path)
+    spec = ("--sweep", "record.stress=[10.0],[20.0]")
+    command("run", SCENE, "--variant", "", *SHORT, *spec, *ALONE, "--out", tmp_path)
     assert {"point-00001", "point-00002"} < {path.name for path in tmp_path.iterdir()}
     data = xr.load_dataset(tmp_path / "sweep.nc")
     assert data["record.stress"].values.tolist() == ["[10.0]", "[20.0]"]
