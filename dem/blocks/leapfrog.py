@@ -39,6 +39,7 @@ from joints.formula import formula
 from joints.law import law_of
 from joints.normal import normal_traction, spring_traction
 from joints.shear import cohesion_left, shear_return, shear_strength
+from numerics.borrowed import borrowed
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.jit import jitted_for
 
@@ -121,6 +122,9 @@ def loop_for(form: Form) -> Callable:
         the arrays of `dem.blocks.model`, None for what the form does not have.
         """
         tiny = flush_tiny()
+        # Rows of counted arrays would each cost two atomic operations.
+        table, force, rates, drag, history = borrowed((table, force, rates, drag, history))
+        row, keeps, moves, dashpot, drive = borrowed((row, keeps, moves, dashpot, drive))
         law = law_of(laws, 0)
         for n in range(first, last):
             sampled = n == s * stride

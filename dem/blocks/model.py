@@ -71,12 +71,12 @@ class Adjacency(NamedTuple):
 class Held(NamedTuple):
     """Blocks that dashpots beyond the domain, or forces, act on.
 
-    index : int array [N], the row of a block in what follows, -1 of all others. keeps, moves :
+    row : int array [N], the row of a block in what follows, -1 of all others. keeps, moves :
     float arrays [h, 3, 3], what is left of its velocity in a step, and the velocity by an impulse.
     dashpot : float array [h, 3, 3], of all its dashpots, N s/m.
     """
 
-    index: np.ndarray
+    row: np.ndarray
     keeps: np.ndarray
     moves: np.ndarray
     dashpot: np.ndarray
