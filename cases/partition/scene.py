@@ -12,6 +12,7 @@ from cases.partition.blocks import Partition
 from cases.partition.cut import cut
 from cases.partition.faults import PartitionError
 from cases.partition.joints import direction_of
+from cases.partition.periodic import PAIRS, periodic_contacts
 from cases.size import LIMIT, memory, spoken
 
 if TYPE_CHECKING:
@@ -27,11 +28,15 @@ def partition_of(scene: RockMass) -> Partition:
     """Return the blocks of a rock mass.
 
     Raises SceneError, in one line with place and cause, where it cannot be cut into convex blocks,
-    or where these would take more memory than a run may.
+    periodic sides do not fit each other, or the blocks would take more memory than a run may.
     """
     refuse_too_many(scene)
     try:
-        return cut(scene.domain, scene.joint_sets)
+        found = cut(scene.domain, scene.joint_sets)
+        for side in PAIRS:
+            if getattr(scene.boundaries, side) == "periodic":
+                periodic_contacts(found, side)  # whether its sides fit each other
+        return found
     except PartitionError as error:
         raise SceneError(scene.where, error.key, None, str(error)) from None
 

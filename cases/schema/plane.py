@@ -22,7 +22,7 @@ class IntactRock(Table):
 
     density: Positive  #: kg/m3
     intact_modulus: Positive  #: Pa, Young's modulus
-    intact_poisson: Poisson = 0.25
+    intact_poisson: Poisson = 0.25  #: of the rock between the joints
 
 
 class Boundaries(Table):

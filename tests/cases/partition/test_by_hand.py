@@ -5,6 +5,8 @@ import pytest
 
 from cases.partition.cut import cut
 
+#: The first joints of a set with spacing 1, scatter 0.25 and seed 7: the same everywhere.
+PINNED = [1.1083358519779094, 2.4523330943513377, 3.691083905563523]
 SIDES = {"left": 0, "right": 1, "bottom": 2, "top": 3}
 
 
@@ -142,3 +144,35 @@ def test_a_slope_is_an_outline_that_is_not_convex(joints):
     assert found.area.sum() == pytest.approx(80 + 9 * 6, rel=1e-13)
     length = np.bincount(found.boundary.side, weights=found.boundary.length)
     np.testing.assert_allclose(length, [4, 10, 20, 6, 8 + 6 * 2**0.5], rtol=1e-13)
+
+
+def test_an_opening_may_open_the_boundary(rectangle, joints):
+    """A bench at the upper right corner: its two faces, and what is left of right and top."""
+    bench = [[6.0, 3.0], [10.0, 3.0], [10.0, 6.0], [6.0, 6.0]]
+    sets = [joints("rows", 0.0, spacing=1.0), joints("columns", 90.0, spacing=1.0)]
+    found = cut(rectangle(10.0, 6.0, openings=[bench]), sets)
+    assert found.count == 60 - 12
+    length = np.bincount(found.boundary.side, weights=found.boundary.length)
+    np.testing.assert_allclose(length, [6, 3, 10, 6, 0, 7], rtol=1e-14)
+
+
+@pytest.mark.parametrize("x, y", [(40.0, 10.0), (10.0, 40.0)])
+def test_neighbours_are_near_each_other_in_memory(rectangle, joints, x, y):
+    """Along rows across the longer extent: a lattice has the least bandwidth, the shorter one."""
+    sets = [joints("rows", 0.0, spacing=1.0), joints("columns", 90.0, spacing=1.0)]
+    contacts = cut(rectangle(x, y), sets).contacts
+    assert (contacts.blocks[:, 1] - contacts.blocks[:, 0]).max() == 10
+
+
+def test_scattered_spacings_are_the_stream_of_their_seed(rectangle, joints):
+    """Uniform about the mean with the deviation that was asked for, from PCG64 whose streams are
+    those of every platform; the joints that are there do not depend on the domain's size."""
+    rows = joints("rows", 0.0, spacing=1.0, scatter=0.25, seed=7)
+    draws = np.random.Generator(np.random.PCG64([7, 0, 0])).random(1000)
+    expected = np.cumsum(1 + 3**0.5 * 0.25 * (2 * draws - 1))
+    tall, short = (cut(rectangle(2.0, height), [rows]) for height in (900.0, 5.0))
+    places = np.sort(tall.contacts.start[:, 1])
+    np.testing.assert_allclose(places, expected[: len(places)], rtol=1e-13)
+    np.testing.assert_allclose(np.sort(short.contacts.start[:, 1]), places[:4], rtol=1e-13)
+    assert np.diff(places).std() == pytest.approx(0.25, rel=0.05)
+    assert places[:3].tolist() == pytest.approx(PINNED, rel=1e-15)

@@ -157,6 +157,14 @@ def test_periodic_sides_of_other_rows_split_each_other(rectangle, joints):
     assert len(across) == 8 and across.length.max() == pytest.approx(0.5)
 
 
+def test_a_periodic_scene_needs_joints_along_its_sides(scene):
+    """Rows lie along the bottom and the top; no joint lies along the left and the right."""
+    both = {"boundaries": {"bottom": "periodic", "top": "periodic"}}
+    assert partition_of(scene(**both)).count == 6
+    said = line(scene(boundaries={"left": "periodic", "right": "periodic"}))
+    assert said.startswith("boundaries.left: is periodic without a joint of one set along both")
+
+
 def test_a_size_beyond_the_memory(scene, monkeypatch):
     """Refused with the estimate, before anything is cut."""
     monkeypatch.setenv("JOINTWAVE_MEMORY", "0.5")
