@@ -116,14 +116,9 @@ def _blocks(scene: Scene) -> tuple[Growth, float]:
 
 def _rock(kind: str) -> Callable[[Scene], tuple[Growth, float]]:
     """Return what gives the growth of rock by the step (s), and its critical step, s."""
-    from continuum.build import (
-        build_model,
-        critical_step_of,
-        discretise,
-        empty_samples,
-        state_at_rest,
-    )
+    from continuum.build import build_model, critical_step_of, discretise
     from continuum.explicit.march import run
+    from continuum.state import empty_samples, state_at_rest
 
     def prepare(scene: Scene) -> tuple[Growth, float]:
         discrete = discretise(scene, kind)

@@ -106,8 +106,9 @@ def _blocks(scene: Scene, dt: float) -> Loose:
 
 def _rock(scene: Scene, dt: float, kind: str) -> Loose:
     """Return the middle one of three deformable blocks, at 1 m/s; its speed is that of its mass."""
-    from continuum.build import build_model, discretise, empty_samples, state_at_rest
+    from continuum.build import build_model, discretise
     from continuum.explicit.march import run
+    from continuum.state import empty_samples, state_at_rest
 
     discrete = discretise(scene, kind)
     model = build_model(scene, discrete, kind, Clock(dt, 1, 2))
