@@ -16,23 +16,12 @@ from continuum.joints import interfaces, joint_law, resolved_joints
 from continuum.kinematics import Kinematics, kinematics, layer_thickness, materials
 from continuum.mesh.description import Mesh
 from continuum.mesh.pillar import elements_in_block, pillar_mesh
-from continuum.model import (
-    TERMS,
-    Interfaces,
-    Model,
-    Places,
-    Receivers,
-    Rock,
-    Samples,
-    State,
-)
+from continuum.model import Interfaces, Model, Receivers, Rock
 from continuum.size import refuse_large_file, refuse_large_mesh
 from continuum.space.body import Body, build_body, rock_matrices
 from continuum.space.elasticity import Material
 from continuum.space.interface import Jumps, jumps
 from continuum.space.receivers import points, sections
-from continuum.space.simd import WIDTH
-from joints.law import Law, parts_of
 from numerics.cache_lines import zeros
 
 
@@ -206,61 +195,3 @@ def receivers(scene: Scene, discrete: Discrete) -> Receivers:
         contact=force.contact / area if contact and discrete.joints is not None else None,
         weight=None if pull is None else -(force.inertia / area) @ pull,
     )
-
-
-def state_at_rest(model: Model, keep_ledger: bool) -> State:
-    """Return the state at rest, with no array for anything that the model does not have."""
-    n, joints, (_, quiet, fixed) = model.rock.mass.size, model.interfaces, model.ends
-    parts = parts_of(Law(0.0)) if joints is None else joints.parts
-    directions, q = (0, 0) if joints is None else (joints.directions, joints.area.size)
-    viscous = parts.dashpots or model.rock.viscosity is not None
-    viscous = viscous or model.receivers.viscous is not None
-
-    def array(is_asked: bool, *shape: int) -> np.ndarray | None:
-        return zeros(shape) if is_asked else None
-
-    cohesion = array(parts.residual and parts.shear, q)
-    if joints is not None and cohesion is not None:
-        cohesion[:] = joints.law.cohesion
-    ends = 0 if quiet is None else quiet.freedom.size
-    shape = None if joints is None else (directions, q)
-    fields, at = _fields(n, viscous, shape, parts.dashpots)
-    return State(
-        fields=fields,
-        at=at,
-        force=zeros(n),
-        drag=array(viscous, n),
-        opening=array(parts.softening, q),
-        slide=array(parts.limited, directions - 1, q),
-        cohesion=cohesion,
-        jump=array(joints is not None, directions, q),
-        jump_rate=array(parts.dashpots, directions, q),
-        slip_rate=array(parts.limited, directions, q),
-        closure=array(quiet is not None and quiet.springs is not None, ends),
-        reaction=array(quiet is not None, ends),
-        base_force=None if fixed is None or fixed.step is None else zeros(fixed.freedom.size),
-        ledger=array(keep_ledger, 4),
-    )
-
-
-def _fields(
-    n: int, viscous: bool, shape: tuple[int, int] | None, damped: bool
-) -> tuple[np.ndarray, Places]:
-    """Return the vectors that receivers read, each from a cache line on."""
-    points = 0 if shape is None else shape[0] * shape[1]
-    sizes = {"u": n, "v": n, "v_before": n, "rate": n * viscous}
-    sizes |= {"loads": points, "drags": points * damped}
-    places, begin = {}, 0
-    for name, size in sizes.items():
-        places[name] = slice(begin, begin + size) if size else None
-        begin += -(-size // WIDTH) * WIDTH
-    return zeros(begin), Places(**places, shape=shape)  # type: ignore[arg-type]
-
-
-def empty_samples(model: Model, state: State, samples: int) -> Samples:
-    """Return samples to be recorded."""
-    receivers = model.receivers
-    sections, points = receivers.elastic.shape[0], receivers.point.shape[0]
-    turns = 0 if receivers.turn is None else receivers.turn.shape[0]
-    energy = None if state.ledger is None else np.zeros((len(TERMS), samples))
-    return Samples(np.zeros((sections + 2 * points + turns, samples)), energy, sections, points)

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from continuum.model import Model, State
+from continuum.model import Model
 from continuum.monitor import Monitor
 from continuum.run import Run
 from continuum.space.body import Body
+from continuum.state import State
 
 IMPLICIT_WORK = 100  # some corrections, each a triangular solve and often a factorisation
 

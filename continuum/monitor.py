@@ -5,8 +5,7 @@ No node can be faster than all forces together can make it, and no energy come f
 import numpy as np
 
 from continuum.run import Run
-from continuum.space.body import axis
-from numerics.divergence import CREATED, ENERGY, EVERY, LAST_DIGITS, guard, look, speed_that
+from numerics.divergence import ENERGY, EVERY, gains_energy, guard, look, speed_that
 from numerics.instability import Sighting, stopped
 
 
@@ -46,22 +45,14 @@ class Monitor:
         if self.energy is None or first == last:
             return
         if self.energy is not self.run.samples.energy:
-            self.energy[:, first:last] = self.communicator.sum(
-                self.run.samples.energy[:, first:last]
-            )
-        energy, (_, peak, found), stride = self.energy[:, first:last], self.guard, self.time.stride
+            own = self.run.samples.energy[:, first:last]
+            self.energy[:, first:last] = self.communicator.sum(own)
         with np.errstate(over="ignore", invalid="ignore"):
-            gained = energy - self.energy[:, :1]
-            largest = np.maximum.accumulate(np.abs(gained).max(axis=0))
-            created = gained[:-1].sum(axis=0) - gained[-1]
-            peaks = np.maximum(peak[0], largest)
-            allowed = CREATED * peaks + LAST_DIGITS * np.abs(energy).max(axis=0)
-            lost = created > allowed
-        peak[0] = peaks[-1]
-        if lost.any():
-            n = (first + int(lost.argmax())) * stride
-            if found[0] < 0 or n < found[0]:
-                found[:] = n, ENERGY, n - EVERY - 1
+            gains = (gains_energy(self.guard.peak, self.energy, s) for s in range(first, last))
+            lost = next((s for s, gain in enumerate(gains, first) if gain), last)
+        n, found = lost * self.time.stride, self.guard.found
+        if lost < last and (found[0] < 0 or n < found[0]):
+            found[:] = n, ENERGY, n - EVERY - 1
 
     def check(self, first: int, last: int) -> None:
         """Raise StoppedError where the run is lost when samples first .. last - 1 are taken, with
@@ -90,9 +81,7 @@ class Monitor:
         freedoms = body.freedom(np.arange(len(body.x))[:, None], np.arange(body.section.components))
         speed = np.nan_to_num(np.abs(self.run.state.v[freedoms]).max(axis=1), nan=np.inf)
         node = int(speed.argmax())
-        return self.communicator.of_largest(
-            float(speed[node]), float(body.x[node, axis(body.x.shape[1])])
-        )
+        return self.communicator.of_largest(float(speed[node]), float(body.y[node]))
 
 
 def highest_speed(run: Run) -> float:

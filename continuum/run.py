@@ -3,18 +3,12 @@
 from typing import NamedTuple
 
 from cases.schema.scene import Scene
-from continuum.build import (
-    Discrete,
-    build_model,
-    critical_step_of,
-    discretise,
-    empty_samples,
-    state_at_rest,
-)
-from continuum.model import Model, Samples, State
+from continuum.build import Discrete, build_model, critical_step_of, discretise
+from continuum.model import Model
 from continuum.parallel.serial import Serial
 from continuum.scheme import Choice, choose
 from continuum.size import refuse_large_run
+from continuum.state import Samples, State, empty_samples, state_at_rest
 
 
 class Run(NamedTuple):

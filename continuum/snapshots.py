@@ -7,12 +7,12 @@ from scipy.sparse import csr_matrix
 
 from cases.schema.scene import Scene
 from continuum.build import Discrete
-from continuum.model import State
 from continuum.parallel.serial import Pieces
 from continuum.space import compat
 from continuum.space.body import axis
 from continuum.space.evaluation import at_reference, matrix_of
 from continuum.space.receivers import section_tractions
+from continuum.state import State
 from results.dataset import Fields
 from results.snapshots import (
     Film,

@@ -6,9 +6,10 @@ import numpy as np
 
 from cases.schema.scene import Scene
 from continuum.build import Discrete
-from continuum.model import TERMS, Model, Samples
+from continuum.model import Model
 from continuum.parallel.serial import SERIAL, Serial
 from continuum.space.receivers import is_on_joint
+from continuum.state import TERMS, Samples
 from joints.law import Law
 from results.dataset import ALL_TERMS
 

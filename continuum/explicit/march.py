@@ -7,7 +7,8 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags, identity, kron
 
 from continuum.explicit.leapfrog import leapfrog_for
-from continuum.model import Model, Samples, State
+from continuum.model import Model
+from continuum.state import Samples, State
 from numerics.divergence import Guard
 
 

@@ -10,10 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
-from continuum.model import STATES, Model, Samples, State
+from continuum.model import Model
 from continuum.parallel.serial import SERIAL, Serial
 from continuum.space.body import Body, rock_matrices
 from continuum.space.tractions import joint_energy, joint_loads, joint_tangents
+from continuum.state import STATES, Samples, State
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.jit import jitted
 from results.arrays import fill

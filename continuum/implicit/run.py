@@ -12,8 +12,9 @@ from continuum.implicit.balance import Matrices, record
 from continuum.implicit.newton import Outcome
 from continuum.implicit.step import Moment, Stepper
 from continuum.implicit.substeps import move, pressure_at
-from continuum.model import Model, Samples, State
+from continuum.model import Model
 from continuum.monitor import Monitor
+from continuum.state import Samples, State
 from results.arrays import changed, copied, fill
 
 HALVINGS = 10

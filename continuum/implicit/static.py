@@ -13,9 +13,10 @@ from cases.schema.scene import Scene
 from continuum.implicit.balance import balance, implicit_matrices
 from continuum.implicit.newton import Outcome, newton
 from continuum.implicit.pattern import System
-from continuum.model import Model, State
+from continuum.model import Model
 from continuum.space.body import Body
 from continuum.space.tractions import NN, XX, ZZ
+from continuum.state import State
 from results.arrays import copied, fill
 
 TOLERANCE = 1e-10  # what may be left of the largest force that is summed up

@@ -25,7 +25,8 @@ from continuum.implicit.substeps import (
     pressure_at,
     shortened,
 )
-from continuum.model import Model, State
+from continuum.model import Model
+from continuum.state import State
 
 RESIDUAL = 1e-10  # what may be left, of the largest force that is summed up
 LAST_DIGITS = 8 * np.finfo(float).eps  # of a displacement: what they weigh cannot be balanced

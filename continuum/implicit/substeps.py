@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from continuum.model import Fixed, HalfJoints, Model, Quiet, State
+from continuum.model import Fixed, HalfJoints, Model, Quiet
+from continuum.state import State
 
 
 class FixedMotion(NamedTuple):

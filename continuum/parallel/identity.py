@@ -7,8 +7,7 @@ import numpy as np
 from continuum.mesh.description import Mesh
 from continuum.parallel.partition import Copies, copies_of
 from continuum.parallel.serial import Pieces
-from continuum.space.body import levels
-from continuum.space.nodes import corner_shares, node_numbers, numbered
+from continuum.space.nodes import corner_shares, levels, node_numbers, numbered
 
 
 class Border(NamedTuple):

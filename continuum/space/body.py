@@ -14,9 +14,8 @@ from scipy.sparse import csr_matrix, kron
 from continuum.mesh.description import Mesh
 from continuum.parallel.serial import SERIAL, Serial
 from continuum.space.elasticity import Material, Piece, Section, discretise
+from continuum.space.nodes import levels
 from continuum.space.operator import Layout, Operator, layout, operator, spread
-
-SAME = 1e-9  # of the pillar's size: nodes that are at one height
 
 
 class Body(NamedTuple):
@@ -173,14 +172,6 @@ def _heights(piece: Piece) -> np.ndarray:
     """Return for each node the number of its height within the piece."""
     y = piece.x[:, axis(piece.x.shape[1])]
     return levels(y, max(np.ptp(y), np.abs(piece.x).max()))
-
-
-def levels(y: np.ndarray, size: float) -> np.ndarray:
-    """Return numbers of the different heights y, in a body of this size, of the shape of y."""
-    order = np.argsort(y, axis=None)
-    found = np.empty(y.size, dtype=np.int64)
-    found[order] = np.cumsum(np.diff(y.ravel()[order], prepend=-np.inf) > SAME * size) - 1
-    return found.reshape(y.shape)
 
 
 def _tie(number: np.ndarray, components: int) -> csr_matrix:

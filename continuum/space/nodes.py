@@ -11,6 +11,7 @@ from continuum.mesh.description import Part
 from continuum.mesh.facets import row_numbers
 from continuum.space import compat
 
+SAME = 1e-9  # of the pillar's size: nodes that are at one height
 STEPS = 1_000_000  # of a place between vertices: nodes are much farther apart than one of them
 
 
@@ -45,3 +46,11 @@ def nodes_of(part: Part, cell: str, order: int) -> tuple[np.ndarray, np.ndarray]
     rank = np.empty(first.size, dtype=np.int64)
     rank[np.argsort(first)] = np.arange(first.size)
     return x.reshape(-1, x.shape[2])[np.sort(first)], rank[node].reshape(number.shape)
+
+
+def levels(y: np.ndarray, size: float) -> np.ndarray:
+    """Return numbers of the different heights y, in a body of this size, of the shape of y."""
+    order = np.argsort(y, axis=None)
+    found = np.empty(y.size, dtype=np.int64)
+    found[order] = np.cumsum(np.diff(y.ravel()[order], prepend=-np.inf) > SAME * size) - 1
+    return found.reshape(y.shape)

@@ -71,9 +71,8 @@ def _shares(which: np.ndarray, piece: np.ndarray) -> np.ndarray:
     """Return the share of each cell [n] in the mean at the point that it is at: pieces that meet
     there count alike, however many of their cells do."""
     pieces = 1 + piece.max(initial=0)
-    side, of_cell, cells = np.unique(
-        which * pieces + piece, return_inverse=True, return_counts=True
-    )
+    key = which * pieces + piece
+    side, of_cell, cells = np.unique(key, return_inverse=True, return_counts=True)
     sides = np.bincount(side // pieces)
     return 1 / (sides[which] * cells[of_cell])
 
@@ -84,34 +83,29 @@ def sections(
     """Return how the forces over sections are read."""
     directions, size, count = body.section.components, body.mass.size, len(places)
     nothing = 3 * (csr_matrix((directions, size)),)
-    rows = [
-        nothing if is_on_joint(body, place) else _section(body, materials, place)
-        for place in places
-    ]
+    rows = [nothing if is_on_joint(body, y) else _section(body, materials, y) for y in places]
     # One direction of all sections after the other; nothing, so that there is some to stack, first.
     order = np.arange(count * directions).reshape(count, directions).T.ravel()
     elastic, viscous, inertia = (
         vstack(part).tocsr()[order + directions] for part in zip(nothing, *rows, strict=True)
     )
-    contact = [_points_of_joint(body, jumps, place) for place in places]
+    contact = [_contact(body, jumps, place) for place in places]
     joined = vstack(contact).tocsr() if contact else csr_matrix((0, 0))
     return Sections(elastic, viscous, inertia, joined)
+
+
+def _contact(body: Body, jumps: Jumps | None, place: float) -> csr_matrix:
+    """Return the areas [1, q] of the joint's points, zero where the section is on none."""
+    if jumps is None or not is_on_joint(body, place):
+        return csr_matrix((1, 0 if jumps is None else jumps.weight.size))
+    near = np.abs(jumps.x[:, axis(body.dim)] - place) <= NEAR * body.length
+    return csr_matrix(np.where(near & jumps.flat, jumps.weight, 0.0))
 
 
 def is_on_joint(body: Body, place: float) -> bool:
     """Return whether a section is on a joint, and reads its traction."""
     y = body.mesh.joints.corners[:, :, axis(body.dim)]
     return bool((np.abs(y - place) <= NEAR * body.length).all(axis=1).any())
-
-
-def _points_of_joint(body: Body, jumps: Jumps | None, place: float) -> csr_matrix:
-    """Return the areas [1, q] of the joint's points, zero where the section is on none."""
-    if jumps is None:
-        return csr_matrix((1, 0))
-    if not is_on_joint(body, place):
-        return csr_matrix((1, jumps.weight.size))
-    near = np.abs(jumps.x[:, axis(body.dim)] - place) <= NEAR * body.length
-    return csr_matrix(np.where(near & jumps.flat, jumps.weight, 0.0))
 
 
 def _section(body: Body, materials: list[Material], place: float) -> tuple[csr_matrix, ...]:

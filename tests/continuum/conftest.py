@@ -9,20 +9,14 @@ import pytest
 from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from cases.schema.scene import Scene
-from continuum.build import (
-    Discrete,
-    build_model,
-    critical_step_of,
-    discretise,
-    empty_samples,
-    state_at_rest,
-)
+from continuum.build import Discrete, build_model, critical_step_of, discretise
 from continuum.explicit.march import run
 from continuum.mesh.cells import DIMENSION, FROM_GMSH
 from continuum.mesh.pillar import pillar_mesh
 from continuum.mesh.tagged import FACET_NAMES, KINDS
 from continuum.space.body import build_body
 from continuum.space.elasticity import Material, Section
+from continuum.state import empty_samples, state_at_rest
 from continuum.waveforms import waveforms
 
 ROCK = Material(modulus=8.64e10, poisson=0.25, density=2400.0)

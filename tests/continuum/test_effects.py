@@ -6,7 +6,7 @@ import pytest
 from cases.errors import SceneError
 from cases.material.calibrate import calibrate
 from continuum import applies, simulate
-from continuum.build import discretise, state_at_rest
+from continuum.build import discretise
 from continuum.explicit.leapfrog import leapfrog_for
 from continuum.explicit.march import arguments
 from continuum.implicit.balance import joint_balance_for
@@ -14,6 +14,7 @@ from continuum.implicit.pattern import empty_tangents
 from continuum.joints import interfaces
 from continuum.model import Quiet
 from continuum.run import steps_of
+from continuum.state import state_at_rest
 
 SUDDEN = {"direction": [0.0, 1.0, 0.0], "static": False}
 SHAKEN = {"shape": "sine", "amplitude": 0.1, "period": 1e-3, "quantity": "velocity"}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from continuum import simulate
-from continuum.model import TERMS
+from continuum.state import TERMS
 from results.dataset import energy_residual, imbalance
 
 LAYER = {"soft_layers": [{"y": 20.0, "spacing_stiffness": 4.375e8}]}

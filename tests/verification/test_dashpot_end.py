@@ -6,8 +6,9 @@ import pytest
 from cases.loads import load_history
 from cases.sampling import clock
 from compare.exact.bar import dashpot_end
-from continuum.build import build_model, critical_step_of, discretise, empty_samples, state_at_rest
+from continuum.build import build_model, critical_step_of, discretise
 from continuum.explicit.march import run
+from continuum.state import empty_samples, state_at_rest
 
 
 @pytest.mark.parametrize("beta", [0.5, 1.0, 2.0])

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from cases.sampling import Clock
-from continuum.build import build_model, critical_step_of, discretise, empty_samples, state_at_rest
+from continuum.build import build_model, critical_step_of, discretise
 from continuum.explicit.march import run
-from continuum.model import TERMS, Fixed
+from continuum.model import Fixed
+from continuum.state import TERMS, empty_samples, state_at_rest
 
 STRENGTH, ENERGY, AREA = 5e5, 30.0, 0.25
 CRITICAL = 2 * ENERGY / STRENGTH

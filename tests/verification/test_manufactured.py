@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_matrix
 
-from continuum.build import empty_samples, state_at_rest
 from continuum.explicit.critical import critical_time_step
 from continuum.explicit.march import march
 from continuum.implicit.balance import implicit_matrices
@@ -12,6 +11,7 @@ from continuum.implicit.run import Implicit
 from continuum.model import Ends, Model, Receivers, Rock
 from continuum.space.body import whole
 from continuum.space.operator import zeros
+from continuum.state import empty_samples, state_at_rest
 
 #: Kind, order p, cells a side of the coarser mesh, and the order of convergence.
 MESHES = [

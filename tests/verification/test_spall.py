@@ -11,8 +11,9 @@ from cases.sampling import clock
 from compare.exact.bar.jointed_spall import jointed_spall
 from compare.exact.bar.spall import spall
 from compare.scenes import SHIPPED
-from continuum.build import build_model, critical_step_of, discretise, empty_samples, state_at_rest
+from continuum.build import build_model, critical_step_of, discretise
 from continuum.explicit.march import march
+from continuum.state import empty_samples, state_at_rest
 from results.dataset import energy_residual
 
 SAW_TOOTH = SHIPPED / "beyond" / "spall.toml"

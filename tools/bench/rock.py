@@ -8,10 +8,11 @@ from plain_dolfinx import Pillar, Steps, in_order
 from cases.sampling import Clock
 from cases.schema.scene import Scene
 from compare.experiments.cost.step_cost import changed
-from continuum.build import Discrete, build_model, discretise, empty_samples, state_at_rest
+from continuum.build import Discrete, build_model, discretise
 from continuum.explicit.march import run
-from continuum.model import Model, Samples, State
+from continuum.model import Model
 from continuum.run import steps_of
+from continuum.state import Samples, State, empty_samples, state_at_rest
 
 BLOCKS = 100
 SAME_STEPS = 200  # of the motion that all must share

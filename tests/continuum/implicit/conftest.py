@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from cases.sampling import Clock
-from continuum.build import build_model, discretise, empty_samples, state_at_rest
+from continuum.build import build_model, discretise
 from continuum.implicit.balance import implicit_matrices
 from continuum.implicit.run import Implicit
-from continuum.model import TERMS
+from continuum.state import TERMS, empty_samples, state_at_rest
 
 
 class Run(NamedTuple):

@@ -6,7 +6,7 @@ import pytest
 from cases.material.calibrate import calibrate
 from compare.exact.schemes import generalised_alpha as theory
 from continuum.implicit.generalised_alpha import scheme
-from continuum.model import TERMS
+from continuum.state import TERMS
 from results.dataset import imbalance
 
 OBLIQUE = {"load__direction": [0.6, 0.8, 0.0]}
