@@ -12,7 +12,6 @@ from cases.schema.scene import Scene
 from compare.experiments.failures import FAILURES, reason_of
 from compare.experiments.planner.choices import Choice, furthest_off, measured, steps
 from compare.experiments.planner.families import FAMILIES, Family, effort
-from compare.experiments.planner.planner import too_far
 from compare.experiments.planner.reference import OwnModel, References
 from compare.experiments.planner.trials import FINEST, Trial, first_trial, is_hopeless, trial_at
 
@@ -50,7 +49,7 @@ class Study:
             raise SceneError(self.scene.where, "", None, f"over {DEARER:g} times the cheapest")
         first, own = None, self.references.own(family.name)
         if own.least >= max(self.misfits):
-            raise SceneError(self.scene.where, "", None, too_far(family, own))
+            raise SceneError(self.scene.where, "", None, own.too_far(family.name))
         for trial in self._trials(family, own):
             first = first or trial
             each = trial.seconds / (work * trial.per_sample / first.per_sample)

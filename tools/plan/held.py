@@ -8,9 +8,9 @@ from full_study import Study
 from cases.schema.scene import Scene
 from compare.engines import solve
 from compare.experiments.failures import FAILURES, reason_of
-from compare.experiments.planner.choices import Choice, options_of
+from compare.experiments.planner.choices import Choice
 from compare.experiments.planner.families import configured
-from compare.experiments.planner.planner import Plan, plan
+from compare.experiments.planner.planner import Plan, options_of, plan
 from compare.experiments.planner.reference import References
 
 RIVALS = 4  # of the study: the cheapest by their own timing, which is noise for short runs

@@ -1,5 +1,8 @@
 """The search of a fit: nonlinear least squares, each waveform weighed by its own noise."""
 
+from operator import attrgetter
+from typing import Any
+
 import numpy as np
 
 from cases.errors import StoppedError
@@ -68,9 +71,8 @@ class FitSearch:
     def _weighed(self, parts: list[np.ndarray]) -> np.ndarray:
         return np.concatenate([w * part for w, part in zip(self.weights, parts, strict=True)])
 
-    def run(self, start: np.ndarray) -> tuple[np.ndarray, float, bool]:
-        """Return the unknowns of least squares from a start, their squares, and whether the search
-        has converged."""
+    def run(self, start: np.ndarray) -> Any:
+        """Return what `scipy.optimize.least_squares` finds from a start."""
         from scipy.optimize import least_squares
 
         def squares(x: np.ndarray) -> np.ndarray:
@@ -78,7 +80,7 @@ class FitSearch:
             missing = sum(len(m.time) for m in self.problem.measured)
             return np.full(missing, np.inf) if found is None else self._weighed(found)
 
-        found = least_squares(
+        return least_squares(
             squares,
             start,
             jac=lambda x: self._weighed(self.jacobians(x)),
@@ -90,28 +92,27 @@ class FitSearch:
             gtol=TOLERANCE,
             max_nfev=MOST,
         )
-        return found.x, float(found.cost), found.status > 0
 
     def best(self) -> np.ndarray:
         """Return the unknowns that fit best, from other starts too where the fit is poor; raises
         StoppedError where no search has converged."""
         found = [self.run(self.start)]
-        if self._misfit(found[0][0]) > POOR:
+        if self._misfit(found[0].x) > POOR:
             found += [self.run(start) for start in self._other_starts()]
-        converged = [one for one in found if one[2]]
+        converged = [one for one in found if one.success]
         if not converged:
-            values = self.values(min(found, key=lambda one: one[1])[0])
+            values = self.values(min(found, key=attrgetter("cost")).x)
             at = ", ".join(f"{k.key} = {v:.6g}" for k, v in zip(self.keys, values, strict=True))
             raise StoppedError(
                 f"fit: not converged after {self.trials} solutions, at {at}: begin closer "
                 "(--free KEY=START), bound the keys, or free fewer"
             )
-        best = min(converged, key=lambda one: one[1])[0]
+        best = min(converged, key=attrgetter("cost")).x
         if len(self.weights) == 1:
             return best
         self._weigh_by_noise(best)
-        again, _, done = self.run(best)
-        return again if done else best
+        again = self.run(best)
+        return again.x if again.success else best
 
     def _weigh_by_noise(self, x: np.ndarray) -> None:
         """Let each waveform count by its residual, as the noise of its own gauge."""

@@ -89,9 +89,3 @@ def furthest_off(choice: Choice, choices: list[Choice]) -> float:
     return max(
         c.misfit for c in choices if c.family == choice.family and c.per_sample >= choice.per_sample
     )
-
-
-def options_of(choice: Choice) -> list[str]:
-    """Return the `--set` options that make a configuration."""
-    found = {**choice.family.changes, **choice.settings}
-    return [f"numerics.{choice.family.engine}.{key}={value}" for key, value in found.items()]

@@ -106,7 +106,7 @@ class PlanSearch:
             raise StoppedError(DEAR)
         own = self.references.own(family.name)
         if own.least >= self.misfit and self.seconds is None:
-            raise StoppedError(too_far(family, own))
+            raise StoppedError(own.too_far(family.name))
         trials = self._run(family, asked, own)
         self.choices += [measured(self.scene, family, trial, own) for trial in trials]
         if len(trials) > 1:
@@ -150,11 +150,6 @@ class PlanSearch:
         )
 
 
-def too_far(family: Family, own: OwnModel) -> str:
-    """Return why no step of a family comes within a misfit below its modelling error."""
-    return f"the modelling error of {family.name} alone is {100 * own.least:.3g} %"
-
-
 def plan(
     scene: Scene, misfit: float, seconds: float | None = None, progress: Progress | None = None
 ) -> Plan:
@@ -168,10 +163,9 @@ def plan(
     search = PlanSearch(scene, references, misfit, seconds)
     skipped = _tried(search, progress)
     chosen, obtained = _run_cheapest(search)
-    spent = perf_counter() - began
-    found = Plan(scene, references.finest, references.reason, search.trials, spent, skipped)
     own = None if chosen is None else references.own(chosen.family.name).reference
-    return found._replace(chosen=chosen, own=own, obtained=obtained)
+    about = references.finest, references.reason, search.trials, perf_counter() - began, skipped
+    return Plan(scene, *about, chosen, own, obtained)
 
 
 def _run_cheapest(search: PlanSearch) -> tuple[Choice | None, Choice | None]:
@@ -198,3 +192,9 @@ def _tried(search: PlanSearch, progress: Progress | None) -> dict[str, str]:
         if progress:
             progress((i + 1) / (len(FAMILIES) + 1))
     return skipped
+
+
+def options_of(choice: Choice) -> list[str]:
+    """Return the `--set` options that make a configuration."""
+    found = {**choice.family.changes, **choice.settings}
+    return [f"numerics.{choice.family.engine}.{key}={value}" for key, value in found.items()]

@@ -37,6 +37,10 @@ class OwnModel(NamedTuple):
         """The error that no step reduces: of modelling, and of the own reference itself."""
         return self.modelling + self.reference.error
 
+    def too_far(self, engine: str) -> str:
+        """Return why no step of the engine comes within a misfit below its modelling error."""
+        return f"the modelling error of {engine} alone is {100 * self.least:.3g} %"
+
 
 class References:
     """The references of one scene, good enough for the misfit that is asked for.

@@ -63,10 +63,18 @@ def heard(scene, places=(AT_3,), values=TRUE, late=0.0, interval=None, noise=Non
     return Curves("gauge.csv", "gauge.csv", time + late, waveforms)
 
 
-def white(seed, size):
-    """Return a function that gives white noise of a root mean square."""
+def noise_of(seed, size, memory=0.0):
+    """Return a function that gives noise of a root mean square, of which each sample keeps a part
+    of the one before (AR(1)); white without."""
     random = np.random.default_rng(seed)
-    return lambda _, n: random.normal(scale=size, size=n)
+
+    def noise(_, n):
+        found = random.normal(size=n)
+        for i in range(1, n):
+            found[i] = memory * found[i - 1] + (1 - memory**2) ** 0.5 * found[i]
+        return size * found
+
+    return noise
 
 
 def by_key(found):
@@ -100,27 +108,13 @@ def test_rigid_blocks_keep_their_steps(scene):
 
 def test_truth_lies_within_the_interval(scene):
     """Of noise with a fixed seed; the misfit that is left is the noise."""
-    curves = heard(scene, noise=white(1, 2e4))
+    curves = heard(scene, noise=noise_of(1, 2e4))
     found = jointwave.fit(changed(scene, TRUE), [curves], list(TRUE))
     for key, estimate in by_key(found).items():
         assert estimate.low < TRUE[key] < estimate.high
         assert 0.001 < (estimate.high - estimate.low) / estimate.value < 0.3
     motion = curves.waveforms[AT_3]
     assert found.after == pytest.approx(2e4 * len(motion) ** 0.5 / np.linalg.norm(motion), rel=0.2)
-
-
-def coloured(seed, size, memory):
-    """Return noise of which each sample keeps a part of the one before (AR(1))."""
-    random = np.random.default_rng(seed)
-
-    def noise(_, n):
-        found = np.empty(n)
-        found[0] = random.normal()
-        for i in range(1, n):
-            found[i] = memory * found[i - 1] + (1 - memory**2) ** 0.5 * random.normal()
-        return size * found
-
-    return noise
 
 
 @pytest.mark.slow
@@ -136,7 +130,7 @@ def test_intervals_hold_the_truth_in_19_of_20_cases(memory, scene):
     assert binom.cdf(33, repeats, 0.95) < 0.0035
     near = changed(scene, TRUE)
     for seed in range(repeats):
-        curves = heard(scene, noise=coloured(seed, 3e4, memory))
+        curves = heard(scene, noise=noise_of(seed, 3e4, memory))
         (layer, _) = jointwave.fit(near, [curves], list(TRUE)).estimates
         inside += layer.low <= TRUE[LAYER] <= layer.high
         values.append(np.log(layer.value))
@@ -148,9 +142,9 @@ def test_intervals_hold_the_truth_in_19_of_20_cases(memory, scene):
 
 def test_alike_residuals_count_as_fewer():
     """(1 + a) / (1 - a) samples of AR(1) noise count as one; white noise counts as it is."""
-    noise = coloured(1, 1.0, 0.8)(0, 200_000)
+    noise = noise_of(1, 1.0, 0.8)(0, 200_000)
     assert autocorrelation_time(noise) == pytest.approx(9, rel=0.15)
-    assert autocorrelation_time(coloured(2, 1.0, 0.0)(0, 200_000)) == pytest.approx(1, abs=0.1)
+    assert autocorrelation_time(noise_of(2, 1.0)(0, 200_000)) == pytest.approx(1, abs=0.1)
     assert autocorrelation_time(np.zeros(10)) == 1.0
 
 
@@ -182,7 +176,7 @@ def test_poor_start_is_left_for_another(scene):
 
 def test_waveforms_count_by_their_own_noise(scene):
     """A gauge with ten times the noise of another does not spoil it."""
-    clean = heard(scene, places=(AT_3,), noise=white(3, 3e3))
+    clean = heard(scene, places=(AT_3,), noise=noise_of(3, 3e3))
     both = heard(scene, places=(AT_3, Place("stress", "", 1.0)))
     random = np.random.default_rng(4)
     poor = both.waveforms[Place("stress", "", 1.0)]
@@ -211,7 +205,7 @@ def test_what_waveforms_do_not_tell_apart_is_said(scene):
 
 
 def test_a_key_that_nothing_depends_on_is_said(scene):
-    curves, free = heard(scene, noise=white(1, 1e4)), [LOAD, "rock.intact_poisson"]
+    curves, free = heard(scene, noise=noise_of(1, 1e4)), [LOAD, "rock.intact_poisson"]
     found = jointwave.fit(changed(scene, TRUE), [curves], free)
     estimates = by_key(found)
     assert estimates["rock.intact_poisson"].high == np.inf and estimates[LOAD].high < np.inf
@@ -296,7 +290,7 @@ FAULTS = {
 def files(scene, tmp_path):
     """Write scene and measurement, in MPa and ms, tension positive, and return their paths."""
     (tmp_path / "scene.toml").write_text(scene_text(scene))
-    curves = heard(scene, noise=white(7, 1e4), late=1e-3)
+    curves = heard(scene, noise=noise_of(7, 1e4), late=1e-3)
     columns = np.c_[1e3 * curves.time, -1e-6 * curves.waveforms[AT_3]]
     path = tmp_path / "gauge.csv"
     np.savetxt(path, columns, "%.9g", ",", header="t [ms],CH #1 (MPa)", comments="")
@@ -368,7 +362,7 @@ def test_one_solution_of_our_own_table_is_fitted(scene, tmp_path):
 def test_figure_shows_everything_and_nothing_twice(scene):
     """No text is cut off or lies on another; residuals are drawn below, to their own scale."""
     places = (Place("stress", "", 1.0), AT_3, Place("velocity", "y", 3.25))
-    curves = heard(scene, places=places, noise=lambda i, n: white(i, (1e4, 1e4, 1e-3)[i])(i, n))
+    curves = heard(scene, places=places, noise=lambda i, n: noise_of(i, (1e4, 1e4, 1e-3)[i])(i, n))
     long = Curves(
         "a-rather-long-name-of-a-$-file-with-everything.csv", "x", curves.time, curves.waveforms
     )

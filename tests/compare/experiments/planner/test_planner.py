@@ -14,9 +14,9 @@ from compare.experiments.cost.step_cost import PILLAR
 from compare.experiments.planner import choices, families, planner
 from compare.experiments.planner import reference as plan_reference
 from compare.experiments.planner import trials as plan_trials
-from compare.experiments.planner.choices import Choice, options_of
+from compare.experiments.planner.choices import Choice
 from compare.experiments.planner.families import Family, plain
-from compare.experiments.planner.planner import plan
+from compare.experiments.planner.planner import options_of, plan
 from compare.experiments.planner.trials import Trial
 from compare.misfit.metrics import Stack, misfit, stacked, worst
 from compare.scenes import find

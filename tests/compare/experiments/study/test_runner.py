@@ -1,11 +1,8 @@
-"""Running studies: resumed, shared among processes, failures and all."""
+"""Running studies: resumed, timed alone, failures and all."""
 
 import json
 import subprocess
 import sys
-from concurrent.futures import ProcessPoolExecutor
-from functools import partial
-from multiprocessing import get_context
 
 import pytest
 
@@ -22,14 +19,8 @@ def counted(rows):
     return json.dumps(found)
 
 
-def test_two_processes_give_the_table_of_one(study, tmp_path):
-    """Counts and misfits are the same in every run."""
-    pool = partial(ProcessPoolExecutor, 2, get_context("spawn"))
-    assert counted(run(study(), tmp_path / "two", pool)) == counted(run(study(), tmp_path / "one"))
-
-
 def test_an_interrupted_study_ends_with_the_same_table(study, tmp_path, monkeypatch):
-    """What was done is kept, seconds included; only the rest is run."""
+    """What was done is kept, seconds included; only the rest is run, to the same counts."""
     whole, calls = run(study(), tmp_path / "whole"), []
 
     def until_third(point):
