@@ -147,21 +147,23 @@ def _explanation_facts(found: Any) -> dict[str, Any]:
 
 def show_report(found: Any, as_json: bool) -> None:
     """Print the report's summary and where the page is."""
+    page = found.page
     if as_json:
-        print_json({"page": str(found.page), "columns": found.columns, "rows": found.rows})
+        summary = page.summary
+        rows = [[kind, *row] for kind, rows in summary.groups.items() for row in rows]
+        print_json({"page": str(found.file), "columns": ["what", *summary.header], "rows": rows})
         return
-    for engine, sentence in found.overview.lead:
+    for engine, sentence in page.overview.lead.items():
         say(f"{engine} {sentence}")
-    if found.about:
-        say(f"\n{found.about.sentence}")
+    if page.about:
+        say(f"\n{page.about.sentence}")
     say("\nLargest relative L2 misfit over the variants of each scene, in %:")
     groups = {
         kind: [[cell.replace("< ", "<") for cell in row] for row in rows]
-        for kind, rows in found.summary.groups.items()
+        for kind, rows in page.summary.groups.items()
     }
-    show_numbers(found.summary.header, groups)
-    findings = [finding for group in found.findings.values() for finding in group]
-    if findings:
-        holding = sum(finding.holds for finding in findings)
-        say(f"{holding} of {len(findings)} claims that the paper's figures make hold.")
-    say(f"report: {found.page}")
+    show_numbers(page.summary.header, groups)
+    if page.claims:
+        holding = page.claims - len(page.failed)
+        say(f"{holding} of {page.claims} claims that the paper's figures make hold.")
+    say(f"report: {found.file}")

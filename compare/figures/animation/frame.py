@@ -22,8 +22,7 @@ from compare.figures.animation.snapshots import SceneSnapshots
 from compare.figures.animation.view_settings import ViewSettings, caption
 from compare.figures.animation.wave import Wave
 from compare.figures.print.layout import wrapped
-from compare.figures.snapshots import COLOURS
-from compare.figures.style import RC, in_order, style
+from compare.figures.style import FIELD, RC, in_order, style
 from compare.figures.subplots import UNITS, Panel, panels
 from compare.figures.units import unit_for
 from compare.misfit.pairs import Comparison
@@ -50,7 +49,7 @@ class Frame:
         self.time = next(iter(simulated.found.values())).time
         peak = max(float(np.abs(w.profile).max()) for w in self.waves.values())
         self.peak = peak * settings.quantity.factor or 1.0
-        self.colour = ScalarMappable(Normalize(-self.peak, self.peak), COLOURS)
+        self.colour = ScalarMappable(Normalize(-self.peak, self.peak), FIELD)
         with matplotlib.rc_context(RC | {"font.size": 10.0, "font.family": fonts.families()}):
             self.figure = Figure(figsize=SIZE, dpi=dots)
             self.canvas = FigureCanvasAgg(self.figure)
@@ -135,7 +134,7 @@ class Frame:
             [],
             edgecolors="face",
             linewidths=0.3,
-            cmap=COLOURS,
+            cmap=FIELD,
             norm=self.colour.norm,
             animated=True,
         )

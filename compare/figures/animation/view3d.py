@@ -12,8 +12,7 @@ from compare.figures import fonts
 from compare.figures.animation.surface import Y, solid, surface_of
 from compare.figures.animation.view_settings import STRESS, ViewSettings, caption
 from compare.figures.print.layout import wrapped
-from compare.figures.snapshots import COLOURS
-from compare.figures.style import in_order, style
+from compare.figures.style import FIELD, in_order, style
 
 if TYPE_CHECKING:
     from compare.figures.animation.snapshots import SceneSnapshots
@@ -149,7 +148,7 @@ class View3D:
         pillar = self.plotter.add_mesh(
             grid,
             scalars=quantity.name,
-            cmap=COLOURS,
+            cmap=FIELD,
             clim=(-peak, peak),
             scalar_bar_args=bar,
             ambient=0.7,  # a little shade shows the form and leaves the colours as in the bar

@@ -41,7 +41,6 @@ def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> SceneF
     title = f"Numerical error of {words}" if shown.exact else f"{words[0].upper()}{words[1:]}"
     return SceneFigure(
         name,
-        "space-time",
         title,
         _caption(scene, variant, shown),
         _figure(scene, shown),
@@ -114,7 +113,7 @@ def evenly(
 
 def _plot(scene: Scene, shown: Diagrams) -> dict[str, Any]:
     subplots = [Subplot(d.heading, "y (m)", [], 2.0, share="y") for d in shown.diagrams]
-    layout = interactive.layout(subplots, {"title": {"text": "time (ms)"}}, 0)
+    layout = interactive.layout(subplots, {"title": {"text": "time (ms)"}})
     layout["margin"]["r"] = 62
     rows = range(len(subplots))
     layout["shapes"] = [_layer(layer.y, i) for layer in scene.soft_layers for i in rows]

@@ -9,15 +9,13 @@ import pandas as pd
 import xarray as xr
 
 from cases.schema.scene import Scene
-from compare.figures.style import in_order, is_engine
+from compare.figures.style import DIFFERENCE, FIELD, in_order, is_engine
 from compare.figures.subplots import FORCES, MOTION, UNITS
 from compare.figures.units import Unit, unit_for
 from compare.misfit.metrics import motion
 from compare.misfit.pairs import pairs
 from compare.misfit.ranking import own_exact
 
-#: Diverging, even to the eye and told apart under every colour blindness (ColorBrewer).
-FIELD, DIFFERENCE = "RdBu_r", "PuOr_r"
 LEAST = 1e-9  # SI: what is below does not move
 
 

@@ -33,12 +33,10 @@ def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
     groups = _groups(comparisons)
     return SceneFigure(
         f"{name}-scene",
-        "scene",
         "The scene",
         _caption(groups),
         _figure(groups),
         pd.concat([_table(scene, words) for words, scene in groups], ignore_index=True),
-        None,
     )
 
 

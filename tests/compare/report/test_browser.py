@@ -39,7 +39,7 @@ def build_small(folder):
 @pytest.fixture(scope="module")
 def alone(report, tmp_path_factory):
     """Return the page moved to a folder without any of its files."""
-    return shutil.copy(report.page, tmp_path_factory.mktemp("alone") / "page.html")
+    return shutil.copy(report.file, tmp_path_factory.mktemp("alone") / "page.html")
 
 
 @pytest.fixture
@@ -112,7 +112,7 @@ def test_the_first_screen_answers_how_far_apart_and_at_what_cost(opened, report)
     heads = table.locator("thead").inner_text().replace("\u00a0", " ")
     assert all(heads.count(word) == 3 for word in ("own %", "finest %", "cost", "verdict"))
     lead = page.locator("ul.lead").inner_text()
-    for engine in report.overview.engines:
+    for engine in report.page.overview.engines:
         assert engine in lead
     assert lead.count("from the finest physics") == 3 and "× the cheapest's time" in lead
 
@@ -178,7 +178,7 @@ def test_every_download_is_a_whole_file_of_its_kind(opened, report):
         name = link.get_attribute("download")
         assert waiting.value.suggested_filename == name
         content = waiting.value.path().read_bytes()
-        beside = report.page.parent / "figures" / name
+        beside = report.file.parent / "figures" / name
         CHECKS[name.rpartition(".")[2]](content, beside)
     assert opened.complaints == []
 
@@ -245,7 +245,7 @@ def test_no_two_captions_show_the_same_picture_or_numbers(opened, report):
     found = {}
     for figure in page.locator("figure").all():
         name = figure.get_attribute("id").removesuffix("-figure")
-        numbers = (report.page.parent / "figures" / f"{name}.csv").read_bytes()
+        numbers = (report.file.parent / "figures" / f"{name}.csv").read_bytes()
         for seen in (figure.locator(".static").screenshot(), numbers):
             assert found.setdefault(seen, name) == name
     links = page.locator("#moving p a[href^='#short-pillar']")
@@ -333,9 +333,9 @@ def test_the_command_of_a_scene_is_copied(opened):
 
 
 def test_without_scripts_figures_stand_still_and_links_lead_to_files(opened, report):
-    page = opened(path=report.page, java_script_enabled=False)
+    page = opened(path=report.file, java_script_enabled=False)
     for figure in page.locator("section > figure").all():
         assert figure.locator(".static svg").is_visible()
     for link in page.locator("figure .files a").all():
-        assert (report.page.parent / link.get_attribute("href")).stat().st_size > 100
+        assert (report.file.parent / link.get_attribute("href")).stat().st_size > 100
     assert page.locator(".copy:visible").count() == 0

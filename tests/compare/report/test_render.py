@@ -32,7 +32,7 @@ def page(tmp_path):
 
     def make(**parts):
         nothing = Page(
-            "About", Overview([], [], []), Table([], {}), [], "jointwave report", "here", {}
+            "About", Overview([]), Table([], {}), [], "jointwave report", "here", {}
         )
         return render(nothing.__class__(**{**nothing.__dict__, **parts}), tmp_path)
 
