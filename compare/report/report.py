@@ -131,7 +131,9 @@ def _ranked(solved: Solved) -> list[RankedScene]:
     """Return where engines stand on each scene, and what a run of theirs takes, timed alone."""
     with alone():
         return [
-            RankedScene(s.name, s.label, s.title, s.standings, seconds(solved.comparisons[s.name][0]))
+            RankedScene(
+                s.name, s.label, s.title, s.standings, seconds(solved.comparisons[s.name][0])
+            )
             for s in solved.sections
         ]
 

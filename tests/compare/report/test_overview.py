@@ -92,7 +92,9 @@ def standing(total, against):
 
 def ranked(name, seconds, **total):
     found = {engine.replace("_", "-"): standing(x, "jointed-bar") for engine, x in total.items()}
-    return RankedScene(name, name, f"title of {name}", found, dict(zip(found, seconds, strict=True)))
+    return RankedScene(
+        name, name, f"title of {name}", found, dict(zip(found, seconds, strict=True))
+    )
 
 
 def test_costs_are_ratios_to_the_cheapest_of_each_scene():

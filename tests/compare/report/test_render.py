@@ -31,9 +31,7 @@ def page(tmp_path):
     """Return a function that renders a page of nothing but the given parts."""
 
     def make(**parts):
-        nothing = Page(
-            "About", Overview([]), Table([], {}), [], "jointwave report", "here", {}
-        )
+        nothing = Page("About", Overview([]), Table([], {}), [], "jointwave report", "here", {})
         return render(nothing.__class__(**{**nothing.__dict__, **parts}), tmp_path)
 
     return make
