@@ -20,7 +20,6 @@ from compare.misfit.ranking import finest
 UNITS = {"stress": "Pa", "shear": "Pa", "velocity": "m/s", "rotation": "rad"}
 
 FORCES, MOTION, ROTATION = ("stress", "shear"), ("velocity",), ("rotation",)
-LEAST = 1e-9  # SI: what is below does not move
 
 
 class Panel(NamedTuple):
@@ -142,19 +141,22 @@ def _panel(
 
 
 def loudest(
-    result: xr.Dataset, groups: Sequence[tuple[str, ...]], receiver: int | None = None
+    result: xr.Dataset,
+    groups: Sequence[tuple[str, ...]],
+    receiver: int | None = None,
+    least: float = 0.0,
 ) -> tuple[str, int | None]:
     """Return the quantity and the component (None: its only one) with the largest peak, of the
-    first group of quantities that moves; of the first that is recorded where nothing does.
+    first group of quantities that moves; of the last that is recorded where nothing does.
 
-    receiver : the only one that counts; None: all of them.
+    receiver : the only one that counts; None: all of them. least : SI: what is below does not move.
     """
-    recorded = []
+    peaks: dict[tuple[str, int | None], float] = {}
     for group in groups:
-        peaks = {(q, c): p for q in group for c, p in _peaks(result, q, receiver).items()}
-        recorded += [peaks] if peaks else []
-    moving = (peaks for peaks in recorded if max(peaks.values()) > LEAST)
-    peaks = next(moving, recorded[0])
+        found = {(q, c): p for q in group for c, p in _peaks(result, q, receiver).items()}
+        peaks = found or peaks
+        if max(found.values(), default=0.0) > least:
+            break
     return max(peaks, key=lambda key: peaks[key])
 
 

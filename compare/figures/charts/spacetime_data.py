@@ -16,6 +16,7 @@ from compare.misfit.metrics import motion
 from compare.misfit.pairs import pairs
 from compare.misfit.ranking import own_exact
 
+LEAST = 1e-9  # SI: what is below does not move
 
 
 class Quantity(NamedTuple):
@@ -93,7 +94,7 @@ def diagrams_of(scene: Scene, fields: dict[str, xr.Dataset]) -> list[Diagrams]:
     if not engines:
         return []
     first = fields[engines[0]]
-    quantity = Quantity(*loudest(first, (FORCES, MOTION, ROTATION)))
+    quantity = Quantity(*loudest(first, (FORCES, MOTION, ROTATION), least=LEAST))
     values = {name: quantity.of(result) for name, result in fields.items()}
     if not any(v.any() for v in values.values()):
         return []

@@ -83,12 +83,12 @@ def test_explain_steps_no_block_unless_it_is_asked_to(pillar, monkeypatch):
 
     with monkeypatch.context() as held:
         held.setattr(step_cost, "stretch", refuse)
-        assert explanation(scene).cost.own is None
+        assert explanation(scene).block_step is None
         with pytest.raises(AssertionError, match="a block is stepped"):
             explanation(scene, measured=True)
     timings.note_block_step(scene, 2.5)
     found = explanation(scene)
-    assert found.cost.own == pytest.approx(2.5)
+    assert found.block_step == pytest.approx(2.5)
     assert found.references["dem"].name == "jointed-bar"
 
 
