@@ -3,7 +3,6 @@
 import re
 import shutil
 import subprocess
-import sys
 import warnings
 import xml.etree.ElementTree as ET
 from base64 import b64decode
@@ -233,20 +232,20 @@ def test_what_is_asked_for_is_drawn(pillar, tmp_path):
         ((), "--out"),
     ],
 )
-def test_a_mistake_is_one_line(tmp_path, arguments, words):
+def test_a_mistake_is_one_line(jointwave, tmp_path, monkeypatch, arguments, words):
     """And no file is written or lost."""
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "taken.pdf").write_text("mine")
-    command = [sys.executable, "-m", "compare", "figure", SCENE, *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
-    assert done.returncode == 2 and done.stderr.count("\n") == 1 and words in done.stderr
+    said = jointwave("figure", SCENE, *arguments, code=2).err
+    assert said.count("\n") == 1 and words in said
     assert [path.name for path in tmp_path.iterdir()] == ["taken.pdf"]
     assert (tmp_path / "taken.pdf").read_text() == "mine"
 
 
-def test_the_command_draws_curves_of_others_too(tmp_path):
+def test_the_command_draws_curves_of_others_too(jointwave, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "curve.csv").write_text("time [ms], stress@20 [MPa]\n0, 0\n5, 0.1\n10, 0.2\n")
-    command = [sys.executable, "-m", "compare", "figure", SCENE, "--variant", "", "--engine", "dem"]
-    command += ["--with", "curve.csv", "--set", "time.duration=0.02", "--out", "figure.svg"]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
-    assert (done.returncode, done.stdout) == (0, "wrote figure.svg\n"), done.stderr
+    options = ["--variant", "", "--engine", "dem", "--set", "time.duration=0.02"]
+    said = jointwave("figure", SCENE, *options, "--with", "curve.csv", "--out", "figure.svg")
+    assert said == ("wrote figure.svg\n", "")
     assert "curve.csv" in (tmp_path / "figure.svg").read_text()
