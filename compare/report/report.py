@@ -119,7 +119,7 @@ def _page(solved: Solved, subtitle: str, command: str) -> Page:
     return Page(
         subtitle,
         Overview(_ranked(solved)),
-        tables.summary_table({s.label: solved.comparisons[s.name] for s in sections}),
+        tables.summary_table({s.request.label: solved.comparisons[s.name] for s in sections}),
         sections,
         command,
         measured_on(),
@@ -130,12 +130,11 @@ def _page(solved: Solved, subtitle: str, command: str) -> Page:
 def _ranked(solved: Solved) -> list[RankedScene]:
     """Return where engines stand on each scene, and what a run of theirs takes, timed alone."""
     with alone():
-        return [
-            RankedScene(
-                s.name, s.label, s.title, s.standings, seconds(solved.comparisons[s.name][0])
-            )
-            for s in solved.sections
-        ]
+        taken = {name: seconds(variants[0]) for name, variants in solved.comparisons.items()}
+    return [
+        RankedScene(s.name, s.request.label, s.title, s.standings, taken[s.name])
+        for s in solved.sections
+    ]
 
 
 def _with_hard_cases(page: Page, out: Path, pool: Pool, progress: Progress | None) -> Page:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from compare.engines import ENGINES
-from compare.figures.charts.chart import Chart, Entry, Line, Subplot
+from compare.figures.charts.chart import Chart, ChartLine, Entry, Subplot
 from compare.figures.charts.ledgers import Ledger, drawn_terms, ledgers_of, table
 from compare.figures.figure import SceneFigure, chart_figure
 from compare.figures.style import TERMS, Style, in_order, style
@@ -63,7 +63,7 @@ def _chart(ledgers: list[Ledger], unit: Unit) -> Chart:
 def _cell(variant: str, ledgers: list[Ledger], unit: Unit) -> list[Subplot]:
     at = "at %{x:.2f} ms<extra>"
     terms = [
-        Line(
+        ChartLine(
             term,
             _of_term(one.engine, term),
             1e3 * one.time,
@@ -74,7 +74,7 @@ def _cell(variant: str, ledgers: list[Ledger], unit: Unit) -> list[Subplot]:
         for term in drawn_terms([one])
     ]
     missing = [
-        Line(
+        ChartLine(
             one.engine,
             _of_engine(one.engine),
             1e3 * one.time,

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from compare.figures.charts.chart import Chart, Line, Mark, Subplot
+from compare.figures.charts.chart import Chart, ChartLine, Mark, Subplot
 from compare.figures.charts.static import MARK
 from compare.figures.style import Style
 
@@ -72,7 +72,7 @@ def plot(chart: Chart) -> dict[str, Any]:
     return {"data": [_trace(line, i, rank[line.name]) for line, i in lines], "layout": found}
 
 
-def _trace(line: Line, row: int, rank: int) -> dict[str, Any]:
+def _trace(line: ChartLine, row: int, rank: int) -> dict[str, Any]:
     kept = thinned(len(line.x))
     hovered = {} if line.hovered is None else {"customdata": packed(line.hovered[kept])}
     return {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from compare.figures.charts.chart import Chart, Line, Mark, Subplot, solutions_legend
+from compare.figures.charts.chart import Chart, ChartLine, Mark, Subplot, solutions_legend
 from compare.figures.charts.spectrum import Spectra, spectra_of
 from compare.figures.figure import SceneFigure, chart_figure
 from compare.figures.style import style
@@ -59,7 +59,7 @@ def _subplot(one: Spectra, peak: float, place: str) -> Subplot:
     """Return the axes of one receiver's spectra; peak : the largest of all in its unit."""
     limits = 10.0**-DECADES * peak, 2 * peak
     lines = [
-        Line(
+        ChartLine(
             name,
             style(name),
             curve.index.values,

@@ -8,7 +8,7 @@ from matplotlib.ticker import MaxNLocator
 
 from cases.schema.scene import Scene, SoftLayer
 from compare.figures.drawing.actions import ASIDE, gravity_at, gravity_words
-from compare.figures.drawing.frame import WIDTH, Frame
+from compare.figures.drawing.placement import WIDTH, Placement
 from compare.figures.drawing.symbols import CHARACTER, INK, LAYER, RECEIVER, SOFT
 from compare.figures.units import unit_for
 
@@ -23,7 +23,7 @@ class Label(NamedTuple):
     colour: str
 
 
-def draw_receivers(ax: Axes, scene: Scene, place: Frame) -> None:
+def draw_receivers(ax: Axes, scene: Scene, place: Placement) -> None:
     """Draw sections (a line and a triangle), points (a dot) and layers with their labels."""
     labels = []
     for i, y in enumerate(scene.record.stress):
@@ -52,7 +52,7 @@ def draw_receivers(ax: Axes, scene: Scene, place: Frame) -> None:
     _write(ax, sorted(labels), place, _right(scene, place))
 
 
-def _right(scene: Scene, place: Frame) -> float:
+def _right(scene: Scene, place: Placement) -> float:
     """Return how far to the right labels may reach, inches."""
     if scene.gravity is None or not scene.gravity.acceleration:
         return WIDTH
@@ -79,7 +79,7 @@ def _number(value: float, si: str) -> str:
     return f"{value / unit.size:.3g} {unit.name}"
 
 
-def _write(ax: Axes, labels: list[Label], place: Frame, right: float) -> None:
+def _write(ax: Axes, labels: list[Label], place: Placement, right: float) -> None:
     """Write labels in one line above the pillar, moved aside where they would meet; none at all
     where there is no room for them: the scale tells where receivers are."""
     widths = np.array([CHARACTER * (len(label.text) + 1) for label in labels])
@@ -110,7 +110,7 @@ def _apart(wanted: np.ndarray, widths: np.ndarray, right: float) -> np.ndarray:
     return np.clip(moved, widths[0] / 2, right - widths[-1] / 2 - before[-1]) + before
 
 
-def ticks(scene: Scene, place: Frame) -> list[float]:
+def ticks(scene: Scene, place: Placement) -> list[float]:
     """Return what the scale is marked with, m."""
     length = scene.pillar.length
     count = max(2, round(place.scale * length / 0.55))
@@ -118,7 +118,7 @@ def ticks(scene: Scene, place: Frame) -> list[float]:
     return [float(y) for y in found if 0 <= y <= length * (1 + 1e-9)]
 
 
-def draw_scale(ax: Axes, scene: Scene, place: Frame) -> None:
+def draw_scale(ax: Axes, scene: Scene, place: Placement) -> None:
     """Draw y in metres under the pillar, and what the pillar measures."""
     pillar, level = scene.pillar, place.bottom - 0.14
     end = place.x(pillar.length)

@@ -14,7 +14,7 @@ WIDTH, HEIGHT = 1.5, 1.68  # inches of the drawing
 MIDDLE = 0.75, 0.87
 
 
-def look(scene: Scene) -> tuple[object, ...]:
+def appearance(scene: Scene) -> tuple[object, ...]:
     """Return all that the drawing of a scene's section shows."""
     joints = scene.joints.contact_points, scene.joints.point_rule
     return (*joints, scene.pillar.side, scene.load.model_dump(), is_spatial(scene))

@@ -22,7 +22,7 @@ from compare.exact.blocks import lattice
 from compare.figures import fonts
 from compare.figures.print.appearance import MM, STYLES
 from compare.figures.print.draw import draw
-from compare.figures.print.make import Asked, make
+from compare.figures.print.make import FigureRequest, make
 from compare.figures.print.save import save
 from compare.figures.print.text import CHINESE, WORDS
 from compare.figures.style import is_engine, style
@@ -211,9 +211,9 @@ def test_the_same_figure_is_the_same_file(written):
 def test_what_is_asked_for_is_drawn(pillar, tmp_path):
     """By engines and models, and every curve is that of its solution."""
     scene, out = pillar(**SHORT), tmp_path / "figure.svg"
-    asked = Asked("screen", 2, None, "en", out)
+    request = FigureRequest("screen", 2, None, "en", out)
     done = []
-    make([scene], [("dem", None), ("exact", "lattice")], [], asked, done.append)
+    make([scene], [("dem", None), ("exact", "lattice")], [], request, done.append)
     labels = set(re.findall(r">([^<>]+)</text>", out.read_text()))
     assert {"rigid blocks", "rigid blocks, exact"} <= labels and "jointed rock" not in labels
     assert done == [0.5, 1.0]
