@@ -35,8 +35,8 @@ def draw_snapshots(name: str, s: Snapshots) -> Figure:
         figure, axes = _strips(*wave.reach(), len(s.time))
         for i, ax in enumerate(axes):
             polygons, faces, _ = wave.drawn(i)
-            colours = {"facecolors": colour.to_rgba(stress[i, faces]), "edgecolors": "#333333"}
-            pillar = PolyCollection(list(polygons), linewidths=0.4, gid=f"{name}-{i}", **colours)
+            pillar = PolyCollection(list(polygons), edgecolors="#333333", linewidths=0.4)
+            pillar.set(facecolors=colour.to_rgba(stress[i, faces]), gid=f"{name}-{i}")
             ax.add_collection(pillar, autolim=False)
             ax.set_ylabel(f"{1e3 * s.time[i]:g} ms", rotation=0, ha="right", va="center")
         axes[-1].spines["bottom"].set_visible(True)

@@ -61,7 +61,7 @@ def _draw_gravity(ax: Axes, gravity: Gravity, x: float) -> None:
     level = LEVEL - GRAVITY / 2
     tip = (x + GRAVITY / 2 * along, level + GRAVITY / 2 * across)
     symbols.along_or_across(ax, tip, (along, across), -depth, GRAVITY)
-    ax.text(x - ASIDE, level, gravity_words(gravity), ha="right", va="center", fontsize=8)
+    symbols.note(ax, x - ASIDE, level, gravity_words(gravity), "right")
 
 
 def gravity_words(gravity: Gravity) -> str:
@@ -73,7 +73,7 @@ def _draw_prestress(ax: Axes, normal: float, x: float, level: float) -> None:
     """Draw two arrows, towards each other in compression, beside the number."""
     unit = unit_for("Pa", abs(normal))
     words = f"prestress {normal / unit.size:g} {unit.name}"
-    ax.text(x, level, words, ha="center", va="center", fontsize=8)
+    symbols.note(ax, x, level, words)
     inner = CHARACTER * len(words) / 2 + 0.1
     for side in (-1, 1):
         far, near = (x + side * (inner + 0.4), level), (x + side * inner, level)

@@ -9,7 +9,7 @@ from matplotlib.ticker import MaxNLocator
 from cases.schema.scene import Scene, SoftLayer
 from compare.figures.drawing.actions import ASIDE, gravity_at, gravity_words
 from compare.figures.drawing.placement import WIDTH, Placement
-from compare.figures.drawing.symbols import CHARACTER, INK, LAYER, RECEIVER, SOFT
+from compare.figures.drawing.symbols import CHARACTER, INK, LAYER, RECEIVER, SOFT, note
 from compare.figures.units import unit_for
 
 ABOVE = 0.33  # inches of the labels over the pillar
@@ -33,16 +33,8 @@ def draw_receivers(ax: Axes, scene: Scene, place: Placement) -> None:
         mark.set_gid(f"stress-{i}")
         labels.append(Label(x, f"σ {y:g} m", RECEIVER))
     for i, y in enumerate(scene.record.velocity):
-        (mark,) = ax.plot(
-            [place.x(y)],
-            [place.middle],
-            "o",
-            markerfacecolor="white",
-            markeredgecolor=RECEIVER,
-            markeredgewidth=1.3,
-            markersize=5,
-            zorder=7,
-        )
+        (mark,) = ax.plot([place.x(y)], [place.middle], "o", markersize=5, zorder=7)
+        mark.set(markeredgecolor=RECEIVER, markeredgewidth=1.3, markerfacecolor="white")
         mark.set_gid(f"velocity-{i}")
         labels.append(Label(place.x(y), f"v {y:g} m", RECEIVER))
     labels += [
@@ -92,7 +84,7 @@ def _write(ax: Axes, labels: list[Label], place: Placement, right: float) -> Non
             ax.plot(
                 [label.x, x], [place.top + 0.12, base - 0.08], color=label.colour, linewidth=0.6
             )
-        ax.text(x, base, label.text, ha="center", va="center", fontsize=8, color=label.colour)
+        note(ax, x, base, label.text, color=label.colour)
 
 
 def _apart(wanted: np.ndarray, widths: np.ndarray, right: float) -> np.ndarray:
@@ -125,11 +117,11 @@ def draw_scale(ax: Axes, scene: Scene, place: Placement) -> None:
     ax.plot([place.start, end], [level, level], color=INK, linewidth=0.8)
     for y in ticks(scene, place):
         ax.plot([place.x(y)] * 2, [level, level - 0.05], color=INK, linewidth=0.8)
-        ax.text(place.x(y), level - 0.07, f"{y:g}", ha="center", va="top", fontsize=8)
+        note(ax, place.x(y), level - 0.07, f"{y:g}", va="top")
     times = place.thick / (place.scale * pillar.side)
     drawn = f"; drawn {times:.2g} times as thick" if times > 1.01 else ""
     words = (
         f"y (m): {pillar.block_count:,} blocks of {pillar.block:g} m, "
         f"{pillar.side:g} m × {pillar.side:g} m across{drawn}"
     )
-    ax.text(place.start, level - 0.24, words, ha="left", va="top", fontsize=8, color=SOFT)
+    note(ax, place.start, level - 0.24, words, "left", "top", color=SOFT)

@@ -67,14 +67,10 @@ def _draw_rock(ax: Axes, scene: Scene, place: Placement) -> None:
 def _draw_layers(ax: Axes, scene: Scene, place: Placement) -> None:
     for i, layer in enumerate(scene.soft_layers):
         width = max(0.045, place.scale * (layer.thickness or 0.0))
-        x, over = place.x(layer.y), 0.05
-        (patch,) = ax.fill(
-            [x - width / 2, x + width / 2, x + width / 2, x - width / 2],
-            [place.bottom - over, place.bottom - over, place.top + over, place.top + over],
-            color=LAYER,
-            zorder=5,
-        )
-        patch.set_gid(f"layer-{i}")
+        left, right = place.x(layer.y) - width / 2, place.x(layer.y) + width / 2
+        low, high = place.bottom - 0.05, place.top + 0.05
+        across, up = [left, right, right, left], [low, low, high, high]
+        ax.fill(across, up, color=LAYER, zorder=5, gid=f"layer-{i}")
 
 
 def _draw_end(ax: Axes, end: str, place: Placement, x: float, outward: int) -> None:
@@ -98,11 +94,5 @@ def _name_end(ax: Axes, end: str, scene: Scene, place: Placement, outward: int) 
     number = place.x(y) + outward * CHARACTER * (len(f"{y:g}") + 1) / 2
     x = place.x(0.0 if outward < 0 else scene.pillar.length) + outward * 0.1
     x = min(x, number) if outward < 0 else max(x, number)
-    ax.text(
-        x,
-        place.bottom - 0.21,
-        f"{end} {'start' if outward < 0 else 'end'}",
-        ha="right" if outward < 0 else "left",
-        va="top",
-        fontsize=8,
-    )
+    words = f"{end} {'start' if outward < 0 else 'end'}"
+    symbols.note(ax, x, place.bottom - 0.21, words, "right" if outward < 0 else "left", "top")
