@@ -128,19 +128,13 @@ class Frame:
         ax.set_title(name, color=style(name).colour, pad=2, **_bold(name))
         spacing = self.simulated.scene.pillar.block * points_per_metre
         width = 0.5 if spacing > DENSE else 0.0
-        self.faces[name] = PolyCollection(
-            [],
-            edgecolors="face",
-            linewidths=0.3,
-            cmap=FIELD,
-            norm=self.colour.norm,
-            animated=True,
-        )
-        self.edges[name] = LineCollection(
-            [], colors=EDGE, linewidths=width, animated=True, snap=False
-        )
-        ax.add_collection(self.faces[name], autolim=False)
-        ax.add_collection(self.edges[name], autolim=False)
+        filled = PolyCollection([], edgecolors="face", linewidths=0.3, cmap=FIELD)
+        filled.set_norm(self.colour.norm)
+        self.faces[name] = filled
+        self.edges[name] = LineCollection([], colors=EDGE, linewidths=width, snap=False)
+        for collection in (self.faces[name], self.edges[name]):
+            collection.set_animated(True)
+            ax.add_collection(collection, autolim=False)
 
     def _add_profile(self, ax: Axes, low: np.ndarray, high: np.ndarray) -> None:
         self.profiles: dict[str, Line2D] = {}
