@@ -1,6 +1,6 @@
 """A scene before any run: its effects, its critical steps, its exact solutions."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from cases.effects import Effect, effects
 from cases.material.calibrate import Properties, calibrate
@@ -9,42 +9,26 @@ from compare.engines import ENGINES, solver
 from compare.experiments.cost import timings
 from compare.experiments.cost.step_cost import nanoseconds, remembered_whole, whole
 from compare.misfit.ranking import Reference, applicable, reference_of
-from compare.solvers.record import Answer
+from compare.solvers.record import Answer, Prepared
 
 
-@dataclass(frozen=True)
-class StepChoice:
-    """The step of one engine: critical and chosen, s, and how many of them."""
-
-    engine: str
-    critical: float
-    dt: float
-    steps: int
-
-
-@dataclass(frozen=True)
-class Cost:
-    """What a step of one rigid block costs here: of this scene, and with every effect, ns; None
-    where it was never measured."""
-
-    own: float | None
-    everything: float | None
-
-
-@dataclass(frozen=True)
-class Explanation:
+class Explanation(NamedTuple):
     """Everything that can be said of a scene but what comes out of it.
 
-    references : what each engine is held against; None where nothing checks it independently.
+    runs : of each engine that applies, with its step. references : what each engine is held
+    against; None where nothing checks it independently. block_step, with_everything : what a step
+    of one rigid block costs here, of this scene and with every effect, ns; None where it was never
+    measured.
     """
 
     scene: Scene
     properties: Properties
     effects: list[Effect]
-    steps: list[StepChoice]
+    runs: dict[str, Prepared]
     answers: dict[str, Answer]
     references: dict[str, Reference | None]
-    cost: Cost
+    block_step: float | None
+    with_everything: float | None
 
 
 def explanation(scene: Scene, measured: bool = False) -> Explanation:
@@ -55,21 +39,17 @@ def explanation(scene: Scene, measured: bool = False) -> Explanation:
     """
     answers = applicable(scene)
     able = [name for name, answer in answers.items() if answer]
-    references = {name: reference_of(name, able, scene) for name in ENGINES if answers[name]}
-    steps = [_step(name, scene) for name in ENGINES if answers[name]]
+    engines = [name for name in ENGINES if answers[name]]
+    references = {name: reference_of(name, able, scene) for name in engines}
+    runs = {name: solver(name).prepare(scene) for name in engines}
     cost = _cost(scene, measured)
-    return Explanation(scene, calibrate(scene), effects(scene), steps, answers, references, cost)
+    return Explanation(scene, calibrate(scene), effects(scene), runs, answers, references, *cost)
 
 
-def _cost(scene: Scene, measured: bool) -> Cost:
+def _cost(scene: Scene, measured: bool) -> tuple[float | None, float | None]:
     count = scene.pillar.block_count
     if not measured:
-        return Cost(timings.block_step(scene), remembered_whole(count))
+        return timings.block_step(scene), remembered_whole(count)
     own = nanoseconds(scene)
     timings.note_block_step(scene, own)
-    return Cost(own, whole(count))
-
-
-def _step(name: str, scene: Scene) -> StepChoice:
-    run = solver(name).prepare(scene)
-    return StepChoice(name, run.critical, run.dt, run.steps)
+    return own, whole(count)

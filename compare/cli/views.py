@@ -1,10 +1,17 @@
 """Output of each command: its findings as tables, or the same facts as JSON."""
 
+from __future__ import annotations
+
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cases.schema.scene import Scene
 from compare.cli.terminal import print_json, say, show_numbers, show_table
+
+if TYPE_CHECKING:
+    from compare.cli.explain import Explanation
+    from compare.report.report import Report
+    from compare.runs.run import Done
 
 MOST_PIECES = 8  # in a line
 
@@ -21,29 +28,15 @@ def show_scenes(rows: list[tuple[Path, list[Scene]]], as_json: bool) -> None:
     ]
     if as_json:
         print_json(facts)
-        return
-    cells = [[f["scene"], f["title"], ", ".join(f["variants"])] for f in facts]
-    show_table(["scene", "title", "variants"], cells)
+    else:
+        cells = [[f["scene"], f["title"], ", ".join(f["variants"])] for f in facts]
+        show_table(["scene", "title", "variants"], cells)
 
 
-def show_runs(done: list[Any], as_json: bool) -> None:
+def show_runs(done: list[Done], as_json: bool) -> None:
     """Print what was run, what it cost and where it is."""
-    facts = [
-        {
-            "variant": d.job.scene.name,
-            "engine": d.job.name,
-            "steps": d.steps,
-            "seconds_stepping": d.seconds,
-            "energy_residual": d.residual,
-            "file": str(d.job.path),
-            "fragments": d.fragments,
-            "static_out_of_balance": d.out_of_balance,
-            "fields": [str(path) for path in d.fields],
-        }
-        for d in done
-    ]
     if as_json:
-        print_json(facts)
+        print_json([_run_facts(d) for d in done])
         return
     columns = ["variant", "engine", "steps", "stepping, s", "energy residual", "file"]
     show_table(columns, [_run_cells(d) for d in done])
@@ -57,6 +50,20 @@ def show_runs(done: list[Any], as_json: bool) -> None:
             say(f"{name}: snapshots for ParaView, {path}")
         if d.job.scene.record.fields is not None and not d.fields:
             say(f"{name}: no snapshots, its solution is known at the receivers only")
+
+
+def _run_facts(done: Done) -> dict[str, Any]:
+    return {
+        "variant": done.job.scene.name,
+        "engine": done.job.name,
+        "steps": done.steps,
+        "seconds_stepping": done.seconds,
+        "energy_residual": done.residual,
+        "file": str(done.job.path),
+        "fragments": done.fragments,
+        "static_out_of_balance": done.out_of_balance,
+        "fields": [str(path) for path in done.fields],
+    }
 
 
 def _what_broke(fragments: list[dict[str, Any]]) -> str:
@@ -88,7 +95,7 @@ def _run_cells(done: Any) -> list[str]:
     ]
 
 
-def show_explanation(found: Any, as_json: bool) -> None:
+def show_explanation(found: Explanation, as_json: bool) -> None:
     """Print what a scene calls for, its steps, and what can solve it."""
     if as_json:
         print_json(_explanation_facts(found))
@@ -102,11 +109,11 @@ def show_explanation(found: Any, as_json: bool) -> None:
     effects = [[e.name, "yes" if e.active else "left out", e.reason] for e in found.effects]
     show_table(["effect", "computed", "because"], effects)
     steps = [
-        [s.engine, f"{s.critical:.4g}", f"{s.dt:.4g}", f"{s.dt / s.critical:.3g}", f"{s.steps:,}"]
-        for s in found.steps
+        [name, f"{r.critical:.4g}", f"{r.dt:.4g}", f"{r.dt / r.critical:.3g}", f"{r.steps:,}"]
+        for name, r in found.runs.items()
     ]
     show_table(["engine", "critical step, s", "step, s", "fraction", "steps"], steps)
-    say(_cost_sentence(found.cost))
+    say(_cost_sentence(found.block_step, found.with_everything))
     answers = [[k, "yes" if a else "no", a.reason] for k, a in found.answers.items()]
     show_table(["solution", "applies", "why not"], answers)
     for engine, reference in found.references.items():
@@ -116,18 +123,17 @@ def show_explanation(found: Any, as_json: bool) -> None:
         say(f"{engine} is {held}")
 
 
-def _cost_sentence(cost: Any) -> str:
+def _cost_sentence(own: float | None, everything: float | None) -> str:
     """Return what a step costs, as far as it is known."""
-    if cost.own is None:
+    if own is None:
         return "what a step of a rigid block takes here is known after a run, or by --measure"
-    own = f"a step of a rigid block takes {cost.own:.2g} ns here"
-    if cost.everything is None:
-        return own
-    share = 100 * cost.own / cost.everything
-    return f"{own}, {share:.2g} % of the {cost.everything:.2g} ns with every effect"
+    said = f"a step of a rigid block takes {own:.2g} ns here"
+    if everything is None:
+        return said
+    return f"{said}, {100 * own / everything:.2g} % of the {everything:.2g} ns with every effect"
 
 
-def _explanation_facts(found: Any) -> dict[str, Any]:
+def _explanation_facts(found: Explanation) -> dict[str, Any]:
     p = found.properties
     return {
         "title": found.scene.title,
@@ -137,31 +143,36 @@ def _explanation_facts(found: Any) -> dict[str, Any]:
         "equivalent_modulus": p.modulus,
         "poisson": p.poisson,
         "effects": {e.name: {"active": e.active, "why": e.reason} for e in found.effects},
-        "steps": [s.__dict__ for s in found.steps],
-        "nanoseconds_per_block_step": found.cost.own,
-        "nanoseconds_with_everything": found.cost.everything,
+        "steps": [
+            {"engine": name, "critical": r.critical, "dt": r.dt, "steps": r.steps}
+            for name, r in found.runs.items()
+        ],
+        "nanoseconds_per_block_step": found.block_step,
+        "nanoseconds_with_everything": found.with_everything,
         "references": {k: r._asdict() if r else None for k, r in found.references.items()},
         "solutions": {k: {"applies": a.yes, "why_not": a.reason} for k, a in found.answers.items()},
     }
 
 
-def show_report(found: Any, as_json: bool) -> None:
+def show_report(found: Report, as_json: bool) -> None:
     """Print the report's summary and where the page is."""
+    page = found.page
     if as_json:
-        print_json({"page": str(found.page), "columns": found.columns, "rows": found.rows})
+        summary = page.summary
+        rows = [[kind, *row] for kind, rows in summary.groups.items() for row in rows]
+        print_json({"page": str(found.file), "columns": ["what", *summary.header], "rows": rows})
         return
-    for engine, sentence in found.overview.lead:
+    for engine, sentence in page.overview.lead.items():
         say(f"{engine} {sentence}")
-    if found.about:
-        say(f"\n{found.about.sentence}")
+    if page.about:
+        say(f"\n{page.about.sentence}")
     say("\nLargest relative L2 misfit over the variants of each scene, in %:")
     groups = {
         kind: [[cell.replace("< ", "<") for cell in row] for row in rows]
-        for kind, rows in found.summary.groups.items()
+        for kind, rows in page.summary.groups.items()
     }
-    show_numbers(found.summary.header, groups)
-    findings = [finding for group in found.findings.values() for finding in group]
-    if findings:
-        holding = sum(finding.holds for finding in findings)
-        say(f"{holding} of {len(findings)} claims that the paper's figures make hold.")
-    say(f"report: {found.page}")
+    show_numbers(page.summary.header, groups)
+    if page.claims:
+        holding = page.claims - len(page.failed)
+        say(f"{holding} of {page.claims} claims that the paper's figures make hold.")
+    say(f"report: {found.file}")

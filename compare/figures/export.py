@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import matplotlib
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from pandas import DataFrame
 
 from compare.figures.style import RC
@@ -86,6 +87,6 @@ def _write_bytes(path: Path, figure: Figure, **options: Any) -> None:
 
 def _lay_out(figure: Figure) -> None:
     """Lay a figure out for good: its files need not do so again, each twice."""
-    if figure.get_layout_engine() is not None:
-        figure.draw_without_rendering()
+    if isinstance(engine := figure.get_layout_engine(), ConstrainedLayoutEngine):
+        engine.execute(figure)
     figure.set_layout_engine(None)

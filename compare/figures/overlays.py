@@ -12,7 +12,7 @@ import pandas as pd
 
 from cases.schema.scene import Scene
 from compare.engines import ENGINES
-from compare.figures.charts.chart import Line, Subplot
+from compare.figures.charts.chart import ChartLine, Subplot
 from compare.figures.style import Style, given_style, in_order, style
 from compare.figures.subplots import UNITS as SI
 from compare.figures.subplots import Panel, panels
@@ -125,10 +125,10 @@ def subplots_of(overlay: Overlay, place: str, height: float, share: str) -> list
     ]
 
 
-def _line(trace: Trace, curve: pd.Series, unit: str, part: str, style: Style) -> Line:
+def _line(trace: Trace, curve: pd.Series, unit: str, part: str, style: Style) -> ChartLine:
     hover = f"%{{y:.4g}} {unit} at %{{x:.2f}} ms<extra>{trace.name}</extra>"
     time = 1e3 * curve.index.values
-    return Line(trace.name, style, time, curve.values, hover, part, trace.marker)
+    return ChartLine(trace.name, style, time, curve.values, hover, part, trace.marker)
 
 
 def by_solution(panel: Panel) -> Overlay:

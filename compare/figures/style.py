@@ -69,6 +69,10 @@ GIVEN = (
 MARKERS = "oxs+"  # of the samples, where they are few enough to be told apart
 MOST_MARKS = 150  # samples of a curve that are marked one by one
 
+#: Colours along the pillar, and of differences: diverging, even to the eye and told apart under
+#: every colour blindness (ColorBrewer). Of stress, tension is blue and compression red.
+FIELD, DIFFERENCE = "RdBu_r", "PuOr_r"
+
 #: Of the terms of an energy ledger: those of Tol (2021), "muted", and black.
 TERMS = {
     "kinetic": "#332288",

@@ -2,6 +2,7 @@
 state; and the table of every waveform in them, as it was recorded.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ from compare.misfit.ranking import finest
 #: SI units of what panels show.
 UNITS = {"stress": "Pa", "shear": "Pa", "velocity": "m/s", "rotation": "rad"}
 
-FORCES, MOTION = ("stress", "shear"), ("velocity",)
+FORCES, MOTION, ROTATION = ("stress", "shear"), ("velocity",), ("rotation",)
 
 
 class Panel(NamedTuple):
@@ -53,9 +54,7 @@ class Panel(NamedTuple):
     @property
     def axis(self) -> str:
         """The component that is shown: x, y or z; empty where the quantity has only one."""
-        if self.component is None:
-            return ""
-        return "xz"[self.component] if self.quantity == "shear" else "xyz"[self.component]
+        return axis_of(self.quantity, self.component)
 
     @property
     def recorded(self) -> dict[str, pd.Series]:
@@ -137,18 +136,42 @@ def _panel(
 ) -> Panel:
     """Return the panel of the quantity and component with the largest peak at a receiver."""
     first = comparison.results[in_order(set(comparison.results))[0]]
-    found = {q: _peaks(first, q, receiver) for q in quantities if q in first}
-    if not any(peaks.any() for peaks in found.values()) and "rotation" in first:
-        found = {"rotation": _peaks(first, "rotation", receiver)}
-    quantity = max(found, key=lambda q: found[q].max())
-    component = int(found[quantity].argmax()) if len(found[quantity]) > 1 else None
+    quantity, component = loudest(first, (quantities, ROTATION), receiver)
     return Panel(comparison, name, quantity, receiver, y, component)
 
 
-def _peaks(result: xr.Dataset, quantity: str, receiver: int) -> np.ndarray:
-    """Return the largest magnitude of the motion of every component."""
-    values = np.abs(motion(result, quantity)[receiver])
-    return values.reshape(len(values), -1).max(axis=0)
+def loudest(
+    result: xr.Dataset,
+    groups: Sequence[tuple[str, ...]],
+    receiver: int | None = None,
+    least: float = 0.0,
+) -> tuple[str, int | None]:
+    """Return the quantity and the component (None: its only one) with the largest peak, of the
+    first group of quantities that moves; of the last that is recorded where nothing does.
+
+    receiver : the only one that counts; None: all of them. least : SI: what is below does not move.
+    """
+    peaks: dict[tuple[str, int | None], float] = {}
+    for group in groups:
+        found = {(q, c): p for q in group for c, p in _peaks(result, q, receiver).items()}
+        peaks = found or peaks
+        if max(found.values(), default=0.0) > least:
+            break
+    return max(peaks, key=lambda key: peaks[key])
+
+
+def _peaks(result: xr.Dataset, quantity: str, receiver: int | None) -> dict[int | None, float]:
+    """Return the largest magnitude of the motion of every component, none of what is not there."""
+    if quantity not in result or not result[quantity].size:
+        return {}
+    values = np.abs(motion(result, quantity))[slice(None) if receiver is None else [receiver]]
+    peaks = values.reshape(*values.shape[:2], -1).max(axis=(0, 1)).tolist()
+    return dict(enumerate(peaks)) if len(peaks) > 1 else {None: peaks[0]}
+
+
+def axis_of(quantity: str, component: int | None) -> str:
+    """Return the name of a component, "" of the only one."""
+    return "" if component is None else ("xz" if quantity == "shear" else "xyz")[component]
 
 
 def variant_names(comparisons: list[Comparison]) -> list[str]:

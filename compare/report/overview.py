@@ -7,49 +7,12 @@ from math import isnan
 from typing import NamedTuple
 
 from compare.engines import ENGINES
-from compare.report.tables import percent
-from compare.report.verdict import NOT_CHECKED, Standing, Verdict
+from compare.report.verdict import NOT_CHECKED, Standing
 
-ROOM = 22  # characters of a scene in the table
-LIMITS = "✓ agrees within 1 %, ≈ close within 5 %, △ differs within 20 %, ▲ far off beyond"
+LONGEST = 22  # characters of a scene in the table
 
 
-class Cell(NamedTuple):
-    """An engine on a scene, as text; `ratio` is the cost over that of the cheapest engine."""
-
-    own: str
-    total: str
-    ratio: str
-    seconds: str
-    verdict: Verdict
-    explained: str
-
-
-class Line(NamedTuple):
-    """A scene: where it stands on the page, its short name, its title, and a cell an engine."""
-
-    name: str
-    label: str
-    title: str
-    cells: list[Cell | None]
-
-    @property
-    def heading(self) -> str:
-        """Number or name, and the title as far as there is room."""
-        text = f"{self.label.removeprefix('fig. ')} {self.title}"
-        return text if len(text) <= ROOM else text[: ROOM - 1].rstrip() + "…"
-
-
-class Overview(NamedTuple):
-    """The engines that ran, the lead in sentences, and a line a scene."""
-
-    engines: list[str]
-    lead: list[tuple[str, str]]
-    lines: list[Line]
-    limits: str = LIMITS
-
-
-class Ranked(NamedTuple):
+class RankedScene(NamedTuple):
     """A scene's name on the page, its label and title, and where its engines stand.
 
     seconds : of stepping the first variant, by engine.
@@ -61,41 +24,35 @@ class Ranked(NamedTuple):
     standings: dict[str, Standing]
     seconds: dict[str, float]
 
+    @property
+    def heading(self) -> str:
+        """Number or name, and the title as far as there is room."""
+        text = f"{self.label.removeprefix('fig. ')} {self.title}"
+        return text if len(text) <= LONGEST else text[: LONGEST - 1].rstrip() + "…"
+
     def ratio(self, engine: str) -> float:
         """Return an engine's seconds over those of the cheapest engine of the scene."""
         least = min(self.seconds.values())
         return self.seconds[engine] / least if least > 0 else 1.0
 
 
-def overview(scenes: list[Ranked]) -> Overview:
-    """Return the table of all scenes, and what it comes to."""
-    engines = [engine for engine in ENGINES if any(engine in s.standings for s in scenes)]
-    lines = [Line(*s[:3], [_cell(s, engine) for engine in engines]) for s in scenes]
-    return Overview(engines, _lead(engines, scenes), lines)
+class Overview(NamedTuple):
+    """The scenes of the page."""
 
+    scenes: list[RankedScene]
 
-def _cell(scene: Ranked, engine: str) -> Cell | None:
-    if engine not in scene.standings:
-        return None
-    one = scene.standings[engine]
-    return Cell(
-        percent(one.own),
-        percent(one.total),
-        _times(scene.ratio(engine)),
-        in_seconds(scene.seconds[engine]),
-        one.verdict,
-        _explained(one),
-    )
+    @property
+    def engines(self) -> list[str]:
+        """Those that ran on any scene."""
+        return [name for name in ENGINES if any(name in s.standings for s in self.scenes)]
 
-
-def _explained(one: Standing) -> str:
-    parts = [f"held against {' and '.join(one.finest)}: {one.where}"] if one.finest else []
-    if one.unchecked:
-        named = [name for name in one.unchecked if name] if len(one.variants) > 1 else []
-        parts.append(": ".join([NOT_CHECKED.word, *([", ".join(named)] if named else [])]))
-    if one.broken:
-        parts.append(f"beyond the scene's bound: {', '.join(one.broken)}")
-    return "; ".join(parts)
+    @property
+    def lead(self) -> dict[str, str]:
+        """By engine, how far it lies from the finest physics, and at what cost, in a sentence."""
+        return {
+            engine: _sentence(engine, [s for s in self.scenes if engine in s.standings])
+            for engine in self.engines
+        }
 
 
 def in_seconds(x: float) -> str:
@@ -105,15 +62,7 @@ def in_seconds(x: float) -> str:
     return f"{shown:.0f} {unit}" if shown >= 10 else f"{shown:.2g} {unit}"
 
 
-def _lead(engines: list[str], scenes: list[Ranked]) -> list[tuple[str, str]]:
-    """Return each engine with how far it lies from the finest physics, and at what cost."""
-    return [
-        (engine, _sentence(engine, [s for s in scenes if engine in s.standings]))
-        for engine in engines
-    ]
-
-
-def _sentence(engine: str, scenes: list[Ranked]) -> str:
+def _sentence(engine: str, scenes: list[RankedScene]) -> str:
     totals = [x for s in scenes if not isnan(x := s.standings[engine].total)]
     own = [x for s in scenes if not isnan(x := s.standings[engine].own)]
     held = any(s.standings[engine].finest for s in scenes)
@@ -126,11 +75,11 @@ def _sentence(engine: str, scenes: list[Ranked]) -> str:
     return f"({ENGINES[engine].words.sentence}): {found}."
 
 
-def _cost(engine: str, scenes: list[Ranked]) -> str:
+def _cost(engine: str, scenes: list[RankedScene]) -> str:
     ratios = [s.ratio(engine) for s in scenes]
     if max(ratios) == 1:
         return f"cheapest, {_span(in_seconds, [s.seconds[engine] for s in scenes])} a run"
-    return f"{_span(_times, ratios)} the cheapest's time"
+    return f"{_span(times, ratios)} the cheapest's time"
 
 
 def _span(write: Callable[[float], str], values: list[float]) -> str:
@@ -143,5 +92,6 @@ def _short(x: float) -> str:
     return "< 0.001" if 0 < x < 1e-5 else f"{100 * x:.2g}"
 
 
-def _times(x: float) -> str:
+def times(x: float) -> str:
+    """Return a ratio as it is read, "15×"."""
     return f"{x:.0f}×" if x >= 9.95 else f"{x:.1f}×"

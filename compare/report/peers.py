@@ -90,11 +90,11 @@ def _fault(table: pd.DataFrame) -> str:
 def write_section(folder: Path, found: pd.DataFrame) -> PeersSection:
     """Write peers.csv and the diagram into `folder`; return the section."""
     write_csv(folder / f"{NAME}.csv", found)
-    title = "The free pillar in other codes"
-    figure = save(draw(NAME, title, found.to_dict("records")), folder, NAME, title)
+    title, rows = "The free pillar in other codes", found.to_dict("records")
+    figure = save(draw(NAME, title, rows), folder, NAME, title)
     missing = [
         f"{row['curve']} ({row['solves']}): {row['state']}, {row['message']}"
-        for row in found.to_dict("records")
+        for row in rows
         if row["state"] != "done"
     ]
     machines = found["machine"].dropna().unique() if "machine" in found else []
@@ -106,26 +106,19 @@ def table(found: pd.DataFrame) -> Table:
     """Return every run, those of a curve under what it solves; a missing peer says why."""
     groups: dict[str, list[list[str]]] = {}
     for row in found.to_dict("records"):
-        group = groups.setdefault(f"{row['curve']}: {row['solves']}", [])
-        group.append(_cells(row) if row["state"] == "done" else _undone(row))
+        undone = [f"{row['state']}: {row['message']}", *[""] * (len(HEADER) - 1)]
+        cells = _cells(row) if row["state"] == "done" else undone
+        groups.setdefault(f"{row['curve']}: {row['solves']}", []).append(cells)
     return Table(HEADER, groups)
-
-
-def _undone(row: dict) -> list[str]:
-    return [f"{row['state']}: {row['message']}", *[""] * (len(HEADER) - 1)]
 
 
 def _cells(row: dict) -> list[str]:
     settings = ", ".join(f"{k} {v}" for k, v in json.loads(row["settings"]).items())
     return [
         settings.replace("_", " "),
-        percent(row["misfit"]),
-        percent(row["total_misfit"]),
-        _ratio(row, "stepping"),
-        _ratio(row, "whole"),
-        f"{row['seconds']:.2g}",
-        f"{row['whole']:.2g}",
-        f"{row['rate']:.2g}",
+        *(percent(row[name]) for name in ("misfit", "total_misfit")),
+        *(_ratio(row, name) for name in ("stepping", "whole")),
+        *(f"{row[name]:.2g}" for name in ("seconds", "whole", "rate")),
     ]
 
 

@@ -13,11 +13,11 @@ from markupsafe import Markup, escape
 from compare.experiments.summary import Summary
 from compare.figures.style import style
 from compare.report.findings import Finding
-from compare.report.overview import Overview
+from compare.report.overview import Overview, in_seconds, times
 from compare.report.peers import PeersSection
 from compare.report.section import Section
 from compare.report.snapshots import SnapshotsSection
-from compare.report.tables import Table
+from compare.report.tables import Table, percent
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,12 @@ def render(page: Page, out: Path) -> str:
         "colour": lambda name: style(name).colour,
         "charts": charts,
     }
-    environment.filters["units"] = unbroken
+    environment.filters |= {
+        "units": unbroken,
+        "percent": percent,
+        "seconds": in_seconds,
+        "times": times,
+    }
     return environment.get_template("report.html").render(page=page)
 
 

@@ -3,10 +3,10 @@
 import shlex
 from collections.abc import Sequence
 from concurrent.futures import Executor, Future
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from time import perf_counter
+from typing import NamedTuple
 
 from pandas import DataFrame
 
@@ -25,9 +25,8 @@ from compare.figures.subplots import curve_table
 from compare.misfit.pairs import Comparison
 from compare.report import peers, tables
 from compare.report.cost import seconds
-from compare.report.findings import Finding
 from compare.report.findings.overview import mostly_dispersion
-from compare.report.overview import Overview, Ranked, overview
+from compare.report.overview import Overview, RankedScene
 from compare.report.render import Page, render
 from compare.report.scenes import Solved, asked_for, solve
 from compare.report.snapshots import make_snapshots
@@ -49,31 +48,11 @@ PAPERS = (
 )
 
 
-@dataclass(frozen=True)
-class Report:
-    """What the report says in short.
+class Report(NamedTuple):
+    """The HTML file of the report, and what stands on its page."""
 
-    page : the HTML file. overview : where each engine stands on each scene. summary : largest
-    misfit in % by pair and scene. about : what the distance to the homogenised bar is made of;
-    None of scenes other than the paper's. findings : by name of the scene. seconds : it took.
-    """
-
-    page: Path
-    overview: Overview
-    summary: tables.Table
-    about: Finding | None
-    findings: dict[str, list[Finding]]
-    seconds: float
-
-    @property
-    def columns(self) -> list[str]:
-        """The summary's columns: kind of distance, pair, then the scenes."""
-        return ["what", *self.summary.header]
-
-    @property
-    def rows(self) -> list[list[str]]:
-        """The summary's rows, in %."""
-        return [[kind, *row] for kind, rows in self.summary.groups.items() for row in rows]
+    file: Path
+    page: Page
 
 
 def build(
@@ -93,7 +72,6 @@ def build(
     `hard` : also put both engines to the hard cases, except those that take long.
     Raises SceneError and UnstableError, as `compare` does; the page is then not written.
     """
-    began = perf_counter()
     with Workers(workers) as executor:
         pool = partial(Lent, executor)
         if scenes:
@@ -103,10 +81,7 @@ def build(
             page = _of_paper(Path(out), _part(progress, "scenes"), pool)
             page = _with_hard_cases(page, Path(out), pool, progress) if hard else page
             page = _with_studies(page, Path(out), studies, others, pool, progress)
-    file = write_text(Path(out) / "index.html", render(page, Path(out)))
-    findings = {section.name: section.findings for section in page.sections}
-    taken = perf_counter() - began
-    return Report(file, page.overview, page.summary, page.about, findings, taken)
+    return Report(write_text(Path(out) / "index.html", render(page, Path(out))), page)
 
 
 def _part(progress: Progress | None, name: str) -> Progress | None:
@@ -143,8 +118,8 @@ def _page(solved: Solved, subtitle: str, command: str) -> Page:
     sections = solved.sections
     return Page(
         subtitle,
-        overview(_ranked(solved)),
-        tables.summary_table({s.label: solved.comparisons[s.name] for s in sections}),
+        Overview(_ranked(solved)),
+        tables.summary_table({s.request.label: solved.comparisons[s.name] for s in sections}),
         sections,
         command,
         measured_on(),
@@ -152,13 +127,14 @@ def _page(solved: Solved, subtitle: str, command: str) -> Page:
     )
 
 
-def _ranked(solved: Solved) -> list[Ranked]:
+def _ranked(solved: Solved) -> list[RankedScene]:
     """Return where engines stand on each scene, and what a run of theirs takes, timed alone."""
     with alone():
-        return [
-            Ranked(s.name, s.label, s.title, s.standings, seconds(solved.comparisons[s.name][0]))
-            for s in solved.sections
-        ]
+        taken = {name: seconds(variants[0]) for name, variants in solved.comparisons.items()}
+    return [
+        RankedScene(s.name, s.request.label, s.title, s.standings, taken[s.name])
+        for s in solved.sections
+    ]
 
 
 def _with_hard_cases(page: Page, out: Path, pool: Pool, progress: Progress | None) -> Page:

@@ -14,7 +14,7 @@ from compare.experiments.cost import timings
 from compare.experiments.pool import Pool
 from compare.figures.charts.along_axis import along_pillar, recorded_along
 from compare.misfit.pairs import Comparison, compare
-from compare.report.section import PAPER, Asked, Section, linked, make_section
+from compare.report.section import PAPER, SceneRequest, Section, linked, make_section
 from compare.scenes import find, load
 from results.dataset import scene_hash
 
@@ -31,23 +31,23 @@ class Solved:
     sections: list[Section]
 
 
-def asked_for(scenes: Sequence[str]) -> list[Asked]:
+def asked_for(scenes: Sequence[str]) -> list[SceneRequest]:
     """Return the scenes to report, each under a name of its own; without any, the paper's."""
     paper = [f"{PAPER.name}/{file.stem}" for file in sorted(PAPER.glob("fig-*.toml"))]
     called = list(dict.fromkeys(scenes)) or paper
-    found: dict[str, Asked] = {}
+    found: dict[str, SceneRequest] = {}
     for one in called:
         file = find(one)
         stem = re.sub(r"[^A-Za-z0-9_-]+", "-", file.stem).strip("-")
         names = [stem, *(f"{stem or 'scene'}-{k}" for k in range(2, len(called) + 3))]
         name = next(n for n in names if n not in found and n not in TAKEN)
-        found[name] = Asked(file, one, name)
+        found[name] = SceneRequest(file, one, name)
     return list(found.values())
 
 
 def solve(
     folder: Path,
-    asked: list[Asked],
+    asked: list[SceneRequest],
     progress: Progress | None,
     pool: Pool,
     besides: Submit = lambda executor: [],

@@ -26,7 +26,7 @@ Fields = list[dict[str, xr.Dataset]]
 NAMES = re.compile(r"<title>.*?</title>|(?:\bid=\"|url\(#|href=\"#)[^\")]*", re.DOTALL)
 
 
-class Asked(NamedTuple):
+class SceneRequest(NamedTuple):
     """A scene of the report: its file, how its user calls it, and its name on the page."""
 
     file: Path
@@ -60,15 +60,12 @@ class Shown(NamedTuple):
 
 
 class Section(NamedTuple):
-    """One scene of the page; `toml` is its file's text, `command` what makes the same again."""
+    """One scene of the page; `toml` is its file's text."""
 
-    name: str
-    label: str
-    number: int | None
+    request: SceneRequest
     title: str
     source: str
     toml: str
-    command: str
     figures: list[Shown]
     distances_file: Path
     findings: list[Finding]
@@ -79,32 +76,40 @@ class Section(NamedTuple):
     standings: dict[str, Standing]
 
     @property
+    def name(self) -> str:
+        """The section's name on the page."""
+        return self.request.name
+
+    @property
     def heading(self) -> str:
         """What stands above it."""
-        return f"Figure {self.number}. {self.title}" if self.number else self.title
+        number = self.request.number
+        return f"Figure {number}. {self.title}" if number else self.title
+
+    @property
+    def command(self) -> str:
+        """What makes the same again."""
+        return shlex.join(["jointwave", "report", self.request.called, "--out", self.name])
 
 
 def make_section(
-    folder: Path, asked: Asked, comparisons: list[Comparison], fields: Fields
+    folder: Path, request: SceneRequest, comparisons: list[Comparison], fields: Fields
 ) -> Section:
     """Draw all pictures of a scene's variants, write their files into `folder`, return its section.
 
     fields : each variant's results all along the pillar, for space-time diagrams.
     """
     scene = comparisons[0].scene
-    pictures = figures_of(asked.name, comparisons, fields)
-    distances = folder / f"{asked.name}-misfits.csv"
+    pictures = figures_of(request.name, comparisons, fields)
+    distances = folder / f"{request.name}-misfits.csv"
     return Section(
-        asked.name,
-        asked.label,
-        asked.number,
+        request,
         scene.title,
         scene.source or "",
-        asked.file.read_text(encoding="utf-8-sig"),
-        shlex.join(["jointwave", "report", asked.called, "--out", asked.name]),
+        request.file.read_text(encoding="utf-8-sig"),
         [draw(folder, picture) for picture in pictures],
         write_csv(distances, tables.distance_frame(comparisons)),
-        findings(asked.number, comparisons) if asked.number else [],
+        findings(request.number, comparisons) if request.number else [],
         tables.misfit_table(comparisons),
         tables.distance_table(comparisons),
         tables.run_table(comparisons),
@@ -134,7 +139,7 @@ def linked(sections: list[Section]) -> list[Section]:
         for shown in section.figures:
             first = next((known[mark] for mark in shown.marks if mark in known), None)
             if first is None:
-                words = f"{section.label}: {shown.drawn.title}"
+                words = f"{section.request.label}: {shown.drawn.title}"
                 known |= dict.fromkeys(shown.marks, (f"{shown.drawn.name}-figure", words))
                 figures.append(shown)
                 continue

@@ -10,7 +10,6 @@ import cases
 from cases.material.calibrate import calibrate
 from compare.figures.export import Drawn, save
 from compare.scenes import find
-from compare.solvers.dem import DEM
 from results.snapshots import Snapshots, snapshots_of
 
 SCENE = "beyond/eccentric-blow"  # and the changes that make its snapshots
@@ -37,7 +36,7 @@ def make_snapshots(out: Path) -> SnapshotsSection:
     assert found is not None
     file = write_pvd(out / "fields" / "dem.pvd", found)
     shown = read_pvd(file).since(1)
-    figure = draw_snapshots("snapshots", {DEM.name: shown})
+    figure = draw_snapshots("snapshots", shown)
     drawn = save(figure, out / "figures", "snapshots", scene.title, _table(shown))
     return SnapshotsSection(scene.title, drawn, file, calibrate(scene).bar_speed)
 

@@ -5,6 +5,7 @@ from math import isfinite
 from typing import NamedTuple
 
 import pandas as pd
+import xarray as xr
 
 from compare.figures.subplots import variant_names
 from compare.misfit.metrics import misfit
@@ -58,35 +59,38 @@ def misfit_table(comparisons: list[Comparison]) -> Table:
 
     Faint waveforms and displacements, which are velocities once more, are in `distance_table`.
     """
-    names = variant_names(comparisons)
-    rows = [row for c in comparisons for row in c.rows if _is_shown(row)]
-    places = list(dict.fromkeys((row.quantity, row.y) for row in rows))
+    shown = [
+        (name, row)
+        for name, row in _rows(comparisons)
+        if not (row.faint or row.quantity.startswith("displacement"))
+    ]
+    places = list(dict.fromkeys((row.quantity, row.y) for _, row in shown))
     cells: dict[Pair, dict[tuple, str]] = {}
-    for name, comparison in zip(names, comparisons, strict=True):
-        for row in filter(_is_shown, comparison.rows):
-            where = (name, row.quantity, row.y)
-            cells.setdefault(row.pair, {})[where] = percent(row.distance.misfit)
-    columns = [(name, *place) for name in names for place in places]
+    for name, row in shown:
+        where = (name, row.quantity, row.y)
+        cells.setdefault(row.pair, {})[where] = percent(row.distance.misfit)
+    columns = [(name, *place) for name in variant_names(comparisons) for place in places]
     header = ["pair", "what it is made of"]
     header += [f"{name}, {y:g} m" if len(places) > 1 else name for name, _, y in columns]
 
-    def line(pair: Pair) -> list[str]:
+    def lines(pair: Pair) -> list[list[str]]:
+        if pair not in cells:
+            return []
         found = [cells[pair].get(column, "") for column in columns]
-        return [title(pair), MEANING.get(title(pair), ""), *found]
+        return [[title(pair), MEANING.get(title(pair), ""), *found]]
 
-    return Table(
-        header, _by_kind(lambda pair: [line(pair)] if pair in cells else [], given(comparisons))
-    )
+    return Table(header, _by_kind(lines, given(comparisons)))
 
 
-def _is_shown(row: Row) -> bool:
-    return not (row.faint or row.quantity.startswith("displacement"))
+def _rows(comparisons: list[Comparison]) -> list[tuple[str, Row]]:
+    """Return every distance with its variant."""
+    named = zip(variant_names(comparisons), comparisons, strict=True)
+    return [(name, row) for name, comparison in named for row in comparison.rows]
 
 
 def given(comparisons: list[Comparison]) -> list[Pair]:
     """Return the pairs of others' curves, a file after the other."""
-    rows = [row for comparison in comparisons for row in comparison.rows]
-    return list(dict.fromkeys(row.pair for row in rows if row.pair.kind == GIVEN))
+    return list(dict.fromkeys(r.pair for _, r in _rows(comparisons) if r.pair.kind == GIVEN))
 
 
 def _by_kind(
@@ -99,32 +103,30 @@ def _by_kind(
     return groups
 
 
-DISTANCE_HEADER = [
-    "pair",
-    "variant",
-    "receiver",
-    "relative L2 (%)",
-    "peak ratio",
-    "delay (ms)",
-    "period ratio",
-    "envelope misfit (%)",
-    "phase misfit (%)",
-]
-
-
 def distance_table(comparisons: list[Comparison]) -> Table:
     """Return every distance of every pair at every receiver of every variant."""
-    names = variant_names(comparisons)
+    rows = _rows(comparisons)
 
     def lines(pair: Pair) -> list[list[str]]:
         return [
             [title(pair), name, f"{row.quantity} at {row.y:g} m", *_distances(row)]
-            for name, comparison in zip(names, comparisons, strict=True)
-            for row in comparison.rows
+            for name, row in rows
             if row.pair == pair
         ]
 
-    return Table(DISTANCE_HEADER, _by_kind(lines, given(comparisons)))
+    header = ["pair", "variant", "receiver", "relative L2 (%)", "peak ratio", "delay (ms)"]
+    header += ["period ratio", "envelope misfit (%)", "phase misfit (%)"]
+    return Table(header, _by_kind(lines, given(comparisons)))
+
+
+def _distances(row: Row) -> list[str]:
+    d = row.distance
+    ratios = [
+        format(x, form) if isfinite(x) else "–"
+        for x, form in ((d.peak_ratio, ".4f"), (1e3 * d.delay, "+.3f"), (d.period_ratio, ".4f"))
+    ]
+    spectral = ["" if x is None else percent(x) for x in (d.envelope, d.phase)]
+    return [percent(d.misfit), *ratios, *spectral]
 
 
 def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
@@ -145,8 +147,7 @@ def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
             "envelope misfit": row.distance.envelope,
             "phase misfit": row.distance.phase,
         }
-        for name, comparison in zip(variant_names(comparisons), comparisons, strict=True)
-        for row in comparison.rows
+        for name, row in _rows(comparisons)
     )
 
 
@@ -171,50 +172,27 @@ def alignment_frame(comparisons: list[Comparison]) -> pd.DataFrame:
     )
 
 
-def _distances(row: Row) -> list[str]:
-    d = row.distance
-    rest = (
-        (f"{d.peak_ratio:.4f}", d.peak_ratio),
-        (f"{1e3 * d.delay:+.3f}", d.delay),
-        (f"{d.period_ratio:.4f}", d.period_ratio),
-    )
-    shown = [text if isfinite(x) else "–" for text, x in rest]
-    spectral = ["" if x is None else percent(x) for x in (d.envelope, d.phase)]
-    return [percent(d.misfit), *shown, *spectral]
-
-
-RUN_HEADER = [
-    "variant",
-    "degrees of freedom",
-    "steps",
-    "step (µs)",
-    "of the critical step",
-    "stepping (s)",
-    "energy residual",
-]
-
-
 def run_table(comparisons: list[Comparison]) -> Table:
     """Return what each engine's run took, and how well its energy ledger closes."""
     groups: dict[str, list[list[str]]] = {}
     for variant, comparison in zip(variant_names(comparisons), comparisons, strict=True):
         for name, result in comparison.results.items():
-            a = result.attrs
-            if "steps" not in a:
-                continue
-            residual = f"{energy_residual(result):.1e}" if "energy" in result else "not kept"
-            groups.setdefault(name, []).append(
-                [
-                    variant,
-                    str(a["degrees_of_freedom"]),
-                    str(a["steps"]),
-                    f"{1e6 * a['dt']:.3g}",
-                    f"{a['dt'] / a['critical_dt']:.3f}",
-                    f"{a['seconds_stepping']:.3f}",
-                    residual,
-                ]
-            )
-    return Table(RUN_HEADER, groups)
+            if "steps" in result.attrs:
+                groups.setdefault(name, []).append([variant, *_run_cells(result)])
+    header = ["variant", "degrees of freedom", "steps", "step (µs)", "of the critical step"]
+    return Table([*header, "stepping (s)", "energy residual"], groups)
+
+
+def _run_cells(result: xr.Dataset) -> list[str]:
+    about = result.attrs
+    return [
+        str(about["degrees_of_freedom"]),
+        str(about["steps"]),
+        f"{1e6 * about['dt']:.3g}",
+        f"{about['dt'] / about['critical_dt']:.3f}",
+        f"{about['seconds_stepping']:.3f}",
+        f"{energy_residual(result):.1e}" if "energy" in result else "not kept",
+    ]
 
 
 def reason_table(comparisons: list[Comparison]) -> Table:

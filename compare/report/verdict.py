@@ -95,6 +95,17 @@ class Standing(NamedTuple):
         return tuple(text for held in self.variants for text in held.broken)
 
     @property
+    def explanation(self) -> str:
+        """What the engine is held against, where nothing checks it, and which bounds are broken."""
+        parts = [f"held against {' and '.join(self.finest)}: {self.where}"] if self.finest else []
+        if self.unchecked:
+            named = [name for name in self.unchecked if name] if len(self.variants) > 1 else []
+            parts.append(": ".join([NOT_CHECKED.word, *([", ".join(named)] if named else [])]))
+        if self.broken:
+            parts.append(f"beyond the scene's bound: {', '.join(self.broken)}")
+        return "; ".join(parts)
+
+    @property
     def verdict(self) -> Verdict:
         """That of the worst variant."""
         verdicts = [held.verdict for held in self.variants]

@@ -1,11 +1,13 @@
 """What tests measure kept apart from the user's own; and a browser for the tests of pages."""
 
 import shutil
+import sys
 from itertools import combinations
 
 import pytest
 from matplotlib.text import Text
 
+from compare.cli.program import main
 from compare.experiments.cost import timings
 
 
@@ -14,6 +16,23 @@ def own_rates(tmp_path_factory, monkeypatch):
     """Keep what is measured here apart: `--dry-run` foretells from what the machine has done."""
     file = tmp_path_factory.mktemp("rates") / "rates.json"
     monkeypatch.setattr(timings, "_file", lambda: file)
+
+
+@pytest.fixture
+def jointwave(monkeypatch, capsys):
+    """Return a function that runs the command in this process, checks its exit status, and returns
+    what it has printed: `out` and `err`."""
+
+    def run(*arguments, code=0):
+        monkeypatch.setattr(sys, "argv", ["jointwave", *map(str, arguments)])
+        capsys.readouterr()
+        with pytest.raises(SystemExit) as end:
+            main()
+        said = capsys.readouterr()
+        assert end.value.code == code, said.err
+        return said
+
+    return run
 
 
 @pytest.fixture(scope="session")

@@ -1,13 +1,17 @@
 """Commands that show the wave: as an animation, and in three dimensions."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from cases.errors import SceneError
 from cases.schema.scene import Scene
 from compare.cli.options import JsonOption, SceneArgument, SetOption, StrictOption, app, load
+
+if TYPE_CHECKING:
+    from compare.figures.animation.snapshots import SceneSnapshots
+    from compare.figures.animation.view_settings import ViewSettings
 
 ScaleOption = Annotated[
     float | None,
@@ -44,18 +48,26 @@ def animate(
     (one,) = load(scene, changes, variant, strict)
     path = out or Path(f"{_name(scene, one)}.mp4")
     video.refuse(path, frames)
-    with terminal.progress("both engines") as advance:
-        from compare.figures.animation.snapshots import take
-
-        simulated = take(one, frames, advance)
+    simulated, settings = _simulate(one, frames, scale)
     with terminal.progress("pictures") as advance:
         from compare.figures.animation.frame import Frame
-        from compare.figures.animation.view_settings import settings_for
 
-        settings = settings_for(simulated.scene, simulated.found, scale)
         frame = Frame(simulated, settings, video.DOTS[path.suffix])
         video.write_video(path, frame.image, frames, seconds, advance)
-    _show(path, list(simulated.found), simulated.reasons, settings.scale, as_json)
+    _show(path, simulated, settings.scale, as_json)
+
+
+def _simulate(
+    scene: Scene, count: int, scale: float | None
+) -> tuple["SceneSnapshots", "ViewSettings"]:
+    """Return so many snapshots of both engines, and how they are drawn."""
+    from compare.cli import terminal
+    from compare.figures.animation.snapshots import take
+    from compare.figures.animation.view_settings import settings_for
+
+    with terminal.progress("both engines") as advance:
+        simulated = take(scene, count, advance)
+    return simulated, settings_for(simulated.scene, simulated.found, scale)
 
 
 def _require_positive(key: str, value: float | None) -> None:
@@ -68,11 +80,10 @@ def _name(scene: str, one: Scene) -> str:
     return "-".join([Path(scene).stem, *one.name.split()])
 
 
-def _show(
-    path: Path, engines: list[str], reasons: dict[str, str], scale: float, as_json: bool
-) -> None:
+def _show(path: Path, shown: "SceneSnapshots", scale: float, as_json: bool) -> None:
     from compare.cli.terminal import print_json, say
 
+    engines, reasons = list(shown.found), shown.reasons
     if as_json:
         facts = {"file": str(path), "engines": engines, "not_shown": reasons, "scale": scale}
         print_json(facts)
@@ -124,31 +135,21 @@ def _require_pyvista() -> None:
 
 
 def _open(scene: Scene, time: float, scale: float | None) -> None:
-    from compare.cli import terminal
-    from compare.figures.animation.snapshots import take
     from compare.figures.animation.view3d import View3D
-    from compare.figures.animation.view_settings import settings_for
 
-    with terminal.progress("both engines") as advance:
-        simulated = take(scene, FRAMES, advance)
-    settings = settings_for(simulated.scene, simulated.found, scale)
-    stage = View3D(simulated, settings, window=True)
-    stage.add_slider(round(time / scene.time.duration * (FRAMES - 1)))
-    stage.open()
+    window = View3D(*_simulate(scene, FRAMES, scale), window=True)
+    window.add_slider(round(time / scene.time.duration * (FRAMES - 1)))
+    window.open()
 
 
 def _write_picture(path: Path, scene: Scene, time: float, scale: float | None) -> None:
-    from compare.cli import terminal
     from compare.figures.animation.offscreen import draw
-    from compare.figures.animation.snapshots import take, until
-    from compare.figures.animation.view_settings import settings_for
+    from compare.figures.animation.snapshots import until
     from compare.runs.output import refuse_foreign, write
 
     if path.suffix != ".png":
         raise SceneError("--out", str(path), None, "must end in .png")
     refuse_foreign(path, (b"\x89PNG",))
-    with terminal.progress("both engines") as advance:
-        simulated = take(until(scene, time), 2, advance)
-    settings = settings_for(simulated.scene, simulated.found, scale)
+    simulated, settings = _simulate(until(scene, time), 2, scale)
     write(path, lambda new: draw(new, simulated, settings, 1))
-    _show(path, list(simulated.found), simulated.reasons, settings.scale, False)
+    _show(path, simulated, settings.scale, False)

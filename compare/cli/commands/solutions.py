@@ -155,15 +155,15 @@ def figure(
     tell it from others without colour. Without --engine, all that apply are drawn.
     """
     from compare.cli import terminal
-    from compare.figures.print.make import Asked, make
+    from compare.figures.print.make import FigureRequest, make
     from compare.runs import jobs
 
     scenes = load(scene, changes, variant, strict)
     runs = jobs.wanted([e.value for e in engine], model or []) if engine or model else []
     curves = _read_curves(given, scenes, False)
-    asked = Asked(style.value, columns, kind.value if kind else None, language.value, out)
+    request = FigureRequest(style.value, columns, kind.value if kind else None, language.value, out)
     with terminal.progress(scenes[0].title) as advance:
-        path = make(scenes, runs, curves, asked, advance)
+        path = make(scenes, runs, curves, request, advance)
     terminal.say(f"wrote {path}")
 
 

@@ -14,6 +14,7 @@ import sys
 from collections.abc import Callable
 from importlib import import_module
 from importlib.metadata import version
+from importlib.util import find_spec
 
 CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 
@@ -22,22 +23,17 @@ class Missing(Exception):
     """A part that is not there, which is no fault of what is."""
 
 
-def _imported(module: str, package: str | None = None) -> Callable[[], str]:
-    """Return what imports a module and says the version of its package."""
+def _imported(module: str) -> Callable[[], str]:
+    """Return what imports a module and says its version."""
 
-    def probe() -> str:
-        if module.split(".")[0] not in sys.modules and not _is_there(module):
+    def found() -> str:
+        package = module.split(".")[0]
+        if package not in sys.modules and find_spec(package) is None:
             raise Missing("is not installed")
-        import_module(module)
-        return version(package or module)
+        own = getattr(import_module(module), "__version__", None)
+        return own or version(package)
 
-    return probe
-
-
-def _is_there(module: str) -> bool:
-    from importlib.util import find_spec
-
-    return find_spec(module.split(".")[0]) is not None
+    return found
 
 
 def _threads() -> str:
@@ -65,26 +61,15 @@ def _petsc() -> str:
 
 
 def _mpi() -> str:
-    own = _imported("mpi4py.MPI", "mpi4py")()
+    own = _imported("mpi4py.MPI")()
     from mpi4py import MPI
 
     library = MPI.Get_library_version().replace("\0", "").splitlines()[0].split(", package")[0]
     return f"{library}, mpi4py {own}"
 
 
-def _versioned(module: str) -> Callable[[], str]:
-    """Return what imports a module and says the version that it has itself."""
-
-    def probe() -> str:
-        if not _is_there(module):
-            raise Missing("is not installed")
-        return import_module(module).__version__
-
-    return probe
-
-
 def _adios() -> str:
-    _versioned("dolfinx")()
+    _imported("dolfinx")()
     from continuum.space.forms import vtx_writer
 
     if vtx_writer() is None:
@@ -92,20 +77,17 @@ def _adios() -> str:
     return "there: snapshots can be written as VTX (--vtx)"
 
 
+def _on_path(*programs: str) -> str:
+    found = next((place for name in programs if (place := shutil.which(name))), None)
+    if found is None:
+        raise Missing("is not on the PATH")
+    return found
+
+
 def _ffmpeg() -> str:
-    found = shutil.which("ffmpeg")
-    if found is None and _is_there("imageio_ffmpeg"):
-        found = import_module("imageio_ffmpeg").get_ffmpeg_exe()
-    if found is None:
-        raise Missing("is not on the PATH")
-    return found
-
-
-def _chromium() -> str:
-    found = next((place for name in CHROMIUM if (place := shutil.which(name))), None)
-    if found is None:
-        raise Missing("is not on the PATH")
-    return found
+    if shutil.which("ffmpeg") is None and find_spec("imageio_ffmpeg") is not None:
+        return import_module("imageio_ffmpeg").get_ffmpeg_exe()
+    return _on_path("ffmpeg")
 
 
 def _font() -> str:
@@ -124,14 +106,14 @@ PROBES: dict[str, Callable[[], str]] = {
         for name in ("numpy", "numba", "scipy", "pydantic", "xarray", "matplotlib", "obspy")
     },
     "threads": _threads,
-    **{name: _versioned(name) for name in ("basix", "dolfinx", "gmsh")},
+    **{name: _imported(name) for name in ("basix", "dolfinx", "gmsh")},
     "PETSc": _petsc,
     "MPI": _mpi,
     "ADIOS2": _adios,
     "pyvista": _imported("pyvista"),
     "ffmpeg": _ffmpeg,
     "Chinese font": _font,
-    "chromium": _chromium,
+    "chromium": lambda: _on_path(*CHROMIUM),
 }
 
 

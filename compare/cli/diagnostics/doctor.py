@@ -51,7 +51,7 @@ HINTS = {
 }
 
 
-class Part(NamedTuple):
+class Component(NamedTuple):
     """A line of the report: "found", "missing" or "broken", and what to do about it."""
 
     group: str
@@ -64,7 +64,7 @@ class Part(NamedTuple):
 class Health(NamedTuple):
     """Everything that `jointwave doctor` says."""
 
-    parts: list[Part]
+    parts: list[Component]
     checks: list[Check]
 
     @property
@@ -83,16 +83,15 @@ def examine(progress: Callable[[float], None]) -> Health:
     for i, pair in enumerate(PAIRS):
         checks.append(_check(pair))
         progress(0.5 + 0.5 * (i + 1) / len(PAIRS))
-    order = list(GROUPS)
-    return Health(sorted(parts, key=lambda part: order.index(part.group)), checks)
+    return Health(sorted(parts, key=lambda part: list(GROUPS).index(part.group)), checks)
 
 
-def _program() -> Part:
+def _program() -> Component:
     python = f"Python {platform.python_version()} ({sys.executable})"
-    return Part("program", "jointwave", "found", f"{version('jointwave')}, {python}")
+    return Component("program", "jointwave", "found", f"{version('jointwave')}, {python}")
 
 
-def _libraries() -> list[Part]:
+def _libraries() -> list[Component]:
     """Return what the probes find; one that ends its process is broken, and the next go on."""
     group_of = {name: group for group, names in GROUPS.items() for name in names}
     left, parts = list(group_of), []
@@ -103,39 +102,41 @@ def _libraries() -> list[Part]:
             found.append({"part": left[len(found)], "state": "broken", "found": _end(done)})
         for one in found:
             hint = HINTS.get(one["part"], "") if one["state"] != "found" else ""
-            parts.append(Part(group_of[one["part"]], **one, hint=hint))
+            parts.append(Component(group_of[one["part"]], **one, hint=hint))
         left = left[len(found) :]
     return parts
 
 
-def _mpiexec() -> Part:
+def _mpiexec() -> Component:
     """Return how many processes the launcher starts that see each other."""
     launcher, cores = which("mpiexec"), min(_cores(), MOST_RANKS)
     if launcher is None:
-        return Part("continuum", "mpiexec", "missing", "is not on the PATH", HINTS["mpiexec"])
+        return Component("continuum", "mpiexec", "missing", "is not on the PATH", HINTS["mpiexec"])
     for ranks in sorted({cores, min(2, cores), 1}, reverse=True):
         done = _run([launcher, "-n", str(ranks), sys.executable, "-c", COUNT_RANKS], PATIENCE)
         if done.stdout.strip() == str(ranks):
             most = " or more" if ranks == MOST_RANKS else ""
             found = f"{launcher}: {ranks}{most} ranks on {_cores()} cores"
-            return Part("continuum", "mpiexec", "found", found)
+            return Component("continuum", "mpiexec", "found", found)
     if os.geteuid() == 0 and "run-as-root" in done.stderr.lower().replace(" ", "-"):
         hint = "set OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1"
-        return Part("continuum", "mpiexec", "broken", f"{launcher} starts nothing for root", hint)
+        return Component(
+            "continuum", "mpiexec", "broken", f"{launcher} starts nothing for root", hint
+        )
     found = f"{launcher} starts no ranks: {_end(done)}"
-    return Part("continuum", "mpiexec", "broken", found, "mpi4py may belong to another MPI")
+    return Component("continuum", "mpiexec", "broken", found, "mpi4py may belong to another MPI")
 
 
-def _machine() -> list[Part]:
+def _machine() -> list[Component]:
     from cases.errors import SceneError
     from cases.size import LIMIT, memory, spoken
 
     try:
-        size = Part("machine", "memory", "found", f"{spoken(memory())} for a run")
+        size = Component("machine", "memory", "found", f"{spoken(memory())} for a run")
     except SceneError as error:
-        size = Part("machine", "memory", "broken", str(error), f"unset {LIMIT}")
+        size = Component("machine", "memory", "broken", str(error), f"unset {LIMIT}")
     cores = f"{_cores()} of {os.cpu_count()}, {platform.machine()}, {platform.platform()}"
-    return [Part("machine", "cores", "found", cores), size]
+    return [Component("machine", "cores", "found", cores), size]
 
 
 def _cores() -> int:
@@ -143,14 +144,14 @@ def _cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _cache() -> Part:
+def _cache() -> Component:
     """Return where compiled kernels are kept, and how large that has grown."""
     from cases.size import spoken
 
     try:
         import numerics.jit
     except Exception as error:
-        return Part("machine", "kernel cache", "broken", f"numba cannot be imported: {error}")
+        return Component("machine", "kernel cache", "broken", f"numba cannot be imported: {error}")
     folder = numerics.jit.DIRECTORY.parent
     files = [file for file in folder.rglob("*") if file.is_file()] if folder.is_dir() else []
     size = spoken(sum(file.stat().st_size for file in files))
@@ -159,8 +160,8 @@ def _cache() -> Part:
     place = next(place for place in (folder, *folder.parents) if place.exists())
     if not os.access(place, os.W_OK):
         hint = "set NUMBA_CACHE_DIR to a folder that can be written, or every run compiles"
-        return Part("machine", "kernel cache", "broken", f"{folder} cannot be written", hint)
-    return Part("machine", "kernel cache", "found", found)
+        return Component("machine", "kernel cache", "broken", f"{folder} cannot be written", hint)
+    return Component("machine", "kernel cache", "found", found)
 
 
 def _check(pair: str) -> Check:

@@ -57,8 +57,9 @@ def _blocks(scene: Scene) -> Unloaded:
 
 
 def _rock(scene: Scene, kind: str) -> Unloaded:
-    from continuum.build import build_model, discretise, empty_samples, state_at_rest
+    from continuum.build import build_model, discretise
     from continuum.explicit.march import run
+    from continuum.state import empty_samples, state_at_rest
 
     discrete, d = discretise(scene, kind), scene.pillar.block
     body = discrete.body

@@ -22,8 +22,7 @@ from compare.figures.animation.snapshots import SceneSnapshots
 from compare.figures.animation.view_settings import ViewSettings, caption
 from compare.figures.animation.wave import Wave
 from compare.figures.print.layout import wrapped
-from compare.figures.snapshots import COLOURS
-from compare.figures.style import RC, in_order, style
+from compare.figures.style import FIELD, RC, style
 from compare.figures.subplots import UNITS, Panel, panels
 from compare.figures.units import unit_for
 from compare.misfit.pairs import Comparison
@@ -44,13 +43,11 @@ class Frame:
     def __init__(self, simulated: SceneSnapshots, settings: ViewSettings, dots: int = 100) -> None:
         self.simulated, self.settings = simulated, settings
         side = simulated.scene.pillar.side
-        self.waves = {
-            n: Wave(simulated.found[n], settings, side) for n in in_order(set(simulated.found))
-        }
-        self.time = next(iter(simulated.found.values())).time
+        self.waves = {name: Wave(s, settings, side) for name, s in simulated.found.items()}
+        self.time = simulated.time
         peak = max(float(np.abs(w.profile).max()) for w in self.waves.values())
         self.peak = peak * settings.quantity.factor or 1.0
-        self.colour = ScalarMappable(Normalize(-self.peak, self.peak), COLOURS)
+        self.colour = ScalarMappable(Normalize(-self.peak, self.peak), FIELD)
         with matplotlib.rc_context(RC | {"font.size": 10.0, "font.family": fonts.families()}):
             self.figure = Figure(figsize=SIZE, dpi=dots)
             self.canvas = FigureCanvasAgg(self.figure)
@@ -102,8 +99,8 @@ class Frame:
             ax = self._axes(*place, top, height)
             ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
             self._add_strip(ax, name, 72 * width / reach[0])
-        for name, reason in self.simulated.reasons.items():
-            words = self._in_lines(f"{name} does not apply: {reason}", SIZE[0] - LEFT - RIGHT, 10.0)
+        for sentence in self.simulated.missing:
+            words = self._in_lines(sentence, SIZE[0] - LEFT - RIGHT, 10.0)
             top -= NAME + LINE * words.count("\n")
             self._say(LEFT, top + 0.05, words, color="#555555")
         rest = top - FOOT - 2 * GAP
@@ -131,19 +128,13 @@ class Frame:
         ax.set_title(name, color=style(name).colour, pad=2, **_bold(name))
         spacing = self.simulated.scene.pillar.block * points_per_metre
         width = 0.5 if spacing > DENSE else 0.0
-        self.faces[name] = PolyCollection(
-            [],
-            edgecolors="face",
-            linewidths=0.3,
-            cmap=COLOURS,
-            norm=self.colour.norm,
-            animated=True,
-        )
-        self.edges[name] = LineCollection(
-            [], colors=EDGE, linewidths=width, animated=True, snap=False
-        )
-        ax.add_collection(self.faces[name], autolim=False)
-        ax.add_collection(self.edges[name], autolim=False)
+        filled = PolyCollection([], edgecolors="face", linewidths=0.3, cmap=FIELD)
+        filled.set_norm(self.colour.norm)
+        self.faces[name] = filled
+        self.edges[name] = LineCollection([], colors=EDGE, linewidths=width, snap=False)
+        for collection in (self.faces[name], self.edges[name]):
+            collection.set_animated(True)
+            ax.add_collection(collection, autolim=False)
 
     def _add_profile(self, ax: Axes, low: np.ndarray, high: np.ndarray) -> None:
         self.profiles: dict[str, Line2D] = {}
@@ -192,14 +183,13 @@ class Frame:
 
     def _add_head(self) -> float:
         """Add title, clock and colours; return their height, inches."""
-        scene, (across, up) = self.simulated.scene, SIZE
-        title = ", ".join(t for t in (scene.title, scene.name) if t)
+        (across, up), title = SIZE, self.simulated.title
         bold = _bold(title)
         title = self._in_lines(title, across - LEFT - RIGHT - CLOCK, 12.0, **bold)
         self._say(LEFT, up - 0.15, title, fontsize=12, va="top", **bold)
         height = HEAD + LINE * title.count("\n")
         low = up - height
-        self._say(LEFT, low + 0.23, caption(scene, self.settings), color="#333333")
+        self._say(LEFT, low + 0.23, caption(self.simulated.scene, self.settings), color="#333333")
         step = 1e3 * (self.time[1] - self.time[0])
         self.decimals = max(0, ceil(-log10(step)) + 1)
         place = {"ha": "right", "fontsize": 14, "animated": True, **_bold("t = 0")}

@@ -31,6 +31,21 @@ class SceneSnapshots(NamedTuple):
     reasons: dict[str, str]
     results: dict[str, xr.Dataset]
 
+    @property
+    def time(self) -> np.ndarray:
+        """The instants, s."""
+        return next(iter(self.found.values())).time
+
+    @property
+    def title(self) -> str:
+        """Title and variant of the scene."""
+        return ", ".join(part for part in (self.scene.title, self.scene.name) if part)
+
+    @property
+    def missing(self) -> list[str]:
+        """A sentence for each engine that does not apply."""
+        return [f"{name} does not apply: {why}" for name, why in self.reasons.items()]
+
 
 def at_instants(scene: Scene, count: int) -> Scene:
     """Return the scene with `count` snapshots, the first at t = 0 and the last at its end.
@@ -67,17 +82,15 @@ def take(scene: Scene, count: int, progress: Progress | None = None) -> SceneSna
     for i, name in enumerate(chosen):
         result = solve(name, asked, _part(progress, i, len(chosen)))
         taken = snapshots_of(result)
-        assert taken is not None
+        assert taken is not None and taken.stress is not None
         found[name] = taken._replace(stress=_less_static(result, taken.stress))
         results[name] = result[[q for q in UNITS if q in result]]
     return SceneSnapshots(asked, found, {} if len(found) > 1 else reasons, results)
 
 
-def _less_static(result: xr.Dataset, stress: np.ndarray | None) -> np.ndarray | None:
+def _less_static(result: xr.Dataset, stress: np.ndarray) -> np.ndarray:
     """Return the axial stress of the motion, as `compare.misfit.metrics.motion` does for
     waveforms."""
-    if stress is None:
-        return None
     if result.attrs.get("starts") == "at rest under gravity":
         return stress - stress[:1]
     return stress - result.attrs.get("prestress", 0.0)

@@ -4,9 +4,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compare.figures.snapshots import FACES
 from results.snapshots import Snapshots
 
+#: Corners of the faces of a cell, anticlockwise from outside.
+FACES = {
+    "line": [[0, 1]],
+    "triangle": [[0, 1, 2]],
+    "quad": [[0, 1, 2, 3]],
+    "tetra": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+    "hexahedron": [
+        [0, 3, 2, 1],
+        [4, 5, 6, 7],
+        [0, 1, 5, 4],
+        [1, 2, 6, 5],
+        [2, 3, 7, 6],
+        [3, 0, 4, 7],
+    ],
+}
 SHARP = 0.9  # cosine of the angle between two faces below which their edge is drawn
 Y = np.array([0.0, 1.0, 0.0])
 

@@ -12,8 +12,7 @@ from compare.figures import fonts
 from compare.figures.animation.surface import Y, solid, surface_of
 from compare.figures.animation.view_settings import STRESS, ViewSettings, caption
 from compare.figures.print.layout import wrapped
-from compare.figures.snapshots import COLOURS
-from compare.figures.style import in_order, style
+from compare.figures.style import FIELD, style
 
 if TYPE_CHECKING:
     from compare.figures.animation.snapshots import SceneSnapshots
@@ -45,8 +44,8 @@ class View3D:
     ) -> None:
         self.settings, self.simulated = settings, simulated
         side = simulated.scene.pillar.side
-        self.found = {n: solid(simulated.found[n], side) for n in in_order(set(simulated.found))}
-        self.time = next(iter(self.found.values())).time
+        self.found = {name: solid(s, side) for name, s in simulated.found.items()}
+        self.time = simulated.time
         self.plotter = pyvista.Plotter(off_screen=not window, window_size=list(SIZE))
         self.plotter.set_background("white")
         self.plotter.enable_anti_aliasing("ssaa")
@@ -55,7 +54,7 @@ class View3D:
             self.grids[name], self.edges[name] = grid_of(s), edges_of(s)
             self._add(name, -i * self._apart * settings.up)
         self._label_bar()
-        self._aim()
+        self._place_camera()
         self.show(0)
 
     def show(self, i: int) -> None:
@@ -135,23 +134,16 @@ class View3D:
         actor.prop.justification_horizontal = side
 
     def _add(self, name: str, place: np.ndarray) -> None:
-        peak = self._peak
-        quantity, grid = self.settings.quantity, self.grids[name]
+        quantity, grid, stretch = self.settings.quantity, self.grids[name], self.settings.stretch
         grid[quantity.name] = self._values(self.found[name], 0)
-        bar = {
-            "title": " ",  # what it says is written by _label_bar, beside its numbers
-            "n_labels": 0,
-            "position_x": BAR[0],
-            "position_y": BAR[1],
-            "width": BAR[2],
-            "height": BAR[3],
-        }
+        place_of_bar = dict(zip(("position_x", "position_y", "width", "height"), BAR, strict=True))
         pillar = self.plotter.add_mesh(
             grid,
             scalars=quantity.name,
-            cmap=COLOURS,
-            clim=(-peak, peak),
-            scalar_bar_args=bar,
+            cmap=FIELD,
+            clim=(-self._peak, self._peak),
+            # What the bar says is written by _label_bar, beside its numbers.
+            scalar_bar_args={"title": " ", "n_labels": 0, **place_of_bar},
             ambient=0.7,  # a little shade shows the form and leaves the colours as in the bar
             diffuse=0.35,
         )
@@ -159,8 +151,8 @@ class View3D:
         lines = self.plotter.add_mesh(self.edges[name], color="#333333", line_width=1)
         for actor in (pillar, lines):
             actor.position = place
-            actor.scale = self.settings.stretch, 1.0, self.settings.stretch
-        above = 0.8 * self.settings.stretch * self.simulated.scene.pillar.side * self.settings.up
+            actor.scale = stretch, 1.0, stretch
+        above = 0.8 * stretch * self.simulated.scene.pillar.side * self.settings.up
         self.plotter.add_point_labels(
             [place + above],
             [name],
@@ -171,8 +163,8 @@ class View3D:
             always_visible=True,
         )
 
-    def _aim(self) -> None:
-        """ViewSettings at the middle from the side, a little from the right and from above."""
+    def _place_camera(self) -> None:
+        """Look at the middle from the side, a little from the right and from above."""
         length, camera = self.simulated.scene.pillar.length, self.plotter.camera
         middle = Y * length / 2 - self.settings.up * self._apart * (len(self.found) - 1) / 2
         right, above = TILT
@@ -186,12 +178,9 @@ class View3D:
         self.plotter.renderer.ResetCameraClippingRange()
 
     def _write(self, i: int) -> None:
-        scene = self.simulated.scene
-        lines = [
-            ", ".join(text for text in (scene.title, scene.name) if text),
-            f"t = {1e3 * self.time[i]:.4g} ms, {caption(scene, self.settings)}",
-            *(f"{name} does not apply: {why}" for name, why in self.simulated.reasons.items()),
-        ]
+        about = caption(self.simulated.scene, self.settings)
+        when = f"t = {1e3 * self.time[i]:.4g} ms, {about}"
+        lines = [self.simulated.title, when, *self.simulated.missing]
         text = "\n".join(part for line in lines for part in wrapped(line, _fits))
         self.plotter.add_text(
             text,

@@ -10,7 +10,7 @@ from results.snapshots import Snapshots
 
 
 class Wave:
-    """One engine's pillar under a settings.
+    """One engine's pillar under the settings of a view.
 
     values : float array [snapshots, faces], what the colours show, SI.
     """

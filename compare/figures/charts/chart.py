@@ -13,7 +13,7 @@ from compare.misfit.pairs import Comparison
 LONGEST = 28  # letters of a file's name that a legend takes
 
 
-class Line(NamedTuple):
+class ChartLine(NamedTuple):
     """A curve in the units of its axes.
 
     name : its entry in the legend. hover : what plotly.js says of a point. part : what its group in
@@ -48,7 +48,7 @@ class Subplot(NamedTuple):
 
     heading: str
     label: str
-    lines: list[Line]
+    lines: list[ChartLine]
     height: float = 2.1
     share: str = ""
     is_log: bool = False

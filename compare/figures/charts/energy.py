@@ -7,11 +7,9 @@ from typing import Any
 import numpy as np
 
 from compare.engines import ENGINES
-from compare.figures.charts.chart import Chart, Entry, Line, Subplot
-from compare.figures.charts.interactive import plot
+from compare.figures.charts.chart import Chart, ChartLine, Entry, Subplot
 from compare.figures.charts.ledgers import Ledger, drawn_terms, ledgers_of, table
-from compare.figures.charts.static import draw
-from compare.figures.figure import SceneFigure
+from compare.figures.figure import SceneFigure, chart_figure
 from compare.figures.style import TERMS, Style, in_order, style
 from compare.figures.units import Unit, unit_for
 from compare.misfit.pairs import Comparison
@@ -23,26 +21,15 @@ def energy(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     if not any(x.any() for ledger in ledgers for x in ledger.terms.values()):
         return []
     unit = unit_for("J", max(np.abs(x).max() for ledger in ledgers for x in ledger.terms.values()))
-    chart = _chart(ledgers, unit)
-    return [
-        SceneFigure(
-            f"{name}-energy",
-            "energy",
-            "Energy over time",
-            _caption(ledgers),
-            draw(f"{name}-energy", chart),
-            table(ledgers),
-            plot(chart),
-        )
-    ]
+    title, chart = "Energy over time", _chart(ledgers, unit)
+    return [chart_figure(f"{name}-energy", title, _caption(ledgers), chart, table(ledgers))]
 
 
 def _caption(ledgers: list[Ledger]) -> str:
-    worst = {engine: 0.0 for engine in ENGINES}
-    for ledger in ledgers:
-        worst[ledger.engine] = max(worst[ledger.engine], float(np.abs(ledger.residual).max()))
-    engines = {ledger.engine for ledger in ledgers}
-    sizes = ", ".join(f"{e} {worst[e]:.1g}" for e in worst if e in engines)
+    worst: dict[str, float] = {}
+    for one in ledgers:
+        worst[one.engine] = max(worst.get(one.engine, 0.0), float(np.abs(one.residual).max()))
+    sizes = ", ".join(f"{engine} {worst[engine]:.1g}" for engine in ENGINES if engine in worst)
     return (
         "What the load has put in (work) and what became of it; all others add up to it. Below, on "
         f"an axis of its own, what is missing over the largest work, at most: {sizes}."
@@ -76,7 +63,7 @@ def _chart(ledgers: list[Ledger], unit: Unit) -> Chart:
 def _cell(variant: str, ledgers: list[Ledger], unit: Unit) -> list[Subplot]:
     at = "at %{x:.2f} ms<extra>"
     terms = [
-        Line(
+        ChartLine(
             term,
             _of_term(one.engine, term),
             1e3 * one.time,
@@ -87,7 +74,7 @@ def _cell(variant: str, ledgers: list[Ledger], unit: Unit) -> list[Subplot]:
         for term in drawn_terms([one])
     ]
     missing = [
-        Line(
+        ChartLine(
             one.engine,
             _of_engine(one.engine),
             1e3 * one.time,

@@ -1,9 +1,9 @@
 """A chart as an interactive figure, for plotly.js: plain values that JSON can write.
 
 Subplots stand one under the other on one abscissa, so that they zoom together and stay readable on
-a narrow screen; the legend is below them. Numbers are base64 of their bytes in single precision,
-of which as many bits of the mantissa are left as a screen can show: the rest are zeros, which gzip
-takes no bytes for (bit rounding, Kloewer et al. 2021, doi:10.1038/s43588-021-00156-2).
+a narrow screen; buttons of the page are their legend. Numbers are base64 of their bytes in single
+precision, of which as many bits of the mantissa are left as a screen can show: the rest are zeros,
+which gzip takes no bytes for (bit rounding, Kloewer et al. 2021, doi:10.1038/s43588-021-00156-2).
 """
 
 from base64 import b64decode, b64encode
@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from compare.figures.charts.chart import Chart, Line, Mark, Subplot
+from compare.figures.charts.chart import Chart, ChartLine, Mark, Subplot
 from compare.figures.charts.static import MARK
 from compare.figures.style import Style
 
@@ -24,8 +24,6 @@ LINE = 17  # px of a line of a heading
 NARROW = 42  # characters of such a line that a phone has room for
 TOP, BOTTOM, LEFT, RIGHT = 11, 58, 66, 16  # px around the subplots
 GAP = 20  # px between subplots, besides their headings
-ENTRY = 20  # px of a line of the legend
-ITEM = 40  # px of the sample of a curve in the legend
 SAMPLES = 800  # of a curve
 BITS = 14  # of the mantissa of a curve's values: a relative error of 3e-5
 
@@ -37,10 +35,8 @@ def packed(values: np.ndarray, bits: int = BITS) -> dict[str, Any]:
     whole = data.view("<u4").astype(np.uint64) + (1 << (lost - 1))
     rounded = (whole & np.uint64(0xFFFFFFFF ^ ((1 << lost) - 1))).astype("<u4").view("<f4")
     data = np.where(np.isfinite(data), rounded, data)
-    found = {"dtype": "f4", "bdata": b64encode(data.tobytes()).decode("ascii")}
-    if data.ndim > 1:
-        found["shape"] = ",".join(map(str, data.shape))
-    return found
+    shape = {"shape": ",".join(map(str, data.shape))} if data.ndim > 1 else {}
+    return {"dtype": "f4", "bdata": b64encode(data.tobytes()).decode("ascii"), **shape}
 
 
 def unpacked(array: dict[str, Any]) -> np.ndarray:
@@ -66,24 +62,17 @@ def thinned(samples: int, most: int = SAMPLES) -> slice:
 def plot(chart: Chart) -> dict[str, Any]:
     """Return the interactive figure of a chart: {"data": traces, "layout": ...}."""
     abscissa = {"title": {"text": chart.abscissa}} | ({"type": "log"} if chart.is_log else {})
-    found = layout(chart.subplots, abscissa, len(chart.entries))
-    traces = []
-    for i, subplot in enumerate(chart.subplots):
-        traces += [(line.style.order, _trace(line, i)) for line in subplot.lines]
-        for mark in subplot.marks:
-            found["shapes"].append(_vertical(mark.x, i))
-            found["annotations"].append(_name(mark, i, chart.is_log))
+    found = layout(chart.subplots, abscissa)
     rank = {entry.name: i for i, entry in enumerate(chart.entries)}
-    data: list[dict[str, Any]] = []
-    listed: set[str] = set()
-    for _, trace in sorted(traces, key=lambda pair: pair[0]):
-        group = trace["legendgroup"]
-        data.append(trace | {"legendrank": rank[group], "showlegend": group not in listed})
-        listed.add(group)
-    return {"data": data, "layout": found}
+    lines = [(line, i) for i, subplot in enumerate(chart.subplots) for line in subplot.lines]
+    lines.sort(key=lambda one: one[0].style.order)
+    for i, subplot in enumerate(chart.subplots):
+        found["shapes"] += [_vertical(mark.x, i) for mark in subplot.marks]
+        found["annotations"] += [_name(mark, i, chart.is_log) for mark in subplot.marks]
+    return {"data": [_trace(line, i, rank[line.name]) for line, i in lines], "layout": found}
 
 
-def _trace(line: Line, row: int) -> dict[str, Any]:
+def _trace(line: ChartLine, row: int, rank: int) -> dict[str, Any]:
     kept = thinned(len(line.x))
     hovered = {} if line.hovered is None else {"customdata": packed(line.hovered[kept])}
     return {
@@ -91,6 +80,7 @@ def _trace(line: Line, row: int) -> dict[str, Any]:
         "mode": "lines",
         "name": line.name,
         "legendgroup": line.name,
+        "legendrank": rank,
         **places("x", line.x[kept]),
         "y": packed(line.y[kept]),
         **hovered,
@@ -134,10 +124,8 @@ def axis_key(row: int) -> str:
     return f"yaxis{row + 1}" if row else "yaxis"
 
 
-def layout(subplots: list[Subplot], abscissa: dict[str, Any], entries: int) -> dict[str, Any]:
-    """Return the layout of subplots under each other on one abscissa, `entries` in the legend."""
-    # Two lines of the legend on a wide screen; on a narrow one it takes its room from the subplots.
-    legend = ENTRY * (1 + (entries > 5)) if entries else 0
+def layout(subplots: list[Subplot], abscissa: dict[str, Any]) -> dict[str, Any]:
+    """Return the layout of subplots under each other on one abscissa."""
     headings = [
         [line for part in s.heading.split("\n") for line in wrap(part, NARROW)] for s in subplots
     ]
@@ -158,11 +146,10 @@ def layout(subplots: list[Subplot], abscissa: dict[str, Any], entries: int) -> d
         "paper_bgcolor": "#ffffff",
         "plot_bgcolor": "#ffffff",
         "font": FONT | {"color": INK},
-        "height": TOP + above[0] + inner + BOTTOM + legend,
-        "margin": {"t": TOP + above[0], "b": BOTTOM + legend, "l": LEFT, "r": RIGHT},
+        "height": TOP + above[0] + inner + BOTTOM,
+        "margin": {"t": TOP + above[0], "b": BOTTOM, "l": LEFT, "r": RIGHT},
         "hovermode": "closest",
-        "showlegend": bool(entries),
-        "legend": _legend(inner),
+        "showlegend": False,
         "annotations": notes,
         "shapes": [],
         "xaxis": _axis("") | {"anchor": axis_of(len(subplots) - 1)} | abscissa,
@@ -207,19 +194,6 @@ def _heading(text: str, top: float) -> dict[str, Any]:
         "align": "left",
         "showarrow": False,
         "font": {"size": 13},
-    }
-
-
-def _legend(inner: int) -> dict[str, Any]:
-    return {
-        "orientation": "h",
-        "x": 0,
-        "xanchor": "left",
-        "y": -(BOTTOM + 8) / inner,
-        "yanchor": "top",
-        "font": {"size": 12},
-        "itemwidth": ITEM,
-        "tracegroupgap": 0,
     }
 
 

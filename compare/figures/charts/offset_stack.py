@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from compare.figures.charts.chart import Chart, Line, Subplot, solutions_legend
+from compare.figures.charts.chart import Chart, ChartLine, Subplot, solutions_legend
 from compare.figures.overlays import THIN
 from compare.figures.style import style
 from compare.figures.subplots import UNITS, Panel
@@ -68,11 +68,11 @@ class Stack(NamedTuple):
         height, ticks = 1.0 + 0.75 * len(self.curves), list(self.curves)
         return Subplot(self.heading, self.label, lines, height, ticks=ticks, levels=tuple(ticks))
 
-    def _line(self, k: int, y: float, name: str, curve: pd.Series) -> Line:
+    def _line(self, k: int, y: float, name: str, curve: pd.Series) -> ChartLine:
         drawn = style(name)._replace(width=min(style(name).width, self.widest))
         scale = self.reach / self.largest if self.largest else 0.0
         place = f"{self.unit.name} at y = {y:g} m, %{{x:.2f}} ms"
-        return Line(
+        return ChartLine(
             name,
             drawn,
             1e3 * curve.index.values,

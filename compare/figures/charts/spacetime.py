@@ -41,7 +41,6 @@ def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> SceneF
     title = f"Numerical error of {words}" if shown.exact else f"{words[0].upper()}{words[1:]}"
     return SceneFigure(
         name,
-        "space-time",
         title,
         _caption(scene, variant, shown),
         _figure(scene, shown),
@@ -72,7 +71,6 @@ def _figure(scene: Scene, shown: Diagrams) -> Figure:
         axes = figure.subplots(1, max(count, 2), sharex=True, sharey=True, squeeze=False)[0]
         for ax, diagram in zip(axes, shown.diagrams, strict=False):
             _draw(ax, diagram, shown, scene)
-            _settle(ax)
         for ax in axes[count:]:
             ax.set_visible(False)
         for layer in scene.soft_layers:
@@ -82,7 +80,11 @@ def _figure(scene: Scene, shown: Diagrams) -> Figure:
 
 
 def _draw(ax: Axes, diagram: Diagram, shown: Diagrams, scene: Scene) -> None:
-    time, y, values = evenly(1e3 * shown.time, shown.y, diagram.values)
+    time, y = 1e3 * shown.time[[0, -1]], shown.y[[0, -1]]
+    values = evenly(shown.y, diagram.values)
+    rows, columns = values.shape
+    # An image's extent counts to the edges of its pixels: its points are half a pixel within.
+    x_edge, y_edge = np.ptp(time) / (columns - 1) / 2, np.ptp(y) / (rows - 1) / 2
     image = ax.imshow(
         values,
         # A palette, and only the points there are: files take a twentieth of the room.
@@ -90,31 +92,30 @@ def _draw(ax: Axes, diagram: Diagram, shown: Diagrams, scene: Scene) -> None:
         interpolation="none",
         vmin=-diagram.limit,
         vmax=diagram.limit,
-        extent=(time[0], time[-1], y[0], y[-1]),
+        extent=(time[0] - x_edge, time[1] + x_edge, y[0] - y_edge, y[1] + y_edge),
         origin="lower",
         aspect="auto",
     )
+    ax.set(xlim=time, ylim=y)
     for layer in scene.soft_layers:
         ax.axhline(layer.y, **LAYER)
     ax.set_title(diagram.heading, pad=4)
     ax.set_xlabel("time (ms)")
     bar = ax.figure.colorbar(image, ax=ax, location="bottom", aspect=40, pad=0.03)
     bar.outline.set_linewidth(0.5)
+    bar.set_ticks(MaxNLocator(4, symmetric=True))  # few: long numbers do not meet
 
 
-def evenly(
-    time: np.ndarray, y: np.ndarray, values: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return times, places and values [place, time] as an image needs them: `FINER` rows for every
-    distance between places, all even."""
+def evenly(y: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return values [place, time] at even places, as an image needs them: `FINER` rows for every
+    distance between places."""
     places = np.linspace(y[0], y[-1], FINER * (len(y) - 1) + 1)
-    columns = [np.interp(places, y, column) for column in values.T]
-    return time, places, np.stack(columns, axis=1)
+    return np.stack([np.interp(places, y, column) for column in values.T], axis=1)
 
 
 def _plot(scene: Scene, shown: Diagrams) -> dict[str, Any]:
     subplots = [Subplot(d.heading, "y (m)", [], 2.0, share="y") for d in shown.diagrams]
-    layout = interactive.layout(subplots, {"title": {"text": "time (ms)"}}, 0)
+    layout = interactive.layout(subplots, {"title": {"text": "time (ms)"}})
     layout["margin"]["r"] = 62
     rows = range(len(subplots))
     layout["shapes"] = [_layer(layer.y, i) for layer in scene.soft_layers for i in rows]
@@ -177,16 +178,3 @@ def _layer(y: float, row: int) -> dict[str, Any]:
         "y1": y,
         "line": {"color": "#333333", "width": 1, "dash": "4px,3px"},
     }
-
-
-def _settle(ax: Axes) -> None:
-    """Put the points of an image where they are, as its extent counts to the edges of its pixels,
-    and few numbers on its key, so that long ones do not meet."""
-    (image,) = ax.images
-    rows, columns = np.asarray(image.get_array()).shape
-    left, right, bottom, top = image.get_extent()
-    x, y = (right - left) / (columns - 1) / 2, (top - bottom) / (rows - 1) / 2
-    image.set_extent((left - x, right + x, bottom - y, top + y))
-    ax.set(xlim=(left, right), ylim=(bottom, top))
-    assert image.colorbar is not None
-    image.colorbar.set_ticks(MaxNLocator(4, symmetric=True))

@@ -9,29 +9,31 @@ import pandas as pd
 import xarray as xr
 
 from cases.schema.scene import Scene
-from compare.figures.style import in_order, is_engine
-from compare.figures.subplots import FORCES, MOTION, UNITS
+from compare.figures.style import DIFFERENCE, FIELD, in_order, is_engine
+from compare.figures.subplots import FORCES, MOTION, ROTATION, UNITS, axis_of, loudest
 from compare.figures.units import Unit, unit_for
 from compare.misfit.metrics import motion
 from compare.misfit.pairs import pairs
 from compare.misfit.ranking import own_exact
 
-#: Diverging, even to the eye and told apart under every colour blindness (ColorBrewer).
-FIELD, DIFFERENCE = "RdBu_r", "PuOr_r"
 LEAST = 1e-9  # SI: what is below does not move
 
 
 class Quantity(NamedTuple):
-    """What is drawn: a variable of the results, its component (None: its only one), and words."""
+    """What is drawn: a variable of the results, and its component; None: its only one."""
 
     variable: str
     component: int | None
-    words: str
+
+    @property
+    def words(self) -> str:
+        """Variable and component: "shear x"."""
+        return f"{self.variable} {axis_of(*self)}".rstrip()
 
     def of(self, result: xr.Dataset) -> np.ndarray:
         """Return the motion [places, times] of a result, SI."""
         values = motion(result, self.variable)
-        return values if self.component is None else values[..., self.component]
+        return values.reshape(*values.shape[:2], -1)[..., self.component or 0]
 
 
 class Diagram(NamedTuple):
@@ -92,12 +94,12 @@ def diagrams_of(scene: Scene, fields: dict[str, xr.Dataset]) -> list[Diagrams]:
     if not engines:
         return []
     first = fields[engines[0]]
-    quantity = _quantity(first)
+    quantity = Quantity(*loudest(first, (FORCES, MOTION, ROTATION), least=LEAST))
     values = {name: quantity.of(result) for name, result in fields.items()}
     if not any(v.any() for v in values.values()):
         return []
     between = [p for p in pairs() if {p.one, p.other} <= set(engines)]
-    shown = [_field(engines[0], values, quantity)]
+    shown = [_diagram(engines[0], values[engines[0]], quantity)]
     shown += [_difference(p.one, p.other, values, quantity) for p in between]
     own = {engine: own_exact(engine, fields, scene) for engine in engines}
     errors = [_difference(e, other, values, quantity) for e, other in own.items() if other]
@@ -109,45 +111,18 @@ def diagrams_of(scene: Scene, fields: dict[str, xr.Dataset]) -> list[Diagrams]:
     ]
 
 
-def _quantity(result: xr.Dataset) -> Quantity:
-    """Return what moves most: of the stress and the components of shear where they are recorded,
-    else of the velocity; of the rotation, where the wave strains and displaces nothing."""
-    for group in (FORCES, MOTION, ("rotation",)):
-        peaks = {(q, c): peak for q in group for c, peak in _peaks(result, q)}
-        if max(peaks.values(), default=0.0) > LEAST:
-            break
-    variable, component = max(peaks, key=lambda key: peaks[key]) if peaks else ("stress", None)
-    axes = list(result[variable][result[variable].dims[-1]].values)
-    axis = "" if component is None or len(axes) == 1 else f" {axes[component]}"
-    return Quantity(variable, component, f"{variable}{axis}")
-
-
-def _peaks(result: xr.Dataset, variable: str) -> list[tuple[int | None, float]]:
-    """Return the largest magnitude of each component's motion, none where it is not recorded."""
-    if variable not in result or not result[variable].size:
-        return []
-    values = np.abs(motion(result, variable))
-    if values.ndim == 2:
-        return [(None, float(values.max()))]
-    return list(enumerate(values.max(axis=(0, 1)).tolist()))
-
-
-def _field(name: str, values: dict[str, np.ndarray], quantity: Quantity) -> Diagram:
-    largest = float(np.abs(values[name]).max())
-    unit = unit_for(UNITS[quantity.variable], largest)
-    return Diagram(name, unit.drawn(values[name]), unit, FIELD, largest / unit.size)
-
-
 def _difference(one: str, other: str, values: dict[str, np.ndarray], quantity: Quantity) -> Diagram:
-    difference = values[one] - values[other]
-    largest = float(np.abs(difference).max())
+    found = values[one] - values[other]
     scale = float(np.abs(values[other]).max())
+    share = float(np.abs(found).max()) / scale if scale else 0.0
+    return _diagram(f"{one} − {other}", found, quantity, share)
+
+
+def _diagram(
+    name: str, values: np.ndarray, quantity: Quantity, share: float | None = None
+) -> Diagram:
+    """Return the diagram of SI values; share : of a difference."""
+    largest = float(np.abs(values).max())
     unit = unit_for(UNITS[quantity.variable], largest)
-    return Diagram(
-        f"{one} − {other}",
-        unit.drawn(difference),
-        unit,
-        DIFFERENCE,
-        largest / unit.size,
-        largest / scale if scale else 0.0,
-    )
+    colours = FIELD if share is None else DIFFERENCE
+    return Diagram(name, unit.drawn(values), unit, colours, largest / unit.size, share)

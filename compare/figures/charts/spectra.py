@@ -5,11 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from compare.figures.charts.chart import Chart, Line, Mark, Subplot, solutions_legend
-from compare.figures.charts.interactive import plot
+from compare.figures.charts.chart import Chart, ChartLine, Mark, Subplot, solutions_legend
 from compare.figures.charts.spectrum import Spectra, spectra_of
-from compare.figures.charts.static import draw
-from compare.figures.figure import SceneFigure
+from compare.figures.figure import SceneFigure, chart_figure
 from compare.figures.style import style
 from compare.figures.subplots import UNITS, in_page, panels
 from compare.misfit.pairs import Comparison
@@ -34,18 +32,8 @@ def spectra(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
         solutions_legend(comparisons, given=False),
         is_log=True,
     )
-    return [
-        SceneFigure(
-            f"{name}-spectra",
-            "spectra",
-            "Amplitude spectra",
-            _caption(found),
-            draw(f"{name}-spectra", chart),
-            _table(found),
-            plot(chart),
-            True,
-        )
-    ]
+    title, caption = "Amplitude spectra", _caption(found)
+    return [chart_figure(f"{name}-spectra", title, caption, chart, _table(found), folded=True)]
 
 
 def _caption(found: list[Spectra]) -> str:
@@ -71,7 +59,7 @@ def _subplot(one: Spectra, peak: float, place: str) -> Subplot:
     """Return the axes of one receiver's spectra; peak : the largest of all in its unit."""
     limits = 10.0**-DECADES * peak, 2 * peak
     lines = [
-        Line(
+        ChartLine(
             name,
             style(name),
             curve.index.values,

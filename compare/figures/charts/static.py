@@ -10,7 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from compare.figures.charts.chart import Chart, Entry, Line, Mark, Subplot
+from compare.figures.charts.chart import Chart, ChartLine, Entry, Mark, Subplot
 from compare.figures.style import RC, WIDTH, Style
 
 HEAD, HEADING = 0.9, 0.2  # inches of the legend and the abscissa, and of each subplot's heading
@@ -81,7 +81,7 @@ def _draw(ax: Axes, subplot: Subplot, name: str, is_log: bool) -> None:
     ax.margins(x=0)
 
 
-def add_line(ax: Axes, line: Line) -> Line2D:
+def add_line(ax: Axes, line: ChartLine) -> Line2D:
     """Draw one curve."""
     (drawn,) = ax.plot(line.x, line.y, **properties(line.style, line.marker))
     return drawn

@@ -5,10 +5,8 @@ from __future__ import annotations
 import pandas as pd
 
 from compare.figures.charts.chart import Chart, Entry, solutions_legend
-from compare.figures.charts.interactive import plot
 from compare.figures.charts.offset_stack import stacked
-from compare.figures.charts.static import draw
-from compare.figures.figure import SceneFigure
+from compare.figures.figure import SceneFigure, chart_figure
 from compare.figures.overlays import (
     Overlay,
     by_solution,
@@ -48,16 +46,8 @@ def waveforms(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
             "Each waveform stands on the y of its receiver, and beside them what each leaves from "
             f"the reference. {STYLES} {ending}"
         )
-    found = SceneFigure(
-        f"{name}-waveforms",
-        "waveforms",
-        title,
-        caption,
-        draw(f"{name}-waveforms", chart),
-        curve_table(comparisons).reset_index(),
-        plot(chart),
-        bool(overlaid),
-    )
+    table = curve_table(comparisons).reset_index()
+    found = chart_figure(f"{name}-waveforms", title, caption, chart, table, folded=bool(overlaid))
     return [_of_variants(name, comparisons, overlaid, receivers), found] if overlaid else [found]
 
 
@@ -91,18 +81,14 @@ def _chart(grid: list[list[Overlay]], legend: dict[str, list[Entry]]) -> Chart:
 def _of_variants(
     name: str, comparisons: list[Comparison], grid: list[list[Overlay]], receivers: list[Panel]
 ) -> SceneFigure:
-    chart = by_variants(grid)
-    return SceneFigure(
-        f"{name}-variants",
-        "waveforms",
-        "Variants in one pair of axes, engine by engine",
+    caption = (
         f"Variants differ by {changed_key(comparisons)}; the first is wide and light, the last "
         f"thin and dark. Dotted: the reference, {_references(receivers)}. {BELOW} {POSITIVE}"
-        f"{_at_rest(receivers)}",
-        draw(f"{name}-variants", chart),
-        _variant_table([overlay for row in grid for overlay in row], receivers),
-        plot(chart),
+        f"{_at_rest(receivers)}"
     )
+    title = "Variants in one pair of axes, engine by engine"
+    table = _variant_table([overlay for row in grid for overlay in row], receivers)
+    return chart_figure(f"{name}-variants", title, caption, by_variants(grid), table)
 
 
 def _references(receivers: list[Panel]) -> str:

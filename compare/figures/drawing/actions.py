@@ -4,7 +4,7 @@ from matplotlib.axes import Axes
 
 from cases.schema.scene import Gravity, Scene
 from compare.figures.drawing import symbols
-from compare.figures.drawing.frame import HEIGHT, WIDTH, Frame
+from compare.figures.drawing.placement import HEIGHT, WIDTH, Placement
 from compare.figures.drawing.symbols import CHARACTER, SOFT
 from compare.figures.units import unit_for
 
@@ -13,7 +13,7 @@ LEVEL = HEIGHT - 0.1  # inches of a prestress
 ASIDE = GRAVITY / 2 + 0.05  # inches from the arrow of gravity to its number
 
 
-def draw_load(ax: Axes, scene: Scene, place: Frame) -> None:
+def draw_load(ax: Axes, scene: Scene, place: Placement) -> None:
     """Draw the load on the start: arrows over its face, one where it is eccentric or across; a
     double arrow along the axis of a couple, and one beside a base that moves."""
     load, start = scene.load, place.x(0)
@@ -43,7 +43,7 @@ def draw_load(ax: Axes, scene: Scene, place: Frame) -> None:
         symbols.along_or_across(ax, at, (along, across), -depth, LENGTH)
 
 
-def draw_forces(ax: Axes, scene: Scene, place: Frame) -> None:
+def draw_forces(ax: Axes, scene: Scene, place: Placement) -> None:
     """Draw gravity beside the pillar, and a prestress above it and what is written there."""
     if scene.gravity is not None and scene.gravity.acceleration:
         _draw_gravity(ax, scene.gravity, gravity_at(scene, place))
@@ -51,7 +51,7 @@ def draw_forces(ax: Axes, scene: Scene, place: Frame) -> None:
         _draw_prestress(ax, scene.prestress.normal, place.x(scene.pillar.length / 2), LEVEL)
 
 
-def gravity_at(scene: Scene, place: Frame) -> float:
+def gravity_at(scene: Scene, place: Placement) -> float:
     """Return where the arrow of gravity stands, inches."""
     return min(place.x(scene.pillar.length) + 1.5, WIDTH - 0.3)
 
@@ -61,7 +61,7 @@ def _draw_gravity(ax: Axes, gravity: Gravity, x: float) -> None:
     level = LEVEL - GRAVITY / 2
     tip = (x + GRAVITY / 2 * along, level + GRAVITY / 2 * across)
     symbols.along_or_across(ax, tip, (along, across), -depth, GRAVITY)
-    ax.text(x - ASIDE, level, gravity_words(gravity), ha="right", va="center", fontsize=8)
+    symbols.note(ax, x - ASIDE, level, gravity_words(gravity), "right")
 
 
 def gravity_words(gravity: Gravity) -> str:
@@ -73,7 +73,7 @@ def _draw_prestress(ax: Axes, normal: float, x: float, level: float) -> None:
     """Draw two arrows, towards each other in compression, beside the number."""
     unit = unit_for("Pa", abs(normal))
     words = f"prestress {normal / unit.size:g} {unit.name}"
-    ax.text(x, level, words, ha="center", va="center", fontsize=8)
+    symbols.note(ax, x, level, words)
     inner = CHARACTER * len(words) / 2 + 0.1
     for side in (-1, 1):
         far, near = (x + side * (inner + 0.4), level), (x + side * inner, level)

@@ -8,8 +8,8 @@ from matplotlib.ticker import MaxNLocator
 
 from cases.schema.scene import Scene, SoftLayer
 from compare.figures.drawing.actions import ASIDE, gravity_at, gravity_words
-from compare.figures.drawing.frame import WIDTH, Frame
-from compare.figures.drawing.symbols import CHARACTER, INK, LAYER, RECEIVER, SOFT
+from compare.figures.drawing.placement import WIDTH, Placement
+from compare.figures.drawing.symbols import CHARACTER, INK, LAYER, RECEIVER, SOFT, note
 from compare.figures.units import unit_for
 
 ABOVE = 0.33  # inches of the labels over the pillar
@@ -23,7 +23,7 @@ class Label(NamedTuple):
     colour: str
 
 
-def draw_receivers(ax: Axes, scene: Scene, place: Frame) -> None:
+def draw_receivers(ax: Axes, scene: Scene, place: Placement) -> None:
     """Draw sections (a line and a triangle), points (a dot) and layers with their labels."""
     labels = []
     for i, y in enumerate(scene.record.stress):
@@ -33,16 +33,8 @@ def draw_receivers(ax: Axes, scene: Scene, place: Frame) -> None:
         mark.set_gid(f"stress-{i}")
         labels.append(Label(x, f"σ {y:g} m", RECEIVER))
     for i, y in enumerate(scene.record.velocity):
-        (mark,) = ax.plot(
-            [place.x(y)],
-            [place.middle],
-            "o",
-            markerfacecolor="white",
-            markeredgecolor=RECEIVER,
-            markeredgewidth=1.3,
-            markersize=5,
-            zorder=7,
-        )
+        (mark,) = ax.plot([place.x(y)], [place.middle], "o", markersize=5, zorder=7)
+        mark.set(markeredgecolor=RECEIVER, markeredgewidth=1.3, markerfacecolor="white")
         mark.set_gid(f"velocity-{i}")
         labels.append(Label(place.x(y), f"v {y:g} m", RECEIVER))
     labels += [
@@ -52,7 +44,7 @@ def draw_receivers(ax: Axes, scene: Scene, place: Frame) -> None:
     _write(ax, sorted(labels), place, _right(scene, place))
 
 
-def _right(scene: Scene, place: Frame) -> float:
+def _right(scene: Scene, place: Placement) -> float:
     """Return how far to the right labels may reach, inches."""
     if scene.gravity is None or not scene.gravity.acceleration:
         return WIDTH
@@ -79,7 +71,7 @@ def _number(value: float, si: str) -> str:
     return f"{value / unit.size:.3g} {unit.name}"
 
 
-def _write(ax: Axes, labels: list[Label], place: Frame, right: float) -> None:
+def _write(ax: Axes, labels: list[Label], place: Placement, right: float) -> None:
     """Write labels in one line above the pillar, moved aside where they would meet; none at all
     where there is no room for them: the scale tells where receivers are."""
     widths = np.array([CHARACTER * (len(label.text) + 1) for label in labels])
@@ -92,7 +84,7 @@ def _write(ax: Axes, labels: list[Label], place: Frame, right: float) -> None:
             ax.plot(
                 [label.x, x], [place.top + 0.12, base - 0.08], color=label.colour, linewidth=0.6
             )
-        ax.text(x, base, label.text, ha="center", va="center", fontsize=8, color=label.colour)
+        note(ax, x, base, label.text, color=label.colour)
 
 
 def _apart(wanted: np.ndarray, widths: np.ndarray, right: float) -> np.ndarray:
@@ -110,7 +102,7 @@ def _apart(wanted: np.ndarray, widths: np.ndarray, right: float) -> np.ndarray:
     return np.clip(moved, widths[0] / 2, right - widths[-1] / 2 - before[-1]) + before
 
 
-def ticks(scene: Scene, place: Frame) -> list[float]:
+def ticks(scene: Scene, place: Placement) -> list[float]:
     """Return what the scale is marked with, m."""
     length = scene.pillar.length
     count = max(2, round(place.scale * length / 0.55))
@@ -118,18 +110,18 @@ def ticks(scene: Scene, place: Frame) -> list[float]:
     return [float(y) for y in found if 0 <= y <= length * (1 + 1e-9)]
 
 
-def draw_scale(ax: Axes, scene: Scene, place: Frame) -> None:
+def draw_scale(ax: Axes, scene: Scene, place: Placement) -> None:
     """Draw y in metres under the pillar, and what the pillar measures."""
     pillar, level = scene.pillar, place.bottom - 0.14
     end = place.x(pillar.length)
     ax.plot([place.start, end], [level, level], color=INK, linewidth=0.8)
     for y in ticks(scene, place):
         ax.plot([place.x(y)] * 2, [level, level - 0.05], color=INK, linewidth=0.8)
-        ax.text(place.x(y), level - 0.07, f"{y:g}", ha="center", va="top", fontsize=8)
+        note(ax, place.x(y), level - 0.07, f"{y:g}", va="top")
     times = place.thick / (place.scale * pillar.side)
     drawn = f"; drawn {times:.2g} times as thick" if times > 1.01 else ""
     words = (
         f"y (m): {pillar.block_count:,} blocks of {pillar.block:g} m, "
         f"{pillar.side:g} m × {pillar.side:g} m across{drawn}"
     )
-    ax.text(place.start, level - 0.24, words, ha="left", va="top", fontsize=8, color=SOFT)
+    note(ax, place.start, level - 0.24, words, "left", "top", color=SOFT)

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from cases.loads import load_history
 from cases.schema.scene import Scene
 from compare.figures.drawing import section, side
-from compare.figures.drawing.frame import HEIGHT, WIDTH
+from compare.figures.drawing.placement import HEIGHT, WIDTH
 from compare.figures.drawing.symbols import LOAD
 from compare.figures.figure import SceneFigure
 from compare.figures.style import RC
@@ -33,12 +33,10 @@ def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
     groups = _groups(comparisons)
     return SceneFigure(
         f"{name}-scene",
-        "scene",
         "The scene",
         _caption(groups),
         _figure(groups),
         pd.concat([_table(scene, words) for words, scene in groups], ignore_index=True),
-        None,
     )
 
 
@@ -47,8 +45,8 @@ def _groups(comparisons: list[Comparison]) -> list[tuple[str, Scene]]:
     seen: dict[str, tuple[list[str], Scene]] = {}
     for words, comparison in zip(variant_names(comparisons), comparisons, strict=True):
         scene = comparison.scene
-        look = str([getattr(scene, key) for key in SEEN] + [scene.joints.contact_points])
-        seen.setdefault(look, ([], scene))[0].append(words)
+        appearance = str([getattr(scene, key) for key in SEEN] + [scene.joints.contact_points])
+        seen.setdefault(appearance, ([], scene))[0].append(words)
     return [(", ".join(names), scene) for names, scene in list(seen.values())[:MOST]]
 
 
@@ -102,7 +100,7 @@ def _draw_row(figure: Figure, scene: Scene, above: Scene | None, bottom: float) 
         return figure.add_axes((left / width, (bottom + low) / height, *size))
 
     side.draw_strip(axes(0, WIDTH), scene)
-    if above is None or section.look(scene) != section.look(above):
+    if above is None or section.appearance(scene) != section.appearance(above):
         section.draw_section(axes(WIDTH, section.WIDTH), scene)
     if scene.load.amplitude and (above is None or _history(scene) != _history(above)):
         left = WIDTH + section.WIDTH + GAP

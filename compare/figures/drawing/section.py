@@ -14,7 +14,7 @@ WIDTH, HEIGHT = 1.5, 1.68  # inches of the drawing
 MIDDLE = 0.75, 0.87
 
 
-def look(scene: Scene) -> tuple[object, ...]:
+def appearance(scene: Scene) -> tuple[object, ...]:
     """Return all that the drawing of a scene's section shows."""
     joints = scene.joints.contact_points, scene.joints.point_rule
     return (*joints, scene.pillar.side, scene.load.model_dump(), is_spatial(scene))
@@ -33,30 +33,13 @@ def draw_section(ax: Axes, scene: Scene) -> None:
     if is_spatial(scene):
         _draw_contacts(ax, scene)
     _draw_load(ax, scene)
-    ax.annotate(
-        "",
-        (left, bottom - 0.14),
-        (left + SIZE, bottom - 0.14),
-        arrowprops={
-            "arrowstyle": "<->",
-            "color": SOFT,
-            "linewidth": 0.8,
-            "shrinkA": 0,
-            "shrinkB": 0,
-        },
-    )
-    ax.text(MIDDLE[0], bottom - 0.2, f"{scene.pillar.side:g} m", ha="center", va="top", fontsize=8)
-    ax.text(
-        MIDDLE[0],
-        bottom + SIZE + 0.1,
-        "start, seen against y",
-        ha="center",
-        va="bottom",
-        fontsize=8,
-        color=SOFT,
-    )
-    ax.text(left - 0.06, bottom + SIZE, "x", ha="right", va="top", fontsize=8, style="italic")
-    ax.text(left + SIZE + 0.05, bottom, "z", ha="left", va="bottom", fontsize=8, style="italic")
+    line = {"arrowstyle": "<->", "color": SOFT, "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}
+    ax.annotate("", (left, bottom - 0.14), (left + SIZE, bottom - 0.14), arrowprops=line)
+    top, right, middle = bottom + SIZE, left + SIZE, MIDDLE[0]
+    symbols.note(ax, middle, bottom - 0.2, f"{scene.pillar.side:g} m", va="top")
+    symbols.note(ax, middle, top + 0.1, "start, seen against y", va="bottom", color=SOFT)
+    symbols.note(ax, left - 0.06, top, "x", "right", "top", style="italic")
+    symbols.note(ax, right + 0.05, bottom, "z", "left", "bottom", style="italic")
 
 
 def _at(scene: Scene, x: float, z: float) -> tuple[float, float]:

@@ -13,8 +13,8 @@ from matplotlib.collections import LineCollection, PolyCollection
 from cases.schema.scene import Scene
 from compare.figures.drawing import symbols
 from compare.figures.drawing.actions import draw_forces, draw_load
-from compare.figures.drawing.frame import HEIGHT, WIDTH, Frame, frame
 from compare.figures.drawing.labels import draw_receivers, draw_scale, ticks
+from compare.figures.drawing.placement import HEIGHT, WIDTH, Placement, placement
 from compare.figures.drawing.symbols import CHARACTER, EDGE, INK, LAYER, ROCK
 
 MOST = 400  # blocks that are drawn one by one
@@ -29,7 +29,7 @@ def draw_strip(ax: Axes, scene: Scene) -> None:
     """
     ax.set(xlim=(0, WIDTH), ylim=(0, HEIGHT), aspect="equal")
     ax.axis("off")
-    place = frame(scene)
+    place = placement(scene)
     _draw_rock(ax, scene, place)
     _draw_layers(ax, scene, place)
     for end, outward in ((scene.ends.start, -1), (scene.ends.end, 1)):
@@ -47,7 +47,7 @@ def block_edges(scene: Scene) -> list[float]:
     return np.linspace(0, length, (count if count <= MOST else 1) + 1).tolist()
 
 
-def _draw_rock(ax: Axes, scene: Scene, place: Frame) -> None:
+def _draw_rock(ax: Axes, scene: Scene, place: Placement) -> None:
     edges = [place.x(y) for y in block_edges(scene)]
     corners = [
         [(a, place.bottom), (b, place.bottom), (b, place.top), (a, place.top)]
@@ -64,20 +64,16 @@ def _draw_rock(ax: Axes, scene: Scene, place: Frame) -> None:
     ax.plot(*zip(*outline, strict=True), color=INK, linewidth=1.0, zorder=4)
 
 
-def _draw_layers(ax: Axes, scene: Scene, place: Frame) -> None:
+def _draw_layers(ax: Axes, scene: Scene, place: Placement) -> None:
     for i, layer in enumerate(scene.soft_layers):
         width = max(0.045, place.scale * (layer.thickness or 0.0))
-        x, over = place.x(layer.y), 0.05
-        (patch,) = ax.fill(
-            [x - width / 2, x + width / 2, x + width / 2, x - width / 2],
-            [place.bottom - over, place.bottom - over, place.top + over, place.top + over],
-            color=LAYER,
-            zorder=5,
-        )
-        patch.set_gid(f"layer-{i}")
+        left, right = place.x(layer.y) - width / 2, place.x(layer.y) + width / 2
+        low, high = place.bottom - 0.05, place.top + 0.05
+        across, up = [left, right, right, left], [low, low, high, high]
+        ax.fill(across, up, color=LAYER, zorder=5, gid=f"layer-{i}")
 
 
-def _draw_end(ax: Axes, end: str, place: Frame, x: float, outward: int) -> None:
+def _draw_end(ax: Axes, end: str, place: Placement, x: float, outward: int) -> None:
     """Draw what holds an end."""
     far, middle = x + outward * ROOM, (x, place.middle)
     half = (x + outward * ROOM / 2, place.middle)
@@ -92,17 +88,11 @@ def _draw_end(ax: Axes, end: str, place: Frame, x: float, outward: int) -> None:
         symbols.wall(ax, far, place.middle, 0.3, outward)
 
 
-def _name_end(ax: Axes, end: str, scene: Scene, place: Frame, outward: int) -> None:
+def _name_end(ax: Axes, end: str, scene: Scene, place: Placement, outward: int) -> None:
     """Write what holds an end below it, beside the wall and the number of the scale there."""
     y = 0.0 if outward < 0 else ticks(scene, place)[-1]
     number = place.x(y) + outward * CHARACTER * (len(f"{y:g}") + 1) / 2
     x = place.x(0.0 if outward < 0 else scene.pillar.length) + outward * 0.1
     x = min(x, number) if outward < 0 else max(x, number)
-    ax.text(
-        x,
-        place.bottom - 0.21,
-        f"{end} {'start' if outward < 0 else 'end'}",
-        ha="right" if outward < 0 else "left",
-        va="top",
-        fontsize=8,
-    )
+    words = f"{end} {'start' if outward < 0 else 'end'}"
+    symbols.note(ax, x, place.bottom - 0.21, words, "right" if outward < 0 else "left", "top")

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from math import hypot
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,6 +14,13 @@ THIN = 0.9  # points
 CHARACTER = 0.066  # inches of a character of 8 points
 
 Point = tuple[float, float]
+
+
+def note(
+    ax: Axes, x: float, y: float, text: str, ha: str = "center", va: str = "center", **style: Any
+) -> None:
+    """Write at a place, in 8 points."""
+    ax.text(x, y, text, ha=ha, va=va, fontsize=8, **style)
 
 
 def arrow(ax: Axes, tail: Point, tip: Point, colour: str = LOAD, style: str = "-|>") -> None:

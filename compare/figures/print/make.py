@@ -16,8 +16,8 @@ from compare.misfit.pairs import Comparison
 from compare.runs.jobs import names_of
 
 
-class Asked(NamedTuple):
-    """How a figure is asked for; kind : None where the file's name says it."""
+class FigureRequest(NamedTuple):
+    """What `jointwave figure` is to write; kind : None where the file's name says it."""
 
     style: str
     columns: int
@@ -40,14 +40,14 @@ def make(
     scenes: list[Scene],
     runs: list[tuple[str, str | None]],
     curves: list[Any],
-    asked: Asked,
+    request: FigureRequest,
     progress: Progress,
 ) -> Path:
     """Solve scenes, draw them with the curves of others, and write the figure.
 
     runs : (engine, model) each, see `compare.runs.jobs`; empty: all that apply.
     """
-    kind, appearance = asked.format, STYLES[asked.style]
+    kind, appearance = request.format, STYLES[request.style]
     wanted = [_solvers(scene, runs) for scene in scenes]
     found, done = [], 0
     for scene, solvers in zip(scenes, wanted, strict=True):
@@ -59,8 +59,8 @@ def make(
         given = [curve for curve in curves if curve.holds_for(scene)]
         comparison.besides += [lay_beside(c, scene, comparison.results, False) for c in given]
         found.append(comparison)
-    figure = draw(found, appearance, asked.columns, asked.language)
-    return save(figure, asked.out, kind, scenes[0].title, appearance.dpi)
+    figure = draw(found, appearance, request.columns, request.language)
+    return save(figure, request.out, kind, scenes[0].title, appearance.dpi)
 
 
 def _solvers(scene: Scene, runs: list[tuple[str, str | None]]) -> list[str]:

@@ -80,7 +80,6 @@
     const [Plotly, { data, layout }] = [await plotly(), await held(figure.dataset.plot).json()];
     const box = figure.querySelector(".chart");
     figure.classList.add("live");
-    dropLegend(layout);
     if (box.clientWidth < 600) makeRoom(layout);
     try {
       const config = { ...CONFIG, toImageButtonOptions: { ...CONFIG.toImageButtonOptions, filename: figure.id } };
@@ -92,28 +91,18 @@
     }
   }
 
-  /* The page has buttons in its place; its room below the axis is not needed. */
-  function dropLegend(layout) {
-    if (!layout.showlegend) return;
-    const { margin, legend, height } = layout;
-    const room = margin.b + legend.y * (height - margin.t - margin.b);
-    layout.showlegend = false;
-    layout.height -= room;
-    margin.b -= room;
-  }
-
   /* On a narrow screen the buttons of a chart would lie on its heading. */
   function makeRoom(layout) {
     layout.margin.t += 26;
     layout.height += 26;
   }
 
-  /* One button a curve, for all panels; in place of the chart's own legend, which no key reaches. */
+  /* One button a curve, for all panels; a legend of the chart's own no key would reach. */
   function addToggles(place, box, Plotly) {
     const groups = new Map();
     box.data.forEach((trace, i) => {
       if (!trace.legendgroup) return;
-      const group = groups.get(trace.legendgroup) ?? { name: trace.name, rank: trace.legendrank ?? 1000, line: trace.line, traces: [] };
+      const group = groups.get(trace.legendgroup) ?? { name: trace.name, rank: trace.legendrank, line: trace.line, traces: [] };
       group.traces.push(i);
       groups.set(trace.legendgroup, group);
     });

@@ -1,8 +1,6 @@
 """The scene that `jointwave new` writes: explained by the models, and runnable as it stands."""
 
 import re
-import subprocess
-import sys
 import tomllib
 
 import pytest
@@ -162,14 +160,9 @@ def test_a_name_that_is_none_is_refused(tmp_path, monkeypatch, name):
     assert not list(tmp_path.iterdir())
 
 
-def test_the_command_says_what_it_wrote(tmp_path):
-    command = [sys.executable, "-m", "compare", "new"]
-    done = subprocess.run([*command, "mine"], cwd=tmp_path, capture_output=True, text=True)
-    assert (done.returncode, done.stdout.strip(), done.stderr) == (0, "wrote mine.toml", "")
-    again = subprocess.run([*command, "mine"], cwd=tmp_path, capture_output=True, text=True)
-    assert again.returncode == 2 and again.stderr.count("\n") == 1
-    wrong = subprocess.run(
-        [*command, "x", "--from", "nothing"], cwd=tmp_path, capture_output=True, text=True
-    )
-    assert wrong.returncode == 2 and wrong.stderr.count("\n") == 1
+def test_the_command_says_what_it_wrote(jointwave, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert jointwave("new", "mine") == ("wrote mine.toml\n", "")
+    for arguments in (("mine",), ("x", "--from", "nothing")):
+        assert jointwave("new", *arguments, code=2).err.count("\n") == 1
     assert [path.name for path in tmp_path.iterdir()] == ["mine.toml"]

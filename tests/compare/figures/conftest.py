@@ -9,7 +9,7 @@ from compare.figures.charts import interactive
 from compare.misfit.pairs import Comparison
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def compared():
     """Return a function that solves scenes by the rigid blocks, or by what is named."""
 

@@ -86,7 +86,7 @@ def test_an_engine_and_an_exact_solution_stay_apart(sight):
 @pytest.mark.parametrize("sight", SIGHTS)
 @pytest.mark.parametrize("count", range(2, 7))
 def test_variants_stay_apart(count, sight):
-    assert least_distance([look.colour for look in variant_styles(count)], sight) > 15
+    assert least_distance([one.colour for one in variant_styles(count)], sight) > 15
 
 
 @pytest.mark.parametrize("sight", SIGHTS)

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, Rectangle
 
 import cases
-from compare.figures.drawing.frame import THICK, WIDTH, frame
 from compare.figures.drawing.labels import _apart
+from compare.figures.drawing.placement import THICK, WIDTH, placement
 from compare.figures.drawing.scene import load_curve, scene_figure
 from compare.figures.drawing.section import draw_section
 from compare.figures.drawing.side import MOST, draw_strip
@@ -56,7 +56,7 @@ def test_every_block_joint_layer_and_receiver_is_drawn_in_its_place(pillar):
     scene = pillar(
         soft_layers=LAYERS, record__stress=[10.0, 20.0, 47.5], record__velocity=[0.25, 19.75]
     )
-    ax, place = strip(scene), frame(scene)
+    ax, place = strip(scene), placement(scene)
     (blocks,) = [c for c in ax.collections if isinstance(c, PolyCollection)]
     (joints,) = [c for c in ax.collections if isinstance(c, LineCollection)]
     assert len(blocks.get_paths()) == 100 and len(joints.get_segments()) == 99
@@ -119,7 +119,7 @@ def test_arrows_point_along_the_load(pillar, direction):
 @pytest.mark.parametrize(("normal", "inward"), [(5e5, True), (-5e5, False)])
 def test_prestress_points_inward_in_compression(pillar, normal, inward):
     scene = pillar(prestress__normal=normal, load__amplitude=0.0)
-    middle = frame(scene).x(25.0)
+    middle = placement(scene).x(25.0)
     for arrow in arrows(strip(scene)):
         (x0, _), (x1, _) = arrow._posA_posB
         assert (abs(x1 - middle) < abs(x0 - middle)) == inward
@@ -136,11 +136,11 @@ def test_contact_points_are_drawn_where_the_scene_moves_in_space(pillar, n, rule
 
 def test_a_squat_pillar_is_true_to_scale_and_a_slender_one_says_by_how_much(pillar):
     squat = pillar(pillar__length=4.0, pillar__side=2.0, record__stress=[2.0])
-    place = frame(squat)
+    place = placement(squat)
     assert place.thick == pytest.approx(place.scale * 2.0) and place.thick > THICK
     assert not any("times as thick" in text for text in words(strip(squat)))
     slender = strip(pillar())
-    place = frame(pillar())
+    place = placement(pillar())
     times = place.thick / (place.scale * 0.5)
     assert times > 5 and any(f"{times:.2g} times as thick" in text for text in words(slender))
 

@@ -53,12 +53,12 @@ def painted(lengths, places):
 @pytest.mark.parametrize("name", [n for n in names() if style(n).dashes != "-"])
 def test_dashes_begin_where_they_begin_in_print(name):
     """matplotlib begins `offset` into a pattern; SVG's own pattern must be turned by that."""
-    look = style(name)
-    offset, lengths = look.dashes
-    turned = [float(x.removesuffix("px")) for x in interactive.line_style(look)["dash"].split(",")]
+    drawn = style(name)
+    offset, lengths = drawn.dashes
+    turned = [float(x.removesuffix("px")) for x in interactive.line_style(drawn)["dash"].split(",")]
     assert len(turned) % 2 == 0  # SVG repeats an odd pattern with dashes and gaps exchanged
-    places = look.width * (np.arange(0, 40, 0.25) + 0.1)
-    expected = painted(look.width * np.array(lengths), places + look.width * offset)
+    places = drawn.width * (np.arange(0, 40, 0.25) + 0.1)
+    expected = painted(drawn.width * np.array(lengths), places + drawn.width * offset)
     np.testing.assert_array_equal(painted(turned, places), expected)
 
 
@@ -71,7 +71,7 @@ def test_panels_stand_apart_under_each_other():
         Subplot("a", "m", [], 2.0),
         Subplot("a phone has no room for all of " * 2, "m", [], 0.8),
     ]
-    layout = interactive.layout(subplots, {}, 0)
+    layout = interactive.layout(subplots, {})
     low, high = layout["yaxis"]["domain"], layout["yaxis2"]["domain"]
     assert low[1] == 1 and low[0] > high[1] and high[0] == pytest.approx(0, abs=1e-12)
     inner = layout["height"] - layout["margin"]["t"] - layout["margin"]["b"]

@@ -120,9 +120,9 @@ def test_a_lone_solution_has_no_residual(pillar):
 
 @pytest.mark.parametrize("count", range(2, MOST + 1))
 def test_every_variant_is_seen_where_all_coincide(count):
-    looks = variant_styles(count)
-    assert len({look.colour for look in looks}) == count
-    widths = [look.width for look in sorted(looks, key=lambda look: look.order)]
+    styles = variant_styles(count)
+    assert len({style.colour for style in styles}) == count
+    widths = [style.width for style in sorted(styles, key=lambda style: style.order)]
     assert all(a > b + 0.3 for a, b in pairwise(widths))
 
 

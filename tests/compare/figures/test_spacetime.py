@@ -190,10 +190,10 @@ def test_nothing_moves_nothing_is_drawn(pillar):
     assert diagrams_of(pillar(), {"dem": spatial(0.0, 0.0, 0.0)}) == []
 
 
-@pytest.fixture
-def picture(pillar):
+@pytest.fixture(scope="module")
+def picture(scene_with):
     layer = {"y": 20.0, "spacing_stiffness": 4.375e8}
-    scene = pillar(time__duration=0.03, soft_layers=[layer])
+    scene = scene_with(soft_layers=[layer], **{"time.duration": 0.03})
     bar = {"dem": fields_of(scene, ["dem"])["dem"]}
     bar["continuum-equivalent"] = fields_of(scene, ["equivalent-bar"])["equivalent-bar"]
     return space_time("fig", scene, "soft layer", diagrams_of(scene, bar)[0])

@@ -120,12 +120,10 @@ def test_first_mode_is_that_of_two_ends_that_reflect(pillar, compared, end, wave
         assert found["first mode"] == pytest.approx(speed / (waves * 50.0))
 
 
-@pytest.fixture
-def picture(pillar, compared):
-    scenes = [
-        pillar(time__duration=0.04, soft_layers=layers, record__velocity=[30.25])
-        for layers in ([], [LAYER])
-    ]
+@pytest.fixture(scope="module")
+def picture(scene_with, compared):
+    keys = {"time.duration": 0.04, "record.velocity": [30.25]}
+    scenes = [scene_with(soft_layers=layers, **keys) for layers in ([], [LAYER])]
     (found,) = spectra("fig", compared(*scenes))
     return found
 

@@ -61,7 +61,7 @@ def build_page(folder, receivers, variants):
         name = f"the same joints with dashpots of ratio {0.01 * i}"
         text += f'\n[[variants]]\nname = "{name}"\njoints.damping_ratio = {0.01 * i}\n'
     own.write_text(text)
-    return build(folder / "report", workers=1, scenes=[str(own)]).page
+    return build(folder / "report", workers=1, scenes=[str(own)]).file
 
 
 TITLE = "A title of so many words that it takes more than one line on a narrow screen"

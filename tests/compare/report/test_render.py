@@ -9,7 +9,7 @@ from compare.figures.export import Drawn
 from compare.report.findings import Finding
 from compare.report.overview import Overview
 from compare.report.render import Page, render
-from compare.report.section import Section, Shown, linked
+from compare.report.section import PAPER, SceneRequest, Section, Shown, linked
 from compare.report.tables import Table
 
 
@@ -31,9 +31,7 @@ def page(tmp_path):
     """Return a function that renders a page of nothing but the given parts."""
 
     def make(**parts):
-        nothing = Page(
-            "About", Overview([], [], []), Table([], {}), [], "jointwave report", "here", {}
-        )
+        nothing = Page("About", Overview([]), Table([], {}), [], "jointwave report", "here", {})
         return render(nothing.__class__(**{**nothing.__dict__, **parts}), tmp_path)
 
     return make
@@ -47,7 +45,8 @@ def section(tmp_path, figure):
     file.write_text("x")
 
     def make(findings, **changes):
-        about = "fig-05", "fig. 5", 5, "Ends", "source", "toml", "jointwave report five"
+        request = SceneRequest(PAPER / "fig-05.toml", "five", "fig-05")
+        about = request, "Ends", "source", "toml"
         one = Section(*about, [shown(figure("ends"))], file, findings, *[empty] * 4, {})
         return one._replace(**changes)
 
@@ -119,7 +118,7 @@ def test_no_picture_stands_twice(page, section, figure, shared):
     found = linked(sections)
     assert [s.place for section in found for s in section.figures] == ["", "first-figure", ""]
     assert other.file("pdf").exists() is False and third.file("pdf").exists()
-    found = [found[0], found[1]._replace(name="fig-06")]
+    found = [found[0], found[1]._replace(request=found[1].request._replace(name="fig-06"))]
     html = page(sections=found)
     assert html.count("<figure id=") == 2 and 'id="second-figure"' not in html
     assert 'The same picture as <a href="#first-figure">fig. 5: A figure</a>.' in html

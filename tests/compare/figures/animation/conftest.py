@@ -1,5 +1,7 @@
 """What the tests of moving pictures share: blocks of any cells, and a short pillar's simulated."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -8,9 +10,9 @@ from results.snapshots import snapshots
 from results.subcells import CORNERS
 
 SHORT = {
-    "pillar__length": 10.0,
-    "ends__end": "matched",
-    "time__duration": 0.02,
+    "pillar.length": 10.0,
+    "ends.end": "matched",
+    "time.duration": 0.02,
     "record": {"stress": [5.0]},
 }
 
@@ -48,18 +50,6 @@ def row():
 
 
 @pytest.fixture(scope="session")
-def _kept():
-    return {}
-
-
-@pytest.fixture
-def simulated(pillar, _kept):
-    """Return a function that gives both engines' simulated of a short pillar with keys changed."""
-
-    def taken(count=41, **changes):
-        key = repr((count, changes))
-        if key not in _kept:
-            _kept[key] = take(pillar(**(SHORT | changes)), count)
-        return _kept[key]
-
-    return taken
+def simulated(scene_with):
+    """Return a function that gives so many snapshots of a short pillar by both engines."""
+    return cache(lambda count=41: take(scene_with(**SHORT), count))

@@ -9,7 +9,7 @@ from compare.figures.animation.view_settings import settings_for
 from compare.figures.style import style
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def frame(simulated):
     taken = simulated()
     return Frame(taken, settings_for(taken.scene, taken.found), dots=50)
@@ -82,6 +82,8 @@ def test_nothing_is_clipped(frame, collisions):
     for part in frame.animated:
         part.set_animated(False)
     assert collisions(frame.figure) == []
+    for part in frame.animated:
+        part.set_animated(True)
     for i in (0, 20, 40):
         frame.show(i)
         for name, drawn in frame.faces.items():

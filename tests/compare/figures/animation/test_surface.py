@@ -73,6 +73,25 @@ def test_flat_cells_are_seen_from_both_sides():
         assert in_front(surface, seen(triangle.points, up)).tolist() == [0]
 
 
+def test_a_turned_block_shows_a_second_side_behind_the_first(row):
+    """About x, so that the side at its end faces the viewer, who stands at -z."""
+    box = row(count=1)
+    x, y, z = box.points.T
+    turned = np.stack([x, y - 0.1 * z, z + 0.1 * y], axis=1)
+    surface = surface_of(box)
+    front = in_front(surface, seen(turned, X))
+    assert len(front) == 2 and (box.points[surface.faces[front[1]], 2] == -0.5).all()
+    assert (box.points[surface.faces[front[0]], 1] == 0).all()
+
+
+def test_a_tetrahedron_shows_the_side_towards_the_viewer():
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    cell = snapshots(np.zeros(1), points, "tetra", [range(4)], [0], points[None], points[None])
+    surface = surface_of(cell)
+    (front,) = in_front(surface, seen(points, X))
+    assert (points[surface.faces[front], 2] == 0).all()
+
+
 @pytest.mark.parametrize("up", [X, Z, (X + Z) / np.sqrt(2)])
 def test_the_view_keeps_lengths_and_right_hands(up):
     axes = seen(np.eye(3), up)

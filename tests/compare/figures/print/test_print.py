@@ -3,7 +3,6 @@
 import re
 import shutil
 import subprocess
-import sys
 import warnings
 import xml.etree.ElementTree as ET
 from base64 import b64decode
@@ -23,7 +22,7 @@ from compare.exact.blocks import lattice
 from compare.figures import fonts
 from compare.figures.print.appearance import MM, STYLES
 from compare.figures.print.draw import draw
-from compare.figures.print.make import Asked, make
+from compare.figures.print.make import FigureRequest, make
 from compare.figures.print.save import save
 from compare.figures.print.text import CHINESE, WORDS
 from compare.figures.style import is_engine, style
@@ -212,9 +211,9 @@ def test_the_same_figure_is_the_same_file(written):
 def test_what_is_asked_for_is_drawn(pillar, tmp_path):
     """By engines and models, and every curve is that of its solution."""
     scene, out = pillar(**SHORT), tmp_path / "figure.svg"
-    asked = Asked("screen", 2, None, "en", out)
+    request = FigureRequest("screen", 2, None, "en", out)
     done = []
-    make([scene], [("dem", None), ("exact", "lattice")], [], asked, done.append)
+    make([scene], [("dem", None), ("exact", "lattice")], [], request, done.append)
     labels = set(re.findall(r">([^<>]+)</text>", out.read_text()))
     assert {"rigid blocks", "rigid blocks, exact"} <= labels and "jointed rock" not in labels
     assert done == [0.5, 1.0]
@@ -233,20 +232,20 @@ def test_what_is_asked_for_is_drawn(pillar, tmp_path):
         ((), "--out"),
     ],
 )
-def test_a_mistake_is_one_line(tmp_path, arguments, words):
+def test_a_mistake_is_one_line(jointwave, tmp_path, monkeypatch, arguments, words):
     """And no file is written or lost."""
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "taken.pdf").write_text("mine")
-    command = [sys.executable, "-m", "compare", "figure", SCENE, *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
-    assert done.returncode == 2 and done.stderr.count("\n") == 1 and words in done.stderr
+    said = jointwave("figure", SCENE, *arguments, code=2).err
+    assert said.count("\n") == 1 and words in said
     assert [path.name for path in tmp_path.iterdir()] == ["taken.pdf"]
     assert (tmp_path / "taken.pdf").read_text() == "mine"
 
 
-def test_the_command_draws_curves_of_others_too(tmp_path):
+def test_the_command_draws_curves_of_others_too(jointwave, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "curve.csv").write_text("time [ms], stress@20 [MPa]\n0, 0\n5, 0.1\n10, 0.2\n")
-    command = [sys.executable, "-m", "compare", "figure", SCENE, "--variant", "", "--engine", "dem"]
-    command += ["--with", "curve.csv", "--set", "time.duration=0.02", "--out", "figure.svg"]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
-    assert (done.returncode, done.stdout) == (0, "wrote figure.svg\n"), done.stderr
+    options = ["--variant", "", "--engine", "dem", "--set", "time.duration=0.02"]
+    said = jointwave("figure", SCENE, *options, "--with", "curve.csv", "--out", "figure.svg")
+    assert said == ("wrote figure.svg\n", "")
     assert "curve.csv" in (tmp_path / "figure.svg").read_text()

@@ -10,7 +10,7 @@ THICK, SQUAT = 0.42, 0.6  # inches across the pillar: at least, and at most
 BASE = 0.6  # inches under the pillar: its scale
 
 
-class Frame(NamedTuple):
+class Placement(NamedTuple):
     """Where the pillar is: x of its start (inches), inches a metre along it, inches across."""
 
     start: float
@@ -37,8 +37,8 @@ class Frame(NamedTuple):
         return BASE + self.thick
 
 
-def frame(scene: Scene) -> Frame:
+def placement(scene: Scene) -> Placement:
     """Return where a pillar is drawn: to scale in both directions where that leaves it visible."""
     room, pillar = WIDTH - 2 * SIDES, scene.pillar
     scale = min(room / pillar.length, SQUAT / pillar.side)
-    return Frame(SIDES, scale, max(THICK, scale * pillar.side))
+    return Placement(SIDES, scale, max(THICK, scale * pillar.side))
