@@ -39,11 +39,6 @@ class Outline:
     shape: shapely.Geometry
     tolerance: float
 
-    @property
-    def area(self) -> float:
-        """Area of the domain less its openings, m2."""
-        return float(self.shape.area)
-
     def sides_of(self, start: np.ndarray, end: np.ndarray) -> np.ndarray:
         """Return the index in SIDES of edges of the outer boundary from `start` to `end`, float
         arrays [n, 2], m: along the left, right, bottom or top of the domain, or elsewhere."""
