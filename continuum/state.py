@@ -1,4 +1,4 @@
-"""What changes in a run, and what is recorded of it; absent parts are None."""
+"""The state of a run, and its samples; absent parts are None."""
 
 from typing import Any, NamedTuple
 

@@ -1,4 +1,4 @@
-"""What can be wrong with a partition: where, and why."""
+"""Faults of a partition: where, and why."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What acts on a rock mass in the plane: plane waves, pressures, forces and a shaken base."""
+"""Sources in the plane: plane waves, pressures, forces and a shaken base."""
 
 from typing import Annotated, ClassVar, Literal
 

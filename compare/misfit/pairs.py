@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from cases.schema.scene import Scene
-from compare.engines import Progress, solve, solvers
+from compare.engines import Progress, solve, solver, solvers
 from compare.experiments.cost import timings
 from compare.misfit.alignment import Beside, distances, lay_beside
 from compare.misfit.external import Curves
@@ -43,6 +43,14 @@ def pairs() -> tuple[Pair, ...]:
         for one in ones
     ]
     return tuple(pair for *_, pair in sorted(found))
+
+
+def meaning(pair: Pair) -> str:
+    """Return what the distance of a pair is made of; nothing where a curve of others is one."""
+    if pair.kind == GIVEN:
+        return ""
+    of_kinds = (solver(pair.other).distances or {}).values()
+    return next((ones[pair.one] for ones in of_kinds if pair.one in ones), "")
 
 
 class Row(NamedTuple):

@@ -9,28 +9,8 @@ import xarray as xr
 
 from compare.figures.subplots import variant_names
 from compare.misfit.metrics import misfit
-from compare.misfit.pairs import GIVEN, Comparison, Pair, Row, pairs
+from compare.misfit.pairs import GIVEN, Comparison, Pair, Row, meaning, pairs
 from results.dataset import energy_residual
-
-#: What each pair's distance is made of.
-MEANING = {
-    "dem ~ lattice": "time stepping of the rigid blocks",
-    "dem ~ no-tension-chain": "time stepping of the rigid blocks that open and close",
-    "dem ~ spatial-lattice": "time stepping of the rigid blocks in space",
-    "continuum-jointed ~ jointed-bar": "elements and time stepping of the jointed rock",
-    "continuum-equivalent ~ equivalent-bar": "elements and time stepping of the homogenised bar",
-    "continuum-equivalent ~ images": "the same, against d'Alembert's images",
-    "continuum-equivalent ~ kelvin-voigt": "the same, against the damped modes",
-    "series ~ images": "the paper's series, cut after its last term",
-    "dem ~ jointed-bar": "rigid instead of deformable blocks",
-    "dem ~ equivalent-bar": "the paper's own comparison: discrete blocks against a smooth bar",
-    "continuum-equivalent ~ jointed-bar": "joints smeared out over the bar",
-    "dem ~ slip-joint": "discrete blocks around the joint that slips",
-    "dem ~ sliding-block": "blocks on springs, which settle first",
-    "dem ~ continuum-jointed": "engine against engine, same joints",
-    "dem ~ continuum-equivalent": "engine against engine, joints against none",
-    "continuum-equivalent ~ continuum-jointed": "one engine, with and without joints",
-}
 
 
 class Table(NamedTuple):
@@ -77,7 +57,7 @@ def misfit_table(comparisons: list[Comparison]) -> Table:
         if pair not in cells:
             return []
         found = [cells[pair].get(column, "") for column in columns]
-        return [[title(pair), MEANING.get(title(pair), ""), *found]]
+        return [[title(pair), meaning(pair), *found]]
 
     return Table(header, _by_kind(lines, given(comparisons)))
 

@@ -156,7 +156,8 @@ class Solver:
     applies : of (scene), to whether it holds for a scene.
     run : of (scene), to its result; of an engine of (scene, progress, comm, keeper).
     prepare : of (scene), to what is known before a run; raises SceneError as the run would.
-    distances : by kind, the names of the solvers whose distance from this one is measured.
+    distances : by kind, the solvers whose distance from this one is measured, and what each is
+        made of.
     arguments : names of the arguments that `run` takes beside the scene.
     engine, model : as --engine and --model select it; `engine` of the engines is also their table
         of [numerics].
@@ -177,7 +178,7 @@ class Solver:
     dimension: int = 1
     discretised: bool = True
     prepare: Callable[[Scene], Prepared] = without_steps
-    distances: Mapping[Kind, tuple[str, ...]] | None = None
+    distances: Mapping[Kind, Mapping[str, str]] | None = None
     arguments: tuple[str, ...] = ()
     engine: str = "exact"
     model: str | None = None

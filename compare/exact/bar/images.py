@@ -99,5 +99,10 @@ SOLVER = Solver(
     line=thin("#00a26d", 5, (13.5, 15.5), (7, 2, 1.2, 2, 1.2, 2)),
     applies=applies,
     run=solve,
-    distances={Kind.NUMERICAL: ("continuum-equivalent", "series")},
+    distances={
+        Kind.NUMERICAL: {
+            "continuum-equivalent": "the same, against d'Alembert's images",
+            "series": "the paper's series, cut after its last term",
+        }
+    },
 )

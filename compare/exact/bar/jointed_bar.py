@@ -58,7 +58,10 @@ SOLVER = Solver(
     applies=applies,
     run=solve,
     distances={
-        Kind.NUMERICAL: ("continuum-jointed",),
-        Kind.MODELLING: ("dem", "continuum-equivalent"),
+        Kind.NUMERICAL: {"continuum-jointed": "elements and time stepping of the jointed rock"},
+        Kind.MODELLING: {
+            "dem": "rigid instead of deformable blocks",
+            "continuum-equivalent": "joints smeared out over the bar",
+        },
     },
 )

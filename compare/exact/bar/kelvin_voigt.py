@@ -133,6 +133,8 @@ SOLVER = Solver(
     line=thin("#00a26d", 5, (13.5, 15.5), (4, 2, 1.2, 2, 1.2, 2)),
     applies=applies,
     run=solve,
-    distances={Kind.NUMERICAL: ("continuum-equivalent",)},
+    distances={
+        Kind.NUMERICAL: {"continuum-equivalent": "the same, against the damped modes"},
+    },
     arguments=("n_terms",),
 )

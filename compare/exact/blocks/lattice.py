@@ -96,5 +96,5 @@ SOLVER = Solver(
     line=thin("#00349a", 9, (0, 4), (1.2, 2.2)),
     applies=applies,
     run=solve,
-    distances={Kind.NUMERICAL: ("dem",)},
+    distances={Kind.NUMERICAL: {"dem": "time stepping of the rigid blocks"}},
 )

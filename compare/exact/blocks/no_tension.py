@@ -103,5 +103,5 @@ SOLVER = Solver(
     line=thin("#00349a", 9, (0, 9), (1.2, 1.2)),
     applies=applies,
     run=solve,
-    distances={Kind.NUMERICAL: ("dem",)},
+    distances={Kind.NUMERICAL: {"dem": "time stepping of the rigid blocks that open and close"}},
 )

@@ -111,5 +111,5 @@ SOLVER = Solver(
     line=thin("#a83200", 8, (9, 18), (9, 2.4, 3, 2.4)),
     applies=applies,
     run=solve,
-    distances={Kind.MODELLING: ("dem",)},
+    distances={Kind.MODELLING: {"dem": "blocks on springs, which settle first"}},
 )

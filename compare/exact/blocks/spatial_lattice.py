@@ -165,5 +165,5 @@ SOLVER = Solver(
     line=thin("#00349a", 9, (0, 9), (1.2, 4)),
     applies=applies,
     run=solve,
-    distances={Kind.NUMERICAL: ("dem",)},
+    distances={Kind.NUMERICAL: {"dem": "time stepping of the rigid blocks in space"}},
 )

@@ -219,5 +219,10 @@ SOLVER = Solver(
     line=thin("#a83200", 8, (9, 18), (6, 2.4, 3, 2.4)),
     applies=applies,
     run=solve,
-    distances={Kind.MODELLING: ("dem", "continuum-equivalent")},
+    distances={
+        Kind.MODELLING: {
+            "dem": "discrete blocks around the joint that slips",
+            "continuum-equivalent": "joints smeared out around the one that slips",
+        }
+    },
 )
