@@ -51,7 +51,8 @@ def test_rigid_blocks_take_the_fracture_energy(joint, dim):
     """Work and fracture energy are G_c A to round-off.
 
     The trapezoid rule of the ledger is exact for tractions that are linear between steps, and the
-    openings at which the law has its kinks are openings at a step.
+    openings at which the law has its kinks are openings at a step. Round-off is that of K u, which
+    for rigid blocks is a sum of large terms that cancel: on the way u, at most eps |K| u u.
     """
     scene, discrete = joint(dim)
     body, law = discrete.body, discrete.joints.law
@@ -63,7 +64,9 @@ def test_rigid_blocks_take_the_fracture_energy(joint, dim):
     moving, way = freedoms(body, np.unique(body.cells[above]))
     all_, way = np.concatenate([still, moving]), np.concatenate([np.zeros(still.size), way])
     ledger = pulled(scene, discrete, all_, way, step, 1e-3)
-    assert ledger["work"] == pytest.approx(ENERGY * AREA, rel=1e-12)
+    round_off = np.finfo(float).eps * np.abs(body.stiffness).sum() * step.sum() ** 2
+    assert round_off < 1e-9 * ENERGY * AREA
+    assert ledger["work"] == pytest.approx(ENERGY * AREA, rel=1e-12, abs=round_off)
     assert ledger["fracture"] == pytest.approx(ENERGY * AREA, rel=1e-12)
 
 
