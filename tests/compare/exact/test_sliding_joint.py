@@ -123,7 +123,7 @@ def test_behind_a_joint_that_slips_stress_is_cut_off_at_its_strength(scene):
     assert (sliding_joint.solve(at).stress == 2e5).all()
 
 
-@pytest.mark.parametrize("interval", [5e-5, 4e-3])
+@pytest.mark.parametrize("interval", [pytest.param(5e-5, marks=pytest.mark.slow), 4e-3])
 def test_the_bound_of_its_error_holds_where_samples_are_far_apart_too(scene, interval):
     """By a record eight times as dense, whose crossings of the strength are all found."""
     layer = {"y": 20.0, "cohesion": 2e5, "friction_angle": 0.0, "spacing_stiffness": 4.375e8}

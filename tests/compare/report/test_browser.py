@@ -187,6 +187,7 @@ def test_a_curve_is_switched_off_and_on_in_every_panel_by_mouse_and_by_key(opene
     assert states == [[False] * 4, [True] * 4, [False] * 4]  # in both variants, and residuals
 
 
+@pytest.mark.slow
 def test_every_download_is_a_whole_file_of_its_kind(opened, report):
     page = opened(accept_downloads=True)
     unfold(page)

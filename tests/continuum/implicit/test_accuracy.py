@@ -147,7 +147,9 @@ STRENGTHS = {
 @pytest.mark.parametrize(
     "kind",
     [
-        pytest.param(kind, marks=pytest.mark.slow if "dashpots" in kind else ())
+        pytest.param(
+            kind, marks=pytest.mark.slow if "dashpots" in kind or kind == "friction" else ()
+        )
         for kind in STRENGTHS
     ],
 )

@@ -63,7 +63,7 @@ SCENES = {
 
 
 #: Whose kernels take a minute to compile in each number of processes.
-DEAR = ("blocks that slip and break", "dashpots, half joints, mass damping")
+DEAR = ("blocks that slip and break", "dashpots, half joints, mass damping", "shaken base")
 
 
 @pytest.mark.parametrize(
@@ -75,18 +75,17 @@ def test_any_number_of_processes_gives_the_same_waveforms(scene, jointwave, tmp_
     changes = {**SHORT, **SCENES[scene]}
     keys = [part for k, v in changes.items() for part in ("--set", f"{k}={json.dumps(v)}")]
     results = []
-    for count in (1, 2, 3):
+    for count in (1, 3):
         out = ("--out", tmp_path / str(count), "--json")
         engine = ("--engine", "continuum", "--model", "jointed")
         done = jointwave(count, "run", SCENE, "--variant", "", *engine, *keys, *out)
         (fact,) = json.loads(done.stdout)
         results.append(xr.load_dataset(fact["file"]))
-    one, *others = results
+    one, other = results
     assert one.attrs["scheme"] == changes["numerics.continuum.scheme"]
-    for count, other in enumerate(others, 2):
-        assert other.attrs["processes"] == count
-        for name in ("scheme", "steps", "halved_steps"):
-            assert other.attrs.get(name) == one.attrs.get(name)
-        for name in one.data_vars:
-            found, expected = other[name].values, one[name].values
-            assert np.abs(found - expected).max() <= SAME * np.abs(expected).max()
+    assert other.attrs["processes"] == 3
+    for name in ("scheme", "steps", "halved_steps"):
+        assert other.attrs.get(name) == one.attrs.get(name)
+    for name in one.data_vars:
+        found, expected = other[name].values, one[name].values
+        assert np.abs(found - expected).max() <= SAME * np.abs(expected).max()

@@ -120,21 +120,20 @@ def test_any_number_of_processes_gives_the_same_waveforms(
 ):
     """To round-off, with one file and one report; what the scene is there for does happen."""
     results = []
-    for count in (1, 2, 3):
+    for count in (1, 3):
         done = jointwave(count, *options(scene, tmp_path / str(count)))
         (fact,) = json.loads(done.stdout)
         assert without_warnings(done.stderr) == []
         assert list((tmp_path / str(count)).glob("*.nc")) == [Path(fact["file"])]
         results.append(xr.load_dataset(fact["file"]))
-    one, *others = results
-    for count, other in enumerate(others, 2):
-        assert other.attrs["processes"] == count
-        assert other.attrs["critical_dt"] == pytest.approx(one.attrs["critical_dt"], rel=1e-12)
-        for name in ("dt", "steps", "degrees_of_freedom"):
-            assert other.attrs[name] == one.attrs[name]
-        assert set(other.variables) == set(one.variables)
-        for name in WAVES & set(one.variables):
-            alike(other[name].values, one[name].values)
+    one, other = results
+    assert other.attrs["processes"] == 3
+    assert other.attrs["critical_dt"] == pytest.approx(one.attrs["critical_dt"], rel=1e-12)
+    for name in ("dt", "steps", "degrees_of_freedom"):
+        assert other.attrs[name] == one.attrs[name]
+    assert set(other.variables) == set(one.variables)
+    for name in WAVES & set(one.variables):
+        alike(other[name].values, one[name].values)
     spent = one["energy"].max("time")
     assert (spent.sel(term=WHAT_HAPPENS[scene]) > 1e-4 * spent.sel(term="work")).all()
 

@@ -42,7 +42,7 @@ def test_idle_effect_changes_no_bit(row, idle):
     "idle, prestress",
     [
         ({"friction_angle": 20.0, "cohesion": 1e9}, None),
-        ({"tension": False}, 5e6),
+        pytest.param({"tension": False}, 5e6, marks=pytest.mark.slow),
     ],
     ids=["friction never reached", "tension never asked"],
 )

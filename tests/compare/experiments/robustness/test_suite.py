@@ -7,11 +7,25 @@ import pytest
 from compare.experiments.robustness.case import SCHEMES
 from compare.experiments.robustness.run import CASES, HELD, NONE, places, row_at
 
+#: Rows of deformable rock that take many seconds each; other rows of these cases are quick.
+LONG = {
+    "implicit steps far above the critical",
+    "load twice the lattice cut-off, deformable rock",
+    "prestress that cancels the wave",
+    "stick-slip at the exact threshold",
+    "every second joint 1e-8 as stiff",
+    "damping ratio 0",
+    "damping ratio 10",
+    "softening just short of a snap-back",
+    "soft layer of 1e-12 of a joint's stiffness",
+}
+
 
 def rows():
     for i, j in places():
         case, stepper = CASES[i], SCHEMES[j]
-        marks = [pytest.mark.slow] if case.slow else []
+        long = case.name in LONG and stepper.name.startswith("continuum-jointed")
+        marks = [pytest.mark.slow] if case.slow or long else []
         yield pytest.param((i, j), id=f"{case.name}, {stepper.name}", marks=marks)
 
 

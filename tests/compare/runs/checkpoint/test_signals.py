@@ -35,7 +35,10 @@ def stepping(start, until, arguments):
 
 @pytest.mark.parametrize(
     ("number", "code", "word"),
-    [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")],
+    [
+        (signal.SIGINT, 130, "interrupted"),
+        pytest.param(signal.SIGTERM, 143, "terminated", marks=pytest.mark.slow),
+    ],
 )
 def test_run_that_is_stopped_keeps_what_is_there_and_goes_on(
     number, code, word, tmp_path, stepping, start, finish, arguments, refuse_difference
