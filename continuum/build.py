@@ -13,14 +13,14 @@ from cases.schema.scene import Scene
 from continuum.ends import build_ends, end_stiffness, fixed_ends
 from continuum.explicit.critical import any_motion
 from continuum.joints import interfaces, joint_law, resolved_joints
-from continuum.kinematics import Kinematics, kinematics, layer_thickness, materials
 from continuum.mesh.description import Mesh
 from continuum.mesh.pillar import elements_in_block, pillar_mesh
-from continuum.model import Interfaces, Model, Receivers, Rock
+from continuum.model import Interfaces, Model, Receivers, RockOperators
 from continuum.size import refuse_large_file, refuse_large_mesh
 from continuum.space.body import Body, build_body, rock_matrices
 from continuum.space.elasticity import Material
 from continuum.space.interface import Jumps, jumps
+from continuum.space.kinematics import Kinematics, kinematics, layer_thickness, materials
 from continuum.space.receivers import points, sections
 from numerics.cache_lines import zeros
 
@@ -141,7 +141,7 @@ def build_model(scene: Scene, discrete: Discrete, model: str, time: Clock) -> Mo
     # Nothing moves what has no mass: nodes of another process's cell beyond a joint.
     np.divide(time.dt / (1 + alpha), mass, out=step_over_mass, where=mass > 0)
     return Model(
-        rock=Rock(
+        rock=RockOperators(
             stiffness=body.stiffness,
             viscosity=body.viscosity,
             mass=body.mass,

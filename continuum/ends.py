@@ -8,12 +8,12 @@ from cases.loads import base_steps, load_history, step_means
 from cases.material.calibrate import Properties
 from cases.sampling import Clock
 from cases.schema.scene import Scene
-from continuum.kinematics import impedances
 from continuum.mesh.description import Side
 from continuum.model import Ends, Fixed, HalfJoints, Loaded, Quiet
 from continuum.space.body import Body, along
 from continuum.space.evaluation import Places, on_freedoms, places_in
 from continuum.space.interface import Facets, facet_points
+from continuum.space.kinematics import impedances
 from joints.ends import HalfSpring, half_spring
 
 

@@ -17,7 +17,7 @@ from continuum.space.stencils import Stencils
 from joints.law import Law, Parts
 
 
-class Rock(NamedTuple):
+class RockOperators(NamedTuple):
     """The deformable rock.
 
     stiffness : N/m; viscosity : N s/m, None without dashpots.
@@ -130,7 +130,7 @@ class Receivers(NamedTuple):
 class Model(NamedTuple):
     """The constants of a run; weight : float array [n], N, None without gravity; dt : s."""
 
-    rock: Rock
+    rock: RockOperators
     interfaces: Any
     ends: Ends
     weight: Any

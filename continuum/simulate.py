@@ -15,11 +15,11 @@ from scipy.sparse import csr_matrix
 from cases.errors import SceneError, StoppedError
 from cases.schema.scene import Scene
 from continuum.engines import explicit_engine, implicit_engine
-from continuum.kinematics import refuse
 from continuum.model import Model
 from continuum.monitor import Monitor
 from continuum.run import Run, run_of
 from continuum.space import compat
+from continuum.space.kinematics import refuse
 from continuum.state import State
 from continuum.validity import applies
 from continuum.waveforms import energy_terms, waveforms

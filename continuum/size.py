@@ -3,7 +3,7 @@
 from cases.sampling import Clock
 from cases.schema.scene import Scene
 from cases.size import load_bytes, refuse_beyond_memory, snapshot_bytes, waveform_bytes
-from continuum.kinematics import Kinematics
+from continuum.space.kinematics import Kinematics
 
 #: Bytes a freedom, and for each entry of its row of the stiffness: the operators as they are made.
 FREEDOM, ENTRY = 500, 40

@@ -5,7 +5,7 @@ import numpy as np
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
 from continuum.joints import resolved_joints
-from continuum.kinematics import holds, kinematics
+from continuum.space.kinematics import holds, kinematics
 
 
 def applies(scene: Scene, model: str = "jointed", dim: int | None = None) -> str:

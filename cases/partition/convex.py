@@ -21,7 +21,7 @@ def hull(points: np.ndarray) -> shapely.Geometry:
     return shapely.MultiPoint(points).convex_hull
 
 
-class Pieces:
+class ConvexPieces:
     """Convex pieces that touch each other, to be joined where they stay convex.
 
     corners : of each piece by its cell, float arrays [n, 2], m.

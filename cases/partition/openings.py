@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
-from cases.partition.convex import Pieces
+from cases.partition.convex import ConvexPieces
 from cases.partition.faults import NonConvex
 from cases.partition.lines import one_line
 from cases.partition.split import split
@@ -104,7 +104,7 @@ def _rejoined(sub: Subdivision, whole: np.ndarray, tolerance: float) -> Subdivis
     mine = mine[np.argsort(half.cell[mine], kind="stable")]
     first = np.searchsorted(half.cell[mine], cells)
     own = np.split(sub.points[half.start[mine]], first[1:])
-    pieces = Pieces(dict(zip(map(int, cells), own, strict=True)), tolerance)
+    pieces = ConvexPieces(dict(zip(map(int, cells), own, strict=True)), tolerance)
     length = np.hypot(*np.diff(sub.points[sub.ends[cuts]], axis=1)[:, 0].T)
     for (one, other), part in zip(sub.cells[cuts], length, strict=True):
         if whole[one] == whole[other]:

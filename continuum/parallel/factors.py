@@ -4,7 +4,7 @@ import numpy as np
 
 from continuum.implicit.factors import Factors
 from continuum.parallel.communicator import Communicator
-from continuum.petsc import PETSc
+from continuum.parallel.petsc import PETSc
 
 PACKAGES = ("mumps", "superlu_dist")  # that factorise what several processes hold
 

@@ -30,9 +30,9 @@ from dem.blocks.model import (
     ON_I,
     ON_J,
     STRETCH,
-    Form,
-    Model,
-    State,
+    PlaneForm,
+    PlaneModel,
+    PlaneState,
 )
 from joints.energy import elastic_energy, fracture_energy_spent, friction_work
 from joints.formula import formula
@@ -62,7 +62,7 @@ def relative(x, i, j, k):
     return n_x * along_x + n_y * along_y, n_x * along_y - n_y * along_x, x[j, 2] - x[i, 2]
 
 
-class Samples(NamedTuple):
+class PlaneSamples(NamedTuple):
     """What is recorded: displacement and velocity of blocks [place, 3, sample], m and m/s, rad and
     rad/s, and the ledger [term, sample], J; None without."""
 
@@ -71,17 +71,17 @@ class Samples(NamedTuple):
     energy: Any
 
 
-def samples_for(model: Model, count: int) -> Samples:
+def samples_for(model: PlaneModel, count: int) -> PlaneSamples:
     """Return room for so many samples."""
     displacement, velocity = np.zeros((2, len(model.places), 3, count))
     energy = np.zeros((len(TERMS), count)) if model.form.ledger else None
-    return Samples(displacement, velocity, energy)
+    return PlaneSamples(displacement, velocity, energy)
 
 
 def march(
-    model: Model,
-    state: State,
-    samples: Samples,
+    model: PlaneModel,
+    state: PlaneState,
+    samples: PlaneSamples,
     stride: int,
     steps: tuple[int, int],
     drive: np.ndarray | None = None,
@@ -102,7 +102,7 @@ def march(
 
 
 @cache
-def loop_for(form: Form) -> Callable:
+def loop_for(form: PlaneForm) -> Callable:
     """Return the time loop of rock masses with these effects: what they lack is not compiled."""
     parts, points = form.parts, form.points
     dashpots, varied, softening = parts.dashpots, parts.varied, parts.softening

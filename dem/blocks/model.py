@@ -28,7 +28,7 @@ F_X, F_Y, ON_J, ON_I, BENDING, STRETCH = range(6)
 FORCE = 6
 
 
-class Form(NamedTuple):
+class PlaneForm(NamedTuple):
     """Which effects a rock mass has: the constants of its compiled kernel.
 
     parts : of the joint law. points : Gauss points of a contact; 0 where joints always hold, which
@@ -98,7 +98,7 @@ class Blocks(NamedTuple):
     gravity_y: float
 
 
-class Model(NamedTuple):
+class PlaneModel(NamedTuple):
     """The constants of a run.
 
     laws : the parameters of the joint law [field, column], one column where all joints are alike.
@@ -106,7 +106,7 @@ class Model(NamedTuple):
     None where nothing acts on blocks from outside. places : int array [r], recorded blocks.
     """
 
-    form: Form
+    form: PlaneForm
     blocks: Blocks
     contacts: Contacts
     adjacency: Adjacency
@@ -116,7 +116,7 @@ class Model(NamedTuple):
     places: np.ndarray
 
 
-class State(NamedTuple):
+class PlaneState(NamedTuple):
     """What changes: displacement u [N, 3] at a whole step, velocity v [N, 3] half a step before it.
 
     force : float array [c, FORCE], of the contacts at the last step. rate : float array [c, 3], of
@@ -190,7 +190,7 @@ def always_hold(parts: Parts) -> bool:
     return not (parts.limited or parts.no_tension or parts.softening)
 
 
-def state_at_rest(model: Model) -> State:
+def state_at_rest(model: PlaneModel) -> PlaneState:
     """Return the state at rest, with no array for any effect that the rock mass does not have."""
     form, contacts, count = model.form, len(model.contacts.blocks), len(model.blocks.inertia)
     history = None
@@ -200,7 +200,7 @@ def state_at_rest(model: Model) -> State:
             row = Law._fields.index("cohesion")
             of = 0 if model.contacts.law is None else model.contacts.law
             history[:, :, 2] = np.broadcast_to(model.laws[row, of], contacts)[:, None]
-    return State(
+    return PlaneState(
         u=zeros((count, 3)),
         v=zeros((count, 3)),
         force=zeros((contacts, FORCE)),

@@ -9,7 +9,7 @@ from cases.schema.scene import Scene
 from dem.spatial.ends import STEADY, contact_points, end_constants, end_springs, face_of
 from dem.spatial.energy import AFTER, LEDGER, PLACES
 from dem.spatial.layout import BUFFER, LANES, STRIDE, Form, packed, tile_count
-from dem.spatial.model import Buffers, Load, Model, Receivers, Samples, State
+from dem.spatial.model import Buffers, Load, RowModel, RowReceivers, RowSamples, RowState
 from dem.spatial.motion import Block
 from joints.law import Law, parts_of, table_of
 from joints.uniform import law
@@ -20,7 +20,7 @@ from results.dataset import ALL_TERMS
 DEPTH = 8  # steps a tile takes while it is in the cache
 
 
-def build_model(scene: Scene, p: Properties, time: Clock) -> Model:
+def build_model(scene: Scene, p: Properties, time: Clock) -> RowModel:
     """Return the constants of a scene for a given clock."""
     joints, points, load = build_law(p), contact_points(scene), build_load(scene, p, time)
     block, terms = build_block(scene, p, time.dt, points), energy_terms(scene, p)
@@ -38,7 +38,7 @@ def build_model(scene: Scene, p: Properties, time: Clock) -> Model:
         end=end,
         ledger=bool(terms),
     )
-    return Model(
+    return RowModel(
         form=form,
         block=block,
         block_count=p.block_count,
@@ -166,17 +166,17 @@ def receivers(scene: Scene, p: Properties) -> tuple[Interpolation, Interpolation
     )
 
 
-def build_receivers(sections: Interpolation, points: Interpolation) -> Receivers:
+def build_receivers(sections: Interpolation, points: Interpolation) -> RowReceivers:
     """Return the contacts and blocks on either side of every recorded place, left ones first."""
     contacts = np.concatenate([sections.left, sections.right])
     blocks = np.concatenate([points.left, points.right])
     tile = np.maximum(contacts - 1, 0) // LANES
-    return Receivers(
+    return RowReceivers(
         np.array([tile, contacts - tile * LANES]), np.array([blocks // LANES, blocks % LANES])
     )
 
 
-def state_at_rest(model: Model) -> State:
+def state_at_rest(model: RowModel) -> RowState:
     """Return the state at rest, with no array for anything that the model does not have."""
     form, tiles, points = model.form, tile_count(model.block_count), model.points.shape[1]
     kept = form.rate_rows + points * form.point_rows
@@ -189,7 +189,7 @@ def state_at_rest(model: Model) -> State:
     motion = zeros((tiles, form.motion_rows * STRIDE))
     if form.finite:
         motion[:, 12 * STRIDE :] = 1.0  # no rotation
-    return State(
+    return RowState(
         motion,
         history,
         np.zeros((tiles, 1), dtype=np.int64) if form.points else None,
@@ -198,18 +198,18 @@ def state_at_rest(model: Model) -> State:
     )
 
 
-def buffers_for(model: Model, threads: int, guard: Guard | None = None) -> Buffers:
+def buffers_for(model: RowModel, threads: int, guard: Guard | None = None) -> Buffers:
     """Return the buffers that so many threads work in, a run ended by a guard."""
     slots = threads * DEPTH
     ledgers = zeros((slots, LEDGER)) if model.form.ledger else None
     return Buffers(zeros((threads, BUFFER)), np.zeros((slots, 12)), ledgers, DEPTH, guard)
 
 
-def samples_for(model: Model, samples: int) -> Samples:
+def samples_for(model: RowModel, samples: int) -> RowSamples:
     """Return empty samples."""
     contacts, centres = (places.shape[1] for places in model.receivers)
     freedoms, rows = model.form.freedoms, model.form.motion_rows
-    return Samples(
+    return RowSamples(
         np.zeros((contacts, freedoms, samples)),
         np.zeros((centres, freedoms, samples)),
         np.zeros((centres, rows - freedoms, samples)),

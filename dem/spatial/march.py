@@ -16,7 +16,7 @@ import numpy as np
 
 from dem.spatial.energy import close_ledger
 from dem.spatial.layout import Form
-from dem.spatial.model import Buffers, Model, Samples, State
+from dem.spatial.model import Buffers, RowModel, RowSamples, RowState
 from dem.spatial.step import step_for
 from numerics.atomic import give_way, peek, post
 from numerics.borrowed import borrowed
@@ -89,7 +89,7 @@ def march_for(form: Form) -> Callable:
 
 
 def marcher(
-    model: Model, state: State, buffers: Buffers, samples: Samples
+    model: RowModel, state: RowState, buffers: Buffers, samples: RowSamples
 ) -> Callable[[int, int], None]:
     """Return a function that takes the steps first .. last - 1 on the threads of the buffers."""
     kernel, threads = march_for(model.form), len(buffers.tile)
@@ -110,7 +110,7 @@ def marcher(
 
 
 def arguments(
-    model: Model, state: State, buffers: Buffers, samples: Samples, progress: np.ndarray
+    model: RowModel, state: RowState, buffers: Buffers, samples: RowSamples, progress: np.ndarray
 ) -> tuple:
     """Return what a kernel takes but for its thread and steps."""
     guard = buffers.guard or (None, None, np.array([-1, 0, -1]))  # no limit, nothing found

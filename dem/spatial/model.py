@@ -22,7 +22,7 @@ class Load(NamedTuple):
     base: Any
 
 
-class Receivers(NamedTuple):
+class RowReceivers(NamedTuple):
     """What is recorded: tile and lane, int64 arrays [2, places], of forces of contacts and of
     motion of blocks. A contact's lane is that of its force: contact c = 0 .. N is left of block c.
     """
@@ -31,7 +31,7 @@ class Receivers(NamedTuple):
     centres: np.ndarray
 
 
-class Model(NamedTuple):
+class RowModel(NamedTuple):
     """The constants of a run.
 
     table : the joint law, [tiles, fields * LANES] where joints vary, else one tile of them.
@@ -48,12 +48,12 @@ class Model(NamedTuple):
     points: np.ndarray
     load: Load
     ends: Any
-    receivers: Receivers
+    receivers: RowReceivers
     stride: int
     places: Any
 
 
-class State(NamedTuple):
+class RowState(NamedTuple):
     """What changes, in tiles as `layout` says, and at both ends.
 
     motion : float array [tiles, rows * STRIDE]. history : [tiles, rows * LANES], None where no
@@ -69,7 +69,7 @@ class State(NamedTuple):
     sums: Any
 
 
-class Samples(NamedTuple):
+class RowSamples(NamedTuple):
     """What is recorded, [receiver, freedom, sample]; energy [term, sample] or None.
 
     displacement : with a fourth number of rotation where blocks turn by any angle, the scalar

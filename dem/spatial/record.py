@@ -13,14 +13,14 @@ from dem.fragments import with_fragments
 from dem.spatial.build import buffers_for, build_receivers, receivers, samples_for
 from dem.spatial.layout import LANES, STRIDE, unpacked
 from dem.spatial.march import marcher
-from dem.spatial.model import Model, Samples, State
+from dem.spatial.model import RowModel, RowSamples, RowState
 from dem.static import since_prestress
 from numerics.divergence import guard
 from results.arrays import copied
 from results.dataset import Fields
 
 
-def waveforms(scene: Scene, p: Properties, samples: Samples, time: Clock) -> dict[str, Any]:
+def waveforms(scene: Scene, p: Properties, samples: RowSamples, time: Clock) -> dict[str, Any]:
     """Return the recorded fields at the scene's receivers, as `results.dataset.fields` takes
     them."""
     sections, points = receivers(scene, p)
@@ -58,7 +58,7 @@ def between(values: np.ndarray, at: Interpolation) -> np.ndarray:
     return (1 - weight) * left + weight * right
 
 
-def shooter(p: Properties, model: Model, state: State, threads: int) -> Callable[[int], Any]:
+def shooter(p: Properties, model: RowModel, state: RowState, threads: int) -> Callable[[int], Any]:
     """Return what takes a sample of all contacts and blocks, on a copy of the state.
 
     A velocity at a whole step needs the step, as it does at the receivers.
@@ -86,7 +86,7 @@ def _all(count: int) -> Interpolation:
     return Interpolation(np.arange(count), np.arange(0), np.zeros(count))
 
 
-def with_breaks(result: Fields, p: Properties, model: Model, state: State) -> Fields:
+def with_breaks(result: Fields, p: Properties, model: RowModel, state: RowState) -> Fields:
     """Return a result with its fragments, where joints soften.
 
     A joint is broken when all its contact points are. When it broke is not kept.

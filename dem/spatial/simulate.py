@@ -24,7 +24,7 @@ from dem.spatial.build import (
 from dem.spatial.ends import contact_points, face_of
 from dem.spatial.layout import LANES, STRIDE, unpacked
 from dem.spatial.march import marcher, thread_count
-from dem.spatial.model import Model, State
+from dem.spatial.model import RowModel, RowState
 from dem.spatial.record import shooter, waveforms, with_breaks
 from dem.spatial.stability import critical_spatial_step, highest_speeds
 from dem.spatial.start import start
@@ -45,7 +45,7 @@ class Prepared(NamedTuple):
     """A scene ready to run: its numbers, model, clock and critical step (s)."""
 
     properties: Properties
-    model: Model
+    model: RowModel
     time: Clock
     critical: float
 
@@ -123,7 +123,7 @@ def simulate_fields(
 
 
 def _film(
-    scene: Scene, p: Properties, model: Model, state: State, threads: int, dt: float
+    scene: Scene, p: Properties, model: RowModel, state: RowState, threads: int, dt: float
 ) -> BlockFilm | None:
     """Return what keeps snapshots; None, and nothing imported, where none are asked for."""
     if scene.record.fields is None:
@@ -133,13 +133,13 @@ def _film(
     return BlockFilm(scene, p, shooter(p, model, state, threads), dt)
 
 
-def speeds(model: Model, state: State, blocks: int) -> np.ndarray:
+def speeds(model: RowModel, state: RowState, blocks: int) -> np.ndarray:
     """Return the magnitude of every component of every block's velocity [freedoms, N]."""
     half = model.form.freedoms
     return np.abs(unpacked(state.motion, STRIDE, blocks)[half : 2 * half])
 
 
-def refuse_large_turns(scene: Scene, model: Model, state: State, t: float) -> None:
+def refuse_large_turns(scene: Scene, model: RowModel, state: RowState, t: float) -> None:
     """Raise SceneError where blocks have turned too far for small rotations at t (s)."""
     if not model.form.turns or model.form.finite:
         return

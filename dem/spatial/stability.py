@@ -19,7 +19,7 @@ from cases.schema.scene import Scene
 from dem.axial.bound import shaking
 from dem.spatial.ends import Face, end_springs, face_stiffness, lever_matrix
 from dem.spatial.layout import STRIDE, unpacked
-from dem.spatial.model import Model, State
+from dem.spatial.model import RowModel, RowState
 from joints.stability import critical_step
 from numerics.divergence import speed_that
 
@@ -93,7 +93,7 @@ def _largest_eigenvalue(matrix: sparse.csr_matrix) -> float:
 
 
 def highest_speeds(
-    scene: Scene, p: Properties, model: Model, state: State, time: Clock
+    scene: Scene, p: Properties, model: RowModel, state: RowState, time: Clock
 ) -> np.ndarray:
     """Return a bound on each component of the velocity of any block [freedoms], m/s and rad/s; with
     finite rotations kg m2/s for the angular momentum."""
@@ -106,7 +106,7 @@ def highest_speeds(
 
 
 def _speed(
-    scene: Scene, p: Properties, model: Model, state: State, time: Clock, inertia: np.ndarray
+    scene: Scene, p: Properties, model: RowModel, state: RowState, time: Clock, inertia: np.ndarray
 ) -> float:
     """Return the bound for a block's velocity, m/s."""
     m, duration = p.block_mass, time.dt * (time.steps + time.stride)
@@ -128,7 +128,9 @@ def _steady(scene: Scene, p: Properties) -> float:
     return 2 * abs(scene.prestress.normal) * p.area
 
 
-def _stored(scene: Scene, p: Properties, model: Model, state: State, weight: np.ndarray) -> float:
+def _stored(
+    scene: Scene, p: Properties, model: RowModel, state: RowState, weight: np.ndarray
+) -> float:
     """Return a bound on the root of twice the energy stored at the start, sqrt(J).
 
     Of a prestress that of all springs; of a static state under gravity at most what the weight has

@@ -11,7 +11,7 @@ from dem.spatial.build import buffers_for, build_model, samples_for, state_at_re
 from dem.spatial.ends import CLOSURE, contact_points, face_of
 from dem.spatial.layout import LANES, STRIDE, packed, unpacked
 from dem.spatial.march import marcher
-from dem.spatial.model import Model, State
+from dem.spatial.model import RowModel, RowState
 from dem.spatial.stability import critical_spatial_step
 from dem.static import Rest, prestressed, settle
 from results.arrays import copied, fill
@@ -20,7 +20,7 @@ NEVER = 1 << 60  # steps between samples where none are taken
 STEP_FRACTION = 0.9  # of the critical step: only where it ends counts
 
 
-def start(scene: Scene, p: Properties, model: Model, state: State) -> Rest | None:
+def start(scene: Scene, p: Properties, model: RowModel, state: RowState) -> Rest | None:
     """Bring the unloaded state to where the scene starts; return how if that is a static state.
 
     Raises SceneError where there is none.
@@ -91,7 +91,7 @@ class Relaxation:
         """Set all velocities to zero."""
         self.state.motion[:, self.model.form.freedoms * STRIDE :] = 0.0
 
-    def leave(self, model: Model, state: State) -> None:
+    def leave(self, model: RowModel, state: RowState) -> None:
         """Put the static state into the state of a run, whose joints may have rates besides."""
         state.motion[:] = self.state.motion
         if self.state.history is not None:
@@ -99,7 +99,7 @@ class Relaxation:
         if self.state.ends is not None and state.ends is not None:
             state.ends[:, CLOSURE] = self.state.ends[:, CLOSURE]
 
-    def _damped(self, alpha: float) -> Model:
+    def _damped(self, alpha: float) -> RowModel:
         block = self.model.block
         drag = 0.5 * block.dt * alpha
         return self.model._replace(

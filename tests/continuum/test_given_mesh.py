@@ -5,7 +5,7 @@ import pytest
 
 from cases.material.calibrate import calibrate
 from continuum.build import mesh_of
-from continuum.kinematics import kinematics
+from continuum.space.kinematics import kinematics
 
 BLOW = {
     2: {"load__direction": [0.6, 0.8, 0.0], "load__at": [0.1, 0.0]},

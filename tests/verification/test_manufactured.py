@@ -8,7 +8,7 @@ from continuum.explicit.critical import critical_time_step
 from continuum.explicit.march import march
 from continuum.implicit.balance import implicit_matrices
 from continuum.implicit.run import Implicit
-from continuum.model import Ends, Model, Receivers, Rock
+from continuum.model import Ends, Model, Receivers, RockOperators
 from continuum.space.body import whole
 from continuum.space.operator import zeros
 from continuum.state import empty_samples, state_at_rest
@@ -38,7 +38,7 @@ def model_of(problem, dt):
     body, n = problem.body, problem.body.mass.size
     none = csr_matrix((0, n))
     return Model(
-        rock=Rock(body.stiffness, None, body.mass, dt / body.mass, None),
+        rock=RockOperators(body.stiffness, None, body.mass, dt / body.mass, None),
         interfaces=None,
         ends=Ends(None, None, None),
         weight=zeros(n),

@@ -106,8 +106,8 @@ def _steps(one: Scene) -> int:
 
 def _refuse_large_rock(one: Scene, models: list[str]) -> None:
     from continuum.build import elements_for
-    from continuum.kinematics import kinematics
     from continuum.size import refuse_large_mesh
+    from continuum.space.kinematics import kinematics
 
     p, numerics = calibrate(one), one.numerics.continuum
     for name in models:

@@ -41,7 +41,7 @@ class Spall(NamedTuple):
     time: float
 
 
-class Pieces(NamedTuple):
+class SpallPieces(NamedTuple):
     """Straight pieces of a history: from `start` to `end` (s), from `left` to `right` (Pa)."""
 
     start: np.ndarray
@@ -67,7 +67,7 @@ def spall(
         found = first_pair(pieces, pieces, strength, longest)
     elif isinstance(load, Step):
         p = load.amplitude
-        pieces = Pieces(*np.array([[-longest, 0.0], [0.0, duration], [0.0, p], [0.0, p]]))
+        pieces = SpallPieces(*np.array([[-longest, 0.0], [0.0, duration], [0.0, p], [0.0, p]]))
         found = first_pair(pieces, pieces, strength, longest)
     else:
         found = _of_smooth(load, strength, longest, duration)
@@ -80,7 +80,7 @@ def spall(
 def _of_smooth(load, strength: float, longest: float, duration: float):
     """Return `first_pair` of a history that is smooth between its breaks."""
 
-    def polygon(around: float, width: float) -> Pieces:
+    def polygon(around: float, width: float) -> SpallPieces:
         t = np.union1d(np.linspace(around - width, around + width, PIECES + 1), load.breaks)
         t = t[np.abs(t - around) <= width]
         return _pieces(t, load.value(t), 0.0)
@@ -97,24 +97,26 @@ def _of_smooth(load, strength: float, longest: float, duration: float):
     return found
 
 
-def _pieces(time: np.ndarray, stress: np.ndarray, silence: float) -> Pieces:
+def _pieces(time: np.ndarray, stress: np.ndarray, silence: float) -> SpallPieces:
     """Return a history's pieces, with silence (s) before and behind it."""
     start, end, left, right = time[:-1], time[1:], stress[:-1], stress[1:]
     if silence:
         start = np.concatenate([[time[0] - silence], start, [time[-1]]])
         end = np.concatenate([[time[0]], end, [time[-1] + silence]])
         left, right = np.pad(left, 1), np.pad(right, 1)
-    return Pieces(start, end, left, right)
+    return SpallPieces(start, end, left, right)
 
 
 def first_pair(
-    ahead: Pieces, behind: Pieces, strength: float, longest: float
+    ahead: SpallPieces, behind: SpallPieces, strength: float, longest: float
 ) -> tuple[float, float] | None:
     """Return a and b (s) of the least a + b with f(a) - f(b) >= strength, 0 <= b - a <= longest.
 
     a lies on a piece of the one, b on a piece of the other that does not end before.
     """
-    A, B = (Pieces(*(x[i] for x in p)) for p, i in ((ahead, np.s_[:, None]), (behind, np.s_[None])))
+    A, B = (
+        SpallPieces(*(x[i] for x in p)) for p, i in ((ahead, np.s_[:, None]), (behind, np.s_[None]))
+    )
     rise, fall = ((p.right - p.left) / (p.end - p.start) / strength for p in (A, B))
     level = 1 - (A.left - B.left) / strength + rise * A.start - fall * B.start
     # Each side of a pair's feasible polygon as p a + q b = r.

@@ -35,7 +35,7 @@ _BERNSTEIN = of_powers(ORDER)
 
 
 @dataclass(frozen=True)
-class Motion:
+class ChainMotion:
     """A chain's states since it was at rest, and its events.
 
     states : float array [n, size], `chain.split` tells what it holds. events : number of openings
@@ -72,7 +72,7 @@ def integrate(
     period: float | None = None,
     noise: float = 0.0,
     seed: int = 0,
-) -> Motion:
+) -> ChainMotion:
     """Return what the chain moves by since it was in the state `rest` [size], absent: zero.
 
     Parameters
@@ -87,7 +87,7 @@ def integrate(
     breaks = [t for t in load.breaks if times[0] < t < times[-1]]
     for start, end in pairwise([times[0], *breaks, times[-1]]):
         walk.to(start, end)
-    return Motion(walk.states, walk.events, walk.steps)
+    return ChainMotion(walk.states, walk.events, walk.steps)
 
 
 class _Walk:

@@ -19,7 +19,7 @@ from cases.sampling import interpolation, sample_times
 from cases.schema.scene import Scene
 from compare.exact.blocks.lattice import HELD
 from compare.exact.blocks.spatial import PLANES, plane, row
-from compare.exact.blocks.spatial_system import System, at_rest, system
+from compare.exact.blocks.spatial_system import SpatialSystem, at_rest, system
 from compare.exact.conditions import holds
 from compare.exact.drive import drive
 from compare.exact.linear import bound, twins
@@ -108,7 +108,7 @@ def _base(scene: Scene) -> np.ndarray | None:
     return np.array([*load.direction, 0.0, 0.0, 0.0]) if load.shakes_base else None
 
 
-def _receivers(scene: Scene, parts: System, c: int, times: np.ndarray) -> list[np.ndarray]:
+def _receivers(scene: Scene, parts: SpatialSystem, c: int, times: np.ndarray) -> list[np.ndarray]:
     """Return the forces, displacements and velocities [2, receivers, c, n] of one plane and of its
     twin."""
     signal, gravity = drive(scene), scene.gravity
@@ -127,7 +127,7 @@ def _receivers(scene: Scene, parts: System, c: int, times: np.ndarray) -> list[n
     return [part.reshape(2, len(times), -1, c).transpose(0, 2, 3, 1) for part in fields]
 
 
-def _rows(scene: Scene, parts: System, c: int) -> tuple[np.ndarray, tuple[int, int]]:
+def _rows(scene: Scene, parts: SpatialSystem, c: int) -> tuple[np.ndarray, tuple[int, int]]:
     """Return what the receivers read of a state, and how many rows are forces and displacements."""
     record = scene.record
     points = _read(_centres(scene), record.velocity, c)

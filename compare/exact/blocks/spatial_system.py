@@ -19,7 +19,7 @@ import numpy as np
 from compare.exact.blocks.spatial import Plane
 
 
-class System(NamedTuple):
+class SpatialSystem(NamedTuple):
     """The first-order form of one plane, n = N c freedoms of the blocks in m states.
 
     matrix, load, gravity : A [m, m] (1/s), b [m] of a unit drive, g [m].
@@ -39,7 +39,7 @@ class System(NamedTuple):
 
 def system(
     plane: Plane, push: np.ndarray, gravity: np.ndarray, base: np.ndarray | None = None
-) -> System:
+) -> SpatialSystem:
     """Return the first-order form of a plane.
 
     Parameters
@@ -67,7 +67,7 @@ def system(
     matrix[: len(A)], b[: 2 * n], g[: 2 * n] = A, load, weight
     if base is not None:
         b[-1] = 1
-    return _scaled(plane, System(matrix, b, g, X[q], V[q], forces, direct))
+    return _scaled(plane, SpatialSystem(matrix, b, g, X[q], V[q], forces, direct))
 
 
 def _coordinates(plane: Plane, base: np.ndarray | None) -> tuple[np.ndarray, ...]:
@@ -85,7 +85,7 @@ def _coordinates(plane: Plane, base: np.ndarray | None) -> tuple[np.ndarray, ...
     return position, velocity, driven
 
 
-def at_rest(system: System) -> np.ndarray:
+def at_rest(system: SpatialSystem) -> np.ndarray:
     """Return the state [m] in which the blocks rest under gravity; an end must be fixed.
 
     The base, if there is one, stands at zero: its state has a row without entries.
@@ -97,13 +97,13 @@ def at_rest(system: System) -> np.ndarray:
     return state
 
 
-def _scaled(plane: Plane, s: System) -> System:
+def _scaled(plane: Plane, s: SpatialSystem) -> SpatialSystem:
     n, c = len(plane.mass), len(plane.freedoms)
     held = len(s.load) - 2 * n
     roots = np.sqrt(plane.mass)
     rate = 2 * sqrt(np.abs(s.matrix[n : 2 * n, :n]).max()) or 1.0
     scale = np.concatenate([rate * roots, roots, rate * np.resize(roots[:c], held)])
-    return System(
+    return SpatialSystem(
         matrix=s.matrix * scale[:, None] / scale,
         load=s.load * scale,
         gravity=s.gravity * scale,

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compare.exact.plane.waves import Rock
+from compare.exact.plane.waves import ElasticRock
 
 PAIRS = {2: ((0, 0), (1, 1), (0, 1)), 3: ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))}
 
@@ -50,7 +50,7 @@ def joint_set(
     return JointSet(normal, 1 / (spacing * normal_stiffness), 1 / (spacing * shear_stiffness))
 
 
-def compliance(rock: Rock, sets: list[JointSet], dimension: int = 2) -> np.ndarray:
+def compliance(rock: ElasticRock, sets: list[JointSet], dimension: int = 2) -> np.ndarray:
     """Return S in Kelvin's form (1/Pa), a tensor's orthogonal components: [3, 3] or [6, 6]."""
     for one in sets:
         if len(one.normal) != dimension:
@@ -62,7 +62,7 @@ def compliance(rock: Rock, sets: list[JointSet], dimension: int = 2) -> np.ndarr
     return sum(added, start=np.linalg.inv(intact(rock, dimension)))
 
 
-def intact(rock: Rock, dimension: int = 2) -> np.ndarray:
+def intact(rock: ElasticRock, dimension: int = 2) -> np.ndarray:
     """Return the stiffness of rock without joints in Kelvin's form, Pa."""
     pairs = PAIRS[dimension]
     isotropic = np.array([float(i == j) for i, j in pairs])
@@ -83,7 +83,7 @@ def sliding(normal: np.ndarray) -> np.ndarray:
     return _kelvin(sum(one.transpose(order) for order in orders) / 4)
 
 
-def stiffness(rock: Rock, sets: list[JointSet], dimension: int = 2) -> np.ndarray:
+def stiffness(rock: ElasticRock, sets: list[JointSet], dimension: int = 2) -> np.ndarray:
     """Return C of the effective medium in Voigt's form, Pa: [3, 3] or [6, 6]."""
     scale = _scale(dimension)
     return np.linalg.inv(compliance(rock, sets, dimension)) / np.outer(scale, scale)

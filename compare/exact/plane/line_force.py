@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from compare.exact.plane.waves import Rock
+from compare.exact.plane.waves import ElasticRock
 
 POINTS = 64  # of integration between two breaks
 SAFETY = 2.0  # on the difference from half of them
@@ -31,7 +31,7 @@ FLOOR = 1e-13  # of the largest value
 Signal = Callable[[np.ndarray], np.ndarray]
 
 
-class Motion(NamedTuple):
+class LineForceMotion(NamedTuple):
     """Motion at m places, arrays [m, components, times], and bounds [m, components] of its error at
     any time: x, y of displacement (m) and velocity (m/s); xx, yy, xy of stress (Pa, tension +)."""
 
@@ -44,14 +44,14 @@ class Motion(NamedTuple):
 
 
 def motion(
-    rock: Rock,
+    rock: ElasticRock,
     direction: np.ndarray,
     force: Signal,
     rate: Signal,
     breaks: Sequence[float],
     offsets: np.ndarray,
     times: np.ndarray,
-) -> Motion:
+) -> LineForceMotion:
     """Return the motion that a force per length of line makes.
 
     Parameters
@@ -74,10 +74,10 @@ def motion(
     parts = [found[:, rows] for rows in (slice(0, 2), slice(2, 4), slice(4, 7))]
     off = np.split(SAFETY * np.abs(found - rough).max(axis=-1), [2, 4], axis=1)
     errors = [e + FLOOR * np.abs(part).max() for e, part in zip(off, parts, strict=True)]
-    return Motion(*parts, *errors)
+    return LineForceMotion(*parts, *errors)
 
 
-def impulse(rock: Rock, offsets: np.ndarray, times: np.ndarray) -> np.ndarray:
+def impulse(rock: ElasticRock, offsets: np.ndarray, times: np.ndarray) -> np.ndarray:
     """Return G_ij, the displacement (m) by 1 N s/m, array [m, i, j, times]; infinite at arrivals.
 
     offsets : [m, 2], m. times : s, after the impulse.
@@ -93,7 +93,7 @@ def impulse(rock: Rock, offsets: np.ndarray, times: np.ndarray) -> np.ndarray:
     )
 
 
-def step(rock: Rock, offsets: np.ndarray, times: np.ndarray) -> np.ndarray:
+def step(rock: ElasticRock, offsets: np.ndarray, times: np.ndarray) -> np.ndarray:
     """Return the displacement (m) by 1 N/m from 0 s on, array [m, i, j, times]."""
     x, t = _places(offsets), np.asarray(times, dtype=float)
     r = np.hypot(*x.T)[:, None]
@@ -112,14 +112,14 @@ def _places(offsets: np.ndarray) -> np.ndarray:
     return x
 
 
-def _near(rock: Rock, r: np.ndarray, s_a: np.ndarray, s_b: np.ndarray) -> np.ndarray:
+def _near(rock: ElasticRock, r: np.ndarray, s_a: np.ndarray, s_b: np.ndarray) -> np.ndarray:
     """Return (s_a - s_b) / r^2 without cancellation."""
     spread = 1 / rock.s_speed**2 - 1 / rock.p_speed**2
     both = np.where(s_b > 0, s_a + s_b, 1)
     return np.where(s_b > 0, spread / both, s_a / r**2)
 
 
-def _tensor(rock: Rock, x: np.ndarray, P: np.ndarray, Q: np.ndarray) -> np.ndarray:
+def _tensor(rock: ElasticRock, x: np.ndarray, P: np.ndarray, Q: np.ndarray) -> np.ndarray:
     """Return (P gamma gamma + Q I) / (2 pi rho), [m, i, j, times], of P and Q [m, times]."""
     g = x / np.hypot(*x.T)[:, None]
     along = np.einsum("mi,mj,mt->mijt", g, g, P)
@@ -155,7 +155,7 @@ def _gradient(g, d, r, values, slopes) -> np.ndarray:
     )
 
 
-def _pieces(rock: Rock, r: float, breaks, t: np.ndarray, points: int) -> Iterator[tuple]:
+def _pieces(rock: ElasticRock, r: float, breaks, t: np.ndarray, points: int) -> Iterator[tuple]:
     """Yield which times (indices [k]) some delays tau [k, points] matter to, and the weights
     [(P, Q), k, points] of f(t - tau) there."""
     nodes, weights = leggauss(points)
@@ -170,7 +170,7 @@ def _pieces(rock: Rock, r: float, breaks, t: np.ndarray, points: int) -> Iterato
             yield at, first * np.cosh(eta), half * weights * _kernel(rock, np.sinh(eta), region)
 
 
-def _kernel(rock: Rock, sinh: np.ndarray, region: int) -> np.ndarray:
+def _kernel(rock: ElasticRock, sinh: np.ndarray, region: int) -> np.ndarray:
     """Return the densities of P and Q over eta, between the arrivals (0) and after both (1)."""
     fast, slow = 1 / rock.p_speed**2, 1 / rock.s_speed**2
     if region == 0:

@@ -24,8 +24,8 @@ import numpy as np
 from compare.exact.plane.pulse import Axes, Fields, Layers, Pulse, axes_of, pulse_fields
 from compare.exact.plane.waves import (
     KINDS,
+    ElasticRock,
     Kind,
-    Rock,
     Values,
     cosines,
     face,
@@ -60,7 +60,7 @@ class Coefficients(NamedTuple):
 
 
 def coefficients(
-    incidence: Kind, angle: Values, omega: Values, rock: Rock, joint: Joint
+    incidence: Kind, angle: Values, omega: Values, rock: ElasticRock, joint: Joint
 ) -> Coefficients:
     """Return R_p, R_s, T_p, T_s, all arguments broadcast together.
 
@@ -78,7 +78,7 @@ def picked(R: np.ndarray, T: np.ndarray, incidence: Kind) -> Coefficients:
 
 
 def scattering(
-    rock: Rock, joint: Joint, slowness: Values, omega: Values
+    rock: ElasticRock, joint: Joint, slowness: Values, omega: Values
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the matrices R and T, complex arrays [..., out, in] in the order P, SV.
 
@@ -107,7 +107,9 @@ def _weighed(traction, velocity, impedance, omega, joint, axis) -> tuple[np.ndar
     return (soft / impedance)[..., None] * traction, (1 - soft)[..., None] * velocity
 
 
-def energy_flux(incidence: Kind, angle: Values, rock: Rock, found: Coefficients) -> np.ndarray:
+def energy_flux(
+    incidence: Kind, angle: Values, rock: ElasticRock, found: Coefficients
+) -> np.ndarray:
     """Return the shares of the incident energy flux that R_p, R_s, T_p and T_s carry away from the
     joint, array [4, ...]; evanescent waves carry none."""
     c, k = (x.real for x in cosines(rock, slowness_along(rock, incidence, angle)))
@@ -117,7 +119,7 @@ def energy_flux(incidence: Kind, angle: Values, rock: Rock, found: Coefficients)
 
 
 def fields(
-    rock: Rock,
+    rock: ElasticRock,
     joint: Joint,
     pulse: Pulse,
     point: np.ndarray,
@@ -146,7 +148,7 @@ def fields(
     return pulse_fields(rock, pulse, axes, np.zeros(1), layers, at_once, places, times)
 
 
-def layers_at_once(rock: Rock, first: Joint, axes: Axes, count: int) -> Layers:
+def layers_at_once(rock: ElasticRock, first: Joint, axes: Axes, count: int) -> Layers:
     """Return what the first of `count` joints returns and passes without delay: the limit of high
     frequencies, in which springs do not act. Where P is evanescent only the incident wave is real.
     """

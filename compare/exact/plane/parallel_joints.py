@@ -22,14 +22,14 @@ from compare.exact.plane.oblique_joint import (
     scattering,
 )
 from compare.exact.plane.pulse import Fields, Layers, Pulse, axes_of, pulse_fields
-from compare.exact.plane.waves import Kind, Rock, Values, slowness_along, slownesses_across
+from compare.exact.plane.waves import ElasticRock, Kind, Values, slowness_along, slownesses_across
 
 
 def coefficients(
     incidence: Kind,
     angle: Values,
     omega: Values,
-    rock: Rock,
+    rock: ElasticRock,
     joints: list[Joint],
     spacings: np.ndarray,
 ) -> Coefficients:
@@ -47,7 +47,7 @@ def coefficients(
 
 
 def march(
-    rock: Rock, joints: list[Joint], spacings: np.ndarray, slowness: Values, omega: Values
+    rock: ElasticRock, joints: list[Joint], spacings: np.ndarray, slowness: Values, omega: Values
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Return R_i and Y_i of every joint, complex arrays [..., 2, 2]; slowness in s/m."""
     if not joints:
@@ -67,7 +67,7 @@ def march(
 
 
 def fields(
-    rock: Rock,
+    rock: ElasticRock,
     joints: list[Joint],
     pulse: Pulse,
     point: np.ndarray,
@@ -110,7 +110,9 @@ def fields(
     return pulse_fields(rock, pulse, axes, depths, layers, at_once, places, times)
 
 
-def _phases(rock: Rock, spacings: np.ndarray, slowness: Values, omega: Values) -> list[np.ndarray]:
+def _phases(
+    rock: ElasticRock, spacings: np.ndarray, slowness: Values, omega: Values
+) -> list[np.ndarray]:
     """Return the diagonals of E_i, complex arrays [..., 2]."""
     across = slownesses_across(rock, slowness)
     return [np.exp(1j * np.asarray(omega)[..., None] * d * across) for d in spacings]

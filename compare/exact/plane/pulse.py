@@ -15,8 +15,8 @@ import numpy as np
 from compare.exact.plane.inversion import inverse
 from compare.exact.plane.waves import (
     KINDS,
+    ElasticRock,
     Kind,
-    Rock,
     is_evanescent,
     polarisations,
     slownesses_across,
@@ -70,7 +70,7 @@ class Layers(NamedTuple):
     up: np.ndarray
 
 
-def axes_of(rock: Rock, pulse: Pulse, dip: float) -> Axes:
+def axes_of(rock: ElasticRock, pulse: Pulse, dip: float) -> Axes:
     """Return the axes of joints of this dip (rad) for a pulse."""
     direction = np.asarray(pulse.direction, dtype=float)
     if direction.shape != (2,) or not np.hypot(*direction) > 0:
@@ -88,7 +88,7 @@ def axes_of(rock: Rock, pulse: Pulse, dip: float) -> Axes:
 
 
 def pulse_fields(
-    rock: Rock,
+    rock: ElasticRock,
     pulse: Pulse,
     axes: Axes,
     depths: np.ndarray,
@@ -129,7 +129,7 @@ def pulse_fields(
     return Fields(found[:, :2], unit * found[:, 2:], error[:, :2], unit * error[:, 2:])
 
 
-def _modes(rock: Rock, axes: Axes, across: np.ndarray) -> np.ndarray:
+def _modes(rock: ElasticRock, axes: Axes, across: np.ndarray) -> np.ndarray:
     """Return velocity and stress over Z_p [P+, SV+, P-, SV-; (x, y, xx, yy, xy)] of unit waves."""
     g = polarisations(rock, axes.slowness).reshape(4, 2)
     along = np.full(4, axes.slowness)

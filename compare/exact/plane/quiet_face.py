@@ -15,8 +15,8 @@ import numpy as np
 
 from compare.exact.plane.waves import (
     KINDS,
+    ElasticRock,
     Kind,
-    Rock,
     Values,
     cosines,
     face,
@@ -26,7 +26,7 @@ from compare.exact.plane.waves import (
 
 
 def coefficients(
-    incidence: Kind, angle: Values, rock: Rock, dashpots: tuple[float, float] = (1.0, 1.0)
+    incidence: Kind, angle: Values, rock: ElasticRock, dashpots: tuple[float, float] = (1.0, 1.0)
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the complex r_p and r_s over the incident amplitude of particle velocity.
 
@@ -41,7 +41,7 @@ def coefficients(
 
 
 def reflection(
-    rock: Rock, slowness: Values, dashpots: tuple[float, float] = (1.0, 1.0)
+    rock: ElasticRock, slowness: Values, dashpots: tuple[float, float] = (1.0, 1.0)
 ) -> np.ndarray:
     """Return the matrix [..., out, in] of both incidences in the order P, SV; slowness in s/m."""
     w = face(rock, slowness)
@@ -50,7 +50,7 @@ def reflection(
     return solve_pair((normal - n, t - shear), (-normal - n, -t - shear))
 
 
-def energy_flux(incidence: Kind, angle: Values, rock: Rock, found: tuple) -> np.ndarray:
+def energy_flux(incidence: Kind, angle: Values, rock: ElasticRock, found: tuple) -> np.ndarray:
     """Return the shares [2, ...] of the incident energy flux that r_p and r_s carry back."""
     c, k = (x.real for x in cosines(rock, slowness_along(rock, incidence, angle)))
     carried = np.stack(np.broadcast_arrays(rock.p_impedance * c, rock.s_impedance * k))

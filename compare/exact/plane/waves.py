@@ -23,7 +23,7 @@ Values = float | np.ndarray
 
 
 @dataclass(frozen=True)
-class Rock:
+class ElasticRock:
     """Isotropic rock: density (kg/m3) and the speeds of P and S waves (m/s), or arrays of them."""
 
     density: Values
@@ -70,39 +70,39 @@ class Face(NamedTuple):
     shear_velocity: np.ndarray
 
 
-def speed_of(rock: Rock, kind: Kind) -> Values:
+def speed_of(rock: ElasticRock, kind: Kind) -> Values:
     """Return the speed of a kind of wave, m/s."""
     if kind not in KINDS:
         raise ValueError(f"kind is {kind!r}, must be one of P, SV")
     return rock.p_speed if kind == "P" else rock.s_speed
 
 
-def slowness_along(rock: Rock, kind: Kind, angle: Values) -> np.ndarray:
+def slowness_along(rock: ElasticRock, kind: Kind, angle: Values) -> np.ndarray:
     """Return p (s/m) of a wave that travels at `angle` (rad) from n towards t."""
     if not (np.abs(angle) < np.pi / 2).all():
         raise ValueError(f"angle is {angle}, must lie within a right angle of the normal, in rad")
     return np.sin(angle) / np.asarray(speed_of(rock, kind))
 
 
-def cosines(rock: Rock, slowness: Values) -> tuple[np.ndarray, np.ndarray]:
+def cosines(rock: ElasticRock, slowness: Values) -> tuple[np.ndarray, np.ndarray]:
     """Return c and k, complex; slowness p in s/m."""
     sines = np.asarray(rock.p_speed * slowness), np.asarray(rock.s_speed * slowness)
     c, k = (np.sqrt((1 - x) * (1 + x) + 0j) for x in sines)
     return c, k
 
 
-def is_evanescent(rock: Rock, slowness: float) -> bool:
+def is_evanescent(rock: ElasticRock, slowness: float) -> bool:
     """Return whether P waves of slowness p (s/m) decay away from the face."""
     return bool(np.abs(rock.p_speed * slowness) > 1)
 
 
-def slownesses_across(rock: Rock, slowness: Values) -> np.ndarray:
+def slownesses_across(rock: ElasticRock, slowness: Values) -> np.ndarray:
     """Return c/a and k/b (s/m), complex array [..., 2]."""
     c, k = cosines(rock, slowness)
     return np.stack(np.broadcast_arrays(c / rock.p_speed, k / rock.s_speed), axis=-1)
 
 
-def face(rock: Rock, slowness: Values) -> Face:
+def face(rock: ElasticRock, slowness: Values) -> Face:
     """Return what unit waves along +n of slowness p (s/m) do to a face."""
     c, k = cosines(rock, slowness)
     a, s = rock.p_speed * slowness, rock.s_speed * slowness
@@ -116,14 +116,14 @@ def face(rock: Rock, slowness: Values) -> Face:
     return Face(*(np.stack(np.broadcast_arrays(p, sv), axis=-1) + 0j for p, sv in pairs))
 
 
-def polarisations(rock: Rock, slowness: float) -> np.ndarray:
+def polarisations(rock: ElasticRock, slowness: float) -> np.ndarray:
     """Return those of P and SV waves along +n and along -n, complex array [2, 2, (t, n)]."""
     c, k = cosines(rock, slowness)
     a, s = rock.p_speed * slowness, rock.s_speed * slowness
     return np.array([[[a, c], [k, -s]], [[a, -c], [k, s]]])
 
 
-def stress(rock: Rock, slowness: np.ndarray, polarisation: np.ndarray) -> np.ndarray:
+def stress(rock: ElasticRock, slowness: np.ndarray, polarisation: np.ndarray) -> np.ndarray:
     """Return the stress of unit plane waves (1 m/s) in any axes, Pa, array [..., 2, 2].
 
     slowness, polarisation : arrays [..., 2], s/m and 1. The velocity is g f(t - s.x), the stress

@@ -5,8 +5,8 @@ import pytest
 
 from dem.blocks.model import (
     Blocks,
-    Form,
-    Model,
+    PlaneForm,
+    PlaneModel,
     adjacency_of,
     contacts_of,
     gauss_points,
@@ -57,8 +57,8 @@ def _lattice(law=None, points=0, ledger=False, turned=0.0, shifted=(0.0, 0.0), p
     held = form.pop("held", None)
     held = held and held_by(*held, inertia, dt)
     effects = drag > 0, local > 0, any(gravity), held is not None
-    form = Form(parts_of(law), points, *effects, ledger)
-    model = Model(
+    form = PlaneForm(parts_of(law), points, *effects, ledger)
+    model = PlaneModel(
         form, blocks, contacts, adjacency_of(contacts.blocks, len(at)), table_of(law),
         gauss_points(points), held, np.array(places, dtype=np.int64),
     )  # fmt: skip

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from compare.exact.plane.oblique_joint import Joint
-from compare.exact.plane.waves import Rock
+from compare.exact.plane.waves import ElasticRock
 
 
 class Referee(NamedTuple):
@@ -65,7 +65,7 @@ def referee():
 @pytest.fixture
 def rock():
     """Return rock of nu = 0.25."""
-    return Rock(2600.0, 3000.0 * np.sqrt(3.0), 3000.0)
+    return ElasticRock(2600.0, 3000.0 * np.sqrt(3.0), 3000.0)
 
 
 @pytest.fixture

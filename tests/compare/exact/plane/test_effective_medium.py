@@ -17,9 +17,9 @@ from compare.exact.plane.effective_medium import (
 )
 from compare.exact.plane.oblique_joint import Joint, scattering
 from compare.exact.plane.rigid_fit import rigid_fit
-from compare.exact.plane.waves import Rock, slownesses_across
+from compare.exact.plane.waves import ElasticRock, slownesses_across
 
-UNIT = Rock(1.0, np.sqrt(3.0), 1.0)  # lambda = mu = rho = 1
+UNIT = ElasticRock(1.0, np.sqrt(3.0), 1.0)  # lambda = mu = rho = 1
 
 
 def normal_at(degrees):
@@ -54,7 +54,7 @@ def test_two_orthogonal_sets_in_plane_strain():
 
 
 def test_rock_without_joints():
-    rock = Rock(2600.0, 5000.0, 2900.0)
+    rock = ElasticRock(2600.0, 5000.0, 2900.0)
     for dimension, directions in (
         (2, np.eye(2)),
         (3, np.random.default_rng(0).normal(size=(9, 3))),
@@ -66,7 +66,7 @@ def test_rock_without_joints():
 
 def test_one_set_along_its_normal_is_springs_in_a_row():
     """1/M_eff = 1/M + Z_N, 1/mu_eff = 1/mu + Z_T, in the plane and in space."""
-    rock, Z_N, Z_T = Rock(2500.0, 4000.0, 2300.0), 2e-11, 5e-11
+    rock, Z_N, Z_T = ElasticRock(2500.0, 4000.0, 2300.0), 2e-11, 5e-11
     M, mu = 2500 * 4000.0**2, 2500 * 2300.0**2
     for n in (normal_at(33.0), np.array([0.48, 0.6, 0.64])):
         C = stiffness(rock, [JointSet(n, Z_N, Z_T)], len(n))
@@ -130,7 +130,7 @@ def test_jump_and_strain_by_hand():
 def test_long_waves_through_joints_travel_at_its_speeds(kind, degrees):
     """Bloch waves through periods of joint and rock, at 1/500 of a wavelength: their slownesses
     satisfy Christoffel's equation to the square of k d."""
-    rock, joint, d = Rock(2600.0, 5000.0, 2900.0), Joint(4e10, 1.5e10), 1.0
+    rock, joint, d = ElasticRock(2600.0, 5000.0, 2900.0), Joint(4e10, 1.5e10), 1.0
     speed = rock.p_speed if kind == "P" else rock.s_speed
     omega, p = 2 * np.pi * speed / 500, np.sin(np.radians(degrees)) / speed
     R, T = scattering(rock, joint, p, omega)
@@ -176,7 +176,7 @@ def test_rigid_blocks_of_two_orthogonal_sets_by_hand():
 
 def test_rigid_blocks_fit_joints_that_are_all_the_compliance():
     """Rock stiffer than its joints by far: the sets themselves, and nothing left over."""
-    stiff = Rock(2600.0, 5e9, 3e9)
+    stiff = ElasticRock(2600.0, 5e9, 3e9)
     sets = [JointSet(normal_at(a), *z) for a, z in ((0, (2, 3)), (50, (1, 4)), (110, (0.5, 2)))]
     scaled = [
         JointSet(s.normal, s.normal_compliance / 1e10, s.shear_compliance / 1e10) for s in sets

@@ -6,9 +6,9 @@ from scipy.special import hankel1
 
 from compare.exact.plane import line_force
 from compare.exact.plane.line_force import impulse, motion, step
-from compare.exact.plane.waves import Rock
+from compare.exact.plane.waves import ElasticRock
 
-ROCK = Rock(2600.0, 5800.0, 3800.0)
+ROCK = ElasticRock(2600.0, 5800.0, 3800.0)
 PLACES = np.array([[12.0, 5.0], [-3.0, 20.0], [0.5, -0.2], [0.0, -40.0]])
 FREQUENCY, DELAY = 200.0, 0.0145
 

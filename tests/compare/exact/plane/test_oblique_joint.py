@@ -5,7 +5,7 @@ import pytest
 
 from compare.exact.joint import one_joint
 from compare.exact.plane.oblique_joint import Joint, coefficients, energy_flux, scattering
-from compare.exact.plane.waves import Rock, cosines, slowness_along
+from compare.exact.plane.waves import ElasticRock, cosines, slowness_along
 
 OMEGA = 2 * np.pi * 100.0
 KINDS = pytest.mark.parametrize("kind", ["P", "SV"])
@@ -22,7 +22,7 @@ def random_media(seed, count=300):
     """Return rocks, joints, angles and omega as arrays, over all that is allowed."""
     rng = np.random.default_rng(seed)
     b = rng.uniform(500, 4000, count)
-    rock = Rock(rng.uniform(1500, 3500, count), b * rng.uniform(1.05, 6, count), b)
+    rock = ElasticRock(rng.uniform(1500, 3500, count), b * rng.uniform(1.05, 6, count), b)
     scale = np.array([rock.p_impedance, rock.s_impedance]) * OMEGA
     K = scale * 10 ** rng.uniform(-3, 3, (2, count))
     eta = scale / OMEGA * rng.uniform(0, 2, (2, count))
@@ -71,7 +71,7 @@ def test_energy_flux_sums_to_one(kind):
 @pytest.mark.parametrize("viscosity", [0.0, 2e6])
 def test_normal_incidence_is_the_bar_of_one_joint(kind, viscosity):
     """R and T of velocity; that solution has those of stress and e^{+i omega t}."""
-    rock, K, omega = Rock(2600.0, 5000.0, 2900.0), 3e9, np.array([10.0, 500.0, 4e3])
+    rock, K, omega = ElasticRock(2600.0, 5000.0, 2900.0), 3e9, np.array([10.0, 500.0, 4e3])
     Z = rock.p_impedance if kind == "P" else rock.s_impedance
     found = coefficients(kind, 0.0, omega, rock, Joint(K, K, viscosity, viscosity))
     T, R = one_joint.coefficients(omega, K, Z, viscosity)
@@ -88,7 +88,7 @@ def test_normal_incidence_is_the_bar_of_one_joint(kind, viscosity):
 def test_no_joint_and_free_faces(kind):
     """K = inf passes everything; K = 0 is a free face (Aki & Richards, 2002, chapter 5) that passes
     nothing; both are limits."""
-    rock, angle = Rock(2600.0, 5000.0, 2900.0), np.radians(np.linspace(-89, 89, 90))
+    rock, angle = ElasticRock(2600.0, 5000.0, 2900.0), np.radians(np.linspace(-89, 89, 90))
     passed = np.array(coefficients(kind, angle, OMEGA, rock, Joint(np.inf, np.inf)))
     assert np.abs(passed - np.eye(4)[2 + (kind == "SV")][:, None]).max() < 1e-13
     stiff = np.array(coefficients(kind, angle, OMEGA, rock, Joint(1e25, 1e25)))
@@ -156,8 +156,8 @@ def test_arguments_broadcast(rock, joint):
         (lambda r, j: coefficients("P", 0.0, -1.0, r, j), "negative real part"),
         (lambda r, j: coefficients("P", 0.0, 0.0, r, Joint(0.0, 1.0)), "nothing determines"),
         (lambda r, j: Joint(-1.0, 1.0), "normal_stiffness is -1"),
-        (lambda r, j: Rock(2600.0, 2900.0, 3000.0), "above s_speed"),
-        (lambda r, j: Rock(0.0, 5000.0, 3000.0), "density is 0"),
+        (lambda r, j: ElasticRock(2600.0, 2900.0, 3000.0), "above s_speed"),
+        (lambda r, j: ElasticRock(0.0, 5000.0, 3000.0), "density is 0"),
     ],
 )
 def test_what_does_not_hold_is_refused(rock, joint, change, message):

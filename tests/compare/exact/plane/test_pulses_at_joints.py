@@ -8,7 +8,7 @@ from scipy.special import erfc
 from compare.exact.plane import inversion, oblique_joint, parallel_joints
 from compare.exact.plane.oblique_joint import Joint, coefficients
 from compare.exact.plane.pulse import Pulse
-from compare.exact.plane.waves import Rock, polarisations
+from compare.exact.plane.waves import ElasticRock, polarisations
 
 TRAVELS = [("P", 0), ("P", 50), ("P", 130), ("SV", 25), ("SV", -60), ("SV", 200)]
 
@@ -251,7 +251,7 @@ def test_one_of_many_joints_is_the_one_joint(rock, joint, ricker, directed):
         ({"times": np.array([0.0, 1.0, 3.0])}, "equally spaced"),
         ({"times": np.array([0.0])}, "at least two"),
         ({"velocity": np.zeros(7)}, "samples"),
-        ({"rock": Rock(2600.0, np.array([4000.0, 5000.0]), 3000.0)}, "one rock"),
+        ({"rock": ElasticRock(2600.0, np.array([4000.0, 5000.0]), 3000.0)}, "one rock"),
     ],
 )
 def test_what_does_not_hold_is_refused(rock, joint, change, message):

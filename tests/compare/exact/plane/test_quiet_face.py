@@ -6,7 +6,7 @@ import pytest
 from compare.exact.plane import oblique_joint
 from compare.exact.plane.oblique_joint import Joint
 from compare.exact.plane.quiet_face import coefficients, energy_flux
-from compare.exact.plane.waves import Rock, cosines, slowness_along
+from compare.exact.plane.waves import ElasticRock, cosines, slowness_along
 
 KINDS = pytest.mark.parametrize("kind", ["P", "SV"])
 ANGLES = np.radians(np.linspace(-89.9, 89.9, 181))
@@ -82,7 +82,10 @@ def test_dashpots_take_energy_at_every_angle():
     rng = np.random.default_rng(5)
     for _ in range(50):
         b = rng.uniform(500, 3000)
-        rock, dashpots = Rock(2500.0, b * rng.uniform(1.1, 5), b), tuple(rng.uniform(0.01, 5, 2))
+        rock, dashpots = (
+            ElasticRock(2500.0, b * rng.uniform(1.1, 5), b),
+            tuple(rng.uniform(0.01, 5, 2)),
+        )
         for kind in ("P", "SV"):
             found = coefficients(kind, ANGLES, rock, dashpots)
             assert energy_flux(kind, ANGLES, rock, found).sum(axis=0).max() < 1
