@@ -102,8 +102,8 @@ class PlaneModel(NamedTuple):
     """The constants of a run.
 
     laws : the parameters of the joint law [field, column], one column where all joints are alike.
-    points : place over length, and weight, of the Gauss points of a contact [2, points]. held :
-    None where nothing acts on blocks from outside. places : int array [r], recorded blocks.
+    points : place over length, from the contact's centre, and weight of its points [2, points].
+    held : None where nothing acts on blocks from outside. places : int array [r], recorded blocks.
     """
 
     form: PlaneForm
@@ -177,17 +177,6 @@ def held_by(dashpot: np.ndarray, index: np.ndarray, inertia: np.ndarray, dt: flo
     lost = 0.5 * dt * dashpot / inertia[index][:, [0, 0, 1], None]
     moves = np.linalg.inv(np.eye(3) + lost)
     return Held(row, -moves @ lost, moves, dashpot)
-
-
-def gauss_points(count: int) -> np.ndarray:
-    """Return place over length, from a contact's centre, and weight of Gauss points [2, count]."""
-    at, weight = np.polynomial.legendre.leggauss(count) if count else (np.zeros(0), np.zeros(0))
-    return np.array([at, weight]) / 2
-
-
-def always_hold(parts: Parts) -> bool:
-    """Return whether joints with these parts never open, slip or break."""
-    return not (parts.limited or parts.no_tension or parts.softening)
 
 
 def state_at_rest(model: PlaneModel) -> PlaneState:

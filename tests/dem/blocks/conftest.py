@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
+from cases.material.contact_points import points_of
 from dem.blocks.model import (
     Blocks,
     PlaneForm,
     PlaneModel,
     adjacency_of,
     contacts_of,
-    gauss_points,
     held_by,
 )
 from joints.law import Law, parts_of, table_of
@@ -58,8 +58,10 @@ def _lattice(law=None, points=0, ledger=False, turned=0.0, shifted=(0.0, 0.0), p
     held = held and held_by(*held, inertia, dt)
     effects = drag > 0, local > 0, any(gravity), held is not None
     form = PlaneForm(parts_of(law), points, *effects, ledger)
+    rule = np.array(points_of("gauss", points) if points else np.zeros((2, 0)))
+    rule[0] -= 0.5
     model = PlaneModel(
         form, blocks, contacts, adjacency_of(contacts.blocks, len(at)), table_of(law),
-        gauss_points(points), held, np.array(places, dtype=np.int64),
+        rule, held, np.array(places, dtype=np.int64),
     )  # fmt: skip
     return model, at, turn
