@@ -11,6 +11,7 @@ from math import pi
 import numpy as np
 
 from cases.sampling import Interpolation
+from cases.schema.pulse import Pulse
 from cases.schema.scene import Scene
 
 
@@ -132,16 +133,20 @@ def load_history(scene: Scene) -> LoadHistory:
     Stress is positive in compression. Without a load the stress is zero. Of an extreme load it is
     that over `scene.load.scale`, which a result is multiplied by when it is put together.
     """
-    load, amplitude = scene.load, scene.load.amplitude / scene.load.scale
-    if load.shape == "step":
+    return history_of(scene.load, scene.load.amplitude / scene.load.scale)
+
+
+def history_of(pulse: Pulse, amplitude: float) -> LoadHistory:
+    """Return a pulse of this amplitude as a function of time."""
+    if pulse.shape == "step":
         return Step(amplitude)
-    if load.shape == "table":
-        assert load.history is not None
-        return Recorded(load.history.time, amplitude * load.history.stress)
-    assert load.period is not None
-    if load.shape == "ricker":
-        return Ricker(amplitude, load.period)
-    return Sine(amplitude, load.period, load.cycles or 1)
+    if pulse.shape == "table":
+        assert pulse.history is not None
+        return Recorded(pulse.history.time, amplitude * pulse.history.stress)
+    assert pulse.period is not None
+    if pulse.shape == "ricker":
+        return Ricker(amplitude, pulse.period)
+    return Sine(amplitude, pulse.period, pulse.cycles or 1)
 
 
 def step_means(load: LoadHistory, dt: float, count: int) -> np.ndarray:

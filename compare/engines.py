@@ -12,7 +12,7 @@ from cases.schema.scene import Scene
 from cases.size import refuse_beyond_memory, waveform_bytes
 from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
 from compare.solvers.dem import DEM
-from compare.solvers.record import Answer, Solver
+from compare.solvers.record import Answer, Solver, no
 from numerics.checkpoint import Keeper
 
 if TYPE_CHECKING:
@@ -77,7 +77,10 @@ def selection() -> dict[str, dict[str | None, str]]:
 
 def applies(name: str, scene: Scene) -> Answer:
     """Return whether this engine or solution holds for the scene, or the reason why not."""
-    return solver(name).applies(scene)
+    one = solver(name)
+    if scene.kind not in one.kinds:
+        return no(f"is a solution of a {one.kinds[0]}, not of a {scene.kind}")
+    return one.applies(scene)
 
 
 def solve(
@@ -118,7 +121,7 @@ def solve_fields(
 
 def _that_applies(name: str, scene: Scene) -> Solver:
     one = solver(name)
-    answer = one.applies(scene)
+    answer = applies(name, scene)
     if not answer:
         raise SceneError(scene.title, "", None, f"{name} does not apply: {answer.reason}")
     return one

@@ -1,6 +1,6 @@
 """The small tables of a rock mass: its intact rock, its sides, what fills it, what is recorded."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -60,3 +60,36 @@ class RecordInPlane(Table):
     interval: Positive | None = None  #: s; default a 200th of the period, or duration / 2000
     fields: Positive | None = None  #: s between snapshots of the whole domain; absent: none
     energy: bool = True  #: keep the energy ledger
+
+
+class DemInPlane(Table):
+    """How rigid blocks are stepped, and whether intact rock between joints is cut, too."""
+
+    #: m: blocks of about this size between the joints, by further joints as stiff as the rock that
+    #: they stand for; absent: the joint sets alone make the blocks
+    block: Positive | None = None
+    step_fraction: Positive = 0.2  #: of the critical step
+    allow_unstable: bool = False  #: go on with a step above the critical one
+    static_tolerance: Positive = 1e-8  #: out-of-balance force ratio that ends the static state
+    threads: Annotated[int, Field(ge=1, le=1024)] | None = None  #: absent: by the number of blocks
+
+
+class ContinuumInPlane(Table):
+    """How the deformable rock is discretised and stepped."""
+
+    order: Annotated[int, Field(ge=1, le=4)] = 2  #: of the elements; at most 2 for triangles
+    #: absent: quadrilaterals where every block has four corners
+    cell: Literal["quadrilateral", "triangle"] | None = None
+    size: Positive | None = None  #: m, of the elements; absent: by the shortest wave
+    scheme: Literal["auto", "explicit", "implicit"] = "auto"  #: auto: whichever costs less
+    step_fraction: Positive = 0.5  #: of the critical step, explicit
+    steps_per_period: Positive = 200  #: implicit; of the shortest pulse, or a tenth of the duration
+    spectral_radius: Annotated[float, Field(ge=0, le=1)] = 0.9  #: implicit, of infinite frequency
+    allow_unstable: bool = False  #: go on with an explicit step above the critical one
+
+
+class NumericsInPlane(Table):
+    """How, not what: every key has a default that is chosen for accuracy."""
+
+    dem: DemInPlane = DemInPlane()
+    continuum: ContinuumInPlane = ContinuumInPlane()

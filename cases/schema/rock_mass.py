@@ -4,6 +4,8 @@ A file with a table [domain] holds one; a file with [pillar] is a `Scene`. Table
 mean the same. SI units; x to the right, y upwards, plane strain.
 """
 
+from typing import ClassVar
+
 from pydantic import PrivateAttr, model_validator
 
 from cases.schema.damping import Damping
@@ -13,6 +15,7 @@ from cases.schema.plane import (
     Boundaries,
     GravityInPlane,
     IntactRock,
+    NumericsInPlane,
     RecordInPlane,
     StressInPlane,
 )
@@ -37,10 +40,12 @@ class RockMass(Table):
     gravity: GravityInPlane | None = None
     prestress: StressInPlane | None = None
     time: Time
+    numerics: NumericsInPlane = NumericsInPlane()
     record: RecordInPlane
     expect: dict[Pair, Positive] = {}  #: bounds on the relative L2 misfit of pairs
     name: str = ""  #: of the variant; empty for the scene as it stands
 
+    kind: ClassVar[str] = "rock mass"
     _where: str = PrivateAttr(default="")
 
     @model_validator(mode="after")

@@ -5,6 +5,8 @@ end, x and z across. The reference scene is that of Guo & Li (2002), Chin. J. Ro
 21(8), 1124-1129.
 """
 
+from typing import ClassVar
+
 from pydantic import PrivateAttr, model_validator
 
 from cases.schema.consistency import check
@@ -69,6 +71,7 @@ class Scene(Table):
     expect: dict[Pair, Positive] = {}  #: bounds on the relative L2 misfit of pairs
     name: str = ""  #: of the variant; empty for the scene as it stands
 
+    kind: ClassVar[str] = "pillar"
     _where: str = PrivateAttr(default="")
 
     @model_validator(mode="after")

@@ -150,6 +150,7 @@ class Solver:
     Attributes
     ----------
     rock, form : how it resolves the rock mass, and how its solution is known.
+    kinds : of scenes that it can solve: "pillar", "rock mass".
     dimension : 1 where it has no motion across the axis beside a plane wave.
     discretised : whether an engine discretises this very model; a solution of one mechanism alone
         leaves out what else the engines have.
@@ -175,6 +176,7 @@ class Solver:
     applies: Callable[[Scene], Answer]
     run: Callable[..., xr.Dataset]
     form: Form = Form.COMPUTED
+    kinds: tuple[str, ...] = ("pillar",)
     dimension: int = 1
     discretised: bool = True
     prepare: Callable[[Scene], Prepared] = without_steps

@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from compare.exact.plane.waves import ElasticRock
+from cases.material.rock import ElasticRock
 
 POINTS = 64  # of integration between two breaks
 SAFETY = 2.0  # on the difference from half of them

@@ -21,12 +21,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from cases.material.rock import ElasticRock, Values
 from compare.exact.plane.pulse import Axes, Fields, Layers, Pulse, axes_of, pulse_fields
 from compare.exact.plane.waves import (
     KINDS,
-    ElasticRock,
     Kind,
-    Values,
     cosines,
     face,
     is_evanescent,

@@ -14,6 +14,7 @@ joints may differ from each other.
 
 import numpy as np
 
+from cases.material.rock import ElasticRock, Values
 from compare.exact.plane.oblique_joint import (
     Coefficients,
     Joint,
@@ -22,7 +23,7 @@ from compare.exact.plane.oblique_joint import (
     scattering,
 )
 from compare.exact.plane.pulse import Fields, Layers, Pulse, axes_of, pulse_fields
-from compare.exact.plane.waves import ElasticRock, Kind, Values, slowness_along, slownesses_across
+from compare.exact.plane.waves import Kind, slowness_along, slownesses_across
 
 
 def coefficients(

@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from cases.material.rock import ElasticRock
 from compare.exact.plane.inversion import inverse
 from compare.exact.plane.waves import (
     KINDS,
-    ElasticRock,
     Kind,
     is_evanescent,
     polarisations,

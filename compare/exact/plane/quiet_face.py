@@ -13,16 +13,8 @@ for P | SV. They do not depend on frequency. alpha = beta = 0 is a free face, in
 
 import numpy as np
 
-from compare.exact.plane.waves import (
-    KINDS,
-    ElasticRock,
-    Kind,
-    Values,
-    cosines,
-    face,
-    slowness_along,
-    solve_pair,
-)
+from cases.material.rock import ElasticRock, Values
+from compare.exact.plane.waves import KINDS, Kind, cosines, face, slowness_along, solve_pair
 
 
 def coefficients(

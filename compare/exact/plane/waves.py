@@ -12,50 +12,14 @@ by a right angle from n to t. Beyond the critical angle c is imaginary, +i |c|: 
 the P wave decays away from the face. For negative frequencies take complex conjugates.
 """
 
-from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
 
+from cases.material.rock import ElasticRock, Values
+
 Kind = Literal["P", "SV"]
 KINDS = ("P", "SV")
-Values = float | np.ndarray
-
-
-@dataclass(frozen=True)
-class ElasticRock:
-    """Isotropic rock: density (kg/m3) and the speeds of P and S waves (m/s), or arrays of them."""
-
-    density: Values
-    p_speed: Values
-    s_speed: Values
-
-    def __post_init__(self) -> None:
-        for name in ("density", "p_speed", "s_speed"):
-            if not (np.asarray(getattr(self, name)) > 0).all():
-                raise ValueError(f"{name} is {getattr(self, name)}, must be positive")
-        if not (np.asarray(self.p_speed) > self.s_speed).all():
-            raise ValueError(f"p_speed {self.p_speed} must be above s_speed {self.s_speed}")
-
-    @property
-    def p_impedance(self) -> Values:
-        """Z_p = rho a, Pa s/m."""
-        return self.density * self.p_speed
-
-    @property
-    def s_impedance(self) -> Values:
-        """Z_s = rho b, Pa s/m."""
-        return self.density * self.s_speed
-
-    @property
-    def shear_modulus(self) -> Values:
-        """mu = rho b^2, Pa."""
-        return self.density * self.s_speed**2
-
-    @property
-    def lame(self) -> Values:
-        """lambda = rho (a^2 - 2 b^2), Pa."""
-        return self.density * (self.p_speed**2 - 2 * self.s_speed**2)
 
 
 class Face(NamedTuple):

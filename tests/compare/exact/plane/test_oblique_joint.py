@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from cases.material.rock import ElasticRock
 from compare.exact.joint import one_joint
 from compare.exact.plane.oblique_joint import Joint, coefficients, energy_flux, scattering
-from compare.exact.plane.waves import ElasticRock, cosines, slowness_along
+from compare.exact.plane.waves import cosines, slowness_along
 
 OMEGA = 2 * np.pi * 100.0
 KINDS = pytest.mark.parametrize("kind", ["P", "SV"])

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
+from cases.material.rock import ElasticRock
 from compare.exact.joint import parallel_joints as normal_incidence
 from compare.exact.plane import oblique_joint
 from compare.exact.plane.oblique_joint import Joint, energy_flux
 from compare.exact.plane.parallel_joints import coefficients
-from compare.exact.plane.waves import ElasticRock, slowness_along
+from compare.exact.plane.waves import slowness_along
 
 OMEGA = 2 * np.pi * 100.0
 KINDS = pytest.mark.parametrize("kind", ["P", "SV"])

@@ -5,10 +5,11 @@ import pytest
 from numpy.polynomial.legendre import leggauss
 from scipy.special import erfc
 
+from cases.material.rock import ElasticRock
 from compare.exact.plane import inversion, oblique_joint, parallel_joints
 from compare.exact.plane.oblique_joint import Joint, coefficients
 from compare.exact.plane.pulse import Pulse
-from compare.exact.plane.waves import ElasticRock, polarisations
+from compare.exact.plane.waves import polarisations
 
 TRAVELS = [("P", 0), ("P", 50), ("P", 130), ("SV", 25), ("SV", -60), ("SV", 200)]
 

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compare.exact.plane.waves import ElasticRock
+from cases.material.rock import ElasticRock
 
 PAIRS = {2: ((0, 0), (1, 1), (0, 1)), 3: ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))}
 

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from compare.exact.plane.block_lattice import Lattice, modes
-from compare.exact.plane.effective_medium import (
+from cases.material.effective_medium import (
     JointSet,
     christoffel,
     compliance,
@@ -15,9 +14,11 @@ from compare.exact.plane.effective_medium import (
     stiffness,
     tensor,
 )
+from cases.material.rigid_fit import rigid_fit
+from cases.material.rock import ElasticRock
+from compare.exact.plane.block_lattice import Lattice, modes
 from compare.exact.plane.oblique_joint import Joint, scattering
-from compare.exact.plane.rigid_fit import rigid_fit
-from compare.exact.plane.waves import ElasticRock, slownesses_across
+from compare.exact.plane.waves import slownesses_across
 
 UNIT = ElasticRock(1.0, np.sqrt(3.0), 1.0)  # lambda = mu = rho = 1
 

@@ -1,0 +1,167 @@
+"""Waves that enter a rock mass through its quiet sides, as tractions on them.
+
+With the outward normal n, a side that the field (v, sigma) passes has the traction
+
+    sigma n + rho a (v - v_rock)_n + rho b (v - v_rock)_s
+
+(Lysmer & Kuhlemeyer, J. Eng. Mech. Div. ASCE 95, 1969; Joyner & Chen, BSSA 65, 1975). The part
+with v_rock is the dashpot of the side; the rest, `tractions`, is known before the run.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+import numpy as np
+
+from cases.loads import history_of
+from cases.material.rock import elastic_rock
+
+if TYPE_CHECKING:
+    from cases.loads import LoadHistory
+    from cases.material.rock import ElasticRock
+    from cases.schema.rock_mass import RockMass
+    from cases.schema.sources import Wave
+
+GRAZING = 1e-9  #: cosine up to which a wave that leaves through a side still runs along it
+
+
+class Motion(NamedTuple):
+    """Particle velocity [points, (x, y), times], m/s, and stress [points, (xx, yy, xy), times],
+    Pa, tension positive."""
+
+    velocity: np.ndarray
+    stress: np.ndarray
+
+
+class IncidentField(Protocol):
+    """A motion of the rock mass as if it had no artificial sides.
+
+    whole : whether it holds what joints scatter, too, and so is right at every quiet side; else it
+    is the motion of the waves alone, which enters where they do.
+    """
+
+    whole: bool
+
+    def __call__(self, points: np.ndarray, times: np.ndarray) -> Motion:
+        """Return the motion at points [m, 2] (m) and equally spaced times [n] (s)."""
+
+
+@dataclass(frozen=True)
+class PlaneWave:
+    """One plane wave in rock without joints.
+
+    direction, polarisation : unit vectors. speed : m/s. through : a point that the pulse passes at
+    t = 0, m. pulse : of particle velocity along the polarisation, m/s; the integral is the
+    displacement.
+    """
+
+    rock: ElasticRock
+    direction: np.ndarray
+    polarisation: np.ndarray
+    speed: float
+    through: np.ndarray
+    pulse: LoadHistory
+
+    def lateness(self, points: np.ndarray) -> np.ndarray:
+        """Return when the pulse begins at points [m, 2], s."""
+        return (np.asarray(points) - self.through) @ self.direction / self.speed
+
+    def motion(self, points: np.ndarray, times: np.ndarray) -> Motion:
+        """Return velocity and stress, sigma = -C : (n g) f / c, at points and times."""
+        f = self.pulse.value(np.asarray(times) - self.lateness(points)[:, None])
+        n, g, rock = self.direction, self.polarisation, self.rock
+        tensor = rock.lame * (n @ g) * np.eye(2) + rock.shear_modulus * (
+            np.outer(n, g) + np.outer(g, n)
+        )
+        stress = -np.array([tensor[0, 0], tensor[1, 1], tensor[0, 1]]) / self.speed
+        return Motion(f[:, None] * g[:, None], f[:, None] * stress[:, None])
+
+
+@dataclass(frozen=True)
+class FreeField:
+    """The waves of a scene in its intact rock, without any joint."""
+
+    waves: tuple[PlaneWave, ...]
+    whole: bool = False
+
+    def __call__(self, points: np.ndarray, times: np.ndarray) -> Motion:
+        zero = np.zeros((len(points), 1, 1))
+        found = [one.motion(points, times) for one in self.waves]
+        return Motion(
+            sum((m.velocity for m in found), start=zero), sum((m.stress for m in found), start=zero)
+        )
+
+
+def free_field(scene: RockMass) -> FreeField:
+    """Return the field of all waves of a scene in rock without joints; whole where it has none."""
+    return FreeField(tuple(plane_wave(scene, one) for one in scene.waves), not scene.joint_sets)
+
+
+def plane_wave(scene: RockMass, wave: Wave) -> PlaneWave:
+    """Return a wave of a scene: its speed, where its pulse begins, and its particle velocity.
+
+    Of an S wave particles move to the left of its travel. Stress is that on the wave front, minus
+    sigma_nn of P and sigma_ns of S: both are impedance times velocity.
+    """
+    rock = elastic_rock(scene.rock)
+    n = np.array(wave.direction)
+    is_p = wave.kind == "P"
+    speed = float(rock.p_speed if is_p else rock.s_speed)
+    polarisation = n if is_p else np.array([-n[1], n[0]])
+    corners = np.array(scene.domain.corners)
+    through = corners[np.argmin(corners @ n)] if wave.through is None else np.array(wave.through)
+    over = float(rock.density) * speed if wave.quantity == "stress" else 1.0
+    return PlaneWave(rock, n, polarisation, speed, through, history_of(wave, wave.amplitude / over))
+
+
+class FaceTractions(NamedTuple):
+    """Tractions of a field on points of sides, without the dashpots' own part.
+
+    times : equally spaced [n], s. values : [n, m, 2], Pa.
+    """
+
+    times: np.ndarray
+    values: np.ndarray
+
+    def at(self, times: np.ndarray) -> np.ndarray:
+        """Return the tractions at times of a run [k], [k, m, 2] in Pa: cubic between samples."""
+        from scipy.interpolate import CubicSpline
+
+        dt = self.times[1] - self.times[0]
+        low = max(int((times[0] - self.times[0]) / dt) - 8, 0)
+        high = int((times[-1] - self.times[0]) / dt) + 10
+        window = slice(low, max(high, low + 4))
+        return CubicSpline(self.times[window], self.values[window])(times)
+
+
+def tractions(
+    field: IncidentField,
+    points: np.ndarray,
+    normals: np.ndarray,
+    impedance: np.ndarray,
+    times: np.ndarray,
+) -> FaceTractions:
+    """Return sigma n + rho a v_n + rho b v_s of a field at points [m, 2] of outward normals [m, 2].
+
+    impedance : rho a and rho b of the dashpots there, Pa s/m, [m, 2]. times : equally spaced, s.
+    """
+    velocity, stress = field(points, times)
+    n = np.asarray(normals)[:, :, None]
+    xx, yy, xy = stress[:, 0], stress[:, 1], stress[:, 2]
+    pulled = np.stack([xx * n[:, 0] + xy * n[:, 1], xy * n[:, 0] + yy * n[:, 1]], axis=1)
+    along = (velocity * n).sum(axis=1, keepdims=True) * n
+    Z = np.asarray(impedance)[:, :, None, None]
+    total = pulled + Z[:, 0] * along + Z[:, 1] * (velocity - along)
+    return FaceTractions(np.asarray(times), np.moveaxis(total, 2, 0))
+
+
+def enters(field: IncidentField, scene: RockMass, normals: np.ndarray) -> np.ndarray:
+    """Return whether a field acts on sides of outward normals [m, 2]: bool [m]. All where it is
+    whole, else those that some wave enters through or runs along."""
+    normals = np.asarray(normals)
+    if field.whole or not scene.waves:
+        return np.full(len(normals), bool(scene.waves))
+    directions = np.array([one.direction for one in scene.waves])
+    return (normals @ directions.T).min(axis=1) <= GRAZING

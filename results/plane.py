@@ -1,0 +1,114 @@
+"""The form of every result of a rock mass, whichever engine or formula it comes from."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from results.dataset import Fields, Variable
+from results.labels import label
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
+
+#: Dimensions of each quantity beside time, its receivers first.
+DIMENSIONS: dict[str, tuple[str, ...]] = {
+    "velocity": ("point", "axis"),
+    "displacement": ("point", "axis"),
+    "stress": ("point", "stress_component"),
+    "traction": ("joint_point", "joint_axis"),
+    "gap": ("joint_point",),
+    "slip": ("joint_point",),
+}
+#: What the components of a quantity are called.
+COMPONENTS = {
+    "axis": ("x", "y"),
+    "stress_component": ("xx", "yy", "xy"),
+    "joint_axis": ("n", "s"),
+}
+#: Terms of the energy ledger.
+TERMS = (
+    "kinetic", "elastic", "viscous", "friction", "fracture", "boundary", "gravity", "work",
+)  # fmt: skip
+
+
+def scene_hash(scene: RockMass) -> str:
+    """Return a short hash of everything that decides a result, samples of pulses included."""
+    digest = hashlib.sha256(scene.model_dump_json().encode())
+    for pulse in (*scene.waves, *scene.loads):
+        if pulse.history is not None:
+            digest.update(pulse.history.time.tobytes())
+            digest.update(pulse.history.stress.tobytes())
+    return digest.hexdigest()[:16]
+
+
+def plane_fields(
+    scene: RockMass,
+    engine: str,
+    time: np.ndarray,
+    quantities: Mapping[str, np.ndarray],
+    energy: np.ndarray | None = None,
+    terms: Sequence[str] = TERMS,
+    errors: Mapping[str, np.ndarray] | None = None,
+    **attributes: Any,
+) -> Fields:
+    """Return a result with the schema that all engines and exact solutions of rock masses share.
+
+    Parameters
+    ----------
+    engine : "dem", "continuum-jointed", ..., or the name of an exact solution.
+    time : float array [n], s.
+    quantities : by name, what the solver knows of: float arrays of the shape of `DIMENSIONS` with
+        time after the receivers. velocity, displacement [points, n, 2], m/s and m; stress
+        [points, n, 3], Pa, compression positive, the mean over the block or that of the element;
+        traction [joints, n, 2], Pa, compression and shear along the joint; gap, slip [joints, n],
+        m. Displacement, gap and slip count from the state at the start of the run.
+    energy : float array [len(terms), n], J per metre of thickness; work is what loads and waves
+        have put in, the others what became of it.
+    errors : of a solution that is computed, an upper bound of the root-mean-square error over time
+        of each waveform, by quantity: float arrays of its shape without time.
+    attributes : numbers and texts about the run (dt, steps, seconds, ...).
+
+    Joint receivers are named by the places that [record] has; the tangent of a joint is its normal,
+    out of the block with the smaller number, turned to the left.
+    """
+    coords: dict[str, Variable] = {"time": (("time",), time, label("time"))}
+    for name, places in (("point", scene.record.points), ("joint_point", scene.record.joints)):
+        at = np.array(places, dtype=float).reshape(-1, 2)
+        coords[name] = ((name,), np.arange(len(at)), label(name))
+        for k, axis in enumerate("xy"):
+            coords[f"{name}_{axis}"] = ((name,), at[:, k], label(f"{name}_{axis}"))
+    variables: dict[str, Variable] = {}
+    for name, values in quantities.items():
+        receivers, *components = DIMENSIONS[name]
+        variables[name] = ((receivers, "time", *components), values, label(name))
+        for one in components:
+            coords[one] = ((one,), np.array(COMPONENTS[one]), label(one))
+    if energy is not None:
+        variables["energy"] = (("term", "time"), energy, label("energy"))
+        coords["term"] = (("term",), np.array(list(terms)), label("term"))
+    for name, bound in (errors or {}).items():
+        variables[f"{name}_error"] = (DIMENSIONS[name], np.asarray(bound), label(f"{name}_error"))
+    common = {
+        "engine": engine,
+        "kind": scene.kind,
+        "title": scene.title,
+        "variant": scene.name,
+        "scene_hash": scene_hash(scene),
+        "starts": starts(scene),
+        "warnings": json.dumps([]),
+    }
+    about = {**common, **attributes, "scene": scene.model_dump_json()}
+    return Fields(variables, coords, about)
+
+
+def starts(scene: RockMass) -> str:
+    """Return the state that a scene starts from: "unloaded", "prestressed" or "at rest under
+    gravity"; of the last two the first sample is that state, which is not part of the motion."""
+    if scene.gravity is not None and scene.gravity.static:
+        return "at rest under gravity"
+    return "unloaded" if scene.prestress is None else "prestressed"
