@@ -154,19 +154,31 @@ def _variant(
             "with '.' or ' ', nor ending as results do: .nc, .pvd, .bp, -fields"
         )
         raise SceneError(str(path), f"variants[{index}].name", name, allowed)
-    table = _merge(base, changes)
+    table = _merge(base, changes, f"variants[{index}]", str(path))
     for key, value in overrides.items():
         _assign(table, key, value, str(path))
     return table
 
 
-def _merge(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
+def _merge(base: dict[str, Any], changes: dict[str, Any], key: str, where: str) -> dict[str, Any]:
+    """Return a table with changes; `waves.0.kind` changes one of a list of tables."""
     merged = dict(base)
-    for key, value in changes.items():
-        old = merged.get(key)
-        merged[key] = (
-            _merge(old, value) if isinstance(old, dict) and isinstance(value, dict) else value
-        )
+    for name, value in changes.items():
+        old, inner = merged.get(name), f"{key}.{name}"
+        if isinstance(old, dict) and isinstance(value, dict):
+            value = _merge(old, value, inner, where)
+        elif isinstance(old, list) and isinstance(value, dict):
+            value = _merge_list(old, value, inner, where)
+        merged[name] = value
+    return merged
+
+
+def _merge_list(base: list[Any], changes: dict[str, Any], key: str, where: str) -> list[Any]:
+    merged = list(base)
+    for part, value in changes.items():
+        at, inner = _place(base, part, key, value, where), f"{key}.{part}"
+        both = isinstance(base[at], dict) and isinstance(value, dict)
+        merged[at] = _merge(base[at], value, inner, where) if both else value
     return merged
 
 

@@ -378,3 +378,13 @@ def test_a_pillar_imports_nothing_of_rock_masses(tmp_path):
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == []
+
+
+def test_a_variant_changes_one_of_a_list_of_tables(written):
+    path = written(GOOD + '\n[[variants]]\nname = "steep"\njoint_sets.1.dip = 80.0\n')
+    first, *_, steep = load_any(path)
+    assert [s.dip for s in steep.joint_sets] == [first.joint_sets[0].dip, 80.0]
+    assert steep.joint_sets[1].model_dump() == {**first.joint_sets[1].model_dump(), "dip": 80.0}
+    path = written(GOOD + '\n[[variants]]\nname = "none"\njoint_sets.7.dip = 80.0\n')
+    with pytest.raises(SceneError, match=r"variants\[1\].joint_sets = .*is none of 0 to 1"):
+        load_any(path)
