@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
     from cases.schema.scene import Scene
 
 
@@ -48,3 +49,30 @@ def dashpots(scene: Scene, soft: np.ndarray, regular: float, stiffness: np.ndarr
     for j, ratio in zip(soft, ratios[1:], strict=True):
         etas[j] = eta(ratio, stiffness[j])
     return Dashpots(None if ratios[0] is None else eta(ratios[0], regular), etas)
+
+
+def set_time_constants(scene: RockMass) -> np.ndarray | None:
+    """Return eta of each joint set of a rock mass, normal and in shear, s [sets]; None without any
+    dashpot.
+
+    The mass in c_n = 2 zeta sqrt(m k_n) is that of the rock from joint to joint: density times the
+    spacing, or half of the domain's extent across a joint that is alone.
+    """
+    from cases.partition.joints import direction_of
+
+    sets = scene.joint_sets
+    if scene.damping.rayleigh is not None:
+        beta = scene.damping.rayleigh.coefficients[1]
+        return np.full(len(sets), beta) if beta else None
+    if not any(one.damping_ratio for one in sets):
+        return None
+    density, corners = scene.rock.density, np.array(scene.domain.corners)
+
+    def eta(ratio: float, dip: float, spacing: float | None, k: float) -> float:
+        normal = direction_of(dip)[::-1] * [-1, 1]
+        apart = spacing or float(np.ptp(corners @ normal)) / 2
+        return 2 * ratio * sqrt(density * apart / k)
+
+    return np.array(
+        [eta(s.damping_ratio or 0.0, s.dip, s.spacing, s.normal_stiffness or 0.0) for s in sets]
+    )
