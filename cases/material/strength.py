@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from cases.schema.joint import JointLaw
     from cases.schema.scene import Scene
 
 #: Strength (Pa) and opening (m) of a joint that never fails beside joints that do; its square is
@@ -47,15 +50,24 @@ class Strength:
 
 
 def strength(scene: Scene, soft: np.ndarray) -> Strength:
-    """Return the strength of all joints, of which `soft` are those of the soft layers.
+    """Return the strength of all joints, of which `soft` are those of the soft layers."""
+    which = np.zeros(scene.pillar.block_count - 1, dtype=np.int64)
+    which[soft] = 1 + np.arange(len(soft))
+    return strength_of((scene.joints, *scene.layers), which)
+
+
+def strength_of(laws: Sequence[JointLaw], which: np.ndarray) -> Strength:
+    """Return the strength of joints, of which each has the law `which` (int array [n]) of `laws`.
 
     Beside joints that slip, one without friction and cohesion of its own has a cohesion without
     limit; beside joints that break, one without tensile strength likewise.
     """
-    keys, laws = (*SLIP, *SOFTENING), (scene.joints, *scene.layers)
+    keys = (*SLIP, *SOFTENING)
     if all(getattr(law, key) is None for law in laws for key in keys):
         return Strength()
-    angle, cohesion, residual, limit, energy = (_per_joint(scene, soft, key) for key in keys)
+    angle, cohesion, residual, limit, energy = (
+        np.array([_number(getattr(law, key)) for law in laws])[which] for key in keys
+    )
     slips = ~(np.isnan(angle) & np.isnan(cohesion))
     never = ~slips & slips.any()
     whole = np.where(never, UNLIMITED, np.nan_to_num(cohesion))
@@ -66,13 +78,6 @@ def strength(scene: Scene, soft: np.ndarray) -> Strength:
         tensile_strength=_where_given(limit, np.nan_to_num(limit, nan=UNLIMITED)),
         critical_opening=_where_given(limit, np.nan_to_num(2 * energy / limit, nan=UNLIMITED)),
     )
-
-
-def _per_joint(scene: Scene, soft: np.ndarray, key: str) -> np.ndarray:
-    """Return a key's value at every joint [N - 1], nan where it has none."""
-    values = np.full(scene.pillar.block_count - 1, _number(getattr(scene.joints, key)))
-    values[soft] = [_number(getattr(layer, key)) for layer in scene.layers]
-    return values
 
 
 def _number(value: float | None) -> float:
