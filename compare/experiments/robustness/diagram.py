@@ -2,7 +2,7 @@
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import ListedColormap
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from compare.experiments.robustness.criteria.energies import Drift
@@ -32,12 +32,22 @@ def draw(maps: list[StabilityMap], drifts: dict[str, Drift]) -> Figure:
     return figure
 
 
+def stretches(stable: np.ndarray, x: np.ndarray, y: np.ndarray) -> list[np.ndarray]:
+    """Return the corners [4, 2] of the longest stretches of stable cells in each row."""
+    found = []
+    for i, row in enumerate(stable):
+        turns = np.flatnonzero(np.diff(np.concatenate([[False], row, [False]])))
+        for j, k in turns.reshape(-1, 2):
+            found.append(np.array([[x[j], y[i]], [x[k], y[i]], [x[k], y[i + 1]], [x[j], y[i + 1]]]))
+    return found
+
+
 def _draw_map(ax: Axes, one: StabilityMap, k: int) -> None:
-    colours = ListedColormap([LIGHT, style(one.engine).colour])
-    cells = ax.pcolormesh(
-        _edges(one.ratio), _edges(one.step), one.stable, cmap=colours, vmin=0, vmax=1
-    )
-    cells.set_gid(f"stability-map-{k}")
+    across, up = _edges(one.ratio), _edges(one.step)
+    ax.set(xlim=across[[0, -1]], ylim=up[[0, -1]], facecolor=LIGHT)
+    stable = PolyCollection(stretches(one.stable, across, up), color=style(one.engine).colour)
+    stable.set(gid=f"stability-map-{k}", linewidth=0.3)  # no seams between rows
+    ax.add_collection(stable)
     ratio = np.geomspace(one.ratio[0], one.ratio[-1], 200)
     (line,) = ax.plot(ratio, boundary(ratio), color="#000000", linewidth=1.4)
     line.set_gid(f"stability-line-{k}")

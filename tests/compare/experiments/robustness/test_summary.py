@@ -44,3 +44,11 @@ def test_figure_has_maps_line_and_energies():
     figure = diagram.draw([found], {"dem leapfrog": energy})
     gids = {artist.get_gid() for artist in figure.findobj()} - {None}
     assert gids == {"stability-map-0", "stability-line-0", "stability-energy-0"}
+
+
+def test_the_map_covers_its_stable_cells():
+    """In cells of unit size the drawn area is their number."""
+    stable = np.array([[True, False, True], [False, False, False], [True, True, True]])
+    drawn = diagram.stretches(stable, np.arange(4.0), np.arange(4.0))
+    corners = sorted(tuple(map(int, (*one.min(axis=0), *one.max(axis=0)))) for one in drawn)
+    assert corners == [(0, 0, 1, 1), (0, 2, 3, 3), (2, 0, 3, 1)]
