@@ -1,12 +1,17 @@
 """When and where a run is recorded: sample times, the step that fits them, and interpolation."""
 
+from __future__ import annotations
+
 from math import ceil
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from cases.errors import SceneError
-from cases.schema.scene import Scene
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
+    from cases.schema.scene import Scene
 
 MOST_STEPS = 1e12  # some five hours for a hundred rigid blocks; beyond it a mistake
 
@@ -32,7 +37,7 @@ class Clock(NamedTuple):
         return self.dt * self.stride * np.arange(self.samples)
 
 
-def sample_times(scene: Scene) -> np.ndarray:
+def sample_times(scene: Scene | RockMass) -> np.ndarray:
     """Return the times at which a scene is sampled [n], s."""
     count = int(scene.time.duration / scene.interval + 1e-9) + 1
     return scene.interval * np.arange(count)

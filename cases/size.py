@@ -17,8 +17,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cases.errors import SceneError
+from cases.schema.plane import RecordInPlane
 
 if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
     from cases.schema.scene import Scene
 
 LIMIT = "JOINTWAVE_MEMORY"  # GB, in the environment: a bound of the user's own
@@ -74,7 +76,7 @@ def _of_machine() -> float:
     return min(found)
 
 
-def refuse_beyond_memory(scene: Scene, parts: Mapping[str, float]) -> None:
+def refuse_beyond_memory(scene: Scene | RockMass, parts: Mapping[str, float]) -> None:
     """Raise SceneError where a run's parts, bytes by the key that decides them, are too large."""
     if (asked := _asked.get()) is not None:
         asked.update(parts)
@@ -114,7 +116,7 @@ def within(room: float) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
 
 
-def value_of(scene: Scene, key: str) -> object:
+def value_of(scene: Scene | RockMass, key: str) -> object:
     """Return what a scene has at a dotted key."""
     found: object = scene
     for part in key.split("."):
@@ -129,22 +131,32 @@ def spoken(size: float) -> str:
     return f"{size / 1e9:.3g} GB" if size >= 1e9 else f"{size / 1e6:.3g} MB"
 
 
-def samples_of(scene: Scene) -> float:
+def samples_of(scene: Scene | RockMass) -> float:
     """Return how many samples a scene asks for."""
     return scene.time.duration / scene.interval + 1
 
 
-def waveform_bytes(scene: Scene, spatial: bool = False) -> float:
+def waveform_bytes(scene: Scene | RockMass, spatial: bool = False) -> float:
     """Return what the waveforms and the ledger take (bytes), written ones included.
 
     Raises SceneError where one of them would not fit a file.
     """
-    record, samples = scene.record, samples_of(scene)
-    sections, points = len(record.stress), len(record.velocity)
-    axes = 3 if spatial else 1
-    largest = 8 * samples * max(sections * max(axes - 1, 1), points * axes)
+    record, axes = scene.record, 3 if spatial else 1
+    if isinstance(record, RecordInPlane):
+        rows = {
+            "record.points": (len(record.points), 3, 7),
+            "record.joints": (len(record.joints), 2, 4),
+        }
+    else:
+        across, of_point = max(axes - 1, 1), axes * (3 if spatial else 2)
+        rows = {
+            "record.velocity": (len(record.velocity), axes, of_point),
+            "record.stress": (len(record.stress), across, axes),
+        }
+    samples = samples_of(scene)
+    key, (places, most, _) = max(rows.items(), key=lambda row: row[1][0] * row[1][1])
+    largest = 8 * samples * places * most
     if largest > LARGEST_VARIABLE:
-        key = "record.velocity" if points * axes >= sections * max(axes - 1, 1) else "record.stress"
         raise SceneError(
             scene.where,
             key,
@@ -152,10 +164,8 @@ def waveform_bytes(scene: Scene, spatial: bool = False) -> float:
             f"with {samples:,.0f} samples gives a waveform of {spoken(largest)}; "
             f"at most {spoken(LARGEST_VARIABLE)} fit a file",
         )
-    rows = (
-        axes * sections + axes * (3 if spatial else 2) * points + (LEDGER if record.energy else 0)
-    )
-    return COPIES * 8 * samples * rows
+    count = sum(places * each for places, _, each in rows.values())
+    return COPIES * 8 * samples * (count + (LEDGER if record.energy else 0))
 
 
 def load_bytes(scene: Scene, steps: float) -> float:

@@ -37,6 +37,8 @@ EXACT = {
     "spatial-lattice": "blocks.spatial_lattice",
     "slip-joint": "joint.sliding_joint",
     "sliding-block": "blocks.sliding_block",
+    "oblique-joint": "rock_mass.oblique_joint",
+    "parallel-joints": "rock_mass.parallel_joints",
 }
 
 Progress = Callable[[float], None]

@@ -154,7 +154,7 @@ class Solver:
     dimension : 1 where it has no motion across the axis beside a plane wave.
     discretised : whether an engine discretises this very model; a solution of one mechanism alone
         leaves out what else the engines have.
-    applies : of (scene), to whether it holds for a scene.
+    applies : of (scene), one of its kinds, to whether it holds for it.
     run : of (scene), to its result; of an engine of (scene, progress, comm, keeper).
     prepare : of (scene), to what is known before a run; raises SceneError as the run would.
     distances : by kind, the solvers whose distance from this one is measured, and what each is
@@ -173,7 +173,7 @@ class Solver:
     rock: Rock
     words: Words
     line: Line
-    applies: Callable[[Scene], Answer]
+    applies: Callable[[Any], Answer]
     run: Callable[..., xr.Dataset]
     form: Form = Form.COMPUTED
     kinds: tuple[str, ...] = ("pillar",)

@@ -202,7 +202,8 @@ def test_friction_does_not_matter_while_nothing_shears_the_joints(scene):
 
 
 def test_every_solution_is_asked_both_ways():
-    assert {name for name, _ in YES} == {name for name, *_ in NO} == set(exact_names())
+    of_pillars = {name for name in exact_names() if "pillar" in solver(name).kinds}
+    assert {name for name, _ in YES} == {name for name, *_ in NO} == of_pillars
 
 
 def test_a_solution_works_without_sections_or_points(scene):

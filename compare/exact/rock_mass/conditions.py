@@ -1,0 +1,65 @@
+"""The physics of a rock mass that an exact solution must hold for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cases.partition.joints import direction_of
+from cases.partition.outline import outline_of
+
+if TYPE_CHECKING:
+    from cases.schema.joint_set import JointSet
+    from cases.schema.rock_mass import RockMass
+
+PARALLEL = 1e-9  #: sine of the angle up to which two directions are one
+
+
+def beyond_linear_rock(scene: RockMass) -> str | None:
+    """Return why a scene is not one of undamped rock and linear joints, None where it is."""
+    damping, gravity = scene.damping, scene.gravity
+    reasons = [
+        (bool(scene.domain.openings), "the domain has openings"),
+        (gravity is not None and bool(gravity.acceleration), "gravity acts"),
+        (bool(damping.alpha), "the damping is proportional to mass"),
+        (bool(damping.rayleigh and damping.rayleigh.coefficients[1]), "the rock is damped"),
+        (bool(damping.local), "the damping is local, which is not linear"),
+    ]
+    laws = (beyond_linear_law(one) for one in scene.joint_sets)
+    return next((why for there, why in reasons if there), None) or next(filter(None, laws), None)
+
+
+def beyond_linear_law(one: JointSet) -> str | None:
+    """Return why the law of a joint set is not linear, None where it is."""
+    if one.tension is False:
+        return f"joint set {one.name!r} bars tension"
+    if one.tensile_strength is not None:
+        return f"joint set {one.name!r} has a tensile strength"
+    if one.friction_angle is not None or one.cohesion is not None:
+        return f"joint set {one.name!r} can slip"
+    return None
+
+
+def reflecting_side(scene: RockMass) -> str | None:
+    """Return why waves do not leave through all sides: each must be quiet, or periodic with waves
+    and joints the same all along the way to its partner."""
+    for side in outline_of(scene.domain).normals():
+        held = getattr(scene.boundaries, side)
+        if held == "periodic" and not _is_invariant(scene, side):
+            return f"the {side} is periodic, and waves or joints are not the same all along the way"
+        if held in ("free", "fixed"):
+            return f"the {side} is {held} and reflects waves"
+    return None
+
+
+def along(one: np.ndarray, other: np.ndarray) -> bool:
+    """Return whether two unit vectors have the same or opposite directions."""
+    return bool(abs(one[0] * other[1] - one[1] * other[0]) < PARALLEL)
+
+
+def _is_invariant(scene: RockMass, side: str) -> bool:
+    axis = np.array([1.0, 0.0] if side in ("left", "right") else [0.0, 1.0])
+    across = np.array([-axis[1], axis[0]])
+    joints = all(along(direction_of(one.dip), axis) for one in scene.joint_sets)
+    return joints and all(along(np.array(one.direction), across) for one in scene.waves)

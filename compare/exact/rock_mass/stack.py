@@ -1,0 +1,128 @@
+"""The parallel joints of a scene as a stack without end, and whether they are one.
+
+Holds for undamped rock with linear joints, all parallel and unbroken, in a convex domain whose
+sides waves leave through, from rest: at t = 0 no pulse may have met a joint there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cases.incident import plane_wave
+from cases.material.dashpots import set_time_constants
+from cases.material.rock import elastic_rock
+from cases.partition.joints import direction_of
+from cases.partition.outline import outline_of
+from cases.partition.scene import partition_of
+from compare.exact.plane.oblique_joint import Joint
+from compare.exact.plane.waves import slownesses_across
+from compare.exact.rock_mass.conditions import along, beyond_linear_rock, reflecting_side
+
+if TYPE_CHECKING:
+    from cases.incident import PlaneWave
+    from cases.material.rock import ElasticRock
+    from cases.partition.blocks import Partition
+    from cases.schema.rock_mass import RockMass
+
+BEGUN = 1e-9  #: of the duration, that a pulse may have met a joint for at t = 0
+
+
+@dataclass(frozen=True)
+class Stack:
+    """Parallel joints in rock.
+
+    direction : unit vector along the joints [2]; their normal is its left. offsets : of the joints
+    along the normal from the origin, ascending, m, [N]. joints : [N]. partition : of the domain.
+    """
+
+    rock: ElasticRock
+    direction: np.ndarray
+    offsets: np.ndarray
+    joints: list[Joint]
+    partition: Partition
+
+    @property
+    def normal(self) -> np.ndarray:
+        """The unit vector across the joints [2]."""
+        return np.array([-self.direction[1], self.direction[0]])
+
+    @property
+    def dip(self) -> float:
+        """Angle of the joints from x, anticlockwise, rad."""
+        return float(np.arctan2(self.direction[1], self.direction[0]))
+
+
+def stack_of(scene: RockMass) -> Stack:
+    """Return the stack of a scene whose joints are parallel."""
+    partition, direction = partition_of(scene), direction_of(scene.joint_sets[0].dip)
+    contacts, etas = partition.contacts, set_time_constants(scene)
+    etas = np.zeros(len(scene.joint_sets)) if etas is None else etas
+    laws = [
+        Joint(K_n, K_s, K_n * eta, K_s * eta)
+        for K_n, K_s, eta in zip(*stiffnesses(scene), etas, strict=True)
+    ]
+    depths = contacts.start @ [-direction[1], direction[0]]
+    order = np.argsort(depths)
+    joints = [laws[k] for k in contacts.joint_set[order]]
+    return Stack(elastic_rock(scene.rock), direction, depths[order], joints, partition)
+
+
+def stiffnesses(scene: RockMass) -> np.ndarray:
+    """Return the normal and the shear stiffness of each joint set [2, sets], Pa/m."""
+    keys = ("normal_stiffness", "shear_stiffness")
+    return np.array([[getattr(one, key) for one in scene.joint_sets] for key in keys])
+
+
+def against(scene: RockMass) -> str | None:
+    """Return why a scene is not one of plane waves at a stack of joints, None where it is."""
+    sets = scene.joint_sets
+    directions = [direction_of(one.dip) for one in sets]
+    reasons = [
+        (not scene.waves, "no wave enters"),
+        (bool(scene.loads), "a load acts"),
+        (not sets, "there is no joint"),
+        (not all(along(*pair) for pair in pairwise(directions)), "joints are not parallel"),
+    ]
+    for i, wave in enumerate(scene.waves):
+        runs_along = any(along(np.array(wave.direction), one) for one in directions)
+        reasons.append((runs_along, f"waves[{i}] travels along the joints"))
+    found = beyond_linear_rock(scene) or next((why for there, why in reasons if there), None)
+    found = found or reflecting_side(scene)
+    if found is None and outline_of(scene.domain).taken:
+        found = "the domain is not convex"
+    return found
+
+
+def begun(scene: RockMass, stack: Stack) -> str | None:
+    """Return how a pulse has met a joint of the domain before the start, None where none has."""
+    for i, wave in enumerate(scene.waves):
+        incident = plane_wave(scene, wave)
+        late = first_scattered(stack, incident)
+        if late < -BEGUN * scene.time.duration:
+            place = incident.through + late * incident.speed * incident.direction
+            where = ", ".join(f"{x:.6g}" for x in place)
+            return (
+                f"waves[{i}] has met a joint before t = 0: waves[{i}].through = [{where}] "
+                "or further back would do"
+            )
+    return None
+
+
+def first_scattered(stack: Stack, wave: PlaneWave) -> float:
+    """Return when the first of what joints return and pass comes to a place of the domain, s.
+
+    With the slowness p along the joints and q across them it is p x + q d + min(q_p, q_s) |z - d|
+    there, d the first joint's depth. An evanescent wave, which has no arrival, counts from where it
+    is made.
+    """
+    n = stack.normal if wave.direction @ stack.normal > 0 else -stack.normal
+    t = np.array([-n[1], n[0]])
+    p, q = wave.direction @ t / wave.speed, wave.direction @ n / wave.speed
+    least = slownesses_across(stack.rock, p).real.min()
+    places = stack.partition.corners - wave.through
+    first = ((stack.offsets * (n @ stack.normal)) - wave.through @ n).min()
+    return float((places @ t * p + q * first + least * np.abs(places @ n - first)).min())

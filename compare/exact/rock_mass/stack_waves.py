@@ -1,0 +1,173 @@
+"""The waves of a scene at a stack of joints, at its receivers: what solves such scenes.
+
+Displacement is the same solution of the pulse's time integral; the opening and the slip of a joint
+are the jumps of displacement across it. Where P waves are evanescent the motion begins before its
+cause: what there is of it at t = 0 is not in the scene, which begins at rest, and is added to the
+bound of the error.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from cases.incident import free_field, plane_wave
+from cases.partition.locate import block_at, contact_at
+from cases.partition.outline import TOLERANCE
+from cases.sampling import sample_times
+from compare.exact.plane import parallel_joints
+from compare.exact.plane.pulse import Pulse
+from compare.exact.rock_mass.stack import Stack, against, begun, stack_of
+from compare.solvers.record import YES, Answer, no
+from results.plane import plane_fields
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from cases.schema.rock_mass import RockMass
+
+BESIDE = 1e-13  #: over the size of the domain: far above round-off, far below any wave
+
+
+class StackMotion(NamedTuple):
+    """Motion [points, components, times] and bounds [points, components] of its root-mean-square
+    error: (x, y) of velocity (m/s) and displacement (m), (xx, yy, xy) of stress (Pa, tension +)."""
+
+    velocity: np.ndarray
+    displacement: np.ndarray
+    stress: np.ndarray
+    velocity_error: np.ndarray
+    displacement_error: np.ndarray
+    stress_error: np.ndarray
+
+
+class JointReceivers(NamedTuple):
+    """Places on joints [m, 2] (m), and the axes there [m, (n, s), 2]: the normal out of the block
+    with the smaller number, and its left."""
+
+    places: np.ndarray
+    axes: np.ndarray
+
+
+def holds(scene: RockMass, one: bool) -> Answer:
+    """Return whether a scene is one of plane waves at one joint, or else at several."""
+    if reason := against(scene):
+        return no(reason)
+    stack = stack_of(scene)
+    count = len(stack.joints)
+    if (count == 1) != one:
+        return no(f"there are {count} joints: see parallel-joints" if one else "there is one joint")
+    reason = begun(scene, stack)
+    return no(reason) if reason else YES
+
+
+def solve(scene: RockMass, name: str) -> xr.Dataset:
+    """Return what the receivers of a scene record."""
+    import xarray as xr
+
+    stack, times = stack_of(scene), sample_times(scene)
+    points, joints = point_receivers(scene, stack), joint_receivers(scene, stack)
+    beside = _beside(stack) * joints.axes[:, 0]
+    places = np.concatenate([points, joints.places - beside, joints.places + beside])
+    found = motion_at(scene, stack, places, times)
+    m, k = len(points), len(points) + len(joints.places)
+    at_points, here, there = (
+        StackMotion(*(x[part] for x in found))
+        for part in (slice(0, m), slice(m, k), slice(k, None))
+    )
+    still = np.zeros(3) if scene.prestress is None else [*scene.prestress.model_dump().values()]
+    pressed = np.array(still)[:, None]
+    jump = joints.axes @ (there.displacement - here.displacement)
+    traction = joints.axes @ on_face(pressed - here.stress, joints.axes[:, 0])
+    off, size = here.displacement_error + there.displacement_error, np.abs(joints.axes)
+    slipped = (size @ off[..., None])[..., 0]
+    pulled = (size @ on_face(here.stress_error[..., None], size[:, 0]))[..., 0]
+    values = {
+        "velocity": at_points.velocity.swapaxes(1, 2),
+        "displacement": at_points.displacement.swapaxes(1, 2),
+        "stress": (pressed - at_points.stress).swapaxes(1, 2),
+        "traction": traction.swapaxes(1, 2),
+        "gap": jump[:, 0],
+        "slip": jump[:, 1],
+    }
+    errors = {
+        "velocity": at_points.velocity_error,
+        "displacement": at_points.displacement_error,
+        "stress": at_points.stress_error,
+        "traction": pulled,
+        "gap": slipped[:, 0],
+        "slip": slipped[:, 1],
+    }
+    return xr.Dataset(*plane_fields(scene, name, times, values, errors=errors))
+
+
+def motion_at(scene: RockMass, stack: Stack, places: np.ndarray, times: np.ndarray) -> StackMotion:
+    """Return the motion of all waves at places [m, 2] (m), from the start of the scene on."""
+    m, n = len(places), len(times)
+    shapes = (m, 2, n), (m, 2, n), (m, 3, n), (m, 2), (m, 2), (m, 3)
+    total = [np.zeros(shape) for shape in shapes]
+    for one in scene.waves if m else ():
+        wave = plane_wave(scene, one)
+        offsets = stack.offsets - wave.through @ stack.normal
+        by_value, by_integral = (
+            parallel_joints.fields(
+                stack.rock,
+                stack.joints,
+                Pulse("P" if one.kind == "P" else "SV", wave.direction, signal),
+                wave.through,
+                stack.dip,
+                offsets,
+                places,
+                times,
+            )
+            for signal in (wave.pulse.value, wave.pulse.impulse)
+        )
+        begin = wave.pulse.impulse(-wave.lateness(places))[:, None] * wave.polarisation
+        velocity, stress, v_error, s_error = by_value
+        moved = by_integral.velocity - begin[..., None]
+        early = np.abs(moved[..., 0])
+        free = free_field(scene.model_copy(update={"waves": [one]}))(places, times[:1])
+        v_early, s_early = (
+            np.abs(x[..., 0] - y[..., 0])
+            for x, y in ((velocity, free.velocity), (stress, free.stress))
+        )
+        errors = v_error + v_early, by_integral.velocity_error + early, s_error + s_early
+        for sum_, part in zip(total, (velocity, moved, stress, *errors), strict=True):
+            sum_ += part
+    return StackMotion(*total)
+
+
+def point_receivers(scene: RockMass, stack: Stack) -> np.ndarray:
+    """Return the points of a scene [m, 2], those on a joint moved into the first of its blocks."""
+    points = np.array(scene.record.points, dtype=float).reshape(-1, 2)
+    if not len(points):
+        return points
+    apart = (points @ stack.normal)[:, None] - stack.offsets
+    apart = np.take_along_axis(apart, np.abs(apart).argmin(axis=1)[:, None], axis=1)
+    inward = stack.partition.centroid[block_at(stack.partition, points)] - points
+    side = _beside(stack) * np.sign(inward @ stack.normal)[:, None]
+    on_joint = np.abs(apart) <= TOLERANCE / BESIDE * _beside(stack)
+    return np.where(on_joint, points + (side - apart) * stack.normal, points)
+
+
+def joint_receivers(scene: RockMass, stack: Stack) -> JointReceivers:
+    """Return the places on joints that are nearest to those that a scene names."""
+    asked, contacts = np.array(scene.record.joints).reshape(-1, 2), stack.partition.contacts
+    chosen = contact_at(stack.partition, asked) if len(asked) else np.zeros(0, dtype=int)
+    start, normal = contacts.start[chosen], contacts.normal[chosen]
+    way = contacts.end[chosen] - start
+    share = ((asked - start) * way).sum(axis=1) / contacts.length[chosen] ** 2
+    axes = np.stack([normal, np.stack([-normal[:, 1], normal[:, 0]], axis=1)], axis=1)
+    return JointReceivers(start + np.clip(share, 0, 1)[:, None] * way, axes)
+
+
+def on_face(stress: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Return the tractions [m, 2, n] of stresses [m, 3, n] on faces of unit normals [m, 2]."""
+    (xx, yy, xy), (n_x, n_y) = np.moveaxis(stress, 1, 0), normal.T[..., None]
+    return np.stack([xx * n_x + xy * n_y, xy * n_x + yy * n_y], axis=1)
+
+
+def _beside(stack: Stack) -> float:
+    """Return the distance of a place beside a joint from it, m."""
+    return BESIDE * float(np.hypot(*np.ptp(stack.partition.corners, axis=0)))

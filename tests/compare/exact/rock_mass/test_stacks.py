@@ -1,0 +1,227 @@
+"""Scenes of plane waves at joints: closed forms, balance, where they hold and where not."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from compare.engines import applies, solve
+
+SPACED = {"spacing": 6.0, "through": [0.0, 3.0]}
+STARTS = "has met a joint before t = 0"
+FREE_SIDE = "the left is free and reflects waves"
+NO = [
+    ({"waves": []}, "no wave enters"),
+    ({"joint_sets": []}, "there is no joint"),
+    ({"loads": [{"kind": "force", "quantity": "force", "at": [1.0, 1.0], "direction": [0.0, 1.0],
+                 "shape": "step", "amplitude": 1.0}]}, "a load acts"),
+    ({"domain": {"openings": [[[1, 1], [2, 1], [2, 2], [1, 2]]]}}, "the domain has openings"),
+    ({"gravity": {"static": False}}, "gravity acts"),
+    ({"damping": {"mass_proportional": 1.0}}, "the damping is proportional to mass"),
+    ({"damping": {"rayleigh": {"frequencies": [100, 200], "ratios": [0.01, 0.02]}}},
+     "the rock is damped"),
+    ({"damping": {"local": 0.1}}, "the damping is local, which is not linear"),
+    ({"boundaries": {"left": "free"}}, FREE_SIDE),
+    ({"boundaries": {"top": "fixed"}}, "the top is fixed and reflects waves"),
+]  # fmt: skip
+LAWS = [
+    ({"tension": False}, "joint set 'joint' bars tension"),
+    ({"friction_angle": 30.0}, "joint set 'joint' can slip"),
+    ({"cohesion": 1e6}, "joint set 'joint' can slip"),
+    ({"tensile_strength": 1e5, "fracture_energy": 10.0},
+     "joint set 'joint' has a tensile strength"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("changes, reason", NO)
+def test_it_says_why_it_does_not_hold(rock_mass, changes, reason):
+    scene = rock_mass(**changes, record={"joints": []})
+    assert applies("oblique-joint", scene).reason == reason
+    assert applies("parallel-joints", scene).reason == reason
+
+
+@pytest.mark.parametrize("law, reason", LAWS)
+def test_it_holds_for_linear_joints_alone(rock_mass, joint, law, reason):
+    assert applies("oblique-joint", rock_mass(joint_sets=[joint(**law)])).reason == reason
+
+
+def test_the_number_of_joints_decides_which_one_holds(rock_mass, joint, pillar):
+    one, several = rock_mass(), rock_mass(joint_sets=[joint(**SPACED)])
+    crossed = rock_mass(joint_sets=[joint(), joint(name="other", dip=26.0)])
+    assert applies("oblique-joint", one) and applies("parallel-joints", several)
+    assert applies("parallel-joints", one).reason == "there is one joint"
+    assert applies("oblique-joint", several).reason == "there are 8 joints: see parallel-joints"
+    assert applies("parallel-joints", crossed).reason == "joints are not parallel"
+    assert not applies("oblique-joint", pillar())
+
+
+def test_waves_along_joints_and_domains_with_bays_are_refused(rock_mass, joint, wave):
+    along = rock_mass(joint_sets=[joint(dip=90.0)])
+    assert applies("oblique-joint", along).reason == "waves[0] travels along the joints"
+    bay = [[0, 0], [40, 0], [40, 30], [20, 28], [0, 30]]
+    scene = rock_mass(
+        domain={"size": None, "outline": bay, "non_convex": "cut"},
+        boundaries={"outline": "quiet", "top": None},
+    )
+    assert applies("oblique-joint", scene).reason == "the domain is not convex"
+
+
+def test_a_pulse_that_has_met_the_joint_is_told_where_to_begin(rock_mass, joint, wave):
+    """S waves at 34 degrees make P waves at 75.6 degrees, which run ahead of them: those made far
+    to the left are at the lower left corner first, at the least time of all ways by the joint."""
+    x = np.linspace(-100, 0, 100_001)
+    y = 5 + (x - 20) * np.tan(np.radians(34))
+    first = (y / np.sqrt(8e6) + np.hypot(x, y) / np.sqrt(2.4e7)).min()
+    low, s_wave = joint(dip=34.0, through=[20.0, 5.0]), wave(kind="S")
+    reason = applies("oblique-joint", rock_mass(joint_sets=[low], waves=[s_wave])).reason
+    place = [float(x) for x in reason.split("[")[-1].split("]")[0].split(",")]
+    assert STARTS in reason and place == pytest.approx([0, np.sqrt(8e6) * first], abs=1e-4)
+    back = s_wave | {"through": [place[0], place[1] - 1e-4]}
+    assert applies("oblique-joint", rock_mass(joint_sets=[low], waves=[back]))
+    inside = wave(through=[20.0, 29.0])
+    assert STARTS in applies("oblique-joint", rock_mass(waves=[inside])).reason
+
+
+@pytest.mark.parametrize("zeta", [0.0, 0.05])
+def test_normal_incidence_in_closed_form(rock_mass, joint, wave, zeta):
+    """Z = 2500 a, a = sqrt(2.4e7) m/s. A dashpot of eta = 2 zeta sqrt(2500 x 15 / 1e10) s passes
+    eta/tau at once and the rest with tau = eta + Z/2K as s, tau s' + s = sigma_I. The pulse starts
+    at the bottom and meets the joint 15 m above it."""
+    K, a, T = 1e10, np.sqrt(2.4e7), 0.005
+    Z, eta = 2500 * a, 2 * zeta * np.sqrt(2500 * 15 / K)
+    tau, w = eta + Z / (2 * K), 2 * np.pi / T
+
+    def smooth(t):
+        x = np.clip(t, 0, T)
+        s = np.sin(w * x) - w * tau * (np.cos(w * x) - np.exp(-x / tau))
+        return s * np.exp(-np.maximum(t - T, 0) / tau) / (1 + (w * tau) ** 2)
+
+    def came(t):
+        return np.where((t > 0) & (t < T), np.sin(w * t), 0.0)
+
+    def passed(t):
+        return 1e6 * (eta / tau * came(t) + (1 - eta / tau) * smooth(t))
+
+    flat = joint(dip=0.0, damping_ratio=zeta)
+    found = solve("oblique-joint", rock_mass(joint_sets=[flat], waves=[wave(shape="sine")]))
+    t = found.time.values
+    expected = passed(t - 27 / a)
+    assert rms(found.velocity[1, :, 1] - expected / Z) <= found.velocity_error[1, 1] < 1e-5 / 12
+    assert rms(found.stress[1, :, 1] - expected) <= found.stress_error[1, 1] < 100
+    assert rms(found.stress[1, :, 0] - expected / 3) <= found.stress_error[1, 0]
+    there = passed(t - 15 / a)
+    assert rms(found.traction[0, :, 0] - there) <= found.traction_error[0, 0] < 100
+    front = 1e6 * (came(t - 4 / a) + came(t - 26 / a)) - passed(t - 26 / a)
+    back = 1e6 * (came(t - 4 / a) - came(t - 26 / a)) + passed(t - 26 / a)
+    assert rms(found.velocity[0, :, 1] - front / Z) <= found.velocity_error[0, 1]
+    assert rms(found.stress[0, :, 1] - back) <= found.stress_error[0, 1]
+    assert np.abs(found.velocity[..., 0]).max() < 1e-9
+    arrived = 1e6 * came(t - 15 / a)
+    gap = -(there / K + eta * 2 * (there - arrived) / Z)
+    assert rms(found.gap[0] - gap) <= found.gap_error[0]
+
+
+def rms(values):
+    return float(np.sqrt(np.mean(np.asarray(values) ** 2)))
+
+
+OBLIQUE = {"direction": [0.28, 0.96]}
+
+
+def test_displacement_is_the_integral_of_velocity_and_springs_hold(rock_mass, wave):
+    """Simpson's rule at 400 samples a period is off by (omega h)^4 / 180 of it, 2e-8 / 180 at twice
+    the dominant frequency; without dashpots gap and slip are tractions over stiffnesses."""
+    scene = rock_mass(waves=[wave(**OBLIQUE)], record={"interval": 1.25e-5})
+    found = solve("oblique-joint", scene)
+    v = found.velocity.values
+    pairs = 1.25e-5 / 3 * (v[:, :-2:2] + 4 * v[:, 1:-1:2] + v[:, 2::2])
+    integral, peak = np.cumsum(pairs, axis=1), np.abs(found.displacement.values).max()
+    assert np.abs(found.displacement.values[:, 2::2] - integral).max() < 1e-7 * peak
+    assert found.displacement_error.max() < 1e-9 * peak
+    for k, (name, K) in enumerate((("gap", 1e10), ("slip", 4e9))):
+        off = found[name] + found.traction[..., k] / K
+        bound = found[f"{name}_error"] + found.traction_error[..., k] / K
+        assert rms(off[0]) <= bound[0] < 1e-8 * np.abs(found[name]).max()
+
+
+def test_a_turned_scene_has_turned_results(rock_mass, joint, wave):
+    """A quarter turn to the left about the origin takes (x, y) to (-y, x)."""
+    records = {"points": [[18.0, 4.0]], "joints": [[20.0, 15.0]]}
+    tables = {"waves": [wave(**OBLIQUE, kind="S", through=[0.0, -20.0])]}
+    one = solve("oblique-joint", rock_mass(**tables, record=records))
+    outline = [[0, 0], [0, 40], [-30, 40], [-30, 0]]
+    turned = {
+        "domain": {"size": None, "outline": outline},
+        "joint_sets": [joint(dip=115.0, through=[-15.0, 20.0])],
+        "waves": [wave(direction=[-0.96, 0.28], kind="S", through=[20.0, 0.0])],
+        "record": {"points": [[-4.0, 18.0]], "joints": [[-15.0, 20.0]]},
+    }
+    other = solve("oblique-joint", rock_mass(**turned))
+    for name, axes, signs in (
+        ("velocity", [1, 0], [-1, 1]),
+        ("displacement", [1, 0], [-1, 1]),
+        ("stress", [1, 0, 2], [1, 1, -1]),
+    ):
+        off = other[name].values - one[name].values[..., axes] * signs
+        assert np.abs(off).max() < 1e-9 * np.abs(one[name]).max()
+    for name in ("traction", "gap", "slip"):
+        off = other[name].values - one[name].values
+        assert np.abs(off).max() < 1e-9 * np.abs(one[name]).max()
+
+
+def test_waves_superpose_and_prestress_adds_to_stresses(rock_mass, wave):
+    """sigma_xx = 1, sigma_yy = 3, sigma_xy = -0.5 MPa press on the joint of normal n and tangent t
+    with n sigma n and t sigma n."""
+    up, across = wave(**OBLIQUE), wave(direction=[-0.6, 0.8], through=[40.0, -10.0], amplitude=3e5)
+    parts = [solve("oblique-joint", rock_mass(waves=[one])) for one in (up, across)]
+    stress = {"xx": 1e6, "yy": 3e6, "xy": -5e5}
+    both = solve("oblique-joint", rock_mass(waves=[up, across], prestress=stress))
+    s, c = np.sin(np.radians(25)), np.cos(np.radians(25))
+    n, t, tensor = [-s, c], [-c, -s], np.array([[1e6, -5e5], [-5e5, 3e6]])
+    still = {"stress": [1e6, 3e6, -5e5], "traction": [n @ tensor @ n, t @ tensor @ n]}
+    for name in ("velocity", "displacement", "stress", "traction", "gap", "slip"):
+        expected = parts[0][name] + parts[1][name] + still.get(name, 0.0)
+        assert np.abs(both[name] - expected).max() <= 1e-12 * np.abs(expected).max()
+        bound = parts[0][f"{name}_error"] + parts[1][f"{name}_error"]
+        assert both[f"{name}_error"].values == pytest.approx(bound.values, rel=1e-9)
+
+
+def test_a_point_on_a_joint_moves_with_the_first_of_its_blocks(rock_mass):
+    """The displacements on both sides differ by gap and slip along the axes of the joint."""
+    normal = np.array([-np.sin(np.radians(25)), np.cos(np.radians(25))])
+    points = [np.array([20.0, 15.0]) + side * normal for side in (0.0, -1e-6, 1e-6)]
+    found = solve("oblique-joint", rock_mass(record={"points": [p.tolist() for p in points]}))
+    on, below, above = found.displacement.values
+    size = np.abs(on).max()
+    assert np.abs(on - below).max() < 1e-5 * size < np.abs(on - above).max()
+    axes = np.array([normal, [-normal[1], normal[0]]])
+    jump = np.stack([found.gap[0], found.slip[0]], axis=1)
+    assert np.abs((above - below) @ axes.T - jump).max() < 1e-5 * size
+
+
+@settings(max_examples=4, derandomize=True)
+@given(
+    dip=st.floats(-60, 60),
+    spacing=st.floats(6, 12),
+    zeta=st.sampled_from([0.0, 0.05]),
+    angle=st.floats(-20, 20),
+    shape=st.sampled_from(["ricker", "sine"]),
+)
+def test_errors_are_bounded(rock_mass, joint, wave, dip, spacing, zeta, angle, shape):
+    """What finer inversions, of four times as many samples, give lies within the sum of bounds."""
+    travel = np.radians(dip + 90 + angle)
+    tables = {
+        "joint_sets": [joint(dip=dip, spacing=spacing, damping_ratio=zeta)],
+        "waves": [wave(shape=shape, direction=[np.cos(travel), np.sin(travel)])],
+    }
+    tables["time"] = {"duration": 0.015}
+    one, other = (
+        solve("parallel-joints", rock_mass(**tables, record={"interval": h})) for h in (2e-5, 5e-6)
+    )
+    for name in ("velocity", "displacement", "stress", "traction", "gap", "slip"):
+        off = rms_over_time(one[name] - other[name].isel(time=slice(None, None, 4)))
+        assert (off <= one[f"{name}_error"] + other[f"{name}_error"]).all()
+
+
+def rms_over_time(values):
+    return np.sqrt((values**2).mean("time"))
