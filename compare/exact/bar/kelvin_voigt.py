@@ -98,6 +98,10 @@ def response(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return q_n (Pa s2) and its rate (Pa s) for a mode (rad/s) and a time constant (s)."""
     ratio = eta * mode / 2
+    if ratio**2 <= 1 - SPLIT**2:  # two roots that are conjugate, and so are their convolutions
+        root = mode * complex(-ratio, np.sqrt(1 - ratio**2))
+        a = _convolution(root, load, times)
+        return a.imag / root.imag, (root * a).imag / root.imag
     split = np.sqrt(complex(ratio**2 - 1))
     if abs(split) < SPLIT:
         split = complex(SPLIT)

@@ -31,6 +31,8 @@ twice the most that the two differ by within some fine steps of each sample.
 """
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
+from itertools import groupby
 from math import ceil, log
 from typing import NamedTuple
 
@@ -293,38 +295,86 @@ def _rounding(fraction: np.ndarray) -> np.ndarray:
     return np.exp(-36 * np.minimum(fraction, 1.5) ** 8)
 
 
+class Cell(NamedTuple):
+    """A part of a bar between two places: reflection from its near and its far side, and the
+    waves that pass, arrays of Laplace variables."""
+
+    near: np.ndarray
+    far: np.ndarray
+    passed: np.ndarray
+
+    def before(self, R: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the reflection with R behind it, and the wave that then reaches R."""
+        share = self.passed / (1 - self.far * R)
+        return self.near + self.passed * share * R, share
+
+    def twice(self) -> "Cell":
+        """Return two such parts in a row."""
+        near, share = self.before(self.near)
+        return Cell(near, self.far + self.passed * share * self.far, share * self.passed)
+
+
 def transfer(bar: Bar, s: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return stress and velocity [places, len(s)] at `places` (m) for an end stress of 1.
 
-    s : complex array of Laplace variables, 1/s, with positive real parts.
+    s : complex array of Laplace variables, 1/s, with positive real parts. Equal joints at equal
+    spacings with no place among them are passed by doubling.
     """
     z = np.sqrt(bar.density * bar.modulus * (1 + s * bar.time_constant))
     slowness = s * bar.density / z
     R = _end_reflection(bar.end, s, z)
     stress, velocity = np.zeros((2, len(places), len(s)), dtype=complex)
-    passed, decays = np.zeros(len(places), dtype=bool), {}
+    passed = np.zeros(len(places), dtype=bool)
     nodes, joint_of = _nodes(bar, places)
-    for i in range(len(nodes) - 1, -1, -1):
+
+    @lru_cache(16)  # of joints that all differ, some
+    def cell(compliance: float, time_constant: float, h: float, doublings: int) -> Cell:
+        if doublings:
+            return cell(compliance, time_constant, h, doublings - 1).twice()
+        x, q = s * z * compliance / (1 + s * time_constant), np.exp(-h * slowness)
+        return Cell(-x / (2 + x) * q**2, -x / (2 + x), 2 / (2 + x) * q)
+
+    for members in _runs(bar, nodes, joint_of, places):
+        i, kind = members[0]
         here = np.abs(places - nodes[i]) < 1e-9 * bar.length
-        stress[here], velocity[here] = z * (1 + R), 1 - R
-        if (j := joint_of.get(i)) is not None:
-            x = s * z * bar.joint_compliance[j] / (1 + s * bar.joint_time_constant[j])
-            share = 2 / (2 + x * (1 + R))
-            R = (R - x * (1 + R) / 2) * share
-            stress[passed | here] *= share
-            velocity[passed | here] *= share
-            velocity[here] = (velocity[here] + 1 - R) / 2
-        passed |= here
-        if i == 0:
-            break
-        h = round(nodes[i] - nodes[i - 1], 12)
-        if h not in decays:
-            decays[h] = np.exp(-h * slowness)
-        stress[passed] *= decays[h]
-        velocity[passed] *= decays[h]
-        R = R * decays[h] ** 2
+        if here.any():
+            stress[here], velocity[here] = z * (1 + R), 1 - R
+            if kind.compliance:
+                R, share = cell(kind.compliance, kind.time_constant, 0.0, 0).before(R)
+                stress[passed | here] *= share
+                velocity[passed | here] *= share
+                velocity[here] = (velocity[here] + 1 - R) / 2
+                kind = Kind(0.0, 0.0, kind.h)
+            passed |= here
+        for doublings in range(len(members).bit_length()):
+            if len(members) >> doublings & 1:
+                R, share = cell(*kind, doublings).before(R)
+                stress[passed] *= share
+                velocity[passed] *= share
     entering = 1 / (z * (1 + R) + bar.start.impedance(s) * (1 - R))
     return stress * entering, velocity * entering
+
+
+class Kind(NamedTuple):
+    """A joint, or none, and the rock from it to the node before: m/Pa, s, m."""
+
+    compliance: float
+    time_constant: float
+    h: float
+
+
+def _runs(bar: Bar, nodes: np.ndarray, joint_of: dict[int, int], places: np.ndarray) -> list[list]:
+    """Return the nodes with their kinds from the far end on, alike ones together; those with a
+    place are alone."""
+    held = (np.abs(places[:, None] - nodes) < 1e-9 * bar.length).any(axis=0)
+    h = np.append(0.0, np.diff(nodes)).round(12)
+    kinds = []
+    for i in range(len(nodes) - 1, -1, -1):
+        j = joint_of.get(i)
+        C, eta = (0.0, 0.0) if j is None else (bar.joint_compliance[j], bar.joint_time_constant[j])
+        kinds.append((i, Kind(float(C), float(eta), float(h[i]))))
+    runs = groupby(kinds, key=lambda one: (one[1], one[0] if held[one[0]] else -1))
+    return [list(members) for _, members in runs]
 
 
 def _end_reflection(end: End, s: np.ndarray, z: np.ndarray) -> np.ndarray:

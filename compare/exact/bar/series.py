@@ -52,8 +52,12 @@ def solve(scene: Scene, n_terms: int = 2000) -> xr.Dataset:
     length, speed, record = scene.pillar.length, p.bar_speed, scene.record
     stress = np.zeros((len(record.stress), len(times)))
     velocity, displacement = np.zeros((2, len(record.velocity), len(times)))
+    turn = np.exp(1j * pi * speed / length * np.maximum(times, 0.0))
+    turned = np.ones_like(turn)
     for n in range(1, n_terms + 1):
-        wave, (g, rate) = n * pi / length, amplitude(n * pi * speed / length, load, times)
+        # Powers by products, which lose a unit of round-off each: few before they start afresh.
+        turned = turned * turn if n % 32 else turn**n
+        wave, (g, rate) = n * pi / length, amplitude(n * pi * speed / length, load, times, turned)
         stress += 2 * speed / length * np.outer(np.sin(wave * np.array(record.stress)), g)
         shape = 2 / (p.density * length) * np.cos(wave * np.array(record.velocity))
         velocity += np.outer(shape, rate)
@@ -80,8 +84,13 @@ def _left_out(found: dict, exact: xr.Dataset, scale: float) -> dict[str, np.ndar
     return errors
 
 
-def amplitude(mode: float, load: Sine, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return g_n p0 (Pa s) and its rate over omega_n (Pa s) at `times` for the mode (rad/s)."""
+def amplitude(
+    mode: float, load: Sine, times: np.ndarray, turned: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return g_n p0 (Pa s) and its rate over omega_n (Pa s) at `times` for the mode (rad/s).
+
+    turned : e^{i mode t}, t the time since the start.
+    """
     omega, end, t = 2 * pi / load.period, load.end, np.maximum(times, 0.0)
     on = t < end
     if abs(mode - omega) < NEAR * omega:
@@ -90,7 +99,7 @@ def amplitude(mode: float, load: Sine, times: np.ndarray) -> tuple[np.ndarray, n
         )
         rate = np.where(on, t, end) * np.sin(omega * t)
         return load.amplitude * g / 2, load.amplitude * rate / 2
-    sine, cosine = np.sin(mode * t), np.cos(mode * t)
+    sine, cosine = turned.imag, turned.real
     # sin(m t) - sin(m (t - end)) by angle addition, likewise the cosines.
     c, s = cos(mode * end), sin(mode * end)
     g, rate = sine - (sine * c - cosine * s), cosine - (cosine * c + sine * s)
