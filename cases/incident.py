@@ -36,13 +36,12 @@ class Motion(NamedTuple):
 
 
 class IncidentField(Protocol):
-    """A motion of the rock mass as if it had no artificial sides.
+    """A motion of the rock mass as if it had no artificial sides."""
 
-    whole : whether it holds what joints scatter, too, and so is right at every quiet side; else it
-    is the motion of the waves alone, which enters where they do.
-    """
-
-    whole: bool
+    @property
+    def whole(self) -> bool:
+        """Whether it holds what joints scatter, too, and so is right at every quiet side; else it
+        is the motion of the waves alone, which enters where they do."""
 
     def __call__(self, points: np.ndarray, times: np.ndarray) -> Motion:
         """Return the motion at points [m, 2] (m) and equally spaced times [n] (s)."""

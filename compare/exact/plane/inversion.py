@@ -68,7 +68,7 @@ def inverse(
         raise ValueError(f"the pulse has {np.shape(pulse)} samples, the times are {times.shape}")
     windows = [window_of(times, pulse, size, max(0.0, -earliest)) for size in (2 * WINDOW, WINDOW)]
     found, rough = (
-        _inverse(transfer, sampled(pulse, window), window, len(times), skip, causal)
+        _inverse(transfer, sampled(pulse, window), window, len(times), skip, causal).real
         for window, skip in zip(windows, (1, 2), strict=True)
     )
     stride = windows[0].stride
@@ -76,6 +76,17 @@ def inverse(
     peak = max(np.abs(found).max(), np.abs(sampled(pulse, windows[0])).max())
     error = SAFETY * np.sqrt(np.mean(off**2, axis=-1)) + FLOOR * peak
     return found[..., ::stride], error
+
+
+def analytic_inverse(
+    transfer: Transfer, pulse: Callable[[np.ndarray], np.ndarray], times: np.ndarray, causal: bool
+) -> np.ndarray:
+    """Return (1/pi) int F H e^{-i omega t} d omega [..., n], whose real part is u, of a pulse that
+    nothing arrives before; without a bound, but as `inverse` has it."""
+    require_equally_spaced(times)
+    window = window_of(times, pulse, 2 * WINDOW, 0.0)
+    found = _inverse(transfer, sampled(pulse, window), window, len(times), 1, causal)
+    return found[..., :: window.stride]
 
 
 def require_equally_spaced(times: np.ndarray) -> None:
@@ -100,7 +111,8 @@ def window_of(times: np.ndarray, pulse: Velocity, size: float, lead: float) -> W
 
 
 def _inverse(transfer, signal, window, n, skip, causal) -> np.ndarray:
-    """Return u at the fine steps of n samples, by every `skip`-th fine sample of the pulse."""
+    """Return what has the real part u, at the fine steps of n samples, by every `skip`-th fine
+    sample of the pulse."""
     signal, keep = signal[::skip], slice(0, n * window.stride)
     if causal:
         return _level(transfer, signal, window, skip, 0.5, 0)[..., keep]
@@ -128,7 +140,7 @@ def _level(transfer, signal, window: Window, skip: int, node: float, first: int)
     F *= np.exp(-36 * (omega.real * step / np.pi) ** 8)
     spectrum = transfer(omega[first:]) * F[first:]
     padded = np.concatenate([np.zeros((*spectrum.shape[:-1], first)), spectrum], axis=-1)
-    return width / np.pi * (np.fft.fft(padded, n=len(t)) / turn).real
+    return width / np.pi * np.fft.fft(padded, n=len(t)) / turn
 
 
 def _climb(transfer, signal, window: Window, skip: int, keep: slice) -> np.ndarray:
@@ -137,7 +149,7 @@ def _climb(transfer, signal, window: Window, skip: int, keep: slice) -> np.ndarr
     end, t = SLOPE * window.bin_width + 1j * window.decay, window.times - window.times[0]
     F = np.exp(1j * end * np.outer(nodes, t[::skip])) @ signal * (skip * window.step)
     spectrum = transfer(end * nodes) * (F * weights * end)
-    return (spectrum @ np.exp(-1j * end * np.outer(nodes, t[keep]))).real / np.pi
+    return spectrum @ np.exp(-1j * end * np.outer(nodes, t[keep])) / np.pi
 
 
 def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -22,7 +22,15 @@ from typing import NamedTuple
 import numpy as np
 
 from cases.material.rock import ElasticRock, Values
-from compare.exact.plane.pulse import Axes, Fields, Layers, Pulse, axes_of, pulse_fields
+from compare.exact.plane.pulse import (
+    Axes,
+    Fields,
+    Layers,
+    Pulse,
+    PulseStack,
+    axes_of,
+    pulse_fields,
+)
 from compare.exact.plane.waves import (
     KINDS,
     Kind,
@@ -142,9 +150,8 @@ def fields(
         nothing = np.zeros_like(R)
         return Layers(np.stack([axes.incident + nothing, T]), np.stack([R, nothing]))
 
-    at_once = layers_at_once(rock, joint, axes, 1)
-    places = np.subtract(points, point)
-    return pulse_fields(rock, pulse, axes, np.zeros(1), layers, at_once, places, times)
+    stack = PulseStack(axes, np.zeros(1), layers, layers_at_once(rock, joint, axes, 1))
+    return pulse_fields(rock, pulse, stack, np.subtract(points, point), times)
 
 
 def layers_at_once(rock: ElasticRock, first: Joint, axes: Axes, count: int) -> Layers:

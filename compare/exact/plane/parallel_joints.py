@@ -22,8 +22,15 @@ from compare.exact.plane.oblique_joint import (
     picked,
     scattering,
 )
-from compare.exact.plane.pulse import Fields, Layers, Pulse, axes_of, pulse_fields
-from compare.exact.plane.waves import Kind, slowness_along, slownesses_across
+from compare.exact.plane.pulse import (
+    Fields,
+    Layers,
+    Pulse,
+    PulseStack,
+    axes_of,
+    pulse_fields,
+)
+from compare.exact.plane.waves import Kind, slowness_along, slownesses_across, solve_pair
 
 
 def coefficients(
@@ -61,7 +68,8 @@ def march(
     for joint, e in zip(joints[-2::-1], E[::-1], strict=True):
         R, T = scattering(rock, joint, slowness, omega)
         rest = e[..., :, None] * reflected[0] * e[..., None, :]
-        Y = np.linalg.solve(np.eye(2) - R @ rest, T)
+        M = np.eye(2) - R @ rest
+        Y = solve_pair((M[..., 0, :], M[..., 1, :]), (T[..., 0, :], T[..., 1, :]))
         reflected.insert(0, R + T @ rest @ Y)
         behind.insert(0, Y)
     return reflected, behind
@@ -88,6 +96,14 @@ def fields(
     points : [m, 2], m; one on a joint counts to the side that the pulse comes from.
     times : equally spaced, s.
     """
+    stack = stack_of(rock, joints, pulse, dip, offsets)
+    return pulse_fields(rock, pulse, stack, np.subtract(points, point), times)
+
+
+def stack_of(
+    rock: ElasticRock, joints: list[Joint], pulse: Pulse, dip: float, offsets: np.ndarray
+) -> PulseStack:
+    """Return the joints as the pulse meets them, arguments as those of `fields`."""
     axes = axes_of(rock, pulse, dip)
     depths, met = np.asarray(offsets, dtype=float), list(joints)
     if axes.rows[1] @ (-np.sin(dip), np.cos(dip)) < 0:
@@ -106,9 +122,7 @@ def fields(
                 up.append((R[i + 1] @ meets[..., None])[..., 0])
         return Layers(np.stack(down), np.stack([*up, np.zeros_like(up[0])]))
 
-    at_once = layers_at_once(rock, met[0], axes, len(met))
-    places = np.subtract(points, point)
-    return pulse_fields(rock, pulse, axes, depths, layers, at_once, places, times)
+    return PulseStack(axes, depths, layers, layers_at_once(rock, met[0], axes, len(met)))
 
 
 def _phases(

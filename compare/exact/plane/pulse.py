@@ -70,6 +70,20 @@ class Layers(NamedTuple):
     up: np.ndarray
 
 
+class PulseStack(NamedTuple):
+    """Joints as a pulse meets them.
+
+    depths : along n, ascending, m. layers : of omega (rad/s), for a unit incident wave at the first
+    joint. at_once : real amplitudes [layers, 2] that follow a pulse without delay; of one that is a
+    function they are summed in time, with all its kinks, and the smoother rest is inverted.
+    """
+
+    axes: Axes
+    depths: np.ndarray
+    layers: Callable[[np.ndarray], Layers]
+    at_once: Layers
+
+
 def axes_of(rock: ElasticRock, pulse: Pulse, dip: float) -> Axes:
     """Return the axes of joints of this dip (rad) for a pulse."""
     direction = np.asarray(pulse.direction, dtype=float)
@@ -88,30 +102,18 @@ def axes_of(rock: ElasticRock, pulse: Pulse, dip: float) -> Axes:
 
 
 def pulse_fields(
-    rock: ElasticRock,
-    pulse: Pulse,
-    axes: Axes,
-    depths: np.ndarray,
-    layers: Callable[[np.ndarray], Layers],
-    at_once: Layers,
-    points: np.ndarray,
-    times: np.ndarray,
+    rock: ElasticRock, pulse: Pulse, stack: PulseStack, points: np.ndarray, times: np.ndarray
 ) -> Fields:
     """Return the fields of a pulse whose velocity is that at the origin.
 
-    Parameters
-    ----------
-    depths : of the joints along n, ascending, m.
-    layers : of omega (rad/s), for a unit incident wave at the first joint.
-    at_once : real amplitudes [layers, 2] that follow a pulse without delay; of one that is a
-        function they are summed in time, with all its kinks, and the smoother rest is inverted.
     points : [m, 2], m. times : equally spaced, s.
     """
+    axes, depths, layers, at_once = stack
     t, across = np.asarray(times, dtype=float), slownesses_across(rock, axes.slowness)
     q = axes.incident @ across
     places = np.atleast_2d(points) @ axes.rows.T
     waves = [_waves(place, depths, axes.slowness, across, q * depths[0]) for place in places]
-    modes = _modes(rock, axes, across)
+    modes = modes_of(rock, axes, across)
     sharp = np.concatenate(at_once, axis=-1) * callable(pulse.velocity)
 
     def transfer(omega: np.ndarray) -> np.ndarray:
@@ -129,7 +131,7 @@ def pulse_fields(
     return Fields(found[:, :2], unit * found[:, 2:], error[:, :2], unit * error[:, 2:])
 
 
-def _modes(rock: ElasticRock, axes: Axes, across: np.ndarray) -> np.ndarray:
+def modes_of(rock: ElasticRock, axes: Axes, across: np.ndarray) -> np.ndarray:
     """Return velocity and stress over Z_p [P+, SV+, P-, SV-; (x, y, xx, yy, xy)] of unit waves."""
     g = polarisations(rock, axes.slowness).reshape(4, 2)
     along = np.full(4, axes.slowness)

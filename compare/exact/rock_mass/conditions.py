@@ -18,10 +18,8 @@ PARALLEL = 1e-9  #: sine of the angle up to which two directions are one
 
 def beyond_linear_rock(scene: RockMass) -> str | None:
     """Return why a scene is not one of undamped rock and linear joints, None where it is."""
-    damping, gravity = scene.damping, scene.gravity
+    damping = scene.damping
     reasons = [
-        (bool(scene.domain.openings), "the domain has openings"),
-        (gravity is not None and bool(gravity.acceleration), "gravity acts"),
         (bool(damping.alpha), "the damping is proportional to mass"),
         (bool(damping.rayleigh and damping.rayleigh.coefficients[1]), "the rock is damped"),
         (bool(damping.local), "the damping is local, which is not linear"),

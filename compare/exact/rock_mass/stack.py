@@ -16,8 +16,9 @@ from cases.incident import plane_wave
 from cases.material.dashpots import set_time_constants
 from cases.material.rock import elastic_rock
 from cases.partition.joints import direction_of
-from cases.partition.outline import outline_of
+from cases.partition.outline import TOLERANCE, outline_of
 from cases.partition.scene import partition_of
+from cases.partition.subdivision import NO_SET
 from compare.exact.plane.oblique_joint import Joint
 from compare.exact.plane.waves import slownesses_across
 from compare.exact.rock_mass.conditions import along, beyond_linear_rock, reflecting_side
@@ -67,6 +68,9 @@ def stack_of(scene: RockMass) -> Stack:
     ]
     depths = contacts.start @ [-direction[1], direction[0]]
     order = np.argsort(depths)
+    order = order[contacts.joint_set[order] != NO_SET]
+    apart = np.diff(depths[order], prepend=-np.inf)  # an opening may cut a joint in parts
+    order = order[apart > TOLERANCE * np.ptp(partition.corners, axis=0).max()]
     joints = [laws[k] for k in contacts.joint_set[order]]
     return Stack(elastic_rock(scene.rock), direction, depths[order], joints, partition)
 
@@ -79,12 +83,22 @@ def stiffnesses(scene: RockMass) -> np.ndarray:
 
 def against(scene: RockMass) -> str | None:
     """Return why a scene is not one of plane waves at a stack of joints, None where it is."""
-    sets = scene.joint_sets
-    directions = [direction_of(one.dip) for one in sets]
+    gravity = scene.gravity is not None and bool(scene.gravity.acceleration)
     reasons = [
         (not scene.waves, "no wave enters"),
         (bool(scene.loads), "a load acts"),
-        (not sets, "there is no joint"),
+        (gravity, "gravity acts"),
+        (bool(scene.domain.openings), "the domain has openings"),
+    ]
+    return next((why for there, why in reasons if there), None) or scatters_otherwise(scene)
+
+
+def scatters_otherwise(scene: RockMass) -> str | None:
+    """Return why the waves that enter and the joints do not make the field of a stack, None where
+    they do; what else acts, and openings, add to it."""
+    directions = [direction_of(one.dip) for one in scene.joint_sets]
+    reasons = [
+        (not directions, "there is no joint"),
         (not all(along(*pair) for pair in pairwise(directions)), "joints are not parallel"),
     ]
     for i, wave in enumerate(scene.waves):
@@ -92,7 +106,7 @@ def against(scene: RockMass) -> str | None:
         reasons.append((runs_along, f"waves[{i}] travels along the joints"))
     found = beyond_linear_rock(scene) or next((why for there, why in reasons if there), None)
     found = found or reflecting_side(scene)
-    if found is None and outline_of(scene.domain).taken:
+    if found is None and len(outline_of(scene.domain).taken) > len(scene.domain.openings):
         found = "the domain is not convex"
     return found
 

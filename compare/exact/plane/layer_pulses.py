@@ -1,0 +1,173 @@
+"""A plane pulse among parallel joints at many places at once.
+
+In each layer the waves are four plane ones (`pulse`). One that travels is the same pulse everywhere
+in the layer, only later, so its amplitude is inverted once and read at each place by Lagrange's
+polynomial through 2 HALF samples. An evanescent one decays with the depth d as e^{i omega q d}: it
+is inverted at the depths of the places or, where they are more than NODES, at the Chebyshev points
+between which it is interpolated in d (Trefethen, Approximation Theory and Approximation Practice,
+2013). What follows a pulse without delay is summed in time, with all its kinks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from cases.material.rock import ElasticRock
+from compare.exact.plane.inversion import STEPS, analytic_inverse
+from compare.exact.plane.pulse import Pulse, PulseStack, modes_of
+from compare.exact.plane.waves import is_evanescent, slownesses_across
+
+HALF = 4  # samples on either side
+NODES = 40  # depths of an evanescent wave in a layer, at most
+AT_ONCE = 200  # amplitudes inverted together
+TOGETHER = 32  # places at which an evanescent wave is found together
+
+
+@dataclass(frozen=True)
+class LayerWave:
+    """One wave of one layer at the places where it is wanted.
+
+    layer : counted along n. wave : of P+, SV+, P-, SV-. members : the places [k]. delays : of the
+    pulse at them [k], s. depths : of an evanescent wave, where it is inverted [d], m, and `shares`
+    [k, d] of these at the places; None of a wave that travels.
+    """
+
+    layer: int
+    wave: int
+    members: np.ndarray
+    delays: np.ndarray
+    depths: np.ndarray | None = None
+    shares: np.ndarray | None = None
+
+
+def motion(
+    rock: ElasticRock, pulse: Pulse, stack: PulseStack, points: np.ndarray, times: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return velocity [m, 2, n] (m/s) and stress [m, 3, n] (Pa, tension positive), as
+    `pulse_fields` does.
+
+    pulse : a function of time that is zero before 0 s. points : [m, 2], m. times : equally spaced.
+    """
+    if not callable(pulse.velocity):
+        raise ValueError("the pulse must be a function of time")
+    t, places = np.asarray(times, dtype=float), np.atleast_2d(points) @ stack.axes.rows.T
+    modes = modes_of(rock, stack.axes, slownesses_across(rock, stack.axes.slowness))
+    waves = list(_waves_of(rock, stack, places))
+    fine, stride = _fine_times(rock, stack, waves, t)
+    sharp = np.concatenate(stack.at_once, axis=-1)
+    found = np.zeros((len(places), modes.shape[1], len(t)))
+    amplitudes = _amplitudes(rock, pulse.velocity, stack, waves, fine)
+    for one, rows in zip(waves, amplitudes, strict=True):
+        mode, share = modes[one.wave][:, None], sharp[one.layer, one.wave]
+        for k, (place, late) in enumerate(zip(one.members, one.delays, strict=True)):
+            offset = (t[0] - late - fine[0]) / (fine[1] - fine[0])
+            if one.shares is None:
+                found[place] += mode.real * _read(rows[0].real, offset, stride, len(t))
+                if share:
+                    found[place] += share * mode.real * pulse.velocity(t - late)
+            else:
+                if k % TOGETHER == 0:
+                    near = one.shares[k : k + TOGETHER] @ rows
+                part = _read(near[k % TOGETHER], offset, stride, len(t))
+                found[place] += mode.real * part.real - mode.imag * part.imag
+    return found[:, :2], float(rock.p_impedance) * found[:, 2:]
+
+
+def _waves_of(rock: ElasticRock, stack: PulseStack, places: np.ndarray) -> Iterator[LayerWave]:
+    """Yield the waves of all layers that hold places (t, n) [m, 2]."""
+    axes, depths = stack.axes, stack.depths
+    across, evanescent = slownesses_across(rock, axes.slowness), is_evanescent(rock, axes.slowness)
+    lead = (axes.incident @ across).real * depths[0]
+    layers = np.searchsorted(depths, places[:, 1])
+    for layer in np.unique(layers):
+        members = np.flatnonzero(layers == layer)
+        x, z = places[members].T
+        there = z - depths[max(layer - 1, 0)], depths[min(layer, len(depths) - 1)] - z
+        for wave in range(4):
+            comes = layer > 0 or axes.incident[wave % 2] if wave < 2 else layer < len(depths)
+            if not comes:
+                continue
+            late, way = lead + axes.slowness * x, there[wave // 2]
+            if evanescent and wave % 2 == 0:
+                yield LayerWave(int(layer), wave, members, late, *_depths(way))
+            else:
+                yield LayerWave(int(layer), wave, members, late + across[wave % 2].real * way)
+
+
+def _depths(way: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return depths [d] at which a smooth function is known, and its shares [k, d] at `way`."""
+    found, which = np.unique(np.round(way, 9), return_inverse=True)
+    if len(found) <= NODES:
+        return found, np.eye(len(found))[which]
+    low, high = found[0], found[-1]
+    nodes = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
+    to_values = np.linalg.inv(np.polynomial.chebyshev.chebvander(nodes, NODES - 1))
+    at = np.polynomial.chebyshev.chebvander(2 * (way - low) / (high - low) - 1, NODES - 1)
+    return low + (high - low) * (nodes + 1) / 2, at @ to_values
+
+
+def _fine_times(
+    rock: ElasticRock, stack: PulseStack, waves: list[LayerWave], t: np.ndarray
+) -> tuple[np.ndarray, int]:
+    """Return the times of amplitudes, s, and how many of their steps a step of `t` has."""
+    late = np.concatenate([one.delays for one in waves])
+    causal = not is_evanescent(rock, stack.axes.slowness)
+    start, dt = 0.0 if causal else min(0.0, t[0] - late.max()), t[1] - t[0]
+    end = max(t[-1] - late.min(), dt)
+    stride = int(np.ceil(STEPS * dt / (end - start)))
+    count = int(np.ceil((end - start) / dt * stride)) + 2 * HALF
+    return start + dt / stride * np.arange(count), stride
+
+
+def _amplitudes(
+    rock: ElasticRock,
+    velocity: Callable,
+    stack: PulseStack,
+    waves: list[LayerWave],
+    fine: np.ndarray,
+) -> Iterator[np.ndarray]:
+    """Yield of each wave the amplitude beyond what follows at once, whose real part it is,
+    [1, samples], or those of an evanescent wave at its depths [d, samples]."""
+    q = slownesses_across(rock, stack.axes.slowness)[0]
+    sharp = np.concatenate(stack.at_once, axis=-1)
+    causal = not is_evanescent(rock, stack.axes.slowness)
+    rows = [(one, d) for one in waves for d in (one.depths if one.depths is not None else [0.0])]
+
+    def inverted(some: list[tuple[LayerWave, float]]) -> np.ndarray:
+        def transfer(omega: np.ndarray) -> np.ndarray:
+            found = np.concatenate(stack.layers(omega), axis=-1) - sharp[:, None]
+            decay = [np.exp(1j * omega * q * d) if d else 1.0 for _, d in some]
+            return np.array(
+                [
+                    found[one.layer, :, one.wave] * less
+                    for (one, _), less in zip(some, decay, strict=True)
+                ]
+            )
+
+        return analytic_inverse(transfer, velocity, fine, causal)
+
+    parts = (inverted(rows[k : k + AT_ONCE]) for k in range(0, len(rows), AT_ONCE))
+    each = (row for part in parts for row in part)
+    for one in waves:
+        count = 1 if one.depths is None else len(one.depths)
+        yield np.array([next(each) for _ in range(count)])
+
+
+def _read(series: np.ndarray, offset: float, stride: int, count: int) -> np.ndarray:
+    """Return a series at offset + k stride, k = 0 .. count - 1; zero before it begins."""
+    first = int(np.floor(offset))
+    weights = _lagrange(offset - first)
+    span = np.arange(-HALF + 1, HALF + 1)
+    low, high = first + span[0], first + span[-1] + stride * (count - 1) + 1
+    before, after = max(-low, 0), max(high - len(series), 0)
+    window = np.pad(series[max(low, 0) : max(high, 0)], (min(before, high - low), after))
+    return sum(w * window[k : k + stride * (count - 1) + 1 : stride] for k, w in enumerate(weights))
+
+
+def _lagrange(x: float) -> np.ndarray:
+    """Return the weights of the samples at -HALF + 1 .. HALF for the place x in [0, 1)."""
+    nodes = np.arange(-HALF + 1, HALF + 1)
+    return np.array([np.prod([(x - m) / (k - m) for m in nodes if m != k]) for k in nodes])

@@ -1,0 +1,55 @@
+"""The incident field of a scene: that of its stack of joints where it has one, else of its waves.
+
+With the exact field of the stack on all quiet sides nothing is missing there, and what is wrong
+inside is an engine's own. 1000 points and 2000 times of one joint take about 0.4 s of a processor,
+2 s where P waves are evanescent; it differs from `parallel_joints.fields` by less than the bound
+that these give, about 1e-9 of a smooth pulse.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cases.incident import Motion, free_field, plane_wave
+from compare.exact.plane import layer_pulses, parallel_joints
+from compare.exact.plane.pulse import Pulse
+from compare.exact.plane.waves import Kind
+from compare.exact.rock_mass.stack import Stack, begun, scatters_otherwise, stack_of
+
+if TYPE_CHECKING:
+    from cases.incident import IncidentField, PlaneWave
+    from cases.schema.rock_mass import RockMass
+
+
+@dataclass(frozen=True)
+class StackField:
+    """The waves of a scene with all that its parallel joints make of them."""
+
+    stack: Stack
+    waves: tuple[PlaneWave, ...]
+    whole: bool = True
+
+    def __call__(self, points: np.ndarray, times: np.ndarray) -> Motion:
+        stack, places = self.stack, np.asarray(points, dtype=float)
+        total = [np.zeros((len(places), count, len(times))) for count in (2, 3)]
+        for wave in self.waves if len(places) else ():
+            kind: Kind = "P" if abs(wave.direction @ wave.polarisation) > 0.5 else "SV"
+            pulse = Pulse(kind, wave.direction, wave.pulse.value)
+            offsets = stack.offsets - wave.through @ stack.normal
+            met = parallel_joints.stack_of(stack.rock, stack.joints, pulse, stack.dip, offsets)
+            found = layer_pulses.motion(stack.rock, pulse, met, places - wave.through, times)
+            for sum_, part in zip(total, found, strict=True):
+                sum_ += part
+        return Motion(*total)
+
+
+def field_of(scene: RockMass) -> IncidentField:
+    """Return what enters a scene through its quiet sides."""
+    if scene.waves and scatters_otherwise(scene) is None:
+        stack = stack_of(scene)
+        if begun(scene, stack) is None:
+            return StackField(stack, tuple(plane_wave(scene, one) for one in scene.waves))
+    return free_field(scene)

@@ -1,0 +1,64 @@
+"""The incident field of a scene: the stack's where it has one, right at every quiet side."""
+
+import numpy as np
+import pytest
+
+from cases.incident import FreeField, free_field
+from compare.exact.rock_mass.field import StackField, field_of
+from compare.exact.rock_mass.stack import stack_of
+from compare.exact.rock_mass.stack_waves import motion_at
+
+SIDES = np.array([[0.0, 12.0], [40.0, 21.0], [31.0, 0.0], [4.0, 30.0], [0.0, 3.0]])
+TIMES = np.linspace(0, 0.02, 201)
+
+
+def test_it_is_the_field_of_the_solution(rock_mass, wave):
+    """Two waves at once, on all sides."""
+    one, other = wave(direction=[0.28, 0.96]), wave(direction=[0.0, 1.0], kind="S", amplitude=3e5)
+    scene = rock_mass(waves=[one, other])
+    found, exact = field_of(scene)(SIDES, TIMES), motion_at(scene, stack_of(scene), SIDES, TIMES)
+    assert np.abs(found.velocity - exact.velocity).max() < 1e-8 * np.abs(exact.velocity).max()
+    assert np.abs(found.stress - exact.stress).max() < 1e-8 * np.abs(exact.stress).max()
+
+
+def test_without_what_joints_do_it_is_that_of_the_waves(rock_mass, joint):
+    """Joints as stiff as 1e18 Pa/m scatter Z omega / 2 K, a billionth."""
+    stiff = joint(normal_stiffness=1e18, shear_stiffness=1e18)
+    scene = rock_mass(joint_sets=[stiff])
+    found, free = field_of(scene)(SIDES, TIMES), free_field(scene)(SIDES, TIMES)
+    assert np.abs(found.velocity - free.velocity).max() < 1e-8 * np.abs(free.velocity).max()
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"loads": [{"kind": "pressure", "opening": 0, "shape": "step", "amplitude": 1.0}]},
+        {"gravity": {"static": False}},
+        {"prestress": {"xx": 1e6, "yy": 2e6}},
+    ],
+)
+def test_what_else_acts_and_openings_add_to_it(rock_mass, changes):
+    opening = {"openings": [[[18, 13], [22, 13], [22, 17], [18, 17]]], "non_convex": "cut"}
+    scene = rock_mass(**changes, domain=opening, record={"joints": []})
+    found = field_of(scene)
+    assert isinstance(found, StackField) and found.whole and len(found.stack.joints) == 1
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"joint_sets": []},
+        {"waves": []},
+        {"boundaries": {"left": "free"}},
+        {"damping": {"mass_proportional": 1.0}},
+    ],
+)
+def test_else_it_is_that_of_the_waves_alone(rock_mass, changes):
+    found = field_of(rock_mass(**changes, record={"joints": []}))
+    assert isinstance(found, FreeField) and found.whole == ("joint_sets" in changes)
+
+
+def test_crossing_joints_and_those_that_slip_scatter_otherwise(rock_mass, joint):
+    crossed = rock_mass(joint_sets=[joint(), joint(name="other", dip=80.0)])
+    slips = rock_mass(joint_sets=[joint(friction_angle=30.0)])
+    assert not field_of(crossed).whole and not field_of(slips).whole
