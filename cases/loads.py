@@ -33,6 +33,11 @@ class Sine:
         w = 2 * pi / self.period
         return self.amplitude * (1 - np.cos(w * np.clip(t, 0, self.end))) / w
 
+    def rate(self, t: np.ndarray) -> np.ndarray:
+        """Return the rate of the stress (Pa/s) at times t (s)."""
+        inside, w = (t > 0) & (t < self.end), 2 * pi / self.period
+        return np.where(inside, self.amplitude * w * np.cos(w * t), 0.0)
+
     @property
     def end(self) -> float:
         """Time at which the last cycle ends, s."""
@@ -62,6 +67,12 @@ class Ricker:
     def impulse(self, t: np.ndarray) -> np.ndarray:
         """Return the integral of the stress from minus infinity to t (Pa s)."""
         return self._integral(np.maximum(t, 0.0)) - self._integral(0.0)
+
+    def rate(self, t: np.ndarray) -> np.ndarray:
+        """Return the rate of the stress (Pa/s) at times t (s)."""
+        s, w = t - 1.5 * self.period, (pi / self.period) ** 2
+        a = w * s**2
+        return np.where(t > 0, 2 * self.amplitude * w * s * (2 * a - 3) * np.exp(-a), 0.0)
 
     def _integral(self, t):
         s = t - 1.5 * self.period
@@ -117,6 +128,11 @@ class Recorded:
         s = t - self.time[i]
         slope = (self.stress[i + 1] - self.stress[i]) / (self.time[i + 1] - self.time[i])
         return running[i] + s * (self.stress[i] + slope * s / 2)
+
+    def rate(self, t: np.ndarray) -> np.ndarray:
+        """Return the rate of the stress (Pa/s) at times t (s), that of the line to the left."""
+        slopes = np.concatenate([[0.0], np.diff(self.stress) / np.diff(self.time), [0.0]])
+        return slopes[np.searchsorted(self.time, t)]
 
     @property
     def breaks(self) -> list[float]:

@@ -39,6 +39,7 @@ EXACT = {
     "sliding-block": "blocks.sliding_block",
     "oblique-joint": "rock_mass.oblique_joint",
     "parallel-joints": "rock_mass.parallel_joints",
+    "line-force": "rock_mass.line_force",
 }
 
 Progress = Callable[[float], None]

@@ -51,6 +51,13 @@ def reflecting_side(scene: RockMass) -> str | None:
     return None
 
 
+def prestress_of(scene: RockMass) -> np.ndarray:
+    """Return the stress (xx, yy, xy) that a scene carries before anything acts, Pa, compression
+    positive."""
+    stress = scene.prestress
+    return np.zeros(3) if stress is None else np.array([stress.xx, stress.yy, stress.xy])
+
+
 def along(one: np.ndarray, other: np.ndarray) -> bool:
     """Return whether two unit vectors have the same or opposite directions."""
     return bool(abs(one[0] * other[1] - one[1] * other[0]) < PARALLEL)

@@ -18,6 +18,7 @@ from cases.partition.outline import TOLERANCE
 from cases.sampling import sample_times
 from compare.exact.plane import parallel_joints
 from compare.exact.plane.pulse import Pulse
+from compare.exact.rock_mass.conditions import prestress_of
 from compare.exact.rock_mass.stack import Stack, against, begun, stack_of
 from compare.solvers.record import YES, Answer, no
 from results.plane import plane_fields
@@ -76,8 +77,7 @@ def solve(scene: RockMass, name: str) -> xr.Dataset:
         StackMotion(*(x[part] for x in found))
         for part in (slice(0, m), slice(m, k), slice(k, None))
     )
-    still = np.zeros(3) if scene.prestress is None else [*scene.prestress.model_dump().values()]
-    pressed = np.array(still)[:, None]
+    pressed = prestress_of(scene)[:, None]
     jump = joints.axes @ (there.displacement - here.displacement)
     traction = joints.axes @ on_face(pressed - here.stress, joints.axes[:, 0])
     off, size = here.displacement_error + there.displacement_error, np.abs(joints.axes)

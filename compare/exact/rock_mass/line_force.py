@@ -1,0 +1,134 @@
+"""Scenes of line forces in rock without joints (`plane.line_force`).
+
+Holds for any forces that do not jump, in undamped rock without joints and openings, whatever holds
+the sides: up to `known_until`, the first time at which a P wave may have been to a side and come to
+a receiver, the rock is as if it had no end.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cases.loads import Recorded, Ricker, Sine, Step, history_of
+from cases.material.rock import elastic_rock
+from cases.partition.outline import outline_of
+from cases.sampling import sample_times
+from compare.exact.plane.line_force import motion
+from compare.exact.rock_mass.conditions import beyond_linear_rock, prestress_of
+from compare.solvers.record import JOINTED, YES, Answer, Kind, Rock, Solver, Words, no, thin
+from results.plane import plane_fields
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from cases.loads import LoadHistory
+    from cases.schema.rock_mass import RockMass
+
+PARTS = 8  #: of a Ricker pulse, smooth enough for the points of one integral
+
+
+def applies(scene: RockMass) -> Answer:
+    """Return whether forces alone act on rock without joints, and reach a receiver undisturbed."""
+    held, gravity = scene.boundaries.model_dump().values(), scene.gravity
+    reasons = [
+        (bool(scene.joint_sets), "there are joints"),
+        (bool(scene.waves), "a wave enters"),
+        (not scene.loads, "no force acts"),
+        (any(one.kind != "force" for one in scene.loads), "another load than a force acts"),
+        (gravity is not None and bool(gravity.acceleration), "gravity acts"),
+        (bool(outline_of(scene.domain).taken), "the domain is not convex, or has openings"),
+        ("periodic" in held, "a side is periodic"),
+        (not scene.record.points, "no point records the motion"),
+    ]
+    reason = beyond_linear_rock(scene) or next((why for there, why in reasons if there), None)
+    if reason is None and any(_jumps(one) for one in _histories(scene)):
+        reason = "a force jumps, and the velocity at its arrivals has no bound"
+    if reason is None:
+        reach = _distances(scene).min()
+        if not reach > 0:
+            reason = "a receiver lies on a force"
+        elif known_until(scene) <= reach / float(elastic_rock(scene.rock).p_speed):
+            reason = "a side reflects before any receiver is reached"
+    return no(reason) if reason else YES
+
+
+def solve(scene: RockMass) -> xr.Dataset:
+    """Return velocity, displacement and stress at the points of a scene."""
+    import xarray as xr
+
+    rock, times = elastic_rock(scene.rock), sample_times(scene)
+    points, total = np.array(scene.record.points), []
+    for load, history in zip(scene.loads, _histories(scene), strict=True):
+        assert not isinstance(history, Step)
+        offsets, breaks = points - np.array(load.at), _breaks(history)
+        direction = np.array(load.direction)
+        total.append(motion(rock, direction, history.value, history.rate, breaks, offsets, times))
+    sums = [np.sum(parts, axis=0) for parts in zip(*total, strict=True)]
+    u, v, stress, u_error, v_error, stress_error = sums
+    values = {
+        "velocity": v.swapaxes(1, 2),
+        "displacement": u.swapaxes(1, 2),
+        "stress": prestress_of(scene) - stress.swapaxes(1, 2),
+    }
+    errors = {"velocity": v_error, "displacement": u_error, "stress": stress_error}
+    known = known_until(scene)
+    until: dict[str, Any] = {"known_until": known} if known < times[-1] else {}
+    return xr.Dataset(*plane_fields(scene, SOLVER.name, times, values, errors=errors, **until))
+
+
+def known_until(scene: RockMass) -> float:
+    """Return when what a side returns may come to a receiver first, s: by its mirror image."""
+    outline, points = outline_of(scene.domain), np.array(scene.record.points)
+    first = np.inf
+    for side, normals in outline.normals().items():
+        for (start, _), normal in zip(outline.edges(side), normals, strict=True):
+            for load in scene.loads:
+                at = np.array(load.at)
+                image = at + 2 * ((start - at) @ normal) * normal
+                first = min(first, np.hypot(*(points - image).T).min())
+    return float(first / elastic_rock(scene.rock).p_speed)
+
+
+def _distances(scene: RockMass) -> np.ndarray:
+    """Return the distances of the points from the forces, [forces, points], m."""
+    points = np.array(scene.record.points)
+    return np.array([np.hypot(*(points - np.array(one.at)).T) for one in scene.loads])
+
+
+def _histories(scene: RockMass) -> list[LoadHistory]:
+    return [history_of(one, one.amplitude) for one in scene.loads]
+
+
+def _jumps(history: LoadHistory) -> bool:
+    recorded = isinstance(history, Recorded) and bool(history.stress[[0, -1]].any())
+    return recorded or isinstance(history, Step)
+
+
+def _breaks(history: Sine | Ricker | Recorded) -> list[float]:
+    """Return times between which a history is smooth, half a cycle or less."""
+    if isinstance(history, Ricker):
+        return [*np.linspace(0, 3 * history.period, PARTS + 1), np.inf]
+    if isinstance(history, Recorded):
+        return history.breaks
+    return [*np.linspace(0, history.end, 2 * history.cycles + 1)]
+
+
+SOLVER = Solver(
+    name="line-force",
+    rock=Rock.JOINTED,
+    kinds=("rock mass",),
+    dimension=2,
+    words=Words(JOINTED, "line force, exact", "线力（精确解）"),
+    line=thin("#a83200", 8, (4.5, 8.5), (3, 3, 1.2, 3)),
+    applies=applies,
+    run=solve,
+    distances={
+        Kind.NUMERICAL: {
+            "continuum-jointed": "elements and time stepping of the rock",
+            "continuum-equivalent": "elements and time stepping of the rock",
+        },
+        Kind.MODELLING: {"dem": "rigid instead of deformable blocks"},
+    },
+)

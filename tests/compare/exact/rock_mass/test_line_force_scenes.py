@@ -1,0 +1,115 @@
+"""Scenes of line forces: arrivals, statics, balance of momentum, where they hold and where not."""
+
+import numpy as np
+import pytest
+
+from cases.loads import Recorded, Ricker, Sine
+from compare.engines import applies, solve
+
+A, B = np.sqrt(2.4e7), np.sqrt(8e6)
+FORCE = {
+    "kind": "force",
+    "quantity": "force",
+    "at": [20.0, 15.0],
+    "direction": [0.0, 1.0],
+    "shape": "ricker",
+    "amplitude": 1e6,
+    "period": 0.002,
+}
+
+
+@pytest.fixture
+def forced(rock_mass):
+    """Return rock with a force of 1 MN/m upwards in the middle and tables changed."""
+    tables = {"joint_sets": [], "waves": [], "loads": [FORCE], "time": {"duration": 0.008}}
+    record = {"points": [[20.0, 20.0], [26.0, 15.0]], "joints": [], "interval": 2e-5}
+    return lambda **changes: rock_mass(**tables | {"record": record} | changes)
+
+
+def test_waves_arrive_in_time_and_sides_do_so_later(forced):
+    """5 m above P comes at 5/a, 6 m beside S at 6/b and not before 6/a anything. The top is 15 m
+    away: its image is 45 - 20 = 25 m from the upper point."""
+    found = solve("line-force", forced())
+    assert found.attrs["known_until"] == pytest.approx(25 / A, rel=1e-12)
+    t, v = found.time.values, np.abs(found.velocity.values)
+    above, beside = v[0, :, 1], v[1, :, 1]
+    assert above[t < 5 / A].max() == 0 < above[t < 5 / A + 2e-3].max()
+    assert beside[t < 6 / A].max() == 0
+    before, after = beside[t < 6 / B].max(), beside[t < 6 / B + 4e-3].max()
+    assert 0 < before < 0.2 * after
+    assert v[0, :, 0].max() < 1e-12 * v.max() and v[1, :, 0].max() < 1e-12 * v.max()
+
+
+def test_the_momentum_of_a_ring_is_the_impulse(forced):
+    """sigma n over a circle of 4 m about the force: of a Ricker force the impulse is 0, and so is
+    what has gone through in the end. 24 points of the trapezium rule on a circle are exact for a
+    field of angles up to twice."""
+    angle = 2 * np.pi * np.arange(24) / 24
+    n = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    record = {"points": [[20 + 4 * x, 15 + 4 * y] for x, y in n], "joints": [], "interval": 2e-5}
+    found = solve("line-force", forced(record=record, time={"duration": 0.02}))
+    xx, yy, xy = -np.moveaxis(found.stress.values, 2, 0)
+    pulled = (xy * n[:, :1] + yy * n[:, 1:]).sum(axis=0) * 2 * np.pi * 4 / 24
+    side = (xx * n[:, :1] + xy * n[:, 1:]).sum(axis=0)
+    assert np.abs(side).max() < 1e-9 * np.abs(pulled).max()
+    through = pulled.sum() * 2e-5
+    assert abs(through) < 2e-3 * np.abs(pulled).sum() * 2e-5
+    assert np.abs(pulled).max() > 1e5
+
+
+def test_forces_superpose_and_displacement_is_the_integral(forced):
+    other = FORCE | {"at": [15.0, 10.0], "direction": [0.6, 0.8], "shape": "sine", "cycles": 1}
+    parts = [solve("line-force", forced(loads=[one])) for one in (FORCE, other)]
+    both = solve("line-force", forced(loads=[FORCE, other], prestress={"xx": 1e6, "yy": 2e6}))
+    for name, still in (("velocity", 0), ("displacement", 0), ("stress", [1e6, 2e6, 0])):
+        expected = parts[0][name] + parts[1][name] + np.array(still)
+        assert np.abs(both[name] - expected).max() <= 1e-12 * np.abs(expected).max()
+    u, v = parts[0].displacement.values, parts[0].velocity.values
+    pairs = 2e-5 / 3 * (v[:, :-2:2] + 4 * v[:, 1:-1:2] + v[:, 2::2])
+    assert np.abs(np.cumsum(pairs, axis=1) - u[:, 2::2]).max() < 1e-5 * np.abs(u).max()
+    assert both.attrs["known_until"] == min(one.attrs["known_until"] for one in parts)
+
+
+NO = [
+    ({"waves": [{"kind": "P", "direction": [0.0, 1.0], "shape": "step", "amplitude": 1.0}]},
+     "a wave enters"),
+    ({"loads": []}, "no force acts"),
+    ({"loads": [FORCE | {"shape": "step", "period": None}]},
+     "a force jumps, and the velocity at its arrivals has no bound"),
+    ({"loads": [{"kind": "pressure", "side": "top", "shape": "step", "amplitude": 1.0}]},
+     "another load than a force acts"),
+    ({"gravity": {"static": False}}, "gravity acts"),
+    ({"damping": {"mass_proportional": 1.0}}, "the damping is proportional to mass"),
+    ({"domain": {"openings": [[[1, 1], [2, 1], [2, 2], [1, 2]]]}},
+     "the domain is not convex, or has openings"),
+    ({"record": {"points": [[20.0, 15.0]], "joints": []}}, "a receiver lies on a force"),
+    ({"record": {"points": [], "joints": [], "fields": 1e-3}}, "no point records the motion"),
+    ({"boundaries": dict.fromkeys(("left", "right"), "periodic")}, "a side is periodic"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("changes, reason", NO)
+def test_it_says_why_it_does_not_hold(forced, changes, reason):
+    assert applies("line-force", forced(**changes)).reason == reason
+
+
+def test_joints_and_points_beyond_the_reach_of_sides_are_refused(forced, joint):
+    assert applies("line-force", forced(joint_sets=[joint()])).reason == "there are joints"
+    on_side = forced(record={"points": [[40.0, 15.0]], "joints": []})
+    assert applies("line-force", on_side).reason == "a side reflects before any receiver is reached"
+
+
+@pytest.mark.parametrize(
+    "history",
+    [
+        Sine(3.0, 0.01, 2),
+        Ricker(3.0, 0.01),
+        Recorded(np.array([0.0, 0.004, 0.01]), np.array([0.0, 2.0, 0.0])),
+    ],
+)
+def test_rates_of_histories(history):
+    """By central differences of 1 ns; at both ends a history stands still."""
+    t = np.array([0.0013, 0.0029, 0.0061, 0.0093, 0.0137])
+    rates = (history.value(t + 1e-9) - history.value(t - 1e-9)) / 2e-9
+    assert history.rate(t) == pytest.approx(rates, rel=1e-6, abs=1e-4)
+    assert history.rate(np.array([-1.0, 1.0])).tolist() == [0.0, 0.0]
