@@ -40,6 +40,7 @@ EXACT = {
     "oblique-joint": "rock_mass.oblique_joint",
     "parallel-joints": "rock_mass.parallel_joints",
     "line-force": "rock_mass.line_force",
+    "effective-medium": "rock_mass.effective_medium",
 }
 
 Progress = Callable[[float], None]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -56,6 +57,12 @@ def prestress_of(scene: RockMass) -> np.ndarray:
     positive."""
     stress = scene.prestress
     return np.zeros(3) if stress is None else np.array([stress.xx, stress.yy, stress.xy])
+
+
+def all_parallel(scene: RockMass) -> bool:
+    """Return whether all joints of a scene are parallel."""
+    directions = [direction_of(one.dip) for one in scene.joint_sets]
+    return all(along(*pair) for pair in pairwise(directions))
 
 
 def along(one: np.ndarray, other: np.ndarray) -> bool:

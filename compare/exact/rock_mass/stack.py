@@ -7,7 +7,6 @@ sides waves leave through, from rest: at t = 0 no pulse may have met a joint the
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,7 +20,12 @@ from cases.partition.scene import partition_of
 from cases.partition.subdivision import NO_SET
 from compare.exact.plane.oblique_joint import Joint
 from compare.exact.plane.waves import slownesses_across
-from compare.exact.rock_mass.conditions import along, beyond_linear_rock, reflecting_side
+from compare.exact.rock_mass.conditions import (
+    all_parallel,
+    along,
+    beyond_linear_rock,
+    reflecting_side,
+)
 
 if TYPE_CHECKING:
     from cases.incident import PlaneWave
@@ -99,7 +103,7 @@ def scatters_otherwise(scene: RockMass) -> str | None:
     directions = [direction_of(one.dip) for one in scene.joint_sets]
     reasons = [
         (not directions, "there is no joint"),
-        (not all(along(*pair) for pair in pairwise(directions)), "joints are not parallel"),
+        (not all_parallel(scene), "joints are not parallel"),
     ]
     for i, wave in enumerate(scene.waves):
         runs_along = any(along(np.array(wave.direction), one) for one in directions)

@@ -1,0 +1,123 @@
+"""Waves of the effective medium as solutions of scenes: speeds, balance, where they hold."""
+
+import numpy as np
+import pytest
+
+from cases.material.effective_medium import tensor
+from compare.engines import applies, solve
+from compare.exact.rock_mass.effective_medium import MediumField, medium_field, medium_stiffness
+from compare.exact.rock_mass.field import field_of
+
+#: lambda = mu = 20 GPa, so that K_n = 2 mu / 1 m and K_s = mu / 1 m.
+LAW = {"normal_stiffness": 4e10, "shear_stiffness": 2e10, "spacing": 1.0}
+B = np.sqrt(8e6)
+DIAGONAL = [np.sqrt(0.5), np.sqrt(0.5)]
+
+
+@pytest.fixture
+def crossed(rock_mass, joint):
+    """Return rock with two orthogonal sets and tables changed."""
+    sets = [joint(**LAW, name=name, dip=dip) for name, dip in (("bed", 0.0), ("cross", 90.0))]
+    record = {"points": [[4.0, 6.0], [30.0, 20.0]], "joints": []}
+    return lambda **changes: rock_mass(**{"joint_sets": sets, "record": record} | changes)
+
+
+@pytest.mark.parametrize(
+    "kind, direction, speed",
+    [
+        ("P", [0.0, 1.0], 1.0801234497),
+        ("S", [0.0, 1.0], 0.5773502692),
+        ("P", DIAGONAL, 1.0),
+        ("S", DIAGONAL, 0.7071067812),
+    ],
+)
+def test_waves_travel_at_the_speeds_of_the_medium(crossed, wave, kind, direction, speed):
+    """Those of lambda = mu = rho = 1 with two orthogonal sets of spacing 1, K_n = 2 and K_s = 1;
+    1 MPa on the front of 2500 kg/m3 moves particles at 1e6 / (2500 c) along the travel or to its
+    left, and the traction on the front is that stress."""
+    scene = crossed(waves=[wave(kind=kind, direction=direction)], time={"duration": 0.04})
+    found, c, n = solve("effective-medium", scene), speed * B, np.array(direction)
+    t, front = found.time.values, n if kind == "P" else np.array([-n[1], n[0]])
+    for point, v, stress in zip(([4, 6], [30, 20]), found.velocity, found.stress, strict=True):
+        a = (np.pi * (t - 1.5 * 0.005 - np.dot(point, n) / c) / 0.005) ** 2
+        pulse = np.where(t > np.dot(point, n) / c, (1 - 2 * a) * np.exp(-a), 0.0)
+        expected = 1e6 / (2500 * c) * pulse[:, None] * front
+        assert np.abs(v.values - expected).max() < 1e-9 * np.abs(v).max()
+        xx, yy, xy = stress.values.T
+        traction = np.array([xx * n[0] + xy * n[1], xy * n[0] + yy * n[1]])
+        assert np.abs(traction.T - 1e6 * pulse[:, None] * front).max() < 1e-3
+
+
+def test_the_medium_is_in_balance(rock_mass, joint, wave):
+    """rho v' = div sigma and sigma = C : e at any angle of three unlike sets, by differences of
+    fourth order over 2 cm and 4 us: (k h)^4 / 30 of the shortest waves."""
+    sets = [
+        joint(**LAW | {"spacing": s}, name=str(s), dip=d) for s, d in ((1, 10), (2, 50), (3, -70))
+    ]
+    travel = [np.cos(1.1), np.sin(1.1)]
+    h, centre, steps = 0.02, np.array([20.0, 15.0]), np.arange(-2, 3)
+    line = [(centre + h * k * axis).tolist() for axis in np.eye(2) for k in steps if k or axis[0]]
+    record = {"points": line, "joints": [], "interval": 4e-6}
+    waves = [wave(direction=travel), wave(kind="S", direction=travel, amplitude=5e5)]
+    scene = rock_mass(joint_sets=sets, waves=waves, record=record)
+    found = solve("effective-medium", scene)
+    v, u, stress = (found[name].values for name in ("velocity", "displacement", "stress"))
+    along = [slice(0, 5), [5, 6, 2, 7, 8]]
+
+    def slope(values):
+        return (8 * (values[3] - values[1]) - (values[4] - values[0])) / (12 * h)
+
+    (xx_x, _, xy_x), (_, yy_y, xy_y) = (slope(-stress[rows]).T for rows in along)
+    rate = (8 * (v[2, 3:-1] - v[2, 1:-3]) - (v[2, 4:] - v[2, :-4])) / (12 * 4e-6)
+    inertia = 2500 * rate
+    force = np.array([xx_x + xy_y, xy_x + yy_y]).T[2:-2]
+    assert np.abs(force - inertia).max() < 1e-6 * np.abs(inertia).max()
+    strain = np.array([slope(u[rows]) for rows in along]).transpose(1, 2, 0)
+    expected = np.einsum("ijkl,tkl->tij", tensor(medium_stiffness(scene)), strain)
+    off = -stress[2] - expected[:, [0, 1, 0], [0, 1, 1]]
+    assert np.abs(off).max() < 1e-6 * np.abs(stress).max()
+
+
+def test_its_waves_enter_where_joints_cross(crossed, joint):
+    scene = crossed()
+    found, own = field_of(scene), medium_field(scene)
+    assert isinstance(found, MediumField) and found.whole
+    times, points = np.linspace(0, 0.02, 11), np.array([[0.0, 3.0], [40.0, 9.0]])
+    for one, other in zip(found(points, times), own(points, times), strict=True):
+        assert np.array_equal(one, other) and np.abs(one).max() > 0
+    assert not field_of(crossed(boundaries={"top": "free"})).whole
+    alone = crossed(joint_sets=[joint(**LAW), joint(name="fault", dip=80.0)])
+    assert not isinstance(field_of(alone), MediumField)
+
+
+LAWS = {"dip": 0.0} | LAW
+NO = [
+    ({"waves": []}, "no wave enters"),
+    ({"loads": [{"kind": "pressure", "side": "top", "shape": "step", "amplitude": 1.0}]},
+     "a load acts"),
+    ({"gravity": {"static": False}}, "gravity acts"),
+    ({"domain": {"openings": [[[1, 1], [2, 1], [2, 2], [1, 2]]]}}, "the domain has openings"),
+    ({"joint_sets": []}, "there is no joint"),
+    ({"damping": {"mass_proportional": 1.0}}, "the damping is proportional to mass"),
+    ({"boundaries": {"top": "free"}}, "the top is free and reflects waves"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("changes, reason", NO)
+def test_it_says_why_it_does_not_hold(crossed, changes, reason):
+    assert applies("effective-medium", crossed(**changes)).reason == reason
+
+
+def test_it_holds_for_crossing_spaced_linear_sets_alone(crossed, joint, wave):
+    def reason(**keys):
+        other = joint(name="cross", dip=80.0) | {"spacing": 2.0} | keys
+        return applies("effective-medium", crossed(joint_sets=[joint(**LAW), other])).reason
+
+    assert reason() == ""
+    assert reason(dip=25.0) == "joints are parallel: see parallel-joints"
+    assert reason(spacing=None) == "a joint has no spacing"
+    assert reason(damping_ratio=0.1) == "the joints are damped"
+    assert reason(friction_angle=30.0) == "joint set 'cross' can slip"
+    begun = crossed(waves=[wave(through=[0.0, 5.0])])
+    expected = "a pulse has begun within the domain before t = 0"
+    assert applies("effective-medium", begun).reason == expected
