@@ -3,7 +3,7 @@ MAKEFLAGS += --no-print-directory
 RUN := tools/run.sh
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-all docs check fuzz mutate bench bench-peers bench-plan test-debian13 clean distclean
+.PHONY: help setup demo test test-all docs check fuzz mutate bench bench-peers bench-plan test-debian13 test-wheel clean distclean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -51,8 +51,11 @@ bench-plan: setup  ## what is planned for every shipped scene, held against all 
 test-debian13:  ## make test in a fresh Debian 13, with newer dolfinx, numpy and Python (needs root or sudo)
 	@tools/debian13.sh
 
+test-wheel:  ## the wheel in an empty environment of $PYTHON (default python3): compare, report, MPI, scenes as tests
+	@tools/test-wheel.sh
+
 clean:  ## remove reports and caches
-	rm -rf report site build *.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache
+	rm -rf report site build dist *.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache
 	find cases results numerics joints dem continuum compare tests -name __pycache__ -prune -exec rm -rf {} +
 
 distclean: clean  ## remove .venv, the other codes and the fuzzer too

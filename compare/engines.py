@@ -63,7 +63,7 @@ def solver(name: str) -> Solver:
         return ENGINES[name]
     if name not in EXACT:
         raise SceneError("engine", "", None, f"{name!r} is unknown; allowed: {', '.join(names())}")
-    return import_module(f"compare.exact.{EXACT[name]}").SOLVER
+    return import_module(f".exact.{EXACT[name]}", __package__).SOLVER
 
 
 def solvers() -> list[Solver]:

@@ -4,12 +4,15 @@ import ast
 import inspect
 from textwrap import dedent
 
+#: The package that defines all models.
+CASES = __name__.rpartition(".schema.")[0]
+
 
 def field_comments(model: type) -> dict[str, str]:
     """Return what the comments say of each field that a model, or one that it extends, defines."""
     found: dict[str, str] = {}
     for base in reversed(model.__mro__):
-        if "__annotations__" in vars(base) and base.__module__.split(".")[0] == "cases":
+        if "__annotations__" in vars(base) and base.__module__.startswith(CASES):
             found |= _own(dedent(inspect.getsource(base)))
     return found
 

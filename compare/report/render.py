@@ -63,7 +63,7 @@ class Page:
 def render(page: Page, out: Path) -> str:
     """Return the page, which is to stand in `out`; the files it hands out are read from there."""
     environment = Environment(
-        loader=PackageLoader("compare.report"),
+        loader=PackageLoader(__package__),
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,

@@ -26,12 +26,16 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+#: How to get what the continuum runs on.
+INSTALL = 'pip install "jointwave[continuum]" (Linux, Python 3.12), or dolfinx by apt or conda'
+
+
 def applies(scene: Scene, model: str) -> Answer:
     """Return whether basix is there and the model holds for the scene."""
     try:
         from continuum import applies as reason_against
     except ImportError as error:
-        return no(f"basix cannot be imported ({error})")
+        return no(f"FEniCSx cannot be imported ({error}); {INSTALL}")
     reason = reason_against(scene, model)
     return no(reason) if reason else YES
 

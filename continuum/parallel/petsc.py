@@ -1,6 +1,9 @@
 """PETSc, started so that it does not turn a closed pipe or an interrupt into a crash report."""
 
-import petsc4py
+from continuum.space.compat import load_mpi
+
+load_mpi()
+import petsc4py  # noqa: E402
 
 petsc4py.init(["jointwave", "-no_signal_handler"])
 from petsc4py import PETSc  # noqa: E402

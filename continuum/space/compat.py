@@ -3,10 +3,20 @@
 basix is dolfinx's library of elements; what dolfinx compiles, `continuum.space.forms` has.
 """
 
+from importlib import import_module
+from importlib.util import find_spec
+
 import basix
 import numpy as np
 
 VERSION: str = basix.__version__
+
+
+def load_mpi() -> None:
+    """Load the MPI of the wheel that pip has of dolfinx, where it is that one that is installed:
+    without it neither its PETSc nor its dolfinx finds any."""
+    if find_spec("dolfinx_solver") is not None:
+        import_module("dolfinx_solver")
 
 
 def reference_element(cell: str, order: int):

@@ -29,7 +29,7 @@ def quiet_logging() -> Iterator[None]:
 
 
 with suppress(ImportError):
-    import continuum.parallel.petsc  # noqa: F401  before dolfinx starts it in its own way
+    from continuum.parallel import petsc as _  # noqa: F401  before dolfinx starts it in its own way
 with quiet_logging():
     import ufl
     from dolfinx import fem, mesh

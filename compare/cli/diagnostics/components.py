@@ -40,22 +40,35 @@ def _threads() -> str:
     import numba
     from numba import threading_layer
 
-    import numerics.jit  # noqa: F401  where kernels get their options
+    from numerics import jit as _  # noqa: F401  where kernels get their options
 
     @numba.njit(parallel=True)
     def count(n):
         found = 0
-        for _ in numba.prange(n):
-            found += 1
+        for i in numba.prange(n):
+            found += 1 if i >= 0 else 0
         return found
 
     assert count(100) == 100
     return f"{numba.get_num_threads()} of numba, by {threading_layer()}"
 
 
+def _of_fenicsx(module: str) -> Callable[[], str]:
+    """Return what imports a module that may need the MPI of a wheel before it."""
+
+    def found() -> str:
+        if find_spec("basix") is not None:
+            from continuum.space.compat import load_mpi
+
+            load_mpi()
+        return _imported(module)()
+
+    return found
+
+
 def _petsc() -> str:
-    _imported("petsc4py")()
-    from petsc4py import PETSc
+    _of_fenicsx("petsc4py")()
+    from continuum.parallel.petsc import PETSc
 
     return f"{'.'.join(map(str, PETSc.Sys.getVersion()))}, {PETSc.ScalarType.__name__}"
 
@@ -69,7 +82,7 @@ def _mpi() -> str:
 
 
 def _adios() -> str:
-    _imported("dolfinx")()
+    _of_fenicsx("dolfinx")()
     from continuum.space.forms import vtx_writer
 
     if vtx_writer() is None:
@@ -106,7 +119,8 @@ PROBES: dict[str, Callable[[], str]] = {
         for name in ("numpy", "numba", "scipy", "pydantic", "xarray", "matplotlib", "obspy")
     },
     "threads": _threads,
-    **{name: _imported(name) for name in ("basix", "dolfinx", "gmsh")},
+    **{name: _imported(name) for name in ("basix", "gmsh")},
+    "dolfinx": _of_fenicsx("dolfinx"),
     "PETSc": _petsc,
     "MPI": _mpi,
     "ADIOS2": _adios,

@@ -13,10 +13,12 @@ import sys
 from collections.abc import Callable
 from importlib.metadata import version
 from math import nan
+from pathlib import Path
 from shutil import which
 from typing import NamedTuple
 
 from compare.cli.diagnostics.accuracy import PAIRS, Check, bound_of
+from compare.solvers.continuum import INSTALL
 
 PATIENCE = 120.0  # s, for what only looks
 COMPILING = 1200.0  # s, for the self-check, which compiles where the cache is empty
@@ -37,7 +39,7 @@ GROUPS = {
 
 #: How to get what is not there.
 HINTS = {
-    "basix": "make setup; or apt install python3-dolfinx; or fenics-basix of PyPI or conda-forge",
+    "basix": f"make setup; or {INSTALL}",
     "dolfinx": "apt install python3-dolfinx; only --vtx and studies of a plain loop need it",
     "PETSc": "comes with dolfinx; implicit steps and static states need it",
     "gmsh": "pip install gmsh; only tetrahedra need it",
@@ -96,7 +98,7 @@ def _libraries() -> list[Component]:
     group_of = {name: group for group, names in GROUPS.items() for name in names}
     left, parts = list(group_of), []
     while left:
-        done = _run([sys.executable, "-m", "compare.cli.diagnostics.components", *left], PATIENCE)
+        done = _run([sys.executable, "-m", f"{__package__}.components", *left], PATIENCE)
         found = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
         if len(found) < len(left):
             found.append({"part": left[len(found)], "state": "broken", "found": _end(done)})
@@ -107,9 +109,14 @@ def _libraries() -> list[Component]:
     return parts
 
 
+def _launcher() -> str | None:
+    """Return the mpiexec of this Python's own environment, else that on the PATH."""
+    return which("mpiexec", path=str(Path(sys.executable).parent)) or which("mpiexec")
+
+
 def _mpiexec() -> Component:
     """Return how many processes the launcher starts that see each other."""
-    launcher, cores = which("mpiexec"), min(_cores(), MOST_RANKS)
+    launcher, cores = _launcher(), min(_cores(), MOST_RANKS)
     if launcher is None:
         return Component("continuum", "mpiexec", "missing", "is not on the PATH", HINTS["mpiexec"])
     for ranks in sorted({cores, min(2, cores), 1}, reverse=True):
@@ -149,10 +156,10 @@ def _cache() -> Component:
     from cases.size import spoken
 
     try:
-        import numerics.jit
+        from numerics import jit
     except Exception as error:
         return Component("machine", "kernel cache", "broken", f"numba cannot be imported: {error}")
-    folder = numerics.jit.DIRECTORY.parent
+    folder = jit.DIRECTORY.parent
     files = [file for file in folder.rglob("*") if file.is_file()] if folder.is_dir() else []
     size = spoken(sum(file.stat().st_size for file in files))
     states = sum(place.is_dir() for place in folder.iterdir()) if folder.is_dir() else 0
@@ -165,7 +172,7 @@ def _cache() -> Component:
 
 
 def _check(pair: str) -> Check:
-    done = _run([sys.executable, "-m", "compare.cli.diagnostics.accuracy", pair], COMPILING)
+    done = _run([sys.executable, "-m", f"{__package__}.accuracy", pair], COMPILING)
     try:
         return Check(**json.loads(done.stdout.splitlines()[-1]))
     except (ValueError, IndexError, TypeError):

@@ -1,0 +1,8 @@
+"""`python -m jointwave` is the command `jointwave`."""
+
+from compare.cli.start import main
+
+__all__ = ["main"]
+
+if __name__ == "__main__":
+    main()

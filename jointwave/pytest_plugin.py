@@ -1,0 +1,5 @@
+"""What pytest loads: scene files with an [expect] table are tests."""
+
+from compare.cli.pytest_plugin import SceneWarning, pytest_collect_file
+
+__all__ = ["SceneWarning", "pytest_collect_file"]

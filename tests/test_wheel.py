@@ -1,0 +1,89 @@
+"""What is installed: one name in site-packages, and a program that runs without the repository."""
+
+import os
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """Return a folder that the wheel of this source is unpacked in, as pip would."""
+    folder = tmp_path_factory.mktemp("wheel")
+    files = subprocess.run(
+        ["git", "ls-files", "-co", "--exclude-standard"],
+        cwd=ROOT, capture_output=True, text=True, check=True,
+    ).stdout.split("\n")  # fmt: skip
+    source = folder / "source"
+    for name in filter(None, files):
+        if (ROOT / name).is_file():
+            (source / name).parent.mkdir(parents=True, exist_ok=True)
+            (source / name).write_bytes((ROOT / name).read_bytes())
+    build = "from setuptools import build_meta as b; print(b.build_wheel('..'))"
+    done = subprocess.run(
+        [sys.executable, "-c", build], cwd=source, capture_output=True, text=True, check=True
+    )
+    wheel = folder / done.stdout.split()[-1]
+    zipfile.ZipFile(wheel).extractall(folder / "site")
+    return folder / "site"
+
+
+def run(site, *arguments, code=0, **environment):
+    """Return the output of a Python that sees the wheel and not the repository."""
+    done = subprocess.run(
+        [sys.executable, "-P", *arguments],
+        cwd=site.parent,
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(site), **environment},
+    )
+    assert done.returncode == code, done.stderr
+    return done.stdout + done.stderr
+
+
+def test_one_name_at_the_top(site):
+    names = {path.name for path in site.iterdir()}
+    assert {name.partition("-")[0] for name in names} == {"jointwave"}
+
+
+def test_no_module_asks_for_a_name_of_the_repository(site):
+    """All are imported, but those that need what this machine may lack."""
+    code = """
+import sys
+from importlib import import_module
+from pathlib import Path
+import jointwave
+root = Path(jointwave.__file__).parents[1]
+optional = {"basix", "dolfinx", "gmsh", "mpi4py", "petsc4py", "pyvista", "vtk", "vtkmodules"}
+for source in sorted(root.rglob("*.py")):
+    name = ".".join(source.relative_to(root).with_suffix("").parts).removesuffix(".__init__")
+    if not name.endswith("__main__"):
+        try:
+            import_module(name)
+        except ImportError as error:
+            assert (error.name or "").partition(".")[0] in optional, (name, error)
+ours = {"cases", "results", "numerics", "joints", "dem", "continuum", "compare"}
+print(sorted(ours & set(sys.modules)), len(sys.modules))
+"""
+    assert run(site, "-c", code).startswith("[] ")
+
+
+@pytest.mark.slow  # it compiles every kernel that the scene needs
+def test_the_command_compares_a_shipped_scene(site):
+    found = run(site, "-m", "jointwave", "compare", "guo-li-2002/fig-03", "--json")
+    assert '"dem"' in found
+
+
+def test_scenes_are_tests(site):
+    (site.parent / "scenes").mkdir()
+    shipped = site / "jointwave" / "_lib" / "cases" / "guo-li-2002" / "fig-03.toml"
+    text = shipped.read_text().partition("[expect]")[0] + '[expect]\n"series ~ images" = 1e-3\n'
+    (site.parent / "scenes" / "bar.toml").write_text(text)
+    plugin = ("-p", "jointwave.pytest_plugin", "-p", "no:cacheprovider", "--rootdir", "scenes")
+    found = run(site, "-m", "pytest", *plugin, "scenes", PYTEST_DISABLE_PLUGIN_AUTOLOAD="1")
+    assert "1 passed" in found

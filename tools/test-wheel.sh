@@ -1,0 +1,30 @@
+#!/bin/sh
+# Build sdist and wheel of the committed sources, install the wheel into an empty environment of $PYTHON (default python3) and
+# try it there, away from the repository. With Python 3.12 or newer on x86-64 Linux the continuum is installed by pip, too.
+set -eu
+python=${PYTHON:-python3}
+root=$(git rev-parse --show-toplevel)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+SOURCE_DATE_EPOCH=$(git -C "$root" log -1 --format=%ct)
+export SOURCE_DATE_EPOCH
+git -C "$root" archive --prefix=source/ HEAD | tar x -C "$work"
+"$python" -m venv "$work/build" "$work/env"
+"$work/build/bin/pip" install -q build
+(cd "$work/source" && umask 022 && "$work/build/bin/python" -m build -q --outdir "$root/dist" .)
+wheel=$(ls -t "$root"/dist/jointwave-*.whl | head -1)
+sha256sum "$wheel"
+extra=''
+if "$python" -c 'import sys; sys.exit(sys.version_info < (3, 12))'; then extra='[continuum]'; fi
+"$work/env/bin/pip" install -q "$wheel$extra" pytest
+cd "$work"
+PATH="$work/env/bin:$PATH"
+jointwave doctor || [ -z "$extra" ]
+jointwave compare guo-li-2002/fig-03
+shipped=$(python -c 'import jointwave._lib.cases as c, os; print(os.path.dirname(c.__file__))')
+mkdir scenes
+cp "$shipped"/guo-li-2002/fig-0[37].toml scenes
+python -m pytest -q scenes
+if [ -n "$extra" ]; then mpiexec -n 2 jointwave run guo-li-2002/fig-07 --engine continuum --out ranks; fi
+jointwave report scenes/fig-07.toml --out page
+ls -l page/index.html
