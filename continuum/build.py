@@ -4,7 +4,7 @@ from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csr_matrix, diags
+from scipy.sparse import csr_matrix, diags, identity, kron
 
 from cases.errors import SceneError
 from cases.material.calibrate import Properties, calibrate
@@ -62,7 +62,11 @@ def discretise(scene: Scene, model: str, dim: int | None = None, comm=None) -> D
         motion.shears,
     )
     prestress = scene.prestress.normal if scene.prestress else None
-    return Discrete(p, motion, rock, body, across, interfaces(across, law, prestress or None))
+    carried = None
+    if prestress:
+        carried = np.zeros((len(across.matrices), across.weight.size))
+        carried[0] = prestress
+    return Discrete(p, motion, rock, body, across, interfaces(across, law, carried))
 
 
 def mesh_of(scene: Scene, p: Properties, model: str, motion: Kinematics) -> Mesh:
@@ -186,12 +190,21 @@ def receivers(scene: Scene, discrete: Discrete) -> Receivers:
     viscous, contact = (
         body.communicator.any(part.nnz > 0) for part in (force.viscous, force.contact)
     )
+    constant = np.zeros(force.elastic.shape[0])
+    if pull is not None:
+        constant -= (force.inertia / area) @ pull
+    tractions, joints = None, discrete.joints
+    if contact and joints is not None:
+        per_point = force.contact / area
+        tractions = kron(identity(joints.directions), per_point @ diags(1 / joints.area))
+        if joints.prestress is not None:
+            constant[: per_point.shape[0]] += per_point @ joints.prestress[0]
     return Receivers(
         point=motion.motion,
         turn=motion.turn,
         elastic=force.elastic / area,
         viscous=force.viscous / area if viscous else None,
         inertia=force.inertia / area,
-        contact=force.contact / area if contact and discrete.joints is not None else None,
-        weight=None if pull is None else -(force.inertia / area) @ pull,
+        contact=tractions,
+        constant=constant if constant.any() else None,
     )

@@ -85,8 +85,8 @@ def joint_law(p: Properties, joints: Resolved, joint: np.ndarray, shears: bool) 
     )
 
 
-def interfaces(jumps: Jumps, law: Law, prestress: float | None) -> Interfaces:
-    """Return the joints of a model."""
+def interfaces(jumps: Jumps, law: Law, prestress: np.ndarray | None) -> Interfaces:
+    """Return the joints of a model; prestress : [directions, q], Pa."""
     jump = csr_matrix(vstack(jumps.matrices))
     return Interfaces(
         jump=jump,

@@ -41,8 +41,8 @@ class Interfaces(NamedTuple):
     area : W [q], m2.
     law : per unit area; parameters are one number or an array [q]. table, parts : the same as
         compiled code takes it.
-    prestress : normal traction (Pa) that every point and the rock between them carry at u = 0;
-        the gap is then short by prestress / K_n; None without.
+    prestress : [directions, q], tractions (Pa) that every point and the rock between them carry at
+        u = 0; the gap is then short by the normal one over K_n; None without.
     """
 
     jump: csr_matrix
@@ -99,23 +99,37 @@ class Fixed(NamedTuple):
     step: Any
 
 
+class Dashpots(NamedTuple):
+    """Nodes in the plane on dashpots in any direction: freedom [k, (x, y)]; viscosity
+    [k, (xx, yy, xy)], N s/m; beta as in `Quiet`, of each of these."""
+
+    freedom: np.ndarray
+    viscosity: np.ndarray
+    beta: np.ndarray
+
+
 class Ends(NamedTuple):
-    """loaded : `Loaded`; quiet : `Quiet`; fixed : `Fixed`; each None where there is none."""
+    """loaded : `Loaded`; quiet : `Quiet`; fixed : `Fixed`; dashpots : `Dashpots`; driven : forces
+    that each have a history of their own, `continuum.plane.drive.Drive`; each None where there is
+    none."""
 
     loaded: Any
     quiet: Any
     fixed: Any
+    dashpots: Any = None
+    driven: Any = None
 
 
 class Receivers(NamedTuple):
     """How receivers read the state, sparse matrices [rows, n]; c components of the motion.
 
-    point : motion on the axis [c places]; turn : rotation about x, y, z [3 places], None without.
-    elastic, inertia : stress of sections, elastic u + inertia (u'' + alpha u') + weight,
-        Pa [c sections].
+    point : motion on the axis [c places]; turn : what follows from displacements in other ways:
+        rotation about x, y, z [3 places], or gap and slip [2 joints]; None without.
+    elastic, inertia : stress of sections or at points, elastic u + inertia (u'' + alpha u') +
+        constant, Pa [s].
     viscous : the elastic rows times their eta; None without dashpots.
-    contact : [sections, q], tractions that sections on joints read; None where none is.
-    weight : of the rock that `inertia` accelerates, Pa [c sections]; None without gravity.
+    contact : [s, directions q], from the joints' forces to tractions, Pa; None where none is read.
+    constant : what gravity or a prestress adds, Pa [s]; None without.
     """
 
     point: csr_matrix
@@ -124,7 +138,7 @@ class Receivers(NamedTuple):
     viscous: Any
     inertia: csr_matrix
     contact: Any
-    weight: Any = None
+    constant: Any = None
 
 
 class Model(NamedTuple):

@@ -41,6 +41,7 @@ class State(NamedTuple):
         None where nothing asks for them.
     closure : of the springs in front of dashpots [k], m; None without them.
     reaction : of the absorbing ends at the last step [k], N; None without them.
+    braking : of the dashpots in the plane at the last step [k, 2], N; None without them.
     base_force : on the fixed freedoms at the last step [k], N; None where they do not move.
     ledger : viscous, friction, boundary and load work so far, J; None when not kept.
     """
@@ -57,6 +58,7 @@ class State(NamedTuple):
     slip_rate: Any
     closure: Any
     reaction: Any
+    braking: Any
     base_force: Any
     ledger: Any
 
@@ -131,7 +133,8 @@ class Samples(NamedTuple):
 
 def state_at_rest(model: Model, keep_ledger: bool) -> State:
     """Return the state at rest, with no array for anything that the model does not have."""
-    n, joints, (_, quiet, fixed) = model.rock.mass.size, model.interfaces, model.ends
+    n, joints = model.rock.mass.size, model.interfaces
+    _, quiet, fixed, dashpots, _ = model.ends
     parts = parts_of(Law(0.0)) if joints is None else joints.parts
     directions, q = (0, 0) if joints is None else (joints.directions, joints.area.size)
     viscous = parts.dashpots or model.rock.viscosity is not None
@@ -143,6 +146,9 @@ def state_at_rest(model: Model, keep_ledger: bool) -> State:
     cohesion = array(parts.residual and parts.shear, q)
     if joints is not None and cohesion is not None:
         cohesion[:] = joints.law.cohesion
+    slide = array(parts.limited, directions - 1, q)
+    if joints is not None and joints.prestress is not None and slide is not None:
+        slide[:] = joints.prestress[1:] / joints.law.shear_stiffness
     ends = 0 if quiet is None else quiet.freedom.size
     shape = None if joints is None else (directions, q)
     fields, at = _fields(n, viscous, shape, parts.dashpots)
@@ -152,13 +158,14 @@ def state_at_rest(model: Model, keep_ledger: bool) -> State:
         force=zeros(n),
         drag=array(viscous, n),
         opening=array(parts.softening, q),
-        slide=array(parts.limited, directions - 1, q),
+        slide=slide,
         cohesion=cohesion,
         jump=array(joints is not None, directions, q),
         jump_rate=array(parts.dashpots, directions, q),
         slip_rate=array(parts.limited, directions, q),
         closure=array(quiet is not None and quiet.springs is not None, ends),
         reaction=array(quiet is not None, ends),
+        braking=array(dashpots is not None, 0 if dashpots is None else len(dashpots.freedom), 2),
         base_force=None if fixed is None or fixed.step is None else zeros(fixed.freedom.size),
         ledger=array(keep_ledger, 4),
     )

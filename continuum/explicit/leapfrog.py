@@ -42,8 +42,9 @@ def leapfrog_for(parts, directions, shared=False):
         b_first, b_start, b_column, b_value, along,
         table, area, prestress, jump, jump_rate, slip_rate, opening, slide, cohesion,
         loads, drags, jumps, jump_rates, slip_rates, load_vector, drag_vector,
-        loaded, share, pressure,
+        loaded, share, pressure, driven, drive,
         quiet, viscosity, beta, reaction, stiffness, closure_decay, gain, closure,
+        dashpots, c_dashpot, b_dashpot, braking,
         fixed, direction, base_step, base_force,
         fields, r_start, r_column, r_value, constant, waves,
         ledger, energy, limit, found, link,
@@ -88,6 +89,9 @@ def leapfrog_for(parts, directions, shared=False):
             if loaded is not None:
                 for k in range(loaded.size):
                     force[loaded[k]] += share[k] * pressure[n]
+            if driven is not None:
+                for k in range(driven.size):
+                    force[driven[k]] += drive[n % drive.shape[0], k]
             if closure is not None:
                 for k in range(closure.size):
                     force[quiet[k]] -= stiffness[k] * closure[k]
@@ -116,6 +120,18 @@ def leapfrog_for(parts, directions, shared=False):
                     reaction[k] = 0.5 * viscosity[k] * (v_before[i] + v[i])
                     if closure is not None:
                         reaction[k] += stiffness[k] * closure[k]
+            if dashpots is not None:
+                for k in range(dashpots.shape[0]):
+                    i, j = dashpots[k, 0], dashpots[k, 1]
+                    xx, yy, xy = b_dashpot[k, 0], b_dashpot[k, 1], b_dashpot[k, 2]
+                    x = v[i] - xx * v_before[i] - xy * v_before[j]
+                    y = v[j] - xy * v_before[i] - yy * v_before[j]
+                    scale = 1.0 / ((1.0 + xx) * (1.0 + yy) - xy * xy)
+                    v[i] = scale * ((1.0 + yy) * x - xy * y)
+                    v[j] = scale * ((1.0 + xx) * y - xy * x)
+                    x, y = 0.5 * (v_before[i] + v[i]), 0.5 * (v_before[j] + v[j])
+                    braking[k, 0] = c_dashpot[k, 0] * x + c_dashpot[k, 2] * y
+                    braking[k, 1] = c_dashpot[k, 2] * x + c_dashpot[k, 1] * y
             if fixed is not None:
                 for k in range(fixed.size):
                     i = fixed[k]
@@ -134,6 +150,7 @@ def leapfrog_for(parts, directions, shared=False):
                 add_work(
                     ledger, 0.5 * dt, v_before, v_before, v, drag, mass, decay, dt,
                     quiet, reaction, loaded, share, pressure, n, fixed, base_force,
+                    driven, drive, dashpots, braking,
                 )  # fmt: skip
             if n % stride == 0:
                 read(fields, r_start, r_column, r_value, constant, waves, n // stride)
@@ -150,6 +167,7 @@ def leapfrog_for(parts, directions, shared=False):
                 add_work(
                     ledger, 0.5 * dt, v, v_before, v, drag, mass, decay, dt,
                     quiet, reaction, loaded, share, pressure, n, fixed, base_force,
+                    driven, drive, dashpots, braking,
                 )  # fmt: skip
             for i in range(u.size):
                 u[i] += dt * v[i]
@@ -177,6 +195,7 @@ def leapfrog_for(parts, directions, shared=False):
 def add_work(
     ledger, half, way, v_before, v, drag, mass, decay, dt,
     quiet, reaction, loaded, share, pressure, n, fixed, base_force,
+    driven, drive, dashpots, braking,
 ):  # fmt: skip
     """Add to the ledger (J) the work of the forces of step n over half a step (s) at velocity
     `way`, m/s: viscous, boundary, load; that of friction is known already."""
@@ -197,9 +216,16 @@ def add_work(
     if quiet is not None:
         for k in range(quiet.size):
             ledger[2] += half * reaction[k] * way[quiet[k]]
+    if dashpots is not None:
+        for k in range(dashpots.shape[0]):
+            ledger[2] += half * braking[k, 0] * way[dashpots[k, 0]]
+            ledger[2] += half * braking[k, 1] * way[dashpots[k, 1]]
     if loaded is not None:
         for k in range(loaded.size):
             ledger[3] += half * pressure[n] * share[k] * way[loaded[k]]
+    if driven is not None:
+        for k in range(driven.size):
+            ledger[3] += half * drive[n % drive.shape[0], k] * way[driven[k]]
     if base_force is not None:
         for k in range(fixed.size):
             ledger[3] += half * base_force[k] * way[fixed[k]]

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from scipy.sparse import csr_matrix, diags, identity, kron
+from scipy.sparse import csr_matrix
 
 from continuum.explicit.leapfrog import leapfrog_for
 from continuum.model import Model
@@ -36,14 +36,26 @@ def march(
     constants = (None, None) if joints is None else (joints.parts, joints.directions)
     kernel = leapfrog_for(*constants, shared=link is not None)
     arrays = arguments(model, state, samples, limits, link)
-    return lambda first, last: kernel(first, last, stride, model.dt, *arrays)
+    driven = model.ends.driven
+    if driven is None:
+        return lambda first, last: kernel(first, last, stride, model.dt, *arrays)
+
+    def in_parts(first: int, last: int) -> int:
+        for begin, end in driven.filled(first, last):
+            kernel(begin, end, stride, model.dt, *arrays)
+            if limits is not None and limits.found[0] >= 0:
+                break
+        return 0
+
+    return in_parts
 
 
 def arguments(
     model: Model, state: State, samples: Samples, limits: Guard | None, link: Any
 ) -> tuple[Any, ...]:
     """Return the arguments of the kernel after the steps, in its order; None for what is absent."""
-    rock, joints, (loaded, quiet, fixed) = model.rock, model.interfaces, model.ends
+    rock, joints = model.rock, model.interfaces
+    loaded, quiet, fixed, dashpots, driven = model.ends
     tiles, *stiffness = rock.stiffness
     springs = None if quiet is None else quiet.springs
     jumps: tuple[Any, ...] = 8 * (None,)
@@ -60,10 +72,13 @@ def arguments(
         *(state.loads, state.drags, _flat(state.jump), _flat(state.jump_rate)),
         *(_flat(state.slip_rate), _flat(state.loads), _flat(state.drags)),
         *(3 * (None,) if loaded is None else loaded),
+        *(2 * (None,) if driven is None else (driven.freedom, driven.force)),
         *(3 * (None,) if quiet is None else quiet[:3]),
         state.reaction,
         *(3 * (None,) if springs is None else (springs.stiffness, springs.decay, springs.gain)),
         state.closure,
+        *(3 * (None,) if dashpots is None else dashpots),
+        state.braking,
         *(3 * (None,) if fixed is None else fixed),
         state.base_force,
         *(state.fields, read.indptr, read.indices, read.data, added, samples.waves),
@@ -87,14 +102,14 @@ def readings(model: Model, state: State) -> tuple[csr_matrix, np.ndarray]:
     r, at, dt = model.receivers, state.at, model.dt
     alpha = mass_damping(model.rock.decay, dt)
     sections, points = r.elastic.shape[0], r.point.shape[0]
-    contact, added = _contact_rows(model)
+    added = np.zeros(sections) if r.constant is None else r.constant
     entries = [
         (0, r.elastic, at.u),
         (0, r.viscous, at.rate),
         (0, (alpha / 2 + 1 / dt) * r.inertia, at.v),
         (0, (alpha / 2 - 1 / dt) * r.inertia, at.v_before),
-        (0, contact, at.loads),
-        (0, contact, at.drags),
+        (0, r.contact, at.loads),
+        (0, r.contact, at.drags),
         (sections, 0.5 * r.point, at.v),
         (sections, 0.5 * r.point, at.v_before),
         (sections + points, r.point, at.u),
@@ -111,19 +126,6 @@ def readings(model: Model, state: State) -> tuple[csr_matrix, np.ndarray]:
     count = sections + 2 * points + (0 if r.turn is None else r.turn.shape[0])
     matrix = csr_matrix((value, (row, column)), (count, state.fields.size))
     return matrix, np.append(added, np.zeros(count - sections))
-
-
-def _contact_rows(model: Model) -> tuple[csr_matrix | None, np.ndarray]:
-    """Return how sections on joints read the joints' forces, and what is added to all sections."""
-    r, joints = model.receivers, model.interfaces
-    added = np.zeros(r.elastic.shape[0])
-    if r.weight is not None:
-        added += r.weight
-    if r.contact is None:
-        return None, added
-    normal = r.contact @ np.full(joints.area.size, joints.prestress or 0.0)
-    added[: normal.size] += normal
-    return kron(identity(joints.directions), r.contact @ diags(1 / joints.area)), added
 
 
 def mass_damping(decay: float | None, dt: float) -> float:

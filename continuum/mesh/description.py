@@ -1,5 +1,6 @@
-"""A pillar's mesh in plain numpy: pieces of rock, and the facets that joints or loads act on."""
+"""A mesh in plain numpy: pieces of rock, and the facets that joints or loads act on."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -43,32 +44,46 @@ class Side(NamedTuple):
 class Joints(NamedTuple):
     """Pairs of facets at the same place that joints hold together.
 
-    joint : int array [facets], index of the pillar's joint whose law holds, 0 nearest the loaded
-        end.
-    left, right : int arrays [facets], cell numbers as in `Side`; left is the side towards y = 0.
+    joint : int array [facets], index of the joint whose law holds: of a pillar's, 0 nearest the
+        loaded end; of the contact of a rock mass.
+    left, right : int arrays [facets], cell numbers as in `Side`; left is the side towards y = 0 of
+        a pillar, that of the contact's block i in a rock mass.
     corners : float array [facets, facet corners, dim], m, of the left cell's facet.
+    shift : float array [facets, dim], m, by which right cells stand elsewhere: across periodic
+        sides; None where there are none.
     """
 
     joint: np.ndarray
     left: np.ndarray
     right: np.ndarray
     corners: np.ndarray
+    shift: np.ndarray | None = None
 
 
 class Mesh(NamedTuple):
-    """A meshed pillar.
+    """A meshed pillar or rock mass.
 
     cell : "interval", "triangle", "quadrilateral", "tetrahedron" or "hexahedron".
     parts : the pieces of rock; no two share a vertex.
     layers : indices of the pillar's joints that are meshed as layers of rock; the material of
         layers[k - 1] is k.
     joints : the facet pairs between copies.
-    start, end : the facets of the end faces y = 0 and y = length.
+    sides : the facets on the boundary by name: of a pillar "start" and "end", the faces y = 0 and
+        y = length; of a rock mass those of its partition's sides.
     """
 
     cell: str
     parts: tuple[Part, ...]
     layers: tuple[int, ...]
     joints: Joints
-    start: Side
-    end: Side
+    sides: Mapping[str, Side]
+
+    @property
+    def start(self) -> Side:
+        """The loaded end face of a pillar."""
+        return self.sides["start"]
+
+    @property
+    def end(self) -> Side:
+        """The other end face of a pillar."""
+        return self.sides["end"]

@@ -69,7 +69,7 @@ def _mesh(tagged: Tagged, p: Properties) -> Mesh:
     alone = facets.outer(kind, cells)
     outer, group = facets.on_copies(kind, whole, *alone), group[alone]
     joints = paired_joints(outer, np.where(is_joint[group], group, 0), p)
-    return Mesh(kind, _parts(whole, piece), (), joints, *_ends(outer, group, names, p))
+    return Mesh(kind, _parts(whole, piece), (), joints, _ends(outer, group, names, p))
 
 
 def _check_extent(x: np.ndarray, p: Properties, dim: int) -> None:
@@ -126,13 +126,13 @@ def _parts(whole: Part, piece: np.ndarray) -> tuple[Part, ...]:
     return tuple(parts)
 
 
-def _ends(outer: Facets, group: np.ndarray, names: list[str], p: Properties) -> tuple[Side, Side]:
+def _ends(outer: Facets, group: np.ndarray, names: list[str], p: Properties) -> dict[str, Side]:
     """Return the facets of the end faces: those of the groups, else those at the ends."""
-    length, sides = p.spacing * p.block_count, []
+    length, sides = p.spacing * p.block_count, {}
     for name, y in (("start", 0.0), ("end", length)):
         face = facets.lies_at(outer, y, PLACE * length)
         chosen = group == 1 + names.index(name) if name in names else face
         if not chosen.any() or (chosen & ~face).any():
             raise MeshError(f"the facets of its {name} face must lie at y = {y:g} m")
-        sides.append(outer.side(chosen))
-    return sides[0], sides[1]
+        sides[name] = outer.side(chosen)
+    return sides

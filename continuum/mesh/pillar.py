@@ -128,6 +128,5 @@ def _joined(p: Properties, kind: str, parts: tuple[Part, ...], layers: tuple[int
     cut = outer.chosen(facets.lies_across(outer, tolerance) & ~start & ~end)
     pair = facets.pairs(cut)
     joint = np.rint(cut.y[pair[:, 0]] / p.spacing).astype(np.int64) - 1
-    return Mesh(
-        kind, parts, layers, facets.joints(cut, pair, joint), outer.side(start), outer.side(end)
-    )
+    sides = {"start": outer.side(start), "end": outer.side(end)}
+    return Mesh(kind, parts, layers, facets.joints(cut, pair, joint), sides)

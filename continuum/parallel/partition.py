@@ -121,7 +121,7 @@ def restrict(mesh: Mesh, rank_of: np.ndarray, rank: int) -> Share:
             parts.append(_some_cells(part, copy, some, ghosts, 1 + len(mesh.layers)))
             cell.append(numbers[copy][some])
     number = np.concatenate(cell)
-    return Share(tuple(parts), number, ~own[number], Joints(*(field[mine] for field in joints)))
+    return Share(tuple(parts), number, ~own[number], Joints(*(field[mine] for field in joints[:4])))
 
 
 def _numbers(mesh: Mesh) -> list[np.ndarray]:

@@ -1,11 +1,11 @@
-"""A whole pillar of discretised rock: its pieces with all their copies, in one numbering.
+"""A whole body of discretised rock: its pieces with all their copies, in one numbering.
 
 Nodes are numbered copy by copy; freedoms as `continuum.space.operator.layout` puts them. Where a
 plane wave is asked for in two or three dimensions, all nodes of a piece at the same y share their
 freedoms, and the rock moves as if it were of infinite extent.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,7 +13,7 @@ from scipy.sparse import csr_matrix, kron
 
 from continuum.mesh.description import Mesh
 from continuum.parallel.serial import SERIAL, Serial
-from continuum.space.elasticity import Material, Piece, Section, discretise
+from continuum.space.elasticity import Piece, Rock, Section, discretise
 from continuum.space.nodes import levels
 from continuum.space.operator import Layout, Operator, layout, operator, spread
 
@@ -93,7 +93,7 @@ def along(section: Section) -> int:
 def build_body(
     mesh: Mesh,
     order: int,
-    materials: list[Material],
+    materials: Sequence[Rock],
     section: Section,
     plane_wave: bool = False,
     consistent: bool = False,

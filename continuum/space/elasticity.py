@@ -10,11 +10,13 @@ consistent one, scaled to the true mass (Hinton, Rock & Zienkiewicz, Earthq. Eng
 1976).
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix, kron
 
+from cases.material.effective_medium import tensor
 from continuum.mesh.description import Part
 from continuum.mesh.facets import row_numbers
 from continuum.space import compat
@@ -39,6 +41,18 @@ class Material(NamedTuple):
     def shear_modulus(self) -> float:
         """G, Pa."""
         return self.modulus / (2 * (1 + self.poisson))
+
+
+class PlaneRock(NamedTuple):
+    """Linear elastic rock in plane strain: stiffness [3, 3] in Voigt's form, xx, yy, xy, Pa;
+    density, kg/m3; Kelvin-Voigt time constant, s."""
+
+    stiffness: np.ndarray
+    density: float
+    time_constant: float = 0.0
+
+
+Rock = Material | PlaneRock
 
 
 class Section(NamedTuple):
@@ -70,7 +84,7 @@ def discretise(
     part: Part,
     cell: str,
     order: int,
-    materials: list[Material],
+    materials: Sequence[Rock],
     section: Section,
     consistent: bool = False,
 ) -> Piece:
@@ -95,11 +109,13 @@ def discretise(
     )
 
 
-def elastic_moduli(material: Material, dim: int, components: int) -> np.ndarray:
+def elastic_moduli(material: Rock, dim: int, components: int) -> np.ndarray:
     """Return C [components, dim, components, dim], Pa: stress C : grad u in a mesh of `dim`.
 
-    In dim 2 plane stress; in dim 1 Young's modulus along the bar, G across it.
+    In dim 2 plane stress, but for `PlaneRock`; in dim 1 Young's modulus along the bar, G across it.
     """
+    if isinstance(material, PlaneRock):
+        return tensor(material.stiffness)
     shear = material.shear_modulus
     if dim == 1:
         moduli = [material.modulus] if components == 1 else [shear, material.modulus, shear]

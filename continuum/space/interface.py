@@ -41,7 +41,7 @@ class Jumps(NamedTuple):
 
     matrices : B [q, freedoms] along the normal from the near to the far side, the gap, then along
         x and z where the motion has these components; far side less near side.
-    weight : W [q], m2. joint : int array [q], which of the pillar's joints.
+    weight : W [q], m2. joint : int array [q], which of the mesh's joints.
     x : [q, dim], m. flat : bool array [q], whether the joint is square to the axis there.
     """
 
@@ -90,7 +90,8 @@ def jumps(body: Body) -> Jumps:
     joints = body.mesh.joints
     points = facet_points(body, joints.corners)
     left, right = joints.left[points.facet], joints.right[points.facet]
-    near, far = places_in(body, left, points.x), places_in(body, right, points.x)
+    beyond = points.x if joints.shift is None else points.x - joints.shift[points.facet]
+    near, far = places_in(body, left, points.x), places_in(body, right, beyond)
     frames = _frames(body)[points.facet]
     count, rows = points.weight.size, np.arange(points.weight.size)
 
@@ -125,7 +126,9 @@ def _frames(body: Body) -> np.ndarray:
         normal = np.cross(edges[:, 0], edges[:, 1])
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     centre = body.corners.mean(axis=1)
-    outward = ((centre[joints.right] - centre[joints.left]) * normal).sum(axis=1)
+    across = centre[joints.right] - centre[joints.left]
+    across = across if joints.shift is None else across + joints.shift
+    outward = (across * normal).sum(axis=1)
     normal *= np.sign(outward)[:, None]
     if body.dim == 2:
         return np.stack([normal, normal @ np.array([[0.0, -1.0], [1.0, 0.0]])], axis=1)

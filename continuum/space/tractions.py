@@ -28,18 +28,17 @@ def joint_loads(
     parts, directions : constants of the caller; shears : None without shear.
     table, area, prestress : as in `Interfaces`.
     jump, m; rate : of the jump, m/s; slip_rate : of the slip over the step, m/s.
-    opening, slide, cohesion : history, replaced. loads : of the springs, prestress left out;
+    opening, slide, cohesion : history, replaced; a prestress along the joint is in `slide` from the
+    start, and without any `slide` it changes nothing. loads : of the springs, prestress left out;
     drags : of the dashpots, None where loads have all.
     """
-    sliding, law, carried = 0.0, law_of(table, 0), 0.0
-    if prestress is not None:
-        carried = prestress
+    sliding, law = 0.0, law_of(table, 0)
     for q in range(area.size):
         if parts.varied:
             law = law_of(table, q)
         gap, gap_rate = jump[0, q], 0.0
         if prestress is not None:
-            gap -= prestress / law.normal_stiffness
+            gap -= prestress[0, q] / law.normal_stiffness
         if rate is not None:
             gap_rate = rate[0, q]
         widest = gap
@@ -51,7 +50,10 @@ def joint_loads(
         if drags is not None:
             spring = spring_traction(law, parts, gap, widest)
             drags[0, q] = area[q] * (t_n - spring)
-        loads[0, q] = area[q] * (spring - carried)
+        if prestress is None:
+            loads[0, q] = area[q] * spring
+        else:
+            loads[0, q] = area[q] * (spring - prestress[0, q])
         if shears is not None:
             x, z = jump[1, q], jump[2, q] if directions == 3 else 0.0
             rate_x, rate_z = 0.0, 0.0
@@ -83,6 +85,10 @@ def joint_loads(
                 if directions == 3:
                     drags[2, q] = area[q] * (t_z - spring_z)
                 t_x, t_z = spring_x, spring_z
+            if prestress is not None and slide is not None:
+                t_x -= prestress[1, q]
+                if directions == 3:
+                    t_z -= prestress[2, q]
             loads[1, q] = area[q] * t_x
             if directions == 3:
                 loads[2, q] = area[q] * t_z
@@ -97,15 +103,18 @@ def joint_energy(parts, directions, table, area, prestress, jump, opening, slide
     for q in range(area.size):
         gap, push = jump[0, q], loads[0, q]
         if prestress is not None:
-            stored += area[q] * prestress * gap
-            gap -= prestress / table[0, q if parts.varied else 0]
-            push += area[q] * prestress
+            stored += area[q] * prestress[0, q] * gap
+            gap -= prestress[0, q] / table[0, q if parts.varied else 0]
+            push += area[q] * prestress[0, q]
         stored -= 0.5 * push * gap
         for d in range(1, directions):
-            slip = jump[d, q]
+            slip, push = jump[d, q], loads[d, q]
             if slide is not None:
+                if prestress is not None:
+                    stored += area[q] * prestress[d, q] * slip
+                    push += area[q] * prestress[d, q]
                 slip -= slide[d - 1, q]
-            stored -= 0.5 * loads[d, q] * slip
+            stored -= 0.5 * push * slip
         if opening is not None:
             law = law_of(table, q if parts.varied else 0)
             spent += area[q] * fracture_energy_spent(law, opening[q])
@@ -130,7 +139,7 @@ def joint_tangents(
         gap, gap_rate = jump[0, q], 0.0
         x, z, rate_x, rate_z, widest, left = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         if prestress is not None:
-            gap -= prestress / law.normal_stiffness
+            gap -= prestress[0, q] / law.normal_stiffness
         if opening is not None:
             widest = opening[q]
         if cohesion is not None:

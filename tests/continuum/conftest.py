@@ -120,8 +120,8 @@ def moved(mesh, bent):
             once = np.zeros((1, len(shift)))
             parts.append(part._replace(x=bent(part.x + shift), shifts=once))
     joints = mesh.joints._replace(corners=bent(mesh.joints.corners))
-    start, end = (s._replace(corners=bent(s.corners)) for s in (mesh.start, mesh.end))
-    return mesh._replace(parts=tuple(parts), joints=joints, start=start, end=end)
+    sides = {k: side._replace(corners=bent(side.corners)) for k, side in mesh.sides.items()}
+    return mesh._replace(parts=tuple(parts), joints=joints, sides=sides)
 
 
 @pytest.fixture

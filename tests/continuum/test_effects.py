@@ -112,7 +112,7 @@ def test_absent_effects_leave_no_array(short, ready):
     assert at.model.ends.quiet is None and at.model.ends.fixed is None
     assert at.model.rock.viscosity is None and at.model.rock.decay is None
     receivers = at.model.receivers
-    assert (receivers.turn, receivers.viscous, receivers.contact, receivers.weight) == (None,) * 4
+    assert (receivers.turn, receivers.viscous, receivers.contact, receivers.constant) == (None,) * 4
     state = at.state
     assert (state.rate, state.drag, state.loads, state.drags) == (None,) * 4
     assert (state.jump, state.jump_rate, state.slip_rate) == (None,) * 3

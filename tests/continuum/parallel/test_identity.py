@@ -77,7 +77,7 @@ def notch() -> Mesh:
     part = Part(x, cells, np.zeros(4, dtype=np.int64), np.zeros((1, 2)))
     joints = Joints(np.array([0]), np.array([1]), np.array([3]), x[None, [4, 5]])
     start, end = Side(np.array([0, 1]), x[cells[:2, :2]]), Side(np.array([2, 3]), x[cells[2:, 2:]])
-    return Mesh("quadrilateral", (part,), (), joints, start, end)
+    return Mesh("quadrilateral", (part,), (), joints, {"start": start, "end": end})
 
 
 @pytest.mark.parametrize("rank_of", [[0, 0, 1, 1], [0, 1, 1, 2], [0, 1, 2, 0], [0, 0, 0, 1]])

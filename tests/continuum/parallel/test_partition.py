@@ -20,14 +20,14 @@ def bar(counts: list[tuple[int, int]]) -> Mesh:
         shifts, places = places[:copies, None].astype(float), places[copies:]
         ends = np.stack([vertex[:-1], vertex[1:]], axis=1)
         parts.append(Part(vertex[:, None] / cells, ends, np.zeros(cells, dtype=np.int64), shifts))
-    first = copies_of(Mesh("interval", tuple(parts), (), None, NOBODY, NOBODY))
+    first = copies_of(Mesh("interval", tuple(parts), (), None, {}))
     begin = np.concatenate([p.shifts[:, 0] for p in parts])
     order = np.argsort(begin)
     last = (first.first + first.cells - 1)[order][:-1]
     right = first.first[order][1:]
     corners = begin[order][1:, None, None]
     joints = Joints(np.arange(len(last)), last, right, corners)
-    return Mesh("interval", tuple(parts), (), joints, NOBODY, NOBODY)
+    return Mesh("interval", tuple(parts), (), joints, {})
 
 
 some_parts = st.lists(st.tuples(st.integers(1, 40), st.integers(1, 12)), min_size=1, max_size=4)

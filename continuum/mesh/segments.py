@@ -1,0 +1,144 @@
+"""The edges of a partition's blocks, cut where blocks meet: what meshes of the blocks have in
+common."""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from cases.partition.blocks import Contacts, Partition
+from cases.partition.periodic import PAIRS, periodic_contacts
+
+SAME = 1e-9  # of the domain: points that are one
+STRAIGHT = 1e-6  # sine of the angle between edges that go on from each other
+#: Where the way around a block begins: at the first corner from this direction on, rad. No edge of
+#: a scene is likely to have it, so that blocks of one shape begin alike.
+BEGIN = 0.7391
+
+
+class Segments(NamedTuple):
+    """Straight pieces of the edges of blocks, that end where any block has a corner.
+
+    x : float array [points, 2], m, of the ends. point : int array [s, 2], from one end to the
+    other. length : [s], m.
+    contact : int array [s], index of the contact, those across periodic sides after the
+    partition's; -1 on the boundary. side : int array [s], of the partition; -1 of contacts.
+    like : int array [s], the segment that has the same nodes, moved by the period; else itself.
+    """
+
+    x: np.ndarray
+    point: np.ndarray
+    length: np.ndarray
+    contact: np.ndarray
+    side: np.ndarray
+    like: np.ndarray
+
+
+class Loops(NamedTuple):
+    """The way around each block, counter-clockwise, one block after the other.
+
+    first : int array [blocks + 1]. segment : int array [n]. forward : bool array [n], whether it is
+    passed from its first end. is_corner : bool array [n], whether the block has a corner where it
+    begins.
+    """
+
+    first: np.ndarray
+    segment: np.ndarray
+    forward: np.ndarray
+    is_corner: np.ndarray
+
+
+class Across(NamedTuple):
+    """Contacts across a pair of periodic sides. shift : [2], m, by which blocks j stand elsewhere.
+    sides : names of the pair."""
+
+    contacts: Contacts
+    shift: np.ndarray
+    sides: tuple[str, str]
+
+
+def across_periodic(partition: Partition, sides: list[str]) -> list[Across]:
+    """Return the contacts across periodic sides, given by "left" and "bottom"."""
+    size, found = np.ptp(partition.corners, axis=0), []
+    for side in sides:
+        other, axis = PAIRS[side]
+        shift = np.zeros(2)
+        shift[axis] = size[axis]
+        found.append(Across(periodic_contacts(partition, side), shift, (side, other)))
+    return found
+
+
+def segments_of(partition: Partition, across: list[Across]) -> tuple[Segments, Loops]:
+    """Return the segments of a partition and the way around its blocks.
+
+    across : contacts across periodic sides, whose edges come in the place of the boundary's.
+    """
+    contacts, boundary = partition.contacts, partition.boundary
+    periodic = [name for one in across for name in one.sides]
+    kept = ~np.isin(boundary.side, [partition.sides.index(name) for name in periodic])
+    ends = [np.stack([contacts.start, contacts.end], axis=1)]
+    blocks = [(np.arange(len(contacts)), contacts.blocks[:, side]) for side in (0, 1)]
+    contact, side = [np.arange(len(contacts))], [np.full(len(contacts), -1)]
+    count, number = len(contacts), len(contacts)
+    like = [np.arange(count)]
+    for one, shift, _ in across:
+        own = np.stack([one.start, one.end], axis=1)
+        for beyond in (0, 1):
+            here = count + np.arange(len(one))
+            ends.append(own - beyond * shift)
+            blocks.append((here, one.blocks[:, beyond]))
+            contact.append(number + np.arange(len(one)))
+            side.append(np.full(len(one), -1))
+            like.append(here - beyond * len(one))
+            count += len(one)
+        number += len(one)
+    free = int(kept.sum())
+    ends.append(np.stack([boundary.start, boundary.end], axis=1)[kept])
+    blocks.append((count + np.arange(free), boundary.block[kept]))
+    contact.append(np.full(free, -1))
+    side.append(boundary.side[kept])
+    like.append(count + np.arange(free))
+    every = np.concatenate(ends)
+    x, point = _points(every)
+    segments = Segments(
+        x,
+        point,
+        np.hypot(*(every[:, 1] - every[:, 0]).T),
+        *(np.concatenate(parts) for parts in (contact, side, like)),
+    )
+    own, block = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
+    return segments, _loops(partition, segments, own, block)
+
+
+def _points(ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the different points [n, 2] among ends [s, 2, 2], and the number of each [s, 2]."""
+    every = ends.reshape(-1, 2)
+    near = cKDTree(every).query_pairs(SAME * np.ptp(every, axis=0).max(), output_type="ndarray")
+    graph = coo_matrix((np.ones(len(near)), near.T), 2 * every.shape[:1])
+    group = connected_components(graph, directed=False)[1]
+    _, first, number = np.unique(group, return_index=True, return_inverse=True)
+    return every[first], number.reshape(-1, 2)
+
+
+def _loops(
+    partition: Partition, segments: Segments, segment: np.ndarray, block: np.ndarray
+) -> Loops:
+    """Return the way around all blocks, by which segment [n] is on the edge of which block [n]."""
+    ends = segments.x[segments.point[segment]]
+    arm = ends - partition.centroid[block][:, None]
+    turn = arm[:, 0, 0] * arm[:, 1, 1] - arm[:, 0, 1] * arm[:, 1, 0]
+    forward = turn > 0
+    begin = np.where(forward[:, None], arm[:, 0], arm[:, 1])
+    angle = np.mod(np.arctan2(begin[:, 1], begin[:, 0]) - BEGIN, 2 * np.pi)
+    order = np.lexsort((angle, block))
+    segment, forward, block = segment[order], forward[order], block[order]
+    count = np.bincount(block, minlength=partition.count)
+    first = np.concatenate([[0], np.cumsum(count)])
+    along = np.where(forward[:, None], 1, -1) * np.diff(ends[order], axis=1)[:, 0]
+    along /= segments.length[segment][:, None]
+    before = np.arange(len(segment)) - 1
+    before[first[:-1]] = first[1:] - 1
+    sine = along[before, 0] * along[:, 1] - along[before, 1] * along[:, 0]
+    return Loops(first, segment, forward, sine > STRAIGHT)
