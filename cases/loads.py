@@ -200,9 +200,17 @@ def base_steps(scene: Scene, dt: float, count: int) -> np.ndarray:
     A velocity history is integrated exactly over the step. An acceleration history gives, as
     leapfrog does, dt times the velocity at the half step. Zero for a base that is not shaken.
     """
-    load = load_history(scene)
-    if scene.load.quantity == "velocity":
+    return _base_steps(load_history(scene), scene.load.quantity, dt, count)
+
+
+def base_motion(pulse: Pulse, dt: float, count: int) -> np.ndarray:
+    """Return the same of any pulse that shakes a base."""
+    return _base_steps(history_of(pulse, pulse.amplitude), pulse.quantity, dt, count)
+
+
+def _base_steps(load: LoadHistory, quantity: str, dt: float, count: int) -> np.ndarray:
+    if quantity == "velocity":
         return np.diff(load.impulse(dt * np.arange(count + 1)))
-    if scene.load.quantity == "acceleration":
+    if quantity == "acceleration":
         return dt * load.impulse(dt * (np.arange(count) + 0.5))
     return np.zeros(count)

@@ -1,7 +1,9 @@
 """From a scene to the constants of its run."""
 
+from __future__ import annotations
+
 from math import sqrt
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix, diags, identity, kron
@@ -15,7 +17,7 @@ from continuum.explicit.critical import any_motion
 from continuum.joints import interfaces, joint_law, resolved_joints
 from continuum.mesh.description import Mesh
 from continuum.mesh.pillar import elements_in_block, pillar_mesh
-from continuum.model import Interfaces, Model, Receivers, RockOperators
+from continuum.model import Fixed, Interfaces, Model, Receivers, RockOperators
 from continuum.size import refuse_large_file, refuse_large_mesh
 from continuum.space.body import Body, build_body, rock_matrices
 from continuum.space.elasticity import Material
@@ -23,6 +25,10 @@ from continuum.space.interface import Jumps, jumps
 from continuum.space.kinematics import Kinematics, kinematics, layer_thickness, materials
 from continuum.space.receivers import points, sections
 from numerics.cache_lines import zeros
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
+    from continuum.plane.rock import PlaneDiscrete
 
 
 class Discrete(NamedTuple):
@@ -98,23 +104,35 @@ def elements_for(scene: Scene, p: Properties, model: str) -> int:
     return elements_in_block(p.spacing, speed, resolved_period(scene), damped=bool(p.time_constant))
 
 
-def resolved_period(scene: Scene) -> float:
-    """Return the period (s) that elements resolve: the load's, or a tenth of the scene."""
-    return scene.load.period or scene.time.duration / 10
+def resolved_period(scene: Scene | RockMass) -> float:
+    """Return the period (s) that elements resolve: the shortest of what acts, or a tenth of the
+    scene."""
+    pulses = scene.pulses if scene.kind == "rock mass" else (scene.load,)
+    return min((one.period for one in pulses if one.period), default=scene.time.duration / 10)
 
 
 def critical_step_of(scene: Scene, discrete: Discrete, model: str) -> float:
     """Return the critical step (s) with all joints closed, the stiffest state."""
     p, body = discrete.properties, discrete.body
+    springs = end_stiffness(scene, p, body, model)
+    return critical_step(discrete, fixed_ends(scene, body), springs)
+
+
+def critical_step(
+    discrete: Discrete | PlaneDiscrete, given: Fixed | None, springs: np.ndarray | None = None
+) -> float:
+    """Return the critical step (s) of rock and closed joints; given : freedoms whose motion is
+    given; springs : at the ends, N/m [freedoms], None without."""
+    body = discrete.body
     stiffness, viscosity = operators(discrete)
-    stiffness = stiffness + diags(end_stiffness(scene, p, body, model))
-    given = fixed_ends(scene, body)
+    if springs is not None:
+        stiffness = stiffness + diags(springs)
     fixed = np.zeros(0, dtype=np.int64) if given is None else given.freedom
     assembled = body.mass, stiffness, viscosity, fixed, any_motion(body)
     return body.communicator.critical_step(*assembled)
 
 
-def operators(discrete: Discrete) -> tuple[csr_matrix, csr_matrix | None]:
+def operators(discrete: Discrete | PlaneDiscrete) -> tuple[csr_matrix, csr_matrix | None]:
     """Return the stiffness (N/m) and viscosity (N s/m) of rock and closed joints, None without
     dashpots."""
     stiffness, viscosity = rock_matrices(discrete.body)
@@ -141,15 +159,12 @@ def build_model(scene: Scene, discrete: Discrete, model: str, time: Clock) -> Mo
     p, body = discrete.properties, discrete.body
     alpha = (p.mass_damping or 0.0) * time.dt / 2
     mass = body.communicator.total(body.mass)
-    step_over_mass = zeros(mass.size)
-    # Nothing moves what has no mass: nodes of another process's cell beyond a joint.
-    np.divide(time.dt / (1 + alpha), mass, out=step_over_mass, where=mass > 0)
     return Model(
         rock=RockOperators(
             stiffness=body.stiffness,
             viscosity=body.viscosity,
             mass=body.mass,
-            step_over_mass=step_over_mass,
+            step_over_mass=step_over_mass(mass, time.dt, alpha),
             decay=None if p.mass_damping is None else (1 - alpha) / (1 + alpha),
         ),
         interfaces=discrete.joints,
@@ -160,7 +175,15 @@ def build_model(scene: Scene, discrete: Discrete, model: str, time: Clock) -> Mo
     )
 
 
-def weight_of(scene: Scene, body: Body) -> np.ndarray | None:
+def step_over_mass(mass: np.ndarray, dt: float, alpha: float) -> np.ndarray:
+    """Return dt / ((1 + alpha) m), s/kg; mass : of all processes together [freedoms], kg."""
+    found = zeros(mass.size)
+    # Nothing moves what has no mass: nodes of another process's cell beyond a joint.
+    np.divide(dt / (1 + alpha), mass, out=found, where=mass > 0)
+    return found
+
+
+def weight_of(scene: Scene | RockMass, body: Body) -> np.ndarray | None:
     """Return the weight on every freedom, N; None without gravity."""
     pull = pull_of(scene, body)
     if pull is None:
@@ -168,7 +191,7 @@ def weight_of(scene: Scene, body: Body) -> np.ndarray | None:
     return body.mass * pull if body.consistent is None else body.consistent @ pull
 
 
-def pull_of(scene: Scene, body: Body) -> np.ndarray | None:
+def pull_of(scene: Scene | RockMass, body: Body) -> np.ndarray | None:
     """Return the acceleration of gravity on every freedom, m/s2; None without gravity."""
     if scene.gravity is None:
         return None

@@ -100,6 +100,8 @@ def highest_speed(run: Run) -> float:
     if loaded is not None:
         drive = communicator.sum((loaded.share**2 / mass[loaded.freedom]).sum())
         pushed = (model.dt * np.abs(loaded.pressure) * np.sqrt(drive)).sum()
+    if model.ends.driven is not None:
+        pushed += model.ends.driven.impulse(mass, time.steps)
     if fixed is not None and fixed.step is not None:
         speed = np.diff(fixed.step, prepend=0.0, append=0.0) / model.dt
         shaken = np.abs(speed).sum() * np.sqrt(communicator.sum(mass[rock].sum()))
@@ -116,6 +118,10 @@ def _prestressed(run: Run, pushing: float) -> float:
     that rock gives off by pushing on both sides of a joint that opens, so long (s/sqrt(kg))."""
     if run.scene.prestress is None:
         return 0.0
+    if run.scene.kind == "rock mass":
+        from continuum.plane.prestress import prestressed
+
+        return prestressed(run.scene, run.discrete, pushing)
     p, prestress = run.discrete.properties, abs(run.scene.prestress.normal)
     softness = p.block_count * p.spacing / p.modulus + np.abs(p.excess_compliance).sum()
     return prestress * np.sqrt(p.area * softness) + pushing * 2 * prestress * p.area

@@ -1,6 +1,8 @@
 """A run of a scene before its first step."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
 
 from cases.schema.scene import Scene
 from continuum.build import Discrete, build_model, critical_step_of, discretise
@@ -10,14 +12,19 @@ from continuum.scheme import Choice, choose
 from continuum.size import refuse_large_run
 from continuum.state import Samples, State, empty_samples, state_at_rest
 
+if TYPE_CHECKING:
+    from cases.incident import IncidentField
+    from cases.schema.rock_mass import RockMass
+    from continuum.plane.rock import PlaneDiscrete
+
 
 class Run(NamedTuple):
     """A run of a scene: `rock` is "jointed" or "equivalent", model, state and samples are what it
     consists of, choice is how it is stepped; critical : the critical step of explicit steps, s."""
 
-    scene: Scene
+    scene: Scene | RockMass
     rock: str
-    discrete: Discrete
+    discrete: Discrete | PlaneDiscrete
     model: Model
     state: State
     samples: Samples
@@ -30,8 +37,19 @@ class Run(NamedTuple):
         return self.discrete.body.communicator
 
 
-def run_of(scene: Scene, rock: str, dim: int | None, comm) -> Run:
-    """Return the run of a scene, at rest; comm : mpi4py's communicator of those who share it."""
+def run_of(
+    scene: Scene | RockMass,
+    rock: str,
+    dim: int | None,
+    comm,
+    incident: IncidentField | None = None,
+) -> Run:
+    """Return the run of a scene, at rest; comm : mpi4py's communicator of those who share it;
+    incident : of the waves of a rock mass, None: in intact rock."""
+    if scene.kind == "rock mass":
+        from continuum.plane.run import run_of as of_rock_mass
+
+        return of_rock_mass(scene, rock, comm, incident)
     discrete = discretise(scene, rock, dim, comm if comm is not None and comm.size > 1 else None)
     choice, critical = _choice(scene, discrete, rock)
     refuse_large_run(scene, discrete.kinematics, choice.time)

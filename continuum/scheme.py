@@ -40,7 +40,7 @@ def choose(scene: Scene, discrete: Discrete, critical: float) -> Choice:
     """
     numerics = scene.numerics.continuum
     if numerics.scheme == "explicit":
-        return _explicit(scene, critical, "numerics.continuum.scheme = 'explicit'")
+        return explicit(scene, critical, "numerics.continuum.scheme = 'explicit'")
     if numerics.scheme == "implicit":
         return _implicit(scene, "numerics.continuum.scheme = 'implicit'")
     if numerics.mass == "consistent":
@@ -48,7 +48,8 @@ def choose(scene: Scene, discrete: Discrete, critical: float) -> Choice:
     return _cheaper(scene, discrete, critical)
 
 
-def _explicit(scene: Scene, critical: float, reason: str) -> Choice:
+def explicit(scene: Scene, critical: float, reason: str) -> Choice:
+    """Return explicit steps; critical : the critical one, s."""
     numerics = scene.numerics.continuum
     fraction, allowed = numerics.step_fraction, numerics.allow_unstable
     return Choice("explicit", clock(scene, critical, fraction, allowed, "continuum"), reason)
@@ -73,12 +74,12 @@ def _cheaper(scene: Scene, discrete: Discrete, critical: float) -> Choice:
     if many < STEPS_PER_IMPLICIT * few:
         few_more = f"{STEPS_PER_IMPLICIT} x {few:,} implicit ones"
         reason = f"{many:,.0f} explicit steps are fewer than {few_more}"
-        return _explicit(scene, critical, reason)
+        return explicit(scene, critical, reason)
     explicit_cost, implicit_cost = _costs(discrete, many, few)
     costs = f"{many:,.0f} explicit steps, some {explicit_cost:.2g} s, against {few:,} implicit ones"
     reason = f"{costs}, some {implicit_cost:.2g} s"
     if explicit_cost <= implicit_cost:
-        return _explicit(scene, critical, reason)
+        return explicit(scene, critical, reason)
     return implicit._replace(reason=reason)
 
 

@@ -32,16 +32,19 @@ FREEDOM_STEPS_AT_ONCE = 10_000_000  # some 0.1 s: often enough for a progress ba
 LEAST_STRETCHES = 20  # however short the run
 
 if TYPE_CHECKING:
+    from cases.incident import IncidentField
+    from cases.schema.rock_mass import RockMass
     from continuum.snapshots import RockFilm
 
 
 def simulate(
-    scene: Scene,
+    scene: Scene | RockMass,
     model: str = "jointed",
     dim: int | None = None,
     progress: Callable[[float], None] | None = None,
     comm=None,
     keeper: Keeper | None = None,
+    incident: IncidentField | None = None,
 ) -> xr.Dataset:
     """Simulate a scene as deformable rock.
 
@@ -49,11 +52,13 @@ def simulate(
     ----------
     model : "jointed" (intact rock, every joint an interface) or "equivalent" (homogenised rock
         mass, soft layers as interfaces of their excess compliance).
-    dim : 1, the bar; 2, plane stress; 3, the square column; None leaves it to the scene.
+    dim : 1, the bar; 2, plane stress; 3, the square column; None leaves it to the scene. A rock
+        mass is in plane strain.
     progress : called with the finished fraction.
     comm : mpi4py's communicator of processes that share the run: all call this alike, each steps
         its part of the rock, and all get the whole result. None: this one alone.
     keeper : keeps checkpoints, `numerics.checkpoint`; each process has its own.
+    incident : of the waves of a rock mass, as if it had no sides; None: in rock without joints.
 
     Raises SceneError for what this model cannot simulate; StoppedError, an UnstableError with the
     result so far, when the motion leaves its bounds or implicit steps do not converge.
@@ -63,7 +68,7 @@ def simulate(
     if reason:
         raise SceneError(scene.name or scene.title, "model", model, reason)
     began = perf_counter()
-    run = run_of(scene, model, dim, comm)
+    run = run_of(scene, model, dim, comm, incident)
     time, communicator = run.choice.time, run.communicator
     rest, monitor = _at_rest(run), Monitor(run)
     start = explicit_engine if run.choice.scheme == "explicit" else implicit_engine
@@ -107,6 +112,10 @@ def _recorded(run: Run, times: np.ndarray, about: dict[str, Any]) -> Fields:
         if rows is not None:
             run.communicator.gather(rows)
     until = changed(run.samples, lambda rows: rows[:, : times.size])
+    if run.scene.kind == "rock mass":
+        from continuum.plane.waveforms import recorded
+
+        return recorded(run, until, times, about)
     terms, energy = energy_terms(run.model, until.energy, run.communicator)
     waves = waveforms(run.scene, run.discrete, until)
     name = f"continuum-{run.rock}"

@@ -1,5 +1,9 @@
 """Scenes that the continuum can simulate, and the reasons why not others."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from cases.material.calibrate import Properties, calibrate
@@ -7,9 +11,16 @@ from cases.schema.scene import Scene
 from continuum.joints import resolved_joints
 from continuum.space.kinematics import holds, kinematics
 
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
 
-def applies(scene: Scene, model: str = "jointed", dim: int | None = None) -> str:
+
+def applies(scene: Scene | RockMass, model: str = "jointed", dim: int | None = None) -> str:
     """Return "" where this model can simulate the scene, else the reason why not."""
+    if scene.kind == "rock mass":
+        from continuum.plane.validity import applies as of_rock_mass
+
+        return of_rock_mass(scene, model)
     p, motion = calibrate(scene), kinematics(scene, dim)
     reason = holds(scene, motion.dim) or _beyond(scene, p)
     if reason:

@@ -42,7 +42,8 @@ def _cause(scene: Scene, time: Clock, critical: float, seen: Sighting) -> str:
             f"the step is {time.dt / critical:.4g} times the critical step {critical:.4g} s; "
             f"take {seen.key} of at most 0.9"
         )
-    if abs(scene.load.amplitude or 0.0) > HUGE:
+    pulses = scene.pulses if scene.kind == "rock mass" else (scene.load,)
+    if any(abs(one.amplitude or 0.0) > HUGE for one in pulses):
         return "numbers grow beyond 1e308; take a smaller load.amplitude"
     return (
         "joints open, close or slide within a step, or the scene goes beyond what the scheme can "

@@ -59,8 +59,13 @@ class RockMass(Table):
         return self._where or self.title
 
     @property
+    def pulses(self) -> tuple[Wave | PlaneLoad, ...]:
+        """Everything that acts over time."""
+        return (*self.waves, *self.loads)
+
+    @property
     def interval(self) -> float:
         """Time between samples, s."""
-        periods = [one.period for one in (*self.waves, *self.loads) if one.period]
+        periods = [one.period for one in self.pulses if one.period]
         default = min(periods) / 200 if periods else self.time.duration / 2000
         return self.record.interval or default

@@ -50,10 +50,10 @@ def points(body: Body, places: list[float]) -> Points:
     x = np.zeros((len(places), body.dim))
     x[:, axis(body.dim)] = places
     which, cell = cells_at(body, x)
-    share = _shares(which, body.piece[cell])[:, None]
+    share = shares_of_pieces(which, body.piece[cell])[:, None]
     at = places_in(body, cell, x[which])
     components, turn = np.arange(body.section.components), None
-    motion = matrix_of(body, which, cell, _each(share * at.basis, components), len(places))
+    motion = matrix_of(body, which, cell, per_component(share * at.basis, components), len(places))
     if body.dim > 1:
         # Half the curl; in dim 2 only that about z is there.
         curl = 0.5 * CURL[:, : body.dim, : body.dim]
@@ -62,12 +62,12 @@ def points(body: Body, places: list[float]) -> Points:
     return Points(motion, turn)
 
 
-def _each(weights: np.ndarray, components: np.ndarray) -> np.ndarray:
+def per_component(weights: np.ndarray, components: np.ndarray) -> np.ndarray:
     """Return weights [n, nodes] of every component by itself [components, n, nodes, components]."""
-    return np.einsum("nk,dc->dnkc", weights, np.eye(components.size)[components])
+    return np.einsum("nk,dc->dnkc", weights, np.eye(len(components))[components])
 
 
-def _shares(which: np.ndarray, piece: np.ndarray) -> np.ndarray:
+def shares_of_pieces(which: np.ndarray, piece: np.ndarray) -> np.ndarray:
     """Return the share of each cell [n] in the mean at the point that it is at: pieces that meet
     there count alike, however many of their cells do."""
     pieces = 1 + piece.max(initial=0)
@@ -153,7 +153,7 @@ def _by_momentum(
     upto[0] += whole[0]
     density = np.array([m.density for m in materials])[body.material[point.cell]]
     mass = (density * volume * (upto / whole)[level])[:, None] * point.basis
-    return elastic, viscous, _sums(body, point, _each(mass, section_directions(body)))
+    return elastic, viscous, _sums(body, point, per_component(mass, section_directions(body)))
 
 
 def _by_stress(body: Body, materials: list[Material], place: float) -> tuple[csr_matrix, ...]:

@@ -1,0 +1,154 @@
+"""Forces that each have a history of their own: loads, and waves that enter through quiet sides.
+
+They are worked out for some steps at a time, in a buffer of bounded size.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+from cases.incident import FaceTractions, FreeField, enters, tractions
+from cases.loads import LoadHistory, step_means
+from continuum.plane.sides import SidePoints, impedance
+
+if TYPE_CHECKING:
+    from cases.incident import IncidentField
+    from cases.schema.rock_mass import RockMass
+    from continuum.space.body import Body
+
+BUFFER = 2_000_000  # numbers in the buffer, at most, but for one step
+SAMPLES = 20_000_000  # numbers of a field that is sampled beforehand, at most
+IN_INTERVAL = 1e-2  # of the period: how far such samples are apart, at most
+
+
+class Push(NamedTuple):
+    """A load: share [freedoms] times the mean of its history over a step, N/m."""
+
+    share: np.ndarray
+    history: LoadHistory
+
+
+class Drive:
+    """All forces on the rock that are known before a run.
+
+    Attributes
+    ----------
+    freedom : int array [k]. force : float array [rows, k], N/m; that of step n in row n mod rows.
+    """
+
+    def __init__(
+        self, body: Body, dt: float, pushes: list[Push], entry: Entry | None, constant: np.ndarray
+    ) -> None:
+        shares = np.array([push.share for push in pushes]).reshape(len(pushes), body.mass.size)
+        acts = (shares != 0).any(axis=0) | (constant != 0)
+        if entry is not None:
+            acts[entry.freedom] = True
+        self.freedom = np.flatnonzero(acts)
+        self.dt, self.entry = dt, entry
+        self.pushes = [push._replace(share=push.share[self.freedom]) for push in pushes]
+        self.constant = constant[self.freedom]
+        rows = int(np.clip(BUFFER // max(1, self.freedom.size), 1, 4096))
+        self.force = np.zeros((rows, self.freedom.size))
+        if entry is not None:
+            number = np.full(body.mass.size, -1)
+            number[self.freedom] = np.arange(self.freedom.size)
+            self.onto = entry.onto(number, self.freedom.size)
+
+    def filled(self, first: int, last: int) -> Iterator[tuple[int, int]]:
+        """Yield the parts of steps first .. last - 1 whose forces the buffer holds meanwhile."""
+        rows = len(self.force)
+        for begin in range(first, max(last, first + 1), rows):
+            end = min(begin + rows, last)
+            if end > begin:
+                self.force[np.arange(begin, end) % rows] = self.at(begin, end)
+            yield begin, end
+
+    def at(self, first: int, last: int) -> np.ndarray:
+        """Return the forces of steps first .. last - 1 [steps, k], N/m."""
+        found = np.tile(self.constant, (last - first, 1))
+        for push in self.pushes:
+            mean = step_means(Delayed(push.history, -first * self.dt), self.dt, last - first)
+            found += mean[:, None] * push.share
+        if self.entry is not None:
+            values = self.entry.tractions(self.dt * np.arange(first, last))
+            found += values.reshape(len(values), -1) @ self.onto
+        return found
+
+    def impulse(self, mass: np.ndarray, steps: int) -> float:
+        """Return a bound on the integral over all steps of |F| in the norm of 1 / m,
+        sqrt(kg) m/s; of waves by one step in a few, with a margin for what is between."""
+        per_step = 0.0
+        for push in self.pushes:
+            mean = step_means(push.history, self.dt, steps + 1)
+            size = np.sqrt((push.share**2 / mass[self.freedom]).sum())
+            per_step += float(np.abs(mean).sum() * size)
+        if self.entry is not None:
+            per_step += self.entry.largest(mass, self.dt * steps) / self.dt * steps
+        per_step += float(np.sqrt((self.constant**2 / mass[self.freedom]).sum())) * steps
+        return self.dt * per_step
+
+
+class Delayed(NamedTuple):
+    """A history that is late, s."""
+
+    history: LoadHistory
+    late: float
+
+    def impulse(self, t: np.ndarray) -> np.ndarray:
+        """Return the integral from minus infinity to t."""
+        return self.history.impulse(t - self.late)
+
+
+class Entry:
+    """A field that enters through quiet sides.
+
+    Attributes
+    ----------
+    freedom : int array [2 points], x of all points, then y.
+    """
+
+    def __init__(
+        self, scene: RockMass, body: Body, points: SidePoints, field: IncidentField
+    ) -> None:
+        chosen = np.flatnonzero(enters(field, scene, points.normal))
+        self.points = SidePoints(*(part[chosen] for part in points))
+        self.freedom = body.freedom(self.points.node[:, None], np.arange(2)).T.ravel()
+        self.field, self.duration = field, scene.time.duration
+        self.impedance = np.tile(impedance(scene), (chosen.size, 1))
+        self.sampled = None if isinstance(field, FreeField) else self._sampled(scene)
+
+    def _sampled(self, scene: RockMass) -> FaceTractions:
+        """Return the tractions of a field that is worth asking once for all times."""
+        periods = [one.period for one in scene.waves if one.period]
+        apart = min(scene.interval, IN_INTERVAL * min(periods, default=self.duration))
+        count = int(np.ceil(self.duration / apart)) + 8
+        room = SAMPLES // max(1, 2 * len(self.points.x))
+        times = apart * max(1.0, count / room) * np.arange(min(count, room))
+        return self._of_field(times)
+
+    def _of_field(self, times: np.ndarray) -> FaceTractions:
+        own = self.points
+        return tractions(self.field, own.x, own.normal, self.impedance, times)
+
+    def tractions(self, times: np.ndarray) -> np.ndarray:
+        """Return the tractions at equally spaced times [n, points, 2], Pa."""
+        return self._of_field(times).values if self.sampled is None else self.sampled.at(times)
+
+    def onto(self, number: np.ndarray, count: int) -> csr_matrix:
+        """Return what makes forces [count] of tractions [points * 2]; number : int array, of each
+        freedom among those that are driven."""
+        many = len(self.points.x)
+        row = np.arange(2 * many).reshape(many, 2).T.ravel()
+        weight = np.tile(self.points.weight, 2)
+        return csr_matrix((weight, (row, number[self.freedom])), (2 * many, count))
+
+    def largest(self, mass: np.ndarray, duration: float) -> float:
+        """Return about twice the largest |F| in the norm of 1 / m at any time."""
+        times = np.linspace(0.0, duration, 400)
+        of = self.points.weight**2 / mass[self.freedom[: len(self.points.x)]]
+        sizes = (of[:, None] * self.tractions(times) ** 2).sum(axis=(1, 2))
+        return 2.0 * float(np.sqrt(sizes.max(initial=0.0)))

@@ -1,0 +1,28 @@
+"""What a prestress of a rock mass may set in motion."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from continuum.plane.rock import stress_of
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
+    from continuum.plane.rock import PlaneDiscrete
+
+
+def prestressed(scene: RockMass, discrete: PlaneDiscrete, pushing: float) -> float:
+    """Return the root of twice the energy (sqrt(J/m)) that a prestress keeps in rock and joints,
+    and that rock gives off by pushing on both sides of joints that open, so long (s/sqrt(kg))."""
+    stress, joints = stress_of(scene), discrete.joints
+    least = np.linalg.eigvalsh(discrete.materials[0].stiffness).min()
+    stored = float(stress @ stress) / least * float(discrete.partition.area.sum())
+    if joints is None:
+        return float(np.sqrt(stored))
+    size = float(np.abs(stress).max())
+    softest = min(np.min(joints.law.normal_stiffness), np.min(joints.law.shear_stiffness))
+    length = float(joints.area.sum())
+    stored += 4 * size**2 * length / softest
+    return float(np.sqrt(stored)) + pushing * 4 * size * length

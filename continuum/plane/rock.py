@@ -1,0 +1,164 @@
+"""A rock mass in space: its blocks as elements, and the joints between them.
+
+Plane strain; all is per metre of thickness. "jointed" resolves every joint. "equivalent" has the
+effective medium of the sets with a spacing, and joints that stand alone as they are.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from cases.errors import SceneError
+from cases.material.dashpots import set_time_constants
+from cases.material.effective_medium import joint_set, stiffness
+from cases.material.rock import elastic_rock
+from cases.material.strength import strength_of
+from cases.partition.joints import direction_of
+from cases.partition.scene import partition_of
+from continuum.joints import interfaces
+from continuum.mesh.plane import plane_mesh
+from continuum.mesh.segments import Across, across_periodic
+from continuum.model import Interfaces
+from continuum.plane.size import element_size, refuse_large_mesh
+from continuum.space.body import Body, build_body
+from continuum.space.elasticity import PlaneRock, Section
+from continuum.space.interface import Jumps, jumps
+from continuum.space.kinematics import Kinematics
+from joints.law import Law
+from joints.uniform import law
+
+if TYPE_CHECKING:
+    from cases.material.effective_medium import JointSet as Compliant
+    from cases.partition.blocks import Partition
+    from cases.schema.joint_set import JointSet
+    from cases.schema.rock_mass import RockMass
+
+MOTION = Kinematics(2, Section(2, 1.0), False)
+
+
+class PlaneDiscrete(NamedTuple):
+    """A rock mass in space.
+
+    resolved : the scene with the joint sets that are resolved alone. partition : of it.
+    across : contacts across periodic sides. block : int array [cells]. joints : None without any.
+    """
+
+    resolved: RockMass
+    partition: Partition
+    across: list[Across]
+    block: np.ndarray
+    materials: list[PlaneRock]
+    body: Body
+    jumps: Jumps | None
+    joints: Interfaces | None
+    kinematics: Kinematics = MOTION
+
+
+def smeared(scene: RockMass, model: str) -> list[JointSet]:
+    """Return the joint sets that a model does not resolve."""
+    return [one for one in scene.joint_sets if model == "equivalent" and one.spacing is not None]
+
+
+def discretise(scene: RockMass, model: str) -> PlaneDiscrete:
+    """Return a rock mass in space; `model` is "jointed" or "equivalent".
+
+    Raises SceneError where the scene cannot be cut or meshed as it asks for.
+    """
+    sets = smeared(scene, model)
+    kept = [one for one in scene.joint_sets if one not in sets]
+    resolved = scene.model_copy(update={"joint_sets": kept})
+    partition = partition_of(resolved)
+    sides = [side for side in ("left", "bottom") if getattr(scene.boundaries, side) == "periodic"]
+    across = across_periodic(partition, sides)
+    rock = PlaneRock(
+        stiffness(elastic_rock(scene.rock), [_compliant(one) for one in sets]),
+        scene.rock.density,
+        _rayleigh(scene),
+    )
+    meshed = _mesh(scene, partition, across)
+    order = scene.numerics.continuum.order
+    body = build_body(meshed.mesh, order, [rock], MOTION.section)
+    body = body._replace(piece=meshed.piece)
+    found = PlaneDiscrete(resolved, partition, across, meshed.block, [rock], body, None, None)
+    if not meshed.mesh.joints.joint.size:
+        return found
+    between = jumps(body)
+    own = contact_law(resolved, found, between.joint)
+    carried = _carried(scene, found, between.joint)
+    return found._replace(jumps=between, joints=interfaces(between, own, carried))
+
+
+def _mesh(scene: RockMass, partition: Partition, across: list[Across]):
+    numerics, size = scene.numerics.continuum, element_size(scene)
+    refuse_large_mesh(scene, partition, size)
+    try:
+        found = plane_mesh(partition, across, size, numerics.cell)
+    except ValueError as error:
+        key = "numerics.continuum.cell"
+        raise SceneError(scene.where, key, numerics.cell, str(error)) from None
+    except (ImportError, OSError) as error:
+        key, allowed = "numerics.continuum.cell", f"needs gmsh for triangles ({error})"
+        raise SceneError(scene.where, key, numerics.cell, allowed) from None
+    if found.mesh.cell == "triangle" and numerics.order > 2:
+        key, allowed = "numerics.continuum.order", "must be at most 2 for triangles"
+        why = "" if numerics.cell else ": not every block has four edges with one neighbour each"
+        raise SceneError(scene.where, key, numerics.order, allowed + why)
+    return found
+
+
+def _rayleigh(scene: RockMass) -> float:
+    """Return the time constant of the rock itself, s."""
+    return 0.0 if scene.damping.rayleigh is None else scene.damping.rayleigh.coefficients[1]
+
+
+def _compliant(one: JointSet) -> Compliant:
+    assert one.spacing and one.normal_stiffness and one.shear_stiffness
+    x, y = direction_of(one.dip)
+    return joint_set(np.array([-y, x]), one.spacing, one.normal_stiffness, one.shear_stiffness)
+
+
+def joint_set_of(found: PlaneDiscrete) -> np.ndarray:
+    """Return the joint set of every contact, int array, those across periodic sides last."""
+    parts = [found.partition.contacts, *(one.contacts for one in found.across)]
+    return np.concatenate([part.joint_set for part in parts])
+
+
+def normals_of(found: PlaneDiscrete) -> np.ndarray:
+    """Return the unit normal of every contact [c, 2], from its block i to its block j."""
+    parts = [found.partition.contacts, *(one.contacts for one in found.across)]
+    return np.concatenate([part.normal for part in parts])
+
+
+def contact_law(scene: RockMass, found: PlaneDiscrete, contact: np.ndarray) -> Law:
+    """Return the law at points [q] of these contacts, in its smallest form."""
+    sets, of = scene.joint_sets, joint_set_of(found)[contact]
+    etas = set_time_constants(scene)
+    tension, normal, shear = (
+        np.array([getattr(one, key) for one in sets])[of]
+        for key in ("tension", "normal_stiffness", "shear_stiffness")
+    )
+    return law(
+        normal.astype(float),
+        None if etas is None else etas[of],
+        tension != np.array(False),
+        shear_stiffness=shear.astype(float),
+        **strength_of(sets, of).strengths(),
+    )
+
+
+def _carried(scene: RockMass, found: PlaneDiscrete, contact: np.ndarray) -> np.ndarray | None:
+    """Return the tractions [2, q] that a prestress puts on contacts, on block j and along the
+    normal and its right: as `Jumps` has them; None without."""
+    if scene.prestress is None:
+        return None
+    n, (xx, yy, xy) = normals_of(found)[contact].T, stress_of(scene)
+    t = np.array([xx * n[0] + xy * n[1], xy * n[0] + yy * n[1]])
+    return np.array([(t * n).sum(axis=0), t[0] * n[1] - t[1] * n[0]])
+
+
+def stress_of(scene: RockMass) -> np.ndarray:
+    """Return the prestress, xx, yy, xy [3], Pa, compression positive; zero without."""
+    given = scene.prestress
+    return np.zeros(3) if given is None else np.array([given.xx, given.yy, given.xy])

@@ -1,0 +1,57 @@
+"""Size of the elements of a rock mass, and the memory of its run, before any of it is made."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cases.material.rock import elastic_rock
+from cases.size import COPIES, refuse_beyond_memory, samples_of
+from continuum.build import resolved_period
+from continuum.size import ENTRY, FREEDOM
+
+if TYPE_CHECKING:
+    from cases.partition.blocks import Partition
+    from cases.sampling import Clock
+    from cases.schema.rock_mass import RockMass
+
+#: Elements in the way of an S wave in one period, by their order.
+IN_PERIOD = {1: 40.0, 2: 12.0, 3: 6.0, 4: 4.0}
+#: Times as many for pulses that start or end with a kink.
+OF_KINKS = 2.0
+
+
+def element_size(scene: RockMass) -> float:
+    """Return about how large elements are, m: `numerics.continuum.size`, or what resolves S waves
+    of the shortest pulse."""
+    numerics = scene.numerics.continuum
+    if numerics.size is not None:
+        return numerics.size
+    sharp = any(one.shape != "ricker" for one in scene.pulses)
+    many = IN_PERIOD[numerics.order] * (OF_KINKS if sharp else 1.0)
+    return float(elastic_rock(scene.rock).s_speed) * resolved_period(scene) / many
+
+
+def refuse_large_mesh(scene: RockMass, partition: Partition, size: float) -> None:
+    """Raise SceneError where elements of this size (m) would not fit in memory."""
+    order = scene.numerics.continuum.order
+    contacts = partition.contacts
+    along = float(contacts.length.sum() + partition.boundary.length.sum())
+    cells = float(partition.area.sum()) / size**2 + along / size + partition.count
+    nodes, entries = cells * (order + 0.5) ** 2, 2 * (order + 1) ** 2
+    fields = scene.record.fields
+    shots = 0.0 if fields is None else (scene.time.duration / fields + 1) * nodes * 56 * COPIES
+    parts = {
+        "numerics.continuum.size": 2 * nodes * (FREEDOM + ENTRY * entries),
+        "record.fields": shots,
+    }
+    refuse_beyond_memory(scene, parts)  # type: ignore[arg-type]
+
+
+def refuse_large_run(scene: RockMass, time: Clock) -> None:
+    """Raise SceneError where the samples would not fit in memory."""
+    record = scene.record
+    rows = 7 * len(record.points) + 4 * len(record.joints) + 8 * record.energy
+    size = COPIES * 8 * samples_of(scene) * rows  # type: ignore[arg-type]
+    refuse_beyond_memory(scene, {"record.interval": float(np.ceil(size))})  # type: ignore[arg-type]

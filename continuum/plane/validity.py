@@ -1,0 +1,42 @@
+"""Rock masses that the continuum can simulate, and the reasons why not others."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from continuum.plane.rock import smeared
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
+
+#: Keys of a joint set that the effective medium has no room for.
+NONLINEAR = ("friction_angle", "cohesion", "tensile_strength", "damping_ratio")
+
+
+def applies(scene: RockMass, model: str = "jointed") -> str:
+    """Return "" where this model can simulate the scene, else the reason why not."""
+    bases = [one for one in scene.loads if one.kind == "base"]
+    reasons = [
+        (scene.damping.local is not None, "the continuum has no local damping"),
+        (scene.numerics.continuum.scheme == "implicit", "rock masses take explicit steps alone"),
+        (scene.record.fields is not None, "the continuum keeps no snapshots of rock masses yet"),
+        (len(bases) > 1, "one base alone can be shaken"),
+    ]
+    if model == "equivalent":
+        reasons += _beyond_medium(scene)
+    return next((why for there, why in reasons if there), "")
+
+
+def _beyond_medium(scene: RockMass) -> list[tuple[bool, str]]:
+    """Return what keeps a scene from having an effective medium, and whether it does."""
+    sets = smeared(scene, "equivalent")
+    found = [
+        (not sets, "no joint set has a spacing: there is nothing to homogenise"),
+        ("periodic" in scene.boundaries.model_dump().values(), "its sides are not periodic"),
+    ]
+    for one in sets:
+        for key in NONLINEAR:
+            has = getattr(one, key) is not None
+            found.append((has, f"homogenised joints have no {key} (set '{one.name}')"))
+        found.append((one.tension is False, f"homogenised joints do not open (set '{one.name}')"))
+    return found

@@ -1,0 +1,45 @@
+"""Recorded waveforms of a rock mass in the form of a result."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from continuum.waveforms import energy_terms
+from results.plane import plane_fields
+
+if TYPE_CHECKING:
+    from continuum.run import Run
+    from continuum.state import Samples
+    from results.dataset import Fields
+
+
+def quantities(run: Run, samples: Samples) -> dict[str, np.ndarray]:
+    """Return what was recorded by name, as `results.plane.plane_fields` takes it.
+
+    Motion counts from the state at the start. Without joints nothing is known of them.
+    """
+    points = len(run.scene.record.points)
+    stress, tractions = np.split(samples.stress, [3 * points])
+    found = {
+        "velocity": _components(samples.velocity, 2),
+        "displacement": _components(samples.displacement - samples.displacement[:, :1], 2),
+        "stress": _components(stress, 3),
+    }
+    if samples.turn.size:
+        gap, slip = _components(samples.turn - samples.turn[:, :1], 2).transpose(2, 0, 1)
+        found |= {"traction": _components(tractions, 2), "gap": gap, "slip": slip}
+    return found
+
+
+def _components(waves: np.ndarray, count: int) -> np.ndarray:
+    """Return [place, sample, component] of rows that hold all places of one component together."""
+    return np.moveaxis(waves.reshape(count, -1, waves.shape[1]), 0, 2)
+
+
+def recorded(run: Run, samples: Samples, times: np.ndarray, about: dict[str, Any]) -> Fields:
+    """Return the result of a rock mass at these times, with attributes about its run."""
+    terms, energy = energy_terms(run.model, samples.energy)
+    name, found = f"continuum-{run.rock}", quantities(run, samples)
+    return plane_fields(run.scene, name, times, found, energy, terms, **about)
