@@ -7,6 +7,7 @@ motion of a shaken base has m/s and m, or m/s2 and m/s, in their place.
 
 from dataclasses import dataclass
 from math import pi
+from typing import Protocol
 
 import numpy as np
 
@@ -143,6 +144,13 @@ class Recorded:
 LoadHistory = Sine | Ricker | Step | Recorded
 
 
+class Integral(Protocol):
+    """A load by its integral over time."""
+
+    def impulse(self, t: np.ndarray) -> np.ndarray:
+        """Return the integral of the stress from minus infinity to t (Pa s)."""
+
+
 def load_history(scene: Scene) -> LoadHistory:
     """Return the scene's load as a function of time: its end stress or the motion of its base.
 
@@ -165,7 +173,7 @@ def history_of(pulse: Pulse, amplitude: float) -> LoadHistory:
     return Sine(amplitude, pulse.period, pulse.cycles or 1)
 
 
-def step_means(load: LoadHistory, dt: float, count: int) -> np.ndarray:
+def step_means(load: Integral, dt: float, count: int) -> np.ndarray:
     """Return the mean stress over [(n - 1/2) dt, (n + 1/2) dt] for n = 0 .. count - 1, Pa.
 
     This is the load that makes leapfrog exact for the bar at c dt = d: the momentum that enters

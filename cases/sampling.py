@@ -43,7 +43,9 @@ def sample_times(scene: Scene | RockMass) -> np.ndarray:
     return scene.interval * np.arange(count)
 
 
-def clock(scene: Scene, critical: float, fraction: float, allow_unstable: bool, key: str) -> Clock:
+def clock(
+    scene: Scene | RockMass, critical: float, fraction: float, allow_unstable: bool, key: str
+) -> Clock:
     """Return the largest step at most `fraction * critical` (s) that divides the interval.
 
     Above the critical step the step is taken as asked for, to the nearest divisor of the interval,

@@ -107,8 +107,7 @@ def elements_for(scene: Scene, p: Properties, model: str) -> int:
 def resolved_period(scene: Scene | RockMass) -> float:
     """Return the period (s) that elements resolve: the shortest of what acts, or a tenth of the
     scene."""
-    pulses = scene.pulses if scene.kind == "rock mass" else (scene.load,)
-    return min((one.period for one in pulses if one.period), default=scene.time.duration / 10)
+    return min((one.period for one in scene.pulses if one.period), default=scene.time.duration / 10)
 
 
 def critical_step_of(scene: Scene, discrete: Discrete, model: str) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import ceil
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -13,6 +13,9 @@ from cases.errors import SceneError
 from cases.sampling import MOST_STEPS, Clock, clock, sample_times
 from cases.schema.scene import Scene
 from continuum.build import Discrete, operators, resolved_period
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
 
 #: How many explicit steps one implicit step must replace before its cost is looked into: it solves
 #: an equation with several times the entries of the stiffness, and is not vectorised over blocks.
@@ -48,7 +51,7 @@ def choose(scene: Scene, discrete: Discrete, critical: float) -> Choice:
     return _cheaper(scene, discrete, critical)
 
 
-def explicit(scene: Scene, critical: float, reason: str) -> Choice:
+def explicit(scene: Scene | RockMass, critical: float, reason: str) -> Choice:
     """Return explicit steps; critical : the critical one, s."""
     numerics = scene.numerics.continuum
     fraction, allowed = numerics.step_fraction, numerics.allow_unstable

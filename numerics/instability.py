@@ -1,10 +1,15 @@
 """The one line that a stopped run leaves behind: where, when, why, what to change."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
 
 from cases.errors import StoppedError
 from cases.sampling import Clock
-from cases.schema.scene import Scene
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
+    from cases.schema.scene import Scene
 
 HUGE = 1e100  # an amplitude whose squares are no numbers
 
@@ -24,7 +29,7 @@ class Sighting(NamedTuple):
     y: float
 
 
-def stopped(scene: Scene, time: Clock, critical: float, seen: Sighting) -> StoppedError:
+def stopped(scene: Scene | RockMass, time: Clock, critical: float, seen: Sighting) -> StoppedError:
     """Return the error of a run out of bounds, with the samples that are sound; critical in s."""
     name = f"{scene.where}, {scene.name}" if scene.name else scene.where
     what = "created energy" if seen.energy else "ran away"
@@ -36,14 +41,13 @@ def stopped(scene: Scene, time: Clock, critical: float, seen: Sighting) -> Stopp
     return error
 
 
-def _cause(scene: Scene, time: Clock, critical: float, seen: Sighting) -> str:
+def _cause(scene: Scene | RockMass, time: Clock, critical: float, seen: Sighting) -> str:
     if time.dt > 0.9999 * critical:
         return (
             f"the step is {time.dt / critical:.4g} times the critical step {critical:.4g} s; "
             f"take {seen.key} of at most 0.9"
         )
-    pulses = scene.pulses if scene.kind == "rock mass" else (scene.load,)
-    if any(abs(one.amplitude or 0.0) > HUGE for one in pulses):
+    if any(abs(one.amplitude or 0.0) > HUGE for one in scene.pulses):
         return "numbers grow beyond 1e308; take a smaller load.amplitude"
     return (
         "joints open, close or slide within a step, or the scene goes beyond what the scheme can "

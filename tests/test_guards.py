@@ -7,7 +7,7 @@ import continuum
 import dem
 from cases.errors import StoppedError
 from cases.material.calibrate import calibrate
-from continuum.run import steps_of
+from continuum.run import discrete_and_steps
 from dem.axial.bound import highest_speed
 from dem.axial.leapfrog import run
 from dem.axial.model import build
@@ -49,7 +49,7 @@ def forced(request, pillar):
 
 def critical_of(scene, engine):
     if engine == "continuum":
-        return steps_of(scene, "jointed")[1]
+        return discrete_and_steps(scene, "jointed")[2]
     if scene.load.direction[0]:
         return critical_step_of(scene, calibrate(scene))
     return scheme_of(scene).build(scene)[3]

@@ -80,6 +80,11 @@ class Scene(Table):
         return self
 
     @property
+    def pulses(self) -> tuple[Load]:
+        """Everything that acts over time."""
+        return (self.load,)
+
+    @property
     def where(self) -> str:
         """The file and variant that the scene was read from, else its title: for messages."""
         return self._where or self.title

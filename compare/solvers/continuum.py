@@ -50,15 +50,10 @@ def run(scene: Scene, progress=None, comm=None, keeper=None, *, model: str) -> x
 def prepare(scene: Scene, model: str) -> Prepared:
     """Return the step and the size of a run; raises SceneError as the run would."""
     from compare.runs.processes import started
-    from continuum.build import critical_step_of, discretise
-    from continuum.scheme import choose
-    from continuum.size import refuse_large_run
+    from continuum.run import discrete_and_steps
 
     with estimates() as parts:
-        discrete = discretise(scene, model)
-        critical = critical_step_of(scene, discrete, model)
-        choice = choose(scene, discrete, critical)
-        refuse_large_run(scene, discrete.kinematics, choice.time)
+        discrete, choice, critical = discrete_and_steps(scene, model)
     settings = {
         "scheme": choice.scheme,
         "dim": discrete.kinematics.dim,
@@ -81,6 +76,7 @@ def _of(model: str, **about: Any) -> Solver:
     return Solver(
         name=f"continuum-{model}",
         form=Form.RUN,
+        kinds=("pillar", "rock mass"),
         dimension=3,
         applies=partial(applies, model=model),
         run=partial(run, model=model),

@@ -234,10 +234,11 @@ def _parts(
     if alone:
         groups.append([np.sort(np.concatenate(alone))])
     number, parts = np.empty(len(cells), dtype=np.int64), []
-    number[np.concatenate([one for some in groups for one in some])] = np.arange(len(cells))
-    for some in groups:
-        vertices, local = _in_order(cells[some[0]])
-        first = np.array([cells[one[0], 0] for one in some])
+    ordered = np.concatenate([cells_of for group in groups for cells_of in group])
+    number[ordered] = np.arange(len(cells))
+    for group in groups:
+        vertices, local = _in_order(cells[group[0]])
+        first = np.array([cells[one[0], 0] for one in group])
         shifts = x[first] - x[first[0]]
         parts.append(Part(x[vertices], local, np.zeros(len(local), dtype=np.int64), shifts))
     return tuple(parts), number

@@ -1,4 +1,4 @@
-"""Loads of a rock mass as forces on nodes: pressures on sides and openings, forces at points."""
+"""Loads of a rock mass as forces on nodes: pressures on sides and openings, point forces."""
 
 from __future__ import annotations
 

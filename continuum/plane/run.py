@@ -35,19 +35,21 @@ def run_of(scene: RockMass, rock: str, comm=None, incident: IncidentField | None
     if comm is not None and comm.size > 1:
         allowed = "must be 1: the processes do not share rock masses"
         raise SceneError("mpiexec", "-n", comm.size, allowed)
-    discrete = discretise(scene, rock)
-    choice, critical = choice_of(scene, discrete)
-    refuse_large_run(scene, choice.time)
+    discrete, choice, critical = discrete_and_steps(scene, rock)
     model = build_model(scene, discrete, choice.time, incident)
     state = state_at_rest(model, scene.record.energy)
     samples = empty_samples(model, state, choice.time.samples)
     return Run(scene, rock, discrete, model, state, samples, choice, critical)
 
 
-def choice_of(scene: RockMass, discrete: PlaneDiscrete) -> tuple[Choice, float]:
-    """Return how a rock mass is stepped, and the critical step of explicit steps (s)."""
+def discrete_and_steps(scene: RockMass, rock: str) -> tuple[PlaneDiscrete, Choice, float]:
+    """Return a rock mass in space, how it is stepped, and the critical step of explicit steps
+    (s)."""
+    discrete = discretise(scene, rock)
     critical = critical_step(discrete, fixed_sides(scene, discrete.body))
-    return explicit(scene, critical, "rock masses take explicit steps"), critical
+    choice = explicit(scene, critical, "rock masses take explicit steps")
+    refuse_large_run(scene, choice.time)
+    return discrete, choice, critical
 
 
 def build_model(

@@ -1,7 +1,9 @@
 """Kinematics of a scene in the continuum: its dimension, components of motion, rock."""
 
+from __future__ import annotations
+
 from math import sqrt
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from cases.effects import is_spatial
 from cases.errors import SceneError
@@ -9,6 +11,9 @@ from cases.material.calibrate import Properties
 from cases.material.elastic import equivalent_modulus
 from cases.schema.scene import Scene
 from continuum.space.elasticity import Material, Section
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
 
 MODELS = ("jointed", "equivalent")
 
@@ -106,7 +111,7 @@ def _layer_stiffness(scene: Scene, p: Properties, joint: int) -> float:
     return stiffness
 
 
-def refuse(scene: Scene, model: str, dim: int | None) -> None:
+def refuse(scene: Scene | RockMass, model: str, dim: int | None) -> None:
     """Raise SceneError for a model or dimension that is not there."""
     where = scene.name or scene.title
     if model not in MODELS:

@@ -13,7 +13,7 @@ from continuum.implicit.balance import joint_balance_for
 from continuum.implicit.pattern import empty_tangents
 from continuum.joints import interfaces
 from continuum.model import Quiet
-from continuum.run import steps_of
+from continuum.run import discrete_and_steps
 from continuum.state import state_at_rest
 
 SUDDEN = {"direction": [0.0, 1.0, 0.0], "static": False}
@@ -27,7 +27,7 @@ def waves(ready):
     """Return a function: stress, velocity and displacement of a run whose model was changed."""
 
     def of(scene, model, change=lambda built: built):
-        choice, _ = steps_of(scene, model)
+        _, choice, _ = discrete_and_steps(scene, model)
         at = ready(scene, model, clock=choice.time)
         built = change(at.model)
         state = state_at_rest(built, scene.record.energy)

@@ -164,10 +164,10 @@ def test_neither_dolfinx_nor_a_form_compiler_is_needed():
     """Nor MPI, PETSc and gmsh, to step a pillar of quadrilaterals explicitly."""
     program = (
         "import sys, cases\n"
-        "from continuum.run import steps_of\n"
+        "from continuum.run import discrete_and_steps\n"
         "scene = cases.load_variant(sys.argv[1], '', {'variants': []})\n"
         "for dim in (1, 2, 3):\n"
-        "    steps_of(scene, 'jointed', dim)\n"
+        "    discrete_and_steps(scene, 'jointed', dim)\n"
         "heavy = {'dolfinx', 'ffcx', 'ufl', 'cffi', 'mpi4py', 'petsc4py', 'gmsh', 'meshio'}\n"
         "sys.exit(', '.join(heavy & sys.modules.keys()) or 0)\n"
     )
