@@ -28,7 +28,11 @@ telling() {  # what, command ...
 PATH=$(printf %s "$PATH" | tr : '\n' | grep -vFx -e "$PWD/.venv/bin" | paste -sd: -)
 unset PYTHONHOME
 
-imports_dolfinx() { "$1" -c 'import dolfinx, ensurepip, sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1; }
+# pip's wheel of dolfinx brings an MPI that must be loaded first.
+dolfinx='from importlib.util import find_spec as f
+if f("dolfinx_solver"): import dolfinx_solver
+import dolfinx'
+imports_dolfinx() { "$1" -c "$dolfinx, ensurepip, sys; sys.exit(sys.version_info < (3, 11))" >/dev/null 2>&1; }
 
 in_log() { local log=$1; shift; "$@" >"$log" 2>&1; }
 
@@ -69,6 +73,18 @@ base_python() {
     apt_install python3-dolfinx python3-gmsh python3-venv >&2 || return 1
     imports_dolfinx /usr/bin/python3 || return 1
     echo /usr/bin/python3
+}
+
+# Prints a Python that pip has a wheel of dolfinx for: 3.12 or newer on x86-64 Linux.
+wheel_python() {
+    local python
+    for python in python3 python3.13 python3.12; do
+        "$python" -c 'import ensurepip, platform, sys; sys.exit(sys.version_info < (3, 12) or
+            (sys.platform, platform.machine()) != ("linux", "x86_64"))' >/dev/null 2>&1 || continue
+        "$python" -c 'import sys; print(sys.executable)'
+        return
+    done
+    return 1
 }
 
 make_venv() {
@@ -132,15 +148,20 @@ else
     if [ "$(cat .venv/.setup-base 2>/dev/null)" != "$(base_key)" ] || ! imports_dolfinx .venv/bin/python; then
         rm -rf .venv
         if base=$(base_python); then
-            say ".venv over $base, which has dolfinx $("$base" -c 'import dolfinx; print(dolfinx.__version__)')"
+            say ".venv over $base, which has dolfinx $("$base" -c "$dolfinx; print(dolfinx.__version__)")"
             make_venv "$base"
+        elif base=$(wheel_python); then
+            say ".venv of $base, with dolfinx by pip"
+            "$base" -m venv .venv
         else
-            make_conda || fail "no dolfinx: activate an environment that has it, or install conda (or Debian/Ubuntu's python3-dolfinx python3-gmsh python3-venv), then run make again"
+            make_conda || fail "no dolfinx: activate an environment that has it, or install Python 3.12 or newer (x86-64 Linux), conda or Debian/Ubuntu's python3-dolfinx python3-gmsh python3-venv, then run make again"
         fi
         base_key >.venv/.setup-base
     fi
-    install_project test,check
-    .venv/bin/python -c 'import dolfinx, numba, compare' || fail ".venv does not import dolfinx, numba and compare"
+    extras=test,check
+    imports_dolfinx .venv/bin/python || extras=$extras,continuum
+    install_project "$extras"
+    .venv/bin/python -c "$dolfinx, numba, compare" || fail ".venv does not import dolfinx, numba and compare"
     key >.venv/.setup-done
     say "done: .venv/bin/jointwave, or activate it by: . .venv/bin/activate"
 fi
