@@ -108,7 +108,7 @@ install_project() {  # with these extras
     # A string, not an array: macOS's bash 3.2 takes an empty array for an unset variable.
     local constraints=
     # dolfinx and petsc4py are compiled against one numpy major version, and must keep it.
-    if .venv/bin/python -c 'import numpy, sys; sys.exit(numpy.__version__.split(".")[0] != "1")'; then
+    if .venv/bin/python -c 'import numpy, sys; sys.exit(numpy.__version__.split(".")[0] != "1")' 2>/dev/null; then
         constraints='-c constraints-numpy1.txt'
     fi
     say "pip install -e .[$1] $constraints (about a minute)"
