@@ -109,7 +109,8 @@ def study(
 
     Points that are done are saved in DIR/NAME/ and not run again. Under mpiexec the processes share
     the points; those of a timed study are run one at a time. The study `stability` puts both
-    engines to hard cases, each with a criterion from theory.
+    engines to hard cases, each with a criterion from theory; `oblique-joint` has what each solver
+    makes of P and SV waves at one joint, against the angle.
     """
     if dry:
         from compare.experiments.cost.experiment_cost import parts_of_study, show_parts
@@ -125,6 +126,12 @@ def study(
 
         def work(pool: Any, advance: Any) -> Any:
             return make_study(out, pool, progress=advance)
+    elif name == "oblique-joint":
+        from compare.experiments.scattering.summary import TITLE as title
+        from compare.experiments.scattering.summary import make_study as make_angles
+
+        def work(pool: Any, advance: Any) -> Any:
+            return make_angles(out, pool, advance)
     else:
         from compare.experiments.study.runner import run
         from compare.experiments.study.study import load

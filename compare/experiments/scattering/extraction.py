@@ -1,0 +1,74 @@
+"""The amplitudes of the plane waves in front of and behind a joint, from the motion at points.
+
+At one frequency the motion of each half-space is the sum of plane waves of one slowness p along the
+joint (`compare.exact.plane.waves`): in front of it the incident wave and both reflected ones,
+behind it both transmitted ones. With factor e^{-i omega t} and the place (x, z) from the joint,
+
+    V(x, z) = sum of A g e^{i omega (p x +- q z)},   V = int v e^{i omega t} dt
+
+is a linear system for the amplitudes A, two equations a point, solved by least squares. The speeds
+are those of the intact rock. V is the trapezium rule's sum, exact for pulses that are over within
+the record and have nothing above half its sampling frequency.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from compare.exact.plane.pulse import Axes
+from compare.exact.plane.waves import polarisations, slownesses_across
+
+if TYPE_CHECKING:
+    from cases.material.rock import ElasticRock
+
+
+class Scattered(NamedTuple):
+    """Moduli of reflected and transmitted P and SV waves over the incident one, amplitudes of
+    particle velocity; residual : of the motion, what no such waves make up, over all of it."""
+
+    R_p: float
+    R_s: float
+    T_p: float
+    T_s: float
+    residual: float
+
+
+def scattered(
+    rock: ElasticRock,
+    axes: Axes,
+    places: np.ndarray,
+    velocity: np.ndarray,
+    interval: float,
+    omega: float,
+) -> Scattered:
+    """Return what a joint through the origin makes of a wave.
+
+    axes : of the joint for this wave. places : [m, 2], m, on both sides. velocity : [m, n, (x, y)],
+    m/s, every `interval` (s). omega : rad/s.
+    """
+    n = velocity.shape[1]
+    spectrum = np.exp(1j * omega * interval * np.arange(n)) @ velocity * interval
+    along, across = places @ axes.rows.T, slownesses_across(rock, axes.slowness)
+    modes = polarisations(rock, axes.slowness).reshape(4, 2) @ axes.rows
+    q = np.concatenate([across, -across])
+    incident = int(np.argmax(axes.incident))
+    found = np.zeros(4, dtype=complex)
+    left, total = 0.0, 0.0
+    came = 1.0 + 0j
+    for front, waves in ((True, [incident, 2, 3]), (False, [0, 1])):
+        here = (along[:, 1] < 0) == front
+        x, z = along[here].T
+        phases = np.exp(1j * omega * (axes.slowness * x + np.outer(q[waves], z)))
+        matrix = np.einsum("wm,wc->mcw", phases, modes[waves]).reshape(-1, len(waves))
+        motion = spectrum[here].ravel()
+        amplitudes, *_ = np.linalg.lstsq(matrix, motion, rcond=None)
+        left += float(np.linalg.norm(motion - matrix @ amplitudes) ** 2)
+        total += float(np.linalg.norm(motion) ** 2)
+        if front:
+            came = amplitudes[0]
+            found[:2] = amplitudes[1:]
+        else:
+            found[2:] = amplitudes
+    return Scattered(*(float(x) for x in np.abs(found / came)), float(np.sqrt(left / total)))
