@@ -18,6 +18,7 @@ from numerics.checkpoint import Keeper
 if TYPE_CHECKING:
     import xarray as xr
 
+    from cases.schema.rock_mass import RockMass
     from results.dataset import Fields
 
 #: The engines by name; their packages are imported when they run.
@@ -79,7 +80,7 @@ def selection() -> dict[str, dict[str | None, str]]:
     return {**found, Solver.engine: {name: name for name in EXACT}}
 
 
-def applies(name: str, scene: Scene) -> Answer:
+def applies(name: str, scene: Scene | RockMass) -> Answer:
     """Return whether this engine or solution holds for the scene, or the reason why not."""
     one = solver(name)
     if scene.kind not in one.kinds:
@@ -89,7 +90,7 @@ def applies(name: str, scene: Scene) -> Answer:
 
 def solve(
     name: str,
-    scene: Scene,
+    scene: Scene | RockMass,
     progress: Progress | None = None,
     comm=None,
     keeper: Keeper | None = None,
@@ -123,7 +124,7 @@ def solve_fields(
     return fields_of(solve(name, scene, progress, comm, keeper))
 
 
-def _that_applies(name: str, scene: Scene) -> Solver:
+def _that_applies(name: str, scene: Scene | RockMass) -> Solver:
     one = solver(name)
     answer = applies(name, scene)
     if not answer:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from cases.schema.scene import Scene
 from cases.size import estimates
+from compare.solvers.incident import incident
 from compare.solvers.record import (
     BAR,
     JOINTED,
@@ -44,7 +45,8 @@ def run(scene: Scene, progress=None, comm=None, keeper=None, *, model: str) -> x
     """Return the result of a scene; comm : mpi4py's, of processes that share the run."""
     from continuum import simulate
 
-    return simulate(scene, model=model, progress=progress, comm=comm, keeper=keeper)
+    about = {"progress": progress, "comm": comm, "keeper": keeper}
+    return simulate(scene, model=model, **about, **incident(scene))
 
 
 def prepare(scene: Scene, model: str) -> Prepared:

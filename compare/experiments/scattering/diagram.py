@@ -40,11 +40,11 @@ def draw(rows: list[AngleRow]) -> Figure:
 
 def _draw_moduli(ax: Axes, rows: list[AngleRow], solvers: list[str], kind: str, k: int) -> None:
     angles = np.arange(0, 88, 0.5)
-    exact = np.array([closed_form(scene_of(kind, angle)) for angle in angles])
+    exact = np.array(closed_form(scene_of(kind, 0.0), np.radians(angles)))
     for w, (name, (marker, dashes)) in enumerate(WAVES.items()):
-        about = {"color": LINE, "linewidth": 1.0, "linestyle": dashes}
-        (line,) = ax.plot(angles, exact[:, w], label=f"|{name}|, closed form", **about)
+        (line,) = ax.plot(angles, exact[w], color=LINE, linewidth=1.0, linestyle=dashes)
         line.set_gid(f"oblique-joint-exact-{k}-{w}")
+        ax.plot([], [], color=LINE, linestyle=dashes, marker=marker, label=f"|{name}|")
         for j, solver in enumerate(solvers):
             own = [row for row in rows if row.solver == solver]
             (points,) = ax.plot(
@@ -54,7 +54,7 @@ def _draw_moduli(ax: Axes, rows: list[AngleRow], solvers: list[str], kind: str, 
                 color=style(solver).colour,
                 markersize=8 - 2 * j,
                 markerfacecolor="none" if j else None,
-                label=solver if w == 0 else None,
+                label=f"{solver}: points" if w == 0 else None,
             )
             points.set_gid(f"oblique-joint-{k}-{j}-{w}")
     ax.set(xlim=(-2, 90), ylim=(-0.03, 1.1), ylabel="amplitude over the incident one")

@@ -71,4 +71,5 @@ def scattered(
             found[:2] = amplitudes[1:]
         else:
             found[2:] = amplitudes
-    return Scattered(*(float(x) for x in np.abs(found / came)), float(np.sqrt(left / total)))
+    R_p, R_s, T_p, T_s = np.abs(found / came).tolist()
+    return Scattered(R_p, R_s, T_p, T_s, float(np.sqrt(left / total)))

@@ -1,0 +1,108 @@
+"""Reflection and transmission at one joint: extracted from motion, and as a study."""
+
+import numpy as np
+import pytest
+
+from compare.engines import solve
+from compare.experiments.cost.experiment_cost import parts_of_study
+from compare.experiments.scattering import angles, summary
+from compare.experiments.scattering.angles import AnglePoint, AngleRow, measure, scene_of
+from compare.experiments.scattering.diagram import WAVES, draw
+
+#: |R_p|, |R_s|, |T_p|, |T_s| of P at nu = 0.25, K_n = Z_p omega, K_s = Z_s omega, found by solving
+#: the four boundary conditions as they stand.
+KNOWN = {
+    0.0: (0.4472, 0.0, 0.8944, 0.0),
+    30.0: (0.2836, 0.4144, 0.8999, 0.0188),
+    45.0: (0.1560, 0.4410, 0.9103, 0.0515),
+    60.0: (0.0908, 0.3609, 0.9237, 0.0908),
+}
+
+
+@pytest.mark.parametrize("angle", KNOWN)
+def test_amplitudes_are_those_of_the_motion(angle):
+    """The motion of a pulse over 12 periods, whose tail is 1e-9 of it by then."""
+    row = measure(AnglePoint("oblique-joint", "P", angle))
+    assert row.state == "done" and row.error < 1e-9 and row.residual < 1e-9
+    assert row[5:9] == pytest.approx(KNOWN[angle], abs=6e-5)
+    assert row.cpu > 0
+
+
+@pytest.mark.parametrize(
+    "angle, off", [(30.0, 1e-9), pytest.param(60.0, 1e-5, marks=pytest.mark.slow)]
+)
+def test_shear_waves_too(angle, off):
+    """Beyond the critical angle the tail falls as a power of time, and the record ends."""
+    row = measure(AnglePoint("oblique-joint", "SV", angle))
+    assert row.state == "done" and row.error < off and row.residual < 2 * off
+
+
+def test_a_turned_joint_is_the_same_joint():
+    """A joint at 20 degrees under a wave at 10 is one at 30 under its normal."""
+    turned = np.radians(-10)
+    changes = {
+        "joint_sets.0.dip": 20.0,
+        "waves.0.direction": [float(np.sin(-turned)), float(np.cos(turned))],
+        "waves.0.through": [0.0, -6.0],
+    }
+    points = [[6.0, 1.0], [7.0, 2.0], [5.0, 3.0], [6.0, 9.0], [7.0, 10.0], [5.0, 11.0]]
+    scene = scene_of("P", 0.0, changes | {"record.points": points})
+    found = angles.amplitudes(scene, solve("oblique-joint", scene).velocity.values)
+    assert found[:4] == pytest.approx(KNOWN[30.0], abs=6e-5) and found.residual < 1e-8
+
+
+def test_motion_that_is_no_plane_wave_is_left_over():
+    scene = scene_of("P", 30.0)
+    velocity = solve("oblique-joint", scene).velocity.values.copy()
+    velocity[0] *= 1.1
+    assert 0.01 < angles.amplitudes(scene, velocity).residual < 0.1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("incidence", ["P", "SV"])
+def test_deformable_rock_has_them_at_all_angles(incidence):
+    """Elements of order 2, about 8 to the S wave: a thousandth."""
+    for angle in angles.ANGLES:
+        row = measure(AnglePoint("continuum-jointed", incidence, angle))
+        assert row.state == "done" and row.error < 1e-3, row
+
+
+@pytest.fixture
+def few(monkeypatch):
+    """Leave one angle of each kind of wave, and a solver that does not apply."""
+    monkeypatch.setattr(angles, "ANGLES", (0.0, 30.0))
+    monkeypatch.setattr(angles, "SOLVERS", ("oblique-joint", "lattice"))
+
+
+def test_the_study_writes_its_table_and_its_figure(few, tmp_path):
+    found = summary.make_study(tmp_path)
+    names = {"oblique-joint.csv", "oblique-joint.svg"}
+    assert names <= {file.name for file in found.files}
+    assert [*found.table.groups] == [f"joint at an angle, exact: {k} wave" for k in ("P", "SV")]
+    cells = found.table.groups["joint at an angle, exact: P wave"][1]
+    assert cells[:5] == ["30", "0.2836", "0.4144", "0.8999", "0.0188"]
+    assert "at 30 degrees" in found.sentences[0] or "at 0 degrees" in found.sentences[0]
+    why = "is a solution of a pillar, not of a rock mass"
+    assert found.failed == [f"lattice, 4 angles from P at 0 degrees on: {why}"]
+    saved = [file.stat().st_mtime_ns for file in sorted((tmp_path / "oblique-joint").iterdir())]
+    again = summary.make_study(tmp_path)
+    assert again.table == found.table and len(saved) == 8
+    assert saved == [f.stat().st_mtime_ns for f in sorted((tmp_path / "oblique-joint").iterdir())]
+
+
+def test_a_dry_run_counts_the_points(tmp_path):
+    (part,) = parts_of_study("oblique-joint", tmp_path)
+    assert part.count == part.to_do == len(angles.points()) == 36
+
+
+def test_the_figure_has_the_numbers():
+    values = (0.2, 0.3, 0.9, 0.1)
+    row = AngleRow("oblique-joint", "SV", 20.0, "done", "", *values, *values, 1e-3, 0.0, 8.0, 0.5)
+    lines = {one.get_gid(): one for ax in draw([row]).axes for one in ax.lines}
+    for w, name in enumerate(WAVES):
+        points = lines[f"oblique-joint-1-0-{w}"]
+        assert points.get_xdata().tolist() == [20.0]
+        assert points.get_ydata().tolist() == [getattr(row, name)]
+    curve = lines["oblique-joint-exact-0-0"]
+    at = {x: y for x, y in zip(curve.get_xdata(), curve.get_ydata(), strict=True)}
+    assert [at[x] for x in KNOWN] == pytest.approx([of[0] for of in KNOWN.values()], abs=6e-5)
