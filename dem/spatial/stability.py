@@ -111,7 +111,8 @@ def _speed(
     """Return the bound for a block's velocity, m/s."""
     m, duration = p.block_mass, time.dt * (time.steps + time.stride)
     weight = model.block.weight[:3]
-    push = np.linalg.norm(model.load.direction / np.sqrt(m * inertia))
+    lever = lever_matrix(model.block.arm if model.form.turns else None, inertia.size)
+    push = np.linalg.norm(lever.T @ model.load.direction / np.sqrt(m * inertia))
     return speed_that(
         time.dt * (np.abs(model.load.stress) * push).sum(),
         duration * _steady(scene, p) / m,
