@@ -60,7 +60,12 @@ class Relaxation:
         self.model = model._replace(form=model.form._replace(mass_damping=True))
         self.state = state_at_rest(self.model)
         self.buffers, self.samples = buffers_for(self.model, 1), samples_for(self.model, 1)
-        self.mass = np.repeat(model.block.inertia[: model.form.freedoms], p.block_count)
+        inertia = model.block.inertia[: model.form.freedoms]
+        # With finite rotations: half the rotation, and the angular momentum.
+        self.turned, self.moving = np.ones_like(inertia), inertia.copy()
+        if model.form.finite:
+            self.turned[3:], self.moving[3:] = 2.0, 1.0
+        self.mass = np.repeat(inertia, p.block_count)
         weight = np.abs(model.block.weight).max()
         self.prestress = scene.prestress.normal if scene.prestress else 0.0
         self.scale = max(float(weight) * p.block_count, abs(self.prestress) * p.area)
@@ -79,17 +84,18 @@ class Relaxation:
         kept = copied(own)
         self.stop()
         self.advance(1, 0.0)
-        gain = self._rows()[freedoms : 2 * freedoms].ravel()
+        gain = self.moving[:, None] * self._rows()[freedoms : 2 * freedoms]
         fill(own, kept)
-        return self.mass * gain / self.model.block.dt
+        return gain.ravel() / self.model.block.dt
 
     def displacement(self) -> np.ndarray:
-        """Return displacements (m) and rotations (rad)."""
-        return self._rows()[: self.model.form.freedoms].ravel()
+        """Return displacements (m) and rotations (rad), as if those were small."""
+        return (self.turned[:, None] * self._rows()[: self.model.form.freedoms]).ravel()
 
     def stop(self) -> None:
         """Set all velocities to zero."""
-        self.state.motion[:, self.model.form.freedoms * STRIDE :] = 0.0
+        first = self.model.form.freedoms * STRIDE
+        self.state.motion[:, first : 2 * first] = 0.0
 
     def leave(self, model: RowModel, state: RowState) -> None:
         """Put the static state into the state of a run, whose joints may have rates besides."""
@@ -115,13 +121,12 @@ class Relaxation:
 
     def _load(self, scene: Scene, p: Properties) -> None:
         """Place the blocks where elastic joints carry the prestress."""
-        along = np.zeros((self.model.form.motion_rows, p.block_count))
-        along[1] = prestressed(scene, p)
+        along = prestressed(scene, p)[None]
         half = self.prestress / (2 * p.regular_stiffness)
         for side, kind, closure in ((0, scene.ends.start, -half), (1, scene.ends.end, half)):
             if kind == "fixed":
                 self.state.ends[side, CLOSURE, 1] = closure
-        self.state.motion[:] = packed(along, STRIDE)
+        self.state.motion[:, STRIDE : 2 * STRIDE] = packed(along, STRIDE)
 
 
 def _at_rest(scene: Scene, weighed: bool) -> Scene:

@@ -8,9 +8,13 @@ adds 1e-5 m/s for each Pa, and the mean of the load over the first is 500 Pa.
 from math import sqrt
 
 import numpy as np
+import pytest
+import xarray as xr
 
 import dem
 from cases.schema.scene import Scene
+from cases.schema.tables import Motion
+from dem.spatial.simulate import simulate_fields
 
 TERMS = ("kinetic", "elastic", "viscous", "boundary", "work")
 
@@ -36,6 +40,24 @@ def run(**tables):
     return result
 
 
+@pytest.fixture(params=["chain", "none", "small", "finite"])
+def engine(request, monkeypatch, plain):
+    """The chain, then the row in space with each kind of rotation, of which there is none."""
+    if request.param == "chain":
+        return
+    motion = Motion(rotation=request.param)
+
+    def simulate(scene):
+        found = xr.Dataset(*simulate_fields(scene.model_copy(update={"motion": motion})))
+        holds(found.energy.sel(term=found.term == "rotation"), 0.0)
+        return found.sel(term=found.term != "rotation")
+
+    monkeypatch.setattr(dem, "simulate", simulate)
+
+
+both = pytest.mark.usefixtures("engine")
+
+
 def holds(values, expected):
     """Hold an array to numbers, at round-off."""
     np.testing.assert_allclose(values, expected, rtol=1e-12, atol=1e-15)
@@ -52,6 +74,7 @@ def closes(result):
     holds(energy[:-1].sum(axis=0), energy[-1])
 
 
+@both
 def test_free_blocks():
     """f = 0, 125, 437.5 N; v0 = 5e-3, 1.375e-2, 1.9375e-2, v1 = 0, 1.25e-3, 5.625e-3 m/s."""
     result = run()
@@ -60,6 +83,7 @@ def test_free_blocks():
     holds(result.stress, [[500, 1000, 1000], [250, 562.5, 718.75], [0, 125, 437.5], [0, 0, 0]])
 
 
+@both
 def test_ledger_of_free_blocks():
     """m v v' / 2, f g / 2, and the load's mean of two steps times dt times the speed between."""
     energy = run().energy
@@ -70,6 +94,7 @@ def test_ledger_of_free_blocks():
     holds(energy, [kinetic, elastic, [0, 0, 0], [0, 0, 0], work])
 
 
+@both
 def test_dashpot_sees_the_rate_extrapolated_to_the_step():
     """C = K eta = 2.5e3: 125 + 2.5e3 * 7.5e-3 = 143.75 N at the first step; then the rates are
     v1 - v0 = 1.4375e-3 - 1.35625e-2 = -1.2125e-2 and -5e-3, extrapolated to -1.56875e-2."""
@@ -84,6 +109,7 @@ def test_dashpot_sees_the_rate_extrapolated_to_the_step():
     holds(result.energy.sel(term="viscous"), [0, viscous[0], viscous[0] + viscous[1]])
 
 
+@both
 def test_quiet_end():
     """r = 5e4 (v + v') / 2: 25 N as v1 comes to 1 mm/s, then 128.75 N on the way to 4.15 mm/s."""
     result = run(ends={"end": "quiet"})
@@ -94,6 +120,7 @@ def test_quiet_end():
     holds(result.energy.sel(term="boundary"), [0, 0, boundary])
 
 
+@both
 def test_fixed_end():
     """The half block's spring, 5e6 N/m, answers 1.25e-5 m with 62.5 N."""
     result = run(ends={"end": "fixed"})
@@ -108,6 +135,7 @@ def test_critical_steps():
     assert abs(fixed.attrs["critical_dt"] - 2 / sqrt(2500 * (2 + sqrt(2)))) < 1e-12
 
 
+@both
 def test_prestress_of_a_fixed_end():
     """2 Pa close its spring of 5e6 Pa/m by 0.4 um, and nothing moves."""
     for place in ("start", "end"):
@@ -118,6 +146,7 @@ def test_prestress_of_a_fixed_end():
         assert np.abs(along(result.velocity)).max() < 1e-15
 
 
+@both
 def test_work_of_a_prestress():
     """100 Pa on 4 m2 push block 0 and hold block 1: 400 N times what the joint closes by."""
     result = run(prestress={"normal": 100.0})
@@ -128,12 +157,14 @@ def test_work_of_a_prestress():
     holds(elastic - elastic[0], [0, 400 * 5e-5 + 0.0125, 400 * 1.75e-4 + 1750 * 1.75e-4 / 2])
 
 
+@both
 def test_matched_end():
     """z = 5e4 behind 5e6 N/m: the lag is dt k / 2z = 1/2, the gain dt / 1.5, w = 1.25e-3 / 150."""
     result = run(ends={"end": "matched"})
     holds(result.stress.sel(stress_y=2.0), [0, 0, 5e6 * 1.25e-3 / 150])
 
 
+@both
 def test_mass_damping():
     """alpha = 20: a = 0.1, v' = (0.9 v + 1e-5 F) / 1.1."""
     result = run(samples=2, damping={"mass_proportional": 20.0})
@@ -144,6 +175,7 @@ def test_mass_damping():
     assert result.energy.sel(term="viscous")[-1] > 0
 
 
+@both
 def test_local_damping():
     """0.8 of what would add to a speed is lost, nothing of what sets a block in motion."""
     result = run(damping={"local": 0.8})
@@ -152,6 +184,7 @@ def test_local_damping():
     closes(result)
 
 
+@both
 def test_no_tension():
     """The load pulls: the joint opens and carries nothing."""
     load = {"shape": "step", "amplitude": -1000.0}
@@ -160,6 +193,7 @@ def test_no_tension():
     holds(result.stress.sel(stress_y=1.0), [0, 0, 0])
 
 
+@both
 def test_sudden_gravity_and_prestress():
     """10 m/s2 along y: v = -0.05 half a step before, 0.05 half a step behind; 2 Pa all over."""
     result = run(
@@ -174,6 +208,7 @@ def test_sudden_gravity_and_prestress():
     holds(gap - gap[0], [0, 0])
 
 
+@both
 def test_a_shaken_base():
     """0.1 m/s: 1 mm a step. The half block's spring closes by 1 mm, then by 2 - 0.5 mm: 5000 and
     7500 N, less 1250 N of the joint on the way to 112.5 mm/s."""
@@ -187,6 +222,7 @@ def test_a_shaken_base():
     closes(result)
 
 
+@both
 def test_a_shaken_base_of_damped_blocks():
     """The base goes from rest to 0.1 m/s: c = 5e3 of the half block sees 0.05 m/s less half of what
     the block comes to, 5e-2 * 0.05 / 1.025."""

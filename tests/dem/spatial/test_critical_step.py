@@ -85,6 +85,29 @@ def test_long_rows_have_the_value_of_their_first_blocks(row):
     assert short == pytest.approx(whole, rel=4e-6)
 
 
+LAST = {
+    "stiff": {"spacing_stiffness": 4e10},
+    "stiff in shear": {"shear_stiffness": 3e10},
+    "damped": {"damping_ratio": 0.5},
+}
+
+
+@pytest.mark.parametrize("layer", LAST.values(), ids=LAST)
+def test_one_joint_beyond_the_first_blocks_counts(row, layer):
+    """The last of 2009 joints alone decides, as the last of 9 does: its mode dies away from there
+    by a factor of ten or so at every block."""
+    critical = []
+    for blocks in (10, 2010):
+        length = 0.5 * blocks
+        layers = [{"y": length - 0.5, **layer}]
+        damping = {"joints__damping_ratio": 0.01}
+        scene = row(pillar__length=length, soft_layers=layers, record={"stress": [2.0]}, **damping)
+        critical.append(critical_step_of(scene, calibrate(scene)))
+    plain = row(pillar__length=5.0, record={"stress": [2.0]}, **damping)
+    assert critical[0] < 0.95 * critical_step_of(plain, calibrate(plain))
+    assert critical[1] == pytest.approx(critical[0], rel=1e-9)
+
+
 @pytest.mark.parametrize(
     "joints",
     [

@@ -1,11 +1,13 @@
 """In whatever order tiles are stepped, every bit is the same."""
 
+import os
+
 import numpy as np
 import pytest
 
 from dem.spatial.build import buffers_for, samples_for, state_at_rest
 from dem.spatial.layout import LANES
-from dem.spatial.march import marcher
+from dem.spatial.march import ENOUGH_BLOCKS, marcher, thread_count
 from dem.spatial.simulate import prepare
 
 BLOCKS = 80 * LANES  # five runs of tiles for threads that follow one another
@@ -57,3 +59,14 @@ def test_threads_and_depth_change_no_bit(prepared, threads, depth):
     found, expected = outcome(prepared, threads, depth), outcome(prepared, 1, 1)
     assert all(part.any() for part in expected[:4])
     assert all((a == b).all() for a, b in zip(found, expected, strict=True))
+
+
+def test_a_long_row_takes_the_processors_that_it_may_use(monkeypatch):
+    """Those of this process, by default; a short row takes one."""
+    monkeypatch.setattr(os, "sched_getaffinity", {0: {2, 3, 5}}.__getitem__, raising=False)
+    assert thread_count(None, ENOUGH_BLOCKS) == 3
+    assert thread_count(None, ENOUGH_BLOCKS - 1) == 1
+    assert thread_count(4, 1) == 4
+    monkeypatch.delattr(os, "sched_getaffinity")
+    monkeypatch.setattr(os, "cpu_count", lambda: None)
+    assert thread_count(None, ENOUGH_BLOCKS) == 1
