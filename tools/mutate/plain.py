@@ -4,7 +4,9 @@ import importlib.abc
 import importlib.util
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
-from types import CodeType, ModuleType
+from types import CodeType, ModuleType, SimpleNamespace
+
+import numpy
 
 #: What stands for modules that only numba can compile.
 SOURCES = {
@@ -54,6 +56,9 @@ def multiply_tile(start, column, value, x, y, factor, at, width, first, size):
         y[at + i * width : at + (i + 1) * width] = factor * total
 """,
 }
+#: Modules that count without a sign for the compiler's sake: numpy 1 makes a float, which indexes
+#: nothing, of the sum of such a number and one of Python's.
+UNSIGNED = {"continuum.space.stencils": {"ONE": 1, "TWO": 2}}
 PACKAGES = ("cases", "results", "numerics", "joints", "dem", "continuum", "compare")
 
 
@@ -85,3 +90,6 @@ class Loader(SourceFileLoader):
     def exec_module(self, module: ModuleType) -> None:
         """Execute it."""
         super().exec_module(module)
+        if module.__name__ in UNSIGNED:
+            signed = SimpleNamespace(**vars(numpy) | {"uint64": numpy.int64})
+            vars(module).update(UNSIGNED[module.__name__], np=signed)
