@@ -25,6 +25,11 @@ ENDS = {
     "quiet, matched": {"start": "quiet", "end": "matched"},
     "matched, fixed": {"start": "matched", "end": "fixed"},
 }
+TWO_TILES = {
+    "pillar__length": 33.0,
+    "ends": ENDS["quiet, matched"],
+    "record": {"stress": [0.0, 31.9, 33.0], "velocity": [16.3, 32.1], "interval": 1e-5},
+}
 STEPS = 5
 
 
@@ -80,29 +85,36 @@ def assert_alike(one, other, tolerance):
         assert np.abs(found - expected).max() <= tolerance * np.abs(expected).max()
 
 
-@pytest.mark.parametrize("ends", ENDS.values(), ids=ENDS)
+rows = pytest.mark.parametrize(
+    "ends",
+    [*({"ends": ends} for ends in ENDS.values()), TWO_TILES],
+    ids=[*ENDS, "two tiles"],
+)
+
+
+@rows
 @pytest.mark.parametrize("rule", [{"contact_points": 3}, {"point_rule": "gauss"}], ids=str)
 def test_points_that_hold_are_the_face_as_a_whole(moving, ends, rule):
     """Joints that could slip, and do not, are summed over their points: the same sums."""
     joints = {"damping_ratio": 0.05, **rule}
-    whole = moving(1e-6, ends=ends, joints=joints)
-    points = moving(1e-6, ends=ends, joints={**joints, **HOLDS})
+    whole = moving(1e-6, **ends, joints=joints)
+    points = moving(1e-6, **ends, joints={**joints, **HOLDS})
     assert points[0].model.form.points and not whole[0].model.form.points
     for row, _ in (whole, points):
         row.take(0, STEPS)
     assert_alike(whole, points, 1e-12)
 
 
-@pytest.mark.parametrize("ends", ENDS.values(), ids=ENDS)
+@rows
 @pytest.mark.parametrize("joints", [{}, {"friction_angle": 20.0}], ids=["holding", "slipping"])
 def test_finite_rotations_are_small_ones_in_the_limit(moving, ends, joints):
     """What small rotations neglect of 1e-8 rad is 1e-8 of it, and of gaps of 1e-8 m beside levers
     of half a metre; a few times that after five steps."""
     joints = {"damping_ratio": 0.05, **joints}
-    rows = [moving(1e-8, ends=ends, joints=joints, motion__rotation=k) for k in ("small", "finite")]
-    for row, _ in rows:
+    both = [moving(1e-8, **ends, joints=joints, motion__rotation=k) for k in ("small", "finite")]
+    for row, _ in both:
         row.take(0, STEPS)
-    assert_alike(*rows, 1e-6)
+    assert_alike(*both, 1e-6)
 
 
 @pytest.mark.parametrize("ends", list(ENDS.values())[1:], ids=list(ENDS)[1:])
