@@ -1,10 +1,16 @@
 """Effects that a scene calls for; all others are left out of the computation."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 
 @dataclass(frozen=True)
@@ -21,24 +27,24 @@ def is_spatial(scene: Scene) -> bool:
     return _off_axis(scene) is not None
 
 
-def effects(scene: Scene) -> list[Effect]:
-    """Return every effect that this version knows, in the order of their cost."""
+def effects(scene: AnyScene) -> list[Effect]:
+    """Return every effect that this version knows of this kind of scene, in the order of cost."""
+    if not isinstance(scene, Scene):
+        from cases.plane.effects import effects_in_plane
+
+        return effects_in_plane(scene)
     p = calibrate(scene)
     return [
         *_of_joints(scene, p),
         *(_of_ends(scene, kind) for kind in ("quiet", "matched", "fixed")),
-        Effect(
-            "energy ledger",
-            scene.record.energy,
-            "record.energy is on" if scene.record.energy else "record.energy = false",
-        ),
-        _of_fields(scene),
+        of_ledger(scene),
+        of_fields(scene),
         *_of_motion(scene, p),
         *_of_forces(scene, p),
     ]
 
 
-def active_effects(scene: Scene) -> list[str]:
+def active_effects(scene: AnyScene) -> list[str]:
     """Return the names of the effects that the scene calls for."""
     return [effect.name for effect in effects(scene) if effect.active]
 
@@ -80,7 +86,14 @@ def _of_ends(scene: Scene, kind: str) -> Effect:
     return Effect(f"{kind} ends", bool(places), reason)
 
 
-def _of_fields(scene: Scene) -> Effect:
+def of_ledger(scene: AnyScene) -> Effect:
+    """Return whether a scene keeps its energy ledger."""
+    kept = scene.record.energy
+    return Effect("energy ledger", kept, "record.energy " + ("is on" if kept else "= false"))
+
+
+def of_fields(scene: AnyScene) -> Effect:
+    """Return whether a scene keeps snapshots of all of it."""
     every = scene.record.fields
     reason = "no record.fields" if every is None else f"a snapshot every {every:g} s"
     return Effect("field output", every is not None, reason)
@@ -127,7 +140,7 @@ def _of_forces(scene: Scene, p: Properties) -> Iterator[Effect]:
         local is not None,
         "no damping.local" if local is None else f"damping.local = {local:g}",
     )
-    yield Effect("gravity", gravity is not None, _why_gravity(scene))
+    yield Effect("gravity", gravity is not None, why_gravity(scene))
     prestress = scene.prestress
     yield Effect(
         "prestress",
@@ -138,7 +151,8 @@ def _of_forces(scene: Scene, p: Properties) -> Iterator[Effect]:
     yield Effect("shaken base", scene.load.shakes_base, quantity)
 
 
-def _why_gravity(scene: Scene) -> str:
+def why_gravity(scene: AnyScene) -> str:
+    """Return how gravity acts, in words."""
     if scene.gravity is None:
         return "no [gravity]"
     return "static at the start" if scene.gravity.static else "sudden at t = 0"

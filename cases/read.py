@@ -1,6 +1,6 @@
 """From a TOML file to validated scenes: overrides, variants, and errors in one line.
 
-A file with [pillar] holds a `Scene`, one with [domain] a `RockMass`; `load_any` reads both.
+A file with [pillar] holds a `Scene`, one with [domain] a `RockMass`.
 """
 
 from __future__ import annotations
@@ -12,13 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 from cases.errors import SceneError, nearest
 from cases.files import parse_toml, read_toml
-from cases.schema.scene import Scene
 from cases.schema.values import CONTROL
-from cases.unsolved import solved
 from cases.validate import validated
 
 if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
+    from cases.kinds import AnyScene
 
 LARGEST_FILE = 10_000_000  # bytes; a scene is a page of text
 #: It names a folder, beside what the scene's own results are called.
@@ -29,19 +27,12 @@ VARIANT_NAME = re.compile(
 MOST_VARIANTS = 1000
 
 
-def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[Scene]:
+def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[AnyScene]:
     """Read a scene file: the scene itself, then its variants, each validated on its own.
 
     `overrides` maps dotted keys to values (`--set`) and holds for every variant.
     Raises SceneError, in one line, for anything that cannot be simulated.
     """
-    return [solved(scene) for scene in load_any(path, overrides)]
-
-
-def load_any(
-    path: str | Path, overrides: dict[str, Any] | None = None
-) -> list[Scene] | list[RockMass]:
-    """Read a scene file as `load` does, whether or not its kind of scene can be simulated."""
     path = Path(path)
     table, variants = _parts(_read_toml(path), path, overrides or {})
     given = frozenset(overrides or {})
@@ -61,40 +52,30 @@ def load_variant(
     name: str = "",
     overrides: dict[str, Any] | None = None,
     asked: bool = True,
-) -> Scene:
+) -> AnyScene:
     """Read one variant of a scene file, whatever the others are; the empty name is the scene as it
     stands.
 
     asked : whether the user gave the overrides, which may then name files anywhere.
     """
-    return solved(load_any_variant(path, name, overrides, asked))
-
-
-def load_any_variant(
-    path: str | Path,
-    name: str = "",
-    overrides: dict[str, Any] | None = None,
-    asked: bool = True,
-) -> Scene | RockMass:
-    """Read one variant as `load_variant` does, whether or not it can be simulated."""
     given = frozenset(overrides or {}) if asked else frozenset()
     return _one(_read_toml(Path(path)), Path(path), name, overrides or {}, given)
 
 
 def load_tables(
     tables: dict[str, Any], name: str = "", overrides: dict[str, Any] | None = None
-) -> Scene:
+) -> AnyScene:
     """Return one variant of a scene whose file would hold these tables.
 
     Files that it names lie in the working folder or below.
     """
     given = frozenset(overrides or {})
-    return solved(_one(deepcopy(tables), Path("scene"), name, overrides or {}, given))
+    return _one(deepcopy(tables), Path("scene"), name, overrides or {}, given)
 
 
 def _one(
     whole: dict[str, Any], path: Path, name: str, overrides: dict[str, Any], given: frozenset[str]
-) -> Scene | RockMass:
+) -> AnyScene:
     """Return one variant of the tables of a whole file."""
     table, variants = _parts(whole, path, overrides)
     if not name:

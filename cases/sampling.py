@@ -10,8 +10,7 @@ import numpy as np
 from cases.errors import SceneError
 
 if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.scene import Scene
+    from cases.kinds import AnyScene
 
 MOST_STEPS = 1e12  # some five hours for a hundred rigid blocks; beyond it a mistake
 
@@ -37,14 +36,14 @@ class Clock(NamedTuple):
         return self.dt * self.stride * np.arange(self.samples)
 
 
-def sample_times(scene: Scene | RockMass) -> np.ndarray:
+def sample_times(scene: AnyScene) -> np.ndarray:
     """Return the times at which a scene is sampled [n], s."""
     count = int(scene.time.duration / scene.interval + 1e-9) + 1
     return scene.interval * np.arange(count)
 
 
 def clock(
-    scene: Scene | RockMass, critical: float, fraction: float, allow_unstable: bool, key: str
+    scene: AnyScene, critical: float, fraction: float, allow_unstable: bool, key: str
 ) -> Clock:
     """Return the largest step at most `fraction * critical` (s) that divides the interval.
 

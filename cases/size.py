@@ -20,8 +20,7 @@ from cases.errors import SceneError
 from cases.schema.plane import RecordInPlane
 
 if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.scene import Scene
+    from cases.kinds import AnyScene
 
 LIMIT = "JOINTWAVE_MEMORY"  # GB, in the environment: a bound of the user's own
 LARGEST_VARIABLE = 2**31 - 4  # bytes, of a NetCDF 3 file
@@ -76,7 +75,7 @@ def _of_machine() -> float:
     return min(found)
 
 
-def refuse_beyond_memory(scene: Scene | RockMass, parts: Mapping[str, float]) -> None:
+def refuse_beyond_memory(scene: AnyScene, parts: Mapping[str, float]) -> None:
     """Raise SceneError where a run's parts, bytes by the key that decides them, are too large."""
     if (asked := _asked.get()) is not None:
         asked.update(parts)
@@ -116,7 +115,7 @@ def within(room: float) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
 
 
-def value_of(scene: Scene | RockMass, key: str) -> object:
+def value_of(scene: AnyScene, key: str) -> object:
     """Return what a scene has at a dotted key."""
     found: object = scene
     for part in key.split("."):
@@ -131,12 +130,12 @@ def spoken(size: float) -> str:
     return f"{size / 1e9:.3g} GB" if size >= 1e9 else f"{size / 1e6:.3g} MB"
 
 
-def samples_of(scene: Scene | RockMass) -> float:
+def samples_of(scene: AnyScene) -> float:
     """Return how many samples a scene asks for."""
     return scene.time.duration / scene.interval + 1
 
 
-def waveform_bytes(scene: Scene | RockMass, spatial: bool = False) -> float:
+def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:
     """Return what the waveforms and the ledger take (bytes), written ones included.
 
     Raises SceneError where one of them would not fit a file.
@@ -168,13 +167,13 @@ def waveform_bytes(scene: Scene | RockMass, spatial: bool = False) -> float:
     return COPIES * 8 * samples * (count + (LEDGER if record.energy else 0))
 
 
-def load_bytes(scene: Scene, steps: float) -> float:
-    """Return what the load of so many steps takes (bytes) while it is made."""
-    table = scene.load.history is not None
-    return steps * (TABLE_OF_STEP if table else LOAD_OF_STEP)
+def load_bytes(scene: AnyScene, steps: float) -> float:
+    """Return what the loads of so many steps take (bytes) while they are made."""
+    tables = [one.history is not None for one in scene.pulses]
+    return steps * sum(TABLE_OF_STEP if table else LOAD_OF_STEP for table in tables)
 
 
-def snapshot_bytes(scene: Scene, nodes: float) -> float:
+def snapshot_bytes(scene: AnyScene, nodes: float) -> float:
     """Return what the snapshots of so many nodes take (bytes)."""
     fields = scene.record.fields
     return 0.0 if fields is None else (scene.time.duration / fields + 1) * nodes * 7 * 8 * COPIES

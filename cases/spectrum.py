@@ -1,14 +1,20 @@
 """Spectrum of a load: the highest frequency that matters, and the wave that it drives."""
 
+from __future__ import annotations
+
 from functools import lru_cache
 from math import asin, pi, tan
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cases.loads import LoadHistory, Recorded, Ricker, Sine, load_history
+from cases.loads import LoadHistory, Recorded, Ricker, Sine, history_of
 from cases.material.calibrate import Properties
 from cases.schema.scene import Scene
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+    from cases.schema.pulse import Pulse
 
 #: Of a load's energy, the integral of its square over time: what lies below its highest frequency.
 #: A single sine cycle ends at 1.50 / T, a Ricker wavelet at 1.67 / T.
@@ -48,24 +54,28 @@ def shortest_wave(scene: Scene, p: Properties) -> ShortestWave | None:
     return ShortestWave(frequency, speed, blocks, speed / (pi * p.spacing))
 
 
-def highest_frequency(scene: Scene) -> float | None:
-    """Return the frequency (Hz) below which 95 % of the load's energy lies.
+def highest_frequency(scene: AnyScene) -> float | None:
+    """Return the frequency (Hz) below which 95 % of the energy of each load or wave lies.
 
     Of a step, which never ends, of what acts until the end of the scene; of a shaken base of its
-    velocity. None where no load acts.
+    velocity. None where nothing acts.
     """
-    load = scene.load
-    if not load.amplitude:
+    found = (_of_pulse(one, scene.time.duration) for one in scene.pulses)
+    return max((one for one in found if one is not None), default=None)
+
+
+def _of_pulse(pulse: Pulse, duration: float) -> float | None:
+    if not pulse.amplitude:
         return None
-    if load.period is not None:
-        return _at_unit_period(load.shape, min(load.cycles or 1, MOST_CYCLES)) / load.period
-    if load.history is None:
-        return _step_frequency() / scene.time.duration
-    history = load_history(scene)
+    if pulse.period is not None:
+        return _at_unit_period(pulse.shape, min(pulse.cycles or 1, MOST_CYCLES)) / pulse.period
+    if pulse.history is None:
+        return _step_frequency() / duration
+    history = history_of(pulse, 1.0)
     assert isinstance(history, Recorded)
     if not history.stress.any():
         return None
-    return _of_record(history, load.quantity == "acceleration")
+    return _of_record(history, pulse.quantity == "acceleration")
 
 
 @lru_cache

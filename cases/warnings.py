@@ -3,8 +3,11 @@
 No rule refuses a scene: what is unusual may be meant. `--strict` takes each line for an error.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator
-from math import hypot, sqrt
+from math import hypot, nan, sqrt
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +16,10 @@ from cases.material.calibrate import Properties, calibrate
 from cases.schema.plausible import implausible
 from cases.schema.scene import Scene
 from cases.spectrum import ShortestWave, shortest_wave
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+    from cases.schema.pulse import Pulse
 
 LEAST_BLOCKS = 10.0  # and elements, a wavelength
 MOST_REFLECTED = 0.01  # by a quiet end on a rigid block, of the load's highest frequency
@@ -26,15 +33,24 @@ STATIC = 100.0
 Rule = Callable[[Scene, Properties, ShortestWave | None], Iterator[str]]
 
 
-def warnings(scene: Scene) -> list[str]:
+def warnings(scene: AnyScene) -> list[str]:
     """Return what a scene may say but hardly means, a line each; a pure function of the scene."""
+    if not isinstance(scene, Scene):
+        from cases.plane.warnings import warnings_in_plane
+
+        return warnings_in_plane(scene)
     p = calibrate(scene)
     wave = shortest_wave(scene, p)
     return [line for rule in RULES for line in rule(scene, p, wave)]
 
 
 def _of_local_damping(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
-    if scene.damping.local and wave is not None:
+    yield from of_local_damping(scene, wave is not None)
+
+
+def of_local_damping(scene: AnyScene, acts: bool) -> Iterator[str]:
+    """Warn of local damping where a load or wave acts."""
+    if scene.damping.local and acts:
         yield (
             "damping.local distorts waves: it is meant for static states, not for a scene whose "
             "load acts"
@@ -59,27 +75,38 @@ def _of_poisson(scene: Scene, p: Properties, wave: ShortestWave | None) -> Itera
 
 
 def _of_times(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
-    """Say where the load acts outside the run, or its table is not in seconds."""
-    load, end = scene.load, scene.time.duration
-    if wave is None or load.shape == "step":
+    if wave is not None:
+        crossings = p.bar_speed / (wave.frequency * scene.pillar.length)
+        yield from of_pulse("load", scene.load, scene.time.duration, crossings)
+
+
+def of_pulse(table: str, pulse: Pulse, end: float, crossings: float = nan) -> Iterator[str]:
+    """Say where a load or wave acts outside the run, or its table is not in seconds.
+
+    table : of the scene that holds it. end : of the run, s. crossings : of the pillar by a wave in
+    a period of the load's highest frequency.
+    """
+    if pulse.shape == "step":
         return
-    if load.history is not None:
-        yield from _of_table(scene, p, wave)
-    elif load.shape == "ricker" and load.period and 1.5 * load.period > end:
+    if pulse.history is not None:
+        yield from _of_table(table, pulse, end, crossings)
+    elif pulse.shape == "ricker" and pulse.period and 1.5 * pulse.period > end:
         yield (
-            f"load.period = {load.period:g} s: the wavelet peaks at 1.5 periods, after the end of "
-            f"the scene at time.duration = {end:g} s"
+            f"{table}.period = {pulse.period:g} s: the wavelet peaks at 1.5 periods, after the end "
+            f"of the scene at time.duration = {end:g} s"
         )
-    elif load.period and load.period > end:
-        yield f"load.period = {load.period:g} s is longer than the scene, time.duration = {end:g} s"
+    elif pulse.period and pulse.period > end:
+        yield (
+            f"{table}.period = {pulse.period:g} s is longer than the scene, time.duration = "
+            f"{end:g} s"
+        )
 
 
-def _of_table(scene: Scene, p: Properties, wave: ShortestWave) -> Iterator[str]:
-    history, end = scene.load.history, scene.time.duration
+def _of_table(table: str, pulse: Pulse, end: float, crossings: float) -> Iterator[str]:
+    history = pulse.history
     assert history is not None
-    last, file = float(history.time[-1]), scene.load.file
+    last, file = float(history.time[-1]), pulse.file
     peak = float(history.time[np.abs(history.stress).argmax()])
-    crossings = p.bar_speed / (wave.frequency * scene.pillar.length)
     late = peak > end
     if (late and last > LATE * end and last / 1e3 <= end) or STATIC < crossings < 1e3 * STATIC:
         why = (
@@ -88,12 +115,12 @@ def _of_table(scene: Scene, p: Properties, wave: ShortestWave) -> Iterator[str]:
             else f"a wave crosses the pillar {crossings:.3g} times in a period of them"
         )
         yield (
-            f"load.file = {file!r}: its times, up to {last:g} s, look like milliseconds ({why}): "
-            f"in seconds they are {last / 1e3:g}"
+            f"{table}.file = {file!r}: its times, up to {last:g} s, look like milliseconds "
+            f"({why}): in seconds they are {last / 1e3:g}"
         )
     elif late:
         yield (
-            f"load.file = {file!r} peaks at {peak:g} s, after the end of the scene at "
+            f"{table}.file = {file!r} peaks at {peak:g} s, after the end of the scene at "
             f"time.duration = {end:g} s"
         )
 
@@ -162,7 +189,7 @@ def _of_arrivals(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iter
     falls = scene.gravity is not None and not scene.gravity.static
     if wave is None or falls:
         return
-    begin, end, speed = _onset(scene), scene.time.duration, _fastest(scene, p)
+    begin, end, speed = onset(scene.load), scene.time.duration, _fastest(scene, p)
     for key in ("stress", "velocity"):
         for y in getattr(scene.record, key):
             if begin + y / speed >= end:
@@ -183,11 +210,11 @@ def _fastest(scene: Scene, p: Properties) -> float:
     return p.shear_speed if shear_alone or twist else p.bar_speed
 
 
-def _onset(scene: Scene) -> float:
-    """Return when a load first reaches a hundredth of its peak, s."""
-    load, history = scene.load, scene.load.history
-    if load.shape == "ricker":
-        return 0.68 * (load.period or 0.0)
+def onset(pulse: Pulse) -> float:
+    """Return when a load or wave first reaches a hundredth of its peak, s."""
+    history = pulse.history
+    if pulse.shape == "ricker":
+        return 0.68 * (pulse.period or 0.0)
     if history is None:
         return 0.0
     felt = np.abs(history.stress) >= ONSET * np.abs(history.stress).max()

@@ -8,7 +8,6 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from cases.errors import SceneError
-from cases.schema.scene import Scene
 from cases.size import refuse_beyond_memory, waveform_bytes
 from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
 from compare.solvers.dem import DEM
@@ -18,7 +17,7 @@ from numerics.checkpoint import Keeper
 if TYPE_CHECKING:
     import xarray as xr
 
-    from cases.schema.rock_mass import RockMass
+    from cases.kinds import AnyScene
     from results.dataset import Fields
 
 #: The engines by name; their packages are imported when they run.
@@ -80,7 +79,7 @@ def selection() -> dict[str, dict[str | None, str]]:
     return {**found, Solver.engine: {name: name for name in EXACT}}
 
 
-def applies(name: str, scene: Scene | RockMass) -> Answer:
+def applies(name: str, scene: AnyScene) -> Answer:
     """Return whether this engine or solution holds for the scene, or the reason why not."""
     one = solver(name)
     if scene.kind not in one.kinds:
@@ -90,7 +89,7 @@ def applies(name: str, scene: Scene | RockMass) -> Answer:
 
 def solve(
     name: str,
-    scene: Scene | RockMass,
+    scene: AnyScene,
     progress: Progress | None = None,
     comm=None,
     keeper: Keeper | None = None,
@@ -113,7 +112,7 @@ def solve(
 
 
 def solve_fields(
-    name: str, scene: Scene, progress: Progress | None, comm=None, keeper: Keeper | None = None
+    name: str, scene: AnyScene, progress: Progress | None, comm=None, keeper: Keeper | None = None
 ) -> Fields:
     """Return the result that `solve` returns as plain arrays."""
     from compare.runs.output import fields_of
@@ -124,7 +123,7 @@ def solve_fields(
     return fields_of(solve(name, scene, progress, comm, keeper))
 
 
-def _that_applies(name: str, scene: Scene | RockMass) -> Solver:
+def _that_applies(name: str, scene: AnyScene) -> Solver:
     one = solver(name)
     answer = applies(name, scene)
     if not answer:

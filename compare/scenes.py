@@ -6,13 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import cases
-from cases import read as reader
 from cases.errors import SceneError, nearest
-from cases.schema.scene import Scene
 from compare import engines as registry
 
 if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
+    from cases.kinds import AnyScene
 
 SHIPPED = Path(cases.__file__).parent
 MOST = 1000  # files of a folder that a name is looked for among
@@ -39,7 +37,7 @@ def find(scene: str) -> Path:
     return path
 
 
-def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[Scene]:
+def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[AnyScene]:
     """Return a scene and its variants as `cases.load` does; raises SceneError, too, where [expect]
     names what is no solver."""
     return [known(scene) for scene in cases.load(path, overrides)]
@@ -47,19 +45,9 @@ def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[Scen
 
 def load_variant(
     path: str | Path, name: str = "", overrides: dict[str, Any] | None = None
-) -> Scene:
+) -> AnyScene:
     """Return one variant of a scene as `cases.load_variant` does, with [expect] checked."""
     return known(cases.load_variant(path, name, overrides))
-
-
-def load_any(
-    path: str | Path, name: str | None, overrides: dict[str, Any] | None = None
-) -> list[Scene] | list[RockMass]:
-    """Return a scene and its variants, or the one that is named, whether or not an engine solves
-    its kind; with [expect] checked."""
-    if name is None:
-        return [known(scene) for scene in reader.load_any(path, overrides)]
-    return [known(reader.load_any_variant(path, name, overrides))]
 
 
 def known(scene: Any) -> Any:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from xarray import Dataset
 
+    from cases.kinds import AnyScene
     from cases.material.calibrate import Properties
     from cases.schema.scene import Scene
     from compare.experiments.fit.result import Fit
@@ -47,7 +48,7 @@ Progress = Callable[[float], None]
 
 def load(
     scene: str | Path | dict[str, Any], variant: str = "", changes: dict[str, Any] | None = None
-) -> Scene:
+) -> AnyScene:
     """Return a scene, immutable and validated.
 
     scene : a file, a shipped scene ("guo-li-2002/fig-03"), or its tables as a dictionary.
@@ -64,7 +65,7 @@ def load(
     return load_variant(_file(scene), variant, changes)
 
 
-def load_variants(scene: str | Path, changes: dict[str, Any] | None = None) -> list[Scene]:
+def load_variants(scene: str | Path, changes: dict[str, Any] | None = None) -> list[AnyScene]:
     """Return a scene and all its variants, each as `load` does."""
     from compare import scenes
 
@@ -85,16 +86,16 @@ def properties(scene: Scene) -> Properties:
     return calibrate(scene)
 
 
-def solvers(scene: Scene) -> dict[str, str]:
-    """Return all engines and exact solutions by name, with the reason why one does not hold for a
-    scene; an empty one where it does."""
-    from compare.engines import applies, names
+def solvers(scene: AnyScene) -> dict[str, str]:
+    """Return all engines and exact solutions of a scene's kind by name, with the reason why one
+    does not hold for it; an empty one where it does."""
+    from compare.misfit.ranking import applicable
 
-    return {name: applies(name, scene).reason for name in names()}
+    return {name: answer.reason for name, answer in applicable(scene).items()}
 
 
 def simulate(
-    scene: Scene, solver: str = "dem", progress: Progress | None = None, **options: Any
+    scene: AnyScene, solver: str = "dem", progress: Progress | None = None, **options: Any
 ) -> Dataset:
     """Return waveforms, energies and cost of a scene by an engine or an exact solution.
 
@@ -110,7 +111,7 @@ def simulate(
 
 
 def compare(
-    scene: Scene,
+    scene: AnyScene,
     curves: Sequence[Curves] = (),
     progress: Progress | None = None,
     align: bool = False,
@@ -132,7 +133,7 @@ def misfit(one: Dataset, other: Dataset) -> float:
     return metrics.misfit(one, other)
 
 
-def read_curves(files: Sequence[str], scenes: Sequence[Scene]) -> list[Curves]:
+def read_curves(files: Sequence[str], scenes: Sequence[AnyScene]) -> list[Curves]:
     """Return waveforms of another code, a figure or an experiment: FILE, FILE:stress@20 or
     FILE:COLUMN=stress@20 each, CSV or NetCDF."""
     from compare.misfit import external as curves

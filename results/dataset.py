@@ -17,6 +17,8 @@ from results.labels import label
 if TYPE_CHECKING:
     import xarray as xr
 
+    from cases.kinds import AnyScene
+
 #: Every term of an energy ledger, and those of the axial motion of joints that hold.
 ALL_TERMS = (
     "kinetic",
@@ -58,12 +60,13 @@ class Fields(NamedTuple):
     attributes: dict[str, Any]
 
 
-def scene_hash(scene: Scene) -> str:
-    """Return a short hash of everything that decides a result, the load's samples included."""
+def scene_hash(scene: AnyScene) -> str:
+    """Return a short hash of everything that decides a result, samples of loads included."""
     digest = hashlib.sha256(scene.model_dump_json().encode())
-    if scene.load.history is not None:
-        digest.update(scene.load.history.time.tobytes())
-        digest.update(scene.load.history.stress.tobytes())
+    for pulse in scene.pulses:
+        if pulse.history is not None:
+            digest.update(pulse.history.time.tobytes())
+            digest.update(pulse.history.stress.tobytes())
     return digest.hexdigest()[:16]
 
 
@@ -147,8 +150,15 @@ def fields(
             _of_receivers(name, bound),
             label(f"{name}_error"),
         )
+    return Fields(variables, coords, attributes_of(scene, engine, attributes))
+
+
+def attributes_of(scene: AnyScene, engine: str, own: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the attributes of a result: what it is of, what `own` says about the run, and the
+    scene itself, the longest, last, where it hides no other."""
     common = {
         "engine": engine,
+        "kind": scene.kind,
         "title": scene.title,
         "variant": scene.name,
         "scene_hash": scene_hash(scene),
@@ -156,21 +166,22 @@ def fields(
         "effects": json.dumps(active_effects(scene)),
         "warnings": json.dumps(warnings(scene)),
     }
-    # The longest last, where it hides no other.
-    about = {**common, **attributes, "scene": scene.model_dump_json()}
-    return Fields(variables, coords, about)
+    return {**common, **own, "scene": scene.model_dump_json()}
 
 
-def static_attributes(scene: Scene) -> dict[str, Any]:
+def static_attributes(scene: AnyScene) -> dict[str, Any]:
     """Return what a result says of the state that its motion starts from.
 
-    starts : "unloaded", "prestressed" or "at rest under gravity". prestress : of every section, Pa,
-    where there is one. Displacement counts from the prestressed state.
+    starts : "unloaded", "prestressed" or "at rest under gravity". prestress : of every section of a
+    pillar, Pa, where there is one; of a rock mass the first sample is the state. Displacement
+    counts from the state at the start.
     """
-    static = scene.gravity is not None and scene.gravity.static
-    pressed = {} if scene.prestress is None else {"prestress": scene.prestress.normal}
-    starts = "prestressed" if pressed else "unloaded"
-    return {"starts": "at rest under gravity" if static else starts, **pressed}
+    prestress = scene.prestress
+    normal = getattr(prestress, "normal", None)
+    pressed = {} if normal is None else {"prestress": normal}
+    if scene.gravity is not None and scene.gravity.static:
+        return {"starts": "at rest under gravity", **pressed}
+    return {"starts": "unloaded" if prestress is None else "prestressed", **pressed}
 
 
 def energy_residual(result: xr.Dataset) -> float:

@@ -1,5 +1,13 @@
 """Names and units of every variable and coordinate of a result, as plots label it."""
 
+#: Dimensions of receivers, and the coordinates that say where they are.
+RECEIVERS = {
+    "stress_y": ("stress_y",),
+    "velocity_y": ("velocity_y",),
+    "point": ("point_x", "point_y"),
+    "joint_point": ("joint_point_x", "joint_point_y"),
+}
+
 #: By name: (long name, unit; "" where it is no quantity).
 LABELS = {
     "time": ("time", "s"),

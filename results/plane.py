@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from results.dataset import Fields, Variable
+from results.dataset import Fields, Variable, attributes_of
 from results.labels import label
 
 if TYPE_CHECKING:
@@ -34,16 +32,6 @@ COMPONENTS = {
 TERMS = (
     "kinetic", "elastic", "viscous", "friction", "fracture", "boundary", "gravity", "work",
 )  # fmt: skip
-
-
-def scene_hash(scene: RockMass) -> str:
-    """Return a short hash of everything that decides a result, samples of pulses included."""
-    digest = hashlib.sha256(scene.model_dump_json().encode())
-    for pulse in (*scene.waves, *scene.loads):
-        if pulse.history is not None:
-            digest.update(pulse.history.time.tobytes())
-            digest.update(pulse.history.stress.tobytes())
-    return digest.hexdigest()[:16]
 
 
 def plane_fields(
@@ -79,7 +67,7 @@ def plane_fields(
     coords: dict[str, Variable] = {"time": (("time",), time, label("time"))}
     for name, places in (("point", scene.record.points), ("joint_point", scene.record.joints)):
         at = np.array(places, dtype=float).reshape(-1, 2)
-        coords[name] = ((name,), np.arange(len(at)), label(name))
+        coords[name] = ((name,), np.arange(len(at), dtype=np.int32), label(name))
         for k, axis in enumerate("xy"):
             coords[f"{name}_{axis}"] = ((name,), at[:, k], label(f"{name}_{axis}"))
     variables: dict[str, Variable] = {}
@@ -93,22 +81,4 @@ def plane_fields(
         coords["term"] = (("term",), np.array(list(terms)), label("term"))
     for name, bound in (errors or {}).items():
         variables[f"{name}_error"] = (DIMENSIONS[name], np.asarray(bound), label(f"{name}_error"))
-    common = {
-        "engine": engine,
-        "kind": scene.kind,
-        "title": scene.title,
-        "variant": scene.name,
-        "scene_hash": scene_hash(scene),
-        "starts": starts(scene),
-        "warnings": json.dumps([]),
-    }
-    about = {**common, **attributes, "scene": scene.model_dump_json()}
-    return Fields(variables, coords, about)
-
-
-def starts(scene: RockMass) -> str:
-    """Return the state that a scene starts from: "unloaded", "prestressed" or "at rest under
-    gravity"; of the last two the first sample is that state, which is not part of the motion."""
-    if scene.gravity is not None and scene.gravity.static:
-        return "at rest under gravity"
-    return "unloaded" if scene.prestress is None else "prestressed"
+    return Fields(variables, coords, attributes_of(scene, engine, attributes))

@@ -9,8 +9,9 @@ import pytest
 import cases
 import jointwave as jw
 from compare.experiments.robustness.case import SHORT
-from compare.misfit.external import Curves, Place
+from compare.misfit.external import Curves
 from compare.misfit.metrics import misfit
+from compare.misfit.places import Place
 from compare.scenes import find
 
 TABLES = {
@@ -58,7 +59,7 @@ def test_keys_are_fitted_and_numerics_planned():
         "gauge",
         "gauge",
         heard.time.values,
-        {Place("stress", "", 2.0): heard.stress.values[0] + noise},
+        {Place("stress", "", (2.0,)): heard.stress.values[0] + noise},
     )
     (estimate,) = jw.fit(scene, [curve], ["load.amplitude"]).estimates
     assert estimate.value == pytest.approx(2e6, rel=1e-3)

@@ -21,13 +21,15 @@ from cases.size import LIMIT, memory, refuse_beyond_memory, waveform_bytes
 from compare.engines import solve
 from compare.exact.bar import images
 from compare.experiments.study.measure import PointRow
-from compare.misfit.external_files import DIMENSIONS, read_columns
+from compare.misfit.external_files import read_columns
+from compare.misfit.places import COMPONENT_DIMENSIONS, QUANTITIES
 from compare.report import peers
 from compare.runs.checkpoint.files import Checkpoints
 from compare.runs.checkpoint.resume import result_of
 from compare.runs.output import read_kept
 from compare.runs.processes import ALONE
 from continuum.mesh.tagged import read_tagged
+from results.labels import RECEIVERS
 
 AT_ONCE = 200e6  # bytes: what reading a scene of ten million blocks takes, not one run refused here
 
@@ -281,10 +283,11 @@ def lines(path, text):
 
 
 #: Files that are small on the disk or to look at, and what a command does with them.
+NETCDF_NAMES = ["time", *QUANTITIES, *RECEIVERS, *COMPONENT_DIMENSIONS]
 BOMBS = {
     "curves as NetCDF": lambda p: read_columns(classic(p / "a.nc", 2**28, ["time"], 2**31 + 4096)),
     "curves in one place": lambda p: read_columns(
-        classic(p / "a.nc", 2**20, ["time", *DIMENSIONS, *sum(DIMENSIONS.values(), ())], 9_000_000)
+        classic(p / "a.nc", 2**20, NETCDF_NAMES, 9_000_000)
     ),
     "a result": lambda p: result_of(classic(p / "a.nc", 2**28, ["stress"], 2**31 + 4096), {}),
     "curves as CSV": lambda p: read_columns(lines(p / "a.csv", "0,0\n" * 5_000_000)),

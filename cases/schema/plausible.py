@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
-    from cases.schema.scene import Scene
+    from cases.kinds import AnyScene
 
 #: Units that values are met in, other than those of a scene file, and what makes SI of them.
 Units = tuple[tuple[str, float], ...]
@@ -44,10 +44,14 @@ OF_ROCK = {
 OF_JOINTS = {"normal_stiffness": JOINT, "shear_stiffness": JOINT, "spacing_stiffness": LAYER}
 
 
-def implausible(scene: Scene) -> Iterator[str]:
+def implausible(scene: AnyScene) -> Iterator[str]:
     """Yield a line for each constant of rock or joints that lies far outside rock's."""
-    tables = {"rock": (scene.rock, OF_ROCK), "joints": (scene.joints, OF_JOINTS)}
-    tables |= {f"soft_layers[{i}]": (s, OF_JOINTS) for i, s in enumerate(scene.soft_layers)}
+    tables: dict[str, tuple[Any, dict[str, Usual]]] = {"rock": (scene.rock, OF_ROCK)}
+    if hasattr(scene, "joints"):
+        tables["joints"] = (scene.joints, OF_JOINTS)
+    for key in ("soft_layers", "joint_sets"):
+        several = getattr(scene, key, [])
+        tables |= {f"{key}[{i}]": (one, OF_JOINTS) for i, one in enumerate(several)}
     for table, (holder, known) in tables.items():
         for key, usual in known.items():
             value = getattr(holder, key, None)

@@ -1,5 +1,6 @@
 """The pulse of a load or a wave: its shape in time, or a recorded history."""
 
+from collections.abc import Iterable
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
@@ -52,3 +53,8 @@ class Pulse(Table):
     def history(self) -> History | None:
         """The recorded history of shape "table", else None."""
         return self._history
+
+
+def shortest_period(pulses: Iterable[Pulse]) -> float | None:
+    """Return the shortest period of pulses, s; None where none has one."""
+    return min((one.period for one in pulses if one.period), default=None)

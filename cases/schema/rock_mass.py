@@ -19,6 +19,7 @@ from cases.schema.plane import (
     RecordInPlane,
     StressInPlane,
 )
+from cases.schema.pulse import shortest_period
 from cases.schema.rock_mass_checks import check
 from cases.schema.sources import PlaneLoad, Wave
 from cases.schema.tables import Time
@@ -66,6 +67,5 @@ class RockMass(Table):
     @property
     def interval(self) -> float:
         """Time between samples, s."""
-        periods = [one.period for one in self.pulses if one.period]
-        default = min(periods) / 200 if periods else self.time.duration / 2000
-        return self.record.interval or default
+        period = shortest_period(self.pulses)
+        return self.record.interval or (period / 200 if period else self.time.duration / 2000)

@@ -118,14 +118,14 @@ def _check_part(table: str, load: PlaneLoad, outline: Outline) -> None:
     assert load.between is not None
     edges = outline.edges(load.side, load.opening)
     for point in load.between:
-        if _distance(np.array(point), edges) > BESIDE * outline.size:
+        if distance(np.array(point), edges) > BESIDE * outline.size:
             on = load.side or f"openings[{load.opening}]"
             raise contradiction(f"{table}.between", point, f"must lie on {on}")
     if load.between[0] == load.between[1]:
         raise contradiction(f"{table}.between", load.between, "must be two points")
 
 
-def _distance(point: np.ndarray, edges: np.ndarray) -> float:
+def distance(point: np.ndarray, edges: np.ndarray) -> float:
     """Return the distance of a point from the nearest of some edges [n, 2, 2], m."""
     start, along = edges[:, 0], edges[:, 1] - edges[:, 0]
     t = ((point - start) * along).sum(axis=1) / (along**2).sum(axis=1)

@@ -13,6 +13,7 @@ from cases.schema.consistency import check
 from cases.schema.damping import Damping, Rayleigh
 from cases.schema.joint import JointLaw, Joints, SoftLayer
 from cases.schema.loading import NO_LOAD, Load
+from cases.schema.pulse import shortest_period
 from cases.schema.tables import (
     ContinuumNumerics,
     DemNumerics,
@@ -92,9 +93,8 @@ class Scene(Table):
     @property
     def interval(self) -> float:
         """Time between samples, s."""
-        return self.record.interval or (
-            self.load.period / 200 if self.load.period else self.time.duration / 2000
-        )
+        period = shortest_period(self.pulses)
+        return self.record.interval or (period / 200 if period else self.time.duration / 2000)
 
     @property
     def layers(self) -> list[SoftLayer]:

@@ -8,16 +8,15 @@ from typing import TYPE_CHECKING
 from cases.schema.values import contradiction
 
 if TYPE_CHECKING:
+    from cases.kinds import AnyScene
     from cases.schema.joint import JointLaw
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.scene import Scene
 
 MOST_SAMPLES = 10_000_000  # 80 MB for each section, point and energy term
 MOST_SNAPSHOTS = 10_000
 SNAP = 1 + 1e-6  # how far the fracture energy must stay from a vertical softening line
 
 
-def check_time(scene: Scene | RockMass) -> None:
+def check_time(scene: AnyScene) -> None:
     """Raise a contradiction between the sampling interval and the duration."""
     interval, duration = scene.interval, scene.time.duration
     if interval > duration:
@@ -30,7 +29,7 @@ def check_time(scene: Scene | RockMass) -> None:
         )
 
 
-def check_fields(scene: Scene | RockMass) -> None:
+def check_fields(scene: AnyScene) -> None:
     """Raise a contradiction between the times of snapshots, of samples and the duration."""
     fields, interval, duration = scene.record.fields, scene.interval, scene.time.duration
     if fields is None:

@@ -36,8 +36,9 @@ def _show_answer(found: list[Comparison], every: bool) -> None:
     several = len(found) > 1
     count = f" ({len(found)} variants, the worst of each engine)" if several else ""
     say(f"{found[0].scene.title}{count or f' {found[0].scene.name}'}".rstrip(), "bold")
-    show_table(ANSWER, [_engine_cells(e, one, found, several) for e, one in stand.items()])
-    below = [*_remarks(stand, several)]
+    if stand:
+        show_table(ANSWER, [_engine_cells(e, one, found, several) for e, one in stand.items()])
+    below = [*_remarks(stand, several), *([] if stand else _without_engine(found[0]))]
     hint = "" if every else HINT
     room = MOST_LINES - 2 - len(stand) - len(below) - bool(hint)
     files = [*_files(found)]
@@ -91,6 +92,12 @@ def _remarks(stand: dict[str, Standing], several: bool) -> Iterator[str]:
         yield f"beyond the scene's bound: {', '.join(broken)}"
 
 
+def _without_engine(comparison: Comparison) -> Iterator[str]:
+    """Yield what solves a scene that no engine does, and why they do not."""
+    yield f"no engine solves it; exact: {', '.join(comparison.results) or 'none'}"
+    yield from (f"{name}: {why}" for name, why in comparison.reasons.items() if name in ENGINES)
+
+
 def _files(found: list[Comparison]) -> Iterator[str]:
     """Yield a line for each file of others in each variant: its worst misfit from each engine."""
     for comparison in found:
@@ -112,7 +119,7 @@ def _files(found: list[Comparison]) -> Iterator[str]:
 def _file_part(row: Row) -> str:
     """Return how far a curve is from one engine; its peak over the engine's, data over model."""
     far, peak = percent(row.distance.misfit), _number(row.distance.peak_ratio, ".3f")
-    return f"{far} % from {row.pair.other} ({row.quantity} at {row.y:g} m, data/model {peak})"
+    return f"{far} % from {row.pair.other} ({row.place.words}, data/model {peak})"
 
 
 def _show_distances(comparison: Comparison) -> None:
@@ -178,7 +185,7 @@ def _distance_cells(row: Row) -> list[str]:
     d = row.distance
     return [
         f"{row.pair.one} ~ {row.pair.other}",
-        f"{row.quantity} {row.y:g} m",
+        f"{row.place.named} {row.place.receiver}",
         _number(d.misfit, ".3%"),
         _number(d.peak_ratio, ".4f"),
         _number(1e3 * d.delay, "+.3f"),
@@ -200,11 +207,7 @@ def _comparison_facts(comparison: Comparison) -> dict[str, Any]:
         "variant": comparison.scene.name,
         "warnings": json.loads(results[0].attrs["warnings"]) if results else [],
         "engines": {name: _engine_facts(name, comparison) for name in engines},
-        "rows": [
-            {**r.pair._asdict(), "quantity": r.quantity, "y": r.y, **r.distance._asdict()}
-            | {"floor": r.floor, "faint": r.faint}
-            for r in comparison.rows
-        ],
+        "rows": [r.facts | {"floor": r.floor, "faint": r.faint} for r in comparison.rows],
         "curves": [_curve_facts(beside) for beside in comparison.besides],
         "energy_residual": _residuals(comparison),
         "does_not_apply": comparison.reasons,

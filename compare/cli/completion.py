@@ -13,7 +13,7 @@ from typing import Any, Literal, get_args, get_origin
 import typer
 
 import cases
-from cases.read import load_any
+from cases.read import load
 from compare.scenes import find, names
 
 
@@ -43,7 +43,7 @@ def variants(context: typer.Context, incomplete: str) -> list[str]:
     unread = [text for text in context.args if not text.startswith("-")]
     scene = context.params.get("scene") or next(iter(unread), "")
     with suppress(cases.SceneError):
-        return _quoted(_begun([one.name for one in load_any(find(scene))[1:]], incomplete))
+        return _quoted(_begun([one.name for one in load(find(scene))[1:]], incomplete))
     return []
 
 

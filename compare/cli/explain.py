@@ -1,37 +1,47 @@
 """A scene before any run: its effects, its critical steps, its exact solutions."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cases.effects import Effect, effects
+from cases.errors import SceneError
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
+from compare.cli.partition_view import partition_facts
 from compare.engines import ENGINES, solver
 from compare.experiments.cost import timings
 from compare.experiments.cost.step_cost import nanoseconds, remembered_whole, whole
 from compare.misfit.ranking import Reference, applicable, reference_of
 from compare.solvers.record import Answer, Prepared
 
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+
 
 class Explanation(NamedTuple):
     """Everything that can be said of a scene but what comes out of it.
 
-    runs : of each engine that applies, with its step. references : what each engine is held
-    against; None where nothing checks it independently. block_step, with_everything : what a step
-    of one rigid block costs here, of this scene and with every effect, ns; None where it was never
-    measured.
+    properties : of a pillar. blocks : of a rock mass, see `partition_view`. runs : of each engine
+    that applies, with its step; failures : why one that applies could not run. references : what
+    each engine is held against; None where nothing checks it independently. block_step,
+    with_everything : what a step of one rigid block of a pillar costs here, of this scene and with
+    every effect, ns; None where it was never measured.
     """
 
-    scene: Scene
-    properties: Properties
+    scene: AnyScene
+    properties: Properties | None
+    blocks: dict[str, Any] | None
     effects: list[Effect]
     runs: dict[str, Prepared]
+    failures: dict[str, str]
     answers: dict[str, Answer]
     references: dict[str, Reference | None]
     block_step: float | None
     with_everything: float | None
 
 
-def explanation(scene: Scene, measured: bool = False) -> Explanation:
+def explanation(scene: AnyScene, measured: bool = False) -> Explanation:
     """Return what a scene calls for, what is left out, and what can solve it.
 
     measured : step some blocks to say what they cost, which may compile kernels for a minute; else
@@ -39,11 +49,30 @@ def explanation(scene: Scene, measured: bool = False) -> Explanation:
     """
     answers = applicable(scene)
     able = [name for name, answer in answers.items() if answer]
-    engines = [name for name in ENGINES if answers[name]]
+    engines = [name for name in ENGINES if name in able]
     references = {name: reference_of(name, able, scene) for name in engines}
-    runs = {name: solver(name).prepare(scene) for name in engines}
-    cost = _cost(scene, measured)
-    return Explanation(scene, calibrate(scene), effects(scene), runs, answers, references, *cost)
+    if isinstance(scene, Scene):
+        properties, blocks, cost = calibrate(scene), None, _cost(scene, measured)
+    else:
+        properties, blocks, cost = None, partition_facts(scene), (None, None)
+    runs, failures = _prepared(scene, engines)
+    about = effects(scene), runs, failures, answers, references
+    return Explanation(scene, properties, blocks, *about, *cost)
+
+
+def _prepared(scene: AnyScene, engines: list[str]) -> tuple[dict[str, Prepared], dict[str, str]]:
+    """Return the runs of engines before their first step, and why others cannot run; raises
+    SceneError of the first where none can."""
+    runs, failures, errors = {}, {}, []
+    for name in engines:
+        try:
+            runs[name] = solver(name).prepare(scene)
+        except SceneError as error:
+            failures[name] = str(error)
+            errors.append(error)
+    if errors and not runs:
+        raise errors[0]
+    return runs, failures
 
 
 def _cost(scene: Scene, measured: bool) -> tuple[float | None, float | None]:

@@ -2,6 +2,7 @@
 
 import os
 import sys
+from collections.abc import Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,6 +11,7 @@ import typer
 
 import cases
 from cases.errors import SceneError, printable
+from cases.kinds import pillar_of
 from compare import scenes
 from compare.cli import completion
 from compare.engines import selection
@@ -17,7 +19,7 @@ from compare.runs.processes import started
 from compare.scenes import find
 
 if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
+    from cases.kinds import AnyScene
 
 app = typer.Typer(
     epilog="Start with: jointwave list, jointwave compare guo-li-2002/fig-03, jointwave report",
@@ -116,33 +118,37 @@ def root(
 
 def load(
     scene: str, changes: list[str], variant: str | None, strict: bool = False
-) -> list[cases.Scene]:
+) -> list["AnyScene"]:
     """Return a file's variants, or the one that is named, with `--set` applied, warned of."""
-    from cases.unsolved import solved
+    from cases.read import parse_override
 
-    found = [solved(one) for one in load_any(scene, changes, variant)]
+    overrides, path = dict(parse_override(text) for text in changes), find(scene)
+    if variant is None:
+        found = scenes.load(path, overrides)
+    else:
+        found = [scenes.load_variant(path, variant, overrides)]
     warn(found, strict)
     return found
 
 
-def load_any(
-    scene: str, changes: list[str], variant: str | None
-) -> list[cases.Scene] | list["RockMass"]:
-    """Return scenes as `load` does, of any kind, and without a warning."""
-    from cases.read import parse_override
+def load_pillars(
+    scene: str, changes: list[str], variant: str | None, strict: bool, what: str
+) -> list[cases.Scene]:
+    """Return scenes as `load` does; raises SceneError of a rock mass.
 
-    overrides = dict(parse_override(text) for text in changes)
-    return scenes.load_any(find(scene), variant, overrides)
+    what : the command, which takes pillars alone.
+    """
+    return [pillar_of(one, what) for one in load(scene, changes, variant, strict)]
 
 
-def warn(scenes: list[cases.Scene], strict: bool = False) -> None:
+def warn(scenes: Sequence["AnyScene"], strict: bool = False) -> None:
     """Print what scenes say but hardly mean, a line each; strict : it is an error.
 
     Raises SceneError of the first line, with the number of the others.
     """
     from cases.warnings import warnings
 
-    found: dict[str, list[cases.Scene]] = {}
+    found: dict[str, list[AnyScene]] = {}
     for scene in scenes:
         for line in warnings(scene):
             found.setdefault(line, []).append(scene)
@@ -154,7 +160,7 @@ def warn(scenes: list[cases.Scene], strict: bool = False) -> None:
         print(f"jointwave: warning: {printable(line)}", file=sys.stderr)
 
 
-def _whose(said: list[cases.Scene], scenes: list[cases.Scene]) -> str:
+def _whose(said: Sequence["AnyScene"], scenes: Sequence["AnyScene"]) -> str:
     """Return which variants say what is warned of, where not all do."""
     if len(said) == len(scenes):
         return ""

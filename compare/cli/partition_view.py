@@ -1,4 +1,4 @@
-"""Output of `jointwave explain` for a rock mass: the blocks that it is cut into."""
+"""What `jointwave explain` says of a rock mass: the blocks that it is cut into."""
 
 from __future__ import annotations
 
@@ -7,48 +7,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cases.size import spoken
-from compare.cli.terminal import print_json, say, show_table
+from compare.cli.terminal import say, show_table
 
 if TYPE_CHECKING:
     from cases.partition.blocks import Partition
     from cases.schema.rock_mass import RockMass
 
 
-def show(scene: RockMass, as_json: bool) -> None:
-    """Cut a rock mass into blocks and print what they are."""
+def partition_facts(scene: RockMass) -> dict[str, Any]:
+    """Cut a rock mass into blocks and return what they are, SI."""
     from cases.partition.scene import partition_bytes, partition_of
 
     found = partition_of(scene)
-    facts = _facts(scene, found) | {"bytes": found.nbytes, "bytes_at_most": partition_bytes(scene)}
-    if as_json:
-        print_json(facts)
-        return
-    say(f"{scene.title} {scene.name}".rstrip(), "bold")
-    say(f"{facts['blocks']:,} blocks, {facts['area']:.6g} m2 in all")
-    for word in ("smallest", "largest"):
-        one = facts[word]
-        x, y = one["centroid"]
-        say(f"{word} block: {one['area']:.4g} m2, at [{x:.4g}, {y:.4g}]")
-    rows = [[name, f"{one['contacts']:,}", f"{one['length']:.6g}"] for name, one in _rows(facts)]
-    show_table(["joint set", "contacts", "length, m"], rows)
-    sides = [[name, f"{n:,}"] for name, n in facts["boundary"].items()]
-    show_table(["side", "edges"], sides)
-    say(f"memory: {spoken(found.nbytes)}, at most {spoken(facts['bytes_at_most'])} while it is cut")
-    say("no engine solves rock masses yet")
-
-
-def _rows(facts: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
-    """Return the joint sets, and the cuts through intact rock where there are some."""
-    cuts = facts["cuts_through_rock"]
-    return [*facts["joint_sets"].items(), *([("(cuts in rock)", cuts)] if cuts["contacts"] else [])]
-
-
-def _facts(scene: RockMass, found: Partition) -> dict[str, Any]:
     per_set = {name: _of_set(found, k) for k, name in enumerate(found.joint_sets)}
     sides = np.bincount(found.boundary.side, minlength=len(found.sides))
     return {
-        "title": scene.title,
-        "variant": scene.name,
         "blocks": found.count,
         "area": float(found.area.sum()),
         "smallest": _block(found, int(np.argmin(found.area))),
@@ -56,7 +29,29 @@ def _facts(scene: RockMass, found: Partition) -> dict[str, Any]:
         "joint_sets": per_set,
         "cuts_through_rock": _of_set(found, -1),
         "boundary": {name: int(n) for name, n in zip(found.sides, sides, strict=True) if n},
+        "bytes": found.nbytes,
+        "bytes_at_most": partition_bytes(scene),
     }
+
+
+def show_partition(facts: dict[str, Any]) -> None:
+    """Print the blocks of a rock mass."""
+    say(f"{facts['blocks']:,} blocks, {facts['area']:.6g} m2 in all")
+    for word in ("smallest", "largest"):
+        one = facts[word]
+        x, y = one["centroid"]
+        say(f"{word} block: {one['area']:.4g} m2, at [{x:.4g}, {y:.4g}]")
+    rows = [[name, f"{one['contacts']:,}", f"{one['length']:.6g}"] for name, one in _rows(facts)]
+    show_table(["joint set", "contacts", "length, m"], rows)
+    show_table(["side", "edges"], [[name, f"{n:,}"] for name, n in facts["boundary"].items()])
+    at_most = spoken(facts["bytes_at_most"])
+    say(f"memory of the blocks: {spoken(facts['bytes'])}, at most {at_most} while they are cut")
+
+
+def _rows(facts: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
+    """Return the joint sets, and the cuts through intact rock where there are some."""
+    cuts = facts["cuts_through_rock"]
+    return [*facts["joint_sets"].items(), *([("(cuts in rock)", cuts)] if cuts["contacts"] else [])]
 
 
 def _of_set(found: Partition, index: int) -> dict[str, Any]:

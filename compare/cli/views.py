@@ -5,10 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cases.schema.scene import Scene
+from cases.size import spoken
+from compare.cli.partition_view import show_partition
 from compare.cli.terminal import print_json, say, show_numbers, show_table
 
 if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+    from cases.material.calibrate import Properties
     from compare.cli.explain import Explanation
     from compare.report.report import Report
     from compare.runs.run import Done
@@ -16,7 +19,7 @@ if TYPE_CHECKING:
 MOST_PIECES = 8  # in a line
 
 
-def show_scenes(rows: list[tuple[Path, list[Scene]]], as_json: bool) -> None:
+def show_scenes(rows: list[tuple[Path, list[AnyScene]]], as_json: bool) -> None:
     """Print the shipped scenes."""
     facts: list[dict[str, Any]] = [
         {
@@ -100,20 +103,29 @@ def show_explanation(found: Explanation, as_json: bool) -> None:
     if as_json:
         print_json(_explanation_facts(found))
         return
-    p = found.properties
-    say(f"{found.scene.title} {found.scene.name}", "bold")
-    say(
-        f"{p.block_count} blocks of {p.spacing:g} m; E_eq {p.modulus:.4g} Pa, Poisson "
-        f"{p.poisson:.4g}, bar speed {p.bar_speed:.5g} m/s, K'_n {p.regular_stiffness:.4g} Pa/m"
-    )
+    say(f"{found.scene.title} {found.scene.name}".rstrip(), "bold")
+    if found.properties is not None:
+        _show_properties(found.properties)
+    if found.blocks is not None:
+        show_partition(found.blocks)
     effects = [[e.name, "yes" if e.active else "left out", e.reason] for e in found.effects]
     show_table(["effect", "computed", "because"], effects)
     steps = [
-        [name, f"{r.critical:.4g}", f"{r.dt:.4g}", f"{r.dt / r.critical:.3g}", f"{r.steps:,}"]
+        [
+            name,
+            f"{r.critical:.4g}",
+            f"{r.dt:.4g}",
+            f"{r.dt / r.critical:.3g}",
+            f"{r.steps:,}",
+            spoken(r.bytes),
+        ]
         for name, r in found.runs.items()
     ]
-    show_table(["engine", "critical step, s", "step, s", "fraction", "steps"], steps)
-    say(_cost_sentence(found.block_step, found.with_everything))
+    show_table(["engine", "critical step, s", "step, s", "fraction", "steps", "memory"], steps)
+    for name, reason in found.failures.items():
+        say(f"{name} cannot run: {reason}")
+    if found.properties is not None:
+        say(_cost_sentence(found.block_step, found.with_everything))
     answers = [[k, "yes" if a else "no", a.reason] for k, a in found.answers.items()]
     show_table(["solution", "applies", "why not"], answers)
     for engine, reference in found.references.items():
@@ -121,6 +133,13 @@ def show_explanation(found: Explanation, as_json: bool) -> None:
         if reference is not None:
             held = f"held against {reference.name}: {reference.reason}"
         say(f"{engine} is {held}")
+
+
+def _show_properties(p: Properties) -> None:
+    say(
+        f"{p.block_count} blocks of {p.spacing:g} m; E_eq {p.modulus:.4g} Pa, Poisson "
+        f"{p.poisson:.4g}, bar speed {p.bar_speed:.5g} m/s, K'_n {p.regular_stiffness:.4g} Pa/m"
+    )
 
 
 def _cost_sentence(own: float | None, everything: float | None) -> str:
@@ -133,20 +152,29 @@ def _cost_sentence(own: float | None, everything: float | None) -> str:
     return f"{said}, {100 * own / everything:.2g} % of the {everything:.2g} ns with every effect"
 
 
+def _properties_facts(p: Properties) -> dict[str, Any]:
+    return {
+        "blocks": p.block_count,
+        "bar_speed": p.bar_speed,
+        "equivalent_modulus": p.modulus,
+        "poisson": p.poisson,
+    }
+
+
 def _explanation_facts(found: Explanation) -> dict[str, Any]:
     p = found.properties
     return {
         "title": found.scene.title,
         "variant": found.scene.name,
-        "blocks": p.block_count,
-        "bar_speed": p.bar_speed,
-        "equivalent_modulus": p.modulus,
-        "poisson": p.poisson,
+        **(_properties_facts(p) if p is not None else {}),
+        **(found.blocks or {}),
         "effects": {e.name: {"active": e.active, "why": e.reason} for e in found.effects},
         "steps": [
             {"engine": name, "critical": r.critical, "dt": r.dt, "steps": r.steps}
+            | {"bytes": r.bytes}
             for name, r in found.runs.items()
         ],
+        "cannot_run": found.failures,
         "nanoseconds_per_block_step": found.block_step,
         "nanoseconds_with_everything": found.with_everything,
         "references": {k: r._asdict() if r else None for k, r in found.references.items()},

@@ -5,12 +5,11 @@ their own: by solution in one variant, or by variant of one engine.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pandas as pd
 
-from cases.schema.scene import Scene
 from compare.engines import ENGINES
 from compare.figures.charts.chart import ChartLine, Subplot
 from compare.figures.style import Style, given_style, in_order, style
@@ -19,11 +18,18 @@ from compare.figures.subplots import Panel, panels
 from compare.figures.units import Unit, unit_for
 from compare.misfit.pairs import Comparison
 
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+
 #: Factor from SI to the unit that is drawn, and that unit.
 UNITS = {
     "stress": (1e-6, "MPa"),
     "shear": (1e-6, "MPa"),
+    "traction": (1e-6, "MPa"),
     "velocity": (1.0, "m/s"),
+    "displacement": (1e3, "mm"),
+    "gap": (1e3, "mm"),
+    "slip": (1e3, "mm"),
     "rotation": (1e3, "mrad"),
 }
 #: Of a scene what does not change its physics, or changes how it is solved alone.
@@ -139,7 +145,7 @@ def by_solution(panel: Panel) -> Overlay:
         if (name := beside.curves.name) in given:
             drawn, marker = given_style(k, len(beside.time))
             traces.append(Trace(name, drawn, given[name], None, f"given-{k}", marker))
-    heading = f"{panel.place}, {panel.variant}"
+    heading = f"{panel.heading}, {panel.variant}"
     return Overlay(heading, panel.quantity, panel.at_rest, traces, panel.reference)
 
 
@@ -151,7 +157,7 @@ def by_variant(comparisons: list[Comparison]) -> list[list[Overlay]]:
     if not 2 <= len(comparisons) <= MOST or changed_key(comparisons) is None:
         return []
     rows = [list(row) for row in zip(*panels(comparisons), strict=False)]
-    if any(len({(p.quantity, p.y, p.component) for p in row}) > 1 for row in rows):
+    if any(len({p.place for p in row}) > 1 for row in rows):
         return []
     return [[_of_engine(engine, row) for engine in _engines(comparisons)] for row in rows]
 
@@ -194,10 +200,10 @@ def _of_engine(engine: str, row: list[Panel]) -> Overlay:
     rest = {panel.at_rest for panel in row}
     at_rest = rest.pop() if len(rest) == 1 else 0.0
     known = references.pop() if len(references) == 1 else f"the {REFERENCE}"
-    return Overlay(f"{engine}, {row[0].place}", row[0].quantity, at_rest, traces, known)
+    return Overlay(f"{engine}, {row[0].heading}", row[0].quantity, at_rest, traces, known)
 
 
-def _flat(scene: Scene) -> dict[str, object]:
+def _flat(scene: AnyScene) -> dict[str, object]:
     """Return what decides a scene's physics, by dotted key."""
     found: dict[str, object] = {}
     for name, value in scene.model_dump(exclude=ASIDE).items():

@@ -2,8 +2,10 @@
 state; and the table of every waveform in them, as it was recorded.
 """
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -11,50 +13,65 @@ import xarray as xr
 
 from cases.schema.scene import Scene
 from compare.figures.style import in_order
-from compare.misfit.external import Place
-from compare.misfit.metrics import motion
+from compare.misfit.metrics import FAINT, motion
 from compare.misfit.pairs import Comparison
+from compare.misfit.places import Place, places_of, recorded
 from compare.misfit.ranking import finest
 
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+
 #: SI units of what panels show.
-UNITS = {"stress": "Pa", "shear": "Pa", "velocity": "m/s", "rotation": "rad"}
+UNITS = {
+    "stress": "Pa",
+    "shear": "Pa",
+    "traction": "Pa",
+    "velocity": "m/s",
+    "displacement": "m",
+    "gap": "m",
+    "slip": "m",
+    "rotation": "rad",
+}
 
 FORCES, MOTION, ROTATION = ("stress", "shear"), ("velocity",), ("rotation",)
+#: What panels show at the receivers of a pillar, by their key of [record]: the first group that
+#: moves; and at those of a rock mass, every component of which that moves.
+OF_PILLAR = {"stress": (FORCES, ROTATION), "velocity": (MOTION, ROTATION)}
+IN_PLANE = {"points": "velocity", "joints": "traction"}
 
 
 class Panel(NamedTuple):
-    """One panel: the receiver-th place (at y, m) of a quantity in one variant.
+    """One panel: a place in one variant, the receiver-th of its quantity.
 
     component : the index of the one that is shown, None where the quantity has only one.
     """
 
     comparison: Comparison
     variant: str
-    quantity: str
+    place: Place
     receiver: int
-    y: float
     component: int | None = None
 
     @property
-    def place(self) -> str:
+    def quantity(self) -> str:
+        """The quantity that is shown."""
+        return self.place.quantity
+
+    @property
+    def heading(self) -> str:
         """Quantity, component and receiver, in words."""
-        return f"{self.quantity} {self.axis}".rstrip() + f" at y = {self.y:.12g} m"
+        return self.place.heading
 
     @property
     def given(self) -> dict[str, pd.Series]:
         """The curves of others here: their own samples while the scene lasts, by their file."""
-        axis = self.axis or ("" if self.quantity in FORCES else "y")
-        place = Place(self.quantity, axis, self.y)
+        along = not self.place.component and self.quantity in ("velocity", "displacement")
+        place = self.place._replace(component="y") if along else self.place
         return {
             beside.curves.name: beside.series(place)
             for beside in self.comparison.besides
             if place in beside.curves.waveforms
         }
-
-    @property
-    def axis(self) -> str:
-        """The component that is shown: x, y or z; empty where the quantity has only one."""
-        return axis_of(self.quantity, self.component)
 
     @property
     def recorded(self) -> dict[str, pd.Series]:
@@ -103,17 +120,36 @@ class Panel(NamedTuple):
 def panels(comparisons: list[Comparison]) -> list[list[Panel]]:
     """Return the panels of every variant, a row each.
 
-    Of a spatial scene each shows the largest component: of stress and shear, of velocity, and of
-    rotation where nothing is displaced.
+    Of a spatial pillar each shows the largest component: of stress and shear, of velocity, and of
+    rotation where nothing is displaced. Of a rock mass there is one for each component of velocity
+    at points, and of traction at joints, that is not faint beside the other.
     """
-    rows = []
-    for comparison, name in zip(comparisons, variant_names(comparisons), strict=True):
-        record = comparison.scene.record
-        rows.append(
-            [_panel(comparison, name, FORCES, i, y) for i, y in enumerate(record.stress)]
-            + [_panel(comparison, name, MOTION, i, y) for i, y in enumerate(record.velocity)]
-        )
-    return rows
+    found = zip(comparisons, variant_names(comparisons), strict=True)
+    return [[*_panels(comparison, name)] for comparison, name in found]
+
+
+def _panels(comparison: Comparison, name: str) -> Iterator[Panel]:
+    scene = comparison.scene
+    for key, groups in OF_PILLAR.items():
+        for i, at in enumerate(recorded(scene, key)):
+            yield _panel(comparison, name, groups, i, at)
+    for key, quantity in IN_PLANE.items():
+        for i, at in enumerate(recorded(scene, key)):
+            for component, word in _moving(comparison, quantity, i):
+                yield Panel(comparison, name, Place(quantity, word, at), i, component)
+
+
+def _moving(comparison: Comparison, quantity: str, receiver: int) -> list[tuple[int, str]]:
+    """Return the components of a quantity that are not faint beside the loudest at a receiver, of
+    the first solution that has it, with their names; the first of them where nothing moves."""
+    results = comparison.results
+    result = next((results[n] for n in in_order(set(results)) if quantity in results[n]), None)
+    if result is None:
+        return []
+    peaks = np.abs(motion(result, quantity)[receiver]).max(axis=0)
+    moving = (peaks > 0) & (peaks >= FAINT * peaks.max())
+    names = places_of(result, quantity)[1]
+    return [(int(k), names[k]) for k in np.flatnonzero(moving)] or [(0, names[0])]
 
 
 def in_page(rows: list[list[Panel]]) -> list[list[Panel]]:
@@ -132,12 +168,17 @@ def in_page(rows: list[list[Panel]]) -> list[list[Panel]]:
 
 
 def _panel(
-    comparison: Comparison, name: str, quantities: tuple[str, ...], receiver: int, y: float
+    comparison: Comparison,
+    name: str,
+    groups: Sequence[tuple[str, ...]],
+    receiver: int,
+    at: tuple[float, ...],
 ) -> Panel:
     """Return the panel of the quantity and component with the largest peak at a receiver."""
     first = comparison.results[in_order(set(comparison.results))[0]]
-    quantity, component = loudest(first, (quantities, ROTATION), receiver)
-    return Panel(comparison, name, quantity, receiver, y, component)
+    quantity, component = loudest(first, groups, receiver)
+    place = Place(quantity, axis_of(quantity, component), at)
+    return Panel(comparison, name, place, receiver, component)
 
 
 def loudest(
@@ -181,7 +222,9 @@ def variant_names(comparisons: list[Comparison]) -> list[str]:
     return [name.replace("zeta ", "ζ = ") for name in names]
 
 
-def _base_name(base: Scene, variants: list[Scene]) -> str:
+def _base_name(base: AnyScene, variants: list[AnyScene]) -> str:
+    if not isinstance(base, Scene):
+        return "as it stands"
     ratio = base.joints.damping_ratio
     words = {
         "damping": "undamped" if ratio is None else f"ζ = {ratio:g}",
@@ -195,7 +238,7 @@ def _base_name(base: Scene, variants: list[Scene]) -> str:
     return ", ".join(words[key] for key in words if key in changed) or unknown
 
 
-def _part(scene: Scene, key: str) -> object:
+def _part(scene: Any, key: str) -> object:
     return {
         "damping": scene.joints.damping_ratio,
         "start": scene.ends.start,
@@ -216,5 +259,5 @@ def curve_table(comparisons: list[Comparison]) -> pd.DataFrame:
         for panel in row:
             unit = UNITS[panel.quantity]
             for name, curve in [*panel.recorded.items(), *panel.given.items()]:
-                columns[f"{name} | {panel.place} | {panel.variant} ({unit})"] = curve
+                columns[f"{name} | {panel.heading} | {panel.variant} ({unit})"] = curve
     return pd.DataFrame(columns).rename_axis("time (s)")

@@ -9,9 +9,12 @@ curves of a file, by the cross-correlation with the solution that then fits best
 scaled.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import nan
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -19,10 +22,13 @@ import xarray as xr
 
 from cases.errors import SceneError
 from cases.sampling import sample_times
-from cases.schema.scene import Scene
-from compare.misfit.external import Curves, Place
+from compare.misfit.external import Curves
 from compare.misfit.external_files import LEAST_SAMPLES
 from compare.misfit.metrics import Distance, delay, distance, relative_l2, static_state
+from compare.misfit.places import Place
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 MOST_SAMPLES = 4_000_000  # of a curve at a scene's interval, when its clock is moved
 INSTANT = 1e-12  # s; times are told apart from there on, in the tables too
@@ -71,7 +77,7 @@ class Beside:
         return found[~found.index.duplicated()]
 
 
-def lay_beside(curves: Curves, scene: Scene, results: Results, align: bool) -> Beside:
+def lay_beside(curves: Curves, scene: AnyScene, results: Results, align: bool) -> Beside:
     """Return a file's curves beside all results of a scene; `align` moves their clock.
 
     Raises SceneError where curve and scene share fewer than three samples.
@@ -99,7 +105,7 @@ def distances(
         yield name, place, distance_at(time, *pair, spectral)
 
 
-def common_times(curves: Curves, scene: Scene) -> tuple[np.ndarray, bool]:
+def common_times(curves: Curves, scene: AnyScene) -> tuple[np.ndarray, bool]:
     """Return the times [n] at which a curve is compared, s, and whether they are its own.
 
     Raises SceneError where they are fewer than three.
@@ -170,7 +176,7 @@ def _missed(t: np.ndarray, values: np.ndarray, time: np.ndarray) -> float:
     return relative_l2(lines, values[inside])
 
 
-def _shift(curves: Curves, scene: Scene, results: Results) -> Shift:
+def _shift(curves: Curves, scene: AnyScene, results: Results) -> Shift:
     """Return the shift onto the solution whose cross-correlation leaves the best fit."""
     count = (curves.time[-1] - curves.time[0]) / scene.interval
     if count > MOST_SAMPLES:
@@ -181,7 +187,7 @@ def _shift(curves: Curves, scene: Scene, results: Results) -> Shift:
     return max(fitting, key=lambda shift: shift.correlation, default=Shift())
 
 
-def _shift_onto(name: str, curves: Curves, scene: Scene, result: Results) -> Shift | None:
+def _shift_onto(name: str, curves: Curves, scene: AnyScene, result: Results) -> Shift | None:
     """Return the shift onto one solution; None where either has nothing but zeros.
 
     All places count alike, each waveform divided by the solution's norm.
@@ -204,7 +210,7 @@ def _shift_onto(name: str, curves: Curves, scene: Scene, result: Results) -> Shi
         return None
 
 
-def _refined(seconds: float, name: str, curves: Curves, scene: Scene, result: Results) -> Shift:
+def _refined(seconds: float, name: str, curves: Curves, scene: AnyScene, result: Results) -> Shift:
     """Return the shift near `seconds` where the correlation at the samples themselves is largest.
 
     Straight lines between few and uneven samples have moved the peak by a part of their distance.
@@ -226,7 +232,7 @@ def _moved(curves: Curves, seconds: float) -> Curves:
     return replace(curves, time=curves.time + seconds)
 
 
-def _correlation(curves: Curves, scene: Scene, result: Results) -> float:
+def _correlation(curves: Curves, scene: AnyScene, result: Results) -> float:
     """Return the normalised correlation of all places together, over the overlap."""
     time, _ = common_times(curves, scene)
     products = np.zeros(3)

@@ -1,35 +1,40 @@
 """Waveforms of others, as `jointwave compare --with` names them: quantity, place, sign and unit.
 
-A column is called [-]QUANTITY[_AXIS]@Y [UNIT]: `stress@20`, `-stress@20 [MPa]`,
-`velocity_x@20.25 [mm/s]`; velocity and displacement are along y where no axis is named. Stress is
-positive in compression and motion along +x, +y, +z; a minus sign says that the column holds the
-negative, as where tension is positive. Without a unit, SI. A column with another header is taken by
-COLUMN=LABEL, and one of a table of `jointwave compare --out` by its solution
+A column is called [-]QUANTITY[_COMPONENT]@Y [UNIT]: `stress@20`, `-stress@20 [MPa]`,
+`velocity_x@20.25 [mm/s]`; velocity and displacement are along y where no component is named. Of a
+rock mass it is QUANTITY[_COMPONENT]@[X,Y]: `velocity_x@[20,30]`, `stress_xx@[20,30] [MPa]`,
+`traction_n@[20,20]`, `gap@[20,20]`; a header of a CSV file that holds a comma stands in quotes.
+Stress is positive in compression and motion along +x, +y, +z; a minus sign says that the column
+holds the negative, as where tension is positive. Without a unit, SI. A column with another header
+is taken by COLUMN=LABEL, and one of a table of `jointwave compare --out` by its solution
 (`compare.misfit.external_columns`).
 """
 
-import re
+from __future__ import annotations
+
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from cases.errors import SceneError
-from cases.schema.scene import Scene
 from compare.engines import names
 from compare.misfit.external_columns import Asked, asked, base_of, exported, listed
 from compare.misfit.external_files import (
-    DIMENSIONS,
     LEAST_SAMPLES,
     Column,
     Columns,
     read_columns,
     split_unit,
 )
+from compare.misfit.places import Place, parsed, recorded, same
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 MICRO = ("u", "µ", "μ")  # as typed, the micro sign, and the Greek letter
 
@@ -41,53 +46,19 @@ LENGTH = {"m": 1.0, "cm": 1e-2, "mm": 1e-3} | {f"{u}m": 1e-6 for u in MICRO}
 SPEED = {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3}
 ANGLE = {"rad": 1.0, "mrad": 1e-3, "deg": pi / 180} | {f"{u}rad": 1e-6 for u in MICRO}
 
-#: By quantity: its units, each with its factor to SI, and its axes.
+#: By quantity: its units, each with its factor to SI.
 UNITS = {
     "stress": STRESS,
     "shear": STRESS,
+    "traction": STRESS,
     "velocity": SPEED,
     "displacement": LENGTH,
+    "gap": LENGTH,
+    "slip": LENGTH,
     "rotation": ANGLE,
 }
-AXES = {
-    "stress": ("",),
-    "shear": ("x", "z"),
-    "velocity": ("x", "y", "z"),
-    "displacement": ("x", "y", "z"),
-    "rotation": ("x", "y", "z"),
-}
-
-LABEL = re.compile(r"(-?)\s*([A-Za-z]+)(?:_([xyz]))?\s*@\s*([0-9.eE+-]+)(?:\s*m)?")
 EXAMPLES = "stress@20, -stress@20 [MPa] or velocity_x@20.25 [mm/s]"
-
-
-class Place(NamedTuple):
-    """What a waveform is: the quantity, its axis (empty for stress), and y of its receiver, m."""
-
-    quantity: str
-    axis: str
-    y: float
-
-    def __str__(self) -> str:
-        return f"{self.quantity}{'_' * bool(self.axis)}{self.axis}@{self.y:.12g}"
-
-    @property
-    def key(self) -> str:
-        """The key of [record] that asks for it."""
-        return "stress" if DIMENSIONS[self.quantity][0] == "stress_y" else "velocity"
-
-    def waveform(self, result: xr.Dataset) -> np.ndarray | None:
-        """Return this waveform of a result [n] in SI; None where the result does not have it."""
-        receivers, components = DIMENSIONS[self.quantity]
-        if self.quantity not in result:
-            return None
-        found = result[self.quantity]
-        at = np.flatnonzero(_same(found[receivers].values, self.y))
-        axes = [str(a) for a in found[components].values] if components in found.dims else [""]
-        if not len(at) or self.axis not in axes:
-            return None
-        values = found.values[at[0]]
-        return values if axes == [""] else values[:, axes.index(self.axis)]
+EXAMPLES_IN_PLANE = "velocity_x@[20,30], -stress_xx@[20,30] [MPa] or traction_n@[20,20]"
 
 
 @dataclass(frozen=True)
@@ -105,7 +76,7 @@ class Curves:
     waveforms: dict[Place, np.ndarray]
     variant: str | None = None
 
-    def holds_for(self, scene: Scene) -> bool:
+    def holds_for(self, scene: AnyScene) -> bool:
         """Return whether it is to be put beside this variant of a scene."""
         return self.variant is None or self.variant == scene.name
 
@@ -125,7 +96,7 @@ class _Found(NamedTuple):
     variant: str = ""
 
 
-def read_curves(texts: list[str], scenes: list[Scene]) -> list[Curves]:
+def read_curves(texts: list[str], scenes: Sequence[AnyScene]) -> list[Curves]:
     """Read what `--with` names, each FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL.
 
     FILE is NetCDF (.nc), as `jointwave run` writes it or any that has `time` and, say, `stress`; or
@@ -149,19 +120,24 @@ def read_curves(texts: list[str], scenes: list[Scene]) -> list[Curves]:
     return [one for one in found if any(map(one.holds_for, scenes))]
 
 
-def is_recorded(place: Place, scene: Scene) -> bool:
+def is_recorded(place: Place, scene: AnyScene) -> bool:
     """Return whether a scene has a receiver at this place."""
-    return bool(_same(np.array(getattr(scene.record, place.key), dtype=float), place.y).any())
+    return any(same(place.at, one) for one in recorded(scene, place.key))
 
 
-def _require_recorded(curves: Curves, scenes: list[Scene]) -> None:
+def _require_recorded(curves: Curves, scenes: list[AnyScene]) -> None:
     if not scenes or any(is_recorded(p, scene) for p in curves.waveforms for scene in scenes):
         return
-    place = next(iter(curves.waveforms))
-    recorded = ", ".join(f"{y:g}" for y in getattr(scenes[0].record, place.key)) or "nowhere"
+    place, scene = next(iter(curves.waveforms)), scenes[0]
+    key = place.key
+    if not hasattr(scene.record, key):
+        wanted = EXAMPLES if scene.kind == "pillar" else EXAMPLES_IN_PLANE
+        allowed = f"is no place of a {scene.kind}, whose columns are called as {wanted}"
+        raise SceneError(curves.file, str(place), None, allowed)
+    held = ", ".join(place._replace(at=one).receiver for one in recorded(scene, key))
     allowed = (
-        f"must be where the scene records: {place.key} at {recorded} m; "
-        f"record.{place.key} in the scene, or --set, adds a receiver"
+        f"must be where the scene records: {key} at {held or 'nowhere'}; "
+        f"record.{key} in the scene, or --set, adds a receiver"
     )
     raise SceneError(curves.file, str(place), None, allowed)
 
@@ -237,8 +213,8 @@ def _as_wanted(column: Column, own: _Label | None, wanted: _Label, alone: bool) 
     """Return what a column holds that may have a label of its own; None where another is wanted."""
     unit = wanted.unit or column.unit
     if own is not None:
-        (*what, y), (*wanted_what, wanted_y) = own.place, wanted.place
-        fits = what == wanted_what and bool(_same(np.array(y), wanted_y))
+        (*what, at), (*wanted_what, wanted_at) = own.place, wanted.place
+        fits = what == wanted_what and same(at, wanted_at)
         return _Label(own.place, own.negative or wanted.negative, unit) if fits else None
     bare = column.name.lower()
     fits = bare == wanted.place.quantity or (alone and bare not in UNITS)
@@ -248,7 +224,8 @@ def _as_wanted(column: Column, own: _Label | None, wanted: _Label, alone: bool) 
 def _without_place(column: Column, choice: Asked, table: Columns) -> SceneError:
     which = f"{column.name}=" if column.name else ""
     allowed = (
-        f"must be called as {EXAMPLES}, or its place be given as {choice.path}:{which}stress@20; "
+        f"must be called as {EXAMPLES}, of a rock mass as {EXAMPLES_IN_PLANE}, or its place be "
+        f"given as {choice.path}:{which}stress@20; "
         f"the file holds {listed(table.rest)}"
     )
     return SceneError(str(choice.path), column.name or "second column", None, allowed)
@@ -265,24 +242,13 @@ def _not_there(choice: Asked, table: Columns) -> SceneError:
 
 
 def _parse(name: str, unit: str) -> _Label | None:
-    """Return [-]QUANTITY[_AXIS]@Y as a label; None where the name is none."""
-    match = LABEL.fullmatch(name.strip())
-    if match is None or match[2].lower() not in UNITS:
-        return None
-    quantity = match[2].lower()
-    axis = match[3] or ("y" if quantity in ("velocity", "displacement") else "")
-    try:
-        place = Place(quantity, axis, float(match[4]))
-    except ValueError:
-        return None
-    return _Label(place, bool(match[1]), unit) if axis in AXES[quantity] else None
+    """Return [-]QUANTITY[_COMPONENT]@PLACE as a label; None where the name is none."""
+    text = name.strip()
+    place = parsed(text.removeprefix("-").lstrip())
+    return None if place is None else _Label(place, text.startswith("-"), unit)
 
 
 def _factor(path: Path, name: str, unit: str, allowed: dict[str, float]) -> float:
     if unit and unit not in allowed:
         raise SceneError(str(path), f"unit of {name}", unit, f"must be {', '.join(allowed)}")
     return allowed.get(unit, 1.0)
-
-
-def _same(places: np.ndarray, y: float) -> np.ndarray:
-    return np.isclose(places, y, rtol=1e-9, atol=1e-9)

@@ -4,15 +4,14 @@ COLUMN is a header of the file, or in a table of `jointwave compare --out`, whos
 `solution | place | variant (unit)`, one or more of these parts.
 """
 
-import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
 from compare.misfit.external_files import Column, split_unit
+from compare.misfit.places import WORDS, parsed
 
 PART = " | "  # between what a header of ours is made of
-PLACE = re.compile(r"([a-z]+)(?: ([xyz]))? at y = (\S+) m")
 TIME = "time"
 
 
@@ -68,11 +67,8 @@ def asked(text: str, is_label: Callable[[str], bool]) -> Asked:
 def exported(name: str) -> Exported | None:
     """Return what a header of ours says; None where it is none."""
     parts = parts_of(name)
-    place = PLACE.fullmatch(parts[1]) if len(parts) == 3 else None
-    if place is None:
-        return None
-    quantity, axis, y = place.groups()
-    return Exported(parts[0], f"{quantity}{'_' + axis if axis else ''}@{y}", parts[2])
+    place = parsed(parts[1], WORDS) if len(parts) == 3 else None
+    return None if place is None else Exported(parts[0], str(place), parts[2])
 
 
 def base_of(columns: list[Column]) -> str:

@@ -13,21 +13,14 @@ import xarray as xr
 from cases.errors import SceneError, printable
 from cases.files import is_number, read_lines
 from cases.schema.history import LARGEST, LARGEST_FILE
+from compare.misfit.places import COMPONENT_DIMENSIONS, QUANTITIES
+from results.labels import RECEIVERS
 from results.netcdf import load_netcdf
 
 LEAST_SAMPLES = 3  # what a parabola through the peak of a correlation takes
 NUMBER = re.compile(r"\s*[-+.\d]")  # a line that begins so is no header
 HEADER_COMMENT = r"^\s*#|#(?=\s|$)"
 NETCDF = (".nc", ".nc3", ".nc4", ".netcdf", ".cdf")
-
-#: By quantity: the dimension of its receivers and that of its components, as results have them.
-DIMENSIONS = {
-    "stress": ("stress_y", "across"),
-    "shear": ("stress_y", "across"),
-    "velocity": ("velocity_y", "axis"),
-    "displacement": ("velocity_y", "axis"),
-    "rotation": ("velocity_y", "axis"),
-}
 
 
 class Column(NamedTuple):
@@ -86,7 +79,8 @@ def split_unit(text: str) -> tuple[str, str]:
     for opening, closing in ("[]", "()"):
         if text.endswith(closing) and opening in text:
             name, _, unit = text[:-1].rpartition(opening)
-            return name.strip(), unit.strip()
+            if not name.rstrip().endswith("@"):  # else the place of a receiver, `gap@[20,30]`
+                return name.strip(), unit.strip()
     return text, ""
 
 
@@ -180,7 +174,8 @@ def _numbers(where: str, header: list[str], cells: list[str], at: int) -> list[f
 
 
 def _read_netcdf(path: Path) -> Columns:
-    wanted = {"time", *DIMENSIONS, *(name for pair in DIMENSIONS.values() for name in pair)}
+    coordinates = [name for names in RECEIVERS.values() for name in names]
+    wanted = {"time", *QUANTITIES, *RECEIVERS, *coordinates, *COMPONENT_DIMENSIONS}
     try:
         # Undecoded, times keep the numbers and the unit that the file gives them.
         found = load_netcdf(path, wanted, decode_times=False)
@@ -191,35 +186,54 @@ def _read_netcdf(path: Path) -> Columns:
         raise SceneError(str(path), "", None, f"cannot be read as NetCDF: {reason}") from None
     if "time" not in found.variables or found.time.dims != ("time",):
         raise SceneError(str(path), "time", None, "must be a coordinate over itself")
+    found = found.set_coords([name for name in coordinates if name in found])
     columns = [
         column
-        for quantity in DIMENSIONS
+        for quantity in QUANTITIES
         if quantity in found
         for column in _columns_of(path, found[quantity])
     ]
     if not columns:
-        allowed = f"must hold one or more of {', '.join(DIMENSIONS)} over time"
+        allowed = f"must hold one or more of {', '.join(QUANTITIES)} over time"
         raise SceneError(str(path), "", None, allowed)
     time = Column("time", _unit(found.time), _floats(path, found.time))
     return Columns(time, columns, lambda i: f"{path}, sample {i}")
 
 
 def _columns_of(path: Path, variable: xr.DataArray) -> Iterator[Column]:
-    """Yield `velocity_x@20` for each component and receiver; what the file lacks is left out."""
+    """Yield `velocity_x@20` or `velocity_x@[20,30]` for each component and receiver; what the file
+    lacks is left out."""
     name = str(variable.name)
-    place, component = DIMENSIONS[name]
-    if not {"time"} <= set(variable.dims) <= {"time", place, component}:
-        allowed = f"must have the dimension time, and at most {place} and {component} beside it"
-        raise SceneError(str(path), name, ", ".join(map(str, variable.dims)), allowed)
     # A receiver that was selected from a result is still there, as a coordinate without dimension.
-    for key in (place, component):
+    place, component = (
+        next((one for one in known if one in variable.dims or one in variable.coords), "")
+        for known in (RECEIVERS, COMPONENT_DIMENSIONS)
+    )
+    if not {"time"} <= set(variable.dims) <= {"time", place, component}:
+        allowed = (
+            f"must have the dimension time, and beside it at most one of {', '.join(RECEIVERS)} "
+            f"and one of {', '.join(COMPONENT_DIMENSIONS)}"
+        )
+        raise SceneError(str(path), name, ", ".join(map(str, variable.dims)), allowed)
+    named = [one for one in (place, component) if one]
+    for key in named:
         if key not in variable.dims:
             variable = variable.expand_dims(key)
-    values = _floats(path, variable.transpose(place, component, "time"))
-    for i, j in np.ndindex(values.shape[:2]):
-        axis = f"_{variable[component].values[j]}" if component in variable.coords else ""
-        at = f"@{float(variable[place][i]):.12g}" if place in variable.coords else ""
-        yield Column(printable(f"{name}{axis}{at}"), _unit(variable), values[i, j])
+    values = _floats(path, variable.transpose(*named, "time"))
+    for index in np.ndindex(values.shape[:-1]):
+        at, text = dict(zip(named, index, strict=True)), name
+        if component in variable.coords:
+            text += f"_{variable[component].values[at[component]]}"
+        if place in variable.coords:
+            text += f"@{_receiver(variable, place, at[place])}"
+        yield Column(printable(text), _unit(variable), values[index])
+
+
+def _receiver(variable: xr.DataArray, place: str, index: int) -> str:
+    """Return where a receiver is, as labels have it: `20`, `[20,30]`."""
+    at = [float(np.atleast_1d(variable[name].values)[index]) for name in RECEIVERS[place]]
+    numbers = [f"{x:.12g}" for x in at]
+    return numbers[0] if len(numbers) == 1 else f"[{','.join(numbers)}]"
 
 
 def _unit(variable: xr.DataArray) -> str:

@@ -12,11 +12,15 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from compare.misfit.external import Place
-from compare.misfit.external_files import DIMENSIONS
+from compare.misfit.places import Place, places_of
 
 #: Quantities of one unit, loudest first judged beside each other.
-UNITS = (("stress", "shear"), ("velocity",), ("displacement",), ("rotation",))
+UNITS = (
+    ("stress", "shear", "traction"),
+    ("velocity",),
+    ("displacement", "gap", "slip"),
+    ("rotation",),
+)
 QUANTITIES = tuple(quantity for unit in UNITS for quantity in unit)
 #: A waveform whose root mean square stays below this part of the loudest one of its unit, in both
 #: results, is listed and does not decide a misfit.
@@ -98,12 +102,7 @@ class Worst(NamedTuple):
     @property
     def where(self) -> str:
         """Quantity and receiver in words."""
-        return in_words(self.place) if self.place else "nowhere"
-
-
-def in_words(place: Place) -> str:
-    """Return a place as "shear x at 15 m"."""
-    return f"{place.quantity} {place.axis}".rstrip() + f" at {place.y:g} m"
+        return self.place.words if self.place else "nowhere"
 
 
 def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
@@ -178,27 +177,20 @@ def waveforms(result: xr.Dataset, like: xr.Dataset) -> Iterator[tuple[Place, np.
         if quantity not in result or quantity not in like:
             continue
         values = motion(result, quantity)
-        places, axes = _places(result, quantity)
-        others, other_axes = _places(like, quantity)
-        for i in (i for i, y in enumerate(places) if y in others):
-            for k in (k for k, axis in enumerate(axes) if axis in other_axes):
+        places, components = places_of(result, quantity)
+        others, other_components = places_of(like, quantity)
+        for i in (i for i, at in enumerate(places) if at in others):
+            for k in (k for k, one in enumerate(components) if one in other_components):
                 wave = values[i] if values.ndim == 2 else values[i, :, k]
-                named = axes[k] if len(axes) > 1 else ""
-                yield Place(quantity, named, float(places[i])), wave
-
-
-def _places(result: xr.Dataset, quantity: str) -> tuple[list[float], list[str]]:
-    """Return the y of the receivers (m) and the axes of a quantity, "y" where it has no others."""
-    receivers, components = DIMENSIONS[quantity]
-    found = result[quantity]
-    axes = [str(a) for a in found[components].values] if components in found.dims else ["y"]
-    return found[receivers].values.tolist(), axes
+                named = components[k] if len(components) > 1 else ""
+                yield Place(quantity, named, places[i]), wave
 
 
 def motion(result: xr.Dataset, quantity: str) -> np.ndarray:
     """Return a quantity less its static state [place, time] or [place, time, component].
 
-    The prestress of a section; all of the first sample where gravity's static state is there.
+    The prestress of a section; all of the first sample where gravity's static state is there, or
+    the prestress of a rock mass.
     """
     values = result[quantity].values
     return values - static_state(result, quantity)
@@ -206,8 +198,9 @@ def motion(result: xr.Dataset, quantity: str) -> np.ndarray:
 
 def static_state(result: xr.Dataset, quantity: str) -> np.ndarray:
     """Return what a quantity holds before the load acts, of a shape that broadcasts over time."""
-    values = result[quantity].values
-    if result.attrs.get("starts") == "at rest under gravity":
+    values, starts = result[quantity].values, result.attrs.get("starts")
+    in_plane = result.attrs.get("kind") == "rock mass"
+    if starts == "at rest under gravity" or (starts == "prestressed" and in_plane):
         return values[:, :1]
     prestress = float(result.attrs.get("prestress", 0.0)) if quantity == "stress" else 0.0
     return np.full_like(values[:, :1], prestress)
@@ -218,11 +211,9 @@ def error_of(result: xr.Dataset, place: Place) -> float:
     name = f"{place.quantity}_error"
     if name not in result:
         return 0.0
-    places, axes = _places(result, place.quantity)
-    error = result[name].values[places.index(place.y)]
-    return float(
-        error if np.ndim(error) == 0 else error[axes.index(place.axis) if place.axis else 0]
-    )
+    places, components = places_of(result, place.quantity)
+    error = np.atleast_1d(result[name].values[places.index(place.at)])
+    return float(error[components.index(place.component) if place.component else 0])
 
 
 def _known_samples(reference: xr.Dataset) -> int:

@@ -1,22 +1,27 @@
 """A scene solved by all that applies to it, and how far apart the solutions are, pair by pair."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from time import perf_counter
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
 import xarray as xr
 
-from cases.schema.scene import Scene
+from cases.errors import SceneError
 from compare.engines import Progress, solve, solver, solvers
 from compare.experiments.cost import timings
 from compare.misfit.alignment import Beside, distances, lay_beside
 from compare.misfit.external import Curves
 from compare.misfit.metrics import Distance, distance, pairings
+from compare.misfit.places import Place, places_of
 from compare.misfit.ranking import applicable
 from compare.solvers.record import Answer
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 
 class Pair(NamedTuple):
@@ -56,27 +61,37 @@ def meaning(pair: Pair) -> str:
 class Row(NamedTuple):
     """The distance of one pair at one receiver.
 
-    quantity : with the component, where there are several. floor : relative error of the second
+    place : with the component, where there are several. floor : relative error of the second
     solution itself, below ten times which nothing is judged. faint : too weak to decide a misfit.
     """
 
     pair: Pair
-    quantity: str
-    y: float
+    place: Place
     distance: Distance
     floor: float = 0.0
     faint: bool = False
+
+    @property
+    def quantity(self) -> str:
+        """The quantity with its component, "shear x"."""
+        return self.place.named
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """Pair, place and distances, for a machine."""
+        where = {"quantity": self.quantity, **self.place.coordinates}
+        return {**self.pair._asdict(), **where, **self.distance._asdict()}
 
 
 @dataclass
 class Comparison:
     """One variant of a scene, everything that solved it, and why the rest did not.
 
-    results : by name. reasons : name to reason, of what does not apply. rows : the distances.
-    besides : the curves of others, a file each.
+    scene : of either kind. results : by name. reasons : name to reason, of what does not apply.
+    rows : the distances. besides : the curves of others, a file each.
     """
 
-    scene: Scene
+    scene: Any
     results: dict[str, xr.Dataset] = field(default_factory=dict)
     reasons: dict[str, str] = field(default_factory=dict)
     rows: list[Row] = field(default_factory=list)
@@ -84,7 +99,7 @@ class Comparison:
 
 
 def compare(
-    scene: Scene,
+    scene: AnyScene,
     progress: Progress | None = None,
     spectral: bool = False,
     curves: Sequence[Curves] = (),
@@ -105,13 +120,17 @@ def compare(
 
 
 def solved(
-    scene: Scene, answers: Mapping[str, Answer], progress: Progress | None = None
+    scene: AnyScene, answers: Mapping[str, Answer], progress: Progress | None = None
 ) -> Comparison:
     """Solve a scene by what applies to it, without measuring any pair.
 
-    answers : by name whether each of the solutions that are wanted applies.
+    answers : by name whether each of the solutions that are wanted applies. Raises SceneError where
+    none does.
     """
     comparison = Comparison(scene)
+    if not any(answers.values()):
+        why = "; ".join(f"{name}: {answer.reason}" for name, answer in answers.items())
+        raise SceneError(scene.where, "", None, f"nothing solves it: {why}")
     for i, (name, answer) in enumerate(answers.items()):
         if answer:
             began = perf_counter()
@@ -138,8 +157,7 @@ def measure(results: dict[str, xr.Dataset], spectral: bool = False) -> list[Row]
         for p in pairings(one, other):
             spectra = spectral and not p.faint and p.place.quantity != "displacement"
             found = distance(p.one, p.other, dt, spectra)
-            quantity = f"{p.place.quantity} {p.place.axis}".rstrip()
-            rows.append(Row(pair, quantity, p.place.y, found, p.floor, p.faint))
+            rows.append(Row(pair, p.place, found, p.floor, p.faint))
     return rows
 
 
@@ -149,7 +167,7 @@ def measure_curves(
     """Return the distances of a file's curves from every solution that has a waveform there."""
     rows = []
     for name, place, found in distances(beside, results, spectral):
-        spatial = place.axis and np.size(results[name].get("axis", "y")) > 1
-        quantity = f"{place.quantity} {place.axis}" if spatial else place.quantity
-        rows.append(Row(Pair(beside.curves.name, name, GIVEN), quantity, place.y, found))
+        several = len(places_of(results[name], place.quantity)[1]) > 1
+        shown = place if several else place._replace(component="")
+        rows.append(Row(Pair(beside.curves.name, name, GIVEN), shown, found))
     return rows

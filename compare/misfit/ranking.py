@@ -8,13 +8,16 @@ What no solution at least as fine has checked independently is "not checked".
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
 from compare.engines import ENGINES, applies, names, solver
 from compare.exact.conditions import has_thick_layer
 from compare.solvers.record import Answer, Rock
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 
 class Reference(NamedTuple):
@@ -27,13 +30,15 @@ class Reference(NamedTuple):
 NOT_CHECKED = "not checked independently"
 
 
-def lacks(name: str, scene: Scene) -> str:
+def lacks(name: str, scene: AnyScene) -> str:
     """Return the effect of a scene that a solution which applies to it leaves out, "" where none.
 
     The thickness of a soft layer: rigid blocks take it for a joint. The inertia across the axis of
     a column of two or three dimensions: a bar has none.
     """
     of = solver(name)
+    if not isinstance(scene, Scene):
+        return ""
     if has_thick_layer(scene) and of.rock is Rock.RIGID_BLOCKS:
         return "the thickness of a soft layer"
     dim, free_sides = scene.numerics.continuum.dim or 1, scene.motion.rotation != "none"
@@ -43,7 +48,7 @@ def lacks(name: str, scene: Scene) -> str:
     return ""
 
 
-def finest(names: Iterable[str], scene: Scene) -> Reference | None:
+def finest(names: Iterable[str], scene: AnyScene) -> Reference | None:
     """Return the solution among `names` that leaves out the least; None where none is complete."""
     complete = [name for name in names if not lacks(name, scene)]
     if not complete:
@@ -54,7 +59,7 @@ def finest(names: Iterable[str], scene: Scene) -> Reference | None:
     return Reference(name, f"{of.rock.words}, {how}")
 
 
-def reference_of(name: str, names: Iterable[str], scene: Scene) -> Reference | None:
+def reference_of(name: str, names: Iterable[str], scene: AnyScene) -> Reference | None:
     """Return what one solution is held against: the finest of the others.
 
     None where none of them is finer, or as fine and exact: it is not checked independently.
@@ -65,7 +70,7 @@ def reference_of(name: str, names: Iterable[str], scene: Scene) -> Reference | N
     return found if _fineness(found.name) > _fineness(name) else None
 
 
-def own_exact(name: str, names: Iterable[str], scene: Scene) -> str | None:
+def own_exact(name: str, names: Iterable[str], scene: AnyScene) -> str | None:
     """Return the exact solution of an engine's own model among `names`, what its numerical error is
     measured from; None where there is none."""
     rock, own = solver(name).rock, []
@@ -77,11 +82,14 @@ def own_exact(name: str, names: Iterable[str], scene: Scene) -> str | None:
     return found.name if found else None
 
 
-def deciding(scene: Scene) -> dict[str, Answer]:
+def deciding(scene: AnyScene) -> dict[str, Answer]:
     """Return whether each of the solutions that verdicts rest on applies to a scene: the engines,
-    of each the reference and the exact solution of its own model, and those that [expect] names."""
+    of each the reference and the exact solution of its own model, and those that [expect] names.
+    All of them where no engine applies."""
     answers = applicable(scene)
     able = [name for name, answer in answers.items() if answer]
+    if not ENGINES.keys() & able:
+        return answers
     wanted: set[str | None] = {*ENGINES}
     for engine in (name for name in ENGINES if name in able):
         reference = reference_of(engine, able, scene)
@@ -95,6 +103,7 @@ def _fineness(name: str) -> tuple[int, int]:
     return int(of.rock), int(of.form)
 
 
-def applicable(scene: Scene) -> dict[str, Answer]:
-    """Return of every engine and exact solution whether it applies to a scene."""
-    return {name: applies(name, scene) for name in names()}
+def applicable(scene: AnyScene) -> dict[str, Answer]:
+    """Return of every engine and exact solution of a scene's kind whether it applies to it."""
+    of_kind = (name for name in names() if scene.kind in solver(name).kinds)
+    return {name: applies(name, scene) for name in of_kind}

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor, Future, as_completed
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from cases.schema.scene import Scene
 from compare.engines import Progress
@@ -17,6 +18,9 @@ from compare.misfit.pairs import Comparison, compare
 from compare.report.section import PAPER, SceneRequest, Section, linked, make_section
 from compare.scenes import find, load
 from results.dataset import scene_hash
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 RATE = "scene of the report"  # what the seconds of scenes are remembered by
 TAKEN = {"", "overview", "made", "said"}  # what the page calls its own parts
@@ -101,17 +105,23 @@ def _counted(
     return finish
 
 
-def _key(scene: Scene) -> str:
+def _key(scene: AnyScene) -> str:
     """Return what decides a scene's results: its hash without names and bounds."""
     unnamed = scene.model_copy(update={"title": "", "source": None, "name": "", "expect": {}})
     return scene_hash(unnamed)
 
 
-def _along(scene: Scene) -> str:
+def _along(scene: AnyScene) -> str:
     """Return what decides a scene's results all along its pillar."""
     return _key(recorded_along(scene))
 
 
-def _longest_first(scenes: dict[str, Scene]) -> list[str]:
+def _longest_first(scenes: dict[str, AnyScene]) -> list[str]:
     """Return the keys in order of cost, the most damped first: dashpots shorten the step."""
-    return sorted(scenes, key=lambda key: -(scenes[key].joints.damping_ratio or 0.0))
+    return sorted(scenes, key=lambda key: -_damping(scenes[key]))
+
+
+def _damping(scene: AnyScene) -> float:
+    """Return the largest damping ratio of a scene's joints."""
+    laws = [scene.joints] if isinstance(scene, Scene) else scene.joint_sets
+    return max((one.damping_ratio or 0.0 for one in laws), default=0.0)

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 import cases
+from cases.kinds import pillar_of
 from cases.material.calibrate import calibrate
 from compare.figures.export import Drawn, save
 from compare.scenes import find
@@ -31,7 +32,7 @@ def make_snapshots(out: Path) -> SnapshotsSection:
     from compare.figures.snapshots import draw_snapshots
     from compare.runs.field_files import read_pvd, write_pvd
 
-    scene = cases.load_variant(find(SCENE), "", CHANGES)
+    scene = pillar_of(cases.load_variant(find(SCENE), "", CHANGES))
     found = snapshots_of(dem.simulate_fields(scene))
     assert found is not None
     file = write_pvd(out / "fields" / "dem.pvd", found)

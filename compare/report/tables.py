@@ -10,6 +10,7 @@ import xarray as xr
 from compare.figures.subplots import variant_names
 from compare.misfit.metrics import misfit
 from compare.misfit.pairs import GIVEN, Comparison, Pair, Row, meaning, pairs
+from compare.misfit.places import Place
 from results.dataset import energy_residual
 
 
@@ -42,16 +43,17 @@ def misfit_table(comparisons: list[Comparison]) -> Table:
     shown = [
         (name, row)
         for name, row in _rows(comparisons)
-        if not (row.faint or row.quantity.startswith("displacement"))
+        if not (row.faint or row.place.quantity == "displacement")
     ]
-    places = list(dict.fromkeys((row.quantity, row.y) for _, row in shown))
+    places = list(dict.fromkeys(row.place for _, row in shown))
     cells: dict[Pair, dict[tuple, str]] = {}
     for name, row in shown:
-        where = (name, row.quantity, row.y)
-        cells.setdefault(row.pair, {})[where] = percent(row.distance.misfit)
-    columns = [(name, *place) for name in variant_names(comparisons) for place in places]
+        cells.setdefault(row.pair, {})[name, row.place] = percent(row.distance.misfit)
+    columns = [(name, place) for name in variant_names(comparisons) for place in places]
     header = ["pair", "what it is made of"]
-    header += [f"{name}, {y:g} m" if len(places) > 1 else name for name, _, y in columns]
+    header += [
+        f"{name}, {_column(at, places)}" if len(places) > 1 else name for name, at in columns
+    ]
 
     def lines(pair: Pair) -> list[list[str]]:
         if pair not in cells:
@@ -60,6 +62,12 @@ def misfit_table(comparisons: list[Comparison]) -> Table:
         return [[title(pair), meaning(pair), *found]]
 
     return Table(header, _by_kind(lines, given(comparisons)))
+
+
+def _column(place: Place, places: list[Place]) -> str:
+    """Return a receiver as it heads a column, with what is there where there is more than one."""
+    several = sum(one.at == place.at for one in places) > 1
+    return place.words if several and len(place.at) > 1 else place.receiver
 
 
 def _rows(comparisons: list[Comparison]) -> list[tuple[str, Row]]:
@@ -89,7 +97,7 @@ def distance_table(comparisons: list[Comparison]) -> Table:
 
     def lines(pair: Pair) -> list[list[str]]:
         return [
-            [title(pair), name, f"{row.quantity} at {row.y:g} m", *_distances(row)]
+            [title(pair), name, row.place.words, *_distances(row)]
             for name, row in rows
             if row.pair == pair
         ]
@@ -116,8 +124,8 @@ def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
             "kind": row.pair.kind,
             "pair": title(row.pair),
             "variant": name,
-            "quantity": row.quantity,
-            "y (m)": row.y,
+            "quantity": row.place.named,
+            **{f"{axis} (m)": at for axis, at in row.place.coordinates.items()},
             "relative L2": row.distance.misfit,
             "own error of the reference": row.floor,
             "faint": row.faint,

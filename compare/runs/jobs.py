@@ -1,19 +1,23 @@
 """Jobs of `jointwave run`: one for each result, checked before any is run."""
 
+from __future__ import annotations
+
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from cases.errors import SceneError
-from cases.schema.scene import Scene
 from compare.engines import ENGINES, applies, selection
 from compare.runs.output import refuse_foreign
 from compare.solvers.record import Solver
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 
 class Job(NamedTuple):
     """One result to be made: the scene, what solves it, and its file."""
 
-    scene: Scene
+    scene: AnyScene
     name: str
     path: Path
 
@@ -43,7 +47,7 @@ def engine_of(model: str) -> str:
     return next((one for one, models in selection().items() if model in models), Solver.engine)
 
 
-def plan(scenes: list[Scene], runs: list[tuple[str, str | None]], out: Path) -> list[Job]:
+def plan(scenes: list[AnyScene], runs: list[tuple[str, str | None]], out: Path) -> list[Job]:
     """Return the jobs, all of which apply; raises SceneError before anything is run, also where a
     file that is no result stands in the place of one."""
     jobs = []
@@ -57,7 +61,7 @@ def plan(scenes: list[Scene], runs: list[tuple[str, str | None]], out: Path) -> 
     return jobs
 
 
-def names_of(engine: str, model: str | None, scene: Scene) -> list[str]:
+def names_of(engine: str, model: str | None, scene: AnyScene) -> list[str]:
     """Return what solves a scene for an engine and model; the model None: all that apply.
 
     Raises SceneError where none does.

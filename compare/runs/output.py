@@ -16,6 +16,7 @@ import numpy as np
 from cases.errors import SceneError, printable
 from cases.files import is_number, read_json
 from results.dataset import Fields
+from results.labels import RECEIVERS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -206,9 +207,18 @@ def write_fields(path: Path, fields: Fields) -> Path:
                 **fields.coords,
                 **fields.variables,
             }.items():
-                _write_variable(file, name, dimensions, values, attributes)
+                located = attributes | _located(name, dimensions)
+                _write_variable(file, name, dimensions, values, located)
 
     return write(path, save)
+
+
+def _located(name: str, dimensions: tuple) -> dict[str, str]:
+    """Return the attribute by which readers know where a variable's receivers are, where its
+    dimensions do not say so (CF conventions, 5)."""
+    known = [names for receivers, names in RECEIVERS.items() if receivers in dimensions]
+    beside = [one for names in known if len(names) > 1 for one in names]
+    return {"coordinates": " ".join(beside)} if beside and name not in beside else {}
 
 
 def _write_variable(file, name: str, dimensions: tuple, values: np.ndarray, attributes: dict):

@@ -13,7 +13,11 @@ from cases.size import waveform_bytes
 if TYPE_CHECKING:
     import xarray as xr
 
+    from cases.kinds import AnyScene
     from results.dataset import Fields
+
+
+OF_BLOCK_IN_PLANE = 3  # freedoms of a rigid block of a rock mass
 
 
 class Rock(IntEnum):
@@ -138,7 +142,7 @@ class Prepared(NamedTuple):
     settings: Mapping[str, Any]
 
 
-def without_steps(scene: Scene) -> Prepared:
+def without_steps(scene: AnyScene) -> Prepared:
     """Return what is known of an exact solution before it is computed."""
     return Prepared("exact", 0, 0.0, 0.0, 0, waveform_bytes(scene), {})
 
@@ -179,7 +183,7 @@ class Solver:
     kinds: tuple[str, ...] = ("pillar",)
     dimension: int = 1
     discretised: bool = True
-    prepare: Callable[[Scene], Prepared] = without_steps
+    prepare: Callable[[Any], Prepared] = without_steps
     distances: Mapping[Kind, Mapping[str, str]] | None = None
     arguments: tuple[str, ...] = ()
     engine: str = "exact"
@@ -211,6 +215,10 @@ class Solver:
         """What the cost of its steps is counted in."""
         return "blocks" if self.per_block else "freedoms"
 
-    def units(self, scene: Scene, freedoms: int) -> int:
+    def units(self, scene: AnyScene, freedoms: int) -> int:
         """Return how many of them a run has."""
-        return scene.pillar.block_count if self.per_block else freedoms
+        if not self.per_block:
+            return freedoms
+        if isinstance(scene, Scene):
+            return scene.pillar.block_count
+        return freedoms // OF_BLOCK_IN_PLANE

@@ -80,9 +80,9 @@ def plane_mesh(
     kind = cell or ("quadrilateral" if four.all() else "triangle")
     counts = _counts(segments, loops, size, kind == "quadrilateral")
     x, cells, block, edges = _meshed(segments, loops, counts, size, kind)
-    joint_set = np.concatenate([partition.contacts.joint_set, *(c.joint_set for c, _, _ in across)])
-    contact = segments.contact[edges.segment]
-    cuts = (contact >= 0) & (joint_set[contact] != NO_SET)
+    sets = [partition.contacts.joint_set, *(c.joint_set for c, _, _ in across)]
+    joint_set = np.append(np.concatenate(sets), NO_SET)  # the last is the boundary's
+    cuts = joint_set[segments.contact[edges.segment]] != NO_SET
     cut = np.zeros((len(cells), len(FACETS[kind])), dtype=bool)
     cut[edges.cell[cuts], edges.facet[cuts]] = True
     whole, doubled = split(kind, x, cells, cut)

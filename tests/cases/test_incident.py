@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cases.incident import enters, free_field, plane_wave, tractions
-from cases.read import load_any
+from cases.read import load
 
 
 def scene_with(tmp_path, wave, kind="quiet"):
@@ -19,7 +19,7 @@ record.points = [[1.0, 1.0]]
 """
     path = tmp_path / "scene.toml"
     path.write_text(text)
-    return load_any(path)[0]
+    return load(path)[0]
 
 
 P_UP = '{ kind = "P", direction = [0, 1], shape = "step", amplitude = 1e6 }'

@@ -7,7 +7,14 @@ import typer
 
 from cases.errors import SceneError
 from cases.schema.scene import Scene
-from compare.cli.options import JsonOption, SceneArgument, SetOption, StrictOption, app, load
+from compare.cli.options import (
+    JsonOption,
+    SceneArgument,
+    SetOption,
+    StrictOption,
+    app,
+    load_pillars,
+)
 
 if TYPE_CHECKING:
     from compare.figures.animation.snapshots import SceneSnapshots
@@ -45,7 +52,7 @@ def animate(
     from compare.cli import terminal
     from compare.figures.animation import video
 
-    (one,) = load(scene, changes, variant, strict)
+    (one,) = load_pillars(scene, changes, variant, strict, "jointwave animate")
     path = out or Path(f"{_name(scene, one)}.mp4")
     video.refuse(path, frames)
     simulated, settings = _simulate(one, frames, scale)
@@ -116,7 +123,7 @@ def view(
     _require_pyvista()
     from compare.figures.animation.offscreen import has_display
 
-    (one,) = load(scene, changes, variant, strict)
+    (one,) = load_pillars(scene, changes, variant, strict, "jointwave view")
     at = one.time.duration / 2 if time is None else time
     if not 0 < at <= one.time.duration:
         allowed = f"must be greater than 0 and at most time.duration = {one.time.duration:g} s"

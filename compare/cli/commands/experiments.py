@@ -19,6 +19,7 @@ from compare.cli.options import (
     WorkersOption,
     app,
     load,
+    load_pillars,
 )
 from compare.runs.checkpoint.lock import locked
 
@@ -79,7 +80,7 @@ def plan(
     as_json: JsonOption = False,
 ) -> None:
     """Find the cheapest engine, elements and step that meet a misfit, by a few cheap runs."""
-    scenes = load(scene, changes, variant if variant is not None else "", strict)
+    scenes = load_pillars(scene, changes, variant or "", strict, "jointwave plan")
     from compare.cli import terminal
     from compare.experiments.planner import planner
     from compare.experiments.planner import show as plan_view
@@ -191,7 +192,7 @@ def _cases(scene: str | None, changes: list[str], variant: str | None, strict: b
     if scene is not None:
         return [
             Variant(scene, one)
-            for one in load(scene, changes, variant if variant is not None else "", strict)
+            for one in load_pillars(scene, changes, variant or "", strict, "jointwave effects")
         ]
     if changes or variant is not None:
         key = "--set" if changes else "--variant"

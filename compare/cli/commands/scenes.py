@@ -27,8 +27,6 @@ from compare.cli.options import (
     WorkersOption,
     app,
     load,
-    load_any,
-    warn,
 )
 from compare.runs.checkpoint.lock import locked
 from compare.runs.checkpoint.signals import watched
@@ -126,12 +124,8 @@ def explain(
 ) -> None:
     """Say what a scene calls for, its critical steps, which exact solutions hold, and which of them
     is the reference; of a rock mass, the blocks that it is cut into."""
-    from compare.cli import partition_view, views
+    from compare.cli import views
     from compare.cli.explain import explanation
 
-    for one in load_any(scene, changes, variant if variant is not None else ""):
-        if isinstance(one, cases.Scene):
-            warn([one], strict)
-            views.show_explanation(explanation(one, measured), as_json)
-        else:
-            partition_view.show(one, as_json)
+    for one in load(scene, changes, variant or "", strict):
+        views.show_explanation(explanation(one, measured), as_json)

@@ -2,11 +2,10 @@
 
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-import cases
 from cases.errors import SceneError
 from compare.cli.options import (
     CORES,
@@ -24,6 +23,9 @@ from compare.cli.options import (
     app,
     load,
 )
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 
 @app.command()
@@ -167,7 +169,7 @@ def figure(
     terminal.say(f"wrote {path}")
 
 
-def _read_curves(given: list[str], scenes: list[cases.Scene], align: bool) -> list[Any]:
+def _read_curves(given: list[str], scenes: list["AnyScene"], align: bool) -> list[Any]:
     """Read what `--with` names; what is wrong with it is said before anything is solved."""
     if not given:
         if align:

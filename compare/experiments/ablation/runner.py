@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import cases
+from cases.kinds import pillar_of
 from cases.schema.scene import Scene
 from compare.engines import Progress
 from compare.experiments import store
@@ -39,18 +40,19 @@ class Variant(NamedTuple):
 
 
 def all_shipped() -> list[Variant]:
-    """Return every variant of every shipped scene."""
+    """Return every variant of every shipped pillar."""
     return [
         Variant(f"{path.parent.name}/{path.stem}", scene)
         for path in shipped()
         for scene in cases.load(path)
+        if isinstance(scene, Scene)
     ]
 
 
 def reported() -> list[Variant]:
     """Return the cases of the report's page."""
     return [
-        Variant(name, cases.load_variant(find(name), variant))
+        Variant(name, pillar_of(cases.load_variant(find(name), variant)))
         for name, variants in REPORTED.items()
         for variant in variants
     ]

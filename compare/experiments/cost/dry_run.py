@@ -1,18 +1,22 @@
 """`--dry-run`: the steps, size, seconds and memory of runs before they are made."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from cases.errors import SceneError
-from cases.schema.scene import Scene
 from cases.size import spoken
 from compare.cli.terminal import print_json, progress, say, show_table
 from compare.engines import applies, names, solver
 from compare.experiments.cost import timings
 
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+
 COLUMNS = ["", "variant", "engine", "scheme", "steps", "size", "time", "memory"]
 UNKNOWN = "no estimate"  # where nothing of the kind was ever timed here
-Run = tuple[str, Scene, str]  # the point of a sweep, empty without; the scene; what solves it
+Run = tuple[str, "AnyScene", str]  # the point of a sweep, empty without; the scene; what solves it
 
 
 class Forecast(NamedTuple):
@@ -33,7 +37,7 @@ class Forecast(NamedTuple):
     bytes: float
 
 
-def forecast(scene: Scene, name: str) -> Forecast:
+def forecast(scene: AnyScene, name: str) -> Forecast:
     """Return what a run of an engine or exact solution would take.
 
     Raises SceneError where it cannot be made, as the run would.
@@ -51,7 +55,7 @@ def seconds_of(found: Iterable[Forecast]) -> tuple[float, int]:
     return sum(s for s in known if s is not None), known.count(None)
 
 
-def show_all(scenes: list[Scene], as_json: bool) -> None:
+def show_all(scenes: list[AnyScene], as_json: bool) -> None:
     """Print what everything that applies to some scenes would take."""
     show_runs([("", s, name) for s in scenes for name in names() if applies(name, s)], as_json)
 

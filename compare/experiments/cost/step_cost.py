@@ -7,6 +7,7 @@ from time import perf_counter
 
 import cases
 from cases.effects import is_spatial
+from cases.kinds import pillar_of
 from cases.sampling import Clock
 from cases.schema.scene import Scene
 from compare.engines import solve
@@ -47,7 +48,7 @@ EVERYTHING = {
 
 def changed(changes: dict, blocks: int = BLOCKS) -> Scene:
     """Return the paper's pillar with so many blocks and some dotted keys changed."""
-    return cases.load_variant(PILLAR, "", {"pillar.length": 0.5 * blocks, **changes})
+    return pillar_of(cases.load_variant(PILLAR, "", {"pillar.length": 0.5 * blocks, **changes}))
 
 
 def everything(blocks: int) -> Scene:

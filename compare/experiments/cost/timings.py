@@ -3,12 +3,14 @@
 They are saved beside the kernels, so that those of another state of the program do not count.
 """
 
+from __future__ import annotations
+
 import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cases.effects import active_effects
 from cases.files import read_json
@@ -19,12 +21,17 @@ from compare.solvers.dem import DEM
 from numerics import jit
 from results.dataset import scene_hash
 
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+
 LARGEST_FILE = 10_000_000  # bytes
 SHORTEST = 0.01  # s: what is over sooner tells too little to replace what is known
 CHANGED = 2.0  # a rate that has changed by this factor is written anew
 
 
-def note(name: str, scene: Scene, about: Mapping[str, Any], seconds: float | None = None) -> None:
+def note(
+    name: str, scene: AnyScene, about: Mapping[str, Any], seconds: float | None = None
+) -> None:
     """Remember what a run has cost.
 
     about : its attributes. seconds : that it took in all, which is what exact solutions cost.
@@ -51,7 +58,7 @@ def block_step(scene: Scene) -> float | None:
 
 
 def stepping(
-    name: str, scene: Scene, settings: Mapping[str, Any], steps: int, freedoms: int
+    name: str, scene: AnyScene, settings: Mapping[str, Any], steps: int, freedoms: int
 ) -> float | None:
     """Return the seconds that a run's steps should take; None where none such was ever timed.
 
@@ -82,7 +89,7 @@ def whole(what: str) -> float | None:
     return _known().get(f"whole {what}")
 
 
-def _key(name: str, scene: Scene, about: Mapping[str, Any]) -> str:
+def _key(name: str, scene: AnyScene, about: Mapping[str, Any]) -> str:
     effects = " ".join(sorted(active_effects(scene)))
     return " ".join(str(x) for x in (name, *(about[k] for k in ENGINES[name].cost), effects))
 

@@ -18,7 +18,7 @@ from compare.cli.options import (
     VariantOption,
     WithOption,
     app,
-    load,
+    load_pillars,
 )
 
 
@@ -68,7 +68,7 @@ def fit(
     from compare.misfit.external import read_curves
     from compare.runs.checkpoint.lock import locked
 
-    (one,) = load(scene, changes, variant or "", strict)
+    (one,) = load_pillars(scene, changes, variant or "", strict, "jointwave fit")
     curves = read_curves(given, [one])
     solver = _solver(one, engine, model)
     with ExitStack() as held:

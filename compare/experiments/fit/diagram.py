@@ -10,7 +10,6 @@ from compare.figures.blank import blank
 from compare.figures.overlays import UNITS
 from compare.figures.style import GIVEN, style
 
-IN = {**UNITS, "displacement": (1e3, "mm")}  # what is drawn: factor from SI, and the unit
 WIDTH, PANEL, AROUND = 7.5, 2.6, 0.8  # inches: the figure, a waveform with its residual, the rest
 MOST_MARKS = 250  # samples that are drawn one by one
 
@@ -33,7 +32,7 @@ def draw(found: Fit) -> Figure:
 
 def _draw_waveform(wave: Any, left: Any, one: Fitted, solver: str, i: int) -> None:
     place: Any = one.place
-    factor, unit = IN[place.quantity]
+    factor, unit = UNITS[place.quantity]
     few = len(one.time) <= MOST_MARKS
     points = {"linestyle": "none", "marker": "o", "markersize": 2.0, "color": GIVEN[0].colour}
     line = {"color": style(solver).colour, "linewidth": 1.6, "linestyle": "-"}
@@ -44,7 +43,7 @@ def _draw_waveform(wave: Any, left: Any, one: Fitted, solver: str, i: int) -> No
     left.plot(time, factor * (one.measured - one.fitted), color=GIVEN[0].colour, linewidth=0.8)
     left.axhline(0, color="#bbbbbb", linewidth=0.6, zorder=1)
     shown = one.name if len(one.name) <= 28 else f"{one.name[:12]}…{one.name[-15:]}"
-    where = f"{place.quantity} {place.axis}".rstrip() + f" at y = {place.y:g} m"
+    where = place.heading
     misfit = f"misfit {one.before:.2%} before, {one.after:.2%} after"
     title = f"({chr(97 + i % 26)})  {where}, {shown}: {misfit}"
     wave.set_title(title.replace("$", r"\$"), pad=4)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cases.errors import SceneError, UnstableError
+from cases.schema.pulse import shortest_period
 from cases.schema.scene import Scene
 from compare.engines import applies, solve, solver
 from compare.exact.blocks import lattice
@@ -14,7 +15,8 @@ from compare.experiments.failures import FAILURES
 from compare.experiments.fit.keys import CLOCK, changed
 from compare.experiments.planner.families import COARSEST
 from compare.misfit.alignment import INSTANT, static_level
-from compare.misfit.external import Curves, Place, is_recorded
+from compare.misfit.external import Curves, is_recorded
+from compare.misfit.places import Place
 from compare.solvers.dem import DEM
 
 SHORT = 200  # blocks, up to which matrix exponentials cost little
@@ -148,4 +150,4 @@ def started_clock(scene: Scene, solver: str, curves: list[Curves]) -> float:
 
 def clock_reach(scene: Scene) -> float:
     """Return how far a clock may move from where the fit began, s: a period of the load."""
-    return scene.load.period or scene.time.duration / 10
+    return shortest_period(scene.pulses) or scene.time.duration / 10

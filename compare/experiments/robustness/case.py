@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import xarray as xr
 
 import cases
+from cases.kinds import pillar_of
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
 from compare.engines import ENGINES, solve
@@ -99,7 +100,7 @@ class CaseTrial:
         for key in (STEP, ALLOW):
             if key in keys:
                 keys[f"{part}.{key}"] = keys.pop(key)
-        return cases.load_variant(find(self.case.scene), "", keys)
+        return pillar_of(cases.load_variant(find(self.case.scene), "", keys))
 
     def run(self, **more: Any) -> xr.Dataset:
         """Return the engine's result for the scene with more keys changed."""

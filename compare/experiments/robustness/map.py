@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 import cases
+from cases.kinds import pillar_of
 from cases.schema.scene import Scene
 from compare.engines import ENGINES
 from compare.experiments.robustness.case import SHORT
@@ -80,7 +81,7 @@ def _scene(beta: float) -> Scene:
     Ratios in proportion to frequencies leave Rayleigh's alpha zero.
     """
     damped = {"damping.rayleigh": {"frequencies": [1.0, 2.0], "ratios": [pi * beta, 2 * pi * beta]}}
-    return cases.load_variant(find(SHORT), "", PILLAR | (damped if beta else {}))
+    return pillar_of(cases.load_variant(find(SHORT), "", PILLAR | (damped if beta else {})))
 
 
 def _growth(body: Unloaded, dt: float) -> float:

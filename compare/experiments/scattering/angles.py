@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from cases.material.rock import Values, elastic_rock
-from cases.read import load_any
+from cases.read import load
 from compare.engines import Progress, applies, solve
 from compare.exact.plane.oblique_joint import Coefficients, Joint, coefficients
 from compare.exact.plane.pulse import Pulse, axes_of
@@ -103,7 +103,7 @@ def scene_of(incidence: str, angle: float, changes: dict[str, Any] | None = None
     keys: dict[str, Any] = {"waves.0.direction": direction}
     if incidence == "SV":
         keys |= {"waves.0.kind": "S", "waves.0.through": [-BACK * x for x in direction]}
-    scene = load_any(SCENE, keys | (changes or {}))[0]
+    scene = load(SCENE, keys | (changes or {}))[0]
     assert scene.kind == "rock mass"
     return scene  # type: ignore[return-value]
 

@@ -1,21 +1,26 @@
 """One point of a study, measured: its errors, what was counted, and what it took."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from statistics import median
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import xarray as xr
 
 from cases.errors import SceneError
-from cases.schema.scene import Scene
+from cases.kinds import pillar_of
 from compare.engines import applies, solve, solver
 from compare.experiments.failures import FAILURES
 from compare.experiments.study.methods.catalogue import METHODS
 from compare.experiments.study.reference import UNKNOWN, error, finest_of, known, own_of
 from compare.experiments.study.study import StudyPoint
 from compare.solvers.record import Answer
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 LONG = 0.5  # s: a run that takes as long, its set-up included, is timed once more at most
 
@@ -109,22 +114,24 @@ def _measured(point: StudyPoint) -> PointRow:
     )
 
 
-def runner(point: StudyPoint, scene: Scene) -> Callable[[], xr.Dataset]:
+def runner(point: StudyPoint, scene: AnyScene) -> Callable[[], xr.Dataset]:
     """Return the function that solves a point once."""
     method, arguments = point.curve.method, point.arguments
     if not (answer := method_applies(point, scene)):
         raise SceneError(scene.title, "", None, f"{method} does not apply: {answer.reason}")
     if method in METHODS:
-        return lambda: METHODS[method].solve(scene, **arguments)
+        return lambda: METHODS[method].solve(pillar_of(scene, method), **arguments)
     if arguments:
         return lambda: _timed(lambda: solver(method).run(scene, **arguments))
     return lambda: _timed(lambda: solve(method, scene))
 
 
-def method_applies(point: StudyPoint, scene: Scene) -> Answer:
+def method_applies(point: StudyPoint, scene: AnyScene) -> Answer:
     """Return whether a point's method holds for its scene, or the reason why not."""
     method = point.curve.method
-    return METHODS[method].applies(scene) if method in METHODS else applies(method, scene)
+    if method not in METHODS:
+        return applies(method, scene)
+    return METHODS[method].applies(pillar_of(scene, method))
 
 
 def _timed(run: Callable[[], xr.Dataset]) -> xr.Dataset:

@@ -1,13 +1,13 @@
 """References of errors: exact solutions, or fine runs whose own error is bounded."""
 
+from __future__ import annotations
+
 import math
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from cases.schema.scene import Scene
-from cases.schema.tables import Numerics
 from compare.engines import ENGINES, applies, exact_names, solve, solver
 from compare.experiments.references import ErrorReference
 from compare.experiments.study.methods.catalogue import METHODS
@@ -15,6 +15,9 @@ from compare.experiments.study.study import FINEST, NONE, FineRun, Study, StudyP
 from compare.misfit.metrics import Pairing, pairings, relative_l2, worst
 from compare.misfit.ranking import applicable, finest, own_exact
 from results.dataset import scene_hash
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 
 class Error(NamedTuple):
@@ -82,12 +85,14 @@ def error(result: xr.Dataset, against: ErrorReference | None, study: Study) -> E
     return Error(_misfit(result, against.result, study), against.error)
 
 
-def reference(name: str, scene: Scene) -> xr.Dataset:
+def reference(name: str, scene: AnyScene) -> xr.Dataset:
     """Return an exact solution, whatever the scene's numerics; solved once a process."""
-    return _solved(name, scene.model_copy(update={"numerics": Numerics(), "expect": {}}))
+    return _solved(
+        name, scene.model_copy(update={"numerics": type(scene.numerics)(), "expect": {}})
+    )
 
 
-def _solved(name: str, scene: Scene) -> xr.Dataset:
+def _solved(name: str, scene: AnyScene) -> xr.Dataset:
     key = name, scene_hash(scene)
     if key not in _known:
         _known[key] = solve(name, scene)
@@ -103,8 +108,10 @@ def _misfit(one: xr.Dataset, other: xr.Dataset, study: Study) -> float:
     if study.quantity is None:
         return worst(one, other).misfit
     found = [p for p in pairings(one, other) if p.place.quantity == study.quantity]
-    axes = {p.place.axis: [q for q in found if q.place.axis == p.place.axis] for p in found}
-    return max((_norm(pairs) for pairs in axes.values()), default=math.nan)
+    by_component: dict[str, list[Pairing]] = {}
+    for one_pair in found:
+        by_component.setdefault(one_pair.place.component, []).append(one_pair)
+    return max((_norm(pairs) for pairs in by_component.values()), default=math.nan)
 
 
 def _norm(pairs: list[Pairing]) -> float:

@@ -10,16 +10,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from cases.errors import InterruptedRun, SceneError, UnstableError
-from cases.schema.scene import Scene
 from compare.experiments import store
+from compare.misfit.places import Place, places_of
 from results.dataset import scene_hash
 
 if TYPE_CHECKING:
     import xarray as xr
 
+    from cases.kinds import AnyScene
     from compare.misfit.external import Curves
 
 Rows = list[dict[str, Any]]
+PEAKS = ("stress", "velocity", "traction")
 
 
 class SweepCase(NamedTuple):
@@ -30,7 +32,7 @@ class SweepCase(NamedTuple):
 
     settings: dict[str, Any]
     folder: Path
-    scene: Scene | None
+    scene: AnyScene | None
     message: str = ""
 
     @property
@@ -58,13 +60,13 @@ class Running(NamedTuple):
         """All that decides a row beside the scene."""
         return [self.runs, self.vtx]
 
-    def solvers(self, scene: Scene) -> list[str]:
+    def solvers(self, scene: AnyScene) -> list[str]:
         """Return the names of what would solve a scene."""
         from compare.runs import jobs
 
         return [job.name for job in jobs.plan([scene], self.runs, Path())]
 
-    def __call__(self, scene: Scene, folder: Path) -> Rows:
+    def __call__(self, scene: AnyScene, folder: Path) -> Rows:
         """Write the results of a scene into a folder and return a row for each receiver of each."""
         from compare.runs import jobs
         from compare.runs import run as runs
@@ -92,13 +94,13 @@ class Comparing(NamedTuple):
         ]
         return [self.spectral, self.align, self.writes, named, samples]
 
-    def solvers(self, scene: Scene) -> list[str]:
+    def solvers(self, scene: AnyScene) -> list[str]:
         """Return the names of what would solve a scene."""
         from compare.engines import applies, names
 
         return [name for name in names() if applies(name, scene)]
 
-    def __call__(self, scene: Scene, folder: Path) -> Rows:
+    def __call__(self, scene: AnyScene, folder: Path) -> Rows:
         """Return a row for each distance."""
         from compare.misfit import pairs
 
@@ -107,10 +109,10 @@ class Comparing(NamedTuple):
             from compare.report.report import write_comparisons
 
             write_comparisons([found], folder / scene.name)
-        rows = [
-            {**r.pair._asdict(), "quantity": r.quantity, "y": r.y, **r.distance._asdict()}
-            for r in found.rows
-        ]
+        if not found.rows:
+            allowed = "has nothing to compare: no two solutions of a pair apply"
+            raise SceneError(scene.where, "", None, allowed)
+        rows = [row.facts for row in found.rows]
         return [{k: v if isinstance(v, str) else _real(v) for k, v in row.items()} for row in rows]
 
 
@@ -148,7 +150,7 @@ def _of_run(done: Any) -> Rows:
         "energy_residual": _real(done.residual),
         "file": str(done.job.path),
     }
-    peaks = [*_peaks(result, "stress"), *_peaks(result, "velocity")]
+    peaks = [peak for quantity in PEAKS for peak in _peaks(result, quantity)]
     nowhere = {"quantity": "", "y": nan, "peak": nan, "time_of_peak": nan}
     return [about | peak for peak in peaks or [nowhere]]
 
@@ -160,15 +162,17 @@ def _real(value: float | None) -> float:
 def _peaks(result: xr.Dataset, quantity: str) -> Rows:
     """Return the value that is largest in size at each receiver, with its sign and time (SI).
 
-    Of a velocity in space the speed, which has no sign.
+    Of several components the norm, which has no sign: the speed of a velocity in space.
     """
     rows = []
-    for y, wave in zip(result[f"{quantity}_y"].values, result[quantity].values, strict=True):
+    places = places_of(result, quantity)[0] if quantity in result else []
+    for i, at in enumerate(places):
+        wave = result[quantity].values[i]
         in_space = wave.ndim == 2 and wave.shape[1] > 1
         values = np.linalg.norm(wave, axis=1) if in_space else wave.ravel()
-        at = int(np.argmax(np.abs(values)))
-        peak, time = float(values[at]), float(result.time.values[at])
-        rows.append({"quantity": quantity, "y": float(y), "peak": peak, "time_of_peak": time})
+        k = int(np.argmax(np.abs(values)))
+        where = {"quantity": quantity, **Place(quantity, "", at).coordinates}
+        rows.append(where | {"peak": float(values[k]), "time_of_peak": float(result.time[k])})
     return rows
 
 

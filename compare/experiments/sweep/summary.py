@@ -14,13 +14,14 @@ from compare.experiments.sweep.case import SweepOutcome
 from compare.experiments.sweep.runner import Sweep
 from compare.experiments.tables import cell, grouped, number, write_tables
 from compare.misfit.metrics import Distance
+from compare.misfit.places import Place
 from compare.report.tables import Table
 
 NAME = "sweep"
 #: The numbers of a run, of a receiver of it, and of a pair of solutions at a receiver.
 OF_RUNS = ("steps", "freedoms", "seconds", "energy_residual")
 OF_RECEIVERS, OF_PAIRS = ("peak", "time_of_peak"), Distance._fields
-UNITS = {"y": "m", "time_of_peak": "s", "seconds": "s", "delay": "s"}
+UNITS = {"x": "m", "y": "m", "time_of_peak": "s", "seconds": "s", "delay": "s"}
 #: Columns shown of runs and of comparisons: name, heading, and format of a number.
 SHOWN_OF_RUNS = (
     ("peak", "peak, SI", ".4g"),
@@ -82,12 +83,12 @@ def summarise(asked: Sweep, found: list[SweepOutcome]) -> Summary:
 
 def grid(axes: dict[str, list[Any]], done: pd.DataFrame) -> xr.Dataset:
     """Return rows on the grid of swept keys, variants, and engines or pairs; nan where none is."""
-    point = [*axes, "variant"]
+    point, at = [*axes, "variant"], [name for name in ("x", "y") if name in done]
     if "one" in done:
         pairs = done.assign(pair=done["one"] + " ~ " + done["other"])
-        found = _on_grid(pairs, [*point, "pair", "quantity", "y"], OF_PAIRS)
+        found = _on_grid(pairs, [*point, "pair", "quantity", *at], OF_PAIRS)
     else:
-        found = _on_grid(done, [*point, "engine", "quantity", "y"], OF_RECEIVERS)
+        found = _on_grid(done, [*point, "engine", "quantity", *at], OF_RECEIVERS)
         runs = done.drop_duplicates([*point, "engine"])
         found = found.merge(_on_grid(runs, [*point, "engine"], OF_RUNS))
     found = found.reindex({key: list(map(cell, values)) for key, values in axes.items()})
@@ -102,7 +103,8 @@ def _on_grid(rows: pd.DataFrame, index: list[str], numbers: Sequence[str]) -> xr
 
 def _heading(row: dict[str, Any]) -> str:
     solved = f"{row['one']} ~ {row['other']}" if "one" in row else row["engine"]
-    place = f", {row['quantity']} at y = {row['y']:g} m" if row["quantity"] else ""
+    at = tuple(row[name] for name in ("x", "y") if name in row)
+    place = f", {Place(row['quantity'], '', at).heading}" if row["quantity"] else ""
     return f"{row['variant']}: {solved}{place}" if row["variant"] else f"{solved}{place}"
 
 

@@ -144,7 +144,7 @@ class Frame:
             self.profiles[name] = line
         for layer in self.simulated.scene.soft_layers:
             ax.axvline(layer.y, color="#999999", linewidth=0.8, linestyle=":")
-        ax.axvline(self.panel.y, color="#444444", linewidth=0.8, linestyle="--")
+        ax.axvline(self.panel.place.at[0], color="#444444", linewidth=0.8, linestyle="--")
         ax.set(xlim=(low[0], high[0]), ylim=(-1.08 * self.peak, 1.08 * self.peak))
         ax.set_xlabel("y (m)" + "; dotted: soft layers" * bool(self.simulated.scene.soft_layers))
         ax.set_ylabel(f"{self.settings.quantity.name}\n({self.settings.quantity.unit})")
@@ -161,8 +161,8 @@ class Frame:
         self.cursor = ax.axvline(0.0, color="#000000", linewidth=1.2, animated=True)
         reach = 1.08 * peak / unit.size or 1.0
         ax.set(xlim=1e3 * self.time[[0, -1]], ylim=(-reach, reach))
-        ax.set_ylabel(f"{first.quantity} {first.axis}".rstrip() + f"\n({unit.name})")
-        ax.set_xlabel(f"time (ms); at y = {first.y:g} m, where the line above is dashed")
+        ax.set_ylabel(f"{first.place.named}\n({unit.name})")
+        ax.set_xlabel(f"time (ms); at y = {first.place.at[0]:g} m, where the line above is dashed")
 
     @cached_property
     def panel(self) -> Panel:

@@ -1,23 +1,30 @@
 """A scene solved at places all along the pillar, for space-time diagrams."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import xarray as xr
 
 from cases.schema.scene import Scene
 from compare.engines import ENGINES, applies, names, solve
 from compare.misfit.ranking import own_exact
 
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+
 SECTIONS, TIMES = 60, 240  # at most so many intervals between the sections and samples kept
 FEWEST = 8  # blocks; in fewer there is no wave to be seen
 
 
-def along_pillar(scene: Scene) -> dict[str, xr.Dataset]:
+def along_pillar(scene: AnyScene) -> dict[str, xr.Dataset]:
     """Return results by name at joints or blocks all along the pillar, at some 240 times.
 
     Those of the engines, each run as in the comparison, and of the exact solution of each one's own
-    model. Empty where the pillar has too few blocks for a wave to be seen.
+    model. Empty where the pillar has too few blocks for a wave to be seen, and of a rock mass.
     Raises what `compare.engines.solve` does.
     """
-    if scene.pillar.block_count < FEWEST:
+    if not isinstance(scene, Scene) or scene.pillar.block_count < FEWEST:
         return {}
     wide = recorded_along(scene)
     every = [name for name in names() if applies(name, wide)]
@@ -33,11 +40,14 @@ def sections(scene: Scene) -> list[float]:
     return [scene.pillar.block * i for i in places]
 
 
-def recorded_along(scene: Scene) -> Scene:
+def recorded_along(scene: AnyScene) -> AnyScene:
     """Return the scene with receivers along the pillar; samples and steps stay as they are.
 
-    Of a scene that records velocities alone these are the centres of blocks, else sections.
+    Of a scene that records velocities alone these are the centres of blocks, else sections. A rock
+    mass stays as it is.
     """
+    if not isinstance(scene, Scene):
+        return scene
     places = sections(scene)
     # A couple about the axis strains no section; what it turns is recorded with the velocity.
     points = places if scene.load.arm is not None else []

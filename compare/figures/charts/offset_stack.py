@@ -88,12 +88,14 @@ def stacked(panels: list[Panel], comparisons: list[Comparison]) -> Chart | None:
 
     The curve of solution S at the k-th receiver of row i is the part i-k-S, its residual
     residual-i-k-S. None where a quantity has fewer than three receivers, each of which then has
-    axes of its own, and where there are external data.
+    axes of its own, where there are external data, and of a rock mass.
     """
     groups: dict[str, list[Panel]] = {}
-    for panel in sorted(panels, key=lambda p: p.y):
-        groups.setdefault(f"{panel.quantity} {panel.axis}".rstrip(), []).append(panel)
-    if comparisons[0].besides or any(len({p.y for p in g}) < FEWEST for g in groups.values()):
+    for panel in sorted(panels, key=lambda p: p.place.at):
+        groups.setdefault(panel.place.named, []).append(panel)
+    in_plane = any(len(panel.place.at) > 1 for panel in panels)
+    few = any(len({p.place.at for p in group}) < FEWEST for group in groups.values())
+    if comparisons[0].besides or few or in_plane:
         return None
     pairs = [stacks_of(words, group, i) for i, (words, group) in enumerate(groups.items())]
     grid = [[[waveforms.subplot], [residuals.subplot]] for waveforms, residuals in pairs]
@@ -103,8 +105,10 @@ def stacked(panels: list[Panel], comparisons: list[Comparison]) -> Chart | None:
 def stacks_of(words: str, group: list[Panel], row: int) -> tuple[Stack, Stack]:
     """Return the stacks of waveforms of one quantity and of their residuals."""
     quantity, reference = group[0].quantity, group[0].reference
-    waveforms = Stack(quantity, words, {p.y: p.curves for p in group}, f"{row}")
-    residuals = Stack(quantity, "", {p.y: p.residuals for p in group}, f"residual-{row}", THIN)
+    curves = {panel.place.at[0]: panel.curves for panel in group}
+    left = {panel.place.at[0]: panel.residuals for panel in group}
+    waveforms = Stack(quantity, words, curves, f"{row}")
+    residuals = Stack(quantity, "", left, f"residual-{row}", THIN)
     if not residuals.largest:
         return waveforms, residuals
     share, times = residuals.largest / waveforms.largest, waveforms.largest / residuals.largest

@@ -48,7 +48,7 @@ class Spectra(NamedTuple):
     @property
     def heading(self) -> str:
         """Receiver and variant."""
-        return f"{self.panel.place}, {self.panel.variant}"
+        return f"{self.panel.heading}, {self.panel.variant}"
 
     @property
     def unit(self) -> str:

@@ -104,7 +104,7 @@ def _references(receivers: list[Panel]) -> str:
 def _at_rest(receivers: list[Panel]) -> str:
     """Say what static state was taken from the waveforms; nothing where they had none."""
     states = dict.fromkeys(
-        f"{panel.at_rest:.4g} {UNITS[panel.quantity]} ({panel.place}, {panel.variant})"
+        f"{panel.at_rest:.4g} {UNITS[panel.quantity]} ({panel.heading}, {panel.variant})"
         for panel in receivers
         if panel.at_rest
     )
@@ -121,6 +121,6 @@ def _variant_table(overlays: list[Overlay], receivers: list[Panel]) -> pd.DataFr
                 columns[name] = trace.curve
     for panel in receivers:
         if panel.reference in (curves := panel.curves):
-            name = f"{panel.reference}, {panel.place} | {panel.variant} ({UNITS[panel.quantity]})"
+            name = f"{panel.reference}, {panel.heading} | {panel.variant} ({UNITS[panel.quantity]})"
             columns[name] = curves[panel.reference]
     return pd.DataFrame(columns).rename_axis("time (s)").reset_index()

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cases.errors import SceneError
-from cases.schema.scene import Scene
 from compare.engines import Progress, applies, names, solve
 from compare.figures.print.appearance import STYLES
 from compare.figures.print.draw import draw
@@ -14,6 +13,9 @@ from compare.figures.print.save import BEGINS, save
 from compare.misfit.alignment import lay_beside
 from compare.misfit.pairs import Comparison
 from compare.runs.jobs import names_of
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 
 class FigureRequest(NamedTuple):
@@ -37,7 +39,7 @@ class FigureRequest(NamedTuple):
 
 
 def make(
-    scenes: list[Scene],
+    scenes: list[AnyScene],
     runs: list[tuple[str, str | None]],
     curves: list[Any],
     request: FigureRequest,
@@ -63,7 +65,7 @@ def make(
     return save(figure, request.out, kind, scenes[0].title, appearance.dpi)
 
 
-def _solvers(scene: Scene, runs: list[tuple[str, str | None]]) -> list[str]:
+def _solvers(scene: AnyScene, runs: list[tuple[str, str | None]]) -> list[str]:
     if not runs:
         return [name for name in names() if applies(name, scene)]
     found = [name for engine, model in runs for name in names_of(engine, model, scene)]

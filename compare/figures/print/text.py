@@ -13,7 +13,7 @@ class Words(NamedTuple):
     """The words of one language.
 
     solutions : the field of a solver's words that has its label. quantities : by name. place : with
-    {quantity} and {y}. static : with {value}, what a waveform is drawn without. parts : of the
+    {quantity} and {at}. static : with {value}, what a waveform is drawn without. parts : of the
     variants' names that are ours; those of the user stay as they are. comma : between place and
     variant.
     """
@@ -34,11 +34,17 @@ class Words(NamedTuple):
         """Return the label of a panel's ordinate."""
         return f"{self.quantities[panel.quantity]} ({unit})"
 
+    @staticmethod
+    def _at(panel: Panel) -> str:
+        """Return where a receiver is: y of a pillar's, x and y of a rock mass's."""
+        at = panel.place.at
+        return f"y\u00a0=\u00a0{at[0]:g}" if len(at) == 1 else f"[{at[0]:g},\u00a0{at[1]:g}]"
+
     def title(self, panel: Panel) -> str:
         """Return what stands over a panel."""
-        quantity = " ".join([self.quantities[panel.quantity], panel.axis]).strip()
+        quantity = " ".join([self.quantities[panel.quantity], panel.place.component]).strip()
         parts = [self.parts.get(part, part) for part in panel.variant.split(", ")]
-        place = [self.place.format(quantity=quantity, y=f"{panel.y:g}")]
+        place = [self.place.format(quantity=quantity, at=self._at(panel))]
         if rest := panel.at_rest:
             unit = unit_for(UNITS[panel.quantity], abs(rest))
             place.append(self.static.format(value=f"{rest / unit.size:.4g}\u00a0{unit.name}"))
@@ -50,10 +56,11 @@ ENGLISH = Words(
     quantities={
         "stress": "stress",
         "shear": "shear stress",
+        "traction": "traction",
         "velocity": "velocity",
         "rotation": "rotation",
     },
-    place="{quantity} at y\u00a0=\u00a0{y}\u00a0m",
+    place="{quantity} at {at}\u00a0m",
     static="less the static {value}",
     time="time (ms)",
     parts={},
@@ -62,8 +69,14 @@ ENGLISH = Words(
 
 CHINESE = Words(
     solutions="chinese",
-    quantities={"stress": "应力", "shear": "剪应力", "velocity": "速度", "rotation": "转角"},
-    place="{quantity}，y\u00a0=\u00a0{y}\u00a0m",
+    quantities={
+        "stress": "应力",
+        "shear": "剪应力",
+        "traction": "节理面应力",
+        "velocity": "速度",
+        "rotation": "转角",
+    },
+    place="{quantity}，{at}\u00a0m",
     static="减去静态值 {value}",
     time="时间 (ms)",
     parts={

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from cases.schema.scene import Scene
 from compare.engines import ENGINES
 from compare.runs.checkpoint.files import Checkpoints
 from compare.runs.checkpoint.schedule import RunKeeper
@@ -15,6 +14,9 @@ from compare.runs.checkpoint.signature import Signature, signature
 from compare.runs.output import fields_of
 from compare.runs.processes import Processes
 from results.dataset import Fields
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 ATTRIBUTE = "signature"  # of a result: as JSON, what decided its bits
 
@@ -50,7 +52,7 @@ class Watch(NamedTuple):
 
 
 def watch(
-    scene: Scene, name: str, path: Path, keeping: Keeping | None, processes: Processes
+    scene: AnyScene, name: str, path: Path, keeping: Keeping | None, processes: Processes
 ) -> Watch:
     """Return a run watched over; on all `processes` that share it.
 

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import sys
 from time import monotonic
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cases.errors import InterruptedRun, printable
 from cases.sampling import sample_times
-from cases.schema.scene import Scene
 from compare.runs.checkpoint.files import Checkpoints
 from compare.runs.checkpoint.signals import Signals, exit_code, word
 from compare.runs.processes import Processes
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 
 class Interrupted(InterruptedRun):
@@ -32,7 +34,7 @@ class RunKeeper:
     """
 
     def __init__(
-        self, scene: Scene, files: Checkpoints, done: int, every: float, signals: Signals
+        self, scene: AnyScene, files: Checkpoints, done: int, every: float, signals: Signals
     ) -> None:
         self.scene, self.files, self.done = scene, files, done
         self.processes: Processes = files.processes

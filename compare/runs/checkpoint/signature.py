@@ -7,16 +7,19 @@ import json
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import cases
-from cases.schema.scene import Scene
 from compare.engines import solver
 from results.dataset import scene_hash
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 Signature = dict[str, str]
 
 
-def signature(scene: Scene, name: str, processes: int) -> Signature:
+def signature(scene: AnyScene, name: str, processes: int) -> Signature:
     """Return what must be the same for a run to go on, or its result to be taken for this one.
 
     name : of what solves the scene.
@@ -45,9 +48,9 @@ def program() -> str:
     return digest.hexdigest()
 
 
-def _scene(scene: Scene) -> str:
+def _scene(scene: AnyScene) -> str:
     """Return a hash of a scene, the mesh that it names included."""
-    mesh = scene.numerics.continuum.mesh_path
+    mesh = getattr(scene.numerics.continuum, "mesh_path", None)
     # One that cannot be read is refused, in its own words, by what would use it.
     if mesh is None or not Path(mesh).is_file():
         return scene_hash(scene)

@@ -9,7 +9,7 @@ from cases.partition.cut import cut
 from cases.partition.faults import NonConvex, PartitionError, Sliver
 from cases.partition.periodic import periodic_contacts
 from cases.partition.scene import block_count, partition_bytes, partition_of
-from cases.read import load_any_variant
+from cases.read import load_variant
 
 SCENE = """\
 title = "rows"
@@ -36,7 +36,7 @@ def scene(tmp_path):
     """Return a function of changes: the scene of six rows."""
     path = tmp_path / "rows.toml"
     path.write_text(SCENE)
-    return lambda **changes: load_any_variant(
+    return lambda **changes: load_variant(
         path, "", {k.replace("__", "."): v for k, v in changes.items()}
     )
 

@@ -8,9 +8,9 @@ import sys
 
 import pytest
 
-import cases
 from cases.errors import SceneError
-from cases.read import load_any, load_any_variant
+from cases.kinds import pillar_of, rock_mass_of
+from cases.read import load, load_variant
 from cases.schema.rock_mass import RockMass
 
 GOOD = """\
@@ -295,7 +295,7 @@ def written(tmp_path):
 
 
 def test_the_good_scene_is_good(written):
-    one, other = load_any(written(GOOD))
+    one, other = load(written(GOOD))
     assert isinstance(one, RockMass) and (one.name, other.name) == ("", "S")
     assert one.where.endswith("mass.toml") and other.where.endswith("mass.toml [S]")
     assert [s.name for s in one.joint_sets] == ["bedding", "cross"]
@@ -311,7 +311,7 @@ def test_a_mistake_is_one_line(written, name):
     assert GOOD.count(old), f"{old!r} is not in the good scene"
     path = written(GOOD.replace(old, new, 1))
     with pytest.raises(SceneError) as error:
-        load_any(path)
+        load(path)
     line = str(error.value)
     assert line.startswith(f"{path}") and "\n" not in line and len(line) < len(str(path)) + 500
     for word in words:
@@ -324,11 +324,11 @@ def test_a_history_is_beside_the_scene_unless_it_is_asked_for(written, tmp_path)
     elsewhere.parent.mkdir()
     elsewhere.write_text("0.0, 0.0\n0.01, 2.0\n")
     with pytest.raises(SceneError, match=r"waves\[0\].file = '../pulse.csv': leaves the folder"):
-        load_any_variant(path, "S", {"waves.0.file": "../pulse.csv"}, asked=False)
-    found = load_any_variant(path, "S", {"waves.0.file": str(elsewhere)})
+        load_variant(path, "S", {"waves.0.file": "../pulse.csv"}, asked=False)
+    found = load_variant(path, "S", {"waves.0.file": str(elsewhere)})
     assert found.waves[0].history.stress.tolist() == [0.0, 2.0]
     with pytest.raises(SceneError, match=r"waves\[0\].file = 'none.csv': cannot be read"):
-        load_any_variant(path, "S", {"waves.0.file": "none.csv"})
+        load_variant(path, "S", {"waves.0.file": "none.csv"})
 
 
 @pytest.mark.parametrize(
@@ -345,7 +345,7 @@ def test_a_history_is_beside_the_scene_unless_it_is_asked_for(written, tmp_path)
 )
 def test_loads_of_every_kind(written, load, boundaries):
     changes = {"loads": [{"shape": "step", "amplitude": 1e5, **load}], **boundaries}
-    found = load_any_variant(written(GOOD), "", changes)
+    found = load_variant(written(GOOD), "", changes)
     assert found.loads[0].kind == load["kind"]
 
 
@@ -355,18 +355,30 @@ def test_sides_of_a_slope(written):
     slope = [[0.0, 0.0], [60.0, 0.0], [60.0, 40.0], [45.0, 40.0], [20.0, 14.0], [0.0, 14.0]]
     changes = {"domain": {"outline": slope}, "loads": [], "record.joints": []}
     path = written(GOOD)
-    assert load_any_variant(path, "", {**changes, "boundaries.outline": "free"}).boundaries
+    assert load_variant(path, "", {**changes, "boundaries.outline": "free"}).boundaries
     with pytest.raises(SceneError, match=r"boundaries\.outline = 'free': must be 'quiet': waves"):
-        load_any_variant(path, "", {**changes, "waves.0.direction": [1.0, 0.0]})
+        load_variant(path, "", {**changes, "waves.0.direction": [1.0, 0.0]})
 
 
-def test_a_rock_mass_is_loaded_as_no_pillar(written):
-    """Whoever asks for what can be simulated is told, in one line, that this cannot be yet."""
+def test_both_kinds_are_read_and_told_apart(written, paper_folder):
+    """Whoever takes one kind alone says so in one line, with the file."""
     path = written(GOOD)
-    for ask in (cases.load, cases.load_variant):
-        with pytest.raises(SceneError, match="is a rock mass, which no engine solves yet") as error:
-            ask(path)
-        assert str(error.value).startswith(f"{path}: domain: ")
+    mass, pillar = load(path)[0], load_variant(paper_folder / "fig-03.toml")
+    assert (mass.kind, pillar.kind) == ("rock mass", "pillar")
+    assert rock_mass_of(mass) is mass and pillar_of(pillar) is pillar
+    with pytest.raises(SceneError, match="is a rock mass; a fit takes pillars alone") as error:
+        pillar_of(mass, "a fit")
+    assert str(error.value).startswith(f"{path}: domain: ")
+    with pytest.raises(SceneError, match="pillar: is a pillar; this takes rock masses alone"):
+        rock_mass_of(pillar)
+
+
+def test_everything_that_acts_in_time_decides_the_interval(written):
+    """A 200th of the shortest period of waves and loads."""
+    mass = load(written(GOOD))[0]
+    periods = [one.period for one in (*mass.waves, *mass.loads) if one.period]
+    assert mass.pulses == (*mass.waves, *mass.loads) and periods
+    assert mass.interval == min(periods) / 200
 
 
 def test_a_pillar_imports_nothing_of_rock_masses(tmp_path):
@@ -382,9 +394,9 @@ def test_a_pillar_imports_nothing_of_rock_masses(tmp_path):
 
 def test_a_variant_changes_one_of_a_list_of_tables(written):
     path = written(GOOD + '\n[[variants]]\nname = "steep"\njoint_sets.1.dip = 80.0\n')
-    first, *_, steep = load_any(path)
+    first, *_, steep = load(path)
     assert [s.dip for s in steep.joint_sets] == [first.joint_sets[0].dip, 80.0]
     assert steep.joint_sets[1].model_dump() == {**first.joint_sets[1].model_dump(), "dip": 80.0}
     path = written(GOOD + '\n[[variants]]\nname = "none"\njoint_sets.7.dip = 80.0\n')
     with pytest.raises(SceneError, match=r"variants\[1\].joint_sets = .*is none of 0 to 1"):
-        load_any(path)
+        load(path)

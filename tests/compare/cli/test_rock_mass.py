@@ -1,4 +1,4 @@
-"""A rock mass on the command line: its blocks explained, and every other command refused."""
+"""A rock mass on the command line: its blocks explained, its solutions run, compared and drawn."""
 
 import io
 import json
@@ -6,12 +6,15 @@ import sys
 from contextlib import redirect_stderr, redirect_stdout
 from unittest.mock import patch
 
+import pandas as pd
 import pytest
+import xarray as xr
 
 import jointwave
 from compare.cli import completion
 from compare.cli.program import main
-from compare.experiments.study.study import shipped
+from compare.misfit.pairs import solved
+from compare.solvers.record import no
 
 SCENE = """\
 title = "A tunnel in brickwork"
@@ -38,8 +41,6 @@ shear_stiffness = 4.0e9
 duration = 0.1
 [record]
 points = [[1.0, 3.5]]
-[expect]
-"dem ~ lattice" = 1e-3
 [[variants]]
 name = "bonded"
 joint_sets = []
@@ -50,28 +51,53 @@ domain.openings = [[[3.0, 2.0], [6.0, 2.0], [6.0, 4.0], [3.0, 4.0]]]
 domain.non_convex = "cut"
 """
 
-COMMANDS = [
-    "run mass.toml",
-    "run mass.toml --dry-run",
-    "run mass.toml --variant bonded",
-    "run mass.toml --sweep domain.least_angle=1,2",
-    "compare mass.toml",
-    "compare mass.toml --sweep domain.least_angle=1,2",
-    "figure mass.toml --out mass.svg",
-    "fit mass.toml --free rock.density --with curve.csv",
-    "plan mass.toml --misfit 0.01",
-    "effects mass.toml",
-    "report mass.toml --out page",
-    "animate mass.toml",
-    "view mass.toml",
-    "new other --from mass.toml",
-]
+ONE_JOINT = """\
+title = "one joint"
+[domain]
+size = [40.0, 40.0]
+[rock]
+density = 2600.0
+intact_modulus = 5.0e10
+[[joint_sets]]
+name = "joint"
+dip = 30.0
+through = [20.0, 20.0]
+normal_stiffness = 1.0e10
+shear_stiffness = 4.0e9
+[[waves]]
+kind = "P"
+direction = [0.0, 1.0]
+shape = "ricker"
+amplitude = 1e6
+period = 0.005
+[boundaries]
+left = "quiet"
+right = "quiet"
+bottom = "quiet"
+top = "quiet"
+[time]
+duration = 0.03
+[record]
+points = [[20.0, 10.0], [20.0, 30.0]]
+joints = [[20.0, 20.0]]
+interval = 1e-4
+"""
+
+#: Of these each takes pillars alone, and says so.
+PILLARS_ALONE = {
+    "fit joint.toml --free rock.density --with curve.csv": "jointwave fit",
+    "plan joint.toml --misfit 0.01": "jointwave plan",
+    "effects joint.toml": "jointwave effects",
+    "animate joint.toml": "jointwave animate",
+    "view joint.toml": "jointwave view",
+}
 
 
 @pytest.fixture
 def jointwave_says(tmp_path, monkeypatch):
     """Return a function that runs a command beside the scene: its exit code, output and errors."""
     (tmp_path / "mass.toml").write_text(SCENE)
+    (tmp_path / "joint.toml").write_text(ONE_JOINT)
     monkeypatch.chdir(tmp_path)
 
     def says(command):
@@ -88,13 +114,91 @@ def jointwave_says(tmp_path, monkeypatch):
     return says
 
 
-@pytest.mark.parametrize("command", COMMANDS)
-def test_every_other_command_refuses_it_in_one_line(jointwave_says, tmp_path, command):
+@pytest.mark.parametrize(("command", "what"), PILLARS_ALONE.items())
+def test_what_takes_pillars_alone_says_so_in_one_line(jointwave_says, tmp_path, command, what):
     code, out, err = jointwave_says(command)
-    assert code == 2 and out == ""
-    assert err.startswith("jointwave: mass.toml") and len(err.splitlines()) == 1
-    assert "domain: is a rock mass, which no engine solves yet" in err
-    assert [path.name for path in tmp_path.iterdir()] == ["mass.toml"]
+    assert code == 2 and out == "" and len(err.splitlines()) == 1
+    expected = f"jointwave: joint.toml: domain: is a rock mass; {what} takes pillars alone"
+    assert err.strip() == expected
+    assert {path.name for path in tmp_path.iterdir()} == {"mass.toml", "joint.toml"}
+
+
+def test_a_scene_is_run_and_its_file_says_where_its_receivers_are(jointwave_says, tmp_path):
+    code, out, err = jointwave_says("run joint.toml --engine exact")
+    assert code == 0 and err == "" and "oblique-joint" in out
+    with xr.open_dataset(tmp_path / "results" / "exact-oblique-joint.nc") as found:
+        assert found.velocity.point_x.values.tolist() == [20.0, 20.0]
+        assert found.velocity.point_y.values.tolist() == [10.0, 30.0]
+        assert found.traction.joint_point_y.values.tolist() == [20.0]
+        assert json.loads(found.effects) == ["quiet sides", "energy ledger", "incident waves"]
+    again = jointwave_says("run joint.toml --engine exact --resume")
+    assert again[0] == 0
+
+
+def test_a_dry_run_of_it(jointwave_says):
+    code, out, _ = jointwave_says("run joint.toml --engine exact --dry-run --json")
+    (run,) = json.loads(out)["runs"]
+    assert code == 0 and run["engine"] == "oblique-joint" and run["bytes"] > 0
+
+
+def test_a_sweep_of_it_has_a_row_a_receiver(jointwave_says, tmp_path):
+    """Of half the amplitude half the peak, at every receiver."""
+    command = "run joint.toml --engine exact --sweep waves.0.amplitude=1e6,5e5 --out swept"
+    code, out, _ = jointwave_says(command)
+    assert code == 0 and "velocity at [20, 30] m" in out
+    rows = pd.read_csv(tmp_path / "swept" / "sweep.csv")
+    peaks = rows.pivot_table("peak", ["quantity", "x", "y"], "waves.0.amplitude")
+    assert len(peaks) == 5 and (2 * peaks[5e5]).to_numpy() == pytest.approx(peaks[1e6].to_numpy())
+    grid = xr.open_dataset(tmp_path / "swept" / "sweep.nc")
+    assert {"x", "y"} <= set(grid.peak.dims)
+
+
+def test_tables_and_curves_of_a_comparison_name_places(jointwave_says, tmp_path):
+    """What --out writes is read back by --with: the same curves, at the same places."""
+    code, out, _ = jointwave_says("compare joint.toml --out found")
+    assert code == 0 and "oblique-joint" in out
+    header = (tmp_path / "found" / "comparison.csv").read_text().splitlines()[0]
+    assert "oblique-joint | velocity x at [20, 10] m" in header
+    assert "oblique-joint | traction s at [20, 20] m" in header
+    given = "found/comparison.csv:oblique-joint"
+    code, out, _ = jointwave_says(f"compare joint.toml --json --with {given}")
+    rows = [
+        row
+        for row in json.loads(out)[0]["rows"]
+        if row["other"] == "oblique-joint" and row["kind"] == "given curves"
+    ]
+    places = {(row["quantity"], row["x"], row["y"]) for row in rows}
+    assert ("velocity x", 20.0, 30.0) in places and ("traction n", 20.0, 20.0) in places
+    assert all(row["misfit"] < 1e-5 for row in rows)  # of six digits in the table
+
+
+def test_one_waveform_of_a_result_is_asked_for_by_its_place(jointwave_says):
+    jointwave_says("run joint.toml --engine exact")
+    file = "results/exact-oblique-joint.nc"
+    _, out, _ = jointwave_says(f"compare joint.toml --json --with {file}:velocity_x@[20,30]")
+    rows = [row for row in json.loads(out)[0]["rows"] if row["other"] == "oblique-joint"]
+    assert [row["quantity"] for row in rows if row["kind"] == "given curves"] == ["velocity x"]
+    code, _, err = jointwave_says(f"compare joint.toml --with {file}:velocity_x@[20,31]")
+    assert code == 2 and "velocity_x@[20,31] must be one of them" in err
+
+
+def test_a_place_of_the_other_kind_of_scene_is_refused(jointwave_says, tmp_path):
+    (tmp_path / "curve.csv").write_text("0,1\n0.01,2\n0.02,3\n")
+    code, _, err = jointwave_says("compare joint.toml --with curve.csv:velocity_x@20")
+    assert code == 2 and "velocity_x@20: is no place of a rock mass" in err
+    code, _, err = jointwave_says("compare joint.toml --with curve.csv:velocity_x@[1,2]")
+    assert code == 2 and "where the scene records: points at [20, 10] m, [20, 30] m" in err
+    pillar = "compare guo-li-2002/fig-03 --with curve.csv:gap@[1,2]"
+    code, _, err = jointwave_says(pillar)
+    assert code == 2 and "gap@[1,2]: is no place of a pillar" in err
+
+
+def test_a_figure_has_a_panel_a_component(jointwave_says, tmp_path):
+    code, out, _ = jointwave_says("figure joint.toml --out joint.svg")
+    drawn = (tmp_path / "joint.svg").read_text()
+    assert code == 0 and "wrote joint.svg" in out
+    assert "velocity x at [20,\u00a010]\u00a0m" in drawn
+    assert "traction s at [20,\u00a020]\u00a0m" in drawn
 
 
 def test_explain_says_what_its_blocks_are(jointwave_says):
@@ -122,7 +226,8 @@ def test_explain_in_words(jointwave_says):
         "MB",
     ):
         assert words in out
-    assert out.splitlines()[-1] == "no engine solves rock masses yet"
+    assert "quiet sides" in out and "oblique-joint" in out
+    assert "jointed-bar" not in out  # of a pillar
 
 
 def test_explain_counts_cuts_through_rock(jointwave_says):
@@ -149,21 +254,20 @@ def test_intact_rock_is_one_block(jointwave_says):
     assert (facts["blocks"], facts["area"], facts["joint_sets"]) == (1, 60.0, {})
 
 
-def test_a_study_of_it_is_refused(jointwave_says, tmp_path):
-    """The shipped study on a pillar with the scene exchanged."""
-    lines = shipped()["damped"].read_text(encoding="utf-8").splitlines()
-    changed = ['scene = "mass.toml"' if one.startswith("scene =") else one for one in lines]
-    (tmp_path / "study.toml").write_text("\n".join(changed))
-    code, out, err = jointwave_says("study study.toml")
-    assert code == 2 and out == "" and len(err.splitlines()) == 1
-    assert err.startswith("jointwave: mass.toml: domain: is a rock mass")
+def test_what_nothing_solves_says_why(jointwave_says):
+    answers = {"one": no("the joints slip"), "other": no("it has two waves")}
+    with pytest.raises(jointwave.SceneError) as error:
+        solved(jointwave.load("joint.toml"), answers)
+    found = "joint.toml: nothing solves it: one: the joints slip; other: it has two waves"
+    assert str(error.value) == found
 
 
-def test_the_python_interface_refuses_it(jointwave_says):
-    with pytest.raises(jointwave.SceneError, match=r"mass\.toml: domain: is a rock mass"):
-        jointwave.load("mass.toml")
-    with pytest.raises(jointwave.SceneError, match=r"mass\.toml: domain: is a rock mass"):
-        jointwave.load_variants("mass.toml")
+def test_the_python_interface_reads_and_solves_it(jointwave_says):
+    scene = jointwave.load("joint.toml")
+    assert scene.kind == "rock mass" and jointwave.solvers(scene)["oblique-joint"] == ""
+    found = jointwave.simulate(scene, "oblique-joint")
+    assert jointwave.misfit(found, found) == 0
+    assert [one.name for one in jointwave.load_variants("mass.toml")] == ["", "bonded", "shifted"]
 
 
 def test_variants_are_completed(jointwave_says):

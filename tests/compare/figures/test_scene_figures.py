@@ -13,7 +13,8 @@ from compare.figures.charts.waveforms import waveforms
 from compare.figures.scene_figures import figures_of
 from compare.figures.style import GIVEN
 from compare.misfit.alignment import lay_beside
-from compare.misfit.external import Curves, Place
+from compare.misfit.external import Curves
+from compare.misfit.places import Place
 
 ROUNDED = 2.0**-BITS  # of a number that is drawn on the screen
 
@@ -159,7 +160,7 @@ def test_a_button_switches_a_solution_in_every_panel(pictures):
 def test_curves_of_others_stand_beside_at_their_own_times(pillar, compared):
     (comparison,) = compared(pillar(time__duration=0.03))
     time = np.array([0.0, 0.011, 0.017, 0.029])
-    place = Place("stress", "", 20.0)
+    place = Place("stress", "", (20.0,))
     given = Curves("lab.csv", "lab.csv", time, {place: np.array([0.0, 1e5, 8e5, -2e5])})
     comparison.besides.append(lay_beside(given, comparison.scene, comparison.results, False))
     (picture,) = waveforms("fig", [comparison])

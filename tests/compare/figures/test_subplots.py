@@ -30,7 +30,7 @@ def comparison(pillar, solution=spatial_lattice, **changes):
 def test_panel_shows_the_component_that_moves_most(pillar, changes, places):
     found = comparison(pillar, **changes)
     (row,) = panels([found])
-    assert [panel.place for panel in row] == places
+    assert [panel.heading for panel in row] == places
     for panel in row:
         values = found.results["spatial-lattice"][panel.quantity].values
         assert panel.curves["spatial-lattice"].abs().max() == np.abs(values).max()
@@ -68,7 +68,7 @@ def test_what_moves_is_drawn_not_what_stands(pillar, normal):
         assert panel.place == other.place and panel.at_rest == 0
         (curve,), (same,) = panel.curves.values(), other.curves.values()
         np.testing.assert_allclose(curve, same, atol=1e-9 * np.abs(same).max())
-    assert panels([found])[0][0].place == "shear x at y = 5 m"
+    assert panels([found])[0][0].heading == "shear x at y = 5 m"
 
 
 def test_the_static_state_is_taken_from_a_waveform_and_said(pillar):

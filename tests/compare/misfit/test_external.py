@@ -19,13 +19,14 @@ from compare.figures.export import DIGITS, write_csv
 from compare.figures.subplots import curve_table, panels
 from compare.misfit import pairs
 from compare.misfit.alignment import distance_at, distances, lay_beside
-from compare.misfit.external import Place, read_curves
+from compare.misfit.external import read_curves
 from compare.misfit.pairs import Comparison, compare, measure_curves
+from compare.misfit.places import Place
 from compare.report.report import write_comparisons
 from compare.solvers.record import YES
 
 SCENE = "guo-li-2002/fig-03"
-AT_20 = Place("stress", "", 20.0)
+AT_20 = Place("stress", "", (20.0,))
 TIME = np.array([0.0, 1e-3, 2e-3, 4e-3])
 STRESS = np.array([0.0, 1e6, -2e6, 5e5])
 
@@ -111,7 +112,7 @@ def test_columns_of_different_times_are_curves_of_their_own(written, scene):
     np.testing.assert_allclose(one.time, TIME, rtol=1e-15)
     np.testing.assert_allclose(other.time, [5e-4, 1.5e-3, 2e-3, 4e-3], rtol=1e-15)
     np.testing.assert_allclose(
-        other.waveforms[Place("velocity", "y", 0.25)], [3e-3, 4e-3, 5e-3, 6e-3]
+        other.waveforms[Place("velocity", "y", (0.25,))], [3e-3, 4e-3, 5e-3, 6e-3]
     )
     assert (one.name, other.name) == ("curve.csv", "curve.csv:velocity_y@0.25")
 

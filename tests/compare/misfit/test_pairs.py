@@ -23,7 +23,7 @@ def test_shear_is_measured_and_a_silent_stress_decides_nothing(pillar):
         *((f"{quantity} x", 5.25) for quantity in ("velocity", "displacement")),
         ("rotation z", 5.25),
     ]
-    assert [(row.quantity, row.y) for row in found] == places
+    assert [(row.place.named, *row.place.at) for row in found] == places
     assert [row.distance.misfit for row in found] == pytest.approx([0.01] * 4)
 
 

@@ -20,11 +20,12 @@ from compare.experiments.fit.keys import changed, free_keys
 from compare.experiments.fit.problem import problem_of
 from compare.experiments.fit.scene_text import scene_text
 from compare.experiments.fit.statistics import autocorrelation_time
-from compare.misfit.external import Curves, Place, read_curves
+from compare.misfit.external import Curves, read_curves
+from compare.misfit.places import Place
 from compare.scenes import shipped
 
 LAYER, LOAD, RATIO = "soft_layers.0.spacing_stiffness", "load.amplitude", "joints.damping_ratio"
-AT_3 = Place("stress", "", 3.0)
+AT_3 = Place("stress", "", (3.0,))
 TRUE = {LAYER: 5.0e8, LOAD: 1.3e6}
 TABLES = {
     "title": "A soft joint, heard behind it",
@@ -85,7 +86,7 @@ def by_key(found):
 def test_known_values_are_found_to_round_off(solver, scene):
     """From the very solution, by the exact chain and by time steps; three keys, three waveforms."""
     true = {**TRUE, RATIO: 0.08}
-    places = (Place("stress", "", 1.0), AT_3, Place("velocity", "y", 3.25))
+    places = (Place("stress", "", (1.0,)), AT_3, Place("velocity", "y", (3.25,)))
     steps = problem_of(scene, solver, [heard(scene)], None, 0.0)._stepped
     result = solve(solver, steps(changed(scene, true)))
     waveforms = {place: place.waveform(result) for place in places}
@@ -177,12 +178,12 @@ def test_poor_start_is_left_for_another(scene):
 def test_waveforms_count_by_their_own_noise(scene):
     """A gauge with ten times the noise of another does not spoil it."""
     clean = heard(scene, places=(AT_3,), noise=noise_of(3, 3e3))
-    both = heard(scene, places=(AT_3, Place("stress", "", 1.0)))
+    both = heard(scene, places=(AT_3, Place("stress", "", (1.0,))))
     random = np.random.default_rng(4)
-    poor = both.waveforms[Place("stress", "", 1.0)]
+    poor = both.waveforms[Place("stress", "", (1.0,))]
     waveforms = {
         AT_3: clean.waveforms[AT_3],
-        Place("stress", "", 1.0): poor + random.normal(scale=3e5, size=poor.size),
+        Place("stress", "", (1.0,)): poor + random.normal(scale=3e5, size=poor.size),
     }
     mixed = Curves("gauge.csv", "gauge.csv", both.time, waveforms)
     near = changed(scene, TRUE)
@@ -193,7 +194,7 @@ def test_waveforms_count_by_their_own_noise(scene):
 
 def test_what_waveforms_do_not_tell_apart_is_said(scene):
     """A particle velocity is the load over the impedance: their ratio is known, not each."""
-    velocity = Place("velocity", "y", 3.25)
+    velocity = Place("velocity", "y", (3.25,))
     scene = scene.model_copy(update={"soft_layers": []})
     curves = heard(scene, places=(velocity,), values={LOAD: 1.3e6})
     found = jointwave.fit(scene, [curves], ["rock.density", LOAD])
@@ -361,7 +362,7 @@ def test_one_solution_of_our_own_table_is_fitted(scene, tmp_path):
 
 def test_figure_shows_everything_and_nothing_twice(scene):
     """No text is cut off or lies on another; residuals are drawn below, to their own scale."""
-    places = (Place("stress", "", 1.0), AT_3, Place("velocity", "y", 3.25))
+    places = (Place("stress", "", (1.0,)), AT_3, Place("velocity", "y", (3.25,)))
     curves = heard(scene, places=places, noise=lambda i, n: noise_of(i, (1e4, 1e4, 1e-3)[i])(i, n))
     long = Curves(
         "a-rather-long-name-of-a-$-file-with-everything.csv", "x", curves.time, curves.waveforms

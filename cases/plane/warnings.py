@@ -1,0 +1,131 @@
+"""Warnings of likely mistakes in a rock mass, a line each, from the scene alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from cases.incident import GRAZING, plane_wave
+from cases.material.rock import elastic_rock
+from cases.partition.joints import direction_of
+from cases.partition.outline import outline_of
+from cases.schema.plausible import implausible
+from cases.schema.rock_mass_checks import distance
+from cases.spectrum import highest_frequency
+from cases.warnings import LEAST_BLOCKS, of_local_damping, of_pulse, onset
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
+    from cases.schema.sources import PlaneLoad, Wave
+
+Source = tuple[str, "Wave | PlaneLoad"]  # its table in the scene and itself
+
+
+def warnings_in_plane(scene: RockMass) -> list[str]:
+    """Return what a rock mass may say but hardly means, a line each."""
+    return [line for rule in RULES for line in rule(scene)]
+
+
+def _sources(scene: RockMass) -> list[Source]:
+    """Return what acts with its table, what has no amplitude left out."""
+    named: list[Source] = [(f"waves[{i}]", wave) for i, wave in enumerate(scene.waves)]
+    named += [(f"loads[{i}]", load) for i, load in enumerate(scene.loads)]
+    return [(table, one) for table, one in named if one.amplitude]
+
+
+def _of_units(scene: RockMass) -> Iterator[str]:
+    yield from implausible(scene)
+    poisson = scene.rock.intact_poisson
+    if poisson < 0:
+        yield f"rock.intact_poisson = {poisson:g} is negative: no rock is known to have such a one"
+
+
+def _of_damping(scene: RockMass) -> Iterator[str]:
+    yield from of_local_damping(scene, bool(_sources(scene)))
+
+
+def _of_times(scene: RockMass) -> Iterator[str]:
+    for table, pulse in _sources(scene):
+        yield from of_pulse(table, pulse, scene.time.duration)
+
+
+def _of_wavelength(scene: RockMass) -> Iterator[str]:
+    """Say which blocks or elements are too large for the shortest wave: S at the highest frequency,
+    into which joints turn part of any wave."""
+    frequency = highest_frequency(scene)
+    if frequency is None:
+        return
+    wave = float(elastic_rock(scene.rock).s_speed) / frequency
+    where = f"a wavelength of S at {frequency:.4g} Hz, below which 95 % of the energy lies"
+    size, given = scene.numerics.continuum.size, scene.numerics.dem.block
+    block = given or _block_size(scene)
+    if block is not None and wave / block < LEAST_BLOCKS:
+        yield (
+            f"{f'numerics.dem.block = {given:g} m gives' if given else 'the joint sets give'} "
+            f"rigid blocks that are {wave / block:.3g} to {where}; at least {LEAST_BLOCKS:g} "
+            f"resolve it: numerics.dem.block = {wave / LEAST_BLOCKS:.2g} m"
+        )
+    if size is not None and wave / size < LEAST_BLOCKS:
+        yield (
+            f"numerics.continuum.size = {size:g} m gives {wave / size:.3g} elements {where}; at "
+            f"least {LEAST_BLOCKS:g} resolve it"
+        )
+
+
+def _block_size(scene: RockMass) -> float | None:
+    """Return how long the blocks of the joint sets are, m: the domain's size unless two sets cut
+    it, or one across which all waves travel. None where no joints have a spacing: rigid blocks
+    then need a size of their own."""
+    spacings = sorted(one.spacing for one in scene.joint_sets if one.spacing)
+    if not spacings:
+        return None
+    size = float(np.ptp(scene.domain.corners, axis=0).max())
+    if len(scene.joint_sets) == 1 and not scene.loads:
+        along = direction_of(scene.joint_sets[0].dip)
+        if all(abs(along @ wave.direction) < GRAZING for wave in scene.waves):
+            return min(spacings[0], size)
+    return min(spacings[1], size) if len(spacings) > 1 else size
+
+
+def _of_arrivals(scene: RockMass) -> Iterator[str]:
+    """Say which receivers nothing reaches before the end of the scene, in intact rock."""
+    falls = scene.gravity is not None and not scene.gravity.static
+    sources, end = _sources(scene), scene.time.duration
+    if falls or not sources:
+        return
+    for key in ("points", "joints"):
+        for i, place in enumerate(getattr(scene.record, key)):
+            at = min(_arrival(scene, pulse, np.array(place)) for _, pulse in sources)
+            if at >= end:
+                yield (
+                    f"record.{key}[{i}] = [{place[0]:g}, {place[1]:g}] is reached at {at:.4g} s: "
+                    f"after the end of the scene at time.duration = {end:g} s"
+                )
+
+
+def _arrival(scene: RockMass, pulse: Wave | PlaneLoad, place: np.ndarray) -> float:
+    """Return when a wave or load is first felt at a place in intact rock, s."""
+    if pulse.kind in ("P", "S"):
+        lateness = plane_wave(scene, cast("Wave", pulse)).lateness(place[None])[0]
+    else:
+        away = _nearest(scene, cast("PlaneLoad", pulse), place)
+        lateness = away / elastic_rock(scene.rock).p_speed
+    return onset(pulse) + float(lateness)
+
+
+def _nearest(scene: RockMass, load: PlaneLoad, place: np.ndarray) -> float:
+    """Return how far a place is from what a load acts on, m."""
+    if load.at is not None:
+        return float(np.hypot(*(place - load.at)))
+    return distance(place, outline_of(scene.domain).edges(load.side, load.opening))
+
+
+RULES: tuple[Callable[[RockMass], Iterator[str]], ...] = (
+    _of_units,
+    _of_times,
+    _of_wavelength,
+    _of_arrivals,
+    _of_damping,
+)

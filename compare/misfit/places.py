@@ -1,0 +1,150 @@
+"""Places of waveforms: one component of one quantity at one receiver.
+
+A receiver of a pillar lies at y, one of a rock mass at (x, y). In labels and headers of columns a
+place is `stress@20`, `velocity_x@20.25` or `velocity_x@[20, 30]`; in words "velocity x at [20, 30]
+m".
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from results.labels import RECEIVERS
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from cases.kinds import AnyScene
+
+#: Dimensions of components in results.
+COMPONENT_DIMENSIONS = ("axis", "across", "stress_component", "joint_axis")
+
+#: By the number of coordinates of a receiver: the components of each quantity in labels, "" where
+#: it has one, and the key of [record] that asks for its receivers.
+COMPONENTS: dict[int, dict[str, tuple[str, ...]]] = {
+    1: {
+        "stress": ("",),
+        "shear": ("x", "z"),
+        "velocity": ("x", "y", "z"),
+        "displacement": ("x", "y", "z"),
+        "rotation": ("x", "y", "z"),
+    },
+    2: {
+        "stress": ("xx", "yy", "xy"),
+        "velocity": ("x", "y"),
+        "displacement": ("x", "y"),
+        "traction": ("n", "s"),
+        "gap": ("",),
+        "slip": ("",),
+    },
+}
+QUANTITIES = tuple(dict.fromkeys(name for of in COMPONENTS.values() for name in of))
+OF_SECTIONS, OF_JOINTS = ("stress", "shear"), ("traction", "gap", "slip")
+
+_NUMBER = r"[0-9.eE+-]+"
+_AT = rf"({_NUMBER})|\[\s*({_NUMBER})\s*[,\s]\s*({_NUMBER})\s*\]"
+LABEL = re.compile(rf"([A-Za-z]+)(?:_([a-z]+))?\s*@\s*(?:{_AT})(?:\s*m)?")
+WORDS = re.compile(rf"([a-z]+)(?: ([a-z]+))? at (?:y = )?(?:{_AT}) m")
+
+
+class Place(NamedTuple):
+    """A waveform's quantity, its component ("" of the only one), and where its receiver is, m: (y,)
+    in a pillar, (x, y) in a rock mass."""
+
+    quantity: str
+    component: str
+    at: tuple[float, ...]
+
+    def __str__(self) -> str:
+        return f"{self.quantity}{'_' * bool(self.component)}{self.component}@{self._at()}"
+
+    def _at(self, form: str = ".12g", comma: str = ",") -> str:
+        numbers = [format(x, form) for x in self.at]
+        return numbers[0] if len(numbers) == 1 else f"[{comma.join(numbers)}]"
+
+    @property
+    def named(self) -> str:
+        """The quantity and its component, "shear x"."""
+        return f"{self.quantity} {self.component}".rstrip()
+
+    @property
+    def receiver(self) -> str:
+        """Where it is in words: "15 m", "[20, 30] m"."""
+        return f"{self._at('g', ', ')} m"
+
+    @property
+    def words(self) -> str:
+        """Everything in words: "shear x at 15 m", "velocity x at [20, 30] m"."""
+        return f"{self.named} at {self.receiver}"
+
+    @property
+    def heading(self) -> str:
+        """The same to all digits, as headers of columns have it: "shear x at y = 15 m"."""
+        return f"{self.named} at {'y = ' * (len(self.at) == 1)}{self._at('.12g', ', ')} m"
+
+    @property
+    def coordinates(self) -> dict[str, float]:
+        """The receiver's coordinates by name, m."""
+        return dict(zip("xy"[-len(self.at) :], self.at, strict=True))
+
+    @property
+    def key(self) -> str:
+        """The key of [record] that asks for it."""
+        if len(self.at) == 1:
+            return "stress" if self.quantity in OF_SECTIONS else "velocity"
+        return "joints" if self.quantity in OF_JOINTS else "points"
+
+    def waveform(self, result: xr.Dataset) -> np.ndarray | None:
+        """Return this waveform of a result [n] in SI; None where the result does not have it."""
+        if self.quantity not in result:
+            return None
+        places, components = places_of(result, self.quantity)
+        at = [i for i, one in enumerate(places) if same(one, self.at)]
+        component = self.component or components[0] if len(components) == 1 else self.component
+        if not at or component not in components:
+            return None
+        values = result[self.quantity].values[at[0]]
+        return values if values.ndim == 1 else values[:, components.index(component)]
+
+
+def parsed(text: str, pattern: re.Pattern[str] = LABEL) -> Place | None:
+    """Return the place that a label or words name; None where they name none."""
+    match = pattern.fullmatch(text.strip())
+    if match is None:
+        return None
+    quantity, component, *numbers = match.groups()
+    try:
+        at = tuple(float(one) for one in numbers if one is not None)
+    except ValueError:
+        return None
+    known = COMPONENTS[len(at)].get(quantity.lower())
+    if known is None:
+        return None
+    along = "y" if len(at) == 1 and quantity.lower() in ("velocity", "displacement") else ""
+    given = component or along
+    return Place(quantity.lower(), given, at) if given in known else None
+
+
+def places_of(result: xr.Dataset, quantity: str) -> tuple[list[tuple[float, ...]], list[str]]:
+    """Return where the receivers of a quantity are, m, and the names of its components, "" of the
+    only one."""
+    found = result[quantity]
+    (receivers,) = (name for name in RECEIVERS if name in found.dims)
+    columns = [result[name].values.tolist() for name in RECEIVERS[receivers]]
+    dims = [name for name in COMPONENT_DIMENSIONS if name in found.dims]
+    components = [str(one) for one in found[dims[0]].values] if dims else [""]
+    return list(zip(*columns, strict=True)), components
+
+
+def recorded(scene: AnyScene, key: str) -> list[tuple[float, ...]]:
+    """Return the receivers of a key of [record], m; none of a key of the other kind of scene."""
+    places: list[Any] = getattr(scene.record, key, [])
+    return [tuple(np.atleast_1d(one).tolist()) for one in places]
+
+
+def same(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
+    """Return whether two receivers are one, to the digits that files have."""
+    return len(one) == len(other) and bool(np.isclose(one, other, rtol=1e-9, atol=1e-9).all())
