@@ -46,9 +46,9 @@ def tables(path: str = "", model: type[BaseModel] = Scene, many: bool = False) -
             yield from tables(table.dotted(name), inner, get_origin(field.annotation) is list)
 
 
-def keys() -> Iterator[tuple[str, FieldInfo]]:
+def keys(model: type[BaseModel] = Scene) -> Iterator[tuple[str, FieldInfo]]:
     """Yield the dotted path of every key that a scene file may hold, tables left out."""
-    for table in tables():
+    for table in tables(model=model):
         for name, field in table.fields:
             if not model_in(field.annotation):
                 yield table.dotted(name), field

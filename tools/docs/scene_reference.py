@@ -9,21 +9,23 @@ from pydantic.fields import FieldInfo
 from cases.schema.allowed import SOLVERS, in_words, model_in
 from cases.schema.field_docs import field_comments
 from cases.schema.keys import TableOf, default_of, tables
+from cases.schema.scene import Scene
 from compare.engines import names
 
 HEAD = "| key | allowed | default | meaning |\n| --- | --- | --- | --- |"
 
 
-def page() -> str:
-    """Return the reference: a section for every table, in the order of the models."""
-    return "\n\n".join(map(_section, tables()))
+def page(model: type[BaseModel] = Scene, prefix: str = "") -> str:
+    """Return the reference of a kind of scene: a section for every table, in the order of the
+    models. prefix : of the anchors, so that both kinds stand on one page."""
+    return "\n\n".join(_section(table, prefix) for table in tables(model=model))
 
 
-def _section(table: TableOf) -> str:
+def _section(table: TableOf, prefix: str) -> str:
     shown = f"`{table.heading}`" if table.path else "Top of the file"
     comments = field_comments(table.model)
-    rows = [_row(table.dotted(name), name, f, comments[name]) for name, f in table.fields]
-    heading = f"### {shown} {{ #{_anchor(table.path)} }}"
+    rows = [_row(table.dotted(name), name, f, comments[name], prefix) for name, f in table.fields]
+    heading = f"### {shown} {{ #{_anchor(table.path, prefix)} }}"
     return "\n".join([heading, "", _purpose(table.model), "", HEAD, *rows])
 
 
@@ -31,10 +33,10 @@ def _purpose(model: type[BaseModel]) -> str:
     return inspect.getdoc(model) or ""
 
 
-def _row(key: str, name: str, field: FieldInfo, comment: str) -> str:
-    inner, shown = model_in(field.annotation), f'<span id="key-{key}"></span>`{name}`'
+def _row(key: str, name: str, field: FieldInfo, comment: str, prefix: str) -> str:
+    inner, shown = model_in(field.annotation), f'<span id="{prefix}key-{key}"></span>`{name}`'
     if inner is not None:
-        link = f"[below](#{_anchor(key)})"
+        link = f"[below](#{_anchor(key, prefix)})"
         return f"| {shown} | {in_words_of_table(field)} | {_default(field)} | {link} |"
     meaning = comment.replace("|", "\\|")
     allowed = in_words(field).replace(f"two {SOLVERS}", f"a and b of: {', '.join(names())}")
@@ -46,8 +48,8 @@ def in_words_of_table(field: FieldInfo) -> str:
     return "any number of tables" if get_origin(field.annotation) is list else "table"
 
 
-def _anchor(path: str) -> str:
-    return "table-" + path.replace(".", "-") if path else "top"
+def _anchor(path: str, prefix: str) -> str:
+    return prefix + ("table-" + path.replace(".", "-") if path else "top")
 
 
 def _default(field: FieldInfo) -> str:
