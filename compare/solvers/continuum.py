@@ -26,6 +26,9 @@ from compare.solvers.record import (
 if TYPE_CHECKING:
     import xarray as xr
 
+    from cases.incident import IncidentField
+    from cases.schema.rock_mass import RockMass
+
 
 #: How to get what the continuum runs on.
 INSTALL = 'pip install "jointwave[continuum]" (Linux, Python 3.12), or dolfinx by apt or conda'
@@ -41,12 +44,24 @@ def applies(scene: Scene, model: str) -> Answer:
     return no(reason) if reason else YES
 
 
-def run(scene: Scene, progress=None, comm=None, keeper=None, *, model: str) -> xr.Dataset:
+def run(
+    scene: Scene | RockMass, progress=None, comm=None, keeper=None, *, model: str
+) -> xr.Dataset:
     """Return the result of a scene; comm : mpi4py's, of processes that share the run."""
     from continuum import simulate
 
     about = {"progress": progress, "comm": comm, "keeper": keeper}
-    return simulate(scene, model=model, **about, **incident(scene))
+    return simulate(scene, model=model, **about, **_incident(scene, model))
+
+
+def _incident(scene: Scene | RockMass, model: str) -> dict[str, IncidentField]:
+    """Return what enters a rock mass; in homogenised rock the waves of the effective medium."""
+    if not isinstance(scene, Scene) and scene.waves and model == "equivalent":
+        from compare.exact.rock_mass.effective_medium import medium_field
+
+        if all(one.spacing for one in scene.joint_sets):
+            return {"incident": medium_field(scene)}
+    return incident(scene)
 
 
 def prepare(scene: Scene, model: str) -> Prepared:

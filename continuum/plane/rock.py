@@ -12,16 +12,15 @@ import numpy as np
 
 from cases.errors import SceneError
 from cases.material.dashpots import set_time_constants
-from cases.material.effective_medium import joint_set, stiffness
+from cases.material.effective_medium import stiffness
 from cases.material.rock import elastic_rock
 from cases.material.strength import strength_of
-from cases.partition.joints import direction_of
 from cases.partition.scene import partition_of
 from continuum.joints import interfaces
 from continuum.mesh.plane import plane_mesh
 from continuum.mesh.segments import Across, across_periodic
 from continuum.model import Interfaces
-from continuum.plane.size import element_size, refuse_large_mesh
+from continuum.plane.size import compliant, element_size, refuse_large_mesh
 from continuum.space.body import Body, build_body
 from continuum.space.elasticity import PlaneRock, Section
 from continuum.space.interface import Jumps, jumps
@@ -30,7 +29,6 @@ from joints.law import Law
 from joints.uniform import law
 
 if TYPE_CHECKING:
-    from cases.material.effective_medium import JointSet as Compliant
     from cases.partition.blocks import Partition
     from cases.schema.joint_set import JointSet
     from cases.schema.rock_mass import RockMass
@@ -73,7 +71,7 @@ def discretise(scene: RockMass, model: str) -> PlaneDiscrete:
     sides = [side for side in ("left", "bottom") if getattr(scene.boundaries, side) == "periodic"]
     across = across_periodic(partition, sides)
     rock = PlaneRock(
-        stiffness(elastic_rock(scene.rock), [_compliant(one) for one in sets]),
+        stiffness(elastic_rock(scene.rock), [compliant(one) for one in sets]),
         scene.rock.density,
         _rayleigh(scene),
     )
@@ -111,12 +109,6 @@ def _mesh(scene: RockMass, partition: Partition, across: list[Across]):
 def _rayleigh(scene: RockMass) -> float:
     """Return the time constant of the rock itself, s."""
     return 0.0 if scene.damping.rayleigh is None else scene.damping.rayleigh.coefficients[1]
-
-
-def _compliant(one: JointSet) -> Compliant:
-    assert one.spacing and one.normal_stiffness and one.shear_stiffness
-    x, y = direction_of(one.dip)
-    return joint_set(np.array([-y, x]), one.spacing, one.normal_stiffness, one.shear_stiffness)
 
 
 def joint_set_of(found: PlaneDiscrete) -> np.ndarray:

@@ -6,31 +6,53 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cases.material.effective_medium import joint_set, speeds, stiffness
 from cases.material.rock import elastic_rock
+from cases.partition.joints import direction_of
 from cases.size import COPIES, refuse_beyond_memory, samples_of
 from continuum.build import resolved_period
 from continuum.size import ENTRY, FREEDOM
 
 if TYPE_CHECKING:
+    from cases.material.effective_medium import JointSet as Compliant
     from cases.partition.blocks import Partition
     from cases.sampling import Clock
+    from cases.schema.joint_set import JointSet
     from cases.schema.rock_mass import RockMass
 
-#: Elements in the way of an S wave in one period, by their order.
+#: Elements in the way of the slowest wave in one period, by their order.
 IN_PERIOD = {1: 40.0, 2: 12.0, 3: 6.0, 4: 4.0}
 #: Times as many for pulses that start or end with a kink.
 OF_KINKS = 2.0
+DIRECTIONS = 36  # in which speeds are looked at
 
 
 def element_size(scene: RockMass) -> float:
-    """Return about how large elements are, m: `numerics.continuum.size`, or what resolves S waves
-    of the shortest pulse."""
+    """Return about how large elements are, m: `numerics.continuum.size`, or what resolves the
+    slowest waves of the shortest pulse, in rock with its joints."""
     numerics = scene.numerics.continuum
     if numerics.size is not None:
         return numerics.size
     sharp = any(one.shape != "ricker" for one in scene.pulses)
     many = IN_PERIOD[numerics.order] * (OF_KINKS if sharp else 1.0)
-    return float(elastic_rock(scene.rock).s_speed) * resolved_period(scene) / many
+    return slowest(scene) * resolved_period(scene) / many
+
+
+def slowest(scene: RockMass) -> float:
+    """Return the least speed (m/s) of long waves in any direction, through joints that have a
+    spacing."""
+    angle = np.linspace(0.0, np.pi, DIRECTIONS, endpoint=False)
+    directions = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    sets = [compliant(one) for one in scene.joint_sets if one.spacing]
+    medium = stiffness(elastic_rock(scene.rock), sets)
+    return float(speeds(medium, scene.rock.density, directions)[0].min())
+
+
+def compliant(one: JointSet) -> Compliant:
+    """Return a joint set that has a spacing as a compliance."""
+    assert one.spacing and one.normal_stiffness and one.shear_stiffness
+    x, y = direction_of(one.dip)
+    return joint_set(np.array([-y, x]), one.spacing, one.normal_stiffness, one.shear_stiffness)
 
 
 def refuse_large_mesh(scene: RockMass, partition: Partition, size: float) -> None:
