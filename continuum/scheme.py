@@ -16,6 +16,7 @@ from continuum.build import Discrete, operators, resolved_period
 
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
+    from continuum.plane.rock import PlaneDiscrete
 
 #: How many explicit steps one implicit step must replace before its cost is looked into: it solves
 #: an equation with several times the entries of the stiffness, and is not vectorised over blocks.
@@ -36,29 +37,28 @@ class Choice(NamedTuple):
     reason: str
 
 
-def choose(scene: Scene, discrete: Discrete, critical: float) -> Choice:
+def choose(scene: Scene | RockMass, discrete: Discrete | PlaneDiscrete, critical: float) -> Choice:
     """Return how a scene is stepped; critical : the critical step of explicit ones, s.
 
     Raises SceneError for a step that cannot be taken.
     """
     numerics = scene.numerics.continuum
     if numerics.scheme == "explicit":
-        return explicit(scene, critical, "numerics.continuum.scheme = 'explicit'")
+        return _explicit(scene, critical, "numerics.continuum.scheme = 'explicit'")
     if numerics.scheme == "implicit":
         return _implicit(scene, "numerics.continuum.scheme = 'implicit'")
-    if numerics.mass == "consistent":
+    if getattr(numerics, "mass", None) == "consistent":
         return _implicit(scene, "a consistent mass is not diagonal")
     return _cheaper(scene, discrete, critical)
 
 
-def explicit(scene: Scene | RockMass, critical: float, reason: str) -> Choice:
-    """Return explicit steps; critical : the critical one, s."""
+def _explicit(scene: Scene | RockMass, critical: float, reason: str) -> Choice:
     numerics = scene.numerics.continuum
     fraction, allowed = numerics.step_fraction, numerics.allow_unstable
     return Choice("explicit", clock(scene, critical, fraction, allowed, "continuum"), reason)
 
 
-def _implicit(scene: Scene, reason: str) -> Choice:
+def _implicit(scene: Scene | RockMass, reason: str) -> Choice:
     wanted = resolved_period(scene) / scene.numerics.continuum.steps_per_period
     stride = max(1, ceil(scene.interval / wanted * (1 - 1e-12)))
     time = Clock(scene.interval / stride, stride, len(sample_times(scene)))
@@ -69,7 +69,9 @@ def _implicit(scene: Scene, reason: str) -> Choice:
     return Choice("implicit", time, reason)
 
 
-def _cheaper(scene: Scene, discrete: Discrete, critical: float) -> Choice:
+def _cheaper(
+    scene: Scene | RockMass, discrete: Discrete | PlaneDiscrete, critical: float
+) -> Choice:
     """Return the scheme that takes less time, by the operations of both."""
     implicit = _implicit(scene, "")
     many = scene.time.duration / (critical * scene.numerics.continuum.step_fraction)
@@ -77,16 +79,16 @@ def _cheaper(scene: Scene, discrete: Discrete, critical: float) -> Choice:
     if many < STEPS_PER_IMPLICIT * few:
         few_more = f"{STEPS_PER_IMPLICIT} x {few:,} implicit ones"
         reason = f"{many:,.0f} explicit steps are fewer than {few_more}"
-        return explicit(scene, critical, reason)
+        return _explicit(scene, critical, reason)
     explicit_cost, implicit_cost = _costs(discrete, many, few)
     costs = f"{many:,.0f} explicit steps, some {explicit_cost:.2g} s, against {few:,} implicit ones"
     reason = f"{costs}, some {implicit_cost:.2g} s"
     if explicit_cost <= implicit_cost:
-        return explicit(scene, critical, reason)
+        return _explicit(scene, critical, reason)
     return implicit._replace(reason=reason)
 
 
-def _costs(discrete: Discrete, many: float, few: int) -> tuple[float, float]:
+def _costs(discrete: Discrete | PlaneDiscrete, many: float, few: int) -> tuple[float, float]:
     """Return guesses of the seconds that so many explicit and so few implicit steps take.
 
     They are those of one process, so that any number of them comes to the same choice.
@@ -103,7 +105,7 @@ def _costs(discrete: Discrete, many: float, few: int) -> tuple[float, float]:
     return communicator.same(found)
 
 
-def _bends(discrete: Discrete) -> bool:
+def _bends(discrete: Discrete | PlaneDiscrete) -> bool:
     """Return whether joints open, slide or break."""
     law = None if discrete.joints is None else discrete.joints.law
     return law is not None and any(

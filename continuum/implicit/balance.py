@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
+from continuum.implicit.substeps import Applied
 from continuum.model import Model
 from continuum.parallel.serial import SERIAL, Serial
 from continuum.space.body import Body, rock_matrices
@@ -45,7 +46,7 @@ def balance(
     rock: Matrices,
     now: State,
     trial: State,
-    pressure: float,
+    applied: Applied,
     r: float,
     tangents: np.ndarray,
 ) -> float:
@@ -53,7 +54,7 @@ def balance(
 
     now : state at the beginning of the step. trial : u and v are given; v_before is set to the
     mean velocity of the step, and the reactions of the ends count among the forces.
-    pressure : of the load, Pa. r : rate factor, 1/s (`joints.tangent`).
+    applied : of the loads. r : rate factor, 1/s (`joints.tangent`).
     Returns the largest force (N) that is summed up, of rock, dashpots, load and weight.
     """
     trial.v_before[:] = (trial.u - now.u) / model.dt
@@ -69,7 +70,9 @@ def balance(
     if model.weight is not None:
         parts.append(model.weight)
     if model.ends.loaded is not None:
-        parts.append(model.ends.loaded.share * pressure)
+        parts.append(model.ends.loaded.share * applied.pressure)
+    if applied.driven is not None:
+        parts.append(applied.driven)
     size = max(float(np.abs(part).max(initial=0.0)) for part in parts)
     trial.force[:] = force
     if model.interfaces is not None:
@@ -79,7 +82,9 @@ def balance(
     if model.weight is not None:
         trial.force[:] += model.weight
     if model.ends.loaded is not None:
-        trial.force[model.ends.loaded.freedom] += parts[-1]
+        trial.force[model.ends.loaded.freedom] += model.ends.loaded.share * applied.pressure
+    if applied.driven is not None:
+        trial.force[model.ends.driven.freedom] += applied.driven
     _add_ends(model, now, trial)
     return size
 
@@ -116,7 +121,11 @@ def _add_joint_forces(
 
 def _add_ends(model: Model, now: State, trial: State) -> None:
     """Add what absorbs at the ends; springs in front of dashpots close by the mean velocity."""
-    quiet = model.ends.quiet
+    quiet, dashpots = model.ends.quiet, model.ends.dashpots
+    if dashpots is not None:
+        (x, y), (xx, yy, xy) = trial.v[dashpots.freedom].T, dashpots.viscosity.T
+        trial.braking[:] = np.stack([xx * x + xy * y, xy * x + yy * y], axis=1)
+        trial.force[dashpots.freedom] -= trial.braking
     if quiet is None:
         return
     trial.reaction[:] = quiet.viscosity * trial.v[quiet.freedom]

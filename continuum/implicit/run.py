@@ -11,7 +11,7 @@ from continuum.explicit.march import readings
 from continuum.implicit.balance import Matrices, record
 from continuum.implicit.newton import Outcome
 from continuum.implicit.step import Moment, Stepper
-from continuum.implicit.substeps import move, pressure_at
+from continuum.implicit.substeps import Applied, applied_at, move
 from continuum.model import Model
 from continuum.monitor import Monitor
 from continuum.state import Samples, State
@@ -127,14 +127,13 @@ class Implicit:
         """Make the trial the present, and add the work of the part of step n that led there."""
         now, trial = self.now, self.trial
         if trial.state.ledger is not None and share:
-            pressures = (pressure_at(self.model, n, at) for at in (before, share))
-            self._book(trial.state.ledger, sum(pressures) / 2)
+            self._book(trial.state.ledger, *(applied_at(self.model, n, s) for s in (before, share)))
         trial.state.v_before[:] = trial.state.v
         fill(now.state, trial.state)
         now.acceleration[:] = trial.acceleration
         now.size[:] = trial.size
 
-    def _book(self, ledger: np.ndarray, pressure: float) -> None:
+    def _book(self, ledger: np.ndarray, first: Applied, last: Applied) -> None:
         """Add the work of all forces by the trapezoidal rule, friction apart; with rho = 1 their
         balance is exact."""
         now, trial, ends = self.now.state, self.trial.state, self.model.ends
@@ -145,8 +144,13 @@ class Implicit:
             ledger[0] += self.stepper.mass_damping * (mass @ (now.v + trial.v)) @ moved / 2
         if ends.quiet is not None:
             ledger[2] += (now.reaction + trial.reaction) @ moved[ends.quiet.freedom] / 2
+        if ends.dashpots is not None:
+            ledger[2] += ((now.braking + trial.braking) * moved[ends.dashpots.freedom]).sum() / 2
         if ends.loaded is not None:
+            pressure = (first.pressure + last.pressure) / 2
             ledger[3] += pressure * (ends.loaded.share @ moved[ends.loaded.freedom])
+        if first.driven is not None and last.driven is not None:
+            ledger[3] += (first.driven + last.driven) @ moved[ends.driven.freedom] / 2
         if self.stepper.fixed.motion is not None:
             fixed = self.stepper.fixed.freedom
             gained = (mass @ (trial.v - now.v))[fixed] @ (now.v + trial.v)[fixed]

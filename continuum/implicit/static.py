@@ -13,7 +13,8 @@ from cases.schema.scene import Scene
 from continuum.implicit.balance import balance, implicit_matrices
 from continuum.implicit.newton import Outcome, newton
 from continuum.implicit.pattern import System
-from continuum.model import Model
+from continuum.implicit.substeps import UNLOADED
+from continuum.model import Ends, Model
 from continuum.space.body import Body
 from continuum.space.tractions import NN, XX, ZZ
 from continuum.state import State
@@ -63,7 +64,7 @@ class _Static:
 
     def __init__(self, model: Model, state: State, body: Body) -> None:
         self.rock = implicit_matrices(body)
-        self.model = model._replace(ends=model.ends._replace(quiet=None, loaded=None))
+        self.model = model._replace(ends=Ends(None, None, model.ends.fixed))
         self.state, self.trial, self.size = copied(state), copied(state), 0.0
         fixed = np.zeros(0, dtype=int) if model.ends.fixed is None else model.ends.fixed.freedom
         self.system = System(model, self.rock, fixed, [self.rock.stiffness])
@@ -75,7 +76,9 @@ class _Static:
 
         def residual(u: np.ndarray) -> tuple[np.ndarray, float]:
             self.trial.u[system.free] = u
-            self.size = balance(model, self.rock, self.state, self.trial, 0.0, 0.0, system.tangents)
+            self.size = balance(
+                model, self.rock, self.state, self.trial, UNLOADED, 0.0, system.tangents
+            )
             return communicator.total(self.trial.force)[system.free], TOLERANCE * self.size
 
         def correction(rest: np.ndarray) -> np.ndarray:

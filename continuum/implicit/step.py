@@ -19,10 +19,11 @@ from continuum.implicit.generalised_alpha import scheme
 from continuum.implicit.newton import Outcome, newton
 from continuum.implicit.pattern import System
 from continuum.implicit.substeps import (
+    applied_at,
+    dashpot_matrix,
     end_resistance,
     fixed_motion,
     move,
-    pressure_at,
     shortened,
 )
 from continuum.model import Model
@@ -71,6 +72,8 @@ class Stepper:
         self.mass_damping = mass_damping(model.rock.decay, model.dt)
         self.fixed = fixed_motion(model.ends.fixed, model.dt)
         viscosity = 0 * matrices.mass if matrices.viscosity is None else matrices.viscosity
+        if model.ends.dashpots is not None:
+            viscosity = viscosity + dashpot_matrix(model.ends.dashpots, matrices.mass.shape[0])
         parts = [matrices.mass, matrices.stiffness, viscosity]
         self._system = System(model, matrices, self.fixed.freedom, parts)
         self.free, self._pattern = self._system.free, self._system.pattern
@@ -113,9 +116,9 @@ class Stepper:
     ) -> None:
         """Set the forces and tangents of a trial moment whose displacement and velocity are given;
         r : rate factor, 1/s."""
-        state, pressure = trial.state, pressure_at(self.model, n, share)
+        state, applied = trial.state, applied_at(self.model, n, share)
         trial.size[0] = balance(
-            model, self.rock, now.state, state, pressure, r, self._system.tangents
+            model, self.rock, now.state, state, applied, r, self._system.tangents
         )
         if self.mass_damping:
             state.force[:] -= self.mass_damping * (self.mass @ state.v)

@@ -3,8 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
+from scipy.sparse import csr_matrix
 
-from continuum.model import Fixed, HalfJoints, Model, Quiet
+from continuum.model import Dashpots, Fixed, HalfJoints, Model, Quiet
 from continuum.state import State
 
 
@@ -49,13 +50,34 @@ def move(
         values[fixed_motion.freedom] = value * fixed_motion.direction
 
 
-def pressure_at(model: Model, n: int, share: float) -> float:
-    """Return the pressure of the load (Pa) at step n and a share of the next, linear in between."""
-    loaded = model.ends.loaded
-    if loaded is None:
-        return 0.0
-    last = loaded.pressure[n + 1] if share else 0.0
-    return float((1 - share) * loaded.pressure[n] + share * last)
+class Applied(NamedTuple):
+    """What acts at one moment: the pressure of `Ends.loaded`, Pa, and the forces of `Ends.driven`
+    [k], N; None without."""
+
+    pressure: float
+    driven: np.ndarray | None
+
+
+UNLOADED = Applied(0.0, None)
+
+
+def applied_at(model: Model, n: int, share: float) -> Applied:
+    """Return what acts at step n and a share of the next, linear in between."""
+    loaded, driven, pressure, forces = model.ends.loaded, model.ends.driven, 0.0, None
+    if loaded is not None:
+        last = loaded.pressure[n + 1] if share else 0.0
+        pressure = float((1 - share) * loaded.pressure[n] + share * last)
+    if driven is not None:
+        first, last = driven.at(n, n + 2)
+        forces = (1 - share) * first + share * last
+    return Applied(pressure, forces)
+
+
+def dashpot_matrix(dashpots: Dashpots, size: int) -> csr_matrix:
+    """Return the viscosity of dashpots in the plane [size, size], N s/m."""
+    (x, y), (xx, yy, xy) = dashpots.freedom.T, dashpots.viscosity.T
+    rows, columns = np.concatenate([x, y, x, y]), np.concatenate([x, y, y, x])
+    return csr_matrix((np.concatenate([xx, yy, xy, xy]), (rows, columns)), (size, size))
 
 
 def shortened(model: Model, share: float) -> Model:

@@ -17,7 +17,7 @@ from continuum.plane.rock import discretise
 from continuum.plane.sides import dashpots_on, fixed_sides, points_on, sides_that_are
 from continuum.plane.size import refuse_large_run
 from continuum.run import Run
-from continuum.scheme import Choice, explicit
+from continuum.scheme import Choice, choose
 from continuum.state import empty_samples, state_at_rest
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def discrete_and_steps(scene: RockMass, rock: str) -> tuple[PlaneDiscrete, Choic
     (s)."""
     discrete = discretise(scene, rock)
     critical = critical_step(discrete, fixed_sides(scene, discrete.body))
-    choice = explicit(scene, critical, "rock masses take explicit steps")
+    choice = choose(scene, discrete, critical)
     refuse_large_run(scene, choice.time)
     return discrete, choice, critical
 

@@ -136,12 +136,13 @@ def test_what_was_computed_outlives_a_step_that_is_given_up(short, implicit):
 def test_simulate_hands_over_what_was_computed(short, monkeypatch):
     """The same from outside: the error carries a result like any other, up to the last sample."""
     scene = short(numerics__continuum__scheme="implicit", numerics__continuum__steps_per_period=400)
-    whole, pressure_at = simulate(scene), implicit_step.pressure_at
+    whole, applied_at = simulate(scene), implicit_step.applied_at
 
     def broken(model, n, share):
-        return pressure_at(model, n, share) if n + share <= 40 else np.nan
+        applied = applied_at(model, n, share)
+        return applied if n + share <= 40 else applied._replace(pressure=np.nan)
 
-    monkeypatch.setattr(implicit_step, "pressure_at", broken)
+    monkeypatch.setattr(implicit_step, "applied_at", broken)
     with pytest.raises(StoppedError) as caught:
         simulate(scene)
     result = caught.value.result
