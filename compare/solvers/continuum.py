@@ -26,7 +26,6 @@ from compare.solvers.record import (
 if TYPE_CHECKING:
     import xarray as xr
 
-    from cases.incident import IncidentField
     from cases.schema.rock_mass import RockMass
 
 
@@ -50,11 +49,11 @@ def run(
     """Return the result of a scene; comm : mpi4py's, of processes that share the run."""
     from continuum import simulate
 
-    about = {"progress": progress, "comm": comm, "keeper": keeper}
+    about: dict[str, Any] = {"progress": progress, "comm": comm, "keeper": keeper}
     return simulate(scene, model=model, **about, **_incident(scene, model))
 
 
-def _incident(scene: Scene | RockMass, model: str) -> dict[str, IncidentField]:
+def _incident(scene: Scene | RockMass, model: str) -> dict[str, Any]:
     """Return what enters a rock mass; in homogenised rock the waves of the effective medium."""
     if not isinstance(scene, Scene) and scene.waves and model == "equivalent":
         from compare.exact.rock_mass.effective_medium import medium_field

@@ -14,16 +14,14 @@ from scipy.sparse import csr_matrix, vstack
 
 from cases.partition.locate import contact_at
 from continuum.model import Receivers
+from continuum.plane.recovery import recovered_stress
 from continuum.plane.rock import stress_of
-from continuum.space.elasticity import elastic_moduli
 from continuum.space.evaluation import cells_at, matrix_of, places_in
 from continuum.space.receivers import per_component, shares_of_pieces
 
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
     from continuum.plane.rock import PlaneDiscrete
-
-COMPONENTS = ((0, 0), (1, 1), (0, 1))
 
 
 class JointReaders(NamedTuple):
@@ -45,10 +43,7 @@ def receivers(scene: RockMass, discrete: PlaneDiscrete) -> Receivers:
     at = places_in(body, cell, x[which])
     share = shares_of_pieces(which, body.piece[cell])
     motion = per_component(share[:, None] * at.basis, np.arange(2))
-    moduli = elastic_moduli(material, 2, 2)
-    of_stress = np.array([moduli[i, j] for i, j in COMPONENTS])
-    stress = -np.einsum("dcj,nkj,n->dnkc", of_stress, at.gradient, share)
-    elastic = matrix_of(body, which, cell, stress, len(x))
+    elastic = recovered_stress(body, material, x, which, cell)
     joints = _joints(scene, discrete) if scene.record.joints and discrete.joints else None
     rows = 0 if joints is None else joints.traction.shape[0]
     whole = csr_matrix(vstack([elastic, csr_matrix((rows, body.mass.size))]))

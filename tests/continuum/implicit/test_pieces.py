@@ -10,10 +10,11 @@ from continuum.implicit.balance import balance, implicit_matrices
 from continuum.implicit.pattern import System
 from continuum.implicit.static import settle_static
 from continuum.implicit.substeps import (
+    Applied,
+    applied_at,
     end_resistance,
     fixed_motion,
     move,
-    pressure_at,
     shorter_springs,
 )
 from continuum.model import Fixed, HalfJoints, Quiet
@@ -94,8 +95,12 @@ def test_pressure_between_steps(built):
     *_, model, _ = built("equivalent", 1)
     loaded = model.ends.loaded._replace(pressure=np.array([1.0, 3.0, 7.0]))
     model = model._replace(ends=model.ends._replace(loaded=loaded))
-    assert [pressure_at(model, *at) for at in ((1, 0.25), (0, 1.0), (2, 0.0))] == [4.0, 3.0, 7.0]
-    assert pressure_at(model._replace(ends=model.ends._replace(loaded=None)), 2, 0.0) == 0.0
+    assert [applied_at(model, *at).pressure for at in ((1, 0.25), (0, 1.0), (2, 0.0))] == [
+        4.0,
+        3.0,
+        7.0,
+    ]
+    assert applied_at(model._replace(ends=model.ends._replace(loaded=None)), 2, 0.0) == (0.0, None)
 
 
 @pytest.mark.parametrize("share", [0.5, 0.25])
@@ -135,7 +140,7 @@ def test_largest_force_of_a_trial(built):
     def size(u=0.0, v=0.0, pressure=0.0):
         trial.u[:], trial.v[:] = 0.0, 0.0
         trial.u[1], trial.v[1] = u, v
-        return balance(model, rock, now, trial, pressure, 0.0, tangents)
+        return balance(model, rock, now, trial, Applied(pressure, None), 0.0, tangents)
 
     k, c = (np.abs(m.toarray()[:, 1]).max() for m in (rock.stiffness, rock.viscosity))
     share = np.abs(model.ends.loaded.share).max()

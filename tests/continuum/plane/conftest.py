@@ -2,17 +2,12 @@
 
 from typing import Any
 
-import numpy as np
 import pytest
 
-from cases.incident import Motion, plane_wave
-from cases.material.rock import elastic_rock
 from cases.schema.rock_mass import RockMass
-from compare.exact.plane.oblique_joint import Joint, fields
-from compare.exact.plane.pulse import Pulse
 from continuum.plane.rock import PlaneDiscrete, discretise
 
-SIDES = ("left", "right", "bottom", "top")
+QUIET = dict.fromkeys(("left", "right", "bottom", "top"), "quiet")
 
 
 @pytest.fixture
@@ -46,26 +41,23 @@ def meshed(rock_mass):
     return build
 
 
-class AtOneJoint:
-    """The exact motion of a scene of one wave at one joint, without any side."""
-
-    whole = True
-
-    def __init__(self, scene: RockMass) -> None:
-        wave, joint = plane_wave(scene, scene.waves[0]), scene.joint_sets[0]
-        point = np.array(joint.through)
-        late = wave.lateness(point[None])[0]
-        kind = "P" if scene.waves[0].kind == "P" else "SV"
-        pulse = Pulse(kind, wave.direction, lambda t: wave.pulse.value(t - late))
-        law = Joint(joint.normal_stiffness, joint.shear_stiffness)
-        self.asked = elastic_rock(scene.rock), law, pulse, point, np.radians(joint.dip)
-
-    def __call__(self, points, times) -> Motion:
-        found = fields(*self.asked, points, times)
-        return Motion(found.velocity, found.stress)
-
-
 @pytest.fixture
-def at_one_joint():
-    """Return the exact motion of waves at one joint as a class, of a scene."""
-    return AtOneJoint
+def struck(rock_mass):
+    """Return a function that gives 20 m x 20 m of rock with quiet sides and one joint, which a
+    Ricker pulse of 5 ms meets; keyword arguments of the wave, and tables as for `rock_mass`."""
+
+    def scene(kind="P", direction=(0.0, 1.0), dip=30.0, through=(0.0, -4.0), **tables) -> RockMass:
+        pulse = {"shape": "ricker", "amplitude": 1e6, "period": 5e-3}
+        wave = {"kind": kind, "direction": list(direction), "through": list(through), **pulse}
+        joints = [{"dip": dip, "through": [10.0, 10.0]}]
+        table = {
+            "domain": {"size": [20.0, 20.0]},
+            "waves": [wave],
+            "boundaries": QUIET,
+            "time": {"duration": 0.016},
+            "record": {"points": [[10.0, 5.0], [10.0, 15.0]], "joints": [[10.0, 10.0]]},
+            "continuum": {"size": 1.25},
+        }
+        return rock_mass(**{"joints": joints, **table, **tables})
+
+    return scene

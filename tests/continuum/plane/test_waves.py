@@ -1,0 +1,122 @@
+"""Waves in rock masses against exact solutions of the same scenes."""
+
+import numpy as np
+import pytest
+
+from compare.exact.rock_mass.effective_medium import medium_field
+from compare.exact.rock_mass.field import field_of
+from compare.exact.rock_mass.line_force import SOLVER as LINE_FORCE
+from compare.exact.rock_mass.oblique_joint import SOLVER as ONE_JOINT
+from continuum import applies, simulate
+
+
+def misfit(found, exact):
+    """Return the relative L2 misfit over time and components of each receiver."""
+    off, size = (np.linalg.norm(x, axis=tuple(range(1, x.ndim))) for x in (found - exact, exact))
+    return off / size
+
+
+def gap_of_ledger(result):
+    """Return what the terms of the ledger are off by at most, over the largest of them."""
+    energy = result.energy.values
+    return np.abs(energy[:-1].sum(axis=0) - energy[-1]).max() / np.abs(energy).max()
+
+
+@pytest.mark.parametrize("kind, dip", [("P", 0.0), ("S", 0.0), ("P", 30.0), ("S", 30.0)])
+def test_a_pulse_at_one_joint_is_the_exact_one(kind, dip, struck):
+    """At 11 elements a wavelength of S waves, of order 2, with the exact field at all sides."""
+    scene = struck(kind, dip=dip)
+    found, exact = simulate(scene, incident=field_of(scene)), ONE_JOINT.run(scene)
+    opens, slips = (np.abs(exact[name]).max() for name in ("gap", "slip"))
+    names = [name for name, by in (("gap", opens), ("slip", slips)) if by > 1e-6 * (opens + slips)]
+    for name in ("velocity", "displacement", "stress", "traction", *names):
+        assert misfit(found[name].values, exact[name].values).max() < 2e-3
+    assert gap_of_ledger(found) < 1e-11
+
+
+def test_its_error_falls_with_the_third_power_of_the_size(struck):
+    """Order 2: h^3 of displacements and velocities, where steps are as small as they have to be:
+    their error falls as their square, and they are halved with the size."""
+    off = []
+    for size in (2.5, 1.25):
+        scene = struck(continuum={"size": size, "step_fraction": 0.3})
+        found, exact = simulate(scene, incident=field_of(scene)), ONE_JOINT.run(scene)
+        off.append(misfit(found.velocity.values, exact.velocity.values).max())
+    assert 2.6 < np.log2(off[0] / off[1]) < 4.2
+
+
+def test_a_turned_scene_has_a_turned_result(struck):
+    """By 40 degrees: sides that are not along the axes have dashpots that are not, either."""
+    angle = np.radians(40.0)
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+    def turned(points):
+        return (np.array(points) @ turn.T).tolist()
+
+    plain = struck("P", dip=30.0)
+    corners = plain.domain.corners
+    scene = struck(
+        direction=turned([0.0, 1.0]),
+        through=turned([0.0, -4.0]),
+        domain={"outline": turned(corners)},
+        joints=[{"dip": 70.0, "through": turned([10.0, 10.0])}],
+        boundaries={"outline": "quiet"},
+        record={key: turned(getattr(plain.record, key)) for key in ("points", "joints")},
+    )
+    found, other = (simulate(s, incident=field_of(s)) for s in (plain, scene))
+    size = np.abs(found.velocity).max()
+    assert np.abs(found.velocity.values @ turn.T - other.velocity.values).max() < 1e-9 * size
+    assert np.abs(found.gap - other.gap).max() < 1e-9 * np.abs(found.gap).max()
+    assert np.abs(found.traction - other.traction).max() < 1e-9 * np.abs(found.traction).max()
+
+
+def test_a_joint_across_periodic_sides_is_like_one_within(struck):
+    """Joints each 5 m, in a domain of 10 m: what is 5 m apart moves alike."""
+    scene = struck(
+        joints=[{"dip": 90.0, "spacing": 5.0}],
+        domain={"size": [10.0, 10.0]},
+        boundaries={"bottom": "quiet", "top": "quiet", "left": "periodic", "right": "periodic"},
+        record={"points": [[1.0, 5.0], [6.0, 5.0]], "joints": [[5.0, 5.0]]},
+    )
+    found = simulate(scene)
+    one, other = found.velocity.values
+    assert np.abs(one[:, 0]).max() > 1e-3 * np.abs(one).max()
+    assert np.abs(one - other).max() < 1e-10 * np.abs(one).max()
+    assert gap_of_ledger(found) < 1e-11
+
+
+@pytest.mark.parametrize("kind", ["P", "S"])
+def test_an_effective_medium_has_the_speeds_of_christoffel(kind, struck):
+    """After 15 m of way a speed that is off by 0.1 % would shift the pulse by 1e-5 s and more: some
+    2 % of its motion, 2 pi 15 m / (c T) times 0.1 %."""
+    joints = [{"dip": 20.0, "spacing": 2.0}, {"dip": 80.0, "spacing": 3.0}]
+    medium = {
+        "record": {"points": [[8.0, 9.0]]},
+        "time": {"duration": 0.024},
+        "continuum": {"size": 0.8},
+    }
+    scene = struck(kind, (0.6, 0.8), joints=joints, through=(-2.0, -2.0), **medium)
+    assert applies(scene, "equivalent") == ""
+    found, exact = simulate(scene, "equivalent", incident=medium_field(scene)), medium_field(scene)
+    motion = exact(np.array(scene.record.points), found.time.values)
+    assert misfit(found.velocity.values, motion.velocity.swapaxes(1, 2)).max() < 5e-3
+    assert gap_of_ledger(found) < 1e-11
+
+
+def test_a_force_at_a_point_moves_the_rock_as_a_line_force_does(struck):
+    force = {"kind": "force", "quantity": "force", "at": [10.0, 10.0], "direction": [0.6, 0.8]}
+    pulse = {"shape": "ricker", "amplitude": 1e6, "period": 4e-3}
+    record = {"points": [[13.0, 12.0], [10.0, 14.0]], "interval": 4e-5}
+    scene = struck(
+        joints=[],
+        waves=[],
+        loads=[force | pulse],
+        record=record,
+        time={"duration": 6.5e-3},
+        continuum={},
+        numerics={},
+    )
+    assert LINE_FORCE.applies(scene)
+    found, exact = simulate(scene), LINE_FORCE.run(scene)
+    for name in ("velocity", "displacement"):
+        assert misfit(found[name].values, exact[name].values).max() < 1e-2
