@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from cases.effects import is_spatial
 from cases.errors import StoppedError
+from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 from numerics.checkpoint import Keeper
 from results.dataset import Fields
@@ -14,14 +15,20 @@ from results.dataset import Fields
 if TYPE_CHECKING:
     import xarray as xr
 
+    from cases.incident import IncidentField
+
 
 def simulate(
-    scene: Scene, progress: Callable[[float], None] | None = None, keeper: Keeper | None = None
+    scene: Scene | RockMass,
+    progress: Callable[[float], None] | None = None,
+    keeper: Keeper | None = None,
+    incident: IncidentField | None = None,
 ) -> xr.Dataset:
     """Simulate a scene with rigid blocks.
 
     progress : called with the finished fraction. keeper : watches over the run,
-    `numerics.checkpoint`.
+    `numerics.checkpoint`. incident : of a rock mass, the field that enters through quiet sides;
+    absent: that of its waves in rock without joints.
 
     Raises SceneError for a step that cannot be taken, a static state that does not exist and
     rotations too large for their kinematics; StoppedError, an UnstableError with the result so far,
@@ -30,16 +37,23 @@ def simulate(
     import xarray as xr
 
     try:
-        return xr.Dataset(*simulate_fields(scene, progress, keeper))
+        return xr.Dataset(*simulate_fields(scene, progress, keeper, incident))
     except StoppedError as error:
         error.result = xr.Dataset(*error.result)
         raise
 
 
 def simulate_fields(
-    scene: Scene, progress: Callable[[float], None] | None = None, keeper: Keeper | None = None
+    scene: Scene | RockMass,
+    progress: Callable[[float], None] | None = None,
+    keeper: Keeper | None = None,
+    incident: IncidentField | None = None,
 ) -> Fields:
     """Simulate a scene as `simulate` does, and return the result as plain arrays."""
+    if isinstance(scene, RockMass):
+        from dem.blocks.simulate import simulate_fields as in_plane
+
+        return in_plane(scene, progress, keeper, incident)
     if is_spatial(scene):
         from dem.spatial.simulate import simulate_fields as in_space
 

@@ -18,6 +18,7 @@ import numpy as np
 from cases.errors import SceneError
 from cases.material.calibrate import Properties
 from cases.sampling import Interpolation
+from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 
 STEPS_BETWEEN_LOOKS = 10
@@ -91,7 +92,7 @@ def since_prestress(
     return displacement - at_rest[:, None]
 
 
-def settle(scene: Scene, system: System) -> Rest:
+def settle(scene: Scene | RockMass, system: System) -> Rest:
     """Bring a scene's blocks to rest under gravity and prestress.
 
     Raises SceneError where there is no static state within numerics.dem.static_tolerance.

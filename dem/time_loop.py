@@ -65,13 +65,17 @@ def followed(
 
 def sighting(guard: Guard, speed: np.ndarray, spacing: float) -> Sighting | None:
     """Return what a guard has found, None where nothing; speed : of each block, m/s."""
+    fastest = int(np.nan_to_num(speed, nan=np.inf).argmax())
+    return sighting_at(guard, (fastest + 0.5) * spacing)
+
+
+def sighting_at(guard: Guard, place: float | tuple[float, float]) -> Sighting | None:
+    """Return what a guard has found, None where nothing; place : of the fastest block, m."""
     step, what, sound = guard.found.tolist()
     if step < 0:
         return None
-    fastest = int(np.nan_to_num(speed, nan=np.inf).argmax())
-    y = (fastest + 0.5) * spacing
     key = "numerics.dem.step_fraction"
-    return Sighting("the rigid blocks", key, step, sound, what == ENERGY, y)
+    return Sighting("the rigid blocks", key, step, sound, what == ENERGY, place)
 
 
 def versions() -> str:

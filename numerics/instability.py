@@ -18,7 +18,8 @@ class Sighting(NamedTuple):
     """What was seen of a run that is out of bounds.
 
     who : in words. key : of the scene, that decides the step. step : at which, after the last that
-    was `sound`. energy : whether the ledger shows it, not a speed. y : of the fastest, m.
+    was `sound`. energy : whether the ledger shows it, not a speed. y : of the fastest, m; in the
+    plane x and y.
     """
 
     who: str
@@ -26,7 +27,7 @@ class Sighting(NamedTuple):
     step: int
     sound: int
     energy: bool
-    y: float
+    y: float | tuple[float, float]
 
 
 def stopped(scene: Scene | RockMass, time: Clock, critical: float, seen: Sighting) -> StoppedError:
@@ -35,10 +36,16 @@ def stopped(scene: Scene | RockMass, time: Clock, critical: float, seen: Sightin
     what = "created energy" if seen.energy else "ran away"
     error = StoppedError(
         f"{name}: {seen.who} {what} at t = {seen.step * time.dt:.6g} s, step {seen.step} of "
-        f"{time.dt:.4g} s, fastest at y = {seen.y:.6g} m: {_cause(scene, time, critical, seen)}"
+        f"{time.dt:.4g} s, fastest at {_place(seen)} m: {_cause(scene, time, critical, seen)}"
     )
     error.samples = max(0, seen.sound) // time.stride + 1
     return error
+
+
+def _place(seen: Sighting) -> str:
+    if isinstance(seen.y, tuple):
+        return "[" + ", ".join(f"{x:.6g}" for x in seen.y) + "]"
+    return f"y = {seen.y:.6g}"
 
 
 def _cause(scene: Scene | RockMass, time: Clock, critical: float, seen: Sighting) -> str:

@@ -19,6 +19,10 @@ from cases.material.effective_medium import JointSet, opening, sliding
 LEAST = 1e-7  # weight of the fit's own norm
 
 
+#: What least squares reach, over the largest number: round-off.
+PRECISE = 1e-15
+
+
 class RigidFit(NamedTuple):
     """The sets with their compliances, and what they lack of S over S (norms of tensors)."""
 
@@ -46,3 +50,44 @@ def rigid_fit(compliance: np.ndarray, normals: np.ndarray) -> RigidFit:
     pairs = size * Z.reshape(-1, 2)
     sets = [JointSet(n, *map(float, z)) for n, z in zip(normals, pairs, strict=True)]
     return RigidFit(sets, float(left_over))
+
+
+def nearest_stiffness(stiffness: np.ndarray, normals: np.ndarray) -> RigidFit:
+    """Return the sets of rigid blocks whose stiffness, not compliance, is nearest to one.
+
+    stiffness : C in Kelvin's form (Pa), [3, 3] or [6, 6]. normals : unit vectors [sets, d].
+
+    Strains that the sets cannot take on are zero, as in rock that is confined: of orthogonal sets
+    in isotropic rock, waves along the normals have the rock's own speeds, which follow from C_11
+    and not from 1 / S_11. What is left over is again a part of the whole, those strains included.
+    """
+    from scipy.optimize import least_squares
+
+    C, size = np.asarray(stiffness, dtype=float), np.linalg.norm(stiffness)
+    first = rigid_fit(np.linalg.inv(C) * size, normals).sets
+    forms = np.array([form(n) for n in normals for form in (opening, sliding)])
+    reach, shapes = np.linalg.eigh(forms.sum(axis=0))
+    basis = shapes[:, reach > LEAST * reach[-1]]
+    parts, aim = basis.T @ forms @ basis, basis.T @ C @ basis / size
+    start = np.array([[s.normal_compliance, s.shear_compliance] for s in first]).ravel()
+    scale, small = start.max(), LEAST * np.eye(len(start))
+
+    def stiffness_of(z: np.ndarray) -> np.ndarray:
+        return np.linalg.inv(np.einsum("k,kij->ij", scale * z, parts))
+
+    def misfit(z: np.ndarray) -> np.ndarray:
+        return np.append((stiffness_of(z) - aim).ravel(), LEAST * z)
+
+    def jacobian(z: np.ndarray) -> np.ndarray:
+        own = stiffness_of(z)
+        slope = -scale * np.array([(own @ part @ own).ravel() for part in parts]).T
+        return np.append(slope, small, axis=0)
+
+    z = least_squares(
+        misfit, np.maximum(start / scale, LEAST), jacobian, (0.0, np.inf),
+        xtol=PRECISE, ftol=PRECISE, gtol=PRECISE,
+    ).x  # fmt: skip
+    missing = float(1 - (aim**2).sum() + ((stiffness_of(z) - aim) ** 2).sum())
+    # Of all sets with this compliance those of least norm.
+    found = rigid_fit(np.einsum("k,kij->ij", scale / size * z, forms), normals)
+    return RigidFit(found.sets, max(missing, 0.0) ** 0.5)

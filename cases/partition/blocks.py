@@ -17,7 +17,8 @@ class Contacts:
     start, end : float arrays [c, 2], m; block i lies to the left on the way.
     normal : float array [c, 2], unit vector from block i to block j, that of the joint set.
     length : float array [c], m.
-    joint_set : int array [c], index of the joint set, or NO_SET for a cut through intact rock.
+    joint_set : int array [c], index of the joint set, or NO_SET for a cut through intact rock;
+        beyond the sets of the scene that of a set of such cuts.
     """
 
     blocks: np.ndarray
@@ -29,6 +30,10 @@ class Contacts:
 
     def __len__(self) -> int:
         return len(self.length)
+
+    def of_joints(self, sets: int) -> np.ndarray:
+        """Return which lie on joints of a scene of so many sets, bool array [c]."""
+        return (self.joint_set >= 0) & (self.joint_set < sets)
 
 
 @dataclass(frozen=True)

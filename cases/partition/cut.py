@@ -9,6 +9,7 @@ import numpy as np
 
 from cases.partition import assemble
 from cases.partition.blocks import BoundaryEdges, Partition
+from cases.partition.faults import Sliver
 from cases.partition.joints import cut_by_sets
 from cases.partition.openings import check_convex, taken_out
 from cases.partition.outline import SIDES, Outline, outline_of
@@ -24,32 +25,50 @@ if TYPE_CHECKING:
 
 #: Default least width of a block over the smallest spacing, or the size of the domain without one.
 THIN = 1e-2
+#: The same where cuts through intact rock make a lattice, in the order in which they are tried.
+LATTICE = (0.3, 0.1, 0.03, THIN)
 
 
-def cut(domain: Domain, sets: Sequence[JointSet]) -> Partition:
+def cut(domain: Domain, sets: Sequence[JointSet], further: Sequence[JointSet] = ()) -> Partition:
     """Return a domain in convex blocks.
 
-    Raises PartitionError, with place and cause, where a set cuts nothing, a block is not convex or
-    a sliver is left.
+    further : sets of cuts, of which some or all may be where joints are.
+
+    Raises PartitionError, with place and cause, where a joint set cuts nothing, a block is not
+    convex or a sliver is left.
     """
     outline = outline_of(domain)
-    sub = cut_by_sets(Subdivision.of_polygon(outline.hull), sets, outline.tolerance)
+    whole = Subdivision.of_polygon(outline.hull)
+    sub = cut_by_sets(whole, [*sets, *further], outline.tolerance, len(sets))
     sub = taken_out(sub, outline.taken, outline.tolerance)
     if domain.non_convex == "refuse":
         check_convex(sub, outline.taken)
-    limits = (least_width(domain, sets), domain.least_angle)
-    joins = domain.slivers == "merge"
-    sub, rings = without_slivers(sub, limits, joins, outline.tolerance)
+    sub, rings = _without_slivers(sub, domain, [*sets, *further], bool(further), outline.tolerance)
     return _partition(*assemble.ordered(sub, rings), outline, sets, len(domain.openings))
 
 
-def least_width(domain: Domain, sets: Sequence[JointSet]) -> float:
-    """Return the width below which a block is a sliver, m."""
+def least_width(domain: Domain, sets: Sequence[JointSet], thin: float = THIN) -> float:
+    """Return the width below which a block is a sliver, m; thin : the default over a spacing."""
     if domain.least_width is not None:
         return domain.least_width
     corners = np.array(domain.corners)
     spacings = [one.spacing for one in sets if one.spacing is not None]
-    return THIN * min([*spacings, float(np.ptp(corners, axis=0).min())])
+    return thin * min([*spacings, float(np.ptp(corners, axis=0).min())])
+
+
+def _without_slivers(
+    sub: Subdivision, domain: Domain, sets: Sequence[JointSet], lattice: bool, tolerance: float
+) -> tuple[Subdivision, assemble.Rings]:
+    """Return a subdivision without slivers, and its outlines; of a lattice without thin blocks at
+    its sides, as far as they can be joined to others: they would decide the step."""
+    for thin in LATTICE if lattice and domain.least_width is None else (THIN,):
+        limits = (least_width(domain, sets, thin), domain.least_angle)
+        try:
+            return without_slivers(sub, limits, domain.slivers == "merge", tolerance)
+        except Sliver:
+            if thin == THIN:
+                raise
+    raise AssertionError
 
 
 def _partition(

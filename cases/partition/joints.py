@@ -30,11 +30,16 @@ def direction_of(dip: float) -> np.ndarray:
     return np.array([exact[0], exact[1] if dip >= 0 else -exact[1]])
 
 
-def cut_by_sets(sub: Subdivision, sets: Sequence[JointSet], tolerance: float) -> Subdivision:
+def cut_by_sets(
+    sub: Subdivision, sets: Sequence[JointSet], tolerance: float, needed: int | None = None
+) -> Subdivision:
     """Return a subdivision cut by all joint sets, those that others end at first.
 
-    Raises PartitionError where a set cuts nothing, or a joint lies outside.
+    needed : how many sets, the first ones, must cut something; all where it is absent.
+
+    Raises PartitionError where one of them cuts nothing, or a joint lies outside.
     """
+    needed = len(sets) if needed is None else needed
     numbers: dict[str, np.ndarray] = {}
     index = {one.name: i for i, one in enumerate(sets)}
     for one in in_order(sets):
@@ -42,7 +47,7 @@ def cut_by_sets(sub: Subdivision, sets: Sequence[JointSet], tolerance: float) ->
         stops = _stops(one, sets)
         lines = _lines_of(sub, sets, i, {name: numbers[name] for name in stops}, tolerance)
         found = split(sub, lines, tolerance)
-        if found.subdivision.count == sub.count:
+        if found.subdivision.count == sub.count and i < needed:
             raise PartitionError(None, "cuts nothing of the domain", f"joint_sets[{i}]")
         numbers = {name: array[found.parent] for name, array in numbers.items()}
         numbers[one.name] = found.number

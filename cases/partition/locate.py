@@ -25,13 +25,15 @@ def block_at(partition: Partition, points: np.ndarray) -> np.ndarray:
 def contact_at(
     partition: Partition, points: np.ndarray, joint_set: int | None = None
 ) -> np.ndarray:
-    """Return the contact nearest to each point (float array [m, 2], m), of one joint set or of any;
-    of those as near, the first.
+    """Return the contact nearest to each point (float array [m, 2], m), of one joint set or of any
+    of the scene's; of those as near, the first.
 
     Raises ValueError where there is no such contact.
     """
     contacts = partition.contacts
-    of_set = contacts.joint_set >= 0 if joint_set is None else contacts.joint_set == joint_set
+    of_set = contacts.joint_set == joint_set
+    if joint_set is None:
+        of_set = contacts.of_joints(len(partition.joint_sets))
     chosen = np.flatnonzero(of_set)
     if not len(chosen):
         raise ValueError("there is no contact")

@@ -16,6 +16,8 @@ from cases.partition.periodic import PAIRS, periodic_contacts
 from cases.size import LIMIT, memory, spoken
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from cases.schema.domain import Domain
     from cases.schema.joint_set import JointSet
     from cases.schema.rock_mass import RockMass
@@ -24,15 +26,18 @@ if TYPE_CHECKING:
 OF_BLOCK = 2500
 
 
-def partition_of(scene: RockMass) -> Partition:
+def partition_of(scene: RockMass, further: Sequence[JointSet] = ()) -> Partition:
     """Return the blocks of a rock mass.
+
+    further : sets of cuts through intact rock, beyond the scene's own sets; their contacts have
+    indices beyond those of the partition's `joint_sets`.
 
     Raises SceneError, in one line with place and cause, where it cannot be cut into convex blocks,
     periodic sides do not fit each other, or the blocks would take more memory than a run may.
     """
-    refuse_too_many(scene)
+    refuse_too_many(scene, further)
     try:
-        found = cut(scene.domain, scene.joint_sets)
+        found = cut(scene.domain, scene.joint_sets, further)
         for side in PAIRS:
             if getattr(scene.boundaries, side) == "periodic":
                 periodic_contacts(found, side)  # whether its sides fit each other
@@ -61,22 +66,25 @@ def block_count(domain: Domain, sets: list[JointSet]) -> float:
     return count
 
 
-def partition_bytes(scene: RockMass) -> float:
+def partition_bytes(scene: RockMass, further: Sequence[JointSet] = ()) -> float:
     """Return what cutting a rock mass into blocks takes, bytes."""
-    return OF_BLOCK * block_count(scene.domain, scene.joint_sets)
+    return OF_BLOCK * block_count(scene.domain, [*scene.joint_sets, *further])
 
 
-def refuse_too_many(scene: RockMass) -> None:
+def refuse_too_many(scene: RockMass, further: Sequence[JointSet] = ()) -> None:
     """Raise SceneError where the blocks would take more memory than a run may."""
-    size, limit = partition_bytes(scene), memory()
+    size, limit = partition_bytes(scene, further), memory()
     if size <= limit:
         return
     spaced = [(one.spacing, i) for i, one in enumerate(scene.joint_sets) if one.spacing]
     spacing, index = min(spaced, default=(None, 0))
-    blocks = block_count(scene.domain, scene.joint_sets)
+    key = f"joint_sets[{index}].spacing"
+    if further:
+        key, spacing = "numerics.dem.block", scene.numerics.dem.block
+    blocks = block_count(scene.domain, [*scene.joint_sets, *further])
     raise SceneError(
         scene.where,
-        f"joint_sets[{index}].spacing",
+        key,
         spacing,
         f"gives about {blocks:,.0f} blocks, which would take about {spoken(size)} of memory; "
         f"here are {spoken(limit)} (the environment's {LIMIT}, in GB, else the machine's)",

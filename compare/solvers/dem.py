@@ -5,38 +5,78 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from cases.effects import is_spatial
+from cases.material.rigid_blocks import against
+from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 from cases.size import estimates
-from compare.solvers.record import BLOCKS, YES, Form, Line, Prepared, Rock, Solver, Words
+from compare.solvers.record import (
+    BLOCKS,
+    YES,
+    Answer,
+    Form,
+    Line,
+    Prepared,
+    Rock,
+    Solver,
+    Words,
+    no,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
 
+    from cases.incident import IncidentField
     from results.dataset import Fields
 
 
-def run(scene: Scene, progress=None, comm=None, keeper=None) -> xr.Dataset:
+def run(scene: Scene | RockMass, progress=None, comm=None, keeper=None) -> xr.Dataset:
     """Return the result of a scene; `comm` is unused, one process runs it."""
     from dem import simulate
 
-    return simulate(scene, progress, keeper=keeper)
+    return simulate(scene, progress, keeper, _incident(scene))
 
 
-def run_fields(scene: Scene, progress=None, comm=None, keeper=None) -> Fields:
+def run_fields(scene: Scene | RockMass, progress=None, comm=None, keeper=None) -> Fields:
     """Return the result as plain arrays, without importing xarray."""
     from dem import simulate_fields
 
-    return simulate_fields(scene, progress, keeper=keeper)
+    return simulate_fields(scene, progress, keeper, _incident(scene))
 
 
-def prepare(scene: Scene) -> Prepared:
+def prepare(scene: Scene | RockMass) -> Prepared:
     """Return the step and the size of a run; raises SceneError as the run would."""
     with estimates() as parts:
-        time, critical, freedoms, threads = (_spatial if is_spatial(scene) else _axial)(scene)
-    scheme = scene.numerics.dem.scheme
+        if isinstance(scene, RockMass):
+            time, critical, freedoms, threads = _in_plane(scene)
+        else:
+            time, critical, freedoms, threads = (_spatial if is_spatial(scene) else _axial)(scene)
+    scheme = "leapfrog" if isinstance(scene, RockMass) else scene.numerics.dem.scheme
     settings = {"scheme": scheme, "threads": threads}
     size = sum(parts.values())
     return Prepared(scheme, time.steps, time.dt, critical, freedoms, size, settings)
+
+
+def applies(scene: Scene | RockMass) -> Answer:
+    """Return whether a scene has blocks that can be rigid."""
+    reason = None if isinstance(scene, Scene) else against(scene)
+    return no(f"numerics.dem.block {reason}") if reason else YES
+
+
+def _incident(scene: Scene | RockMass) -> IncidentField | None:
+    """Return the field that enters a rock mass through its quiet sides; None of a pillar."""
+    if isinstance(scene, Scene):
+        return None
+    from compare.exact.rock_mass.field import field_of
+
+    return field_of(scene)
+
+
+def _in_plane(scene: RockMass):
+    from dem.blocks.build import rigid_blocks
+    from dem.blocks.system import clock_of
+
+    blocks = rigid_blocks(scene)
+    return *clock_of(blocks), 3 * blocks.partition.count, 1
 
 
 def _axial(scene: Scene):
@@ -61,10 +101,11 @@ DEM = Solver(
     name="dem",
     rock=Rock.RIGID_BLOCKS,
     form=Form.RUN,
+    kinds=("pillar", "rock mass"),
     dimension=3,
     words=Words(BLOCKS, "rigid blocks", "刚性块体（离散元）", "rigid blocks"),
     line=Line("#56b4e9", 2.2, 2, printed_width=1.5),
-    applies=lambda scene: YES,
+    applies=applies,
     run=run,
     fields=run_fields,
     prepare=prepare,

@@ -45,6 +45,9 @@ from numerics.jit import jitted_for
 
 #: Columns of a point's history: what has slid, the largest opening and the cohesion.
 SLID, OPENING, COHESION = range(3)
+#: Rows of a contact's samples: F on block j, M and the sum of e L w t_s, opening and slip.
+FORCE_X, FORCE_Y, BEND, ALONG, GAP, SLIP = range(6)
+CONTACT_ROWS = 6
 #: Running sums of the ledger.
 VISCOUS, FRICTION, BOUNDARY, WORK = range(4)
 #: Terms of the ledger at a sample, in the order of their rows.
@@ -64,18 +67,21 @@ def relative(x, i, j, k):
 
 class PlaneSamples(NamedTuple):
     """What is recorded: displacement and velocity of blocks [place, 3, sample], m and m/s, rad and
-    rad/s, and the ledger [term, sample], J; None without."""
+    rad/s, force, opening and slip of contacts [watched, CONTACT_ROWS, sample], and the ledger
+    [term, sample], J; None without."""
 
     displacement: np.ndarray
     velocity: np.ndarray
+    contact: np.ndarray
     energy: Any
 
 
 def samples_for(model: PlaneModel, count: int) -> PlaneSamples:
     """Return room for so many samples."""
     displacement, velocity = np.zeros((2, len(model.places), 3, count))
+    contact = np.zeros((len(model.watched), CONTACT_ROWS, count))
     energy = np.zeros((len(TERMS), count)) if model.form.ledger else None
-    return PlaneSamples(displacement, velocity, energy)
+    return PlaneSamples(displacement, velocity, contact, energy)
 
 
 def march(
@@ -85,18 +91,20 @@ def march(
     stride: int,
     steps: tuple[int, int],
     drive: np.ndarray | None = None,
+    shake: np.ndarray | None = None,
 ) -> None:
     """Take the steps first .. last - 1, with the samples that fall on them, `stride` steps apart.
 
     drive : float array [last - first, h, 3], N and N m, what acts on held blocks in each step.
+    shake : float array [last - first, walls, 2], the velocity of walls in each step, m/s.
     """
     form, b, contacts, (first, last) = model.form, model.blocks, model.contacts, steps
     held = model.held or (None, None, None, None)
     if model.held is not None and drive is None:
         drive = np.zeros((last - first, len(model.held.dashpot), 3))
     loop_for(form)(
-        contacts.blocks, contacts.table, contacts.law, *model.adjacency, b.inertia, model.laws,
-        model.points, *held, *state, drive, model.places, *samples,
+        *contacts, *model.adjacency, b.inertia, model.laws,
+        model.rules, *held, *state, drive, shake, model.places, model.watched, *samples,
         b.dt, b.keep, b.local, b.gravity_x, b.gravity_y, first, last, -(-first // stride), stride,
     )  # fmt: skip
 
@@ -107,14 +115,15 @@ def loop_for(form: PlaneForm) -> Callable:
     parts, points = form.parts, form.points
     dashpots, varied, softening = parts.dashpots, parts.varied, parts.softening
     residual, held, ledger = parts.residual, form.held, form.ledger
+    ruled, stressed, shaken = form.ruled, form.stressed, form.shaken
     mass_damping, local_damping, gravity = form.mass_damping, form.local_damping, form.gravity
     damped, drags = form.mass_damping or form.local_damping, form.parts.dashpots and form.ledger
 
     @jitted_for(form)
     def loop(
-        pair, table, law_index, first_side, side, inertia, laws, rule, row, keeps, moves, dashpot,
-        u, v, force, rates, drag, history, sums, drive, places, displacement, velocity, energy,
-        dt, keep, local, g_x, g_y, first, last, s, stride,
+        pair, table, law_index, start, first_side, side, inertia, laws, rules, row, keeps, moves,
+        dashpot, u, v, force, rates, drag, history, sums, drive, shake, places, watched,
+        displacement, velocity, contact, energy, dt, keep, local, g_x, g_y, first, last, s, stride,
     ):  # fmt: skip
         """Take steps first .. last - 1, and sample s at step s * stride.
 
@@ -125,7 +134,9 @@ def loop_for(form: PlaneForm) -> Callable:
         # Rows of counted arrays would each cost two atomic operations.
         table, force, rates, drag, history = borrowed((table, force, rates, drag, history))
         row, keeps, moves, dashpot, drive = borrowed((row, keeps, moves, dashpot, drive))
-        law = law_of(laws, 0)
+        law, rule, second = law_of(laws, 0), rules[0], 0.0
+        for p in range(rules.shape[2]):
+            second += rule[1, p] * rule[0, p] * rule[0, p]
         for n in range(first, last):
             sampled = n == s * stride
             elastic, fracture, viscous, friction = 0.0, 0.0, 0.0, 0.0
@@ -135,9 +146,15 @@ def loop_for(form: PlaneForm) -> Callable:
                 i, j, k = pair[c, 0], pair[c, 1], table[c]
                 if varied:
                     law = law_of(laws, law_index[c])
+                if ruled:
+                    rule, second = rules[law_index[c]], 0.0
+                    for p in range(rules.shape[2]):
+                        second += rule[1, p] * rule[0, p] * rule[0, p]
                 length = k[LENGTH]
-                bend = length * length * length / 12.0
+                bend = length * length * length * second
                 gap, slip, turn = relative(u, i, j, k)
+                if stressed:
+                    gap, slip = gap + start[c, 0], slip + start[c, 1]
                 rate, slip_rate, spin, slide = 0.0, 0.0, 0.0, 0.0
                 if dashpots or points > 0:
                     rate, slip_rate, spin = relative(v, i, j, k)
@@ -219,11 +236,18 @@ def loop_for(form: PlaneForm) -> Callable:
                     for q in range(3):
                         displacement[r, q, s] = u[places[r], q]
                         velocity[r, q, s] = 0.5 * v[places[r], q]
+                for r in range(len(watched)):
+                    c, own_samples = watched[r], contact[r]
+                    i, j, f = pair[c, 0], pair[c, 1], force[c]
+                    own_samples[FORCE_X, s], own_samples[FORCE_Y, s] = f[F_X], f[F_Y]
+                    own_samples[BEND, s], own_samples[ALONG, s] = f[BENDING], f[STRETCH]
+                    gap, slip, _ = relative(u, i, j, table[c])
+                    own_samples[GAP, s], own_samples[SLIP, s] = gap, slip
 
             # Motion of the blocks.
             kinetic, potential, behind = 0.0, 0.0, 0.0
             boundary, boundary_behind, given, given_behind = 0.0, 0.0, 0.0, 0.0
-            for b in range(len(u)):
+            for b in range(len(inertia)):
                 f_x, f_y, moment = 0.0, 0.0, 0.0
                 for a in range(first_side[b], first_side[b + 1]):
                     f = force[side[a] >> 1]
@@ -298,6 +322,22 @@ def loop_for(form: PlaneForm) -> Callable:
                 u[b, 0] += dt * new_x
                 u[b, 1] += dt * new_y
                 u[b, 2] += dt * new_spin
+
+            if shaken:
+                for w in range(shake.shape[1]):
+                    b = len(inertia) + w
+                    own_shake = shake[n - first, w]
+                    if ledger:
+                        # What moves a wall works against the joints.
+                        f_x, f_y = 0.0, 0.0
+                        for a in range(first_side[b], first_side[b + 1]):
+                            f = force[side[a] >> 1]
+                            f_x, f_y = f_x + f[F_X], f_y + f[F_Y]
+                        given -= 0.5 * dt * (f_x * v[b, 0] + f_y * v[b, 1])
+                        given_behind -= 0.5 * dt * (f_x * own_shake[0] + f_y * own_shake[1])
+                    for q in range(2):
+                        v[b, q] = own_shake[q]
+                        u[b, q] += dt * own_shake[q]
 
             if ledger:
                 sums[VISCOUS] += viscous

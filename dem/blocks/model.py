@@ -31,9 +31,11 @@ FORCE = 6
 class PlaneForm(NamedTuple):
     """Which effects a rock mass has: the constants of its compiled kernel.
 
-    parts : of the joint law. points : Gauss points of a contact; 0 where joints always hold, which
+    parts : of the joint law. points : points of a contact; 0 where joints always hold, which
     need none. mass_damping, local_damping, gravity : of the blocks. held : whether some blocks have
-    dashpots of their own, or forces. ledger : whether energies are kept.
+    dashpots of their own, or forces. ledger : whether energies are kept. ruled : whether contacts
+    differ in the rule of their points. stressed : whether contacts start under a traction. shaken :
+    whether walls move.
     """
 
     parts: Parts
@@ -43,6 +45,9 @@ class PlaneForm(NamedTuple):
     gravity: bool
     held: bool
     ledger: bool
+    ruled: bool = False
+    stressed: bool = False
+    shaken: bool = False
 
 
 class Contacts(NamedTuple):
@@ -50,12 +55,14 @@ class Contacts(NamedTuple):
 
     blocks : int array [c, 2], i and j. table : float array [c, CONTACT], normal, from each block's
     centroid to the contact's centre, m, and length, m. law : int array [c], the column of the
-    law's table; None where all joints are alike.
+    law's table; None where all joints are alike. start : float array [c, 2], the opening and the
+    slip that stand for what a contact carries before anything moves, m; None without prestress.
     """
 
     blocks: np.ndarray
     table: np.ndarray
     law: Any
+    start: Any = None
 
 
 class Adjacency(NamedTuple):
@@ -102,8 +109,12 @@ class PlaneModel(NamedTuple):
     """The constants of a run.
 
     laws : the parameters of the joint law [field, column], one column where all joints are alike.
-    points : place over length, from the contact's centre, and weight of its points [2, points].
-    held : None where nothing acts on blocks from outside. places : int array [r], recorded blocks.
+    rules : place over length, from the contact's centre, and weight of its points [1, 2, points],
+    or [column, 2, points] by the columns of the law. held : None where nothing acts on blocks from
+    outside. places, watched : int arrays [r] and [w], recorded blocks and contacts.
+
+    Contacts may name blocks beyond the last that has an inertia: walls, which stand still or are
+    shaken.
     """
 
     form: PlaneForm
@@ -111,13 +122,16 @@ class PlaneModel(NamedTuple):
     contacts: Contacts
     adjacency: Adjacency
     laws: np.ndarray
-    points: np.ndarray
+    rules: np.ndarray
     held: Any
     places: np.ndarray
+    watched: np.ndarray
+    walls: int = 0
 
 
 class PlaneState(NamedTuple):
-    """What changes: displacement u [N, 3] at a whole step, velocity v [N, 3] half a step before it.
+    """What changes: displacement u [N, 3] at a whole step, velocity v [N, 3] half a step before it,
+    of the blocks and then the walls.
 
     force : float array [c, FORCE], of the contacts at the last step. rate : float array [c, 3], of
     their opening, slip and rotation one and a half steps before; None without dashpots.
@@ -181,13 +195,14 @@ def held_by(dashpot: np.ndarray, index: np.ndarray, inertia: np.ndarray, dt: flo
 
 def state_at_rest(model: PlaneModel) -> PlaneState:
     """Return the state at rest, with no array for any effect that the rock mass does not have."""
-    form, contacts, count = model.form, len(model.contacts.blocks), len(model.blocks.inertia)
+    form, contacts = model.form, len(model.contacts.blocks)
+    count = len(model.blocks.inertia) + model.walls
     history = None
     if form.points:
         history = zeros((contacts, form.points, 3))
         if form.parts.residual:
             row = Law._fields.index("cohesion")
-            of = 0 if model.contacts.law is None else model.contacts.law
+            of = 0 if model.laws.shape[1] == 1 else model.contacts.law
             history[:, :, 2] = np.broadcast_to(model.laws[row, of], contacts)[:, None]
     return PlaneState(
         u=zeros((count, 3)),

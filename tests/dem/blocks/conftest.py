@@ -1,9 +1,12 @@
-"""What the tests of blocks in the plane share: a periodic square lattice."""
+"""What the tests of blocks in the plane share: a periodic lattice, and scenes in few words."""
+
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from cases.material.contact_points import points_of
+from cases.validate import validated
 from dem.blocks.model import (
     Blocks,
     PlaneForm,
@@ -16,6 +19,62 @@ from joints.law import Law, parts_of, table_of
 
 SIDE, DENSITY, K_N, K_S = 0.5, 2600.0, 9e9, 4e9
 NUMBER = np.array([6, 5])  # blocks along x and y
+
+
+JOINT = {
+    "name": "joint",
+    "dip": 30.0,
+    "through": [6.0, 5.0],
+    "normal_stiffness": 1e10,
+    "shear_stiffness": 4e9,
+}
+TABLES = {
+    "title": "blocks",
+    "domain": {"size": [12.0, 10.0]},
+    "rock": {"density": 2600.0, "intact_modulus": 5e10},
+    "joint_sets": [JOINT],
+    "boundaries": dict.fromkeys(("left", "right", "bottom", "top"), "quiet"),
+    "numerics": {"dem": {"block": 1.0}},
+    "time": {"duration": 0.01},
+    "record": {"points": [[4.3, 2.1], [8.2, 7.7]], "joints": [[6.1, 5.0]], "interval": 1e-4},
+}
+WAVE = {
+    "kind": "P",
+    "direction": [0.0, 1.0],
+    "shape": "ricker",
+    "amplitude": 1e6,
+    "period": 0.004,
+}
+
+
+@pytest.fixture(scope="session")
+def joint():
+    """Return a joint of 1e10 and 4e9 Pa/m at 30 degrees with keys changed."""
+    return lambda **keys: {k: v for k, v in (JOINT | keys).items() if v is not None}
+
+
+@pytest.fixture(scope="session")
+def wave():
+    """Return a P wave upwards, a Ricker pulse of 1 MPa and 250 Hz, with keys changed."""
+    return lambda **keys: WAVE | keys
+
+
+@pytest.fixture(scope="session")
+def rock_mass():
+    """Return one joint in blocks of 1 m, 12 m by 10 m, quiet all around, with tables changed: keys
+    of tables are added, None takes one out."""
+
+    def scene(**changes):
+        tables = dict(TABLES)
+        for key, value in changes.items():
+            both = value
+            if isinstance(TABLES.get(key), dict) and isinstance(value, dict):
+                both = {k: v for k, v in (TABLES[key] | value).items() if v is not None}
+            tables[key] = both
+        given = {key: value for key, value in tables.items() if value is not None}
+        return validated(given, Path("scene.toml"), frozenset())
+
+    return scene
 
 
 @pytest.fixture
@@ -58,10 +117,10 @@ def _lattice(law=None, points=0, ledger=False, turned=0.0, shifted=(0.0, 0.0), p
     held = held and held_by(*held, inertia, dt)
     effects = drag > 0, local > 0, any(gravity), held is not None
     form = PlaneForm(parts_of(law), points, *effects, ledger)
-    rule = np.array(points_of("gauss", points) if points else np.zeros((2, 0)))
+    rule = np.array(points_of("gauss", points or 2))
     rule[0] -= 0.5
     model = PlaneModel(
         form, blocks, contacts, adjacency_of(contacts.blocks, len(at)), table_of(law),
-        rule, held, np.array(places, dtype=np.int64),
+        rule[None], held, np.array(places, dtype=np.int64), np.zeros(0, dtype=np.int64),
     )  # fmt: skip
     return model, at, turn

@@ -1,0 +1,156 @@
+"""Further cuts through intact rock, for blocks that are rigid: lattices that hold the joints.
+
+`numerics.dem.block` asks for blocks of about that size. Every direction of joints gets parallel
+lines, at a whole part of the spacing, or at about the size beside joints that are alone; where all
+have one direction, or there are none, lines across them are added: at 60 and 120 degrees, as far
+apart, which makes equilateral triangles, or at right angles. A side along which lines run is
+met in the middle of a block where it is quiet, since the motion of a block is that of the lattice
+in its middle, and at a line elsewhere.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cases.errors import SceneError
+from cases.partition.joints import direction_of
+from cases.partition.outline import SIDES, Outline, outline_of
+from cases.schema.joint_set import JointSet
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
+
+#: Blocks from a side to the line next to it, by what holds the side.
+AT_SIDE = {"quiet": 0.5, "periodic": 0.0, "free": 1.0, "fixed": 1.0}
+#: Degrees between dips that are one.
+ALIKE = 1e-9
+
+
+def further_sets(scene: RockMass) -> list[JointSet]:
+    """Return the sets of cuts between the joints of a scene; none without numerics.dem.block.
+
+    Raises SceneError, in one line, for joints whose lines have no lattice.
+    """
+    block = scene.numerics.dem.block
+    if block is None:
+        return []
+    for one in scene.joint_sets:
+        if one.ends_at or one.scatter:
+            key = "ends_at" if one.ends_at else "scatter"
+            allowed = f"cuts no rock between joints with {key}, which '{one.name}' has"
+            raise SceneError(scene.where, "numerics.dem.block", block, allowed)
+    outline, found = outline_of(scene.domain), []
+    groups = by_direction(scene.joint_sets)
+    for group in groups:
+        first = next((one for one in group if one.spacing is not None), group[0])
+        if first.spacing is None:
+            found.append(_lines(scene, outline, first.dip, block, first.through, True))
+        elif (parts := max(1, round(first.spacing / block))) > 1:
+            found.append(_set(first.dip, first.spacing / parts, first.through))
+    if len(groups) < 2:
+        anchor = next((one.through for one in scene.joint_sets if one.through), None)
+        if not groups:
+            found.append(_lines(scene, outline, 0.0, block, anchor, False))
+        along = (found or groups[0])[0]
+        if squared(scene):
+            dip = _folded(along.dip + 90.0)
+            found.append(_lines(scene, outline, dip, block, anchor, False))
+        else:
+            dips = (_folded(along.dip + angle) for angle in (60.0, 120.0))
+            found += [_set(dip, along.spacing or block, along.through) for dip in dips]
+    names = [f"cut {k}" for k in range(len(found))]
+    return [one.model_copy(update={"name": name}) for one, name in zip(found, names, strict=True)]
+
+
+def squared(scene: RockMass) -> bool:
+    """Return whether cuts across joints of one direction are at right angles to them.
+
+    Triangles can have any Poisson's ratio (`material.rigid_fit`), rectangles none; but periodic
+    sides need lines along them.
+    """
+    return scene.rock.intact_poisson == 0 or "periodic" in scene.boundaries.model_dump().values()
+
+
+def by_direction(sets: list[JointSet]) -> list[list[JointSet]]:
+    """Return joint sets in groups of one direction."""
+    groups: list[list[JointSet]] = []
+    for one in sets:
+        for group in groups:
+            if abs(_folded(one.dip - group[0].dip)) <= ALIKE:
+                group.append(one)
+                break
+        else:
+            groups.append([one])
+    return groups
+
+
+def _folded(dip: float) -> float:
+    """Return a dip between -90 and 90 degrees."""
+    return (dip + 90.0) % 180.0 - 90.0
+
+
+def _set(dip: float, spacing: float, through: list[float] | None) -> JointSet:
+    return JointSet(
+        name="cut",
+        dip=dip,
+        spacing=spacing,
+        through=through,
+        contact_points=2,
+        point_rule="gauss",
+    )
+
+
+def _lines(
+    scene: RockMass,
+    outline: Outline,
+    dip: float,
+    block: float,
+    through: list[float] | None,
+    fixed: bool,
+) -> JointSet:
+    """Return lines about `block` (m) apart, one of them through a point where that is `fixed`,
+    that meet the sides along them as they should."""
+    direction = direction_of(dip)
+    normal = np.array([-direction[1], direction[0]])
+    s = outline.corners @ normal
+    low, high = float(s.min()), float(s.max())
+    rests = _rests(scene, outline, normal)
+    anchor = np.array(through if through is not None else outline.corners.mean(axis=0))
+    place = float(anchor @ normal)
+    if fixed:
+        for rest, reach in zip(rests, (place - low, high - place), strict=True):
+            if rest is not None and reach > 0:
+                return _set(dip, _divided(reach, rest, block), anchor.tolist())
+        return _set(dip, block, anchor.tolist())
+    below, above = rests
+    spacing = block
+    if below is not None and above is not None:
+        spacing = _divided(high - low, below + above, block)
+    if below is not None:
+        place = low + below * spacing
+    elif above is not None:
+        place = high - above * spacing
+    return _set(dip, spacing, (anchor + (place - anchor @ normal) * normal).tolist())
+
+
+def _divided(reach: float, rest: float, block: float) -> float:
+    """Return the spacing, about `block`, of which a reach (m) is a whole number more than rest."""
+    whole = max(round(reach / block - rest), 0)
+    return reach / (whole + rest) if whole + rest else reach
+
+
+def _rests(
+    scene: RockMass, outline: Outline, normal: np.ndarray
+) -> tuple[float | None, float | None]:
+    """Return the part of a block from the lowest and from the highest side along a normal to the
+    line next to it; None where no side runs along the lines there."""
+    start, end = outline.corners, np.roll(outline.corners, -1, axis=0)
+    held, found = outline.sides_of(start, end), []
+    s = np.stack([start, end]) @ normal
+    for extreme in (s.min(), s.max()):
+        along = np.flatnonzero((np.abs(s - extreme) <= outline.tolerance).all(axis=0))
+        kinds = [getattr(scene.boundaries, SIDES[held[k]]) for k in along]
+        found.append(AT_SIDE[kinds[0]] if kinds else None)
+    return found[0], found[1]

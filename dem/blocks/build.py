@@ -1,0 +1,112 @@
+"""From the scene of a rock mass to its rigid blocks, and the constants of their steps."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from cases.material.rigid_blocks import RigidJoints, rigid_joints
+from cases.material.rock_mass import Inertia, inertia
+from cases.partition.blocks import Partition
+from cases.partition.lattice import further_sets
+from cases.partition.scene import partition_of
+from dem.blocks.joints import Columns, columns
+from dem.blocks.links import Links, links_of
+from dem.blocks.model import Blocks, Contacts, PlaneForm, contacts_of
+from dem.blocks.stability import critical_plane_step
+from joints.law import parts_of
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
+
+
+class RigidBlocks(NamedTuple):
+    """A rock mass as rigid blocks, before time is cut into steps.
+
+    joints : the stiffness between blocks, and what intact rock becomes by it.
+    """
+
+    scene: RockMass
+    partition: Partition
+    links: Links
+    columns: Columns
+    inertia: Inertia
+    joints: RigidJoints
+
+    @property
+    def masses(self) -> np.ndarray:
+        """Mass (kg/m), twice, and moment of inertia (kg m) of each block [N, 3]."""
+        return np.stack([self.inertia.mass, self.inertia.mass, self.inertia.moment], axis=1)
+
+    @property
+    def critical(self) -> float:
+        """A lower bound of the critical step, s."""
+        local = self.scene.damping.local or 0.0
+        return critical_plane_step(self.links, self.columns, self.inertia, local)
+
+
+def rigid_blocks(scene: RockMass) -> RigidBlocks:
+    """Return the rigid blocks of a scene; raises SceneError where they cannot be made."""
+    further = further_sets(scene)
+    joints = rigid_joints(scene, further)
+    partition = partition_of(scene, further)
+    links = links_of(scene, partition, len(joints.normal))
+    found = columns(scene, joints, links.others)
+    own = inertia(partition, scene.rock.density)
+    return RigidBlocks(scene, partition, links, found, own, joints)
+
+
+def form_of(blocks: RigidBlocks, held: bool, shaken: bool) -> PlaneForm:
+    """Return which effects a rock mass has."""
+    scene, own = blocks.scene, blocks.columns
+    return PlaneForm(
+        parts=parts_of(own.law),
+        points=own.points,
+        mass_damping=scene.damping.alpha is not None,
+        local_damping=bool(scene.damping.local),
+        gravity=scene.gravity is not None,
+        held=held,
+        ledger=scene.record.energy,
+        ruled=len(own.rules) > 1,
+        stressed=scene.prestress is not None,
+        shaken=shaken,
+    )
+
+
+def constants(scene: RockMass, blocks: RigidBlocks, dt: float) -> Blocks:
+    """Return the constants of the blocks for steps of dt, s."""
+    drag, g = 0.5 * dt * (scene.damping.alpha or 0.0), np.zeros(2)
+    if scene.gravity is not None:
+        g = scene.gravity.acceleration * np.array(scene.gravity.direction)
+    return Blocks(
+        inertia=np.ascontiguousarray(blocks.masses[:, 1:]),
+        dt=dt,
+        keep=(1 - drag) / (1 + drag),
+        local=scene.damping.local or 0.0,
+        gravity_x=float(g[0]),
+        gravity_y=float(g[1]),
+    )
+
+
+def contacts(blocks: RigidBlocks) -> Contacts:
+    """Return the table of contacts, with what they carry under a prestress."""
+    links, own, stress = blocks.links, blocks.columns, blocks.scene.prestress
+    varied = parts_of(own.law).varied or len(own.rules) > 1
+    found = contacts_of(
+        links.blocks,
+        links.start,
+        links.end,
+        links.normal,
+        (links.beside_i, links.beside_j),
+        links.column if varied else None,
+    )
+    if stress is None:
+        return found
+    traction = links.normal @ np.array([[stress.xx, stress.xy], [stress.xy, stress.yy]])
+    along = np.stack([-links.normal[:, 1], links.normal[:, 0]], axis=1)
+    carried = [(traction * axis).sum(axis=1) for axis in (links.normal, along)]
+    stiffness = (values[links.column] for values in (own.normal, own.shear))
+    return found._replace(
+        start=np.stack([-t / k for t, k in zip(carried, stiffness, strict=True)], axis=1)
+    )

@@ -1,0 +1,67 @@
+"""Points on edges of blocks, and what tractions there do to a block."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from cases.material.contact_points import points_of
+from cases.partition.blocks import BoundaryEdges, Partition
+
+#: Rows of what tractions do to a block: the force, and the sums of arm times force, whose
+#: antisymmetric part is the moment about the centroid.
+F_X, F_Y, S_XX, S_XY, S_YX, S_YY = range(6)
+
+
+class EdgePoints(NamedTuple):
+    """Points on edges: block [m], place [m, 2] and arm from the centroid [m, 2], m, outward normal
+    [m, 2], and the length that each stands for [m], m."""
+
+    block: np.ndarray
+    place: np.ndarray
+    arm: np.ndarray
+    normal: np.ndarray
+    length: np.ndarray
+
+
+def points_on(
+    partition: Partition, edges: BoundaryEdges, chosen: np.ndarray, part: np.ndarray | None = None
+) -> EdgePoints:
+    """Return two Gauss points on each of the chosen edges, bool array [b]; what is linear along an
+    edge is integrated exactly.
+
+    part : from where to where along each edge, of its length [b, 2]; absent: all of it.
+    """
+    index = np.flatnonzero(chosen)
+    x, w = points_of("gauss", 2)
+    low, high = (np.zeros(len(index)), np.ones(len(index))) if part is None else part[index].T
+    which = np.repeat(index, 2)
+    t = (low[:, None] + np.outer(high - low, x)).ravel()[:, None]
+    place = edges.start[which] * (1 - t) + edges.end[which] * t
+    block = edges.block[which]
+    length = edges.length[which] * (np.outer(high - low, w)).ravel()
+    arm = place - partition.centroid[block]
+    return EdgePoints(block, place, arm, edges.normal[which], length)
+
+
+def gathered(arm: np.ndarray, traction: np.ndarray) -> np.ndarray:
+    """Return what forces [..., m, 2] at arms [m, 2] do, of each [..., m, 6]."""
+    sums = arm[:, :, None] * traction[..., None, :]
+    return np.concatenate([traction, sums.reshape(*traction.shape[:-1], 4)], axis=-1)
+
+
+def on_rows(values: np.ndarray, row: np.ndarray, count: int) -> np.ndarray:
+    """Return sums of values [..., m, k] over the points of each row [m]: [..., count, k]."""
+    found = np.zeros((*values.shape[:-2], count, values.shape[-1]))
+    order = np.argsort(row, kind="stable")
+    rows, first = np.unique(row[order], return_index=True)
+    if len(rows):
+        found[..., rows, :] = np.add.reduceat(values[..., order, :], first, axis=-2)
+    return found
+
+
+def resultant(sums: np.ndarray) -> np.ndarray:
+    """Return force and moment [..., 3] of what tractions do [..., 6]."""
+    moment = sums[..., S_XY] - sums[..., S_YX]
+    return np.stack([sums[..., F_X], sums[..., F_Y], moment], axis=-1)

@@ -1,0 +1,100 @@
+"""The law of the contacts of a rock mass, and the rule of their points: a column for each joint
+set, for each set of cuts, and for every other contact."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from cases.material.contact_points import CUT, points_of
+from cases.material.dashpots import set_time_constants
+from cases.material.rigid_blocks import RigidJoints
+from cases.material.strength import strength_of
+from cases.schema.joint import JointLaw
+from joints.law import Law
+from joints.uniform import law, uniform
+
+if TYPE_CHECKING:
+    from cases.material.rock_mass import Stiffness
+    from cases.schema.rock_mass import RockMass
+
+
+class Columns(NamedTuple):
+    """The law in its columns, and K_n and K_s of each [columns], Pa/m, as they are.
+
+    time_constants : viscosity over stiffness, normal and in shear [2, columns], s; None without
+    dashpots. rules : places over length from the centre and weights of points [1, 2, points] or
+    [columns, 2, points].
+    points : how many are looked after one by one; 0 where joints always hold.
+    """
+
+    law: Law
+    normal: np.ndarray
+    shear: np.ndarray
+    time_constants: np.ndarray | None
+    rules: np.ndarray
+    points: int
+
+
+def columns(scene: RockMass, joints: RigidJoints, others: Stiffness) -> Columns:
+    """Return the law of a scene's contacts.
+
+    joints : of the sets. others : of further contacts, in columns of their own, which always hold.
+    """
+    sets = scene.joint_sets
+    normal = np.concatenate([joints.normal, others.normal])
+    shear = np.concatenate([joints.shear, others.shear])
+    which = np.full(len(normal), len(sets))
+    which[: len(sets)] = np.arange(len(sets))
+    tension = np.ones(len(normal), dtype=bool)
+    tension[: len(sets)] = [one.tension is not False for one in sets]
+    strengths = strength_of([*sets, JointLaw()], which).strengths()
+    found = law(normal, None, tension, shear_stiffness=shear, **strengths)
+    eta = _time_constants(scene, normal, shear)
+    if eta is not None:
+        viscosities = (uniform(values) for values in (eta[0] * normal, eta[1] * shear))
+        found = found._replace(**dict(zip(VISCOSITIES, viscosities, strict=True)))
+    fails = not tension.all() or any(values is not None for values in strengths.values())
+    rules = _rules(scene, len(normal))
+    return Columns(found, normal, shear, eta, rules, rules.shape[2] if fails else 0)
+
+
+VISCOSITIES = ("normal_viscosity", "shear_viscosity")
+
+
+def _time_constants(scene: RockMass, normal: np.ndarray, shear: np.ndarray) -> np.ndarray | None:
+    """Return viscosity over stiffness, normal and in shear [2, columns], s; None without any.
+
+    A dashpot eta K of a joint within a contact of K' is one of eta K'^2 / K across the contact, to
+    the first order in omega eta: rock beside the joint takes a part of its motion.
+    """
+    own = set_time_constants(scene)
+    if own is None:
+        return None
+    sets, rayleigh = scene.joint_sets, scene.damping.rayleigh
+    if rayleigh is not None:
+        return np.full((2, len(normal)), rayleigh.coefficients[1])
+    eta = np.zeros((2, len(normal)))
+    for row, whole, key in zip(
+        eta, (normal, shear), ("normal_stiffness", "shear_stiffness"), strict=True
+    ):
+        stiffness = np.array([getattr(one, key) for one in sets], dtype=float)
+        row[: len(sets)] = own * whole[: len(sets)] / stiffness
+    return eta
+
+
+def _rules(scene: RockMass, count: int) -> np.ndarray:
+    """Return the rules of all columns, one where they are the same; shorter ones are filled up by
+    points of no weight."""
+    named: list[tuple[str, int]] = [
+        (one.point_rule, one.contact_points) for one in scene.joint_sets
+    ]
+    named += [CUT] * (count - len(named))
+    if len(set(named)) == 1:
+        del named[1:]
+    found = np.zeros((len(named), 2, max(number for _, number in named)))
+    for table, (rule, number) in zip(found, named, strict=True):
+        places, weights = points_of(rule, number)
+        table[0, :number], table[1, :number] = places - 0.5, weights
+    return found

@@ -1,0 +1,78 @@
+"""The part of the boundary that a pressure acts on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cases.partition.blocks import Partition
+from cases.partition.outline import outline_of
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
+    from cases.schema.sources import PlaneLoad
+
+#: Of the domain's size: how far an edge may be from the line that it lies on.
+BESIDE = 1e-6
+
+
+def loaded_part(
+    scene: RockMass, partition: Partition, load: PlaneLoad
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return which boundary edges a pressure acts on, bool array [b], and from where to where along
+    each, of its length [b, 2].
+
+    Of an opening the part from the first point to the second is that counter-clockwise around it.
+    """
+    edges, name = partition.boundary, load.side or f"opening {load.opening}"
+    chosen = edges.side == partition.sides.index(name)
+    whole = np.tile([0.0, 1.0], (len(chosen), 1))
+    if load.between is None:
+        return chosen, whole
+    outline = outline_of(scene.domain)
+    lines = outline.edges(load.side, load.opening)
+    active = _segments(lines, np.array(load.between), load.opening is not None)
+    part, tolerance = np.zeros((len(chosen), 2)), BESIDE * outline.size
+    for start, end in active:
+        length = float(np.hypot(*(end - start)))
+        along = (end - start) / length
+        if length <= tolerance:
+            continue
+        s, off = [], []
+        for points in (edges.start, edges.end):
+            s.append((points - start) @ along)
+            off.append(np.abs((points - start) @ [-along[1], along[0]]))
+        beside = chosen & (np.maximum(*off) <= tolerance)
+        low, high = np.maximum(np.minimum(*s), 0.0), np.minimum(np.maximum(*s), length)
+        meets = beside & (high - low > tolerance)
+        span = np.where(meets, s[1] - s[0], 1.0)
+        ends = np.sort(np.stack([(low - s[0]) / span, (high - s[0]) / span], axis=1), axis=1)
+        part[meets] = ends[meets]
+    return part[:, 1] > part[:, 0], part
+
+
+def _segments(
+    lines: np.ndarray, between: np.ndarray, closed: bool
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return the straight parts of lines [n, 2, 2], m, that lie between two points of them."""
+    (i, s), (j, t) = (_place(lines, point) for point in between)
+    if not closed and (j, t) < (i, s):
+        (i, s), (j, t), between = (j, t), (i, s), between[::-1]
+    if i == j and s <= t:
+        return [(between[0], between[1])]
+    found = [(between[0], lines[i, 1])]
+    k = (i + 1) % len(lines)
+    while k != j:
+        found.append((lines[k, 0], lines[k, 1]))
+        k = (k + 1) % len(lines)
+    return [*found, (lines[j, 0], between[1])]
+
+
+def _place(lines: np.ndarray, point: np.ndarray) -> tuple[int, float]:
+    """Return the line that is nearest to a point, and where on it, of its length."""
+    start, along = lines[:, 0], np.diff(lines, axis=1)[:, 0]
+    t = np.clip(((point - start) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
+    off = np.hypot(*(start + t[:, None] * along - point).T)
+    k = int(off.argmin())
+    return k, float(t[k])

@@ -1,0 +1,102 @@
+"""What a run of rigid blocks in the plane has recorded, as results have it.
+
+The mean stress of a block follows from what acts on it (Love 1927; Weber 1966): with arms x from
+the centroid and forces F,
+
+    A sigma_ij = sum of x_i F_j,
+
+its symmetric part, tension positive. The inertia of a block's rotation adds rho (I_xx - I_yy) / 2
+times the angular acceleration to the shear stress; it is zero for squares and left out.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem.blocks.leapfrog import ALONG, BEND, FORCE_X, FORCE_Y, GAP, SLIP, PlaneSamples
+from dem.blocks.links import Links
+from dem.blocks.receivers import Receivers
+
+if TYPE_CHECKING:
+    from dem.blocks.system import System
+
+#: xx, yy and xy of a tensor.
+COMPONENTS = ((0, 0), (1, 1), (0, 1))
+
+
+def quantities(
+    system: System, receivers: Receivers, samples: PlaneSamples, count: int
+) -> dict[str, np.ndarray]:
+    """Return the first `count` samples of a run by name, as `results.plane.plane_fields` takes
+    them. Displacement, gap and slip count from the first sample; gap and slip are those of the
+    joint itself, without the strain of the rock that its contact stands for."""
+    found: dict[str, np.ndarray] = {}
+    record, joints = system.blocks.scene.record, receivers.joints
+    moved, velocity, contact = (
+        values[..., :count] for values in (samples.displacement, samples.velocity, samples.contact)
+    )
+    if record.points:
+        found["velocity"] = _at_points(receivers, velocity)
+        found["displacement"] = _at_points(receivers, moved - moved[..., :1])
+        stress = mean_stress(system, receivers, velocity, contact)
+        found["stress"] = np.einsum("pr,rnk->pnk", receivers.weights, stress)
+    if record.joints:
+        traction = _tractions(system.blocks.links, receivers, contact)
+        found["traction"] = np.einsum("pw,wnk->pnk", joints, traction)
+        for k, (name, row) in enumerate((("gap", GAP), ("slip", SLIP))):
+            softness = system.blocks.joints.excess[k, system.blocks.links.column[receivers.watched]]
+            moved = contact[:, row] + softness[:, None] * traction[..., k]
+            found[name] = joints @ (moved - moved[:, :1])
+    return found
+
+
+def _at_points(receivers: Receivers, motion: np.ndarray) -> np.ndarray:
+    """Return vectors at points [points, n, 2] of the motion of places [r, 3, n]."""
+    linear = np.einsum("pr,rkn->pnk", receivers.weights, motion[:, :2])
+    return linear + np.einsum("prk,rn->pnk", receivers.turns, motion[:, 2])
+
+
+def mean_stress(
+    system: System, receivers: Receivers, velocity: np.ndarray, contact: np.ndarray
+) -> np.ndarray:
+    """Return the mean stress of the places [r, n, (xx, yy, xy)], Pa, compression positive.
+
+    velocity : of the places [r, 3, n]. contact : samples of the watched contacts [w, rows, n].
+    """
+    blocks, places = system.blocks, receivers.places
+    sums = np.zeros((len(places), 2, 2, contact.shape[-1]))
+    for w, r, side in receivers.touching:
+        own = _moments(blocks.links, receivers.watched[w], side, contact[w])
+        sums[r] += own if side else -own
+    rows = system.sources.rows
+    held = np.flatnonzero(np.isin(places, rows))
+    if len(held):
+        row = np.searchsorted(rows, places[held])
+        steps = system.time.stride * np.arange(contact.shape[-1])
+        acting = np.moveaxis(system.sources.sums(steps)[:, row, 2:], 0, -1)
+        acting -= np.einsum("hkq,hqn->hkn", system.resistance[row, 2:], velocity[held])
+        sums[held] += acting.reshape(len(held), 2, 2, -1)
+    mean = -(sums + sums.swapaxes(1, 2)) / (2 * blocks.partition.area[places])[:, None, None, None]
+    return np.stack([mean[:, i, j] for i, j in COMPONENTS], axis=-1)
+
+
+def _moments(links: Links, c: int, side: int, samples: np.ndarray) -> np.ndarray:
+    """Return the sums of arm times force of a contact on its block j, about the centroid of its
+    block of a side [2, 2, n], N m."""
+    normal = links.normal[c]
+    along = np.array([-normal[1], normal[0]])
+    arm = (links.start[c] + links.end[c]) / 2 - (links.beside_i, links.beside_j)[side][c]
+    force = samples[[FORCE_X, FORCE_Y]]
+    spread = np.outer(normal, -samples[BEND]) + np.outer(along, samples[ALONG])
+    return arm[:, None, None] * force + along[:, None, None] * spread
+
+
+def _tractions(links: Links, receivers: Receivers, contact: np.ndarray) -> np.ndarray:
+    """Return the mean traction of the watched contacts [w, n, 2], normal and along, Pa."""
+    normal = links.normal[receivers.watched]
+    along = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
+    edge = links.end[receivers.watched] - links.start[receivers.watched]
+    force = contact[:, [FORCE_X, FORCE_Y]] / np.hypot(*edge.T)[:, None, None]
+    return np.stack([np.einsum("wk,wkn->wn", x, force) for x in (normal, along)], axis=-1)

@@ -1,0 +1,47 @@
+"""The motion of fixed sides that are shaken."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cases.loads import history_of
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
+
+#: Of (steps): the velocity of every wall in each [n, walls, 2], m/s.
+Shaking = Callable[[np.ndarray], np.ndarray]
+
+
+def shaking(scene: RockMass, walls: tuple[str, ...], dt: float) -> Shaking | None:
+    """Return how the fixed sides of a scene move in steps of dt (s); None where none does.
+
+    A velocity is the mean over the step, so that displacements are exact; an acceleration gives
+    the velocity at the half step, as leapfrog does.
+    """
+    bases = [one for one in scene.loads if one.kind == "base"]
+    if not bases:
+        return None
+
+    def velocity(steps: np.ndarray) -> np.ndarray:
+        found = np.zeros((len(steps), len(walls), 2))
+        for one in bases:
+            history = history_of(one, one.amplitude)
+            if one.quantity == "velocity":
+                along = np.diff(history.impulse(dt * np.append(steps, steps[-1:] + 1))) / dt
+            else:
+                along = history.impulse(dt * (steps + 0.5))
+            found[:, walls.index(one.side or "")] += np.outer(along, one.direction or [])
+        return found
+
+    return velocity
+
+
+def variation(velocity: np.ndarray) -> float:
+    """Return the total variation of the velocities of walls [n, walls, 2], m/s."""
+    still = np.zeros_like(velocity[:1])
+    steps = np.diff(velocity, axis=0, prepend=still, append=still)
+    return float(np.sqrt((steps**2).sum(axis=(1, 2))).sum())

@@ -1,0 +1,115 @@
+"""From the scene of a rock mass to its result."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem import time_loop
+from dem.blocks.bound import highest_energy
+from dem.blocks.leapfrog import TERMS, PlaneSamples, march, samples_for
+from dem.blocks.model import PlaneState, state_at_rest
+from dem.blocks.record import quantities
+from dem.blocks.start import start
+from dem.blocks.system import System, prepared
+from numerics.checkpoint import Keeper
+from numerics.divergence import SPEED, Guard, audit, guard
+from numerics.instability import stopped
+from results.arrays import size_of
+from results.dataset import Fields
+from results.plane import plane_fields
+
+if TYPE_CHECKING:
+    from cases.incident import IncidentField
+    from cases.schema.rock_mass import RockMass
+
+MOST_OF_DRIVE = 2_000_000  # numbers: forces on held blocks that are there at once
+
+
+def simulate_fields(
+    scene: RockMass,
+    progress: Callable[[float], None] | None = None,
+    keeper: Keeper | None = None,
+    incident: IncidentField | None = None,
+) -> Fields:
+    """Simulate a rock mass in the plane, three freedoms a block."""
+    began = perf_counter()
+    system = prepared(scene, incident)
+    model, time = system.model, system.time
+    state, samples = state_at_rest(model), samples_for(model, time.samples)
+    rest = start(system, state)
+    monitor = guard(highest_energy(system, state))
+    built = perf_counter()
+    step(system, state, samples, 0, 0)
+    compiled = perf_counter()
+
+    def result(count: int) -> Fields:
+        return plane_fields(
+            scene,
+            "dem",
+            time.times[:count],
+            quantities(system, system.receivers, samples, count),
+            None if samples.energy is None else samples.energy[:, :count],
+            TERMS,
+            model="rigid blocks",
+            scheme="leapfrog",
+            dt=time.dt,
+            critical_dt=system.critical,
+            steps=time.steps,
+            blocks=system.blocks.partition.count,
+            degrees_of_freedom=3 * system.blocks.partition.count,
+            left_over=system.blocks.joints.left_over,
+            threads=1,
+            bytes=size_of(model, state),
+            **({} if rest is None else rest.attributes),
+            seconds_setup=built - began,
+            seconds_compile=compiled - built,
+            seconds_stepping=perf_counter() - compiled,
+            versions=time_loop.versions(),
+        )
+
+    def march_samples(first: int, last: int) -> None:
+        step(system, state, samples, first * time.stride, last * time.stride)
+        look(system, state, samples, monitor, first, last)
+
+    def check(count: int) -> None:
+        fastest = int(np.nan_to_num(_energies(system, state), nan=np.inf).argmax())
+        x, y = system.blocks.partition.centroid[fastest].tolist()
+        seen = time_loop.sighting_at(monitor, (x, y))
+        if seen is not None:
+            raise stopped(scene, time, system.critical, seen)
+
+    parts = (state, samples, monitor)
+    run = time_loop.Run(time, system.blocks.partition.count, march_samples, check, parts)
+    return time_loop.followed(run, result, progress, None, keeper)
+
+
+def step(system: System, state: PlaneState, samples: PlaneSamples, first: int, last: int) -> None:
+    """Take the steps first .. last - 1, with as many forces at once as there is memory for."""
+    model, sources = system.model, system.sources
+    size = max(1, MOST_OF_DRIVE // max(1, 6 * len(sources.rows)))
+    for begin in range(first, max(last, first + 1), size):
+        end = min(begin + size, last)
+        drive = sources.drive(begin, end) if model.held is not None else None
+        shake = None if system.shaking is None else system.shaking(np.arange(begin, end))
+        march(model, state, samples, system.time.stride, (begin, end), drive, shake)
+
+
+def look(
+    system: System, state: PlaneState, samples: PlaneSamples, monitor: Guard, first: int, last: int
+) -> None:
+    """Look at the motion after samples first .. last - 1, of which all may be unsound."""
+    stride, limit = system.time.stride, monitor.limit.view(np.float64)
+    if samples.energy is not None:
+        audit(monitor, samples.energy, first, last, stride)
+    if monitor.found[0] < 0 and not _energies(system, state).max(initial=0.0) <= limit[0]:
+        monitor.found[:] = last * stride, SPEED, first * stride - 1
+
+
+def _energies(system: System, state: PlaneState) -> np.ndarray:
+    """Return sqrt(m) v of the fastest freedom of each block [N], sqrt(J)."""
+    masses = system.blocks.masses
+    return (np.sqrt(masses) * np.abs(state.v[: len(masses)])).max(axis=1)

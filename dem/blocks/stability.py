@@ -1,0 +1,58 @@
+"""The critical step of a rock mass of rigid blocks, with dashpots and what holds its sides.
+
+The bound of `cases.material.rigid_step`, block by block, on stiffness and damping together. Slip
+and opening only take stiffness away. Dashpots of quiet sides take the mean velocity of a step and
+change no bound, nor does mass-proportional damping; local damping alpha makes forces that turn a
+velocity round 1 + alpha times as large.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cases.material.contact_points import ContactPoints
+from cases.material.rigid_step import block_stiffness
+from cases.material.rock_mass import Inertia, Stiffness
+from cases.partition.blocks import Contacts
+from dem.blocks.joints import Columns
+from dem.blocks.links import Links
+from joints.stability import critical_step
+
+
+def critical_plane_step(links: Links, columns: Columns, inertia: Inertia, local: float) -> float:
+    """Return a lower bound of the critical step, s; local : Cundall's damping."""
+    count, eta = len(inertia.mass), columns.time_constants
+    own = _stiffness(links, columns, (columns.normal, columns.shear), count)
+    damping = None
+    if eta is not None:
+        damping = _stiffness(
+            links, columns, (eta[0] * columns.normal, eta[1] * columns.shear), count
+        )
+    scale = 1 / np.sqrt(np.stack([inertia.mass, inertia.mass, inertia.moment], axis=1))
+
+    def largest(a: float, b: float) -> float:
+        both = a * own if damping is None else a * own + b * damping
+        scaled = scale[:, :, None] * both * scale[:, None, :]
+        return 2 * (1 + local) * float(np.linalg.eigvalsh(scaled)[:, -1].max())
+
+    return critical_step(largest, damping is not None)
+
+
+def _stiffness(
+    links: Links, columns: Columns, values: tuple[np.ndarray, np.ndarray], count: int
+) -> np.ndarray:
+    """Return the matrix of each block against what it touches [count, 3, 3], of stiffness or
+    viscosity per length in each column, normal and in shear."""
+    length = np.hypot(*(links.end - links.start).T)
+    along = np.stack([-links.normal[:, 1], links.normal[:, 0]], axis=1)
+    centre = (links.start + links.end) / 2
+    ruled = len(columns.rules) > 1
+    places, weights = np.moveaxis(columns.rules[links.column if ruled else [0] * len(length)], 1, 0)
+    contact, k = np.indices(places.shape).reshape(2, -1)
+    at = centre[contact] + (places[contact, k] * length[contact])[:, None] * along[contact]
+    arm = np.stack([at - links.beside_i[contact], at - links.beside_j[contact]], axis=1)
+    points = ContactPoints(contact, arm, weights[contact, k] * length[contact])
+    normal, shear = (x[links.column] for x in values)
+    contacts = Contacts(links.blocks, links.start, links.end, links.normal, length, links.column)
+    beyond = int(links.blocks.max(initial=-1)) + 1
+    return block_stiffness(max(count, beyond), contacts, points, Stiffness(normal, shear))[:count]

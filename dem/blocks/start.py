@@ -1,0 +1,105 @@
+"""Initial state of a rock mass of rigid blocks: unloaded, under its prestress, at rest under
+gravity."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem.blocks.leapfrog import march, samples_for
+from dem.blocks.model import PlaneState, held_by, state_at_rest
+from dem.blocks.stability import critical_plane_step
+from dem.static import Rest, settle
+from joints.law import parts_of, table_of
+from results.arrays import copied, fill
+
+if TYPE_CHECKING:
+    from dem.blocks.system import System
+
+NEVER = 1 << 60  # steps between samples where none are taken
+STEP_FRACTION = 0.9  # of the critical step: only where it ends counts
+
+
+def start(system: System, state: PlaneState) -> Rest | None:
+    """Bring the unloaded state to where the scene starts; return how if that is a static state.
+
+    Raises SceneError where there is none.
+    """
+    scene, blocks = system.blocks.scene, system.model.blocks
+    static = scene.gravity is not None and scene.gravity.static
+    rest = None
+    if static or scene.prestress is not None:
+        relaxation = Relaxation(system, static)
+        rest = settle(scene, relaxation)
+        state.u[:] = relaxation.state.u
+        if state.history is not None:
+            state.history[:] = relaxation.state.history
+    if scene.gravity is not None and not static:
+        # Gravity from t = 0 on: the velocity at t = 0 is the mean of those half a step around it.
+        count = len(blocks.inertia)
+        state.v[:count, :2] = -0.5 * blocks.dt * np.array([blocks.gravity_x, blocks.gravity_y])
+    return rest
+
+
+class Relaxation:
+    """The blocks under their static forces alone: `dem.static.System`.
+
+    Damping decides no static state and is left out, with the dashpots of quiet sides.
+    """
+
+    def __init__(self, system: System, weighed: bool) -> None:
+        blocks, model, sources = system.blocks, system.model, system.sources
+        law = blocks.columns.law._replace(normal_viscosity=None, shear_viscosity=None)
+        columns = blocks.columns._replace(law=law, time_constants=None)
+        dt = STEP_FRACTION * critical_plane_step(blocks.links, columns, blocks.inertia, 0.0)
+        form = model.form._replace(
+            parts=parts_of(law),
+            mass_damping=True,
+            local_damping=False,
+            gravity=weighed,
+            ledger=False,
+            shaken=False,
+        )
+        nothing = np.zeros((len(sources.rows), 3, 3))
+        inertia = model.blocks.inertia
+        self.model = model._replace(
+            form=form,
+            blocks=model.blocks._replace(dt=dt, keep=1.0, local=0.0),
+            laws=table_of(law),
+            held=held_by(nothing, sources.rows, inertia, dt) if form.held else None,
+        )
+        self.state, self.samples = state_at_rest(self.model), samples_for(self.model, 0)
+        self.steady, self.count = sources.steady, len(inertia)
+        self.mass = blocks.masses.ravel()
+        g = np.hypot(model.blocks.gravity_x, model.blocks.gravity_y) if weighed else 0.0
+        edges, stress = blocks.partition.boundary, blocks.scene.prestress
+        pressed = 0.0 if stress is None else max(map(abs, (stress.xx, stress.yy, stress.xy)))
+        self.scale = float(g * blocks.inertia.mass.sum() + pressed * edges.length.sum())
+        self.most_steps = 10_000 + 10_000 * int(np.sqrt(self.count))
+
+    def advance(self, steps: int, alpha: float) -> None:
+        """Take steps under mass-proportional damping alpha, 1/s."""
+        drag = 0.5 * self.model.blocks.dt * alpha
+        blocks = self.model.blocks._replace(keep=(1 - drag) / (1 + drag))
+        drive = np.broadcast_to(self.steady, (steps, *self.steady.shape)).copy()
+        # From step 1: only step 0 would be a sample.
+        model = self.model._replace(blocks=blocks)
+        march(model, self.state, self.samples, NEVER, (1, 1 + steps), drive)
+
+    def unbalanced(self) -> np.ndarray:
+        """Return the net force and moment on every freedom, from the step that they would cause."""
+        kept = copied(self.state)
+        self.stop()
+        self.advance(1, 0.0)
+        gain = self.state.v[: self.count].ravel().copy()
+        fill(self.state, kept)
+        return self.mass * gain / self.model.blocks.dt
+
+    def displacement(self) -> np.ndarray:
+        """Return displacements (m) and rotations (rad)."""
+        return self.state.u[: self.count].ravel()
+
+    def stop(self) -> None:
+        """Set all velocities to zero."""
+        self.state.v[:] = 0.0

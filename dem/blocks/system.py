@@ -1,0 +1,117 @@
+"""The scene of a rock mass ready to run: its model, its clock, and what acts on it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from cases.incident import IncidentField, free_field
+from cases.sampling import Clock, clock
+from cases.size import refuse_beyond_memory, snapshot_bytes, waveform_bytes
+from dem.blocks.build import RigidBlocks, constants, contacts, form_of, rigid_blocks
+from dem.blocks.edges import points_on, resultant
+from dem.blocks.model import PlaneModel, adjacency_of, held_by
+from dem.blocks.quiet import dashpots, impedances
+from dem.blocks.receivers import Receivers, receivers_of
+from dem.blocks.shaking import Shaking, shaking
+from dem.blocks.sources import Sources, incoming, load_pattern, on_sides, reactions
+from joints.law import table_of
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
+
+#: Bytes a block, with its contacts and all that makes them, and for each of their points.
+OF_BLOCK, OF_POINT = 2000, 60
+CORNERS = 4  # of a block, in snapshots
+
+
+class System(NamedTuple):
+    """A rock mass ready to run.
+
+    receivers : what is recorded. sources : what acts on held blocks. resistance : what the velocity
+    of each of them gives of forces and sums at quiet edges, with the sign of a resistance
+    [h, 6, 3]. shaking : the motion of walls; None where none moves.
+    """
+
+    blocks: RigidBlocks
+    time: Clock
+    critical: float
+    model: PlaneModel
+    receivers: Receivers
+    sources: Sources
+    resistance: np.ndarray
+    shaking: Shaking | None
+
+
+def prepared(scene: RockMass, incident: IncidentField | None = None) -> System:
+    """Return a scene ready to run; raises SceneError for what cannot be run.
+
+    incident : the field of waves that quiet sides take in; absent: that of the scene's waves in
+    rock without joints.
+    """
+    blocks = rigid_blocks(scene)
+    time, critical = clock_of(blocks)
+    field: IncidentField = free_field(scene) if incident is None else incident
+    receivers = receivers_of(scene, blocks.partition, blocks.links)
+    sources, resistance = held_blocks(blocks, time, field)
+    moving = shaking(scene, blocks.links.walls, time.dt)
+    form = form_of(blocks, len(sources.rows) > 0, moving is not None)
+    held = held_by(
+        np.moveaxis(resultant(np.moveaxis(resistance, 1, -1)), -1, 1),
+        sources.rows,
+        blocks.masses[:, 1:],
+        time.dt,
+    )
+    model = PlaneModel(
+        form=form,
+        blocks=constants(scene, blocks, time.dt),
+        contacts=contacts(blocks),
+        adjacency=adjacency_of(
+            blocks.links.blocks, blocks.partition.count + len(blocks.links.walls)
+        ),
+        laws=table_of(blocks.columns.law),
+        rules=blocks.columns.rules,
+        held=held if form.held else None,
+        places=receivers.places,
+        watched=receivers.watched,
+        walls=len(blocks.links.walls),
+    )
+    return System(blocks, time, critical, model, receivers, sources, resistance, moving)
+
+
+def clock_of(blocks: RigidBlocks) -> tuple[Clock, float]:
+    """Return the clock of a run and its critical step (s); raises SceneError for a step that cannot
+    be taken and for what would not fit the memory."""
+    scene, critical, count = blocks.scene, blocks.critical, blocks.partition.count
+    numerics = scene.numerics.dem
+    time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
+    parts = {
+        "numerics.dem.block": (OF_BLOCK + OF_POINT * blocks.columns.points) * count,
+        "record.interval": waveform_bytes(scene),
+        "record.fields": snapshot_bytes(scene, CORNERS * count),
+    }
+    refuse_beyond_memory(scene, parts)
+    return time, critical
+
+
+def held_blocks(
+    blocks: RigidBlocks, time: Clock, field: IncidentField
+) -> tuple[Sources, np.ndarray]:
+    """Return what acts on blocks from outside, and the resistance of quiet edges [h, 6, 3]."""
+    scene, partition = blocks.scene, blocks.partition
+    held = scene.boundaries.model_dump()
+    quiet = points_on(
+        partition,
+        partition.boundary,
+        on_sides(partition, [name for name, kind in held.items() if kind == "quiet"]),
+    )
+    impedance = impedances(scene, quiet.normal)
+    patterns = [load_pattern(scene, partition, x) for x in scene.loads if x.kind != "base"]
+    if scene.prestress is not None:
+        open_sides = [n for n in partition.sides if held.get(n, "free") in ("free", "quiet")]
+        patterns.append(reactions(partition, open_sides, scene.prestress))
+    rows = np.unique(np.concatenate([quiet.block, *(one.block for one in patterns)]))
+    waves = incoming(scene, field, quiet, impedance) if scene.waves else None
+    sources = Sources(rows, patterns, waves, time)
+    return sources, dashpots(quiet, impedance, np.searchsorted(rows, quiet.block), len(rows))

@@ -1,0 +1,110 @@
+"""Lattices that hold the joints of a scene: where their lines are, and what they refuse."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cases.errors import SceneError
+from cases.partition.lattice import further_sets
+from cases.partition.locate import contact_at
+from cases.partition.scene import partition_of
+from cases.validate import validated
+
+LAW = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
+
+
+def scene(*sets, block=1.0, poisson=0.0, size=(12.0, 10.0), **boundaries):
+    """Return a scene with these joint sets in blocks of about this size."""
+    tables = {
+        "title": "lattice",
+        "domain": {"size": list(size)},
+        "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": poisson},
+        "joint_sets": [{"name": str(k), **LAW, **one} for k, one in enumerate(sets)],
+        "boundaries": boundaries,
+        "numerics": {"dem": {"block": block}},
+        "time": {"duration": 0.01},
+        "record": {"points": [[4.0, 2.0]]},
+    }
+    return validated(tables, Path("scene.toml"), frozenset())
+
+
+def cut(own):
+    return partition_of(own, further_sets(own))
+
+
+def test_rock_without_joints_is_cut_in_squares():
+    found = cut(scene())
+    assert found.count == 120
+    assert found.area == pytest.approx(np.ones(120), rel=1e-12)
+    assert not found.contacts.of_joints(0).any()
+
+
+def test_quiet_sides_are_met_in_the_middle_of_blocks():
+    """Half blocks at the left and the right, quarter ones at corners of two quiet sides."""
+    sides = dict.fromkeys(("left", "right", "bottom"), "quiet")
+    found = cut(scene(**sides))
+    assert np.sort(found.area)[:2] == pytest.approx([0.25 * 10 / 9.5] * 2, rel=1e-12)
+    assert found.area.sum() == pytest.approx(120, rel=1e-12)
+    assert np.median(found.area) == pytest.approx(10 / 9.5, rel=1e-12)
+
+
+@pytest.mark.parametrize("dip", [0.0, 30.0, 45.0, -70.0])
+def test_a_joint_alone_lies_on_a_line_of_squares_along_it(dip):
+    """All of it, and nothing besides: its contacts are as long as the joint in the domain."""
+    own = scene({"dip": dip, "through": [6.0, 5.0]})
+    alone, found = partition_of(own), cut(own)
+    assert alone.count == 2
+    mine = found.contacts.of_joints(1)
+    assert found.contacts.length[mine].sum() == pytest.approx(alone.contacts.length[0], rel=1e-9)
+    assert np.median(found.area) == pytest.approx(1.0, rel=1e-9)
+    assert (contact_at(found, np.array([[1.0, 1.0]])) == np.flatnonzero(mine)).any()
+
+
+def test_rock_with_a_poisson_effect_is_cut_in_triangles():
+    """Equilateral ones, of height h and area h^2 / sqrt(3), off the sides."""
+    found = cut(scene({"dip": 30.0, "through": [6.0, 5.0]}, poisson=0.25))
+    assert np.median(found.area) == pytest.approx(1 / np.sqrt(3), rel=1e-9)
+    assert np.median(np.diff(found.first)) == 3
+
+
+def test_a_spacing_is_divided_by_a_whole_number():
+    """2 m in blocks of about 0.7 m: thirds; every third line is a joint."""
+    own = scene({"dip": 0.0, "spacing": 2.0}, {"dip": 90.0, "spacing": 3.0}, block=0.7)
+    spacings = [one.spacing for one in further_sets(own)]
+    assert spacings == pytest.approx([2 / 3, 3 / 4])
+    found = cut(own)
+    assert found.count == 15 * 16
+    of_set = found.contacts.joint_set
+    assert [(of_set == k).sum() for k in range(4)] == [4 * 16, 3 * 15, 10 * 16, 12 * 15]
+
+
+def test_further_cuts_where_joints_are_cut_nothing():
+    """A spacing of the blocks' own size needs no cuts, and a joint on a line of them cuts once."""
+    own = scene({"dip": 0.0, "spacing": 1.0}, {"dip": 0.0, "through": [3.0, 5.0]}, block=1.0)
+    assert [one.dip for one in further_sets(own)] == [-90.0]
+    sets = [{"dip": 0.0, "through": [3.0, 5.0]}, {"dip": 90.0, "through": [6.0, 2.0]}]
+    both = scene(*sets)
+    assert cut(both).count == 120
+
+
+def test_periodic_sides_lie_on_lines():
+    own = scene(
+        {"dip": 0.0, "through": [6.0, 5.0]}, poisson=0.25, left="periodic", right="periodic"
+    )
+    assert cut(own).count == 120
+
+
+@pytest.mark.parametrize(
+    "keys", [{"scatter": 0.2, "seed": 1}, {"ends_at": ["1"]}], ids=["scatter", "ends_at"]
+)
+def test_joints_without_a_lattice_are_refused_in_one_line(keys):
+    sets = {"dip": 0.0, "spacing": 2.0, **keys}, {"dip": 90.0, "spacing": 2.0}
+    with pytest.raises(SceneError, match=r"numerics\.dem\.block = 1\.0: cuts no rock") as caught:
+        further_sets(scene(*sets))
+    assert "\n" not in str(caught.value)
+
+
+def test_too_many_blocks_are_refused_by_their_size():
+    with pytest.raises(SceneError, match=r"numerics\.dem\.block = 1e-05: gives about"):
+        cut(scene(block=1e-5))
