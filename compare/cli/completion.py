@@ -72,7 +72,10 @@ def studies(incomplete: str) -> list[str]:
     """Return shipped studies and the files of others."""
     shipped = Path(__file__).parents[1] / "experiments" / "study" / "shipped"
     known = sorted(path.stem for path in shipped.glob("*.toml"))
-    return [*_begun([*known, "stability", "oblique-joint"], incomplete), *files(incomplete)]
+    return [
+        *_begun([*known, "stability", "oblique-joint", "parallel-joints"], incomplete),
+        *files(incomplete),
+    ]
 
 
 def _values(kind: Any) -> list[str]:

@@ -111,7 +111,7 @@ def study(
     Points that are done are saved in DIR/NAME/ and not run again. Under mpiexec the processes share
     the points; those of a timed study are run one at a time. The study `stability` puts both
     engines to hard cases, each with a criterion from theory; `oblique-joint` has what each solver
-    makes of P and SV waves at one joint, against the angle.
+    makes of P and SV waves at one joint, against the angle, and `parallel-joints` at several.
     """
     if dry:
         from compare.experiments.cost.experiment_cost import parts_of_study, show_parts
@@ -127,12 +127,14 @@ def study(
 
         def work(pool: Any, advance: Any) -> Any:
             return make_study(out, pool, progress=advance)
-    elif name == "oblique-joint":
-        from compare.experiments.scattering.summary import TITLE as title
-        from compare.experiments.scattering.summary import make_study as make_angles
+    elif name in ("oblique-joint", "parallel-joints"):
+        from compare.experiments.scattering.summary import TITLES
+        from compare.experiments.scattering.summary import make_study as make_scattering
+
+        title = TITLES[name]
 
         def work(pool: Any, advance: Any) -> Any:
-            return make_angles(out, pool, advance)
+            return make_scattering(name, out, advance)
     else:
         from compare.experiments.study.runner import run
         from compare.experiments.study.study import load

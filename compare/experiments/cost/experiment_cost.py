@@ -10,8 +10,7 @@ from compare.experiments.cost import timings
 from compare.experiments.cost.dry_run import UNKNOWN, in_words
 from compare.experiments.robustness import run as robustness
 from compare.experiments.robustness.summary import NAME as HARD_CASES
-from compare.experiments.scattering import angles
-from compare.experiments.scattering.summary import NAME as ANGLES
+from compare.experiments.scattering import points as scattering
 from compare.experiments.store import Store
 from compare.experiments.study import runner as studies
 from compare.experiments.study.measure import PointRow
@@ -38,12 +37,13 @@ def _part(part: str, store: Store, keys: Sequence[str], rate: str) -> CommandPar
 
 
 def parts_of_study(name: str, out: Path) -> list[CommandPart]:
-    """Return the curves of a study, the rows of the hard cases or the angles at a joint."""
+    """Return the curves of a study, the rows of the hard cases or the waves at joints."""
     if name == HARD_CASES:
         return [_hard_cases(out, slow=True)]
-    if name == ANGLES:
-        rows_of_angles = Store[angles.AngleRow](angles.AngleRow, out / ANGLES)
-        return [_part(ANGLES, rows_of_angles, list(map(angles.key, angles.points())), angles.RATE)]
+    if name in scattering.SOLVERS:
+        done = Store[scattering.JointsRow](scattering.JointsRow, out / name)
+        keys = list(map(scattering.key, scattering.points(name)))
+        return [_part(name, done, keys, scattering.RATE)]
     study, stem = load(name), Path(name).stem
     rows, parts = Store[PointRow](PointRow, out / stem), []
     for curve in study.curves:

@@ -1,8 +1,8 @@
-"""The amplitudes of the plane waves in front of and behind a joint, from the motion at points.
+"""The amplitudes of the plane waves in front of and behind joints, from the motion at points.
 
 At one frequency the motion of each half-space is the sum of plane waves of one slowness p along the
-joint (`compare.exact.plane.waves`): in front of it the incident wave and both reflected ones,
-behind it both transmitted ones. With factor e^{-i omega t} and the place (x, z) from the joint,
+joints (`compare.exact.plane.waves`): in front of them the incident wave and both reflected ones,
+behind them both transmitted ones. With factor e^{-i omega t} and the place (x, z) from the joints,
 
     V(x, z) = sum of A g e^{i omega (p x +- q z)},   V = int v e^{i omega t} dt
 
@@ -43,10 +43,10 @@ def scattered(
     interval: float,
     omega: float,
 ) -> Scattered:
-    """Return what a joint through the origin makes of a wave.
+    """Return what joints about the origin make of a wave.
 
-    axes : of the joint for this wave. places : [m, 2], m, on both sides. velocity : [m, n, (x, y)],
-    m/s, every `interval` (s). omega : rad/s.
+    axes : of the joints for this wave. places : [m, 2], m, on both sides. velocity :
+    [m, n, (x, y)], m/s, every `interval` (s). omega : rad/s.
     """
     n = velocity.shape[1]
     spectrum = np.exp(1j * omega * interval * np.arange(n)) @ velocity * interval

@@ -1,4 +1,4 @@
-"""The summary of reflection and transmission against the angle: table, findings, files."""
+"""The summary of what joints reflect and pass: table, findings, files."""
 
 from __future__ import annotations
 
@@ -8,40 +8,43 @@ from pathlib import Path
 
 from compare.engines import Progress, solver
 from compare.experiments.cost.machine import machine
-from compare.experiments.pool import Pool
-from compare.experiments.scattering.angles import AngleRow, run
 from compare.experiments.scattering.diagram import draw
+from compare.experiments.scattering.points import JointsRow, run
 from compare.experiments.summary import Summary
 from compare.experiments.tables import frame, grouped, number, write_tables
 from compare.figures.export import save
 from compare.report.tables import Table, percent
 
-NAME = "oblique-joint"
-TITLE = "Reflection and transmission at one joint against the angle"
+TITLES = {
+    "oblique-joint": "Reflection and transmission at one joint against the angle",
+    "parallel-joints": "Reflection and transmission of parallel joints at 30 degrees",
+}
 NOTE = (
     "Moduli of particle velocity over the incident one, at the peak frequency of the pulse, where "
-    "K_n = Z_p omega and K_s = Z_s omega. A joint of 12 m in rock of 9.6 m and 5.5 m long P and S "
-    "waves; the joint's exact field enters through all sides."
+    "K_n = Z_p omega and K_s = Z_s omega; P and S waves are 9.6 m and 5.5 m long, and several "
+    "joints a tenth of the former apart. The exact field of the joints enters through all sides."
 )
 LEGEND = (
     "Off: the largest difference from the closed form. Residual: of the motion, what no plane "
     "waves of the rock make up. CPU: of a run, its set-up included, without compiling."
 )
-COLUMNS = ["angle", "R_p", "R_s", "T_p", "T_s", "off", "residual, %", "freedoms", "CPU, s"]
+COLUMNS = ["R_p", "R_s", "T_p", "T_s", "off", "residual, %", "freedoms", "CPU, s"]
 
 
-def make_study(out: Path, pool: Pool | None = None, progress: Progress | None = None) -> Summary:
-    """Run the study; write its table and figure into `out`, its points into OUT/oblique-joint/."""
-    rows = run(out / NAME, pool, progress)
-    table = frame(rows, AngleRow)
-    data = table.rename_axis("row").to_xarray().assign_attrs(title=TITLE, **machine())
-    figure = save(draw(rows), out, NAME, TITLE)
-    files = [*write_tables(out, NAME, table, data), *figure.drawings]
+def make_study(name: str, out: Path, progress: Progress | None = None) -> Summary:
+    """Run a study of TITLES; write its table and figure into `out`, its points into OUT/NAME/."""
+    rows, title = run(name, out / name, progress), TITLES[name]
+    table = frame(rows, JointsRow)
+    data = table.rename_axis("row").to_xarray().assign_attrs(title=title, **machine())
+    figure = save(draw(name, rows), out, name, title)
+    files = [*write_tables(out, name, table, data), *figure.drawings]
     said = sentences(rows)
+    first = "angle" if name == "oblique-joint" else "joints"
+    cells = ((heading(row), cells_of(row, first)) for row in rows if _is_done(row))
     return Summary(
-        NAME,
-        TITLE,
-        Table(COLUMNS, grouped((heading(row), cells(row)) for row in rows if _is_done(row))),
+        name,
+        title,
+        Table([first, *COLUMNS], grouped(cells)),
         said,
         failures(rows),
         files,
@@ -53,16 +56,16 @@ def make_study(out: Path, pool: Pool | None = None, progress: Progress | None = 
     )
 
 
-def heading(row: AngleRow) -> str:
+def heading(row: JointsRow) -> str:
     """Return what the row of a table stands under."""
     return f"{solver(row.solver).words.english}: {row.incidence} wave"
 
 
-def cells(row: AngleRow) -> list[str]:
-    """Return a row as text, under `COLUMNS`."""
+def cells_of(row: JointsRow, first: str) -> list[str]:
+    """Return a row as text, under `COLUMNS`; first : the column before them."""
     moduli = (row.R_p, row.R_s, row.T_p, row.T_s)
     return [
-        f"{row.angle:g}",
+        f"{getattr(row, first):g}",
         *(number(x, ".4f") for x in moduli),
         number(row.error, ".1e"),
         number(100 * row.residual, ".2g"),
@@ -71,9 +74,9 @@ def cells(row: AngleRow) -> list[str]:
     ]
 
 
-def sentences(rows: list[AngleRow]) -> list[str]:
-    """Return the findings: of each solver and kind of wave the angle at which it is furthest off,
-    and what all its angles cost."""
+def sentences(rows: list[JointsRow]) -> list[str]:
+    """Return the findings: of each solver and kind of wave where it is furthest off, and what all
+    its runs cost."""
     found = []
     done = [row for row in rows if _is_done(row)]
     for _, group in groupby(done, key=lambda row: (row.solver, row.incidence)):
@@ -81,24 +84,28 @@ def sentences(rows: list[AngleRow]) -> list[str]:
         worst = max(some, key=lambda row: row.error)
         cpu = sum(row.cpu for row in some if isfinite(row.cpu))
         found.append(
-            f"{heading(worst)}: off by at most {percent(worst.error)} % of the incident wave, at "
-            f"{worst.angle:g} degrees; {len(some)} angles take {cpu:.2g} s of processors."
+            f"{heading(worst)}: off by at most {percent(worst.error)} % of the incident wave, "
+            f"{_where(worst)}; {len(some)} runs take {cpu:.2g} s of processors."
         )
     return found
 
 
-def failures(rows: list[AngleRow]) -> list[str]:
+def failures(rows: list[JointsRow]) -> list[str]:
     """Return a line for each solver and reason for which it could not be run."""
-    failed: dict[tuple[str, str], list[str]] = {}
+    failed: dict[tuple[str, str], list[JointsRow]] = {}
     for row in rows:
         if not _is_done(row):
-            place = f"{row.incidence} at {row.angle:g} degrees"
-            failed.setdefault((row.solver, row.message), []).append(place)
+            failed.setdefault((row.solver, row.message), []).append(row)
     return [
-        f"{name}, {len(places)} angles from {places[0]} on: {why}"
-        for (name, why), places in failed.items()
+        f"{name}, {len(some)} runs from {some[0].incidence} {_where(some[0])} on: {why}"
+        for (name, why), some in failed.items()
     ]
 
 
-def _is_done(row: AngleRow) -> bool:
+def _where(row: JointsRow) -> str:
+    joints = "one joint" if row.joints == 1 else f"{row.joints} joints"
+    return f"at {row.angle:g} degrees and {joints}"
+
+
+def _is_done(row: JointsRow) -> bool:
     return row.state == "done"

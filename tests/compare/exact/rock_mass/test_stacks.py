@@ -144,6 +144,33 @@ def test_displacement_is_the_integral_of_velocity_and_springs_hold(rock_mass, wa
         assert rms(off[0]) <= bound[0] < 1e-8 * np.abs(found[name]).max()
 
 
+@pytest.mark.parametrize("zeta", [0.0, 0.05])
+def test_energy_flows_through_and_dashpots_take_their_part(rock_mass, joint, wave, zeta):
+    """The work that a pulse carries across lines along the joint, int -n.sigma.v dt per metre, is
+    the same on both sides, less int eta K (rate)^2 dt of the joint's normal and shear dashpots;
+    rates by differences of fourth order."""
+    damped = joint(damping_ratio=zeta) if zeta else joint()
+    h, s, c = 2e-5, np.sin(np.radians(25)), np.cos(np.radians(25))
+    scene = rock_mass(
+        joint_sets=[damped],
+        waves=[wave(**OBLIQUE)],
+        record={"interval": h},
+        time={"duration": 0.04},
+    )
+    found, n = solve("oblique-joint", scene), np.array([-s, c])
+    xx, yy, xy = np.moveaxis(found.stress.values, 2, 0)
+    pressed = np.stack([xx * n[0] + xy * n[1], xy * n[0] + yy * n[1]], axis=2)
+    before, behind = (pressed * found.velocity.values).sum(axis=(1, 2)) * h
+    lost, extent = 0.0, 40 * s + 30 * c
+    eta = 2 * zeta * np.sqrt(2500 * extent / 2 / 1e10)
+    for name, K in (("gap", 1e10), ("slip", 4e9)):
+        x = found[name].values[0]
+        rate = (8 * (x[3:-1] - x[1:-3]) - (x[4:] - x[:-4])) / (12 * h)
+        lost += eta * K * (rate**2).sum() * h
+    assert before - behind == pytest.approx(lost, abs=1e-6 * before)
+    assert (lost > 0.01 * before) == bool(zeta)
+
+
 def test_a_turned_scene_has_turned_results(rock_mass, joint, wave):
     """A quarter turn to the left about the origin takes (x, y) to (-y, x)."""
     records = {"points": [[18.0, 4.0]], "joints": [[20.0, 15.0]]}

@@ -1,0 +1,39 @@
+"""What the dashpots of quiet sides are worth: rho a and rho b of the waves along their normals.
+
+The speeds are those of the intact rock where `numerics.dem.block` cuts it, since a lattice has them
+at its sides, else those of the effective medium of the joint sets.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cases.material.effective_medium import joint_set, speeds, stiffness
+from cases.material.rock import elastic_rock
+from cases.partition.joints import direction_of
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
+
+
+def impedances(scene: RockMass, normals: np.ndarray) -> np.ndarray:
+    """Return rho a and rho b of the dashpots of sides of outward normals [m, 2]: [m, 2], Pa s/m."""
+    rock, density = elastic_rock(scene.rock), scene.rock.density
+    spaced = [one for one in scene.joint_sets if one.spacing]
+    if scene.numerics.dem.block is not None or not spaced:
+        return np.tile([rock.p_impedance, rock.s_impedance], (len(normals), 1))
+    sets = [
+        joint_set(
+            direction_of(one.dip)[::-1] * [-1, 1],
+            one.spacing or 0.0,
+            one.normal_stiffness or 0.0,
+            one.shear_stiffness or 0.0,
+        )
+        for one in spaced
+    ]
+    found, shapes = speeds(stiffness(rock, sets), density, normals)
+    longitudinal = np.abs((shapes * normals[:, :, None]).sum(axis=1)).argmax(axis=1)
+    at = np.arange(len(normals))
+    return density * np.stack([found[at, longitudinal], found[at, 1 - longitudinal]], axis=1)

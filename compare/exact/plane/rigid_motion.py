@@ -1,0 +1,154 @@
+"""Rigid blocks with linear contacts and dashpots in the plane, exactly in time.
+
+    M u'' + C u' + K u = F(t),   freedoms (u, v, phi) of one block after the other,
+
+K from the relative motion at the points of each contact, C from dashpots at two Gauss points of
+each edge. F is a cubic between its
+samples, so that on each of its pieces the motion is an entire function of time: its Taylor series
+to the order ORDER, over steps of at most STEP / omega, omega a bound of the highest frequency, is
+below round-off off (Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, 1993,
+I.8). What is left is what cubics are off from F.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from cases.material.contact_points import points_of
+from cases.material.rigid_step import jump
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+    from cases.material.contact_points import ContactPoints
+    from cases.material.rock_mass import Stiffness
+    from cases.partition.blocks import Contacts
+
+ORDER = 24
+STEP = 2.0
+
+
+class RigidSystem(NamedTuple):
+    """Masses [3 N] (kg, kg m2), stiffness and viscosity [3 N, 3 N], each per m of thickness."""
+
+    masses: np.ndarray
+    stiffness: csr_array
+    viscosity: csr_array
+
+    @property
+    def highest(self) -> float:
+        """A bound of the highest frequency and of the fastest decay, rad/s: Gershgorin's discs of
+        the matrices over the roots of the masses."""
+        root = 1 / np.sqrt(self.masses)
+        sums = [
+            float((abs(x).multiply(root[:, None]).multiply(root)).sum(axis=1).max())
+            for x in (self.stiffness, self.viscosity)
+        ]
+        return sums[0] ** 0.5 + sums[1]
+
+
+class Points(NamedTuple):
+    """Points of edges: block [p], arm from its centroid [p, 2] (m), place [p, 2] (m), unit normal
+    [p, 2], length that each stands for [p] (m)."""
+
+    block: np.ndarray
+    arm: np.ndarray
+    place: np.ndarray
+    normal: np.ndarray
+    length: np.ndarray
+
+
+def points_on(
+    centroid: np.ndarray, block: np.ndarray, start: np.ndarray, end: np.ndarray, normal: np.ndarray
+) -> Points:
+    """Return two Gauss points on each edge [e] of a block."""
+    x, w = points_of("gauss", 2)
+    edge = np.repeat(np.arange(len(block)), 2)
+    share = np.tile(x, len(block))[:, None]
+    place = start[edge] * (1 - share) + end[edge] * share
+    length = np.hypot(*(end - start).T)[edge] * np.tile(w, len(block))
+    own = block[edge]
+    return Points(own, place - centroid[own], place, normal[edge], length)
+
+
+def stiffness_of(
+    count: int, contacts: Contacts, points: ContactPoints, stiffness: Stiffness
+) -> csr_array:
+    """Return K of contacts of `count` blocks, from the relative motion at their points."""
+    blocks, normal = contacts.blocks[points.contact], contacts.normal[points.contact]
+    total = 0
+    for axis, k in ((normal, stiffness.normal), (_left(normal), stiffness.shear)):
+        i, j = (jump(axis, points.arm[:, side]) for side in (0, 1))
+        rows = np.concatenate([-i, j], axis=1)
+        total = total + _assembled(rows, blocks, k[points.contact] * points.length, count)
+    return total
+
+
+def viscosity_of(points: Points, impedance: np.ndarray, count: int) -> csr_array:
+    """Return C of dashpots along the normal and across it, impedance [p, 2], Pa s/m."""
+    total = 0
+    for axis, Z in ((points.normal, impedance[:, 0]), (_left(points.normal), impedance[:, 1])):
+        rows = jump(axis, points.arm)
+        total = total + _assembled(rows, points.block[:, None], Z * points.length, count)
+    return total
+
+
+def forces_of(points: Points, tractions: np.ndarray, count: int) -> np.ndarray:
+    """Return F [n, 3 count] of tractions [n, p, 2], Pa."""
+    force = tractions * points.length[:, None]
+    moment = points.arm[:, 0] * force[..., 1] - points.arm[:, 1] * force[..., 0]
+    each = np.concatenate([force, moment[..., None]], axis=-1)
+    total = np.zeros((count, len(tractions), 3))
+    np.add.at(total, points.block, np.moveaxis(each, 1, 0))
+    return np.moveaxis(total, 0, 1).reshape(len(tractions), -1)
+
+
+def motion(
+    system: RigidSystem, forces: np.ndarray, interval: float, stride: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return displacements and velocities [n, 3 N] from rest at every `stride`-th sample of the
+    forces [k, 3 N], which are `interval` (s) apart."""
+    from scipy.interpolate import CubicSpline
+
+    pieces = CubicSpline(interval * np.arange(len(forces)), forces).c[::-1]
+    parts = int(np.ceil(interval * system.highest / STEP))
+    h, K, C = interval / parts, system.stiffness, system.viscosity
+    u, v = np.zeros((2, len(system.masses)))
+    found = [(u, v)]
+    for n in range(len(forces) - 1):
+        for part in range(parts):
+            polynomial = _shifted(pieces[:, n], part * h) * (h ** np.arange(4))[:, None]
+            term_u, term_v = u, v
+            u, v = u.copy(), v.copy()
+            for k in range(ORDER):
+                force = polynomial[k] if k < len(polynomial) else 0.0
+                rate = (force - K @ term_u - C @ term_v) / system.masses
+                term_u, term_v = h / (k + 1) * term_v, h / (k + 1) * rate
+                u += term_u
+                v += term_v
+        if (n + 1) % stride == 0:
+            found.append((u, v))
+    displacement, velocity = (np.array(x) for x in zip(*found, strict=True))
+    return displacement, velocity
+
+
+def _shifted(coefficients: np.ndarray, s: float) -> np.ndarray:
+    """Return the coefficients [4, m], lowest first, of a cubic about s."""
+    a, b, c, d = coefficients
+    return np.array([a + s * (b + s * (c + s * d)), b + s * (2 * c + 3 * s * d), c + 3 * s * d, d])
+
+
+def _assembled(rows: np.ndarray, blocks: np.ndarray, weights: np.ndarray, count: int) -> csr_array:
+    """Return the sum of weight row^T row over points, of the freedoms of blocks [p, b]."""
+    from scipy.sparse import csr_array
+
+    column = (3 * blocks[:, :, None] + np.arange(3)).reshape(len(rows), -1)
+    place = np.repeat(np.arange(len(rows)), column.shape[1])
+    B = csr_array((rows.ravel(), (place, column.ravel())), shape=(len(rows), 3 * count))
+    return csr_array(B.T @ B.multiply(weights[:, None]))
+
+
+def _left(normal: np.ndarray) -> np.ndarray:
+    return np.stack([-normal[:, 1], normal[:, 0]], axis=1)

@@ -1,0 +1,204 @@
+"""Joints under P and SV waves, by every solver: what they reflect and pass, and what runs cost.
+
+Joints lie level and the wave is turned, so that all angles have the same blocks and elements. The
+joints' exact field enters through all sides; what is wrong is the solver's own.
+"""
+
+from __future__ import annotations
+
+from math import nan
+from pathlib import Path
+from time import process_time
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from cases.material.rock import elastic_rock
+from cases.read import load
+from compare.engines import Progress, applies, solve
+from compare.exact.plane import parallel_joints
+from compare.exact.plane.oblique_joint import Coefficients, Joint
+from compare.exact.plane.pulse import Pulse, axes_of
+from compare.exact.plane.waves import KINDS, Kind
+from compare.experiments import store
+from compare.experiments.failures import FAILURES, reason_of
+from compare.experiments.pool import alone
+from compare.experiments.scattering.extraction import Scattered, scattered
+from compare.experiments.store import Store
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from cases.material.rock import Values
+    from cases.schema.rock_mass import RockMass
+
+SCENE = Path(__file__).parent / "joints.toml"
+ANGLES = (0.0, 15.0, 30.0, 45.0, 60.0, 75.0)  # degrees from the joints' normal
+COUNTS, AT = (2, 3, 5), 30.0  # of parallel joints, at this angle, degrees
+SPACING = 0.960768922830523  # m, a tenth of the P wave's length
+BACK = 6.0  # m that SV waves begin before the domain, ahead of which they make P waves
+COMPILED = 0.05  # s of compiling, above which a run is made once more to be timed
+RINGS = 0.012  # s that a record lasts longer for each further joint: waves between them
+RATE = "wave at joints"  # what the seconds of points are remembered by
+
+
+class JointsPoint(NamedTuple):
+    """A solver, a kind of wave, "P" or "SV", its angle from the joints' normal (degrees) and how
+    many joints there are."""
+
+    solver: str
+    incidence: str
+    angle: float
+    joints: int
+
+
+class JointsRow(NamedTuple):
+    """What a solver makes of a wave at joints; nan where it does not apply.
+
+    R_p to T_s : moduli of particle velocity over the incident one at the pulse's frequency, and
+    exact_R_p to exact_T_s in closed form. error : the largest difference. residual : of the
+    motion, what no plane waves make up. freedoms : of the blocks or the rock. cpu : of the run,
+    its set-up included but no compiling, s of processors. state : "done" or "failed", for what
+    reason.
+    """
+
+    solver: str
+    incidence: str
+    angle: float
+    joints: int
+    state: str
+    message: str
+    R_p: float
+    R_s: float
+    T_p: float
+    T_s: float
+    exact_R_p: float
+    exact_R_s: float
+    exact_T_p: float
+    exact_T_s: float
+    error: float
+    residual: float
+    freedoms: float
+    cpu: float
+
+
+#: The solvers of each study.
+SOLVERS = {
+    "oblique-joint": ("oblique-joint", "continuum-jointed", "dem"),
+    "parallel-joints": ("parallel-joints", "continuum-jointed", "dem"),
+}
+
+
+def points(study: str) -> list[JointsPoint]:
+    """Return the points of a study, solver by solver: one joint at all angles, or many at one."""
+    one = study == "oblique-joint"
+    places = [(x, 1) for x in ANGLES] if one else [(AT, count) for count in COUNTS]
+    return [
+        JointsPoint(name, kind, *p) for name in SOLVERS[study] for kind in KINDS for p in places
+    ]
+
+
+def run(study: str, folder: Path | None, progress: Progress | None = None) -> list[JointsRow]:
+    """Return the rows of all points, in order, one at a time since their seconds count; they are
+    saved in `folder`."""
+    rows: Store[JointsRow] = Store(JointsRow, folder)
+    with alone():
+        return rows.compute(points(study), key, measure, None, progress, RATE)
+
+
+def key(point: JointsPoint) -> str:
+    """Return what tells points apart: everything that decides a row."""
+    return store.key(point._asdict(), SCENE.read_text(encoding="utf-8"))
+
+
+def scene_of(
+    incidence: str, angle: float, joints: int = 1, changes: dict[str, Any] | None = None
+) -> RockMass:
+    """Return the scene of a wave at an angle (degrees), towards x from y, and so many joints about
+    the middle, with dotted keys changed."""
+    turned = np.radians(angle)
+    direction = [float(np.sin(turned)), float(np.cos(turned))]
+    keys: dict[str, Any] = {"waves.0.direction": direction}
+    if incidence == "SV":
+        keys |= {"waves.0.kind": "S", "waves.0.through": [-BACK * x for x in direction]}
+    single = load(SCENE, keys)[0]
+    (one,) = single.model_dump(exclude_none=True)["joint_sets"]
+    keys["time.duration"] = single.time.duration + RINGS * (joints - 1)
+    x, y = one["through"]
+    depths = y + SPACING * (np.arange(joints) - (joints - 1) / 2)
+    keys["joint_sets"] = [
+        one | {"name": f"joint {k}", "through": [x, float(depth)]} for k, depth in enumerate(depths)
+    ]
+    return load(SCENE, keys | (changes or {}))[0]  # type: ignore[return-value]
+
+
+def measure(point: JointsPoint) -> JointsRow:
+    """Run a point and return its row; what cannot be run is a row that says why."""
+    scene = scene_of(point.incidence, point.angle, point.joints)
+    exact = closed_form(scene)
+    try:
+        answer = applies(point.solver, scene)
+        if not answer:
+            return _row(point, "failed", answer.reason, exact)
+        result, cpu = _timed(point.solver, scene)
+        if float(result.attrs.get("seconds_compile", 0.0)) > COMPILED:
+            result, cpu = _timed(point.solver, scene)
+    except FAILURES as error:
+        return _row(point, "failed", reason_of(error), exact)
+    found = amplitudes(scene, result.velocity.values)
+    freedoms = float(result.attrs.get("degrees_of_freedom", nan))
+    return _row(point, "done", "", exact, found, freedoms, cpu)
+
+
+def _timed(name: str, scene: RockMass) -> tuple[xr.Dataset, float]:
+    """Return the result of a solver and the seconds of processors that it took."""
+    began = process_time()
+    result = solve(name, scene)
+    return result, process_time() - began
+
+
+def amplitudes(scene: RockMass, velocity: np.ndarray) -> Scattered:
+    """Return what the motion at the points of such a scene [m, n, (x, y)] (m/s) says of its joints,
+    at the frequency of its pulse."""
+    wave, rock = scene.waves[0], elastic_rock(scene.rock)
+    assert wave.period is not None
+    pulse = Pulse(_kind(scene), np.array(wave.direction), np.zeros(1))
+    axes = axes_of(rock, pulse, np.radians(scene.joint_sets[0].dip))
+    middle = np.mean([one.through or [0.0, 0.0] for one in scene.joint_sets], axis=0)
+    places, omega = np.array(scene.record.points) - middle, 2 * np.pi / wave.period
+    return scattered(rock, axes, places, velocity, scene.interval, omega)
+
+
+def closed_form(scene: RockMass, angle: Values | None = None) -> Coefficients:
+    """Return the moduli of such a scene in closed form; angle : of travel from the joints' normal,
+    rad, or an array of them, None: that of its wave."""
+    wave, rock = scene.waves[0], elastic_rock(scene.rock)
+    assert wave.period is not None
+    dip = np.radians(scene.joint_sets[0].dip)
+    if angle is None:
+        normal = np.array([-np.sin(dip), np.cos(dip)])
+        angle = np.arccos(np.clip(abs(np.array(wave.direction) @ normal), 0, 1))
+    joints = [Joint(one.normal_stiffness, one.shear_stiffness) for one in scene.joint_sets]  # type: ignore[arg-type]
+    spacings, omega = np.full(len(joints) - 1, SPACING), 2 * np.pi / wave.period
+    found = parallel_joints.coefficients(_kind(scene), angle, omega, rock, joints, spacings)
+    return Coefficients(*(np.abs(x) for x in found))
+
+
+def _kind(scene: RockMass) -> Kind:
+    return "P" if scene.waves[0].kind == "P" else "SV"
+
+
+def _row(
+    point: JointsPoint,
+    state: str,
+    message: str,
+    exact: Coefficients,
+    found: Scattered | None = None,
+    freedoms: float = nan,
+    cpu: float = nan,
+) -> JointsRow:
+    values = [nan] * 4 if found is None else [*found[:4]]
+    off = max(abs(a - float(b)) for a, b in zip(values, exact, strict=True))
+    residual = nan if found is None else found.residual
+    numbers = *values, *map(float, exact), off, residual, freedoms, cpu
+    return JointsRow(*point, state, message, *numbers)
