@@ -20,7 +20,11 @@ def energy(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     ledgers = ledgers_of(comparisons)
     if not any(x.any() for ledger in ledgers for x in ledger.terms.values()):
         return []
-    unit = unit_for("J", max(np.abs(x).max() for ledger in ledgers for x in ledger.terms.values()))
+    plane = comparisons[0].scene.kind == "rock mass"
+    unit = unit_for(
+        "J/m" if plane else "J",
+        max(np.abs(x).max() for ledger in ledgers for x in ledger.terms.values()),
+    )
     title, chart = "Energy over time", _chart(ledgers, unit)
     return [chart_figure(f"{name}-energy", title, _caption(ledgers), chart, table(ledgers))]
 

@@ -1,11 +1,16 @@
 """Frequencies that a scene is known by: of its load, pillar, blocks and joints."""
 
+from __future__ import annotations
+
 from math import cos, isfinite, pi, sin
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
 from compare.figures.subplots import Panel
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 
 class Mark(NamedTuple):
@@ -18,9 +23,12 @@ class Mark(NamedTuple):
 
 def marks_of(panel: Panel) -> list[Mark]:
     """Return the marks of a panel's scene for the waves along it or, where blocks do not turn,
-    across it; in order of frequency. None but the load's for other motion, which disperses."""
+    across it; in order of frequency. None but the load's for other motion, which disperses, and of
+    a rock mass."""
     scene = panel.comparison.scene
-    found = _of_load(scene)
+    found = _of_loads(scene)
+    if not isinstance(scene, Scene):
+        return sorted(found, key=lambda mark: mark.frequency)
     p = calibrate(scene)
     if panel.component is None or (panel.quantity == "velocity" and panel.component == 1):
         found += _of_waves(scene, p, p.bar_speed) + _of_layers(p) + _of_joints(p)
@@ -29,9 +37,9 @@ def marks_of(panel: Panel) -> list[Mark]:
     return sorted(found, key=lambda mark: mark.frequency)
 
 
-def _of_load(scene: Scene) -> list[Mark]:
-    period = scene.load.period
-    return [Mark("load", 1 / period, "1/T of the load")] if period else []
+def _of_loads(scene: AnyScene) -> list[Mark]:
+    periods = {one.period for one in scene.pulses if one.period}
+    return [Mark("load", 1 / period, "1/T of the load") for period in periods]
 
 
 def _of_waves(scene: Scene, p: Properties, speed: float) -> list[Mark]:

@@ -1,53 +1,73 @@
-"""The scene as a textbook draws it: the pillar from the side, its section, its load over time."""
+"""The scene as a textbook draws it: a pillar from the side, its section, its load over time; a rock
+mass as it is."""
 
+from collections.abc import Callable
 from itertools import pairwise
+from typing import Any
 
 import matplotlib
-import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from cases.loads import load_history
 from cases.schema.scene import Scene
 from compare.figures.drawing import section, side
 from compare.figures.drawing.placement import HEIGHT, WIDTH
-from compare.figures.drawing.symbols import LOAD
+from compare.figures.drawing.pulses import draw_pulse
+from compare.figures.drawing.words import law_words
 from compare.figures.figure import SceneFigure
 from compare.figures.style import RC
 from compare.figures.subplots import variant_names
-from compare.figures.units import unit_for
 from compare.misfit.pairs import Comparison
 
-SAMPLES = 400  # of the load
 MOST = 4  # drawings of one scene
-UNITS = {"stress": "Pa", "velocity": "m/s", "acceleration": "m/s²"}
 GAP, LOAD_WIDTH = 0.45, 1.75  # inches before and of the load over time
 HEADING = 0.22  # inches of a heading
+TITLE = "The scene"
 SEEN = ("pillar", "soft_layers", "load", "ends", "gravity", "prestress", "record", "motion")
 
 
 def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
     """Return the picture of a scene; variants that look alike share a drawing."""
-    groups = _groups(comparisons)
+    if not isinstance(comparisons[0].scene, Scene):
+        return _of_rock_mass(name, comparisons)
+    groups = _groups(comparisons, _appearance)
     return SceneFigure(
         f"{name}-scene",
-        "The scene",
+        TITLE,
         _caption(groups),
         _figure(groups),
         pd.concat([_table(scene, words) for words, scene in groups], ignore_index=True),
     )
 
 
-def _groups(comparisons: list[Comparison]) -> list[tuple[str, Scene]]:
+def _of_rock_mass(name: str, comparisons: list[Comparison]) -> SceneFigure:
+    from compare.figures.drawing import rock_mass  # with shapely, which no pillar needs
+
+    groups = [rock_mass.drawn(*one) for one in _groups(comparisons, rock_mass.appearance)]
+    return SceneFigure(
+        f"{name}-scene",
+        TITLE,
+        rock_mass.caption(groups[0].scene),
+        rock_mass.figure_of(groups),
+        pd.concat([rock_mass.table(one) for one in groups], ignore_index=True),
+    )
+
+
+def _groups(
+    comparisons: list[Comparison], appearance: Callable[[Any], str]
+) -> list[tuple[str, Any]]:
     """Return names of variants and their scene, one entry for each that looks different."""
-    seen: dict[str, tuple[list[str], Scene]] = {}
+    seen: dict[str, tuple[list[str], Any]] = {}
     for words, comparison in zip(variant_names(comparisons), comparisons, strict=True):
         scene = comparison.scene
-        appearance = str([getattr(scene, key) for key in SEEN] + [scene.joints.contact_points])
-        seen.setdefault(appearance, ([], scene))[0].append(words)
+        seen.setdefault(appearance(scene), ([], scene))[0].append(words)
     return [(", ".join(names), scene) for names, scene in list(seen.values())[:MOST]]
+
+
+def _appearance(scene: Scene) -> str:
+    return str([getattr(scene, key) for key in SEEN] + [scene.joints.contact_points])
 
 
 def _caption(groups: list[tuple[str, Scene]]) -> str:
@@ -57,15 +77,7 @@ def _caption(groups: list[tuple[str, Scene]]) -> str:
         speeds = f"waves of {rock.p_speed:g} and {rock.s_speed:g} m/s"
     else:
         speeds = f"a modulus of {(rock.equivalent_modulus or 0) / 1e9:.3g} GPa"
-    law = [
-        f"damping ratio {joints.damping_ratio:g}" if joints.damping_ratio else "",
-        "no tension" if joints.tension is False else "",
-        f"friction {joints.friction_angle:g}°" if joints.friction_angle is not None else "",
-        f"tensile strength {joints.tensile_strength / 1e6:g} MPa"
-        if joints.tensile_strength
-        else "",
-    ]
-    words = ", ".join(part for part in law if part) or "elastic"
+    words = law_words(joints) or "elastic"
     return (
         f"Drawn from the scene: rock mass of {rock.density:g} kg/m³ with {speeds}; "
         f"joints: {words}. Triangles: sections whose stress is recorded; circles: points whose "
@@ -104,34 +116,12 @@ def _draw_row(figure: Figure, scene: Scene, above: Scene | None, bottom: float) 
         section.draw_section(axes(WIDTH, section.WIDTH), scene)
     if scene.load.amplitude and (above is None or _history(scene) != _history(above)):
         left = WIDTH + section.WIDTH + GAP
-        _draw_history(axes(left, LOAD_WIDTH - 0.18, 0.45, 1.4), scene)
+        draw_pulse(axes(left, LOAD_WIDTH - 0.18, 0.45, 1.4), scene.load, scene.time.duration)
 
 
 def _history(scene: Scene) -> dict[str, object]:
     """Return what decides the load over time."""
     return scene.load.model_dump(exclude={"direction", "at", "arm"})
-
-
-def _draw_history(ax: Axes, scene: Scene) -> None:
-    """Draw the load over time, to a little after its end."""
-    time, values = load_curve(scene)
-    unit = unit_for(UNITS[scene.load.quantity], 1.001 * float(np.abs(values).max()))
-    ax.axhline(0, color="#bbbbbb", linewidth=0.6)
-    ax.plot(1e3 * time, values / unit.size, color=LOAD, linewidth=1.3)
-    ax.set_xlabel("time (ms)", labelpad=1)
-    ax.set_title(f"load, {scene.load.shape} ({unit.name})", pad=4)
-    ax.margins(x=0)
-
-
-def load_curve(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return times (s) and the load at them, SI, from its start to a little after its end."""
-    history, duration = load_history(scene), scene.time.duration
-    last = max(history.breaks) if len(history.breaks) > 1 else 0.0
-    if scene.load.shape == "ricker" and scene.load.period:
-        last = 3 * scene.load.period
-    end = min(duration, 1.25 * last) if last else duration
-    time = np.linspace(0, end, SAMPLES)
-    return time, scene.load.scale * np.asarray(history.value(time))
 
 
 def _table(scene: Scene, variant: str) -> pd.DataFrame:

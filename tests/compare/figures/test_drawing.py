@@ -12,7 +12,8 @@ from matplotlib.patches import FancyArrowPatch, Rectangle
 import cases
 from compare.figures.drawing.labels import _apart
 from compare.figures.drawing.placement import THICK, WIDTH, placement
-from compare.figures.drawing.scene import load_curve, scene_figure
+from compare.figures.drawing.pulses import pulse_curve
+from compare.figures.drawing.scene import scene_figure
 from compare.figures.drawing.section import draw_section
 from compare.figures.drawing.side import MOST, draw_strip
 from compare.misfit.pairs import Comparison
@@ -183,12 +184,13 @@ def test_no_labels_where_there_is_no_room_for_them(pillar):
 
 
 def test_load_is_drawn_from_its_history(pillar):
-    time, values = load_curve(pillar())
+    time, values = pulse_curve(pillar().load, pillar().time.duration)
     assert time[-1] == pytest.approx(0.0125)
     assert values.max() == pytest.approx(1e6, rel=1e-4) and values.min() == pytest.approx(
         -1e6, rel=1e-4
     )
-    _, step = load_curve(pillar(load={"shape": "step", "amplitude": 2e5}))
+    step_load = pillar(load={"shape": "step", "amplitude": 2e5}).load
+    _, step = pulse_curve(step_load, 0.12)
     assert (step[1:] == 2e5).all()
 
 

@@ -1,0 +1,44 @@
+"""Loads and waves over time, as they stand beside the drawing of a scene."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from cases.loads import history_of
+from compare.figures.drawing.symbols import LOAD
+from compare.figures.units import unit_for
+
+if TYPE_CHECKING:
+    from cases.schema.pulse import Pulse
+
+SAMPLES = 400
+UNITS = {"stress": "Pa", "force": "N/m", "velocity": "m/s", "acceleration": "m/s²"}
+
+
+def draw_pulse(ax: Axes, pulse: Pulse, duration: float, words: str = "load") -> None:
+    """Draw a load or wave over time, to a little after its end; words : what it is."""
+    time, values = pulse_curve(pulse, duration)
+    unit = unit_for(UNITS[pulse.quantity], 1.001 * float(np.abs(values).max()))
+    ax.axhline(0, color="#bbbbbb", linewidth=0.6)
+    ax.plot(1e3 * time, values / unit.size, color=LOAD, linewidth=1.3)
+    ax.set_xlabel("time (ms)", labelpad=1)
+    ax.set_title(f"{words}, {pulse.shape} ({unit.name})", pad=4)
+    ax.margins(x=0)
+
+
+def pulse_curve(pulse: Pulse, duration: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return times (s) and a load or wave at them, SI, from its start to a little after its end.
+
+    duration : of the scene, s. An extreme load is scaled, see `cases.loads.load_history`.
+    """
+    scale = getattr(pulse, "scale", 1.0)
+    history = history_of(pulse, pulse.amplitude / scale)
+    last = max(history.breaks) if len(history.breaks) > 1 else 0.0
+    if pulse.shape == "ricker" and pulse.period:
+        last = 3 * pulse.period
+    end = min(duration, 1.25 * last) if last else duration
+    time = np.linspace(0, end, SAMPLES)
+    return time, scale * np.asarray(history.value(time))

@@ -1,0 +1,234 @@
+"""A rock mass as it is drawn: its joints, what holds its sides, what acts, what is recorded."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import matplotlib
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from cases.partition.scene import partition_of
+from compare.figures.drawing import symbols
+from compare.figures.drawing.pulses import draw_pulse
+from compare.figures.drawing.rock_mass_actions import draw_actions
+from compare.figures.drawing.symbols import EDGE, INK, RECEIVER, ROCK
+from compare.figures.drawing.words import law_words
+from compare.figures.style import RC
+
+if TYPE_CHECKING:
+    from cases.partition.blocks import Partition
+    from cases.schema.rock_mass import RockMass
+
+#: Of joint sets, one after the other; told apart under every colour blindness (Tol 2021, bright).
+SETS = ("#4477aa", "#ee6677", "#228833", "#aa3377", "#ccbb44", "#66ccee")
+#: How sides are drawn, by what holds them: width (points) and dashes.
+SIDES: dict[str, tuple[float, Any]] = {
+    "free": (1.0, "-"),
+    "quiet": (2.2, (0, (3.0, 1.2))),
+    "fixed": (3.4, "-"),
+    "periodic": (1.4, (0, (1.0, 1.5))),
+}
+MANY = 3000  # contacts, beyond which they are an image in the drawing
+WIDTH, BESIDE, TALLEST = 6.2, 2.6, 6.0  # inches of the drawing, of what stands beside it
+MARGIN, HEADING, LEGEND_ROW = 0.62, 0.25, 0.19  # inches
+OVER = 0.16  # of the domain's size, around it: arrows
+
+
+class Drawn(NamedTuple):
+    """A rock mass with its blocks, and the variants that look like it, in words."""
+
+    words: str
+    scene: RockMass
+    partition: Partition
+
+
+def drawn(words: str, scene: RockMass) -> Drawn:
+    """Return a rock mass to be drawn, cut into blocks."""
+    return Drawn(words, scene, partition_of(scene))
+
+
+def appearance(scene: RockMass) -> str:
+    """Return what decides how a rock mass is drawn."""
+    seen = ("domain", "joint_sets", "waves", "loads", "boundaries", "gravity", "prestress")
+    return str([getattr(scene, key) for key in (*seen, "record")])
+
+
+def figure_of(groups: list[Drawn]) -> Figure:
+    """Return the drawings, one above the other, each with its loads over time and its legend."""
+    heights = [_height(one) for one in groups]
+    width, height = WIDTH + BESIDE, sum(heights)
+    with matplotlib.rc_context(RC):
+        figure = Figure(figsize=(width, height))
+        FigureCanvasAgg(figure)
+        top = height
+        for i, (one, tall) in enumerate(zip(groups, heights, strict=True)):
+            heading = f"({chr(97 + i)})  {one.words}" if len(groups) > 1 else ""
+            _draw_row(figure, one, top, tall, heading)
+            top -= tall
+    return figure
+
+
+def _height(one: Drawn) -> float:
+    """Return how tall a row is, inches: the domain to scale, and room for what stands beside."""
+    low, high = _extent(one.partition)
+    across, up = (1 + 2 * OVER) * (high - low)
+    drawing = min(TALLEST, (WIDTH - MARGIN) * float(up / across)) + MARGIN
+    return max(drawing, 2.0 + LEGEND_ROW * len(_legend(one))) + HEADING
+
+
+def _extent(partition: Partition) -> tuple[np.ndarray, np.ndarray]:
+    return partition.corners.min(axis=0), partition.corners.max(axis=0)
+
+
+def _draw_row(figure: Figure, one: Drawn, top: float, tall: float, heading: str) -> None:
+    width, height = figure.get_size_inches()
+
+    def axes(left: float, bottom: float, across: float, up: float) -> Axes:
+        size = across / width, up / height
+        return figure.add_axes((left / width, (top - tall + bottom) / height, *size))
+
+    ax = axes(MARGIN, MARGIN, WIDTH - MARGIN, tall - MARGIN - HEADING)
+    _draw_domain(ax, one)
+    if heading:
+        figure.text(0.08 / width, (top - 0.18) / height, heading, va="bottom")
+    acting = next((p for p in one.scene.pulses if p.amplitude), None)
+    if acting is not None:
+        history = axes(WIDTH + 0.55, tall - HEADING - 1.35, BESIDE - 0.75, 1.05)
+        words = f"{acting.kind} wave" if acting.kind in ("P", "S") else acting.kind
+        draw_pulse(history, acting, one.scene.time.duration, words)
+    beside = axes(WIDTH + 0.2, 0.1, BESIDE - 0.3, tall - HEADING - 1.9)
+    beside.set_axis_off()
+    handles = _legend(one)
+    beside.legend(handles=handles, loc="upper left", frameon=False, fontsize=8, borderpad=0)
+
+
+def _draw_domain(ax: Axes, one: Drawn) -> None:
+    """Draw a rock mass in metres."""
+    partition, scene = one.partition, one.scene
+    low, high = _extent(partition)
+    size = high - low
+    blocks = np.split(partition.corners, partition.first[1:-1])
+    many = len(partition.contacts) > MANY
+    ax.add_collection(
+        PolyCollection(blocks, facecolors=ROCK, edgecolors="none", zorder=1, rasterized=many)
+    )
+    for index in range(-1, len(partition.joint_sets)):
+        lines = _joint_lines(partition, index)
+        style: dict[str, Any] = {"colors": _colour(index), "linewidths": 0.4 if many else 0.9}
+        dashes = {"linestyles": (0, (1.0, 2.0))} if index < 0 else {}
+        ax.add_collection(LineCollection(lines, zorder=2, rasterized=many, **style, **dashes))
+    for side, lines in _sides(partition).items():
+        thick, dash = SIDES[_held(scene, side)]
+        ax.add_collection(
+            LineCollection(lines, colors=INK, linewidths=thick, linestyles=[dash], zorder=3)
+        )
+    ax.set_aspect("equal")
+    ax.set(xlim=(low[0] - OVER * size[0], high[0] + OVER * size[0]))
+    ax.set(ylim=(low[1] - OVER * size[1], high[1] + OVER * size[1]))
+    ax.set_xlabel("x (m)")
+    ax.set_ylabel("y (m)")
+    draw_actions(ax, scene, low, high)
+    _draw_receivers(ax, scene, size)
+
+
+def _draw_receivers(ax: Axes, scene: RockMass, size: np.ndarray) -> None:
+    for places, marker in ((scene.record.points, "o"), (scene.record.joints, "^")):
+        for x, y in places:
+            ax.plot([x], [y], marker, color=RECEIVER, markersize=4.5, zorder=8)
+            words = f"[{x:g}, {y:g}]"
+            symbols.note(
+                ax, x + 0.015 * size[0], y + 0.015 * size[1], words, "left", "bottom", zorder=9
+            )
+
+
+def _joint_lines(partition: Partition, index: int) -> np.ndarray:
+    """Return the contacts of a set [n, 2, 2], m; -1: the cuts through intact rock."""
+    of = partition.contacts
+    own = of.joint_set == index
+    return np.stack([of.start[own], of.end[own]], axis=1)
+
+
+def _sides(partition: Partition) -> dict[str, np.ndarray]:
+    """Return the edges of each side [n, 2, 2], m."""
+    edges = partition.boundary
+    lines = np.stack([edges.start, edges.end], axis=1)
+    found = {name: lines[edges.side == k] for k, name in enumerate(partition.sides)}
+    return {name: own for name, own in found.items() if len(own)}
+
+
+def _held(scene: RockMass, side: str) -> str:
+    """Return what holds a side; those of openings are free."""
+    return getattr(scene.boundaries, side, "free")
+
+
+def _colour(index: int) -> str:
+    return EDGE if index < 0 else SETS[index % len(SETS)]
+
+
+def _legend(one: Drawn) -> list[Line2D]:
+    """Return the entries of the legend: joint sets, sides, receivers."""
+    partition, scene = one.partition, one.scene
+    entries = [
+        Line2D([], [], color=_colour(k), linewidth=1.4, label=name)
+        for k, name in enumerate(partition.joint_sets)
+    ]
+    if len(_joint_lines(partition, -1)):
+        line = {"color": EDGE, "linewidth": 1.2, "linestyle": (0, (1.0, 2.0))}
+        entries.append(Line2D([], [], label="cut through rock", **line))
+    held = {_held(scene, side) for side in _sides(partition)}
+    for kind in (name for name in SIDES if name in held):
+        thick, dash = SIDES[kind]
+        entries.append(
+            Line2D([], [], color=INK, linewidth=thick, linestyle=dash, label=f"{kind} side")
+        )
+    marks = {"o": ("point", scene.record.points), "^": ("point of a joint", scene.record.joints)}
+    for marker, (words, places) in marks.items():
+        if places:
+            dot = {"color": RECEIVER, "marker": marker, "linestyle": "none", "markersize": 4.5}
+            entries.append(Line2D([], [], label=words, **dot))
+    return entries
+
+
+def caption(scene: RockMass) -> str:
+    """Return what is drawn, in words."""
+    rock = scene.rock
+    sets = "; ".join(_set_words(one) for one in scene.joint_sets)
+    return (
+        f"Drawn from the scene: rock of {rock.density:g} kg/m³ with a modulus of "
+        f"{rock.intact_modulus / 1e9:.3g} GPa and a Poisson's ratio of {rock.intact_poisson:g}, in "
+        f"plane strain. {f'Joints: {sets}.' if sets else 'No joints.'} Circles: points whose "
+        "motion is recorded; triangles: points of joints."
+    )
+
+
+def _set_words(one: Any) -> str:
+    """Return a joint set in words."""
+    parts = [
+        f"dip {one.dip:g}°",
+        f"spacing {one.spacing:g} m" if one.spacing else "one joint",
+        f"{one.normal_stiffness / 1e9:.3g} and {one.shear_stiffness / 1e9:.3g} GPa/m",
+        law_words(one),
+    ]
+    return f"{one.name}: {', '.join(part for part in parts if part)}"
+
+
+def table(one: Drawn) -> pd.DataFrame:
+    """Return every line and receiver that is drawn, from place to place."""
+    partition, scene = one.partition, one.scene
+    rows: list[tuple[Any, ...]] = []
+    for index, name in [(-1, "cut through rock"), *enumerate(partition.joint_sets)]:
+        rows += [("joint", *line.ravel(), name) for line in _joint_lines(partition, index)]
+    for side, lines in _sides(partition).items():
+        rows += [("side", *line.ravel(), f"{side}, {_held(scene, side)}") for line in lines]
+    rows += [("receiver", *at, *at, "point") for at in scene.record.points]
+    rows += [("receiver", *at, *at, "point of a joint") for at in scene.record.joints]
+    columns = ["part", "from x (m)", "from y (m)", "to x (m)", "to y (m)", "what"]
+    found = pd.DataFrame(rows, columns=columns)
+    found.insert(0, "variant", one.words)
+    return found

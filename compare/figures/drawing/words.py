@@ -1,0 +1,14 @@
+"""Joint laws in words, as captions of drawings have them."""
+
+from cases.schema.joint import JointLaw
+
+
+def law_words(law: JointLaw) -> str:
+    """Return what joints can do beside being elastic; nothing where that is all."""
+    parts = [
+        f"damping ratio {law.damping_ratio:g}" if law.damping_ratio else "",
+        "no tension" if law.tension is False else "",
+        f"friction {law.friction_angle:g}°" if law.friction_angle is not None else "",
+        f"tensile strength {law.tensile_strength / 1e6:g} MPa" if law.tensile_strength else "",
+    ]
+    return ", ".join(part for part in parts if part)
