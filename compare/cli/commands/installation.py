@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from cases.errors import SceneError
 from compare.cli import completion
 from compare.cli.options import JsonOption, app
 
@@ -20,15 +21,21 @@ def new(
             autocompletion=completion.scenes,
         ),
     ] = None,
+    rock_mass: Annotated[
+        bool, typer.Option("--rock-mass", help="A wave at a joint in place of a pillar.")
+    ] = False,
 ) -> None:
     """Write a scene to begin with: NAME.toml, every key explained, ready to run.
 
     Nothing that is there already is replaced.
     """
     from compare.cli import new as starter
-    from compare.cli import terminal
+    from compare.cli import templates, terminal
 
-    for path in starter.write_new(name, source):
+    if rock_mass and source is not None:
+        raise SceneError("--rock-mass", "", None, "has no meaning with --from")
+    template = templates.ROCK_MASS if rock_mass else templates.PILLAR
+    for path in starter.write_new(name, source, template):
         terminal.say(f"wrote {path}")
 
 

@@ -2,6 +2,7 @@
 
 from matplotlib.axes import Axes
 
+from cases.schema.plane import GravityInPlane
 from cases.schema.scene import Gravity, Scene
 from compare.figures.drawing import symbols
 from compare.figures.drawing.placement import HEIGHT, WIDTH, Placement
@@ -64,7 +65,7 @@ def _draw_gravity(ax: Axes, gravity: Gravity, x: float) -> None:
     symbols.note(ax, x - ASIDE, level, gravity_words(gravity), "right")
 
 
-def gravity_words(gravity: Gravity) -> str:
+def gravity_words(gravity: Gravity | GravityInPlane) -> str:
     """Return what is written beside the arrow of gravity."""
     return f"{gravity.acceleration:g} m/s²"
 

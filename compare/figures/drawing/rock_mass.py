@@ -122,11 +122,11 @@ def _draw_domain(ax: Axes, one: Drawn) -> None:
         lines = _joint_lines(partition, index)
         style: dict[str, Any] = {"colors": _colour(index), "linewidths": 0.4 if many else 0.9}
         dashes = {"linestyles": (0, (1.0, 2.0))} if index < 0 else {}
-        ax.add_collection(LineCollection(lines, zorder=2, rasterized=many, **style, **dashes))
+        ax.add_collection(LineCollection(list(lines), zorder=2, rasterized=many, **style, **dashes))
     for side, lines in _sides(partition).items():
         thick, dash = SIDES[_held(scene, side)]
         ax.add_collection(
-            LineCollection(lines, colors=INK, linewidths=thick, linestyles=[dash], zorder=3)
+            LineCollection(list(lines), colors=INK, linewidths=thick, linestyles=[dash], zorder=3)
         )
     ax.set_aspect("equal")
     ax.set(xlim=(low[0] - OVER * size[0], high[0] + OVER * size[0]))

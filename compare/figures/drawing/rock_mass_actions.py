@@ -48,8 +48,8 @@ def _draw_wave(ax: Axes, wave: Wave, low: np.ndarray, high: np.ndarray, size: fl
     tail = tip - LENGTH * size * n
     symbols.arrow(ax, tuple(tail), tuple(tip))
     left = np.array([-n[1], n[0]])
-    place = (tail + tip) / 2 + 0.045 * size * left
-    symbols.note(ax, *place, wave.kind, color=LOAD)
+    x, y = (tail + tip) / 2 + 0.045 * size * left
+    symbols.note(ax, x, y, wave.kind, color=LOAD)
     if wave.kind == "S":
         beside = (tail + tip) / 2 - 0.06 * size * left
         half = 0.05 * size * left

@@ -11,10 +11,13 @@ from cases.schema.field_docs import field_comments
 from cases.schema.keys import keys
 from cases.schema.tables import Pillar
 from cases.warnings import warnings
-from compare.cli.new import OFFERED, SET, WIDTH, starter, write_new
+from compare.cli.new import WIDTH, starter, write_new
+from compare.cli.templates import PILLAR, ROCK_MASS
 from compare.engines import solve
 from compare.misfit.metrics import misfit
 from compare.scenes import SHIPPED
+
+SET, OFFERED = PILLAR.given, PILLAR.offered
 
 #: The other pair of constants of the rock, which the file has by its speeds.
 INSTEAD = {"rock.equivalent_modulus", "rock.equivalent_poisson"}
@@ -77,12 +80,14 @@ def test_its_comments_are_those_of_the_models(tmp_path):
     assert '"free", "quiet", "matched", "fixed"' in text and "whole number ≥ 1 and ≤ 4" in text
 
 
-def test_it_has_every_table_that_a_scene_needs_and_no_key_that_is_none(tmp_path):
-    known = {key for key, _ in keys()}
-    assert {*SET, *OFFERED} <= known and not {*SET} & {*OFFERED}
-    text = starter(tmp_path / "x.toml")
+@pytest.mark.parametrize("template", [PILLAR, ROCK_MASS])
+def test_it_has_every_table_that_a_scene_needs_and_no_key_that_is_none(tmp_path, template):
+    known = {key for key, _ in keys(template.model)}
+    given, offered = template.given, template.offered
+    assert {*given, *offered} <= known and not {*given} & {*offered}
+    text = starter(tmp_path / "x.toml", template)
     assert max(map(len, text.splitlines())) <= WIDTH
-    for key in (*SET, *OFFERED):
+    for key in (*given, *offered):
         table, _, name = key.rpartition(".")
         shown = [line for where, line in lines_of(text) if where == table]
         assert any(re.match(rf"(# )?{name} = ", line) for line in shown), key
@@ -128,6 +133,49 @@ def test_the_other_pair_of_constants_is_understood(tmp_path):
     path = tmp_path / "x.toml"
     path.write_text(re.sub(r"^[ps]_speed = ", r"# \g<0>", text, flags=re.MULTILINE))
     assert cases.load(path)[0].rock.equivalent_modulus
+
+
+def test_a_rock_mass_is_loaded_and_meets_its_own_expectations(tmp_path):
+    """As it stands; and nothing in it is hardly meant."""
+    (path,) = write_new(str(tmp_path / "mine"), template=ROCK_MASS)
+    scenes = cases.load(path)
+    assert [(scene.kind, scene.name) for scene in scenes] == [
+        ("rock mass", ""),
+        ("rock mass", "steeper"),
+    ]
+    assert warnings(scenes[0]) == warnings(scenes[1]) == []
+    (pair, bound), *_ = scenes[1].expect.items()
+    one, other = (solve(name, scenes[1]) for name in pair.split(" ~ "))
+    assert misfit(one, other) <= bound
+
+
+#: What a choice needs beside itself, in words; all others are understood alone.
+NEEDS = {
+    "joint_sets.ends_at": "must name other sets",
+    "joint_sets.scatter": "has no meaning without",
+    "joint_sets.seed": "has no meaning without",
+    "waves.cycles": "has no meaning for shape 'ricker'",
+    "waves.file": "has no meaning for shape 'ricker'",
+    **{
+        f"loads.{key}": "is required" for key in ("shape", "amplitude", "period", "kind", "opening")
+    },
+    "gravity.direction": "needs a fixed side",
+    "gravity.acceleration": "needs a fixed side",
+    "prestress.xx": "is required",
+    "prestress.yy": "is required",
+    "prestress.xy": "is required",
+}
+
+
+@pytest.mark.parametrize("key", ROCK_MASS.offered)
+def test_a_choice_in_a_rock_mass_is_understood(tmp_path, key):
+    path = tmp_path / "x.toml"
+    path.write_text(chosen(starter(path, ROCK_MASS), key))
+    if key in NEEDS:
+        with pytest.raises(SceneError, match=NEEDS[key]):
+            cases.load(path)
+    else:
+        assert cases.load(path)
 
 
 def test_a_copy_keeps_its_comments_and_the_files_that_it_names(tmp_path):

@@ -92,7 +92,7 @@ def test_a_wave_enters_along_its_travel(drawing):
     ],
 )
 def test_a_load_pushes_on_the_rock(drawing, load, towards):
-    """Arrows of a pressure end on the wall and point into the rock; that of a force at its place."""
+    """Arrows of a pressure end on the wall and point into the rock, that of a force at it."""
     figure = drawing(waves=[], loads=[load | PULSE]).static
     arrows = [p._posA_posB for p in figure.axes[0].patches if isinstance(p, FancyArrowPatch)]
     tail, tip = (np.array([one[k] for one in arrows]) for k in (0, 1))
