@@ -179,7 +179,7 @@ def _legend(one: Drawn) -> list[Line2D]:
         for k, name in enumerate(partition.joint_sets)
     ]
     if len(_joint_lines(partition, -1)):
-        line = {"color": EDGE, "linewidth": 1.2, "linestyle": (0, (1.0, 2.0))}
+        line: dict[str, Any] = {"color": EDGE, "linewidth": 1.2, "linestyle": (0, (1.0, 2.0))}
         entries.append(Line2D([], [], label="cut through rock", **line))
     held = {_held(scene, side) for side in _sides(partition)}
     for kind in (name for name in SIDES if name in held):
@@ -190,7 +190,12 @@ def _legend(one: Drawn) -> list[Line2D]:
     marks = {"o": ("point", scene.record.points), "^": ("point of a joint", scene.record.joints)}
     for marker, (words, places) in marks.items():
         if places:
-            dot = {"color": RECEIVER, "marker": marker, "linestyle": "none", "markersize": 4.5}
+            dot: dict[str, Any] = {
+                "color": RECEIVER,
+                "marker": marker,
+                "linestyle": "none",
+                "markersize": 4.5,
+            }
             entries.append(Line2D([], [], label=words, **dot))
     return entries
 
