@@ -41,6 +41,7 @@ EXACT = {
     "parallel-joints": "rock_mass.parallel_joints",
     "line-force": "rock_mass.line_force",
     "effective-medium": "rock_mass.effective_medium",
+    "block-lattice": "rock_mass.block_lattice",
 }
 
 Progress = Callable[[float], None]

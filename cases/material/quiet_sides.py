@@ -22,7 +22,7 @@ def impedances(scene: RockMass, normals: np.ndarray) -> np.ndarray:
     """Return rho a and rho b of the dashpots of sides of outward normals [m, 2]: [m, 2], Pa s/m."""
     rock, density = elastic_rock(scene.rock), scene.rock.density
     spaced = [one for one in scene.joint_sets if one.spacing]
-    if scene.numerics.dem.block is not None or not spaced:
+    if scene.numerics.dem.block is not None or not spaced or not len(normals):
         return np.tile([rock.p_impedance, rock.s_impedance], (len(normals), 1))
     sets = [
         joint_set(

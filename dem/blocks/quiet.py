@@ -1,45 +1,13 @@
 """Quiet sides: dashpots of Lysmer and Kuhlemeyer on the edges of the blocks there.
 
-A traction -rho a v_n - rho b v_s at points of each edge, a and b the speeds of waves along its
-normal: those of intact rock where numerics.dem.block cuts it, since a lattice has them at its
-sides, else those of the effective medium of the joint sets.
+A traction -rho a v_n - rho b v_s at points of each edge, with the impedances of
+`cases.material.quiet_sides`.
 """
-
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cases.material.effective_medium import joint_set, speeds, stiffness
 from cases.material.rigid_step import jump
-from cases.material.rock import elastic_rock
-from cases.partition.joints import direction_of
 from dem.blocks.edges import EdgePoints, gathered, on_rows
-
-if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
-
-
-def impedances(scene: RockMass, normals: np.ndarray) -> np.ndarray:
-    """Return rho a and rho b of the dashpots of sides of outward normals [m, 2]: [m, 2], Pa s/m."""
-    rock, density = elastic_rock(scene.rock), scene.rock.density
-    spaced = [one for one in scene.joint_sets if one.spacing]
-    if scene.numerics.dem.block is not None or not spaced or not len(normals):
-        return np.tile([rock.p_impedance, rock.s_impedance], (len(normals), 1))
-    sets = [
-        joint_set(
-            direction_of(one.dip)[::-1] * [-1, 1],
-            one.spacing or 0.0,
-            one.normal_stiffness or 0.0,
-            one.shear_stiffness or 0.0,
-        )
-        for one in spaced
-    ]
-    found, shapes = speeds(stiffness(rock, sets), density, normals)
-    longitudinal = np.abs((shapes * normals[:, :, None]).sum(axis=1)).argmax(axis=1)
-    at = np.arange(len(normals))
-    return density * np.stack([found[at, longitudinal], found[at, 1 - longitudinal]], axis=1)
 
 
 def dashpots(points: EdgePoints, impedance: np.ndarray, row: np.ndarray, count: int) -> np.ndarray:

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from cases.incident import IncidentField, free_field
+from cases.material.quiet_sides import impedances
 from cases.sampling import Clock, clock
 from cases.size import refuse_beyond_memory, snapshot_bytes, waveform_bytes
 from dem.blocks.build import RigidBlocks, constants, contacts, form_of, rigid_blocks
 from dem.blocks.edges import points_on, resultant
 from dem.blocks.model import PlaneModel, adjacency_of, held_by
-from dem.blocks.quiet import dashpots, impedances
+from dem.blocks.quiet import dashpots
 from dem.blocks.receivers import Receivers, receivers_of
 from dem.blocks.shaking import Shaking, shaking
 from dem.blocks.sources import Sources, incoming, load_pattern, on_sides, reactions

@@ -1,0 +1,157 @@
+"""Scenes of rigid blocks between the joints of a rock mass, exactly in time (`plane.rigid_motion`).
+
+The model of the rigid-block engine without its time steps: joints as stiff as those of rigid blocks
+are (`cases.material.rigid_blocks`), dashpots and the incident field on quiet sides. The field is a
+cubic between samples of which a period has IN_A_PERIOD; a twin with half as many bounds the error.
+
+Holds for linear joints without dashpots that cut all of the rock into blocks, waves alone, sides
+that are quiet, free or periodic, and up to MOST_BLOCKS blocks.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cases.incident import enters, tractions
+from cases.material.contact_points import contact_points
+from cases.material.quiet_sides import impedances
+from cases.material.rigid_blocks import rigid_joints
+from cases.material.rock_mass import Stiffness, inertia
+from cases.partition.locate import block_at
+from cases.partition.periodic import PAIRS, periodic_contacts
+from cases.partition.scene import block_count, partition_of
+from cases.sampling import sample_times
+from compare.exact.linear import bound
+from compare.exact.plane.rigid_motion import (
+    RigidSystem,
+    forces_of,
+    motion,
+    points_on,
+    stiffness_of,
+    viscosity_of,
+)
+from compare.exact.rock_mass.conditions import beyond_linear_rock
+from compare.exact.rock_mass.field import field_of
+from compare.solvers.record import BLOCKS, YES, Answer, Kind, Rock, Solver, Words, no, thin
+from results.plane import plane_fields
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from cases.partition.blocks import Partition
+    from cases.schema.rock_mass import RockMass
+    from compare.exact.plane.rigid_motion import Points
+
+MOST_BLOCKS = 1000
+IN_A_PERIOD = 400  #: samples of the field
+
+
+def applies(scene: RockMass) -> Answer:
+    """Return whether waves alone act on blocks between linear joints."""
+    held, sets = scene.boundaries.model_dump().values(), scene.joint_sets
+    gravity = scene.gravity is not None and bool(scene.gravity.acceleration)
+    many = f"more than {MOST_BLOCKS:,} blocks"
+    reasons = [
+        (not scene.waves, "no wave enters"),
+        (bool(scene.loads), "a load acts"),
+        (gravity, "gravity acts"),
+        (scene.prestress is not None, "the rock is prestressed"),
+        ("fixed" in held, "a side is fixed"),
+        (scene.numerics.dem.block is not None, "intact rock is cut into blocks, too"),
+        (not any(one.spacing for one in sets), "no joints with a spacing make blocks"),
+        (any(one.damping_ratio for one in sets), "the joints are damped"),
+        (any(one.period is None for one in scene.waves), "a wave has no period"),
+        (not scene.record.points, "no point records the motion"),
+    ]
+    reason = beyond_linear_rock(scene) or next((why for there, why in reasons if there), None)
+    if reason is None and block_count(scene.domain, sets) > MOST_BLOCKS:
+        reason = many
+    return no(reason) if reason else YES
+
+
+def solve(scene: RockMass) -> xr.Dataset:
+    """Return velocity and displacement at the points of a scene."""
+    import xarray as xr
+
+    partition, times = partition_of(scene), sample_times(scene)
+    quiet = _quiet(scene, partition)
+    impedance = impedances(scene, quiet.normal)
+    system = RigidSystem(
+        _masses(scene, partition),
+        _stiffness(scene, partition),
+        viscosity_of(quiet, impedance, partition.count),
+    )
+    period = min(one.period for one in scene.waves if one.period)
+    stride = 2 * int(np.ceil(scene.interval * IN_A_PERIOD / period / 2))
+    fine = scene.interval / stride * np.arange(stride * (len(times) - 1) + 1)
+    field = field_of(scene)
+    enter = enters(field, scene, quiet.normal)[:, None]
+    face = tractions(field, quiet.place, quiet.normal, impedance, fine)
+    forces = forces_of(quiet, np.where(enter, face.values, 0.0), partition.count)
+    found, twin = (
+        [_at_points(scene, partition, x) for x in motion(system, some, step, samples)]
+        for some, step, samples in (
+            (forces, fine[1], stride),
+            (forces[::2], 2 * fine[1], stride // 2),
+        )
+    )
+    names = ("displacement", "velocity")
+    values = {name: x.swapaxes(1, 2) for name, x in zip(names, found, strict=True)}
+    errors = {name: bound(*pair) for name, *pair in zip(names, found, twin, strict=True)}
+    return xr.Dataset(*plane_fields(scene, SOLVER.name, times, values, errors=errors))
+
+
+def _quiet(scene: RockMass, partition: Partition) -> Points:
+    """Return the points of the edges of quiet sides."""
+    edges, held = partition.boundary, scene.boundaries.model_dump()
+    names = np.array([held.get(name) == "quiet" for name in partition.sides])
+    own = names[edges.side]
+    chosen = (getattr(edges, key)[own] for key in ("block", "start", "end", "normal"))
+    return points_on(partition.centroid, *chosen)
+
+
+def _masses(scene: RockMass, partition: Partition) -> np.ndarray:
+    own = inertia(partition, scene.rock.density)
+    return np.stack([own.mass, own.mass, own.moment], axis=1).ravel()
+
+
+def _stiffness(scene: RockMass, partition: Partition):
+    """Return the stiffness of all contacts, those across periodic sides included."""
+    joints, low = rigid_joints(scene, []), partition.corners.min(axis=0)
+    extent, total = partition.corners.max(axis=0) - low, 0
+    parts = [(partition.contacts, (0.0, 0.0))]
+    for side, (_, axis) in PAIRS.items():
+        if getattr(scene.boundaries, side) == "periodic":
+            shift = extent * np.eye(2)[axis]
+            parts.append((periodic_contacts(partition, side), (shift[0], shift[1])))
+    for contacts, shift in parts:
+        points = contact_points(partition, contacts, scene.joint_sets, shift)
+        own = contacts.joint_set
+        stiffness = Stiffness(joints.normal[own], joints.shear[own])
+        total = total + stiffness_of(partition.count, contacts, points, stiffness)
+    return total
+
+
+def _at_points(scene: RockMass, partition: Partition, values: np.ndarray) -> np.ndarray:
+    """Return the motion of the points of a scene [points, (x, y), n], of that of the freedoms of
+    all blocks [n, 3 N]."""
+    points = np.array(scene.record.points)
+    block = block_at(partition, points)
+    u, v, turn = values.reshape(len(values), -1, 3)[:, block].transpose(2, 1, 0)
+    x, y = (points - partition.centroid[block]).T[..., None]
+    return np.stack([u - turn * y, v + turn * x], axis=1)
+
+
+SOLVER = Solver(
+    name="block-lattice",
+    rock=Rock.RIGID_BLOCKS,
+    kinds=("rock mass",),
+    dimension=2,
+    words=Words(BLOCKS, "rigid blocks in the plane, exact", "平面刚性块体（精确解）"),
+    line=thin("#00349a", 9, (0, 9), (1.2, 6)),
+    applies=applies,
+    run=solve,
+    distances={Kind.NUMERICAL: {"dem": "time stepping of the rigid blocks in the plane"}},
+)

@@ -1,0 +1,111 @@
+"""Scenes of rigid blocks exactly in time: a column that is a chain, and where they hold."""
+
+import numpy as np
+import pytest
+
+from cases.loads import Ricker
+from compare.engines import applies, solve
+from compare.exact.linear import response
+
+LAW = {"normal_stiffness": 4e10, "shear_stiffness": 2e10}
+PERIODIC = {"left": "periodic", "right": "periodic"}
+
+
+@pytest.fixture
+def blocks(rock_mass, joint):
+    """Return blocks of 1 m by 0.5 m in 3 m by 6 m and tables changed."""
+    sets = [
+        joint(**LAW, name=name, dip=dip, spacing=spacing, through=[0.0, 0.0])
+        for name, dip, spacing in (("bed", 0.0, 0.5), ("cross", 90.0, 1.0))
+    ]
+    tables = {"joint_sets": sets, "domain": {"size": [3.0, 6.0]}, "time": {"duration": 0.02}}
+    record = {"points": [[1.5, 0.25], [0.5, 3.25], [1.5, 5.75]], "joints": []}
+    return lambda **changes: rock_mass(**{**tables, "record": record, **changes})
+
+
+def test_a_column_under_a_p_wave_is_the_chain(blocks):
+    """12 blocks in a row with K' = 1 / (1/K + h/M) between them, M = 6e10 Pa, and dashpots rho c at
+    both ends. rho c^2 = C_yy of the medium: the inverse of the rock's compliance (lambda = 2e10 Pa)
+    with 1/(1 m K) along x and 1/(0.5 m K) along y. The wave of 1 MPa pushes the lowest with twice
+    its stress; the dashpot above takes it in."""
+    scene = blocks(boundaries=PERIODIC)
+    M, h, K, count = 6e10, 0.5, 4e10, 12
+    compliance = np.linalg.inv([[M, 2e10], [2e10, M]]) + np.diag([1 / K, 1 / (h * K)])
+    mass, Z, scale = 2500 * h, np.sqrt(2500 * np.linalg.inv(compliance)[1, 1]), 1e4
+    spring = 1 / (1 / K + h / M)
+    L = 2 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1)
+    L[0, 0] = L[-1, -1] = 1
+    A = np.zeros((2 * count, 2 * count))
+    A[:count, count:] = scale * np.eye(count)
+    A[count:, :count] = -spring * L / mass / scale
+    A[count, count] = A[-1, -1] = -Z / mass
+    b = np.zeros(2 * count)
+    b[count] = 2 / mass
+    output = np.diag(np.concatenate([np.full(count, 1 / scale), np.ones(count)]))
+    found = solve("block-lattice", scene)
+    states = response(A, b, output, Ricker(1e6, 0.005), found.time.values)
+    for point, block in enumerate((0, 6, 11)):
+        for name, column in (("displacement", block), ("velocity", count + block)):
+            expected, bound = states[:, column], found[f"{name}_error"][point, 1]
+            off = found[name][point, :, 1] - expected
+            assert np.sqrt(np.mean(off**2)) <= bound < 1e-7 * np.abs(expected).max()
+        assert np.abs(found.velocity[point, :, 0]).max() < 1e-12
+
+
+def test_oblique_waves_leave_through_quiet_sides(blocks, wave):
+    """Long after a pulse of 5 ms has passed next to nothing is left of the motion."""
+    direction = [0.28, 0.96]
+    found = solve(
+        "block-lattice", blocks(waves=[wave(direction=direction)], time={"duration": 0.04})
+    )
+    v = np.abs(found.velocity).max(["point", "axis"]).values
+    assert v[-100:].max() < 1e-3 * v.max() and v.max() > 0.05
+    assert (found.velocity_error < 1e-7 * v.max()).all()
+
+
+def test_steps_of_the_engine_come_to_it_at_the_second_order(blocks, wave):
+    """An oblique wave on blocks with quiet sides all around: leapfrog is off by the square of its
+    step, in velocity and in displacement."""
+    off, steps = [], []
+    for fraction in (0.4, 0.1):
+        numerics = {"dem": {"step_fraction": fraction}}
+        scene = blocks(waves=[wave(direction=[0.28, 0.96])], numerics=numerics)
+        exact, found = solve("block-lattice", scene), solve("dem", scene)
+        steps.append(found.attrs["dt"])
+        names = ("velocity", "displacement")
+        off.append([float(abs(found[x] - exact[x]).max() / abs(exact[x]).max()) for x in names])
+    rate = np.log(np.divide(*off)) / np.log(steps[0] / steps[1])
+    assert rate == pytest.approx(2, abs=0.1) and max(off[1]) < 2e-4
+
+
+NO = [
+    ({"waves": []}, "no wave enters"),
+    ({"loads": [{"kind": "pressure", "side": "top", "shape": "step", "amplitude": 1.0}]},
+     "a load acts"),
+    ({"gravity": {"static": False}}, "gravity acts"),
+    ({"prestress": {"xx": 1e6, "yy": 1e6}}, "the rock is prestressed"),
+    ({"boundaries": {"top": "fixed"}}, "a side is fixed"),
+    ({"numerics": {"dem": {"block": 0.5}}}, "intact rock is cut into blocks, too"),
+    ({"damping": {"mass_proportional": 1.0}}, "the damping is proportional to mass"),
+    ({"domain": {"size": [60.0, 60.0]}}, "more than 1,000 blocks"),
+    ({"record": {"points": [], "fields": 1e-3, "joints": []}}, "no point records the motion"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("changes, reason", NO)
+def test_it_says_why_it_does_not_hold(blocks, changes, reason):
+    assert applies("block-lattice", blocks(**changes)).reason == reason
+
+
+def test_it_holds_for_blocks_between_linear_joints_alone(blocks, joint, wave):
+    def reason(**keys):
+        bed = joint(**LAW | {"spacing": 0.5, "dip": 0.0} | keys)
+        return applies("block-lattice", blocks(joint_sets=[bed])).reason
+
+    assert reason() == ""
+    assert reason(spacing=None) == "no joints with a spacing make blocks"
+    assert reason(damping_ratio=0.1) == "the joints are damped"
+    assert reason(tension=False) == "joint set 'joint' bars tension"
+    step = {**wave(shape="step")}
+    step.pop("period")
+    assert applies("block-lattice", blocks(waves=[step])).reason == "a wave has no period"
