@@ -1,0 +1,155 @@
+"""Places of waveforms in both kinds of scenes: their names, and distances at them."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from cases.read import load_tables
+from compare.misfit.external import read_curves
+from compare.misfit.metrics import pairings, worst
+from compare.misfit.pairs import measure
+from compare.misfit.places import WORDS, Place, parsed, places_of
+from results.plane import plane_fields
+
+JOINT = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
+TABLES = {
+    "title": "receivers",
+    "domain": {"size": [40.0, 40.0]},
+    "rock": {"density": 2600.0, "intact_modulus": 5e10},
+    "joint_sets": [{"name": "joint", "dip": 0.0, "through": [20.0, 20.0], **JOINT}],
+    "time": {"duration": 0.01},
+    "record": {"points": [[20.0, 10.0], [20.0, 30.0]], "joints": [[20.0, 20.0]], "interval": 1e-4},
+}
+TIME = 1e-4 * np.arange(101)
+WAVE = np.sin(2e3 * TIME)
+PLACES = [
+    ("stress@20", Place("stress", "", (20.0,)), "stress at 20 m"),
+    ("velocity@20.25", Place("velocity", "y", (20.25,)), "velocity y at 20.25 m"),
+    ("shear_x@2e1", Place("shear", "x", (20.0,)), "shear x at 20 m"),
+    ("velocity_x@[20,30]", Place("velocity", "x", (20.0, 30.0)), "velocity x at [20, 30] m"),
+    ("stress_xy@[ 2, -3.5 ] m", Place("stress", "xy", (2.0, -3.5)), "stress xy at [2, -3.5] m"),
+    ("Traction_n@[2 3]", Place("traction", "n", (2.0, 3.0)), "traction n at [2, 3] m"),
+    ("gap@[1,2]", Place("gap", "", (1.0, 2.0)), "gap at [1, 2] m"),
+]
+
+
+def scene(**changes):
+    return load_tables(TABLES | changes)
+
+
+def result(mass, scale=1.0, still=0.0, **factors):
+    """Return a result in which every component is the wave, times a factor of its quantity."""
+    factor = {name: scale * factors.get(name, 1.0) for name in ("velocity", "traction", "slip")}
+    fields = plane_fields(
+        mass,
+        "dem",
+        TIME,
+        {
+            "velocity": factor["velocity"] * np.broadcast_to(WAVE[:, None], (2, 101, 2)),
+            "traction": still + factor["traction"] * np.broadcast_to(WAVE[:, None], (1, 101, 2)),
+            "slip": factor["slip"] * WAVE[None],
+        },
+        errors={"velocity": np.array([[1e-3, 2e-3], [3e-3, 4e-3]])},
+    )
+    return xr.Dataset(*fields)
+
+
+@pytest.mark.parametrize(("text", "place", "words"), PLACES)
+def test_a_label_and_the_words_of_a_place_name_it(text, place, words):
+    assert parsed(text) == place and place.words == words
+    assert parsed(str(place)) == place and parsed(place.heading, WORDS) == place
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *(
+            "velocity@[1,2]",
+            "stress@[1,2]",
+            "stress_xx@2",
+            "traction_n@2",
+            "gap@2",
+            "shear_x@[1,2]",
+        ),
+        *("velocity_z@[1,2]", "velocity_x@[1,2,3]", "velocity_x@[1]", "velocity_x@", "speed@[1,2]"),
+    ],
+)
+def test_what_a_kind_of_scene_does_not_record_is_no_place(text):
+    assert parsed(text) is None
+
+
+def test_a_place_is_found_in_a_result_and_asks_for_its_key():
+    found = result(scene())
+    assert places_of(found, "velocity") == ([(20.0, 10.0), (20.0, 30.0)], ["x", "y"])
+    assert places_of(found, "slip") == ([(20.0, 20.0)], [""])
+    for text, key in (("velocity_y@[20,30]", "points"), ("slip@[20,20]", "joints")):
+        place = parsed(text)
+        assert place.key == key
+        np.testing.assert_array_equal(place.waveform(found), WAVE)
+    assert parsed("velocity_y@[20,31]").waveform(found) is None
+    assert parsed("velocity@20").waveform(found) is None
+
+
+def test_every_component_at_every_receiver_has_a_distance_of_its_own():
+    rows = measure({"dem": result(scene(), 1.01), "continuum-jointed": result(scene())})
+    places = [str(row.place) for row in rows]
+    assert places == [
+        *("traction_n@[20,20]", "traction_s@[20,20]"),
+        *("velocity_x@[20,10]", "velocity_y@[20,10]"),
+        *("velocity_x@[20,30]", "velocity_y@[20,30]", "slip@[20,20]"),
+    ]
+    assert [row.distance.misfit for row in rows] == pytest.approx([0.01] * 7)
+    assert rows[2].facts["x"] == 20.0 and rows[2].facts["y"] == 10.0
+
+
+def test_quantities_of_one_unit_are_judged_together():
+    """A slip of a thousandth of the displacement decides nothing; alone it does."""
+    mass, loud = scene(), np.broadcast_to(WAVE[:, None], (2, 101, 2))
+    quantities = {"displacement": loud, "slip": 1e-3 * WAVE[None]}
+    one, other = (
+        xr.Dataset(*plane_fields(mass, "dem", TIME, {**quantities, "slip": slip}))
+        for slip in (2e-3 * WAVE[None], quantities["slip"])
+    )
+    faint = {p.place.quantity: p.faint for p in pairings(one, other)}
+    assert faint == {"displacement": False, "slip": True} and worst(one, other).misfit == 0
+    alone = [x.drop_vars("displacement") for x in (one, other)]
+    assert worst(*alone).misfit == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"prestress": {"xx": 1e6, "yy": 5e6}},
+        {"gravity": {}, "boundaries": {"bottom": "fixed"}},
+    ],
+)
+def test_the_state_at_the_start_is_no_motion(changes):
+    """The traction of the static state, a thousand times the wave's, leaves the misfit as it is;
+    without such a state it is part of the waveform."""
+    held, free = scene(**changes), scene()
+    found = pairings(result(held, 1.01, still=1e3), result(held, still=1e3))
+    assert [p.misfit for p in found] == pytest.approx([0.01] * len(found), rel=1e-6)
+    whole = pairings(result(free, 1.01, still=1e3), result(free, still=1e3))
+    assert whole[0].place.quantity == "traction" and whole[0].misfit < 1e-4
+
+
+def test_the_bound_of_a_reference_is_that_of_its_place():
+    found = {str(p.place): p.error for p in pairings(result(scene(), 1.01), result(scene()))}
+    assert found["velocity_y@[20,10]"] == 2e-3 and found["velocity_x@[20,30]"] == 3e-3
+    assert found["slip@[20,20]"] == 0
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+def test_columns_of_a_file_are_called_by_places(tmp_path, separator):
+    """In a file with commas a header that holds one stands in quotes."""
+    names = ["time [ms]", "-velocity_x@[20,10] [mm/s]", "traction_n@[20 20] [MPa]"]
+    quoted = [f'"{name}"' if separator in name else name for name in names]
+    rows = [separator.join(map(str, (k, -k, 2 * k))) for k in range(4)]
+    file = tmp_path / "curve.csv"
+    file.write_text("\n".join([separator.join(quoted), *rows]))
+    (curves,) = read_curves([str(file)], [scene()])
+    np.testing.assert_allclose(curves.time, 1e-3 * np.arange(4))
+    velocity = curves.waveforms[Place("velocity", "x", (20.0, 10.0))]
+    np.testing.assert_allclose(velocity, 1e-3 * np.arange(4))
+    traction = curves.waveforms[Place("traction", "n", (20.0, 20.0))]
+    np.testing.assert_allclose(traction, 2e6 * np.arange(4))
