@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from cases.errors import SceneError
-from cases.schema.scene import Scene
 from cases.size import LARGEST_VARIABLE
 from results.arrays import copied
 from results.dataset import Fields, Variable
@@ -16,6 +15,8 @@ from results.labels import label
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from cases.kinds import AnyScene
 
 AXES = {1: [1], 2: [0, 1], 3: [0, 1, 2]}  # which of x, y, z so many components are
 DIMENSIONS = {
@@ -77,7 +78,7 @@ class Film:
         self.shots[:] = [copied(self.shoot(0)) for _ in range(0, samples, self.every)]
 
 
-def samples_between(scene: Scene) -> int | None:
+def samples_between(scene: AnyScene) -> int | None:
     """Return the samples from one snapshot to the next; None where the scene asks for none."""
     fields = scene.record.fields
     return None if fields is None else max(1, round(fields / scene.interval))
@@ -113,7 +114,7 @@ def in_space(values: np.ndarray) -> np.ndarray:
     return found
 
 
-def refuse_beyond_room(scene: Scene, nodes: int) -> None:
+def refuse_beyond_room(scene: AnyScene, nodes: int) -> None:
     """Raise SceneError where the snapshots of so many nodes would not fit a file."""
     fields, most = scene.record.fields, LARGEST_VARIABLE // (3 * 8 * nodes)
     count = int(scene.time.duration / scene.interval + 1e-9) // (samples_between(scene) or 1) + 1

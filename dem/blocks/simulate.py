@@ -25,6 +25,7 @@ from results.plane import plane_fields
 if TYPE_CHECKING:
     from cases.incident import IncidentField
     from cases.schema.rock_mass import RockMass
+    from dem.blocks.snapshots import PlaneFilm
 
 MOST_OF_DRIVE = 2_000_000  # numbers: forces on held blocks that are there at once
 
@@ -44,10 +45,11 @@ def simulate_fields(
     monitor = guard(highest_energy(system, state))
     built = perf_counter()
     step(system, state, samples, 0, 0)
+    film = _film(system, state)
     compiled = perf_counter()
 
     def result(count: int) -> Fields:
-        return plane_fields(
+        found = plane_fields(
             scene,
             "dem",
             time.times[:count],
@@ -70,6 +72,7 @@ def simulate_fields(
             seconds_stepping=perf_counter() - compiled,
             versions=time_loop.versions(),
         )
+        return found if film is None else film.developed(found)
 
     def march_samples(first: int, last: int) -> None:
         step(system, state, samples, first * time.stride, last * time.stride)
@@ -84,7 +87,16 @@ def simulate_fields(
 
     parts = (state, samples, monitor)
     run = time_loop.Run(time, system.blocks.partition.count, march_samples, check, parts)
-    return time_loop.followed(run, result, progress, None, keeper)
+    return time_loop.followed(run, result, progress, film, keeper)
+
+
+def _film(system: System, state: PlaneState) -> PlaneFilm | None:
+    """Return what keeps snapshots; None, and nothing imported, where none are asked for."""
+    if system.blocks.scene.record.fields is None:
+        return None
+    from dem.blocks.snapshots import PlaneFilm
+
+    return PlaneFilm(system, state)
 
 
 def step(system: System, state: PlaneState, samples: PlaneSamples, first: int, last: int) -> None:

@@ -1,0 +1,84 @@
+"""Snapshots of rigid blocks in the plane: polygons, in triangles, that move with their blocks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from cases.partition.polygons import owner
+from dem.blocks.leapfrog import march, samples_for
+from results.arrays import copied
+from results.snapshots import (
+    Film,
+    refuse_beyond_room,
+    samples_between,
+    snapshots,
+    with_snapshots,
+)
+
+if TYPE_CHECKING:
+    from cases.partition.blocks import Partition
+    from dem.blocks.model import PlaneState
+    from dem.blocks.system import System
+    from results.dataset import Fields
+
+
+class Shot(NamedTuple):
+    """All blocks at one instant: displacement and velocity [N, 3], m and m/s, rad and rad/s."""
+
+    displacement: np.ndarray
+    velocity: np.ndarray
+
+
+class PlaneFilm(Film):
+    """The blocks at every snapshot that a scene asks for; raises SceneError for too many."""
+
+    def __init__(self, system: System, state: PlaneState) -> None:
+        self.system, self.partition = system, system.blocks.partition
+        scene = system.blocks.scene
+        refuse_beyond_room(scene, len(self.partition.corners))
+        everywhere = np.arange(self.partition.count)
+        model = system.model._replace(places=everywhere, watched=everywhere[:0])
+
+        def shoot(sample: int) -> Shot:
+            """Take a sample, and the step that it needs, of all blocks on a copy."""
+            step = sample * system.time.stride
+            drive = None if model.held is None else system.sources.drive(step, step + 1)
+            shake = None if system.shaking is None else system.shaking(np.array([step]))
+            found = samples_for(model, 1)
+            march(model, copied(state), found, 1, (0, 1), drive, shake)
+            return Shot(found.displacement[..., 0], found.velocity[..., 0])
+
+        super().__init__(samples_between(scene) or 1, shoot)
+
+    def developed(self, result: Fields) -> Fields:
+        """Return the run's result with its snapshots; displacement counts from the first."""
+        time = result.coords["time"][1][:: self.every]
+        shots = self.shots[: len(time)]
+        u = np.stack([shot.displacement for shot in shots]) - shots[0].displacement
+        v = np.stack([shot.velocity for shot in shots])
+        cells, block = triangles(self.partition)
+        moved, moving = (corner_motion(self.partition, x) for x in (u, v))
+        corners = self.partition.corners
+        return with_snapshots(
+            result, snapshots(time, corners, "triangle", cells, block, moved, moving)
+        )
+
+
+def triangles(partition: Partition) -> tuple[np.ndarray, np.ndarray]:
+    """Return triangles between the first corner of each block and each of its sides that are not
+    at it [cells, 3], and the block of each [cells]."""
+    first, whose = partition.first, owner(partition.first)
+    corner = np.arange(len(whose))
+    inner = (corner > first[whose]) & (corner < first[whose + 1] - 1)
+    at = corner[inner]
+    return np.stack([first[whose[at]], at, at + 1], axis=1), whose[at]
+
+
+def corner_motion(partition: Partition, motion: np.ndarray) -> np.ndarray:
+    """Return the motion of all corners [..., k, 2] of that of the blocks [..., N, 3]."""
+    whose = owner(partition.first)
+    arm = partition.corners - partition.centroid[whose]
+    own = motion[..., whose, :]
+    return own[..., :2] + own[..., 2:] * np.stack([-arm[:, 1], arm[:, 0]], axis=1)

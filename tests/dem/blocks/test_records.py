@@ -1,0 +1,122 @@
+"""What a run leaves behind: snapshots, checkpoints, the law and the gap of its joints."""
+
+import numpy as np
+import pytest
+
+from cases.errors import InterruptedRun
+from dem import simulate
+from dem.blocks.build import rigid_blocks
+from joints.law import Law
+from results.arrays import copied, fill
+from results.snapshots import snapshots_of
+
+CROSSED = ({"dip": 10.0, "spacing": 2.5}, {"dip": 80.0, "spacing": 3.0, "name": "cross"})
+
+
+@pytest.fixture
+def crossed(rock_mass, joint, wave):
+    """Return rock cut by two joint sets alone, with a wave, and tables changed."""
+
+    def scene(**changes):
+        sets = [joint(through=None, **one) for one in CROSSED]
+        plain = {"joint_sets": sets, "waves": [wave(direction=[0.6, 0.8])]}
+        return rock_mass(**(plain | {"numerics": None} | changes))
+
+    return scene
+
+
+def test_snapshots_are_the_motion_of_the_blocks_and_change_nothing(crossed):
+    """A point of a block moves as its triangle's corners do, in proportion to its areas."""
+    bare, filmed = simulate(crossed()), simulate(crossed(record={"fields": 2e-3}))
+    for name in bare.data_vars:
+        assert (bare[name].values == filmed[name].values).all(), name
+    found = snapshots_of(filmed)
+    assert found.kind == "triangle" and len(found.time) == 6
+    areas = (
+        np.abs(np.cross(*np.moveaxis(np.diff(found.points[found.cells], axis=1), 1, 0))[:, 2]) / 2
+    )
+    assert areas.sum() == pytest.approx(120, rel=1e-12)
+    corners = np.insert(found.points[found.cells][..., :2], 2, 1.0, axis=2).swapaxes(1, 2)
+    shares = np.linalg.solve(
+        corners, np.broadcast_to([4.3, 2.1, 1.0], (len(corners), 3))[..., None]
+    )
+    (cell,) = np.flatnonzero((shares > 0).all(axis=(1, 2)))
+    share = shares[cell, :, 0]
+    for name in ("velocity", "displacement"):
+        own = np.einsum("c,tcx->tx", share, getattr(found, name)[:, found.cells[cell]])
+        aim = filmed[name].values[0, ::20]
+        assert np.abs(own[:, :2] - aim).max() < 1e-12 * np.abs(aim).max()
+    assert found.stress is None and np.abs(found.velocity).max() > 0.05
+
+
+class Keeper:
+    """Keeps what a run was when some samples were done, and ends it there once."""
+
+    def __init__(self, at):
+        self.at, self.done, self.kept = at, 0, None
+
+    def restore(self, parts):
+        fill(parts, self.kept)
+
+    def look(self, samples, parts):
+        if self.kept is None and samples >= self.at:
+            self.kept, self.done = copied(parts), samples
+            raise InterruptedRun("enough")
+
+
+def test_a_run_that_goes_on_is_the_same_to_the_last_bit(crossed, joint):
+    """Waves, joints that slip with dashpots, the ledger and snapshots, from the middle on."""
+    slips = [joint(through=None, friction_angle=15.0, damping_ratio=0.02, **one) for one in CROSSED]
+    own = crossed(joint_sets=slips, record={"fields": 2e-3})
+    whole, keeper = simulate(own), Keeper(40)
+    with pytest.raises(InterruptedRun):
+        simulate(own, keeper=keeper)
+    assert 40 <= keeper.done < 100
+    again = simulate(own, keeper=keeper)
+    for name in whole.data_vars:
+        assert (whole[name].values == again[name].values).all(), name
+
+
+def test_every_key_of_a_joint_set_is_in_its_law(crossed, joint):
+    """Columns of two sets: strengths as given, w_c = 2 G / s_t, none where a set has none; rules of
+    points as given, the shorter with a point of no weight."""
+    first = joint(
+        through=None, **CROSSED[0], tension=False, friction_angle=30.0, cohesion=1e4,
+        residual_cohesion=2e3, contact_points=3, point_rule="midpoint",
+    )  # fmt: skip
+    second = joint(
+        through=None, **CROSSED[1], tensile_strength=1e5, fracture_energy=20.0, contact_points=2,
+        point_rule="gauss",
+    )  # fmt: skip
+    columns = rigid_blocks(crossed(joint_sets=[first, second])).columns
+    law: Law = columns.law
+    assert law.carries_tension.tolist() == [False, True]
+    assert law.friction == pytest.approx([np.tan(np.radians(30)), 0])
+    assert law.cohesion[0] == 1e4 and law.cohesion[1] > 1e50
+    assert law.residual_cohesion[0] == 2e3
+    assert law.tensile_strength[1] == 1e5 and law.tensile_strength[0] > 1e50
+    assert law.critical_opening[1] == pytest.approx(4e-4)
+    assert law.normal_viscosity is None and columns.points == 3
+    thirds, gauss = columns.rules
+    assert thirds == pytest.approx(np.array([[-1 / 3, 0, 1 / 3], [1 / 3] * 3]))
+    assert gauss == pytest.approx(np.array([[-0.5 / 3**0.5, 0.5 / 3**0.5, 0], [0.5, 0.5, 0]]))
+
+
+def test_a_dashpot_of_a_joint_loses_what_the_rock_takes_of_its_motion(crossed, joint):
+    """eta K'^2 / K of (K, eta K) and the rock's spring in series, to the first order in omega:
+    the imaginary part of 1 / (1 / K (1 - i omega eta) + 1 / k)."""
+    damped = [joint(through=None, damping_ratio=0.05, **one) for one in CROSSED]
+    blocks = rigid_blocks(crossed(joint_sets=damped))
+    eta = 2 * 0.05 * np.sqrt(2600 * 2.5 / 1e10)
+    rock = 1 / (1 / blocks.joints.normal[0] - 1e-10)
+    omega = 1e-3 / eta
+    exact = 1 / (1 / (1e10 * (1 - 1j * omega * eta)) + 1 / rock)
+    assert blocks.columns.law.normal_viscosity[0] * omega == pytest.approx(-exact.imag, rel=1e-5)
+
+
+def test_the_gap_and_the_slip_are_those_of_the_joint_alone(crossed, joint):
+    """Without failure: traction over the joint's own stiffness, whatever the rock adds."""
+    result = simulate(crossed())
+    for axis, name, stiffness in ((0, "gap", 1e10), (1, "slip", 4e9)):
+        own = -result.traction.values[0, :, axis] / stiffness
+        assert np.abs(result[name].values[0] - own).max() < 1e-12 * np.abs(own).max()
