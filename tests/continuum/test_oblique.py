@@ -71,3 +71,21 @@ def test_a_block_moved_off_jumps_by_its_motion(dim, bent, cell, body):
         expected = np.broadcast_to(x / np.linalg.norm(x), frames[:, 1].shape)
         np.testing.assert_allclose(frames[:, 1], expected, atol=1e-12)
     assert np.linalg.det(frames) == pytest.approx(-1.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "dim, cell, order",
+    [(2, "simplex", 1), (3, "simplex", 1), (2, "hexahedron", 3), (3, "hexahedron", 2)],
+)
+def test_points_of_a_joint_are_its_nodes(dim, cell, order, body):
+    """So that a joint couples no two nodes of one side: a row takes one value from either side."""
+    found = body(dim, cell, order, blocks=2)
+    at = jumps(found)
+    for matrix in at.matrices:
+        assert (np.diff(matrix.indptr) == 2).all()
+        assert np.sort(matrix.data.reshape(-1, 2)) == pytest.approx(
+            np.tile([-1.0, 1.0], (len(at.x), 1))
+        )
+    on_joint = found.x[np.abs(found.y - 0.5) < 1e-9]
+    apart = np.linalg.norm(at.x[:, None] - on_joint, axis=2).min(axis=1)
+    assert apart.max() < 1e-12

@@ -43,9 +43,13 @@ def test_joints_on_the_pattern_are_the_product_of_matrices(built, dim):
     """B^T D B: a traction along the joint answers the gap, and not the other way about."""
     small = {"numerics__continuum__order": 1, "numerics__continuum__elements_across": 1}
     _, discrete, model, _ = built("jointed", dim, **small)
-    rock, joints = implicit_matrices(discrete.body), model.interfaces
+    rock, random = implicit_matrices(discrete.body), np.random.default_rng(2)
+    # No two entries alike, as on joints that lie in any direction.
+    joints = model.interfaces._replace(jump=model.interfaces.jump.copy())
+    joints.jump.data *= random.uniform(1, 2, joints.jump.nnz)
+    model = model._replace(interfaces=joints)
     system = System(model, rock, np.array([0]), [rock.mass])
-    system.tangents[:] = np.random.default_rng(2).uniform(1, 2, system.tangents.shape)
+    system.tangents[:] = random.uniform(1, 2, system.tangents.shape)
     values = system.with_joints(0.5 * system.pattern.fixed[0], share=0.25)
     found = np.zeros((system.free.size, system.free.size))
     row = np.repeat(np.arange(system.free.size), np.diff(system.pattern.start))
@@ -148,6 +152,39 @@ def test_largest_force_of_a_trial(built):
     assert size(u=10 * weight / k) == pytest.approx(10 * weight, rel=1e-12)
     assert size(v=10 * weight / c) == pytest.approx(10 * weight, rel=1e-12)
     assert size(pressure=-10 * weight / share) == pytest.approx(10 * weight, rel=1e-12)
+
+
+def test_a_trial_starts_from_the_ledger_before_it(built):
+    """However often it is tried."""
+    _, discrete, model, now = built("equivalent", 1)
+    trial, rock = state_at_rest(model, True), implicit_matrices(discrete.body)
+    now.ledger[:] = 1.0, 2.0, 3.0, 4.0
+    trial.ledger[:] = 5.0
+    balance(model, rock, now, trial, 0.0, 0.0, np.zeros((6, 0)))
+    assert trial.ledger.tolist() == [1.0, 2.0, 3.0, 4.0]
+
+
+def test_a_shaken_base_goes_its_way_and_does_all_the_work(implicit, pillar):
+    """Its displacement is the sum of its steps; with rho = 1 all energy is the work of its force,
+    and that of its own nodes, which move at t = 0 already."""
+    load = {"shape": "sine", "amplitude": 0.1, "period": 5e-3, "quantity": "velocity"}
+    record = {"stress": [0.5], "velocity": [0.0, 1.0], "interval": 1e-4}
+    scene = pillar(
+        pillar__length=2.0,
+        record=record,
+        load=load,
+        ends={"start": "fixed", "end": "free"},
+        time__duration=5e-3,
+    )
+    run = implicit(scene, kind="equivalent", dim=1).go()
+    moved = np.append(0.0, np.cumsum(run.model.ends.fixed.step))[: run.clock.samples]
+    base, top = run.samples.displacement
+    assert base == pytest.approx(moved, abs=1e-16)
+    assert np.abs(base).max() > 1e-4 and not np.allclose(top, base, rtol=1e-3)
+    held = sum(run.energy(term) for term in ("kinetic", "elastic"))
+    work = run.energy("work")
+    assert work.max() > 1e3 * held[0] > 0
+    assert np.abs(held - held[0] - work).max() < 1e-9 * work.max()
 
 
 def test_rock_stands_under_its_weight_after_one_correction(built):
