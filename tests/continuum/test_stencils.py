@@ -93,3 +93,19 @@ def test_no_points_at_all():
     matrix = stencils(csr_matrix((0, 8)))
     multiply_stencils(*matrix, np.zeros(8), np.zeros(0), 0)
     assert matrix.first.tolist() == [0]
+
+
+def test_products_of_few_rows_by_hand():
+    """Rows of two entries, of which no two are alike, then of three, which repeat themselves."""
+    rows = [[2, -3, 0, 0, 0], [0, 5, 0, 7, 0], [1, 2, 4, 0, 0], [0, 1, 2, 4, 0], [0, 0, 0, 0, 6]]
+    b = stencils(csr_matrix(np.array(rows, dtype=float)))
+    assert b.first.tolist() == [0, 1, 2, 4, 5]
+    x = np.array([1.0, 10.0, 100.0, 1000.0, 1e4])
+    y = np.full(5, np.nan)
+    multiply_stencils(*b, x, y, 1)
+    assert np.isnan(y[0]) and y[1:].tolist() == [7050.0, 421.0, 4210.0, 6e4]
+    multiply_stencils(*b, x, y, 0)
+    assert y[0] == -28.0
+    f = np.full(5, 0.5)
+    add_transposed(*b, np.array([1.0, 2.0, 3.0, 4.0, 5.0]), f)
+    assert f.tolist() == [5.5, 17.5, 20.5, 30.5, 30.5]
