@@ -160,7 +160,7 @@ def test_a_trial_starts_from_the_ledger_before_it(built):
     trial, rock = state_at_rest(model, True), implicit_matrices(discrete.body)
     now.ledger[:] = 1.0, 2.0, 3.0, 4.0
     trial.ledger[:] = 5.0
-    balance(model, rock, now, trial, 0.0, 0.0, np.zeros((6, 0)))
+    balance(model, rock, now, trial, Applied(0.0, None), 0.0, np.zeros((6, 0)))
     assert trial.ledger.tolist() == [1.0, 2.0, 3.0, 4.0]
 
 
