@@ -6,12 +6,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cases.errors import SceneError
 from cases.size import spoken
 from compare.cli.terminal import say, show_table
 
 if TYPE_CHECKING:
     from cases.partition.blocks import Partition
     from cases.schema.rock_mass import RockMass
+
+
+ROUND_OFF = 1e-6  # of a stiffness that is fitted
 
 
 def partition_facts(scene: RockMass) -> dict[str, Any]:
@@ -31,7 +35,20 @@ def partition_facts(scene: RockMass) -> dict[str, Any]:
         "boundary": {name: int(n) for name, n in zip(found.sides, sides, strict=True) if n},
         "bytes": found.nbytes,
         "bytes_at_most": partition_bytes(scene),
+        "rigid_blocks_lack": _lack(scene),
     }
+
+
+def _lack(scene: RockMass) -> float | None:
+    """Return the part of the intact rock's stiffness that rigid blocks cannot have; None where
+    there are no rigid blocks."""
+    from cases.material.rigid_blocks import rigid_joints
+    from cases.partition.lattice import further_sets
+
+    try:
+        return rigid_joints(scene, further_sets(scene)).left_over
+    except SceneError:
+        return None
 
 
 def show_partition(facts: dict[str, Any]) -> None:
@@ -45,7 +62,21 @@ def show_partition(facts: dict[str, Any]) -> None:
     show_table(["joint set", "contacts", "length, m"], rows)
     show_table(["side", "edges"], [[name, f"{n:,}"] for name, n in facts["boundary"].items()])
     at_most = spoken(facts["bytes_at_most"])
+    if (lack := facts["rigid_blocks_lack"]) is not None:
+        share = f"{_percent(lack)} % of the intact rock's stiffness"
+        say(f"rigid blocks cannot have {share}: {_why(lack)}")
     say(f"memory of the blocks: {spoken(facts['bytes'])}, at most {at_most} while they are cut")
+
+
+def _percent(lack: float) -> str:
+    return f"{100 * lack:.2g}" if lack > ROUND_OFF else "0"
+
+
+def _why(lack: float) -> str:
+    """Return what the stiffness that rigid blocks lack means."""
+    if lack < ROUND_OFF:
+        return "their joints carry all of it"
+    return "their joints alone carry it, and joints of few directions have no Poisson effect"
 
 
 def _rows(facts: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:

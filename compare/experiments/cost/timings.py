@@ -90,7 +90,8 @@ def whole(what: str) -> float | None:
 
 
 def _key(name: str, scene: AnyScene, about: Mapping[str, Any]) -> str:
-    effects = " ".join(sorted(active_effects(scene)))
+    kind = [] if isinstance(scene, Scene) else [scene.kind]
+    effects = " ".join(kind + sorted(active_effects(scene)))
     return " ".join(str(x) for x in (name, *(about[k] for k in ENGINES[name].cost), effects))
 
 

@@ -213,6 +213,9 @@ def test_explain_says_what_its_blocks_are(jointwave_says):
     assert facts["cuts_through_rock"]["contacts"] == 0
     assert facts["boundary"] == {"left": 6, "right": 6, "bottom": 5, "top": 5, "opening 0": 6}
     assert 0 < facts["bytes"] < facts["bytes_at_most"]
+    # C_12 = mu of a stiffness of 3 mu, 3 mu and, in shear, 2 mu: what two sets across each other
+    # cannot have of rock with a Poisson's ratio of 1/4.
+    assert facts["rigid_blocks_lack"] == pytest.approx((2 / 24) ** 0.5, rel=1e-6)
 
 
 def test_explain_in_words(jointwave_says):
@@ -221,6 +224,7 @@ def test_explain_in_words(jointwave_says):
     for words in (
         "A tunnel in brickwork",
         "28 blocks, 56 m2",
+        "rigid blocks cannot have 29 % of the intact rock's stiffness",
         "smallest block: 2 m2",
         "rows",
         "MB",
