@@ -16,7 +16,8 @@ from dem.blocks.model import PlaneModel, adjacency_of, held_by
 from dem.blocks.quiet import dashpots
 from dem.blocks.receivers import Receivers, receivers_of
 from dem.blocks.shaking import Shaking, shaking
-from dem.blocks.sources import Sources, incoming, load_pattern, on_sides, reactions
+from dem.blocks.sources import Sources, load_pattern, on_sides, reactions
+from dem.blocks.waves import incoming
 from joints.law import table_of
 
 if TYPE_CHECKING:
@@ -113,6 +114,6 @@ def held_blocks(
         open_sides = [n for n in partition.sides if held.get(n, "free") in ("free", "quiet")]
         patterns.append(reactions(partition, open_sides, scene.prestress))
     rows = np.unique(np.concatenate([quiet.block, *(one.block for one in patterns)]))
-    waves = incoming(scene, field, quiet, impedance) if scene.waves else None
+    waves = incoming(scene, field, quiet, impedance, rows, time)
     sources = Sources(rows, patterns, waves, time)
     return sources, dashpots(quiet, impedance, np.searchsorted(rows, quiet.block), len(rows))

@@ -1,0 +1,104 @@
+"""Waves that enter through quiet sides, as forces on the blocks there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from cases.incident import FaceTractions, FreeField, IncidentField, enters, tractions
+from cases.loads import LoadHistory, Step
+from dem.blocks.edges import EdgePoints, gathered, on_rows, resultant
+
+if TYPE_CHECKING:
+    from cases.sampling import Clock
+    from cases.schema.rock_mass import RockMass
+
+#: Samples of a field in a period of a pulse, where it is not evaluated at every step.
+IN_A_PERIOD = 200
+
+
+class Delayed:
+    """Forces on points that share a history, each later by a time of its own.
+
+    row : of each point [m]. sums : what a unit does there as `edges.gathered` has it [m, 6].
+    history : with a mean over each step. late : s [m].
+    """
+
+    def __init__(
+        self, row: np.ndarray, sums: np.ndarray, history: LoadHistory, late: np.ndarray
+    ) -> None:
+        self.row, self.sums_of, self.history, self.late = row, sums, history, late
+        self.forces_of = resultant(sums)
+
+    def sums(self, steps: np.ndarray, dt: float, count: int) -> np.ndarray:
+        """Return what acts in steps [n] of dt, s, on each of so many rows [n, count, 6]."""
+        here = dt * steps[:, None] - self.late
+        mean = (self.history.impulse(here + dt / 2) - self.history.impulse(here - dt / 2)) / dt
+        return on_rows(mean[..., None] * self.sums_of, self.row, count)
+
+    def drive(self, first: int, last: int, dt: float, count: int) -> np.ndarray:
+        """Return forces and moments in the steps first .. last - 1 [n, count, 3]."""
+        from scipy.sparse import csr_array
+
+        edges = dt * (np.arange(first, last + 1) - 0.5)
+        mean = np.diff(self.history.impulse(edges - self.late[:, None]), axis=1) / dt
+        place = 3 * self.row[:, None] + np.arange(3)
+        point = np.repeat(np.arange(len(self.row)), 3)
+        shape = 3 * count, len(self.row)
+        matrix = csr_array((self.forces_of.ravel(), (place.ravel(), point)), shape=shape)
+        return np.ascontiguousarray((matrix @ mean).T).reshape(-1, count, 3)
+
+
+class Sampled(NamedTuple):
+    """What a field does on rows, at samples close enough to be interpolated [s, h, 6]."""
+
+    over_time: FaceTractions
+
+    def sums(self, steps: np.ndarray, dt: float, count: int) -> np.ndarray:
+        """Return what acts in equally spaced steps [n] of dt, s [n, h, 6]."""
+        return self.over_time.at(dt * steps)
+
+    def drive(self, first: int, last: int, dt: float, count: int) -> np.ndarray:
+        """Return forces and moments in the steps first .. last - 1 [n, h, 3]."""
+        times, values = self.over_time
+        whole = FaceTractions(times, resultant(values))
+        return whole.at(dt * np.arange(first, last))
+
+
+def incoming(
+    scene: RockMass,
+    field: IncidentField,
+    points: EdgePoints,
+    impedance: np.ndarray,
+    rows: np.ndarray,
+    time: Clock,
+) -> list[Delayed | Sampled]:
+    """Return a field at those points of quiet edges that it enters through.
+
+    impedance : of the dashpots there [m, 2], Pa s/m. rows : held blocks [h]. Plane waves are known
+    at every step; another field is asked once, at the samples of a run or more.
+    """
+    enter = enters(field, scene, points.normal)
+    if not enter.any():
+        return []
+    points, impedance = EdgePoints(*(values[enter] for values in points)), impedance[enter]
+    row = np.searchsorted(rows, points.block)
+
+    def sums(field: IncidentField, times: np.ndarray) -> np.ndarray:
+        found = tractions(field, points.place, points.normal, impedance, times).values
+        return gathered(points.arm, found * points.length[:, None])
+
+    if isinstance(field, FreeField):
+        found: list[Delayed | Sampled] = []
+        for wave in field.waves:
+            unit = FreeField((replace(wave, pulse=Step(1.0)),))  # 1 in the end
+            (shape,) = sums(unit, np.array([inf]))
+            found.append(Delayed(row, shape, wave.pulse, wave.lateness(points.place)))
+        return found
+    period = min((one.period for one in scene.waves if one.period), default=inf)
+    interval = min(time.dt * time.stride, period / IN_A_PERIOD)
+    times = interval * np.arange(int(np.ceil(time.dt * time.steps / interval)) + 4)
+    return [Sampled(FaceTractions(times, on_rows(sums(field, times), row, len(rows))))]
