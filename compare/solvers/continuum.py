@@ -50,17 +50,7 @@ def run(
     from continuum import simulate
 
     about: dict[str, Any] = {"progress": progress, "comm": comm, "keeper": keeper}
-    return simulate(scene, model=model, **about, **_incident(scene, model))
-
-
-def _incident(scene: Scene | RockMass, model: str) -> dict[str, Any]:
-    """Return what enters a rock mass; in homogenised rock the waves of the effective medium."""
-    if not isinstance(scene, Scene) and scene.waves and model == "equivalent":
-        from compare.exact.rock_mass.effective_medium import medium_field
-
-        if all(one.spacing for one in scene.joint_sets):
-            return {"incident": medium_field(scene)}
-    return incident(scene)
+    return simulate(scene, model=model, **about, incident=incident(scene))
 
 
 def prepare(scene: Scene, model: str) -> Prepared:

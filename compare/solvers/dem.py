@@ -9,6 +9,7 @@ from cases.material.rigid_blocks import against
 from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 from cases.size import estimates
+from compare.solvers.incident import incident
 from compare.solvers.record import (
     BLOCKS,
     YES,
@@ -25,7 +26,6 @@ from compare.solvers.record import (
 if TYPE_CHECKING:
     import xarray as xr
 
-    from cases.incident import IncidentField
     from results.dataset import Fields
 
 
@@ -33,14 +33,14 @@ def run(scene: Scene | RockMass, progress=None, comm=None, keeper=None) -> xr.Da
     """Return the result of a scene; `comm` is unused, one process runs it."""
     from dem import simulate
 
-    return simulate(scene, progress, keeper, _incident(scene))
+    return simulate(scene, progress, keeper, incident(scene))
 
 
 def run_fields(scene: Scene | RockMass, progress=None, comm=None, keeper=None) -> Fields:
     """Return the result as plain arrays, without importing xarray."""
     from dem import simulate_fields
 
-    return simulate_fields(scene, progress, keeper, _incident(scene))
+    return simulate_fields(scene, progress, keeper, incident(scene))
 
 
 def prepare(scene: Scene | RockMass) -> Prepared:
@@ -60,15 +60,6 @@ def applies(scene: Scene | RockMass) -> Answer:
     """Return whether a scene has blocks that can be rigid."""
     reason = None if isinstance(scene, Scene) else against(scene)
     return no(f"numerics.dem.block {reason}") if reason else YES
-
-
-def _incident(scene: Scene | RockMass) -> IncidentField | None:
-    """Return the field that enters a rock mass through its quiet sides; None of a pillar."""
-    if isinstance(scene, Scene):
-        return None
-    from compare.exact.rock_mass.field import field_of
-
-    return field_of(scene)
 
 
 def _in_plane(scene: RockMass):

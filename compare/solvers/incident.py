@@ -1,19 +1,24 @@
-"""The waves of a rock mass as an engine takes them: with all that is known of their joints."""
+"""The waves of a rock mass as an engine takes them: with all that is known of their joints.
+
+All engines take the same, homogenised rock included: where joints are parallel its waves come from
+the intact rock in front of the joints, as theirs do, and the distance between them is their own.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from cases.schema.scene import Scene
 
 if TYPE_CHECKING:
+    from cases.incident import IncidentField
     from cases.schema.rock_mass import RockMass
 
 
-def incident(scene: Scene | RockMass) -> dict[str, Any]:
-    """Return the argument `incident` of an engine's run; none for a scene without waves."""
+def incident(scene: Scene | RockMass) -> IncidentField | None:
+    """Return what enters a rock mass through its quiet sides; None for a scene without waves."""
     if isinstance(scene, Scene) or not scene.waves:
-        return {}
+        return None
     from compare.exact.rock_mass.field import field_of
 
-    return {"incident": field_of(scene)}
+    return field_of(scene)

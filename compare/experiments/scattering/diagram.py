@@ -36,7 +36,8 @@ def draw(name: str, rows: list[JointsRow]) -> Figure:
             of_kind = [row for row in done if row.incidence == kind]
             _draw_moduli(axes[k, 0], of_kind, solvers, kind, f"{name}-{k}")
             _draw_cost(axes[k, 1], of_kind, solvers)
-        entries = dict(zip(*axes[0, 0].get_legend_handles_labels()[::-1], strict=True))
+        found = zip(*axes[0, 0].get_legend_handles_labels()[::-1], strict=True)
+        entries = dict(sorted(found, key=lambda entry: not entry[0].startswith("|")))
         figure.legend(entries.values(), entries, loc="outside upper center", ncols=4, frameon=False)
         axes[-1, 0].set_xlabel(AXES[name])
         axes[-1, 1].set_xlabel("CPU seconds of a run")

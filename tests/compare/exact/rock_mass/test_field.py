@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from cases.incident import FreeField, free_field
+from compare.engines import solver
 from compare.exact.rock_mass.field import StackField, field_of
 from compare.exact.rock_mass.stack import stack_of
 from compare.exact.rock_mass.stack_waves import motion_at
@@ -62,3 +63,22 @@ def test_crossing_joints_and_those_that_slip_scatter_otherwise(rock_mass, joint)
     crossed = rock_mass(joint_sets=[joint(), joint(name="other", dip=80.0)])
     slips = rock_mass(joint_sets=[joint(friction_angle=30.0)])
     assert not field_of(crossed).whole and not field_of(slips).whole
+
+
+@pytest.mark.parametrize(
+    "package, name",
+    [("dem", "dem"), ("continuum", "continuum-jointed"), ("continuum", "continuum-equivalent")],
+)
+def test_all_engines_take_it(rock_mass, joint, monkeypatch, package, name):
+    """Homogenised rock, too: its waves come from the rock in front of parallel joints."""
+    taken = {}
+
+    def simulate(*arguments, **named):
+        taken["incident"] = named.get("incident", arguments[-1])
+        return taken
+
+    monkeypatch.setattr(f"{package}.simulate", simulate)
+    spaced = rock_mass(joint_sets=[joint(spacing=6.0)])
+    assert solver(name).run(spaced) is taken and isinstance(taken["incident"], StackField)
+    solver(name).run(rock_mass(waves=[]))
+    assert taken["incident"] is None
