@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from cases.kinds import AnyScene
     from cases.material.calibrate import Properties
-    from cases.schema.scene import Scene
     from compare.experiments.fit.result import Fit
     from compare.experiments.planner.planner import Plan
     from compare.misfit.external import Curves
@@ -79,11 +78,12 @@ def shipped() -> list[str]:
     return names()
 
 
-def properties(scene: Scene) -> Properties:
+def properties(scene: AnyScene) -> Properties:
     """Return what follows from a scene: stiffnesses, speeds, impedance, damping, of every joint."""
+    from cases.kinds import pillar_of
     from cases.material.calibrate import calibrate
 
-    return calibrate(scene)
+    return calibrate(pillar_of(scene, "jointwave.properties"))
 
 
 def solvers(scene: AnyScene) -> dict[str, str]:
@@ -142,7 +142,7 @@ def read_curves(files: Sequence[str], scenes: Sequence[AnyScene]) -> list[Curves
 
 
 def fit(
-    scene: Scene,
+    scene: AnyScene,
     curves: Sequence[Curves],
     free: Sequence[str],
     solver: str | None = None,
@@ -155,22 +155,24 @@ def fit(
 
     Raises SceneError for what cannot be fitted, StoppedError where the search does not converge.
     """
+    from cases.kinds import pillar_of
     from compare.experiments.fit import fit as fitting
 
-    return fitting.fit(scene, curves, free, solver, progress)
+    return fitting.fit(pillar_of(scene, "jointwave.fit"), curves, free, solver, progress)
 
 
 def plan(
-    scene: Scene, misfit: float, seconds: float | None = None, progress: Progress | None = None
+    scene: AnyScene, misfit: float, seconds: float | None = None, progress: Progress | None = None
 ) -> Plan:
     """Return the cheapest engine, elements and step within a misfit, numerical and modelling error
     together, run; seconds : instead the best within so many of stepping.
 
     Raises SceneError where nothing exact is known of the scene, and no run converges in reach.
     """
+    from cases.kinds import pillar_of
     from compare.experiments.planner import planner
 
-    return planner.plan(scene, misfit, seconds, progress)
+    return planner.plan(pillar_of(scene, "jointwave.plan"), misfit, seconds, progress)
 
 
 def figure(

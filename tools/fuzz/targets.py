@@ -24,7 +24,9 @@ from cases.effects import active_effects, is_spatial
 from cases.errors import SceneError, UnstableError
 from cases.loads import Recorded, load_history, step_means
 from cases.material.calibrate import calibrate
+from cases.partition.scene import partition_bytes, partition_of
 from cases.schema.history import History
+from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 from cases.warnings import warnings
 from compare.cli import program
@@ -38,6 +40,7 @@ SECONDS = 5  # of the processor, for one input
 MEMORY = "0.2"  # GB that a run may take here
 LONGEST = 2000  # characters of a message
 TINY = 20_000  # block steps of a run
+TINY_PARTITION = 1e6  # bytes of a rock mass that is cut
 FREE = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
 #: What the paper's own pillar calls for: nothing else is compiled here.
 PLAIN = ["energy ledger"]
@@ -79,10 +82,13 @@ def scene(data: bytes, folder: Path) -> str:
     return _asked(work)
 
 
-def _examine(one: Scene) -> None:
-    calibrate(one)
+def _examine(one: Scene | RockMass) -> None:
     warnings(one)
     scene_hash(one)
+    if not isinstance(one, Scene):
+        _examine_rock_mass(one)
+        return
+    calibrate(one)
     step_means(load_history(one), one.interval, 4)
     answers = {name: applies(name, one) for name in names()}
     _refuse_large_rock(one, [n for n in answers if n.startswith("continuum") and answers[n]])
@@ -91,6 +97,14 @@ def _examine(one: Scene) -> None:
         from dem import simulate_fields
 
         simulate_fields(one)
+
+
+def _examine_rock_mass(one: RockMass) -> None:
+    """Ask what solves it, and cut it where that takes little."""
+    for name in names():
+        applies(name, one)
+    if partition_bytes(one) <= TINY_PARTITION:
+        partition_of(one)
 
 
 def _steps(one: Scene) -> int:

@@ -272,6 +272,10 @@ def test_the_python_interface_reads_and_solves_it(jointwave_says):
     found = jointwave.simulate(scene, "oblique-joint")
     assert jointwave.misfit(found, found) == 0
     assert [one.name for one in jointwave.load_variants("mass.toml")] == ["", "bonded", "shifted"]
+    with pytest.raises(jointwave.SceneError, match=r"jointwave\.properties takes pillars alone"):
+        jointwave.properties(scene)
+    with pytest.raises(jointwave.SceneError, match=r"jointwave\.plan takes pillars alone"):
+        jointwave.plan(scene, 0.01)
 
 
 def test_variants_are_completed(jointwave_says):

@@ -254,10 +254,10 @@ def test_every_number_of_a_scene_is_free_or_refused(scene):
 
 
 def test_scene_is_written_as_it_is_read(tmp_path):
-    """Every shipped scene and variant, by its own numbers."""
+    """Every shipped pillar and variant, by its own numbers."""
     for path in shipped():
         for scene in cases.load(path):
-            if scene.load.file is None:
+            if scene.kind == "pillar" and scene.load.file is None:
                 (tmp_path / "scene.toml").write_text(scene_text(scene), "utf-8")
                 (again,) = cases.load(tmp_path / "scene.toml")
                 assert again.model_dump() == {**scene.model_dump(), "name": ""}
