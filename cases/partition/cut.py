@@ -43,7 +43,8 @@ def cut(domain: Domain, sets: Sequence[JointSet], further: Sequence[JointSet] = 
     sub = taken_out(sub, outline.taken, outline.tolerance)
     if domain.non_convex == "refuse":
         check_convex(sub, outline.taken)
-    sub, rings = _without_slivers(sub, domain, [*sets, *further], bool(further), outline.tolerance)
+    kept = len(sets) if further else None
+    sub, rings = _without_slivers(sub, domain, [*sets, *further], kept, outline.tolerance)
     return _partition(*assemble.ordered(sub, rings), outline, sets, len(domain.openings))
 
 
@@ -57,14 +58,17 @@ def least_width(domain: Domain, sets: Sequence[JointSet], thin: float = THIN) ->
 
 
 def _without_slivers(
-    sub: Subdivision, domain: Domain, sets: Sequence[JointSet], lattice: bool, tolerance: float
+    sub: Subdivision, domain: Domain, sets: Sequence[JointSet], kept: int | None, tolerance: float
 ) -> tuple[Subdivision, assemble.Rings]:
     """Return a subdivision without slivers, and its outlines; of a lattice without thin blocks at
-    its sides, as far as they can be joined to others: they would decide the step."""
-    for thin in LATTICE if lattice and domain.least_width is None else (THIN,):
+    its sides, as far as they can be joined to others: they would decide the step.
+
+    kept : how many of the sets, the first ones, are the joints of a lattice; None without one.
+    """
+    for thin in LATTICE if kept is not None and domain.least_width is None else (THIN,):
         limits = (least_width(domain, sets, thin), domain.least_angle)
         try:
-            return without_slivers(sub, limits, domain.slivers == "merge", tolerance)
+            return without_slivers(sub, limits, domain.slivers == "merge", tolerance, kept or 0)
         except Sliver:
             if thin == THIN:
                 raise

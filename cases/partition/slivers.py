@@ -14,13 +14,14 @@ Limits = tuple[float, float]  # least width, m, and least angle, degrees
 
 
 def without_slivers(
-    sub: Subdivision, limits: Limits, joins: bool, tolerance: float
+    sub: Subdivision, limits: Limits, joins: bool, tolerance: float, kept: int = 0
 ) -> tuple[Subdivision, Rings]:
     """Return a subdivision without blocks thinner or more pointed than the limits, and its
     outlines.
 
     joins : each is joined to the neighbour along its longest side with which it is convex; else,
-    and where there is none, it is refused. Raises Sliver.
+    and where there is none, it is refused. kept : joint sets, the first ones, that a sliver is
+    joined across only where it fits no other neighbour. Raises Sliver.
     """
     while True:
         found = rings(sub)
@@ -29,7 +30,7 @@ def without_slivers(
             return sub, found
         if not joins:
             raise _refusal(found, int(thin[0]), limits, "")
-        sub = _joined_to_neighbours(sub, found, thin, limits, tolerance)
+        sub = _joined_to_neighbours(sub, found, thin, limits, tolerance, kept)
 
 
 def _slivers(found: Rings, limits: Limits) -> np.ndarray:
@@ -40,13 +41,13 @@ def _slivers(found: Rings, limits: Limits) -> np.ndarray:
 
 
 def _joined_to_neighbours(
-    sub: Subdivision, found: Rings, thin: np.ndarray, limits: Limits, tolerance: float
+    sub: Subdivision, found: Rings, thin: np.ndarray, limits: Limits, tolerance: float, kept: int
 ) -> Subdivision:
     """Return a subdivision with slivers joined, of those that touch only one at a time."""
     root, used = np.arange(sub.count), np.zeros(sub.count, bool)
     place = np.full(sub.count, -1)
     place[found.cell] = np.arange(len(found.cell))
-    beside = _neighbours(sub, found.cell[thin])
+    beside = _neighbours(sub, found.cell[thin], kept)
     for one in thin:
         cell, own = int(found.cell[one]), _corners(found, int(one))
         near = beside[cell]
@@ -65,17 +66,23 @@ def _joined_to_neighbours(
     return joined(sub, root)
 
 
-def _neighbours(sub: Subdivision, cells: np.ndarray) -> dict[int, list[int]]:
-    """Return the cells beside each of some, that along the longest side first."""
+def _neighbours(sub: Subdivision, cells: np.ndarray, kept: int) -> dict[int, list[int]]:
+    """Return the cells beside each of some, that along the longest side first, but those beyond
+    joints of the first `kept` sets last."""
     half = sub.halves(np.isin(sub.cells, cells).any(axis=1))
     length = np.hypot(*(sub.points[half.end] - sub.points[half.start]).T)
+    of_set = sub.joint_set[sub.line[half.edge]]
+    joint = (of_set >= 0) & (of_set < kept)
     beside: dict[int, dict[int, float]] = {int(cell): {} for cell in cells}
-    for cell, other, part in zip(half.cell, half.across, length, strict=True):
+    beyond: dict[int, set[int]] = {int(cell): set() for cell in cells}
+    for cell, other, part, last in zip(half.cell, half.across, length, joint, strict=True):
         if int(cell) in beside and other != OUTSIDE:
             shared = beside[int(cell)]
             shared[int(other)] = shared.get(int(other), 0.0) + part
+            if last:
+                beyond[int(cell)].add(int(other))
     return {
-        cell: sorted(shared, key=lambda other: (-shared[other], other))
+        cell: sorted(shared, key=lambda other: (other in beyond[cell], -shared[other], other))
         for cell, shared in beside.items()
     }
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from cases.errors import SceneError
 from cases.incident import IncidentField, free_field
 from cases.material.quiet_sides import impedances
 from cases.sampling import Clock, clock
@@ -87,6 +88,9 @@ def clock_of(blocks: RigidBlocks) -> tuple[Clock, float]:
     be taken and for what would not fit the memory."""
     scene, critical, count = blocks.scene, blocks.critical, blocks.partition.count
     numerics = scene.numerics.dem
+    if numerics.threads not in (None, 1):
+        allowed = "must be 1: rigid blocks of rock masses are stepped by one thread"
+        raise SceneError(scene.where, "numerics.dem.threads", numerics.threads, allowed)
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
     parts = {
         "numerics.dem.block": (OF_BLOCK + OF_POINT * blocks.columns.points) * count,
