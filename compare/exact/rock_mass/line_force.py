@@ -125,10 +125,7 @@ SOLVER = Solver(
     applies=applies,
     run=solve,
     distances={
-        Kind.NUMERICAL: {
-            "continuum-jointed": "elements and time stepping of the rock",
-            "continuum-equivalent": "elements and time stepping of the rock",
-        },
+        Kind.NUMERICAL: {"continuum-jointed": "elements and time stepping of the rock"},
         Kind.MODELLING: {"dem": "rigid instead of deformable blocks"},
     },
 )

@@ -5,7 +5,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cases.incident import plane_wave
+from cases.sampling import sample_times
 from compare.engines import applies, solve
+from compare.exact.plane.oblique_joint import Joint
+from compare.exact.plane.parallel_joints import fields
+from compare.exact.plane.pulse import Pulse
+from compare.exact.rock_mass.stack import stack_of
 
 SPACED = {"spacing": 6.0, "through": [0.0, 3.0]}
 STARTS = "has met a joint before t = 0"
@@ -226,22 +232,57 @@ def test_a_point_on_a_joint_moves_with_the_first_of_its_blocks(rock_mass):
     assert np.abs((above - below) @ axes.T - jump).max() < 1e-5 * size
 
 
-@settings(max_examples=4, derandomize=True)
+def test_unlike_sets_and_scattered_spacings_are_the_formula(rock_mass, joint, wave):
+    """Joints of 1e10 Pa/m every 7 m from x = 0, y = 2 and one of 3e9 Pa/m between two of them, as
+    the wave meets them, to round-off; a scattered set has the offsets of the blocks' contacts."""
+    soft = joint(name="soft", normal_stiffness=3e9, shear_stiffness=2e9)
+    sets = [joint(dip=10.0, spacing=7.0, through=[0.0, 2.0]), soft | {"dip": -170.0}]
+    scene = rock_mass(joint_sets=sets, waves=[wave(direction=[0.28, 0.96])])
+    s, c = np.sin(np.radians(10)), np.cos(np.radians(10))
+    stiff = 2 * c + 7 * np.arange(-1, 4)
+    offsets = np.sort([*stiff, 15 * c - 20 * s])
+    laws = [Joint(1e10, 4e9) if x in stiff else Joint(3e9, 2e9) for x in offsets]
+    assert stack_of(scene).offsets == pytest.approx(offsets, abs=1e-12)
+    incident = plane_wave(scene, scene.waves[0])
+    expected = fields(
+        incident.rock,
+        laws,
+        Pulse("P", [0.28, 0.96], incident.pulse.value),
+        np.zeros(2),
+        np.radians(10),
+        offsets,
+        scene.record.points,
+        sample_times(scene),
+    )
+    found = solve("parallel-joints", scene)
+    off = found.velocity.values.swapaxes(1, 2) - expected.velocity
+    assert np.abs(off).max() < 1e-12 * np.abs(expected.velocity).max()
+    off = found.stress.values.swapaxes(1, 2) + expected.stress
+    assert np.abs(off).max() < 1e-12 * np.abs(expected.stress).max()
+    scattered = rock_mass(joint_sets=[joint(dip=10.0, spacing=7.0, scatter=0.2, seed=3)])
+    apart = np.diff(stack_of(scattered).offsets)
+    assert (apart > 0).all() and np.ptp(apart) > 0.1 and applies("parallel-joints", scattered)
+
+
+@settings(max_examples=5, derandomize=True)
 @given(
     dip=st.floats(-60, 60),
     spacing=st.floats(6, 12),
     zeta=st.sampled_from([0.0, 0.05]),
     angle=st.floats(-20, 20),
     shape=st.sampled_from(["ricker", "sine"]),
+    kind=st.sampled_from("PS"),
 )
-def test_errors_are_bounded(rock_mass, joint, wave, dip, spacing, zeta, angle, shape):
+def test_errors_are_bounded(rock_mass, joint, wave, dip, spacing, zeta, angle, shape, kind):
     """What finer inversions, of four times as many samples, give lies within the sum of bounds."""
     travel = np.radians(dip + 90 + angle)
+    direction = np.array([np.cos(travel), np.sin(travel)])
+    begin = np.array([20.0, 15.0]) - 40 * direction
     tables = {
         "joint_sets": [joint(dip=dip, spacing=spacing, damping_ratio=zeta)],
-        "waves": [wave(shape=shape, direction=[np.cos(travel), np.sin(travel)])],
+        "waves": [wave(shape=shape, kind=kind, direction=[*direction], through=[*begin])],
     }
-    tables["time"] = {"duration": 0.015}
+    tables["time"] = {"duration": 0.02}
     one, other = (
         solve("parallel-joints", rock_mass(**tables, record={"interval": h})) for h in (2e-5, 5e-6)
     )
