@@ -127,5 +127,6 @@ def test_shaken_base_moves_every_node_of_the_face_alike(dim, short):
     for c in range(dim):
         of_direction = np.isin(fixed.freedom, body.freedom(np.arange(len(body.x)), c))
         assert (fixed.direction[of_direction] == (1.0 if dim == 1 else direction[c])).all()
+    assert fixed.step.size == 101  # one for each step up to the last sample, and behind it
     moved = np.cumsum(fixed.step)[49]
     assert moved == pytest.approx(0.1 * 1e-3 / np.pi, rel=1e-12)

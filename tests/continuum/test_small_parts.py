@@ -1,5 +1,6 @@
 """Small parts of the continuum, by numbers worked out by hand."""
 
+import logging
 from math import sqrt
 
 import numpy as np
@@ -80,3 +81,23 @@ def test_quiet_ends_of_a_plane_wave_have_the_impedance_of_rock_that_cannot_widen
         assert found[1] == pytest.approx(sqrt(p.density * confined), rel=1e-14)
         assert found[0] == found[-1 if dim == 3 else 0] == p.shear_impedance
     assert impedances(scene, p, model, 1, 3) == [p.shear_impedance, p.impedance, p.shear_impedance]
+
+
+def test_the_form_compiler_leaves_logging_as_it_was():
+    """Its handlers and its level are taken away again, and what it reports is hidden meanwhile."""
+    pytest.importorskip("dolfinx")
+    from continuum.space.forms import quiet_logging
+
+    root, was = logging.getLogger(), logging.root.manager.disable
+    before = list(root.handlers), root.level
+    logging.disable(5)
+    try:
+        with pytest.raises(RuntimeError), quiet_logging():
+            hidden = not root.isEnabledFor(logging.INFO) and root.isEnabledFor(logging.WARNING)
+            root.addHandler(logging.NullHandler())
+            root.setLevel(before[1] + 1)
+            raise RuntimeError
+        assert hidden and (list(root.handlers), root.level) == before
+        assert logging.root.manager.disable == 5
+    finally:
+        logging.disable(was)

@@ -187,6 +187,25 @@ def test_a_shaken_base_goes_its_way_and_does_all_the_work(implicit, pillar):
     assert np.abs(held - held[0] - work).max() < 1e-9 * work.max()
 
 
+def test_rock_that_falls_carries_nothing(implicit, pillar):
+    """u = g t^2 / 2 and v = g t at every step, without stress beside rho g L."""
+    record = {"stress": [0.3, 1.0], "velocity": [0.2, 2.0], "interval": 1e-4}
+    scene = pillar(
+        pillar__length=2.0,
+        record=record,
+        load={"shape": "step", "amplitude": 0.0},
+        gravity={"direction": [0, 1, 0], "static": False},
+        time__duration=2e-3,
+    )
+    run = implicit(scene, kind="equivalent", dim=1).go()
+    t = 1e-4 * np.arange(run.clock.samples)
+    falls = pytest.approx(np.tile(9.81 * t, (2, 1)), rel=1e-9, abs=1e-12)
+    assert run.samples.velocity == falls
+    assert run.samples.displacement == pytest.approx(np.tile(9.81 * t**2 / 2, (2, 1)), abs=1e-13)
+    weight = run.discrete.properties.density * 9.81 * 2.0
+    assert np.abs(run.samples.stress).max() < 1e-9 * weight
+
+
 def test_rock_stands_under_its_weight_after_one_correction(built):
     """u = rho g (L^2 - (L - s)^2) / 2 E at the height s above the wall, on the nodes of a bar; a
     linear state needs one correction, and none to see that it is one."""
