@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.errors import SceneError
+from cases.errors import SceneError, StoppedError
 from cases.sampling import Clock
 from continuum.build import build_model, discretise
 from continuum.implicit.balance import balance, implicit_matrices
@@ -185,6 +185,29 @@ def test_a_shaken_base_goes_its_way_and_does_all_the_work(implicit, pillar):
     work = run.energy("work")
     assert work.max() > 1e3 * held[0] > 0
     assert np.abs(held - held[0] - work).max() < 1e-9 * work.max()
+
+
+def test_a_step_that_fails_half_way_says_when(implicit, pillar, monkeypatch):
+    """From 3.5 steps on nothing converges: the half that did is not counted again, ten halvings
+    and a 1024th of a step later the run is given up, with the samples at steps 0 and 2."""
+    record = {"stress": [0.5], "velocity": [0.0], "interval": 2e-4}
+    scene = pillar(pillar__length=2.0, record=record, time__duration=2e-3)
+    run = implicit(scene, kind="equivalent", dim=1, stride=2)
+    took, longest = run.implicit.stepper.step, []
+
+    def step(now, trial, n, share, halvings):
+        outcome = took(now, trial, n, share, halvings)
+        fails = n + share > 3.5
+        longest.append((n + share, halvings))
+        return outcome._replace(converged=False) if fails else outcome
+
+    monkeypatch.setattr(run.implicit.stepper, "step", step)
+    with pytest.raises(StoppedError, match=r"do not converge at t = 0\.00035 s") as error:
+        run.go()
+    assert error.value.samples == 2
+    assert run.implicit.counts.tolist() == [10, 3]
+    assert longest[3:5] == [(4.0, 0), (3.5, 1)]
+    assert longest[-1] == (3.5 + 2.0**-10, 10)
 
 
 def test_rock_that_falls_carries_nothing(implicit, pillar):
