@@ -13,10 +13,14 @@ from compare.cli.options import (
     SetOption,
     StrictOption,
     app,
+    load,
     load_pillars,
 )
 
 if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+    from compare.figures.animation.frame import Frame
+    from compare.figures.animation.plane import PlaneFrame
     from compare.figures.animation.snapshots import SceneSnapshots
     from compare.figures.animation.view_settings import ViewSettings
 
@@ -52,28 +56,45 @@ def animate(
     from compare.cli import terminal
     from compare.figures.animation import video
 
-    (one,) = load_pillars(scene, changes, variant, strict, "jointwave animate")
+    (one,) = load(scene, changes, variant, strict)
     path = out or Path(f"{_name(scene, one)}.mp4")
     video.refuse(path, frames)
-    simulated, settings = _simulate(one, frames, scale)
+    simulated = _taken(one, frames)
     with terminal.progress("pictures") as advance:
-        from compare.figures.animation.frame import Frame
-
-        frame = Frame(simulated, settings, video.DOTS[path.suffix])
+        frame = _frame(simulated, scale, video.DOTS[path.suffix])
         video.write_video(path, frame.image, frames, seconds, advance)
-    _show(path, simulated, settings.scale, as_json)
+    _show(path, simulated, frame.scale, as_json)
+
+
+def _frame(simulated: "SceneSnapshots", scale: float | None, dots: int) -> "Frame | PlaneFrame":
+    """Return what draws each instant of a scene of either kind."""
+    if not isinstance(simulated.scene, Scene):
+        from compare.figures.animation.plane import PlaneFrame
+
+        return PlaneFrame(simulated, scale, dots)
+    from compare.figures.animation.frame import Frame
+    from compare.figures.animation.view_settings import settings_for
+
+    settings = settings_for(simulated.scene, simulated.found, scale)
+    return Frame(simulated, settings, dots)
+
+
+def _taken(scene: "AnyScene", count: int) -> "SceneSnapshots":
+    """Return so many snapshots of both engines."""
+    from compare.cli import terminal
+    from compare.figures.animation.snapshots import take
+
+    with terminal.progress("both engines") as advance:
+        return take(scene, count, advance)
 
 
 def _simulate(
     scene: Scene, count: int, scale: float | None
 ) -> tuple["SceneSnapshots", "ViewSettings"]:
-    """Return so many snapshots of both engines, and how they are drawn."""
-    from compare.cli import terminal
-    from compare.figures.animation.snapshots import take
+    """Return so many snapshots of a pillar by both engines, and how they are drawn."""
     from compare.figures.animation.view_settings import settings_for
 
-    with terminal.progress("both engines") as advance:
-        simulated = take(scene, count, advance)
+    simulated = _taken(scene, count)
     return simulated, settings_for(simulated.scene, simulated.found, scale)
 
 
@@ -82,7 +103,7 @@ def _require_positive(key: str, value: float | None) -> None:
         raise SceneError(key, "", None, f"must be a positive number, not {value:g}")
 
 
-def _name(scene: str, one: Scene) -> str:
+def _name(scene: str, one: "AnyScene") -> str:
     """Return what a scene's files are called where the user does not say."""
     return "-".join([Path(scene).stem, *one.name.split()])
 

@@ -41,7 +41,7 @@ class Frame:
     """The picture of every instant, as pixels; what does not move is drawn once."""
 
     def __init__(self, simulated: SceneSnapshots, settings: ViewSettings, dots: int = 100) -> None:
-        self.simulated, self.settings = simulated, settings
+        self.simulated, self.settings, self.scale = simulated, settings, settings.scale
         side = simulated.scene.pillar.side
         self.waves = {name: Wave(s, settings, side) for name, s in simulated.found.items()}
         self.time = simulated.time

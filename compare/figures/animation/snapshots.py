@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import ceil
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cases.errors import SceneError
 from cases.schema.consistency import checked
@@ -18,15 +18,18 @@ if TYPE_CHECKING:
     import numpy as np
     import xarray as xr
 
+    from cases.kinds import AnyScene
+
 
 class SceneSnapshots(NamedTuple):
     """One scene as each engine sees it.
 
-    scene : with the instants in its record. found : by engine, all at the same instants.
-    reasons : by engine, why one has none. results : by engine, with the waveforms as recorded.
+    scene : of either kind, with the instants in its record. found : by engine, all at the same
+    instants. reasons : by engine, why one has none. results : by engine, with the waveforms as
+    recorded.
     """
 
-    scene: Scene
+    scene: Any
     found: dict[str, Snapshots]
     reasons: dict[str, str]
     results: dict[str, xr.Dataset]
@@ -47,7 +50,7 @@ class SceneSnapshots(NamedTuple):
         return [f"{name} does not apply: {why}" for name, why in self.reasons.items()]
 
 
-def at_instants(scene: Scene, count: int) -> Scene:
+def at_instants(scene: AnyScene, count: int) -> AnyScene:
     """Return the scene with `count` snapshots, the first at t = 0 and the last at its end.
 
     The waveforms are sampled at least as often as before.
@@ -55,7 +58,8 @@ def at_instants(scene: Scene, count: int) -> Scene:
     between = scene.time.duration / (count - 1)
     interval = between / max(1, ceil(between / scene.interval - 1e-9))
     changes = {"fields": between, "interval": interval}
-    return checked(scene.model_copy(update={"record": scene.record.model_copy(update=changes)}))
+    found = scene.model_copy(update={"record": scene.record.model_copy(update=changes)})
+    return checked(found) if isinstance(found, Scene) else found
 
 
 def until(scene: Scene, time: float) -> Scene:
@@ -63,27 +67,32 @@ def until(scene: Scene, time: float) -> Scene:
     return checked(scene.model_copy(update={"time": Time(duration=time)}))
 
 
-def take(scene: Scene, count: int, progress: Progress | None = None) -> SceneSnapshots:
+def take(scene: AnyScene, count: int, progress: Progress | None = None) -> SceneSnapshots:
     """Simulate a scene with both engines and return `count` snapshots of each.
 
     Their stress is that of the motion, less the static state. The rock is jointed where that
-    applies, else homogenised. Raises SceneError and UnstableError as the engines do.
+    applies, else homogenised. Raises SceneError and UnstableError as the engines do, and SceneError
+    where none applies.
     """
     if count < 2:
         raise SceneError("snapshots", "", count, "must be at least 2")
-    asked, chosen, reasons = at_instants(scene, count), [DEM.name], {}
-    for name in [engine for engine in ENGINES if engine != DEM.name]:
-        answer = applies(name, asked)
-        if answer:
-            chosen.append(name)
-            break
-        reasons[name] = answer.reason
+    asked, chosen, reasons = at_instants(scene, count), list[str](), {}
+    for names in ([DEM.name], [engine for engine in ENGINES if engine != DEM.name]):
+        for name in names:
+            if answer := applies(name, asked):
+                chosen.append(name)
+                break
+            reasons[name] = answer.reason
+    if not chosen:
+        why = "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
+        raise SceneError(scene.where, "", None, f"no engine has snapshots of it: {why}")
     found, results = {}, {}
     for i, name in enumerate(chosen):
         result = solve(name, asked, _part(progress, i, len(chosen)))
         taken = snapshots_of(result)
-        assert taken is not None and taken.stress is not None
-        found[name] = taken._replace(stress=_less_static(result, taken.stress))
+        assert taken is not None
+        stress = None if taken.stress is None else _less_static(result, taken.stress)
+        found[name] = taken._replace(stress=stress)
         results[name] = result[[q for q in UNITS if q in result]]
     return SceneSnapshots(asked, found, {} if len(found) > 1 else reasons, results)
 

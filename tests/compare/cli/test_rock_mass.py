@@ -88,7 +88,6 @@ PILLARS_ALONE = {
     "fit joint.toml --free rock.density --with curve.csv": "jointwave fit",
     "plan joint.toml --misfit 0.01": "jointwave plan",
     "effects joint.toml": "jointwave effects",
-    "animate joint.toml": "jointwave animate",
     "view joint.toml": "jointwave view",
 }
 
