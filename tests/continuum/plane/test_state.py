@@ -1,0 +1,146 @@
+"""What acts on a rock mass, and the state that it starts from, without a step."""
+
+import numpy as np
+import pytest
+
+from cases.errors import SceneError
+from continuum import applies, simulate
+from continuum.explicit.march import readings
+from continuum.implicit.balance import balance, implicit_matrices
+from continuum.implicit.static import settle_static
+from continuum.implicit.substeps import UNLOADED
+from continuum.plane.run import run_of
+from results.arrays import copied
+
+STEP = {"shape": "step", "amplitude": 1e6}
+HELD = {"bottom": "fixed"}
+
+
+def forces(run):
+    """Return the force on every freedom of a run's first state, at rest and without its loads."""
+    model = run.model._replace(ends=run.model.ends._replace(driven=None))
+    trial = copied(run.state)
+    tangents = np.zeros((6, run.model.interfaces.area.size))
+    matrices = implicit_matrices(run.discrete.body)
+    balance(model, matrices, run.state, trial, UNLOADED, 0.0, tangents)
+    return trial.force
+
+
+def read(run):
+    """Return what the receivers read of a state: [stress, traction], [points, 3], [joints, 2]."""
+    matrix, added = readings(run.model, run.state)
+    rows = (matrix @ run.state.fields + added)[: run.samples.sections]
+    stress, tractions = np.split(rows, [3 * len(run.scene.record.points)])
+    return stress.reshape(3, -1).T, tractions.reshape(2, -1).T
+
+
+def test_a_prestress_is_in_equilibrium_where_joints_hold_it(rock_mass):
+    # Along the normal (-sin, cos) of 30 degrees of dip and its left: t = P n.
+    scene = rock_mass(
+        [{"dip": 30.0, "through": [3.0, 3.0], "friction_angle": 35.0}],
+        prestress={"xx": 4e6, "yy": 6e6, "xy": 5e5},
+        record={"points": [[2.0, 1.5]], "joints": [[3.0, 3.0]]},
+    )
+    run = run_of(scene, "jointed")
+    P, n, s = np.array([[4e6, 5e5], [5e5, 6e6]]), [-0.5, np.sqrt(0.75)], [-np.sqrt(0.75), -0.5]
+    assert np.abs(forces(run)).max() < 1e-8
+    stress, traction = read(run)
+    assert stress[0] == pytest.approx([4e6, 6e6, 5e5], rel=1e-13)
+    loads = run.model.interfaces.prestress
+    assert np.abs(traction[0] - [P @ n @ n, P @ n @ s]).max() < 1e-6
+    assert loads[0].std() < 1e-6
+
+
+@pytest.mark.parametrize(
+    "stress, keys",
+    [
+        ({"xx": 1e6, "yy": -1e6}, {"tension": False}),
+        ({"xx": 9e6, "yy": 1e6}, {"friction_angle": 20.0}),
+    ],
+)
+def test_a_prestress_that_joints_cannot_carry_is_refused(stress, keys, rock_mass):
+    scene = rock_mass([{"dip": 30.0, "through": [3.0, 3.0], **keys}], prestress=stress)
+    with pytest.raises(SceneError, match="prestress"):
+        run_of(scene, "jointed")
+
+
+def test_rock_at_rest_under_gravity_carries_what_is_above(rock_mass):
+    # Without Poisson's ratio every column stands by itself: sigma_yy = rho g (6 m - y).
+    scene = rock_mass(
+        [{"dip": 0.0, "through": [3.0, 3.0]}],
+        rock={"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.0},
+        gravity={"acceleration": 10.0},
+        boundaries=HELD,
+        record={"points": [[2.0, 1.5], [4.0, 5.0]], "joints": [[3.0, 3.0]]},
+    )
+    run = run_of(scene, "jointed")
+    found = settle_static(scene, run.model, run.state, run.discrete.body)
+    assert found["static_out_of_balance"] < 1e-10
+    stress, traction = read(run)
+    assert stress[:, 1] == pytest.approx([2600 * 10 * 4.5, 2600 * 10 * 1.0], rel=1e-9)
+    assert np.abs(stress[:, [0, 2]]).max() < 1e-6 * 1e5
+    assert traction[0] == pytest.approx([2600 * 10 * 3.0, 0.0], rel=1e-9, abs=1e-4)
+
+
+def drive_of(scene):
+    """Return the forces of the first step, as vectors at the nodes that they act on [n, 2], N/m,
+    and the places of these."""
+    run = run_of(scene, "jointed")
+    driven, body = run.model.ends.driven, run.discrete.body
+    force = np.zeros(body.mass.size)
+    force[driven.freedom] = driven.at(1, 2)[0]
+    return force[body.freedom(np.arange(len(body.x))[:, None], np.arange(2))], body.x
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+def test_a_pressure_on_a_part_of_a_side_has_its_force_and_its_moment(order, rock_mass):
+    load = {"kind": "pressure", "side": "top", "between": [[1.3, 6.0], [4.4, 6.0]], **STEP}
+    scene = rock_mass([{"dip": 90.0, "through": [2.0, 0.0]}], {"order": order}, loads=[load])
+    force, x = drive_of(scene)
+    assert force.sum(axis=0) == pytest.approx([0.0, -3.1e6], rel=1e-12, abs=1e-4)
+    assert (force[:, 1] * x[:, 0]).sum() == pytest.approx(-3.1e6 * 2.85, rel=1e-12)
+
+
+def test_a_pressure_in_an_opening_pushes_it_apart_alike(rock_mass):
+    opening = [[2.0, 2.0], [4.0, 2.0], [4.0, 4.0], [2.0, 4.0]]
+    sets = [{"dip": 0.0, "spacing": 2.0}, {"dip": 90.0, "spacing": 2.0}]
+    load = {"kind": "pressure", "opening": 0, **STEP}
+    domain = {"size": [6.0, 6.0], "openings": [opening]}
+    record = {"points": [[1.0, 1.0]]}
+    force, x = drive_of(rock_mass(sets, domain=domain, loads=[load], record=record))
+    assert np.abs(force.sum(axis=0)).max() < 1e-6
+    assert np.abs(force[x[:, 0] > 4 - 1e-9][:, 0]).sum() == pytest.approx(2e6, rel=1e-12)
+    assert ((x - 3.0) * force).sum() == pytest.approx(8e6, rel=1e-12)
+
+
+def test_a_shaken_side_moves_as_it_is_told(rock_mass):
+    base = {"kind": "base", "side": "bottom", "direction": [0.6, 0.8], "quantity": "velocity"}
+    pulse = {"shape": "sine", "amplitude": 0.1, "period": 1e-3}
+    record = {"points": [[2.0, 0.0]], "interval": 1e-5}
+    scene = rock_mass(loads=[base | pulse], boundaries=HELD, record=record, time={"duration": 2e-3})
+    found = simulate(scene)
+    moved = 0.1 * 1e-3 / (2 * np.pi) * (1 - np.cos(2 * np.pi * np.minimum(found.time, 1e-3) / 1e-3))
+    exact = moved.values[:, None] * [0.6, 0.8]
+    assert np.abs(found.displacement[0] - exact).max() < 1e-12
+    energy = found.energy.values
+    assert np.abs(energy[:-1].sum(axis=0) - energy[-1]).max() < 1e-11 * energy.max()
+
+
+@pytest.mark.parametrize(
+    "joints, changes, reason",
+    [
+        ([{"dip": 30.0, "through": [3.0, 3.0]}], {}, "no joint set has a spacing"),
+        ([{"dip": 30.0, "spacing": 2.0, "friction_angle": 30.0}], {}, "no friction_angle"),
+        ([{"dip": 30.0, "spacing": 2.0}], {"damping": {"local": 0.5}}, "no local damping"),
+    ],
+)
+def test_what_an_effective_medium_cannot_be_is_said(joints, changes, reason, rock_mass):
+    assert reason in applies(rock_mass(joints, **changes), "equivalent")
+
+
+def test_quadrilaterals_where_blocks_have_other_shapes_are_refused(rock_mass):
+    scene = rock_mass([{"dip": 30.0, "through": [3.0, 0.5]}], {"cell": "quadrilateral"})
+    with pytest.raises(SceneError, match=r"numerics.continuum.cell = 'quadrilateral'.*four edges"):
+        run_of(scene, "jointed")
+    with pytest.raises(SceneError, match=r"numerics.continuum.order = 3.*triangles"):
+        run_of(rock_mass([{"dip": 30.0, "through": [3.0, 0.5]}], {"order": 3}), "jointed")
