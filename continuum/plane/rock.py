@@ -77,7 +77,7 @@ def discretise(scene: RockMass, model: str) -> PlaneDiscrete:
     )
     meshed = _mesh(scene, partition, across)
     order = scene.numerics.continuum.order
-    body = build_body(meshed.mesh, order, [rock], MOTION.section)
+    body = build_body(meshed.mesh, order, [rock], MOTION.section, paired=True)
     body = body._replace(piece=meshed.piece)
     found = PlaneDiscrete(resolved, partition, across, meshed.block, [rock], body, None, None)
     if not meshed.mesh.joints.joint.size:

@@ -97,10 +97,12 @@ def build_body(
     section: Section,
     plane_wave: bool = False,
     consistent: bool = False,
+    paired: bool = False,
 ) -> Body:
     """Return the discretised rock of a mesh; `materials` are the rock and the meshed layers.
 
-    plane_wave : whether all nodes of a piece at one height move alike.
+    plane_wave : whether all nodes of a piece at one height move alike. paired : whether a last part
+    that stands once is kept as pairs of rows (`continuum.space.operator`).
     """
     pieces = [discretise(p, mesh.cell, order, materials, section, consistent) for p in mesh.parts]
     numbers = [_heights(p) if plane_wave else np.arange(len(p.x)) for p in pieces]
@@ -133,8 +135,8 @@ def build_body(
         corners=corners,
         material=material,
         piece=piece,
-        stiffness=operator(places, blocks),
-        viscosity=operator(places, dashpots) if dashpots else None,
+        stiffness=operator(places, blocks, paired),
+        viscosity=operator(places, dashpots, paired) if dashpots else None,
         blocks=blocks,
         viscous_blocks=dashpots,
         mass=mass,

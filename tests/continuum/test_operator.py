@@ -150,3 +150,19 @@ def test_an_empty_matrix_gives_zero():
     y = np.ones(where.length)
     multiply(*viscous, np.ones(where.length), y, 1.0)
     assert not y[: 4 * 16].any() and (y[4 * 16 :] == 1.0).all()
+
+
+def test_pairs_of_rows_are_the_same_matrix():
+    """The last part, which stands once, in blocks of 2 x 2 of its upper triangle."""
+    matrices, counts = [symmetric(6), symmetric(10, 1)], [9, 1]
+    numbering = layout(counts, [6, 10])
+    x = np.random.default_rng(1).standard_normal(numbering.length)
+    found, own = [], slice(numbering.offset[-1], numbering.offset[-1] + 10)
+    for paired in (False, True):
+        made, y = operator(numbering, matrices, paired), np.full(numbering.length, np.nan)
+        multiply(*made, x, y, -2.0)
+        found.append(y[own])
+        assert (made.tiles[:, 1] == 0).sum() == paired
+    expected = -2.0 * (matrices[1] @ x[own])
+    for y in found:
+        assert y == pytest.approx(expected, rel=1e-13, abs=1e-13)
