@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 from scipy.sparse import csr_matrix
 
@@ -24,6 +26,9 @@ from results.snapshots import (
 )
 from results.subcells import KINDS, linear_cells
 
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
+
 
 class RockFilm(Film):
     """The rock at every snapshot that a scene asks for; raises SceneError for too many.
@@ -31,7 +36,7 @@ class RockFilm(Film):
     ahead : s, how far the displacements of the state are beyond the step of a sample.
     """
 
-    def __init__(self, scene: Scene, discrete: Discrete, state: State, ahead: float) -> None:
+    def __init__(self, scene: Scene | RockMass, discrete: Any, state: State, ahead: float) -> None:
         body = discrete.body
         self.cell = np.flatnonzero(body.cells[:, 0] >= 0)
         self.nodes, numbers = np.unique(body.cells[self.cell], return_inverse=True)
@@ -43,8 +48,10 @@ class RockFilm(Film):
         self.parts = linear_cells(
             body.mesh.cell, compat.reference_element(body.mesh.cell, body.order).points
         )
-        self.stress = axial_stress(discrete, self.cell, self.parts)
-        self.prestress = scene.prestress.normal if scene.prestress else 0.0
+        self.axial = isinstance(scene, Scene)
+        if isinstance(scene, Scene):
+            self.stress = axial_stress(discrete, self.cell, self.parts)
+            self.prestress = scene.prestress.normal if scene.prestress else 0.0
 
     def shot(self, sample: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return displacement, velocity of the nodes and stress of the cells at this sample, whose
@@ -52,28 +59,34 @@ class RockFilm(Film):
         state = self.state
         u = state.u - self.ahead * state.v
         v = (state.v + state.v_before) / 2
-        return u[self.freedoms], v[self.freedoms], self.stress @ u + self.prestress
+        stress = self.stress @ u + self.prestress if self.axial else np.zeros(0)
+        return u[self.freedoms], v[self.freedoms], stress
 
     def developed(self, result: Fields) -> Fields:
         """Return the run's result with its snapshots, which the first process alone has."""
         body = self.discrete.body
         u, v, stress = (np.stack(column, axis=1) for column in zip(*self.shots, strict=True))
-        of_cells = (stress.reshape(self.cell.size, len(self.parts), -1),)
+        of_cells = (stress.reshape(self.cell.size, len(self.parts), -1),) if self.axial else ()
+        u -= 0.0 if self.axial else u[:, :1]  # of a rock mass it counts from the start
         own = Pieces(self.cell, self.table, of_cells, (body.x[self.nodes], u, v))
         whole = body.communicator.joined(own)
         return result if whole is None else with_snapshots(result, self._of_all(result, whole))
 
     def _of_all(self, result: Fields, whole: Pieces) -> Snapshots:
-        """Return the snapshots of the whole pillar."""
-        (stress,), (x, u, v) = whole.of_cells, whole.of_nodes
+        """Return the snapshots of the whole body."""
+        x, u, v = whole.of_nodes
         cells = whole.table[:, self.parts].reshape(-1, self.parts.shape[1])
-        height = x[cells, axis(x.shape[1])].mean(axis=1)
-        block = np.floor(height / self.discrete.properties.spacing).astype(int)
         time = result.coords["time"][1][:: self.every][: u.shape[1]]
-        u, v, stress = (
+        u, v, *stresses = (
             np.ascontiguousarray(np.moveaxis(a, 1, 0))
-            for a in (u, v, stress.reshape(len(cells), -1))
+            for a in (u, v, *(of.reshape(len(cells), -1) for of in whole.of_cells))
         )
+        stress = stresses[0] if stresses else None
+        if self.axial:
+            height = x[cells, axis(x.shape[1])].mean(axis=1)
+            block = np.floor(height / self.discrete.properties.spacing).astype(int)
+        else:
+            block = np.repeat(self.discrete.block, len(self.parts))
         return snapshots(time, x, KINDS[self.discrete.body.mesh.cell], cells, block, u, v, stress)
 
 

@@ -19,10 +19,18 @@ if TYPE_CHECKING:
 
 
 def impedances(scene: RockMass, normals: np.ndarray) -> np.ndarray:
-    """Return rho a and rho b of the dashpots of sides of outward normals [m, 2]: [m, 2], Pa s/m."""
+    """Return rho a and rho b of the dashpots of sides of outward normals [m, 2]: [m, 2], Pa s/m;
+    as rigid blocks have them."""
+    smeared = scene.numerics.dem.block is None
+    return medium_impedances(scene, normals, smeared)
+
+
+def medium_impedances(scene: RockMass, normals: np.ndarray, smeared: bool = True) -> np.ndarray:
+    """Return the same of the effective medium of all sets that have a spacing; smeared : whether
+    there is one, else of the intact rock."""
     rock, density = elastic_rock(scene.rock), scene.rock.density
     spaced = [one for one in scene.joint_sets if one.spacing]
-    if scene.numerics.dem.block is not None or not spaced or not len(normals):
+    if not smeared or not spaced or not len(normals):
         return np.tile([rock.p_impedance, rock.s_impedance], (len(normals), 1))
     sets = [
         joint_set(

@@ -13,7 +13,8 @@ from scipy.sparse import csr_matrix
 
 from cases.incident import FaceTractions, FreeField, enters, tractions
 from cases.loads import LoadHistory, step_means
-from continuum.plane.sides import SidePoints, impedance
+from cases.material.quiet_sides import medium_impedances
+from continuum.plane.sides import SidePoints
 
 if TYPE_CHECKING:
     from cases.incident import IncidentField
@@ -118,7 +119,7 @@ class Entry:
         self.points = SidePoints(*(part[chosen] for part in points))
         self.freedom = body.freedom(self.points.node[:, None], np.arange(2)).T.ravel()
         self.field, self.duration = field, scene.time.duration
-        self.impedance = np.tile(impedance(scene), (chosen.size, 1))
+        self.impedance = medium_impedances(scene, self.points.normal)
         self.sampled = None if isinstance(field, FreeField) else self._sampled(scene)
 
     def _sampled(self, scene: RockMass) -> FaceTractions:

@@ -1,7 +1,8 @@
 """The sides of a rock mass: where they are in its elements, and what holds or absorbs there.
 
 Quiet sides carry dashpots of rho a along their normal and rho b along themselves (Lysmer &
-Kuhlemeyer, J. Eng. Mech. Div. ASCE 95, 1969), of the intact rock, at the nodes.
+Kuhlemeyer, J. Eng. Mech. Div. ASCE 95, 1969) at the nodes, of the effective medium of the joint
+sets that have a spacing: both models of the rock are as stiff there to long waves.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cases.material.rock import elastic_rock
+from cases.material.quiet_sides import medium_impedances
 from continuum.model import Dashpots, Fixed
 from continuum.space.evaluation import places_in
 from continuum.space.interface import facet_points
@@ -77,20 +78,14 @@ def points_on(body: Body, names: list[str]) -> SidePoints:
     return SidePoints(node[first], normal[first], np.bincount(group.ravel(), weight), x[first])
 
 
-def impedance(scene: RockMass) -> np.ndarray:
-    """Return rho a and rho b of the intact rock [2], Pa s/m."""
-    rock = elastic_rock(scene.rock)
-    return np.array([rock.p_impedance, rock.s_impedance], dtype=float)
-
-
 def dashpots_on(
     scene: RockMass, body: Body, points: SidePoints, fixed: Fixed | None, dt: float
 ) -> Dashpots | None:
     """Return the dashpots of the quiet sides, but where the rock is fixed; None without any."""
     nodes, own = np.unique(points.node, return_inverse=True)
-    Z, n = impedance(scene), points.normal
+    n, Z = points.normal, points.weight[:, None] * medium_impedances(scene, points.normal)
     along = np.einsum("qi,qj->qij", n, n)
-    of_point = points.weight[:, None, None] * (Z[0] * along + Z[1] * (np.eye(2) - along))
+    of_point = Z[:, 0, None, None] * along + Z[:, 1, None, None] * (np.eye(2) - along)
     whole = np.zeros((nodes.size, 2, 2))
     np.add.at(whole, own, of_point)
     freedom = body.freedom(nodes[:, None], np.arange(2))

@@ -18,7 +18,6 @@ def applies(scene: RockMass, model: str = "jointed") -> str:
     bases = [one for one in scene.loads if one.kind == "base"]
     reasons = [
         (scene.damping.local is not None, "the continuum has no local damping"),
-        (scene.record.fields is not None, "the continuum keeps no snapshots of rock masses yet"),
         (len(bases) > 1, "one base alone can be shaken"),
     ]
     if model == "equivalent":

@@ -156,8 +156,8 @@ def multiply_pairs(start, column, value, x, y, factor, first, size):
     for i in range(2 * size):
         y[i] = 0.0
     for r in range(size):
-        i = np.uint64(2 * r)
-        a, b = x[i], x[i + ONE]
+        row = np.uint64(2 * r)
+        a, b = x[row], x[row + ONE]
         k, end = np.uint64(start[first + r]), np.uint64(start[first + r + 1])
         v = begin + FOUR * (k - begin)
         # Two sums for each row: in one, every addition would wait for the last.
@@ -173,8 +173,8 @@ def multiply_pairs(start, column, value, x, y, factor, first, size):
             q += yy * x[c + ONE]
             y[c] += factor * (xx * a + yx * b)
             y[c + ONE] += factor * (xy * a + yy * b)
-        y[i] += factor * (s + p)
-        y[i + ONE] += factor * (t + q)
+        y[row] += factor * (s + p)
+        y[row + ONE] += factor * (t + q)
 
 
 @jitted

@@ -9,8 +9,8 @@ import numpy as np
 from cases.loads import history_of
 from cases.partition.blocks import Partition
 from cases.partition.locate import block_at
+from cases.partition.parts import loaded_part
 from dem.blocks.edges import gathered, on_rows, points_on, resultant
-from dem.blocks.parts import loaded_part
 from dem.blocks.waves import Delayed, Sampled
 
 if TYPE_CHECKING:

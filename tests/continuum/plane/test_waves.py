@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from cases.errors import UnstableError
 from compare.exact.rock_mass.effective_medium import medium_field
 from compare.exact.rock_mass.field import field_of
 from compare.exact.rock_mass.line_force import SOLVER as LINE_FORCE
@@ -120,3 +121,36 @@ def test_a_force_at_a_point_moves_the_rock_as_a_line_force_does(struck):
     found, exact = simulate(scene), LINE_FORCE.run(scene)
     for name in ("velocity", "displacement"):
         assert misfit(found[name].values, exact[name].values).max() < 1e-2
+
+
+def test_snapshots_hold_what_receivers_record(struck):
+    record = {"points": [[0.0, 0.0], [20.0, 20.0]], "fields": 2e-3, "interval": 2.5e-5}
+    scene = struck(record=record)
+    found = simulate(scene, incident=field_of(scene))
+    every = round(2e-3 / 2.5e-5)
+    for name in ("displacement", "velocity"):
+        for place, waves in zip(scene.record.points, found[name].values, strict=True):
+            node = np.abs(found.field_points.values[:, :2] - place).sum(axis=1).argmin()
+            shots = found[f"field_{name}"].values[:, node, :2]
+            size = np.abs(found[name]).max()
+            assert np.abs(shots - waves[::every]).max() < 1e-13 * size
+    assert set(found.field_block.values) == {0, 1}
+
+
+def test_steps_above_the_critical_one_are_caught(struck):
+    above = {"size": 2.5, "step_fraction": 1.05, "allow_unstable": True}
+    record = {"points": [[10.0, 5.0]], "interval": 1e-4}
+    scene = struck(continuum=above, record=record, time={"duration": 0.05})
+    with pytest.raises(UnstableError, match=r"the step is 1\.\d+ times the critical step"):
+        simulate(scene)
+
+
+def test_implicit_steps_agree_with_explicit_ones(struck):
+    """Both of second order in time: at 400 steps a period by the trapezoidal rule."""
+    implicit = {"scheme": "implicit", "steps_per_period": 400, "spectral_radius": 1.0}
+    one, other = (
+        simulate(struck(continuum={"size": 2.5, **keys}, time={"duration": 8e-3}))
+        for keys in ({}, implicit)
+    )
+    assert misfit(other.velocity.values, one.velocity.values).max() < 3e-3
+    assert gap_of_ledger(other) < 1e-10

@@ -10,6 +10,7 @@ from cases.partition.blocks import Partition
 from cases.partition.outline import outline_of
 
 if TYPE_CHECKING:
+    from cases.schema.domain import Domain
     from cases.schema.rock_mass import RockMass
     from cases.schema.sources import PlaneLoad
 
@@ -26,30 +27,37 @@ def loaded_part(
     Of an opening the part from the first point to the second is that counter-clockwise around it.
     """
     edges, name = partition.boundary, load.side or f"opening {load.opening}"
-    chosen = edges.side == partition.sides.index(name)
-    whole = np.tile([0.0, 1.0], (len(chosen), 1))
+    chosen = np.flatnonzero(edges.side == partition.sides.index(name))
+    part = np.zeros((len(edges), 2))
+    part[chosen] = covered(scene.domain, load, edges.start[chosen], edges.end[chosen])
+    return part[:, 1] > part[:, 0], part
+
+
+def covered(domain: Domain, load: PlaneLoad, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
+    """Return from where to where, of its length, a pressure acts on each edge of its side or its
+    opening, [n, 2]; both 0 where it does not. starts, ends : float arrays [n, 2], m."""
     if load.between is None:
-        return chosen, whole
-    outline = outline_of(scene.domain)
+        return np.tile([0.0, 1.0], (len(starts), 1))
+    outline = outline_of(domain)
     lines = outline.edges(load.side, load.opening)
     active = _segments(lines, np.array(load.between), load.opening is not None)
-    part, tolerance = np.zeros((len(chosen), 2)), BESIDE * outline.size
+    part, tolerance = np.zeros((len(starts), 2)), BESIDE * outline.size
     for start, end in active:
         length = float(np.hypot(*(end - start)))
         along = (end - start) / length
         if length <= tolerance:
             continue
         s, off = [], []
-        for points in (edges.start, edges.end):
+        for points in (starts, ends):
             s.append((points - start) @ along)
             off.append(np.abs((points - start) @ [-along[1], along[0]]))
-        beside = chosen & (np.maximum(*off) <= tolerance)
+        beside = np.maximum(*off) <= tolerance
         low, high = np.maximum(np.minimum(*s), 0.0), np.minimum(np.maximum(*s), length)
         meets = beside & (high - low > tolerance)
         span = np.where(meets, s[1] - s[0], 1.0)
-        ends = np.sort(np.stack([(low - s[0]) / span, (high - s[0]) / span], axis=1), axis=1)
-        part[meets] = ends[meets]
-    return part[:, 1] > part[:, 0], part
+        place = np.sort(np.stack([(low - s[0]) / span, (high - s[0]) / span], axis=1), axis=1)
+        part[meets] = place[meets]
+    return part
 
 
 def _segments(
