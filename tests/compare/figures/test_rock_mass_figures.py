@@ -1,0 +1,90 @@
+"""All pictures of a rock mass: a panel for each component that moves at each receiver."""
+
+import pytest
+
+from cases.read import load_tables
+from compare.figures.scene_figures import figures_of
+from compare.figures.subplots import curve_table, panels
+from compare.misfit.pairs import measure
+from compare.report.tables import distance_frame, misfit_table
+
+TABLES = {
+    "title": "one joint",
+    "domain": {"size": [20.0, 20.0]},
+    "rock": {"density": 2600.0, "intact_modulus": 5e10},
+    "joint_sets": [
+        {
+            "name": "joint",
+            "dip": 30.0,
+            "through": [10.0, 10.0],
+            "normal_stiffness": 1e10,
+            "shear_stiffness": 4e9,
+        }
+    ],
+    "waves": [
+        {
+            "kind": "P",
+            "direction": [0.0, 1.0],
+            "shape": "ricker",
+            "amplitude": 1e6,
+            "period": 0.005,
+        }
+    ],
+    "boundaries": dict.fromkeys(("left", "right", "bottom", "top"), "quiet"),
+    "time": {"duration": 0.02},
+    "record": {"points": [[10.0, 5.0]], "joints": [[10.0, 10.0]], "interval": 1e-4},
+}
+LEVEL = [TABLES["joint_sets"][0] | {"dip": 0.0}]
+
+
+@pytest.fixture
+def solved(compared):
+    """Return a function that solves scenes of TABLES with tables changed by a formula."""
+
+    def solve(*changes):
+        scenes = [load_tables(TABLES | one) for one in changes]
+        return compared(*scenes, by=("oblique-joint", "parallel-joints"))
+
+    return solve
+
+
+def test_a_panel_shows_a_component_that_moves(solved):
+    """At a level joint a wave that travels upwards moves nothing sideways."""
+    oblique, level = panels(solved({}, {"joint_sets": LEVEL}))
+    assert [panel.heading for panel in oblique] == [
+        "velocity x at [10, 5] m",
+        "velocity y at [10, 5] m",
+        "traction n at [10, 10] m",
+        "traction s at [10, 10] m",
+    ]
+    headings = [panel.heading for panel in level]
+    assert headings == ["velocity y at [10, 5] m", "traction n at [10, 10] m"]
+
+
+def test_all_pictures_are_made(solved):
+    found = solved({})
+    figures = figures_of("mass", found, [{}])
+    assert [one.name for one in figures] == ["mass-scene", "mass-waveforms", "mass-spectra"]
+    waveforms, spectra = figures[1].table, figures[2].table
+    assert "oblique-joint | traction s at [10, 10] m | as it stands (Pa)" in waveforms
+    assert "Dotted: 1/T of the load 200 Hz" in figures[2].caption and len(spectra) > 10
+    table = curve_table(found)
+    column = "oblique-joint | velocity y at [10, 5] m | as it stands (m/s)"
+    expected = found[0].results["oblique-joint"].velocity.values[0, :, 1]
+    assert table[column].to_numpy() == pytest.approx(expected)
+
+
+def test_tables_name_places(solved):
+    """Two variants beside each other as two solutions would be: a row a place, x and y apart."""
+    one, other = solved({}, {"joint_sets": LEVEL})
+    results = {
+        "continuum-jointed": other.results["oblique-joint"],
+        "oblique-joint": one.results["oblique-joint"],
+    }
+    one.rows = measure(results)
+    frame = distance_frame([one])
+    assert {"x (m)", "y (m)"} <= set(frame) and set(frame["y (m)"]) == {5.0, 10.0}
+    assert "velocity x" in set(frame.quantity) and "slip" in set(frame.quantity)
+    header = misfit_table([one]).header
+    assert "as it stands, velocity x at [10, 5] m" in header
+    assert "as it stands, traction n at [10, 10] m" in header
