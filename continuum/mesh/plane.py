@@ -5,6 +5,7 @@ every block has four corners, and none meets more than one other along an edge, 
 quadrilaterals, else triangles.
 """
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -62,10 +63,10 @@ def has_four_corners(loops: Loops) -> np.ndarray:
 def plane_mesh(
     partition: Partition,
     across: list[Across],
-    size: float,
+    sizes: Mapping[str, float],
     cell: str | None = None,
 ) -> PlaneMesh:
-    """Return the mesh of a partition with cells of about this size, m.
+    """Return the mesh of a partition; sizes : about how large quadrilaterals and triangles are, m.
 
     cell : "quadrilateral" or "triangle"; None for the first where it can be. Raises ValueError
     where blocks cannot be cut into quadrilaterals.
@@ -78,6 +79,7 @@ def plane_mesh(
             f"the block at ({x:.4g}, {y:.4g}) m has not four edges, one neighbour each"
         )
     kind = cell or ("quadrilateral" if four.all() else "triangle")
+    size = sizes[kind]
     counts = _counts(segments, loops, size, kind == "quadrilateral")
     x, cells, block, edges = _meshed(segments, loops, counts, size, kind)
     sets = [partition.contacts.joint_set, *(c.joint_set for c, _, _ in across)]

@@ -20,7 +20,7 @@ from continuum.joints import interfaces
 from continuum.mesh.plane import plane_mesh
 from continuum.mesh.segments import Across, across_periodic
 from continuum.model import Interfaces
-from continuum.plane.size import compliant, element_size, refuse_large_mesh
+from continuum.plane.size import compliant, element_sizes, refuse_large_mesh
 from continuum.space.body import Body, build_body
 from continuum.space.elasticity import PlaneRock, Section
 from continuum.space.interface import Jumps, jumps
@@ -89,10 +89,10 @@ def discretise(scene: RockMass, model: str) -> PlaneDiscrete:
 
 
 def _mesh(scene: RockMass, partition: Partition, across: list[Across]):
-    numerics, size = scene.numerics.continuum, element_size(scene)
-    refuse_large_mesh(scene, partition, size)
+    numerics, sizes = scene.numerics.continuum, element_sizes(scene)
+    refuse_large_mesh(scene, partition, max(sizes.values()))
     try:
-        found = plane_mesh(partition, across, size, numerics.cell)
+        found = plane_mesh(partition, across, sizes, numerics.cell)
     except ValueError as error:
         key = "numerics.continuum.cell"
         raise SceneError(scene.where, key, numerics.cell, str(error)) from None

@@ -22,20 +22,22 @@ if TYPE_CHECKING:
 
 #: Elements in the way of the slowest wave in one period, by their order.
 IN_PERIOD = {1: 40.0, 2: 12.0, 3: 6.0, 4: 4.0}
-#: Times as many for pulses that start or end with a kink.
-OF_KINKS = 2.0
+#: Times as many for pulses that start or end with a kink, and in triangles: their diagonal mass
+#: costs them an order.
+OF_KINKS, OF_TRIANGLES = 2.0, 1.5
 DIRECTIONS = 36  # in which speeds are looked at
 
 
-def element_size(scene: RockMass) -> float:
-    """Return about how large elements are, m: `numerics.continuum.size`, or what resolves the
-    slowest waves of the shortest pulse, in rock with its joints."""
+def element_sizes(scene: RockMass) -> dict[str, float]:
+    """Return about how large quadrilaterals and triangles are, m: `numerics.continuum.size`, or
+    what resolves the slowest waves of the shortest pulse, in rock with its joints."""
     numerics = scene.numerics.continuum
     if numerics.size is not None:
-        return numerics.size
+        return dict.fromkeys(("quadrilateral", "triangle"), numerics.size)
     sharp = any(one.shape != "ricker" for one in scene.pulses)
     many = IN_PERIOD[numerics.order] * (OF_KINKS if sharp else 1.0)
-    return slowest(scene) * resolved_period(scene) / many
+    size = slowest(scene) * resolved_period(scene) / many
+    return {"quadrilateral": size, "triangle": size / OF_TRIANGLES}
 
 
 def slowest(scene: RockMass) -> float:

@@ -9,6 +9,7 @@ from compare.exact.rock_mass.field import field_of
 from compare.exact.rock_mass.line_force import SOLVER as LINE_FORCE
 from compare.exact.rock_mass.oblique_joint import SOLVER as ONE_JOINT
 from continuum import applies, simulate
+from results.arrays import copied, fill
 
 
 def misfit(found, exact):
@@ -154,3 +155,21 @@ def test_implicit_steps_agree_with_explicit_ones(struck):
     )
     assert misfit(other.velocity.values, one.velocity.values).max() < 3e-3
     assert gap_of_ledger(other) < 1e-10
+
+
+def test_a_run_goes_on_from_a_checkpoint(struck):
+    class Kept:
+        done = 0
+
+        def look(self, samples, parts):
+            if samples < 300:
+                self.done, self.parts = samples, copied(parts)
+
+        def restore(self, parts):
+            fill(parts, self.parts)
+
+    keeper, scene = Kept(), struck(continuum={"size": 2.5})
+    whole = simulate(scene, keeper=keeper)
+    assert 0 < keeper.done < 300
+    again = simulate(scene, keeper=keeper)
+    assert (again.velocity == whole.velocity).all() and (again.energy == whole.energy).all()
