@@ -75,7 +75,7 @@ def mean_stress(
     if len(held):
         row = np.searchsorted(rows, places[held])
         steps = system.time.stride * np.arange(contact.shape[-1])
-        acting = np.moveaxis(system.sources.sums(steps)[:, row, 2:], 0, -1)
+        acting = np.moveaxis(system.sources.sums(steps, row)[..., 2:], 0, -1)
         acting -= np.einsum("hkq,hqn->hkn", system.resistance[row, 2:], velocity[held])
         sums[held] += acting.reshape(len(held), 2, 2, -1)
     mean = -(sums + sums.swapaxes(1, 2)) / (2 * blocks.partition.area[places])[:, None, None, None]

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
     from cases.schema.sources import PlaneLoad
 
+#: Samples times held blocks whose forces are there at once.
+AT_ONCE = 100_000
+
 
 class Pattern(NamedTuple):
     """Forces that keep their shape: forces [m, 2], N, at arms [m, 2] on blocks [m], times a
@@ -59,13 +62,13 @@ class Sources:
         own = [k for k, history in enumerate(self.histories) if history is None]
         return resultant(self.shapes[own].sum(axis=0))
 
-    def sums(self, steps: np.ndarray) -> np.ndarray:
-        """Return what acts in equally spaced steps [n] as `edges.gathered` has it, [n, h, 6]."""
-        dt, count = self.time.dt, len(self.rows)
-        found = np.zeros((len(steps), count, 6))
-        self._add_patterns(found, steps, self.shapes)
+    def sums(self, steps: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Return what acts on some rows [k], ascending, in equally spaced steps [n], as
+        `edges.gathered` has it: [n, k, 6]."""
+        found = np.zeros((len(steps), len(rows), 6))
+        self._add_patterns(found, steps, self.shapes[:, rows])
         for one in self.waves:
-            found += one.sums(steps, dt, count)
+            found += one.sums(steps, self.time.dt, rows)
         return found
 
     def drive(self, first: int, last: int) -> np.ndarray:
@@ -93,10 +96,13 @@ class Sources:
         inertia : of each row's freedoms [h, 3]. What is steady acts from the start, and is in
         equilibrium with the stress that it stands for.
         """
-        steps = self.time.stride * np.arange(self.time.samples)
-        forces = resultant(self.sums(steps)) - self.steady
-        felt = np.sqrt((forces**2 / inertia).sum(axis=(1, 2)))
-        return float(self.time.dt * self.time.stride * felt.sum())
+        steps, every = self.time.stride * np.arange(self.time.samples), np.arange(len(self.rows))
+        parts = -(-self.time.samples * max(1, len(self.rows)) // AT_ONCE)
+        felt = 0.0
+        for some in np.array_split(steps, parts):
+            forces = resultant(self.sums(some, every)) - self.steady
+            felt += float(np.sqrt((forces**2 / inertia).sum(axis=(1, 2))).sum())
+        return self.time.dt * self.time.stride * felt
 
 
 def reactions(partition: Partition, sides: list[str], stress: StressInPlane) -> Pattern:

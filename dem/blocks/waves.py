@@ -33,11 +33,13 @@ class Delayed:
         self.row, self.sums_of, self.history, self.late = row, sums, history, late
         self.forces_of = resultant(sums)
 
-    def sums(self, steps: np.ndarray, dt: float, count: int) -> np.ndarray:
-        """Return what acts in steps [n] of dt, s, on each of so many rows [n, count, 6]."""
-        here = dt * steps[:, None] - self.late
+    def sums(self, steps: np.ndarray, dt: float, rows: np.ndarray) -> np.ndarray:
+        """Return what acts in steps [n] of dt, s, on some rows [k], ascending: [n, k, 6]."""
+        own = np.flatnonzero(np.isin(self.row, rows))
+        here = dt * steps[:, None] - self.late[own]
         mean = (self.history.impulse(here + dt / 2) - self.history.impulse(here - dt / 2)) / dt
-        return on_rows(mean[..., None] * self.sums_of, self.row, count)
+        place = np.searchsorted(rows, self.row[own])
+        return on_rows(mean[..., None] * self.sums_of[own], place, len(rows))
 
     def drive(self, first: int, last: int, dt: float, count: int) -> np.ndarray:
         """Return forces and moments in the steps first .. last - 1 [n, count, 3]."""
@@ -57,9 +59,10 @@ class Sampled(NamedTuple):
 
     over_time: FaceTractions
 
-    def sums(self, steps: np.ndarray, dt: float, count: int) -> np.ndarray:
-        """Return what acts in equally spaced steps [n] of dt, s [n, h, 6]."""
-        return self.over_time.at(dt * steps)
+    def sums(self, steps: np.ndarray, dt: float, rows: np.ndarray) -> np.ndarray:
+        """Return what acts in equally spaced steps [n] of dt, s, on some rows [k]: [n, k, 6]."""
+        times, values = self.over_time
+        return FaceTractions(times, values[:, rows]).at(dt * steps)
 
     def drive(self, first: int, last: int, dt: float, count: int) -> np.ndarray:
         """Return forces and moments in the steps first .. last - 1 [n, h, 3]."""
