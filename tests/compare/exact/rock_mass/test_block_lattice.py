@@ -53,7 +53,7 @@ def test_a_column_under_a_p_wave_is_the_chain(blocks):
 
 
 def test_oblique_waves_leave_through_quiet_sides(blocks, wave):
-    """Long after a pulse of 5 ms has passed next to nothing is left of the motion."""
+    """Long after a pulse of 5 ms next to nothing is left of the motion."""
     direction = [0.28, 0.96]
     found = solve(
         "block-lattice", blocks(waves=[wave(direction=direction)], time={"duration": 0.04})
