@@ -214,22 +214,47 @@ def test_a_run_without_scenes_imports_nothing_heavy(pytester):
     assert done.returncode == 0, done.stdout
 
 
-def test_a_rock_mass_is_a_failing_test_as_long_as_no_engine_solves_it(run):
-    """It is collected, and says why in one line."""
+def test_a_rock_mass_is_held_to_its_bounds(run):
+    """One pair is near enough, one is not, and one applies to no variant: each says so."""
     mass = """
-title = "rows"
+title = "a joint"
 [domain]
-size = [10.0, 6.0]
+size = [8.0, 8.0]
 [rock]
 density = 2600.0
 intact_modulus = 5.0e10
+[[joint_sets]]
+name = "joint"
+dip = 20.0
+through = [4.0, 4.0]
+normal_stiffness = 1.0e10
+shear_stiffness = 4.0e9
+[[waves]]
+kind = "P"
+direction = [0.0, 1.0]
+shape = "ricker"
+amplitude = 1.0e6
+period = 0.005
+[boundaries]
+left = "quiet"
+right = "quiet"
+bottom = "quiet"
+top = "quiet"
 [time]
-duration = 0.1
+duration = 0.015
+[numerics.continuum]
+size = 0.8
 [record]
-points = [[1.0, 3.5]]
+points = [[4.0, 2.0]]
+interval = 1e-4
 [expect]
-"dem ~ continuum-jointed" = 0.1
+"continuum-jointed ~ oblique-joint" = 0.1
+"oblique-joint ~ continuum-jointed" = 1e-9
+"dem ~ oblique-joint" = 0.1
 """
     result = run(scene=mass)
-    result.assert_outcomes(failed=1)
-    result.stdout.re_match_lines([r"\S+scene.toml: domain: is a rock mass, which no engine"])
+    result.assert_outcomes(passed=1, failed=2)
+    result.stdout.re_match_lines(
+        [r"oblique-joint ~ continuum-jointed: misfit \S+ of [a-z]+ [xy]+ at \[4, 2\] m exceeds"]
+    )
+    result.stdout.re_match_lines([r"dem ~ oblique-joint applies to no variant: dem: numerics.dem"])
