@@ -33,6 +33,7 @@ CLIMB = 160  # points on them
 NEAR = 9  # fine steps
 SAFETY = 2.0  # on the difference of the two inversions
 FLOOR = 2e-10  # of the largest motion
+FAINT = 1e-9  # of a pulse's spectrum: the highest frequencies that `analytic_inverse` leaves out
 
 Transfer = Callable[[np.ndarray], np.ndarray]
 Velocity = Callable[[np.ndarray], np.ndarray] | np.ndarray
@@ -82,10 +83,11 @@ def analytic_inverse(
     transfer: Transfer, pulse: Callable[[np.ndarray], np.ndarray], times: np.ndarray, causal: bool
 ) -> np.ndarray:
     """Return (1/pi) int F H e^{-i omega t} d omega [..., n], whose real part is u, of a pulse that
-    nothing arrives before; without a bound, but as `inverse` has it."""
+    nothing arrives before. As `inverse` has it, but without a bound, and of the pulse's spectrum
+    only what is not faint."""
     require_equally_spaced(times)
     window = window_of(times, pulse, 2 * WINDOW, 0.0)
-    found = _inverse(transfer, sampled(pulse, window), window, len(times), 1, causal)
+    found = _inverse(transfer, sampled(pulse, window), window, len(times), 1, causal, FAINT)
     return found[..., :: window.stride]
 
 
@@ -110,14 +112,14 @@ def window_of(times: np.ndarray, pulse: Velocity, size: float, lead: float) -> W
     return Window(times[0] + step * np.arange(count), step, stride, float(decay))
 
 
-def _inverse(transfer, signal, window, n, skip, causal) -> np.ndarray:
+def _inverse(transfer, signal, window, n, skip, causal, least=0.0) -> np.ndarray:
     """Return what has the real part u, at the fine steps of n samples, by every `skip`-th fine
     sample of the pulse."""
     signal, keep = signal[::skip], slice(0, n * window.stride)
     if causal:
-        return _level(transfer, signal, window, skip, 0.5, 0)[..., keep]
+        return _level(transfer, signal, window, skip, 0.5, 0, least)[..., keep]
     bins = (
-        weight * _level(transfer, signal, window, skip, node, SLOPE)[..., keep]
+        weight * _level(transfer, signal, window, skip, node, SLOPE, least)[..., keep]
         for node, weight in zip(*_gauss(GAUSS), strict=True)
     )
     return sum(bins) + _climb(transfer, signal, window, skip, keep)
@@ -130,14 +132,20 @@ def sampled(pulse: Velocity, window: Window) -> np.ndarray:
     return np.pad(np.asarray(pulse, dtype=float), (0, len(window.times) - len(pulse)))
 
 
-def _level(transfer, signal, window: Window, skip: int, node: float, first: int) -> np.ndarray:
-    """Return the integral over the level path from bin `first` on, with one point a bin."""
+def _level(
+    transfer, signal, window: Window, skip: int, node: float, first: int, least: float
+) -> np.ndarray:
+    """Return the integral over the level path from bin `first` on, with one point a bin, up to
+    where the spectrum is `least` of its largest."""
     t, step = window.times - window.times[0], skip * window.step
     width = window.bin_width
     omega = width * (np.arange(len(signal) // 2) + node) + 1j * window.decay
     turn = np.exp(1j * omega[0] * t)
     F = step * len(signal) * np.fft.ifft(signal * turn[::skip])[: len(omega)]
     F *= np.exp(-36 * (omega.real * step / np.pi) ** 8)
+    size = np.abs(F)
+    last = max(int(np.flatnonzero(size >= least * size.max())[-1]), first) + 1
+    omega, F = omega[:last], F[:last]
     spectrum = transfer(omega[first:]) * F[first:]
     padded = np.concatenate([np.zeros((*spectrum.shape[:-1], first)), spectrum], axis=-1)
     return width / np.pi * np.fft.fft(padded, n=len(t)) / turn

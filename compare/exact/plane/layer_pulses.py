@@ -3,9 +3,9 @@
 In each layer the waves are four plane ones (`pulse`). One that travels is the same pulse everywhere
 in the layer, only later, so its amplitude is inverted once and read at each place by Lagrange's
 polynomial through 2 HALF samples. An evanescent one decays with the depth d as e^{i omega q d}: it
-is inverted at the depths of the places or, where they are more than NODES, at the Chebyshev points
-between which it is interpolated in d (Trefethen, Approximation Theory and Approximation Practice,
-2013). What follows a pulse without delay is summed in time, with all its kinks.
+is inverted at the depths of the places or, where they are more than it takes, at the Chebyshev
+points between which it is interpolated in d (Trefethen, Approximation Theory and Approximation
+Practice, 2013). What follows a pulse without delay is summed in time, with all its kinks.
 """
 
 from __future__ import annotations
@@ -21,7 +21,10 @@ from compare.exact.plane.pulse import Pulse, PulseStack, modes_of
 from compare.exact.plane.waves import is_evanescent, slownesses_across
 
 HALF = 4  # samples on either side
-NODES = 40  # depths of an evanescent wave in a layer, at most
+MOST_NODES = 40  # depths of an evanescent wave in a layer, SPARE beyond what its decay asks for
+SPARE = 8
+NEGLIGIBLE = 1e-10  # of an evanescent wave
+FAINT = 1e-8  # of a pulse's spectrum
 AT_ONCE = 200  # amplitudes inverted together
 TOGETHER = 32  # places at which an evanescent wave is found together
 
@@ -55,7 +58,8 @@ def motion(
         raise ValueError("the pulse must be a function of time")
     t, places = np.asarray(times, dtype=float), np.atleast_2d(points) @ stack.axes.rows.T
     modes = modes_of(rock, stack.axes, slownesses_across(rock, stack.axes.slowness))
-    waves = list(_waves_of(rock, stack, places))
+    highest = _highest(pulse.velocity, t) if is_evanescent(rock, stack.axes.slowness) else 0.0
+    waves = list(_waves_of(rock, stack, places, highest))
     fine, stride = _fine_times(rock, stack, waves, t)
     sharp = np.concatenate(stack.at_once, axis=-1)
     found = np.zeros((len(places), modes.shape[1], len(t)))
@@ -76,7 +80,17 @@ def motion(
     return found[:, :2], float(rock.p_impedance) * found[:, 2:]
 
 
-def _waves_of(rock: ElasticRock, stack: PulseStack, places: np.ndarray) -> Iterator[LayerWave]:
+def _highest(velocity: Callable, t: np.ndarray) -> float:
+    """Return the frequency above which a pulse has less than FAINT of its spectrum, rad/s."""
+    step = (t[-1] - min(t[0], 0.0)) / STEPS
+    spectrum = np.abs(np.fft.rfft(velocity(step * np.arange(STEPS))))
+    last = int(np.flatnonzero(spectrum >= FAINT * spectrum.max())[-1])
+    return 2 * np.pi * last / (STEPS * step)
+
+
+def _waves_of(
+    rock: ElasticRock, stack: PulseStack, places: np.ndarray, highest: float
+) -> Iterator[LayerWave]:
     """Yield the waves of all layers that hold places (t, n) [m, 2]."""
     axes, depths = stack.axes, stack.depths
     across, evanescent = slownesses_across(rock, axes.slowness), is_evanescent(rock, axes.slowness)
@@ -92,20 +106,25 @@ def _waves_of(rock: ElasticRock, stack: PulseStack, places: np.ndarray) -> Itera
                 continue
             late, way = lead + axes.slowness * x, there[wave // 2]
             if evanescent and wave % 2 == 0:
-                yield LayerWave(int(layer), wave, members, late, *_depths(way))
+                yield LayerWave(
+                    int(layer), wave, members, late, *_depths(way, highest * across[0].imag)
+                )
             else:
                 yield LayerWave(int(layer), wave, members, late + across[wave % 2].real * way)
 
 
-def _depths(way: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return depths [d] at which a smooth function is known, and its shares [k, d] at `way`."""
+def _depths(way: np.ndarray, decay: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return depths [d] at which what decays by e^{-decay d} or slower is known, and its shares
+    [k, d] at `way`. The Chebyshev coefficients of e^{-s x}, 0 to 1, fall as e^{-k^2 / s}."""
     found, which = np.unique(np.round(way, 9), return_inverse=True)
-    if len(found) <= NODES:
+    wanted = SPARE + np.sqrt(decay * (found[-1] - found[0]) * np.log(1 / NEGLIGIBLE))
+    count = int(min(np.ceil(wanted), MOST_NODES))
+    if len(found) <= count:
         return found, np.eye(len(found))[which]
     low, high = found[0], found[-1]
-    nodes = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
-    to_values = np.linalg.inv(np.polynomial.chebyshev.chebvander(nodes, NODES - 1))
-    at = np.polynomial.chebyshev.chebvander(2 * (way - low) / (high - low) - 1, NODES - 1)
+    nodes = np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    to_values = np.linalg.inv(np.polynomial.chebyshev.chebvander(nodes, count - 1))
+    at = np.polynomial.chebyshev.chebvander(2 * (way - low) / (high - low) - 1, count - 1)
     return low + (high - low) * (nodes + 1) / 2, at @ to_values
 
 

@@ -5,8 +5,8 @@ of the waves in their effective medium, since no wave of intact rock would come 
 beyond; else that of the waves in the intact rock.
 
 With the exact field of the stack on all quiet sides nothing is missing there, and what is wrong
-inside is an engine's own. 1000 points and 2000 times of one joint take about 0.4 s of a processor,
-2 s where P waves are evanescent; it differs from `parallel_joints.fields` by less than the bound
+inside is an engine's own. 1000 points and 2000 times of one joint take about 0.5 s of a processor,
+1 s where P waves are evanescent; it differs from `parallel_joints.fields` by less than the bound
 that these give, about 1e-9 of a smooth pulse.
 """
 

@@ -27,7 +27,7 @@ def half_sine(t):
 
 @pytest.mark.parametrize("kind, degrees", [("P", 40), ("P", -150), ("SV", 10), ("SV", -60)])
 def test_smooth_pulses_to_a_billionth(rock, ricker, directed, kind, degrees):
-    """In front of, between and behind joints; the last is evanescent, at more depths than NODES."""
+    """In front of, between and behind joints; the last is evanescent, interpolated in its depth."""
     count = 200 if degrees == -60 else 9
     points = np.random.default_rng(1).uniform(-15, 25, (count, 2))
     some = slice(0, 9, 2)
