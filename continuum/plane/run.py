@@ -8,11 +8,11 @@ import numpy as np
 
 from cases.errors import SceneError
 from cases.incident import free_field
+from cases.material.prestress import refuse_beyond_strength
 from continuum.build import critical_step, step_over_mass, weight_of
 from continuum.model import Ends, Model, RockOperators
 from continuum.plane.drive import Drive, Entry
 from continuum.plane.loads import pushes
-from continuum.plane.prestress import refuse_beyond_strength
 from continuum.plane.receivers import receivers
 from continuum.plane.rock import discretise
 from continuum.plane.sides import dashpots_on, fixed_sides, points_on, sides_that_are
@@ -47,7 +47,7 @@ def discrete_and_steps(scene: RockMass, rock: str) -> tuple[PlaneDiscrete, Choic
     """Return a rock mass in space, how it is stepped, and the critical step of explicit steps
     (s)."""
     discrete = discretise(scene, rock)
-    refuse_beyond_strength(discrete.resolved, discrete)
+    refuse_beyond_strength(discrete.resolved)
     critical = critical_step(discrete, fixed_sides(scene, discrete.body))
     choice = choose(scene, discrete, critical)
     refuse_large_run(scene, choice.time)

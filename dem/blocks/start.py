@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cases.material.prestress import refuse_beyond_strength
 from dem.blocks.leapfrog import march, samples_for
 from dem.blocks.model import PlaneState, held_by, state_at_rest
 from dem.blocks.stability import critical_plane_step
@@ -29,6 +30,8 @@ def start(system: System, state: PlaneState) -> Rest | None:
     scene, blocks = system.blocks.scene, system.model.blocks
     static = scene.gravity is not None and scene.gravity.static
     rest = None
+    if not static:
+        refuse_beyond_strength(scene)
     if static or scene.prestress is not None:
         relaxation = Relaxation(system, static)
         rest = settle(scene, relaxation)

@@ -187,15 +187,14 @@ def test_a_prestressed_rock_mass_stays_still(side, rock_mass, joint):
     assert np.abs(result.gap).max() < 1e-15 and np.abs(result.slip).max() < 1e-15
 
 
-def test_a_prestress_that_joints_cannot_carry_is_refused_in_one_line(rock_mass, joint):
-    """Tension across a joint that carries none, with free sides: nothing holds the halves."""
-    weak = rock_mass(
-        joint_sets=[joint(tension=False)],
-        boundaries=dict.fromkeys(("left", "right", "bottom", "top"), "free"),
-        prestress={"xx": -1e6, "yy": -1e6},
-        numerics={"dem": {"block": 4.0}},
-    )
-    with pytest.raises(SceneError, match="prestress: no static state") as caught:
+@pytest.mark.parametrize(
+    ("law", "what"),
+    [({"tension": False}, "opens"), ({"friction_angle": 20.0, "cohesion": 1e5}, "slides")],
+)
+def test_a_prestress_that_joints_cannot_carry_is_refused_in_one_line(law, what, rock_mass, joint):
+    pressed = {"xx": -1e6, "yy": -1e6} if what == "opens" else {"xx": 1e6, "yy": 4e6}
+    weak = rock_mass(joint_sets=[joint(**law)], prestress=pressed)
+    with pytest.raises(SceneError, match=f"prestress: is more.*'joint' {what} under it") as caught:
         simulate(weak)
     assert "\n" not in str(caught.value)
 

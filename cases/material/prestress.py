@@ -1,0 +1,45 @@
+"""Whether the joints of a rock mass carry its prestress."""
+
+from __future__ import annotations
+
+from math import inf, radians, tan
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cases.errors import SceneError
+from cases.partition.joints import direction_of
+
+if TYPE_CHECKING:
+    from cases.schema.joint_set import JointSet
+    from cases.schema.plane import StressInPlane
+    from cases.schema.rock_mass import RockMass
+
+SLACK = 1e-9  # of the stress: tractions that are at a limit
+
+
+def refuse_beyond_strength(scene: RockMass) -> None:
+    """Raise SceneError where a joint opens or slides under the prestress: the scene would not start
+    in equilibrium."""
+    if scene.prestress is None:
+        return
+    for one in scene.joint_sets:
+        if what := beyond_strength(one, scene.prestress):
+            allowed = f"is more than joints carry: '{one.name}' {what} under it"
+            raise SceneError(scene.where, "prestress", None, allowed)
+
+
+def beyond_strength(joint: JointSet, stress: StressInPlane) -> str | None:
+    """Return whether a joint "opens" or "slides" under a stress, None where it carries it."""
+    along = direction_of(joint.dip)
+    normal = np.array([-along[1], along[0]])
+    traction = np.array([[stress.xx, stress.xy], [stress.xy, stress.yy]]) @ normal
+    t_n, t_s = float(normal @ traction), abs(float(along @ traction))
+    slack = SLACK * max(abs(stress.xx), abs(stress.yy), abs(stress.xy))
+    tensile = inf if joint.tensile_strength is None else joint.tensile_strength
+    if t_n < -slack - (0.0 if joint.tension is False else tensile):
+        return "opens"
+    if joint.friction_angle is None and joint.cohesion is None:
+        return None
+    limit = (joint.cohesion or 0.0) + t_n * tan(radians(joint.friction_angle or 0.0))
+    return "slides" if t_s > max(limit, 0.0) + slack else None
