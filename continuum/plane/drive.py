@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
+from cases.errors import SceneError
 from cases.incident import FaceTractions, FreeField, enters, tractions
 from cases.loads import LoadHistory, step_means
 from cases.material.quiet_sides import medium_impedances
@@ -21,8 +22,8 @@ if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
     from continuum.space.body import Body
 
-BUFFER = 2_000_000  # numbers in the buffer, at most, but for one step
-SAMPLES = 20_000_000  # numbers of a field that is sampled beforehand, at most
+BUFFER = 500_000  # numbers in the buffer, at most, but for one step
+SAMPLES = 40_000_000  # numbers of a field that is sampled beforehand, at most
 IN_INTERVAL = 1e-2  # of the period: how far such samples are apart, at most
 
 
@@ -127,9 +128,13 @@ class Entry:
         periods = [one.period for one in scene.waves if one.period]
         apart = min(scene.interval, IN_INTERVAL * min(periods, default=self.duration))
         count = int(np.ceil(self.duration / apart)) + 8
-        room = SAMPLES // max(1, 2 * len(self.points.x))
-        times = apart * max(1.0, count / room) * np.arange(min(count, room))
-        return self._of_field(times)
+        if 2 * count * len(self.points.x) > SAMPLES:
+            allowed = (
+                f"gives {count:,} samples of what enters at {len(self.points.x):,} points of quiet "
+                f"sides; at most {SAMPLES:.0e} numbers: larger elements (numerics.continuum.size)"
+            )
+            raise SceneError(scene.where, "time.duration", self.duration, allowed)
+        return self._of_field(apart * np.arange(count))
 
     def _of_field(self, times: np.ndarray) -> FaceTractions:
         own = self.points
@@ -149,7 +154,9 @@ class Entry:
 
     def largest(self, mass: np.ndarray, duration: float) -> float:
         """Return about twice the largest |F| in the norm of 1 / m at any time."""
-        times = np.linspace(0.0, duration, 400)
+        if self.sampled is None:
+            values = self.tractions(np.linspace(0.0, duration, 400))
+        else:
+            values = self.sampled.values
         of = self.points.weight**2 / mass[self.freedom[: len(self.points.x)]]
-        sizes = (of[:, None] * self.tractions(times) ** 2).sum(axis=(1, 2))
-        return 2.0 * float(np.sqrt(sizes.max(initial=0.0)))
+        return 2.0 * float(np.sqrt(np.einsum("p,npc,npc->n", of, values, values).max(initial=0.0)))

@@ -127,15 +127,16 @@ def contact_law(scene: RockMass, found: PlaneDiscrete, contact: np.ndarray) -> L
     """Return the law at points [q] of these contacts, in its smallest form."""
     sets, of = scene.joint_sets, joint_set_of(found)[contact]
     etas = set_time_constants(scene)
-    tension, normal, shear = (
-        np.array([getattr(one, key) for one in sets])[of]
-        for key in ("tension", "normal_stiffness", "shear_stiffness")
+    tension = np.array([one.tension is not False for one in sets])[of]
+    normal, shear = (
+        np.array([getattr(one, key) for one in sets], dtype=float)[of]
+        for key in ("normal_stiffness", "shear_stiffness")
     )
     return law(
-        normal.astype(float),
+        normal,
         None if etas is None else etas[of],
-        tension != np.array(False),
-        shear_stiffness=shear.astype(float),
+        tension,
+        shear_stiffness=shear,
         **strength_of(sets, of).strengths(),
     )
 

@@ -1,0 +1,45 @@
+"""Pieces of a mesh that are copies of each other."""
+
+import numpy as np
+
+from continuum.mesh.description import Part
+
+ALIKE = 1e-9  # of the body: pieces that are copies of each other
+REPEATED = 6  # copies from which a part is worth lanes of its own
+
+
+def parts_of_pieces(
+    x: np.ndarray, cells: np.ndarray, piece: np.ndarray
+) -> tuple[tuple[Part, ...], np.ndarray]:
+    """Return the pieces of the rock as parts, and the new number of each cell.
+
+    Pieces that are alike are copies; what occurs seldom is one part together.
+    """
+    own = np.split(np.argsort(piece, kind="stable"), np.cumsum(np.bincount(piece))[:-1])
+    alike: dict[bytes, list[np.ndarray]] = {}
+    for some in own:
+        vertices, local = _in_order(cells[some])
+        shape = np.rint((x[vertices] - x[vertices[0]]) / (ALIKE * np.ptp(x, axis=0).max()))
+        alike.setdefault(shape.tobytes() + local.tobytes(), []).append(some)
+    groups = [some for some in alike.values() if len(some) >= REPEATED]
+    alone = [one for some in alike.values() if len(some) < REPEATED for one in some]
+    if alone:
+        groups.append([np.sort(np.concatenate(alone))])
+    number, parts = np.empty(len(cells), dtype=np.int64), []
+    ordered = np.concatenate([cells_of for group in groups for cells_of in group])
+    number[ordered] = np.arange(len(cells))
+    for group in groups:
+        vertices, local = _in_order(cells[group[0]])
+        first = np.array([cells[one[0], 0] for one in group])
+        shifts = x[first] - x[first[0]]
+        parts.append(Part(x[vertices], local, np.zeros(len(local), dtype=np.int64), shifts))
+    return tuple(parts), number
+
+
+def _in_order(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the vertices of cells as these come to them, and the cells by their places there."""
+    vertices, first, local = np.unique(cells, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty(order.size, dtype=np.int64)
+    rank[order] = np.arange(order.size)
+    return vertices[order], rank[local].reshape(cells.shape)
