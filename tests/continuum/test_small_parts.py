@@ -31,6 +31,17 @@ def test_critical_step_where_dashpots_decide_the_mode():
     assert critical_step(k, c, np.ones(2)) == pytest.approx(sqrt(68) - 8, rel=1e-12)
 
 
+def test_critical_step_of_modes_that_dashpots_turn():
+    """The largest eigenvalue of dt^2 K + 4 dt C is 4, of no mode of either alone; to the square of
+    the change of 1e-6 at which the search ends."""
+    random = np.random.default_rng(4)
+    springs, dashpots = random.standard_normal((2, 6, 6))
+    k, c = springs @ springs.T, 0.2 * dashpots @ dashpots.T
+    dt = critical_step(csr_matrix(k), csr_matrix(c), np.ones(6))
+    largest = np.linalg.eigvalsh(dt**2 * k + 4 * dt * c)[-1]
+    assert largest == pytest.approx(4.0, rel=1e-10)
+
+
 def test_heights_are_numbered_from_zero_upwards():
     """In any order and shape; what differs by less than 1e-9 of the size is one height."""
     y = np.array([[0.5, 0.0], [1.0, 0.5 + 1e-10], [0.0, 0.5 + 1e-8]])
