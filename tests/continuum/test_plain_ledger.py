@@ -126,3 +126,19 @@ def test_what_nothing_loads_stays_at_rest(plain, short, ready, changes):
     assert run.state.drags is not None
     assert (run.model.rock.viscosity is None) == ("soft_layers" in changes)
     assert not run.samples.waves.any() and not run.samples.energy.any()
+
+
+@pytest.mark.parametrize("ends", [("free", "free"), ("quiet", "matched"), ("free", "fixed")])
+@pytest.mark.parametrize("dim", [1, 2])
+def test_prestressed_rock_carries_its_prestress(plain, short, ready, dim, ends):
+    """On joints, between them and at the ends, and nothing moves."""
+    scene = short(
+        **SMALL,
+        load__amplitude=0.0,
+        prestress={"normal": 1e5},
+        ends=dict(zip(("start", "end"), ends, strict=True)),
+        record={"stress": [0.0, 0.7, 1.0, 1.9]},
+    )
+    run = ready(scene, dim=dim, samples=5).to_the_end()
+    assert np.abs(run.waves["stress"] / 1e5 - 1).max() < 1e-12
+    assert np.abs(run.waves["velocity"]).max() < 1e-12
