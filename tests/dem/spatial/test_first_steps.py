@@ -117,6 +117,24 @@ def test_finite_rotations_are_small_ones_in_the_limit(moving, ends, joints):
     assert_alike(*both, 1e-6)
 
 
+@pytest.mark.parametrize("rotation", ["none", "small", "finite"])
+def test_kinetic_energy_is_of_the_rates_on_either_side_of_a_step(moving, rotation):
+    """m v v' / 2, and I omega omega' / 2 apart from it; of what turns by 1e-8 rad, to 1e-6."""
+    row, terms = moving(1e-8, motion__rotation=rotation, load__at=[0.0, 0.0])
+    rates = slice(row.model.form.freedoms, None)
+    before = small(row)[rates].copy()
+    row.take(0, 1)
+    product = before * small(row)[rates]
+    inertia = np.array([row.p.inertia_across, row.p.inertia_along, row.p.inertia_across])
+    found = {term: values[0] for term, values in energies(row, terms).items()}
+    assert found["kinetic"] == pytest.approx(row.p.block_mass * product[:3].sum() / 2, rel=1e-12)
+    assert ("rotation" in found) == (rotation != "none")
+    if rotation != "none":
+        expected = inertia @ product[3:].sum(axis=1) / 2
+        rel = 1e-6 if rotation == "finite" else 1e-12
+        assert found["rotation"] == pytest.approx(expected, rel=rel)
+
+
 @pytest.mark.parametrize("ends", list(ENDS.values())[1:], ids=list(ENDS)[1:])
 @pytest.mark.parametrize("rotation", ["none", "small", "finite"])
 def test_ends_react_to_the_mean_velocity_of_the_step(moving, ends, rotation):
