@@ -97,8 +97,9 @@ def test_weight_under_a_prestress_counts_from_the_prestressed_state(row):
 
 
 def test_seconds_add_up_to_what_it_took(row):
-    began = perf_counter()
-    spent = dem.simulate(row(**PAIR)).attrs
+    began, progress = perf_counter(), []
+    spent = dem.simulate(row(**PAIR), progress.append).attrs
     taken = perf_counter() - began
     parts = [spent[f"seconds_{part}"] for part in ("setup", "compile", "stepping")]
     assert min(parts) >= 0 and sum(parts) <= taken
+    assert progress[-1] == 1.0
