@@ -27,8 +27,7 @@ def test_a_run_that_ends_before_the_speeds_are_looked_at(row, plain):
     """What ran away in 44 steps is found behind the last of them, samples two steps apart."""
     scene = row(
         pillar__length=1.5,
-        load={"shape": "step", "amplitude": 1e3, "direction": [0, 1, 0]},
-        load__at=[0.0, 0.0],
+        load={"shape": "step", "amplitude": 1e3, "direction": [0, 1, 0], "at": [0.1, 0.0]},
         record={"stress": [0.5], "velocity": [0.25], "interval": 1.2e-3, "energy": False},
         time__duration=1.2e-3 * 21,
         numerics__dem={"step_fraction": 1.3, "allow_unstable": True},

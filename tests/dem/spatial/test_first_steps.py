@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from dem.spatial import record
 from dem.spatial.build import energy_terms
 from dem.spatial.ends import CLOSURE, MEAN, REACTION, VELOCITY
+from dem.spatial.layout import LANES, packed, unpacked
 
 pytestmark = pytest.mark.usefixtures("plain")
 
@@ -117,6 +119,30 @@ def test_finite_rotations_are_small_ones_in_the_limit(moving, ends, joints):
     assert_alike(*both, 1e-6)
 
 
+@pytest.mark.parametrize("kept", [True, False], ids=["ledger", "none"])
+def test_the_last_block_alone_has_the_end(moving, kept):
+    """Of two tiles, a free and a quiet end differ in the last block's step, and in nothing else."""
+    both = []
+    for end in ("free", "quiet"):
+        changes = {**TWO_TILES, "ends": {"start": "free", "end": end}}
+        row, _ = moving(1e-6, **changes, record__energy=kept)
+        row.take(0, 1)
+        both.append(row.motion)
+    differ = (both[0] != both[1]).any(axis=0)
+    assert differ[-1] and not differ[:-1].any()
+
+
+def test_ledger_of_two_tiles_closes(moving):
+    """Over more steps than one pass takes: to round-off of what moves, at every sample."""
+    row, terms = moving(1e-6, **TWO_TILES)
+    row.take(0, 20)
+    energy = dict(zip(terms, row.samples.energy[:, :20], strict=True))
+    work = energy.pop("work")
+    gained = sum(values - values[0] for values in energy.values()) - (work - work[0])
+    assert energy["viscous"][-1] > 0.1 * energy["kinetic"][0]
+    assert np.abs(gained).max() < 1e-12 * energy["kinetic"][0]
+
+
 @pytest.mark.parametrize("rotation", ["none", "small", "finite"])
 def test_kinetic_energy_is_of_the_rates_on_either_side_of_a_step(moving, rotation):
     """m v v' / 2, and I omega omega' / 2 apart from it; of what turns by 1e-8 rad, to 1e-6."""
@@ -222,3 +248,26 @@ def test_finite_forces_are_the_slope_of_the_energy(row, at_rest):
     error = gained + np.array(slope) / 2e-5
     for kind in (slice(0, 3), slice(3, 6)):
         assert np.abs(error[kind]).max() < 1e-7 * np.abs(gained[kind]).max()
+
+
+def test_a_joint_is_broken_where_all_its_points_are(row, at_rest, monkeypatch):
+    """The first of three at all four points, the second at three of them, the last at none."""
+    breaks = {
+        "tensile_strength": 5e4,
+        "fracture_energy": 1.0,
+        "cohesion": 1e4,
+        "damping_ratio": 0.1,
+    }
+    scene = row(pillar__length=2.0, joints=breaks, record={"stress": [0.5]})
+    built, found = at_rest(scene), []
+    form, state = built.model.form, built.state
+    opening = np.tile(built.p.critical_opening, (4, 1)) * [1.0, 1.0, 0.99]
+    opening[2, 1] *= 0.99
+    history = unpacked(state.history, LANES, 3)
+    history[form.openings] = opening
+    state.history[:] = packed(history, LANES)
+    monkeypatch.setattr(record, "with_fragments", lambda *given: found.append(given[2:]))
+    record.with_breaks(None, built.p, built.model, state)
+    ((broken, velocity),) = found
+    assert broken.tolist() == [True, False, False]
+    assert velocity.shape == (4, 3)
