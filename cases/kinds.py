@@ -21,10 +21,3 @@ def pillar_of(scene: AnyScene, what: str = "this") -> Scene:
     if isinstance(scene, Scene):
         return scene
     raise SceneError(scene.where, "domain", None, f"is a rock mass; {what} takes pillars alone")
-
-
-def rock_mass_of(scene: AnyScene) -> RockMass:
-    """Return a scene that is a rock mass; raises SceneError of a pillar."""
-    if isinstance(scene, Scene):
-        raise SceneError(scene.where, "pillar", None, "is a pillar; this takes rock masses alone")
-    return scene

@@ -49,7 +49,8 @@ def animate(
     """Write how the blocks move, by both engines, with the wave on them, as MP4 or GIF.
 
     Displacements are exaggerated; the picture says how much. The rock is that with every joint,
-    where that applies, else the homogenised one; where neither does, the picture says why.
+    where that applies, else the homogenised one; where neither does, the picture says why. A rock
+    mass is coloured by the speed of its particles.
     """
     _require_positive("--scale", scale)
     _require_positive("--seconds", seconds)

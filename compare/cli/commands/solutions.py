@@ -64,7 +64,9 @@ def compare(
     "run.nc:-velocity@20.25 [mm/s]", and with a column's header in front it takes that column:
     "gauge.csv:CH 3=stress@20 [MPa]", "gauge.csv:t=time [ms]". A comparison.csv that --out has
     written is read as it is, variant by variant, or one solution of it: comparison.csv:dem. Empty
-    cells are left out. Without a unit, SI. Stress is positive in compression; a minus
+    cells are left out. Without a unit, SI. Receivers of a rock mass have two coordinates:
+    "velocity_x@[20,30]", "stress_xx@[20,30] [MPa]", "traction_n@[20,20]", "gap@[20,20]"; in a file
+    with commas such a header stands in quotes. Stress is positive in compression; a minus
     sign says that the file has the negative. Only the overlap in time is compared, at the times of
     whichever has fewer samples there, the other interpolated linearly; amplitudes are never scaled,
     and clocks never moved without --align.
