@@ -140,8 +140,8 @@ def shuffled(mesh: Mesh, seed: int = 5) -> Mesh:
     joints = type(joints)(
         joints.joint[pair], to[joints.left[pair]], to[joints.right[pair]], joints.corners[pair]
     )
-    start, end = (s._replace(cell=to[s.cell]) for s in (mesh.start, mesh.end))
-    return mesh._replace(parts=tuple(parts), joints=joints, start=start, end=end)
+    sides = {name: side._replace(cell=to[side.cell]) for name, side in mesh.sides.items()}
+    return mesh._replace(parts=tuple(parts), joints=joints, sides=sides)
 
 
 def by_place(body: Body, points: np.ndarray, joint: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -7,7 +7,7 @@ import pytest
 
 from compare.exact.solid.manufactured import Manufactured
 from continuum.mesh.cells import CORNERS, DIMENSION, oriented
-from continuum.mesh.description import Joints, Mesh, Part, Side
+from continuum.mesh.description import Joints, Mesh, Part
 from continuum.mesh.facets import Facets, normals, outer_facets
 from continuum.space.body import Body, build_body
 from continuum.space.elasticity import Material, Section, lame_constants
@@ -103,7 +103,7 @@ def problem():
         part = Part(x, cells, np.zeros(len(cells), dtype=np.int64), np.zeros((1, dim)))
         none = np.zeros(0, dtype=np.int64), np.zeros((0, 2 ** (dim - 1), dim))
         joints = Joints(none[0], none[0], none[0], none[1])
-        mesh = Mesh(kind, (part,), (), joints, Side(*none), Side(*none))
+        mesh = Mesh(kind, (part,), (), joints, {})
         body = build_body(mesh, order, [material], Section(dim, 1.0), consistent=consistent)
         wave = np.array([[1.9, 0.7, -0.4], [-0.6, 2.3, 0.5], [0.8, -0.5, 1.6]])[:dim, :dim]
         motion = Manufactured(wave, np.array([0.3, -0.5, 0.8])[:dim], 4000.0, 0.4)

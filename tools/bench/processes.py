@@ -13,7 +13,7 @@ from mpi4py import MPI
 from rock import scene_of
 
 from continuum import simulate
-from continuum.run import steps_of
+from continuum.run import discrete_and_steps
 
 ROUNDS = 5
 STEPS = 4000  # some seconds
@@ -45,7 +45,7 @@ def _under_mpi(case: str, count: int) -> float:
 
 def one_run(case: str) -> None:
     """Run a case in all processes there are, and print its rate."""
-    time = steps_of(scene_of(case), "jointed", 3)[0].time
+    time = discrete_and_steps(scene_of(case), "jointed", 3)[1].time
     scene = scene_of(case, **{"time.duration": STEPS * time.dt})
     a = simulate(scene, "jointed", 3, comm=MPI.COMM_WORLD).attrs
     if MPI.COMM_WORLD.rank == 0:

@@ -8,10 +8,10 @@ from plain_dolfinx import Pillar, Steps, in_order
 from cases.sampling import Clock
 from cases.schema.scene import Scene
 from compare.experiments.cost.step_cost import changed
-from continuum.build import Discrete, build_model, discretise
+from continuum.build import Discrete, build_model
 from continuum.explicit.march import run
 from continuum.model import Model
-from continuum.run import steps_of
+from continuum.run import discrete_and_steps
 from continuum.state import Samples, State, empty_samples, state_at_rest
 
 BLOCKS = 100
@@ -70,7 +70,8 @@ def scene_of(case: str, **changes) -> Scene:
 def engine_of(case: str) -> Engine:
     """Return the engine on a case, at rest."""
     scene = scene_of(case)
-    discrete, time = discretise(scene, "jointed", 3), steps_of(scene, "jointed", 3)[0].time
+    discrete, choice, _ = discrete_and_steps(scene, "jointed", 3)
+    time = choice.time
     model = build_model(scene, discrete, "jointed", time)
     state = state_at_rest(model, False)
     return Engine(discrete, model, state, empty_samples(model, state, time.samples), time)
