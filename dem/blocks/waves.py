@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import inf
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -54,21 +54,21 @@ class Delayed:
         return np.ascontiguousarray((matrix @ mean).T).reshape(-1, count, 3)
 
 
-class Sampled(NamedTuple):
-    """What a field does on rows, at samples close enough to be interpolated [s, h, 6]."""
+class Sampled:
+    """What a field does on rows as `edges.gathered` has it, at samples close enough to be
+    interpolated: sums [s, h, 6] at times [s], s."""
 
-    over_time: FaceTractions
+    def __init__(self, times: np.ndarray, sums: np.ndarray) -> None:
+        self.times, self.sums_of = times, sums
+        self.forces = FaceTractions(times, resultant(sums))
 
     def sums(self, steps: np.ndarray, dt: float, rows: np.ndarray) -> np.ndarray:
         """Return what acts in equally spaced steps [n] of dt, s, on some rows [k]: [n, k, 6]."""
-        times, values = self.over_time
-        return FaceTractions(times, values[:, rows]).at(dt * steps)
+        return FaceTractions(self.times, self.sums_of[:, rows]).at(dt * steps)
 
     def drive(self, first: int, last: int, dt: float, count: int) -> np.ndarray:
         """Return forces and moments in the steps first .. last - 1 [n, h, 3]."""
-        times, values = self.over_time
-        whole = FaceTractions(times, resultant(values))
-        return whole.at(dt * np.arange(first, last))
+        return self.forces.at(dt * np.arange(first, last))
 
 
 def incoming(
@@ -104,4 +104,4 @@ def incoming(
     period = min((one.period for one in scene.waves if one.period), default=inf)
     interval = min(time.dt * time.stride, period / IN_A_PERIOD)
     times = interval * np.arange(int(np.ceil(time.dt * time.steps / interval)) + 4)
-    return [Sampled(FaceTractions(times, on_rows(sums(field, times), row, len(rows))))]
+    return [Sampled(times, on_rows(sums(field, times), row, len(rows)))]

@@ -236,8 +236,9 @@ def test_a_shaken_base_moves_all_like_a_force_of_inertia(rock_mass):
     assert off < 1e-12 * largest
     along = np.array([0.8, 0.6])
     base = 0.1 * np.sin(2 * np.pi * result.time.values / 0.2)[:, None] * along
-    # The first period of the body is 4 x 4 m / b, some 6 ms: 1e-2 of the velocity in its resonance.
-    assert np.abs(result.velocity.values[0] - base).max() < 0.05 * 0.1
+    # The top lags by up to a h / b of the acceleration a that the base begins with, then swings.
+    lag = 0.1 * 2 * np.pi / 0.2 * 4.0 / 2774
+    assert np.abs(result.velocity.values[0] - base).max() < 2 * lag < 0.1 * 0.1
     moved = 0.1 * 0.2 / np.pi * along  # half a cycle
     assert result.displacement.values[0, -1] == pytest.approx(moved, rel=0.02)
 
