@@ -58,7 +58,8 @@ def block_count(domain: Domain, sets: list[JointSet]) -> float:
         normal = direction_of(one.dip)[::-1] * [-1, 1]
         count += float(np.ptp(corners @ normal)) / one.spacing if one.spacing else 1.0
     for one, other in combinations(sets, 2):
-        sine = abs(float(np.cross(direction_of(one.dip), direction_of(other.dip))))
+        (a, b), (c, d) = direction_of(one.dip), direction_of(other.dip)
+        sine = abs(float(a * d - b * c))
         if one.spacing and other.spacing:
             count += area * sine / (one.spacing * other.spacing)
         else:

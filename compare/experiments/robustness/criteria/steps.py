@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from scipy.integrate import trapezoid
 
 from cases.errors import SceneError, UnstableError
 from cases.loads import load_history
@@ -90,7 +91,7 @@ def _fastest(trial: CaseTrial) -> float:
     theirs to a node at their end.
     """
     scene, p, times = trial.scene, trial.properties, sample_times(trial.scene)
-    impulse = p.area * np.trapz(np.abs(load_history(scene).value(times)), times)
+    impulse = p.area * trapezoid(np.abs(load_history(scene).value(times)), times)
     if trial.engine.has_rigid_blocks:
         return impulse / p.block_mass
     n = scene.numerics.continuum
