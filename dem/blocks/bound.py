@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cases.spectrum import highest_frequency
 from dem.blocks.leapfrog import relative
 from dem.blocks.model import LENGTH, PlaneState
 from dem.blocks.shaking import variation
@@ -28,7 +29,9 @@ def highest_energy(system: System, state: PlaneState) -> float:
         shaken = variation(system.shaking(np.arange(time.steps + time.stride)))
     with np.errstate(over="ignore"):
         return speed_that(
-            system.sources.impulse(blocks.masses[system.sources.rows]),
+            system.sources.impulse(
+                blocks.masses[system.sources.rows], highest_frequency(blocks.scene)
+            ),
             duration * np.hypot(own.gravity_x, own.gravity_y) * np.sqrt(mass.sum()),
             np.sqrt(mass.sum()) * shaken,
             stored(system, state),

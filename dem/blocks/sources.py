@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 #: Samples times held blocks whose forces are there at once.
 AT_ONCE = 100_000
+IN_A_PERIOD = 20  # of the highest frequency that acts: looks at what acts
 
 
 class Pattern(NamedTuple):
@@ -90,19 +91,24 @@ class Sources:
                 impulses = history.impulse(dt * (steps + 0.5)) - history.impulse(dt * (steps - 0.5))
                 found += (impulses / dt)[:, None, None] * shape
 
-    def impulse(self, inertia: np.ndarray) -> float:
-        """Return a bound on what all of it adds to sqrt(2 E), sqrt(J), sample by sample.
+    def impulse(self, inertia: np.ndarray, frequency: float | None) -> float:
+        """Return a bound on what all of it adds to sqrt(2 E), sqrt(J), sample by sample, or more
+        often where samples are too rare to see it.
 
-        inertia : of each row's freedoms [h, 3]. What is steady acts from the start, and is in
-        equilibrium with the stress that it stands for.
+        inertia : of each row's freedoms [h, 3]. frequency : the highest that acts, Hz; None: none.
+        What is steady acts from the start, and is in equilibrium with the stress that it stands
+        for.
         """
-        steps, every = self.time.stride * np.arange(self.time.samples), np.arange(len(self.rows))
-        parts = -(-self.time.samples * max(1, len(self.rows)) // AT_ONCE)
+        time, every = self.time, np.arange(len(self.rows))
+        seen = int(min(time.stride, 1 / (IN_A_PERIOD * time.dt * (frequency or 1e-300))))
+        stride = max(1, seen)
+        steps = np.arange(0, time.stride * time.samples, stride)
+        parts = -(-len(steps) * max(1, len(self.rows)) // AT_ONCE)
         felt = 0.0
         for some in np.array_split(steps, parts):
             forces = resultant(self.sums(some, every)) - self.steady
             felt += float(np.sqrt((forces**2 / inertia).sum(axis=(1, 2))).sum())
-        return self.time.dt * self.time.stride * felt
+        return time.dt * stride * felt
 
 
 def reactions(partition: Partition, sides: list[str], stress: StressInPlane) -> Pattern:

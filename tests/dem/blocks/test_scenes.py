@@ -324,3 +324,22 @@ def test_an_unstable_run_is_stopped_with_what_is_sound(rock_mass, wave):
     with pytest.raises(StoppedError, match=r"fastest at \[") as caught:
         simulate(own)
     assert "\n" not in str(caught.value)
+
+
+def test_rare_samples_do_not_hide_a_pulse_from_the_divergence_monitor(rock_mass, wave):
+    """What waves and forces can cause is the same whether a sample falls on the pulse or none."""
+    from dem.blocks.bound import highest_energy
+    from dem.blocks.model import state_at_rest
+    from dem.blocks.system import prepared
+
+    force = {
+        "kind": "force", "at": [6.2, 5.3], "direction": [0.6, 0.8], "shape": "ricker",
+        "quantity": "force", "amplitude": 1e6, "period": 0.004,
+    }  # fmt: skip
+    for acting in ({"waves": [wave()]}, {"loads": [force]}):
+        bounds = []
+        for interval in (2e-5, 0.1):
+            own = rock_mass(record={"interval": interval}, time={"duration": 0.1}, **acting)
+            system = prepared(own)
+            bounds.append(highest_energy(system, state_at_rest(system.model)))
+        assert bounds[1] == pytest.approx(bounds[0], rel=0.01)
