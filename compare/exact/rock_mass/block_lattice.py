@@ -79,7 +79,7 @@ def solve(scene: RockMass) -> xr.Dataset:
     quiet = _quiet(scene, partition)
     impedance = impedances(scene, quiet.normal)
     system = RigidSystem(
-        _masses(scene, partition),
+        masses(scene, partition),
         _stiffness(scene, partition),
         viscosity_of(quiet, impedance, partition.count),
     )
@@ -91,7 +91,7 @@ def solve(scene: RockMass) -> xr.Dataset:
     face = tractions(field, quiet.place, quiet.normal, impedance, fine)
     forces = forces_of(quiet, np.where(enter, face.values, 0.0), partition.count)
     found, twin = (
-        [_at_points(scene, partition, x) for x in motion(system, some, step, samples)]
+        [at_points(scene, partition, x) for x in motion(system, some, step, samples)]
         for some, step, samples in (
             (forces, fine[1], stride),
             (forces[::2], 2 * fine[1], stride // 2),
@@ -112,7 +112,8 @@ def _quiet(scene: RockMass, partition: Partition) -> Points:
     return points_on(partition.centroid, *chosen)
 
 
-def _masses(scene: RockMass, partition: Partition) -> np.ndarray:
+def masses(scene: RockMass, partition: Partition) -> np.ndarray:
+    """Return the masses (kg) and moments of inertia (kg m2) of all freedoms [3 N], per m."""
     own = inertia(partition, scene.rock.density)
     return np.stack([own.mass, own.mass, own.moment], axis=1).ravel()
 
@@ -134,7 +135,7 @@ def _stiffness(scene: RockMass, partition: Partition):
     return total
 
 
-def _at_points(scene: RockMass, partition: Partition, values: np.ndarray) -> np.ndarray:
+def at_points(scene: RockMass, partition: Partition, values: np.ndarray) -> np.ndarray:
     """Return the motion of the points of a scene [points, (x, y), n], of that of the freedoms of
     all blocks [n, 3 N]."""
     points = np.array(scene.record.points)

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property, partial
-from typing import Any, NamedTuple
+from functools import cache, cached_property, partial
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import xarray as xr
 
 import cases
 from cases.kinds import pillar_of
 from cases.material.calibrate import Properties, calibrate
+from cases.schema.pulse import shortest_period
 from cases.schema.scene import Scene
 from compare.engines import ENGINES, solve
 from compare.scenes import find
 from compare.solvers.record import Solver
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+    from cases.schema.rock_mass import RockMass
 
 SHORT = "hard/short-pillar"  # the scene of most cases
 #: In a case's changes: numerics.dem.step_fraction or numerics.continuum.step_fraction.
@@ -92,24 +97,48 @@ class CaseTrial:
         self.case = case
         self.engine, self.scheme = stepper
 
-    def changed(self, **more: Any) -> Scene:
+    def read(self, **more: Any) -> AnyScene:
         """Return the scene with more dotted keys (dots written __) changed."""
         part = f"numerics.{self.engine.engine}"
         extra = {key.replace("__", "."): value for key, value in more.items()}
-        keys = {f"{part}.scheme": self.scheme} | self.case.changes | extra
+        scheme = {f"{part}.scheme": self.scheme}
+        if self.engine.has_rigid_blocks and _kind(self.case.scene) != Scene.kind:
+            scheme = {}  # those of rock masses have leapfrog alone
+        keys = scheme | self.case.changes | extra
         for key in (STEP, ALLOW):
             if key in keys:
                 keys[f"{part}.{key}"] = keys.pop(key)
-        return pillar_of(cases.load_variant(find(self.case.scene), "", keys))
+        return cases.load_variant(find(self.case.scene), "", keys)
+
+    def changed(self, **more: Any) -> Scene:
+        """Return the pillar with more dotted keys (dots written __) changed."""
+        return pillar_of(self.read(**more))
 
     def run(self, **more: Any) -> xr.Dataset:
         """Return the engine's result for the scene with more keys changed."""
-        return solve(self.engine.name, self.changed(**more))
+        return solve(self.engine.name, self.read(**more))
 
     @cached_property
     def scene(self) -> Scene:
-        """The scene of the case."""
+        """The pillar of the case."""
         return self.changed()
+
+    @cached_property
+    def rock_mass(self) -> RockMass:
+        """The rock mass of the case."""
+        scene = self.read()
+        assert not isinstance(scene, Scene), self.case.name
+        return scene
+
+    @cached_property
+    def period(self) -> float:
+        """The shortest period of what acts, s; 0 without."""
+        return shortest_period(self.read().pulses) or 0.0
+
+    @cached_property
+    def duration(self) -> float:
+        """The time that is simulated, s."""
+        return self.read().time.duration
 
     @cached_property
     def properties(self) -> Properties:
@@ -124,7 +153,7 @@ class CaseTrial:
     @cached_property
     def critical(self) -> float:
         """The critical step of explicit steps of this scene, s."""
-        return self.engine.prepare(self.changed(**{STEP: 0.5})).critical
+        return self.engine.prepare(self.read(**{STEP: 0.5})).critical
 
     @property
     def fraction(self) -> float:
@@ -140,3 +169,9 @@ class CaseTrial:
     def is_implicit(self) -> bool:
         """Whether the engine's steps are implicit."""
         return self.scheme == "implicit"
+
+
+@cache
+def _kind(scene: str) -> str:
+    """Return the kind of a shipped scene."""
+    return cases.load_variant(find(scene)).kind

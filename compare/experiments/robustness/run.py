@@ -23,11 +23,12 @@ from compare.experiments.robustness.extreme_cases import EXTREME
 from compare.experiments.robustness.failing_cases import FAILING
 from compare.experiments.robustness.linear_cases import LINEAR
 from compare.experiments.robustness.map import StabilityMap, make_map
+from compare.experiments.robustness.rock_mass_cases import ROCK_MASSES
 from compare.experiments.store import Store
 
 RATE = "hard case"  # what the seconds of rows are remembered by
 HELD, FAILED, NONE = "held", "failed", "does not apply"
-CASES: list[HardCase] = [*LINEAR, *EXTREME, *FAILING]  # in the order of the report
+CASES: list[HardCase] = [*LINEAR, *EXTREME, *FAILING, *ROCK_MASSES]  # in the order of the report
 Place = tuple[int, int]  # the numbers of a case and of an engine with its scheme
 
 
@@ -99,7 +100,7 @@ def _judged(case: HardCase, stepper: EngineScheme) -> tuple[str, Judgement]:
 def _why_not(case: HardCase, stepper: EngineScheme) -> str:
     """Return why the engine and its scheme cannot solve the scene; "" where they can."""
     try:
-        return stepper.engine.applies(CaseTrial(case, stepper).scene).reason
+        return stepper.engine.applies(CaseTrial(case, stepper).read()).reason
     except SceneError as error:
         return f"the scheme {error.allowed}" if error.key.endswith(".scheme") else ""
 

@@ -34,7 +34,7 @@ def phase_error(trial: CaseTrial, result: xr.Dataset) -> float:
     """
     omega = peak(trial)
     step = omega * float(result.attrs["dt"])
-    return ERROR[trial.scheme] * step**2 * CUBES * omega * trial.scene.time.duration
+    return ERROR[trial.scheme] * step**2 * CUBES * omega * trial.duration
 
 
 def element_error(trial: CaseTrial) -> float:
@@ -83,7 +83,7 @@ def lost_after(trial: CaseTrial, result: xr.Dataset) -> float:
 
 def peak(trial: CaseTrial) -> float:
     """Return the angular frequency of the peak of the load's spectrum, rad/s."""
-    return 2 * pi / (trial.scene.load.period or trial.scene.time.duration)
+    return 2 * pi / (trial.period or trial.duration)
 
 
 def time_of_element(trial: CaseTrial) -> float:

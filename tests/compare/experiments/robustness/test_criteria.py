@@ -7,6 +7,7 @@ from compare.engines import solve
 from compare.experiments.robustness.case import (
     ALLOW,
     FOURTH,
+    JOINTED,
     LEAPFROG,
     STEP,
     CaseTrial,
@@ -16,7 +17,12 @@ from compare.experiments.robustness.case import (
 )
 from compare.experiments.robustness.criteria import accuracy, energies, steps
 from compare.experiments.robustness.linear_cases import BLOW, JOINT, TINY
+from compare.experiments.robustness.rock_mass_cases import ROCK_MASSES
 from compare.experiments.robustness.run import FAILED, HELD, NONE, row_of
+
+#: Changes of runs, not of what they are held to.
+STIFF = {"joint_sets.1.normal_stiffness": 2e14, "joint_sets.1.shear_stiffness": 8e13}
+SLIPPERY = {f"joint_sets.{k}.friction_angle": 15.001 for k in (0, 1)}
 
 
 def judged(judge, changes, stepper=LEAPFROG, **about):
@@ -93,3 +99,46 @@ def test_error_of_a_run_is_a_failed_row():
     """A scene that cannot be run fails its row with the message of the run."""
     found = judged(accuracy.near_exact, {"rock.density": -1.0})
     assert found.state == FAILED and "rock.density" in found.message
+
+
+@pytest.mark.parametrize(
+    "name, stepper, wrong",
+    [
+        (
+            "a block held by one corner",
+            LEAPFROG,
+            {"joint_sets.0.normal_stiffness": 2e10 * (1 + 1e-6)},
+        ),
+        ("T-junctions of brickwork under shear", LEAPFROG, {"joint_sets.1.offset": 0.5 + 1e-9}),
+        ("one set 1e8 as stiff as the other, rigid blocks", LEAPFROG, STIFF),
+        ("a wave at 88 degrees, rigid blocks", LEAPFROG, {"joint_sets.1.normal_stiffness": 1.9e10}),
+        ("a wave at 88 degrees on a joint", JOINTED, {"joint_sets.0.shear_stiffness": 5e9}),
+        ("T-junctions of brickwork that slide", LEAPFROG, SLIPPERY),
+        ("T-junctions of brickwork that slide", JOINTED, SLIPPERY),
+        ("T-junctions of brickwork that slide", LEAPFROG, {"waves.0.amplitude": 1e5}),
+    ],
+)
+def test_rock_mass_that_is_another_fails_its_row(name, stepper, wrong):
+    """A run of joints a little off is not within the bound of what the case asks for; nor is one
+    whose joints do not slide said to be within friction."""
+
+    class Other(CaseTrial):
+        def run(self, **more):
+            changes = {key: value for key, value in wrong.items() if key.split(".")[0] not in more}
+            return super().run(**more, **changes)
+
+    case = next(one for one in ROCK_MASSES if one.name == name)
+    found = case.criterion.judge(Other(case, stepper))
+    assert found.value > 1.5 * found.bound
+
+
+def test_energy_from_nowhere_breaks_the_ledger():
+    """A hundred thousand millionth of the work more is beyond round-off."""
+    case = next(
+        one for one in ROCK_MASSES if one.name == "the ledger of a block held by one corner"
+    )
+    trial = CaseTrial(case, LEAPFROG)
+    energy = trial.result["energy"]
+    energy.values[0, -1] += 1e-11 * float(np.abs(energy.sel(term="work")).max())
+    found = case.criterion.judge(trial)
+    assert found.value > found.bound
