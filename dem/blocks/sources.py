@@ -100,8 +100,8 @@ class Sources:
         for.
         """
         time, every = self.time, np.arange(len(self.rows))
-        seen = int(min(time.stride, 1 / (IN_A_PERIOD * time.dt * (frequency or 1e-300))))
-        stride = max(1, seen)
+        periods = time.dt * time.stride * (frequency or 0.0)
+        stride = max(1, int(time.stride / max(1.0, IN_A_PERIOD * periods)))
         steps = np.arange(0, time.stride * time.samples, stride)
         parts = -(-len(steps) * max(1, len(self.rows)) // AT_ONCE)
         felt = 0.0
