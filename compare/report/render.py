@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import base64
 import gzip
+import json
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any, NamedTuple
 
+import numpy as np
 from jinja2 import Environment, PackageLoader
 from markupsafe import Markup, escape
 
@@ -18,6 +21,14 @@ from compare.report.peers import PeersSection
 from compare.report.section import Section
 from compare.report.snapshots import SnapshotsSection
 from compare.report.tables import Table, percent
+
+
+class RockMasses(NamedTuple):
+    """What the page shows of rock masses: scenes, where engines stand on them, and studies."""
+
+    overview: Overview
+    sections: list[Section]
+    studies: list[Summary]
 
 
 @dataclass(frozen=True)
@@ -42,12 +53,18 @@ class Page:
     peers_file: str = ""
     effects: Summary | None = None
     stability: Summary | None = None
+    rock_masses: RockMasses | None = None
     snapshots: SnapshotsSection | None = None
+
+    @property
+    def all_sections(self) -> list[Section]:
+        """The scenes, those of rock masses among studies too."""
+        return [*self.sections, *(self.rock_masses.sections if self.rock_masses else ())]
 
     @property
     def is_interactive(self) -> bool:
         """Whether any figure of the scenes can be zoomed."""
-        return any(shown.drawn.plot for section in self.sections for shown in section.figures)
+        return any(shown.drawn.plot for section in self.all_sections for shown in section.figures)
 
     @property
     def failed(self) -> list[tuple[Section, Finding]]:
@@ -70,7 +87,7 @@ def render(page: Page, out: Path) -> str:
     )
     environment.globals |= {
         "held_file": held_file,
-        "held": held,
+        "held_plot": held_plot,
         "place": lambda file: file.relative_to(out).as_posix(),
         "source": lambda name: Markup(_asset(environment, name)),
         "colour": lambda name: style(name).colour,
@@ -95,6 +112,27 @@ def held_file(file: Path) -> Markup:
     """Return the element that holds a file."""
     text = held(file.read_bytes())
     return Markup(f'<script type="text/plain" id="held-{escape(file.name)}">{text}</script>')
+
+
+def held_plot(plot: str) -> str:
+    """Return a figure for plotly.js as the page holds it: its JSON, a new line, its numbers' bytes.
+
+    The bits of single-precision numbers [n] as integers, each less the one before modulo 2^32, the
+    lowest bytes of all first: of smooth curves a third less than base64 within JSON. `bdata` is
+    their first byte and n.
+    """
+    parts: list[bytes] = []
+
+    def take(found: dict[str, Any]) -> dict[str, Any]:
+        if "bdata" in found:
+            bits = np.frombuffer(base64.b64decode(found["bdata"]), "<u4")
+            steps = np.diff(bits, prepend=np.uint32(0)).astype("<u4")
+            found["bdata"] = [sum(map(len, parts)), bits.size]
+            parts.append(steps.view("u1").reshape(-1, 4).T.tobytes())
+        return found
+
+    text = json.dumps(json.loads(plot, object_hook=take), separators=(",", ":"))
+    return held(text.encode() + b"\n" + b"".join(parts))
 
 
 def charts() -> str:

@@ -16,6 +16,7 @@ from compare.experiments.ablation.summary import summarise as summarise_ablation
 from compare.experiments.cost.machine import measured_on
 from compare.experiments.pool import Lent, Pool, alone
 from compare.experiments.robustness.summary import make_study as make_hard_cases
+from compare.experiments.scattering import summary as scattering
 from compare.experiments.study.summary import REPORTED
 from compare.experiments.study.summary import reported as reported_studies
 from compare.figures.charts.static import draw
@@ -27,8 +28,8 @@ from compare.report import peers, tables
 from compare.report.cost import seconds
 from compare.report.findings.overview import mostly_dispersion
 from compare.report.overview import Overview, RankedScene
-from compare.report.render import Page, render
-from compare.report.scenes import Solved, asked_for, solve
+from compare.report.render import Page, RockMasses, render
+from compare.report.scenes import ROCK_MASSES, Solved, asked_for, solve
 from compare.report.snapshots import make_snapshots
 from compare.report.versions import versions
 from compare.runs.output import write_csv, write_text
@@ -39,7 +40,8 @@ FREE_PILLAR = "fig-03"  # the scene that says what the paper's own comparison is
 PARTS = {
     "scenes": (0.0, 0.6),
     "hard cases": (0.6, 0.7),
-    "studies": (0.7, 0.95),
+    "studies": (0.7, 0.88),
+    "rock masses": (0.88, 0.95),
     "effects": (0.95, 1.0),
 }
 PAPERS = (
@@ -80,7 +82,9 @@ def build(
             others = peers.read(peers_table)
             page = _of_paper(Path(out), _part(progress, "scenes"), pool)
             page = _with_hard_cases(page, Path(out), pool, progress) if hard else page
-            page = _with_studies(page, Path(out), studies, others, pool, progress)
+            page = _with_studies(page, Path(out), studies, others, progress)
+            page = _with_joints(page, Path(out), progress)
+            page = _with_effects(page, Path(out), pool, progress)
     return Report(write_text(Path(out) / "index.html", render(page, Path(out))), page)
 
 
@@ -108,10 +112,13 @@ def _of_paper(out: Path, progress: Progress | None, pool: Pool) -> Page:
         snapshots.append(executor.submit(make_snapshots, out))
         return snapshots
 
-    solved = solve(out / "figures", asked_for(()), progress, pool, besides)
-    page = _page(solved, PAPERS, "jointwave report --out DIR")
+    asked = [*asked_for(()), *asked_for(ROCK_MASSES)]
+    solved = solve(out / "figures", asked, progress, pool, besides)
+    paper, others = solved.split(lambda section: section.request.number is not None)
+    page = _page(paper, PAPERS, "jointwave report --out DIR")
+    rock_masses = RockMasses(Overview(_ranked(others)), others.sections, [])
     about = mostly_dispersion(solved.comparisons[FREE_PILLAR][0])
-    return replace(page, about=about, snapshots=snapshots[0].result())
+    return replace(page, about=about, snapshots=snapshots[0].result(), rock_masses=rock_masses)
 
 
 def _page(solved: Solved, subtitle: str, command: str) -> Page:
@@ -142,26 +149,39 @@ def _with_hard_cases(page: Page, out: Path, pool: Pool, progress: Progress | Non
     return replace(page, stability=make_hard_cases(out / "studies", pool, False, part))
 
 
+def _with_joints(page: Page, out: Path, progress: Progress | None) -> Page:
+    """Return the page with what joints reflect and pass, one run at a time."""
+    part, names = _part(progress, "rock masses"), list(scattering.TITLES)
+    found = []
+    for i, name in enumerate(names):
+        found.append(scattering.make_study(name, out / "studies", brief=True))
+        if part:
+            part((i + 1) / len(names))
+    assert page.rock_masses
+    return replace(page, rock_masses=page.rock_masses._replace(studies=found))
+
+
 def _with_studies(
     page: Page,
     out: Path,
     studies: tuple[str, ...],
     others: DataFrame | None,
-    pool: Pool,
     progress: Progress | None,
 ) -> Page:
     """Return the page with what was measured: the seconds after everything else, and alone."""
-    measured = reported_studies(out, studies, _part(progress, "studies"))
-    effects = ablation_runs.run(
-        ablation_runs.reported(), out / "effects", pool, _part(progress, "effects")
-    )
     return replace(
         page,
-        studies=measured,
-        effects=summarise_ablation(out / "effects", effects),
+        studies=reported_studies(out, studies, _part(progress, "studies")),
         peers=None if others is None else peers.write_section(out / "studies", others),
         peers_file=str(peers.PLACE),
     )
+
+
+def _with_effects(page: Page, out: Path, pool: Pool, progress: Progress | None) -> Page:
+    effects = ablation_runs.run(
+        ablation_runs.reported(), out / "effects", pool, _part(progress, "effects")
+    )
+    return replace(page, effects=summarise_ablation(out / "effects", effects))
 
 
 def write_comparisons(comparisons: list[Comparison], out: Path) -> None:

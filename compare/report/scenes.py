@@ -22,8 +22,10 @@ from results.dataset import scene_hash
 if TYPE_CHECKING:
     from cases.kinds import AnyScene
 
+#: The shipped scenes of rock masses that the page shows beside the paper's figures.
+ROCK_MASSES = ("rock-mass/one-joint",)
 RATE = "scene of the report"  # what the seconds of scenes are remembered by
-TAKEN = {"", "overview", "made", "said"}  # what the page calls its own parts
+TAKEN = {"", "overview", "made", "said", "rock-masses"}  # what the page calls its own parts
 Submit = Callable[[Executor], list[Future]]
 
 
@@ -33,6 +35,14 @@ class Solved:
 
     comparisons: dict[str, list[Comparison]]
     sections: list[Section]
+
+    def split(self, chosen: Callable[[Section], bool]) -> tuple[Solved, Solved]:
+        """Return what the chosen scenes have come to, and all others."""
+        return self._of(chosen), self._of(lambda section: not chosen(section))
+
+    def _of(self, chosen: Callable[[Section], bool]) -> Solved:
+        sections = [section for section in self.sections if chosen(section)]
+        return Solved({s.name: self.comparisons[s.name] for s in sections}, sections)
 
 
 def asked_for(scenes: Sequence[str]) -> list[SceneRequest]:

@@ -41,9 +41,7 @@ def parts_of_study(name: str, out: Path) -> list[CommandPart]:
     if name == HARD_CASES:
         return [_hard_cases(out, slow=True)]
     if name in scattering.SOLVERS:
-        done = Store[scattering.JointsRow](scattering.JointsRow, out / name)
-        keys = list(map(scattering.key, scattering.points(name)))
-        return [_part(name, done, keys, scattering.RATE)]
+        return [_joints(name, out)]
     study, stem = load(name), Path(name).stem
     rows, parts = Store[PointRow](PointRow, out / stem), []
     for curve in study.curves:
@@ -51,6 +49,12 @@ def parts_of_study(name: str, out: Path) -> list[CommandPart]:
         label = f"{stem}: {curve.label} ({curve.method})"
         parts.append(_part(label, rows, list(map(studies.key, points)), studies.rate(study)))
     return parts
+
+
+def _joints(name: str, out: Path, brief: bool = False) -> CommandPart:
+    done = Store[scattering.JointsRow](scattering.JointsRow, out / name)
+    keys = list(map(scattering.key, scattering.points(name, brief)))
+    return _part(name, done, keys, scattering.RATE)
 
 
 def _hard_cases(out: Path, slow: bool) -> CommandPart:
@@ -73,16 +77,19 @@ def parts_of_report(scenes: Sequence[str], out: Path) -> list[CommandPart]:
 
     Raises SceneError for a scene that there is not.
     """
-    from compare.report.scenes import RATE, asked_for
+    from compare.report.scenes import RATE, ROCK_MASSES, asked_for
 
-    first = _part("scenes", Store(None, None), list(map(str, asked_for(scenes))), RATE)
+    asked = [*asked_for(scenes), *(() if scenes else asked_for(ROCK_MASSES))]
+    first = _part("scenes", Store(None, None), list(map(str, asked)), RATE)
     if scenes:
         return [first]
     of_studies = [part for name in REPORTED for part in parts_of_study(name, out / "studies")]
+    of_joints = [_joints(name, out / "studies", brief=True) for name in scattering.SOLVERS]
     effects = [case.key for case in ablation.reported()]
     return [
         first,
         *of_studies,
+        *of_joints,
         _hard_cases(out / "studies", slow=False),
         _part("effects", ablation.ablations(out / "effects"), effects, ablation.RATE),
     ]

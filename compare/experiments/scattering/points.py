@@ -89,21 +89,27 @@ SOLVERS = {
 }
 
 
-def points(study: str) -> list[JointsPoint]:
-    """Return the points of a study, solver by solver: one joint at all angles, or many at one."""
+def points(study: str, brief: bool = False) -> list[JointsPoint]:
+    """Return the points of a study, solver by solver: one joint at all angles, or many at one.
+
+    brief : only every other angle or number of joints.
+    """
     one = study == "oblique-joint"
     places = [(x, 1) for x in ANGLES] if one else [(AT, count) for count in COUNTS]
+    chosen = places[::2] if brief else places
     return [
-        JointsPoint(name, kind, *p) for name in SOLVERS[study] for kind in KINDS for p in places
+        JointsPoint(name, kind, *p) for name in SOLVERS[study] for kind in KINDS for p in chosen
     ]
 
 
-def run(study: str, folder: Path | None, progress: Progress | None = None) -> list[JointsRow]:
-    """Return the rows of all points, in order, one at a time since their seconds count; they are
+def run(
+    study: str, folder: Path | None, progress: Progress | None = None, brief: bool = False
+) -> list[JointsRow]:
+    """Return the rows of its points, in order, one at a time since their seconds count; they are
     saved in `folder`."""
     rows: Store[JointsRow] = Store(JointsRow, folder)
     with alone():
-        return rows.compute(points(study), key, measure, None, progress, RATE)
+        return rows.compute(points(study, brief), key, measure, None, progress, RATE)
 
 
 def key(point: JointsPoint) -> str:

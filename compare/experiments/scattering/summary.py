@@ -31,9 +31,14 @@ LEGEND = (
 COLUMNS = ["R_p", "R_s", "T_p", "T_s", "off", "residual, %", "freedoms", "CPU, s"]
 
 
-def make_study(name: str, out: Path, progress: Progress | None = None) -> Summary:
-    """Run a study of TITLES; write its table and figure into `out`, its points into OUT/NAME/."""
-    rows, title = run(name, out / name, progress), TITLES[name]
+def make_study(
+    name: str, out: Path, progress: Progress | None = None, brief: bool = False
+) -> Summary:
+    """Run a study of TITLES; write its table and figure into `out`, its points into OUT/NAME/.
+
+    brief : only every other point, see `points`.
+    """
+    rows, title = run(name, out / name, progress, brief), TITLES[name]
     table = frame(rows, JointsRow)
     data = table.rename_axis("row").to_xarray().assign_attrs(title=title, **machine())
     figure = save(draw(name, rows), out, name, title)

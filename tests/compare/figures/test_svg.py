@@ -16,9 +16,10 @@ HEAD = '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1
 
 
 def points(path):
-    """Return the points of a path of relative moves and lines."""
-    steps = re.findall(r"[ml](-?[\d.]+) (-?[\d.]+)", path)
-    return np.cumsum(np.array(steps, dtype=float), axis=0)
+    """Return the points of a path of one relative move and lines, whose letters are left out."""
+    assert re.fullmatch(r"m[-. \d]+", path)
+    steps = [float(step) for step in re.findall(r"-?(?:\d+\.?\d*|\.\d+)", path)]
+    return np.cumsum(np.reshape(steps, (-1, 2)), axis=0)
 
 
 def test_points_of_a_path_stay_within_half_a_hundredth():
@@ -28,7 +29,31 @@ def test_points_of_a_path_stay_within_half_a_hundredth():
     small = compact(f'{HEAD}<path d="{path}"/></svg>', "a")
     found = points(re.search(r' d="([^"]*)"', small)[1])
     np.testing.assert_allclose(found, place, atol=0.0051)
-    assert len(small) < 0.7 * len(path)
+    assert len(small) < 0.65 * len(path)
+
+
+def test_lines_after_a_move_have_no_letter_and_each_move_has_its_own():
+    path = "M 1 2 L 1.5 1 L 1 1.25 M 0 0 L -0.5 0 z"
+    small = compact(f'{HEAD}<path d="{path}"/></svg>', "a")
+    assert ' d="m1 2 .5-1-.5 .25m-1-1.25-.5 0z"' in small
+
+
+def test_uses_do_not_repeat_the_stroke_of_their_path():
+    """What a path says of its stroke wins over what a use of it says; its fill is the use's."""
+    path = '<path id="m1" d="M 0 0" style="stroke: #000; stroke-width: 0.6"/>'
+    use = '<use xlink:href="#m1" x="1" style="stroke: #000; stroke-width: 0.6{}"/>'
+    small = compact(f"{HEAD}{path}{use.format('')}{use.format('; fill: #fff')}</svg>", "a")
+    assert re.findall(r"<use[^>]*/>", small) == [
+        '<use xlink:href="#a-m1" x="1"/>',
+        '<use xlink:href="#a-m1" x="1" style="fill: #fff"/>',
+    ]
+
+
+def test_groups_that_matplotlib_counts_are_gone_and_named_ones_stay():
+    counted = '<g id="xtick_1">\n<g id="line2d_2">\n<path d="M 0 0"/>\n</g>\n</g>\n'
+    drawn = f'{counted}<g id="curve-0">\n</g>\n'
+    small = compact(f"{HEAD}\n{drawn}</svg>", "a")
+    assert re.findall(r"<g[^>]*>", small) == ['<g id="a-curve-0">'] and small.count("<path") == 1
 
 
 @pytest.mark.parametrize("path", ["M 0 0 C 1 1 2 2 3 3 ", "M 0 0 Q 1 1 2 0 z"])

@@ -1,14 +1,20 @@
 """The page of made-up parts: what it says where something fails, is missing, or is odd text."""
 
+import base64
+import gzip
+import json
+import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from compare.experiments.summary import Summary
+from compare.figures.charts import interactive
 from compare.figures.export import Drawn
 from compare.report.findings import Finding
 from compare.report.overview import Overview
-from compare.report.render import Page, render
+from compare.report.render import Page, RockMasses, held_plot, render
 from compare.report.section import PAPER, SceneRequest, Section, Shown, linked
 from compare.report.tables import Table
 
@@ -56,6 +62,41 @@ def section(tmp_path, figure):
 def shown(drawn, folded=False, marks=("drawing", "numbers")):
     """Return a figure as it stands on the page."""
     return Shown(drawn, folded, frozenset(marks))
+
+
+def test_numbers_of_a_chart_are_held_by_their_steps_and_come_back():
+    """Read as page.js reads them: first byte, n; of all steps the lowest bytes first."""
+    values = [np.array([1.0, -2.5, np.nan, 0.0, 3e9]), np.sin(np.arange(800) / 40)]
+    traces = [{"y": interactive.packed(one)} for one in values]
+    plot = json.dumps({"data": traces})
+    text = held_plot(plot)
+    head, _, numbers = gzip.decompress(base64.b64decode(text)).partition(b"\n")
+    for one, trace in zip(json.loads(head)["data"], traces, strict=True):
+        start, n = one["y"]["bdata"]
+        steps = np.frombuffer(numbers[start : start + 4 * n], "u1").reshape(4, n).T.copy()
+        bits = np.cumsum(steps.view("<u4").ravel(), dtype="<u4")
+        assert base64.b64encode(bits.tobytes()).decode() == trace["y"]["bdata"]
+    assert len(text) < 0.8 * len(base64.b64encode(gzip.compress(plot.encode())))
+
+
+def test_rock_masses_stand_with_their_scenes_and_studies(page, section, figure):
+    """Also in the contents; without them nothing of them is on the page."""
+    table = Table(["angle", "off"], {"rigid blocks: P wave": [["30", "1.0e-02"]]})
+    parts = figure("oblique-joint"), "A note.", "Off: from the closed form."
+    study = Summary(
+        "oblique-joint", "At one joint", table, ["Off by 1 %."], ["dem: no"], [], {}, *parts
+    )
+    html = page(rock_masses=RockMasses(Overview([]), [section([])], [study]))
+    assert re.findall(r'<section id="([^"]+)"', html) == [
+        *("overview", "rock-masses", "fig-05", "oblique-joint", "made")
+    ]
+    contents = html.partition("</nav>")[0]
+    assert 'href="#rock-masses"' in contents and 'href="#oblique-joint">At one joint' in contents
+    assert "jointwave study oblique-joint" in html and "Failed points: dem: no." in html
+    assert all(
+        text in html for text in ("Off by 1 %.".replace(" %", "\u00a0%"), "A note.", "1.0e-02")
+    )
+    assert "rock-masses" not in page()
 
 
 def test_a_failed_claim_is_red_and_named_at_the_top(page, section):

@@ -156,6 +156,20 @@ def test_every_scene_has_every_kind_of_picture(report, text, name):
     assert f"jointwave report guo-li-2002/{name} --out {name}" in part(text, name)
 
 
+def test_rock_masses_stand_beside_the_studies(report, text):
+    """A scene with every kind of picture, and what joints reflect and pass, solver by solver."""
+    assert "continuum-jointed" in part(text, "rock-masses")
+    found = re.findall(r'<figure id="(one-joint-[a-z-]+)-figure"', part(text, "one-joint"))
+    assert [name.removeprefix("one-joint-") for name in found][:2] == ["scene", "waveforms"]
+    assert {"one-joint-spectra", "one-joint-energy"} <= set(found)
+    (scene,) = report.page.rock_masses.overview.scenes
+    assert scene.standings["continuum-jointed"].verdict.word == "agrees"
+    for name in ("oblique-joint", "parallel-joints"):
+        shown = part(text, name)
+        assert "<svg" in shown and "Failed points" not in shown
+        assert all(words in shown for words in ("rigid blocks: SV wave", "jointed rock: P wave"))
+
+
 @pytest.mark.parametrize("name", FIGURES)
 def test_csv_holds_every_curve_and_only_those(report, name):
     table = pd.read_csv(report.file.parent / "figures" / f"{name}-waveforms.csv")

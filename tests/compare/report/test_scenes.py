@@ -1,5 +1,7 @@
 """Which scenes a report is about, and what the page calls them."""
 
+from types import SimpleNamespace
+
 import pytest
 
 import cases
@@ -7,13 +9,26 @@ from cases.errors import SceneError
 from compare.figures.subplots import curve_table, variant_names
 from compare.misfit.pairs import Comparison
 from compare.report.report import build
-from compare.report.scenes import _key, asked_for
+from compare.report.scenes import ROCK_MASSES, Solved, _key, asked_for
 from compare.report.section import PAPER
 
 
 def test_without_names_it_is_the_papers_figures_in_order():
     assert [one.number for one in asked_for(())] == list(range(2, 11))
     assert asked_for(())[0].label == "fig. 2"
+
+
+def test_rock_masses_beside_the_paper_are_shipped_and_no_figures_of_it():
+    found = asked_for(ROCK_MASSES)
+    assert [one.label for one in found] == ["one-joint"]
+    assert not {one.name for one in found} & {one.name for one in asked_for(())}
+
+
+def test_scenes_are_split_with_what_they_have_come_to():
+    named = [SimpleNamespace(name=name) for name in "abc"]
+    both = Solved({"a": [1], "b": [2], "c": [3]}, named).split(lambda one: one.name != "b")
+    assert [one.comparisons for one in both] == [{"a": [1], "c": [3]}, {"b": [2]}]
+    assert [one.sections for one in both] == [[named[0], named[2]], [named[1]]]
 
 
 def test_every_scene_has_a_name_of_its_own_that_is_fit_for_files(tmp_path):

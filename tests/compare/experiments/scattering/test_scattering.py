@@ -90,6 +90,13 @@ def test_the_study_writes_its_table_and_its_figure(few, tmp_path):
     assert saved == [f.stat().st_mtime_ns for f in sorted((tmp_path / "oblique-joint").iterdir())]
 
 
+def test_a_brief_study_has_every_other_point():
+    for name, places in (("oblique-joint", {0.0, 30.0, 60.0}), ("parallel-joints", {2, 5})):
+        found = points.points(name, brief=True)
+        assert {p.angle if name == "oblique-joint" else p.joints for p in found} == places
+        assert set(found) < set(points.points(name)) and len(found) == 6 * len(places)
+
+
 def test_a_dry_run_counts_the_points(tmp_path):
     (part,) = parts_of_study("oblique-joint", tmp_path)
     assert part.count == part.to_do == len(points.points("oblique-joint")) == 36
