@@ -27,7 +27,7 @@ def compact(svg: str, name: str) -> str:
     """
     svg = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", svg, flags=re.DOTALL)
     svg = re.sub(r'(?<= d=")[^"]+', lambda match: _relative(match[0]), svg)
-    svg = re.sub(r"(\d\.\d\d)\d+", r"\1", svg)
+    svg = re.sub(r"<[^>]+>", lambda match: re.sub(r"(\d\.\d\d)\d+", r"\1", match[0]), svg)
     svg = _without_overruled_styles(COUNTED.sub("", svg))
     svg = re.sub(r"image-rendering:[^;\"]*;?", "", svg)  # viewers smooth images unless told not to
     svg = re.sub(rf'\bid="(?!{name})', f'id="{name}-', svg)

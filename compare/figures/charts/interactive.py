@@ -22,7 +22,7 @@ INK, GRID = "#1c2126", "#e3e6e9"
 PIXELS = 95  # px of an inch of a subplot in print
 LINE = 17  # px of a line of a heading
 NARROW = 42  # characters of such a line that a phone has room for
-TOP, BOTTOM, LEFT, RIGHT = 11, 58, 66, 16  # px around the subplots
+TOP, BOTTOM, LEFT, RIGHT = 11, 58, 84, 16  # px around the subplots
 GAP = 20  # px between subplots, besides their headings
 SAMPLES = 800  # of a curve
 BITS = 14  # of the mantissa of a curve's values: a relative error of 3e-5
@@ -159,7 +159,7 @@ def layout(subplots: list[Subplot], abscissa: dict[str, Any]) -> dict[str, Any]:
 
 def _axis(label: str) -> dict[str, Any]:
     return {
-        "title": {"text": label.replace("\n", "<br>")},
+        "title": {"text": label.replace("\n", "<br>"), "font": {"size": FONT["size"]}},
         "showline": True,
         "linecolor": "#8a9299",
         "gridcolor": GRID,

@@ -62,6 +62,12 @@ def test_curves_keep_their_letters(path):
     assert f' d="{path}"' in small
 
 
+def test_text_keeps_its_decimals():
+    """Of coordinates two are left; the number at a tick is none of them."""
+    small = compact(f'{HEAD}<text x="1.23456">0.0255</text></svg>', "a")
+    assert '<text x="1.23">0.0255</text>' in small
+
+
 def test_ids_are_scoped_and_their_uses_follow():
     svg = f'{HEAD}<path id="m1" d="M 0 0"/><g id="xtick_1"><use xlink:href="#m1"/></g></svg>'
     small = compact(svg, "fig")
