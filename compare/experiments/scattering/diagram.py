@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from compare.exact.plane.waves import KINDS
 from compare.experiments.scattering.points import AT, COUNTS, JointsRow, closed_form, scene_of
@@ -66,6 +67,8 @@ def _draw_moduli(ax: Axes, rows: list[JointsRow], solvers: list[str], kind: str,
             points.set_gid(f"{gid}-{j}-{w}")
     ax.set(ylim=(-0.03, 1.1), ylabel="amplitude over the incident one")
     ax.set_title(WORDS[kind])
+    if not by_angle:
+        ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.grid(color="#e4e7ea", linewidth=0.6)
 
 
@@ -92,5 +95,8 @@ def _draw_cost(ax: Axes, rows: list[JointsRow], solvers: list[str]) -> None:
             markersize=8 - 2 * j,
             markerfacecolor="none" if j else None,
         )
+    ax.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    ax.xaxis.set_major_formatter("{x:g}")
+    ax.xaxis.set_minor_formatter(NullFormatter())
     ax.set_ylabel("off from the closed form")
     ax.grid(color="#e4e7ea", linewidth=0.6)
