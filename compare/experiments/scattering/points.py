@@ -114,7 +114,7 @@ def run(
 
 def key(point: JointsPoint) -> str:
     """Return what tells points apart: everything that decides a row."""
-    return store.key(point._asdict(), SCENE.read_text(encoding="utf-8"))
+    return store.key(point._asdict(), load(SCENE)[0].model_dump_json())
 
 
 def scene_of(
