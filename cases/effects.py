@@ -128,8 +128,9 @@ def _why_slip(slips: bool, cause: str | None) -> str:
     return "friction_angle or cohesion is given" if slips else "neither friction_angle nor cohesion"
 
 
-def _of_forces(scene: Scene, p: Properties) -> Iterator[Effect]:
-    alpha, local, gravity = p.mass_damping, p.local_damping, scene.gravity
+def of_body_forces(scene: AnyScene, alpha: float | None) -> Iterator[Effect]:
+    """Yield the effects on blocks themselves; alpha : of mass-proportional damping, 1/s."""
+    local = scene.damping.local or None
     yield Effect(
         "mass damping",
         alpha is not None,
@@ -140,7 +141,11 @@ def _of_forces(scene: Scene, p: Properties) -> Iterator[Effect]:
         local is not None,
         "no damping.local" if local is None else f"damping.local = {local:g}",
     )
-    yield Effect("gravity", gravity is not None, why_gravity(scene))
+    yield Effect("gravity", scene.gravity is not None, _why_gravity(scene))
+
+
+def _of_forces(scene: Scene, p: Properties) -> Iterator[Effect]:
+    yield from of_body_forces(scene, p.mass_damping)
     prestress = scene.prestress
     yield Effect(
         "prestress",
@@ -151,7 +156,7 @@ def _of_forces(scene: Scene, p: Properties) -> Iterator[Effect]:
     yield Effect("shaken base", scene.load.shakes_base, quantity)
 
 
-def why_gravity(scene: AnyScene) -> str:
+def _why_gravity(scene: AnyScene) -> str:
     """Return how gravity acts, in words."""
     if scene.gravity is None:
         return "no [gravity]"

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 GRAZING = 1e-9  #: cosine up to which a wave that leaves through a side still runs along it
 
 
-class Motion(NamedTuple):
+class WaveMotion(NamedTuple):
     """Particle velocity [points, (x, y), times], m/s, and stress [points, (xx, yy, xy), times],
     Pa, tension positive."""
 
@@ -43,7 +43,7 @@ class IncidentField(Protocol):
         """Whether it holds what joints scatter, too, and so is right at every quiet side; else it
         is the motion of the waves alone, which enters where they do."""
 
-    def __call__(self, points: np.ndarray, times: np.ndarray) -> Motion:
+    def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
         """Return the motion at points [m, 2] (m) and equally spaced times [n] (s)."""
 
 
@@ -67,7 +67,7 @@ class PlaneWave:
         """Return when the pulse begins at points [m, 2], s."""
         return (np.asarray(points) - self.through) @ self.direction / self.speed
 
-    def motion(self, points: np.ndarray, times: np.ndarray) -> Motion:
+    def motion(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
         """Return velocity and stress, sigma = -C : (n g) f / c, at points and times."""
         f = self.pulse.value(np.asarray(times) - self.lateness(points)[:, None])
         n, g, rock = self.direction, self.polarisation, self.rock
@@ -75,7 +75,7 @@ class PlaneWave:
             np.outer(n, g) + np.outer(g, n)
         )
         stress = -np.array([tensor[0, 0], tensor[1, 1], tensor[0, 1]]) / self.speed
-        return Motion(f[:, None] * g[:, None], f[:, None] * stress[:, None])
+        return WaveMotion(f[:, None] * g[:, None], f[:, None] * stress[:, None])
 
 
 @dataclass(frozen=True)
@@ -85,10 +85,10 @@ class FreeField:
     waves: tuple[PlaneWave, ...]
     whole: bool = False
 
-    def __call__(self, points: np.ndarray, times: np.ndarray) -> Motion:
+    def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
         zero = np.zeros((len(points), 1, 1))
         found = [one.motion(points, times) for one in self.waves]
-        return Motion(
+        return WaveMotion(
             sum((m.velocity for m in found), start=zero), sum((m.stress for m in found), start=zero)
         )
 

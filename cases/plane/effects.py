@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from cases.effects import Effect, of_fields, of_ledger, why_gravity
+from cases.effects import Effect, of_body_forces, of_fields, of_ledger
 
 if TYPE_CHECKING:
     from cases.schema.joint_set import JointSet
@@ -53,18 +53,7 @@ def _of_sides(scene: RockMass, kind: str) -> Effect:
 
 
 def _of_forces(scene: RockMass) -> Iterator[Effect]:
-    alpha, local, gravity = scene.damping.alpha, scene.damping.local, scene.gravity
-    yield Effect(
-        "mass damping",
-        alpha is not None,
-        "no mass_proportional, no rayleigh" if alpha is None else f"alpha = {alpha:.4g} 1/s",
-    )
-    yield Effect(
-        "local damping",
-        local is not None,
-        "no damping.local" if local is None else f"damping.local = {local:g}",
-    )
-    yield Effect("gravity", gravity is not None, why_gravity(scene))
+    yield from of_body_forces(scene, scene.damping.alpha)
     stress = scene.prestress
     yield Effect(
         "prestress",

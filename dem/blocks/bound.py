@@ -13,10 +13,10 @@ from dem.blocks.shaking import variation
 from numerics.divergence import speed_that
 
 if TYPE_CHECKING:
-    from dem.blocks.system import System
+    from dem.blocks.system import PlaneSystem
 
 
-def highest_energy(system: System, state: PlaneState) -> float:
+def highest_energy(system: PlaneSystem, state: PlaneState) -> float:
     """Return a bound on sqrt(m) v of any freedom of any block, sqrt(J per metre).
 
     What sources, gravity and shaken walls can add to sqrt(2 E), and what is stored at the start.
@@ -38,7 +38,7 @@ def highest_energy(system: System, state: PlaneState) -> float:
         )
 
 
-def stored(system: System, state: PlaneState) -> float:
+def stored(system: PlaneSystem, state: PlaneState) -> float:
     """Return the root of twice the energy in all contacts that hold, sqrt(J per metre)."""
     own, contacts = system.blocks.columns, system.model.contacts
     column, table = system.blocks.links.column, contacts.table.T

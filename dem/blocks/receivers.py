@@ -29,7 +29,7 @@ ON_A_LINE = 0.05
 SHARED = 0.5
 
 
-class Receivers(NamedTuple):
+class BlockReceivers(NamedTuple):
     """What is read from blocks and contacts.
 
     places : blocks that are read [r]. weights : of each place at each point [points, r]. turns :
@@ -46,7 +46,7 @@ class Receivers(NamedTuple):
     joints: np.ndarray
 
 
-def receivers_of(scene: RockMass, partition: Partition, links: Links) -> Receivers:
+def receivers_of(scene: RockMass, partition: Partition, links: Links) -> BlockReceivers:
     """Return the receivers of a scene."""
     points = np.array(scene.record.points, dtype=float).reshape(-1, 2)
     inside = block_at(partition, points) if len(points) else np.zeros(0, dtype=int)
@@ -80,7 +80,7 @@ def receivers_of(scene: RockMass, partition: Partition, links: Links) -> Receive
     for k, mixed in enumerate(joints):
         for c, share in mixed.items():
             table[k, np.searchsorted(watched, c)] = share
-    return Receivers(places, weights, turns, touching, watched, table)
+    return BlockReceivers(places, weights, turns, touching, watched, table)
 
 
 def _neighbours(partition: Partition) -> dict[int, list[int]]:

@@ -17,17 +17,17 @@ import numpy as np
 
 from dem.blocks.leapfrog import ALONG, BEND, FORCE_X, FORCE_Y, GAP, SLIP, PlaneSamples
 from dem.blocks.links import Links
-from dem.blocks.receivers import Receivers
+from dem.blocks.receivers import BlockReceivers
 
 if TYPE_CHECKING:
-    from dem.blocks.system import System
+    from dem.blocks.system import PlaneSystem
 
 #: xx, yy and xy of a tensor.
 COMPONENTS = ((0, 0), (1, 1), (0, 1))
 
 
 def quantities(
-    system: System, receivers: Receivers, samples: PlaneSamples, count: int
+    system: PlaneSystem, receivers: BlockReceivers, samples: PlaneSamples, count: int
 ) -> dict[str, np.ndarray]:
     """Return the first `count` samples of a run by name, as `results.plane.plane_fields` takes
     them. Displacement, gap and slip count from the first sample; gap and slip are those of the
@@ -52,14 +52,14 @@ def quantities(
     return found
 
 
-def _at_points(receivers: Receivers, motion: np.ndarray) -> np.ndarray:
+def _at_points(receivers: BlockReceivers, motion: np.ndarray) -> np.ndarray:
     """Return vectors at points [points, n, 2] of the motion of places [r, 3, n]."""
     linear = np.einsum("pr,rkn->pnk", receivers.weights, motion[:, :2])
     return linear + np.einsum("prk,rn->pnk", receivers.turns, motion[:, 2])
 
 
 def mean_stress(
-    system: System, receivers: Receivers, velocity: np.ndarray, contact: np.ndarray
+    system: PlaneSystem, receivers: BlockReceivers, velocity: np.ndarray, contact: np.ndarray
 ) -> np.ndarray:
     """Return the mean stress of the places [r, n, (xx, yy, xy)], Pa, compression positive.
 
@@ -93,7 +93,7 @@ def _moments(links: Links, c: int, side: int, samples: np.ndarray) -> np.ndarray
     return arm[:, None, None] * force + along[:, None, None] * spread
 
 
-def _tractions(links: Links, receivers: Receivers, contact: np.ndarray) -> np.ndarray:
+def _tractions(links: Links, receivers: BlockReceivers, contact: np.ndarray) -> np.ndarray:
     """Return the mean traction of the watched contacts [w, n, 2], normal and along, Pa."""
     normal = links.normal[receivers.watched]
     along = np.stack([-normal[:, 1], normal[:, 0]], axis=1)

@@ -14,7 +14,7 @@ from dem.blocks.leapfrog import TERMS, PlaneSamples, march, samples_for
 from dem.blocks.model import PlaneState, state_at_rest
 from dem.blocks.record import quantities
 from dem.blocks.start import start
-from dem.blocks.system import System, prepared
+from dem.blocks.system import PlaneSystem, prepared
 from numerics.checkpoint import Keeper
 from numerics.divergence import SPEED, Guard, audit, guard
 from numerics.instability import stopped
@@ -90,7 +90,7 @@ def simulate_fields(
     return time_loop.followed(run, result, progress, film, keeper)
 
 
-def _film(system: System, state: PlaneState) -> PlaneFilm | None:
+def _film(system: PlaneSystem, state: PlaneState) -> PlaneFilm | None:
     """Return what keeps snapshots; None, and nothing imported, where none are asked for."""
     if system.blocks.scene.record.fields is None:
         return None
@@ -99,7 +99,9 @@ def _film(system: System, state: PlaneState) -> PlaneFilm | None:
     return PlaneFilm(system, state)
 
 
-def step(system: System, state: PlaneState, samples: PlaneSamples, first: int, last: int) -> None:
+def step(
+    system: PlaneSystem, state: PlaneState, samples: PlaneSamples, first: int, last: int
+) -> None:
     """Take the steps first .. last - 1, with as many forces at once as there is memory for."""
     model, sources = system.model, system.sources
     size = max(1, MOST_OF_DRIVE // max(1, 6 * len(sources.rows)))
@@ -111,7 +113,12 @@ def step(system: System, state: PlaneState, samples: PlaneSamples, first: int, l
 
 
 def look(
-    system: System, state: PlaneState, samples: PlaneSamples, monitor: Guard, first: int, last: int
+    system: PlaneSystem,
+    state: PlaneState,
+    samples: PlaneSamples,
+    monitor: Guard,
+    first: int,
+    last: int,
 ) -> None:
     """Look at the motion after samples first .. last - 1, of which all may be unsound."""
     stride, limit = system.time.stride, monitor.limit.view(np.float64)
@@ -121,7 +128,7 @@ def look(
         monitor.found[:] = last * stride, SPEED, first * stride - 1
 
 
-def _energies(system: System, state: PlaneState) -> np.ndarray:
+def _energies(system: PlaneSystem, state: PlaneState) -> np.ndarray:
     """Return sqrt(m) v of the fastest freedom of each block [N], sqrt(J)."""
     masses = system.blocks.masses
     return (np.sqrt(masses) * np.abs(state.v[: len(masses)])).max(axis=1)

@@ -20,7 +20,7 @@ from results.snapshots import (
 if TYPE_CHECKING:
     from cases.partition.blocks import Partition
     from dem.blocks.model import PlaneState
-    from dem.blocks.system import System
+    from dem.blocks.system import PlaneSystem
     from results.dataset import Fields
 
 
@@ -34,7 +34,7 @@ class Shot(NamedTuple):
 class PlaneFilm(Film):
     """The blocks at every snapshot that a scene asks for; raises SceneError for too many."""
 
-    def __init__(self, system: System, state: PlaneState) -> None:
+    def __init__(self, system: PlaneSystem, state: PlaneState) -> None:
         self.system, self.partition = system, system.blocks.partition
         scene = system.blocks.scene
         refuse_beyond_room(scene, len(self.partition.corners))

@@ -16,13 +16,13 @@ from joints.law import parts_of, table_of
 from results.arrays import copied, fill
 
 if TYPE_CHECKING:
-    from dem.blocks.system import System
+    from dem.blocks.system import PlaneSystem
 
 NEVER = 1 << 60  # steps between samples where none are taken
 STEP_FRACTION = 0.9  # of the critical step: only where it ends counts
 
 
-def start(system: System, state: PlaneState) -> Rest | None:
+def start(system: PlaneSystem, state: PlaneState) -> Rest | None:
     """Bring the unloaded state to where the scene starts; return how if that is a static state.
 
     Raises SceneError where there is none.
@@ -33,7 +33,7 @@ def start(system: System, state: PlaneState) -> Rest | None:
     if not static:
         refuse_beyond_strength(scene)
     if static or scene.prestress is not None:
-        relaxation = Relaxation(system, static)
+        relaxation = PlaneRelaxation(system, static)
         rest = settle(scene, relaxation)
         state.u[:] = relaxation.state.u
         if state.history is not None:
@@ -45,13 +45,13 @@ def start(system: System, state: PlaneState) -> Rest | None:
     return rest
 
 
-class Relaxation:
+class PlaneRelaxation:
     """The blocks under their static forces alone: `dem.static.System`.
 
     Damping decides no static state and is left out, with the dashpots of quiet sides.
     """
 
-    def __init__(self, system: System, weighed: bool) -> None:
+    def __init__(self, system: PlaneSystem, weighed: bool) -> None:
         blocks, model, sources = system.blocks, system.model, system.sources
         law = blocks.columns.law._replace(normal_viscosity=None, shear_viscosity=None)
         columns = blocks.columns._replace(law=law, time_constants=None)

@@ -15,7 +15,7 @@ from dem.blocks.build import RigidBlocks, constants, contacts, form_of, rigid_bl
 from dem.blocks.edges import points_on, resultant
 from dem.blocks.model import PlaneModel, adjacency_of, held_by
 from dem.blocks.quiet import dashpots
-from dem.blocks.receivers import Receivers, receivers_of
+from dem.blocks.receivers import BlockReceivers, receivers_of
 from dem.blocks.shaking import Shaking, shaking
 from dem.blocks.sources import Sources, load_pattern, on_sides, reactions
 from dem.blocks.waves import incoming
@@ -29,7 +29,7 @@ OF_BLOCK, OF_POINT = 2000, 60
 CORNERS = 4  # of a block, in snapshots
 
 
-class System(NamedTuple):
+class PlaneSystem(NamedTuple):
     """A rock mass ready to run.
 
     receivers : what is recorded. sources : what acts on held blocks. resistance : what the velocity
@@ -41,13 +41,13 @@ class System(NamedTuple):
     time: Clock
     critical: float
     model: PlaneModel
-    receivers: Receivers
+    receivers: BlockReceivers
     sources: Sources
     resistance: np.ndarray
     shaking: Shaking | None
 
 
-def prepared(scene: RockMass, incident: IncidentField | None = None) -> System:
+def prepared(scene: RockMass, incident: IncidentField | None = None) -> PlaneSystem:
     """Return a scene ready to run; raises SceneError for what cannot be run.
 
     incident : the field of waves that quiet sides take in; absent: that of the scene's waves in
@@ -80,7 +80,7 @@ def prepared(scene: RockMass, incident: IncidentField | None = None) -> System:
         watched=receivers.watched,
         walls=len(blocks.links.walls),
     )
-    return System(blocks, time, critical, model, receivers, sources, resistance, moving)
+    return PlaneSystem(blocks, time, critical, model, receivers, sources, resistance, moving)
 
 
 def clock_of(blocks: RigidBlocks) -> tuple[Clock, float]:

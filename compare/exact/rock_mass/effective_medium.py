@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cases.incident import Motion
+from cases.incident import WaveMotion
 from cases.loads import history_of
 from cases.material.effective_medium import joint_set, speeds, stiffness, tensor
 from cases.material.rock import elastic_rock
@@ -65,13 +65,13 @@ class MediumField:
     waves: tuple[MediumWave, ...]
     whole: bool
 
-    def __call__(self, points: np.ndarray, times: np.ndarray) -> Motion:
+    def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
         total = [np.zeros((len(points), count, len(times))) for count in (2, 3)]
         for wave in self.waves:
             f = wave.pulse.value(np.asarray(times) - wave.lateness(points)[:, None])
             for sum_, shape in zip(total, (wave.polarisation, wave.stress), strict=True):
                 sum_ += f[:, None] * shape[:, None]
-        return Motion(*total)
+        return WaveMotion(*total)
 
 
 def medium_field(scene: RockMass) -> MediumField:

@@ -17,13 +17,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cases.incident import Motion, free_field, plane_wave
+from cases.incident import WaveMotion, free_field, plane_wave
 from compare.exact.plane import layer_pulses, parallel_joints
 from compare.exact.plane.pulse import Pulse
 from compare.exact.plane.waves import Kind
 from compare.exact.rock_mass.conditions import all_parallel
 from compare.exact.rock_mass.effective_medium import medium_field
-from compare.exact.rock_mass.stack import Stack, begun, scatters_otherwise, stack_of
+from compare.exact.rock_mass.stack import JointStack, begun, scatters_otherwise, stack_of
 
 if TYPE_CHECKING:
     from cases.incident import IncidentField, PlaneWave
@@ -34,11 +34,11 @@ if TYPE_CHECKING:
 class StackField:
     """The waves of a scene with all that its parallel joints make of them."""
 
-    stack: Stack
+    stack: JointStack
     waves: tuple[PlaneWave, ...]
     whole: bool = True
 
-    def __call__(self, points: np.ndarray, times: np.ndarray) -> Motion:
+    def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
         stack, places = self.stack, np.asarray(points, dtype=float)
         total = [np.zeros((len(places), count, len(times))) for count in (2, 3)]
         for wave in self.waves if len(places) else ():
@@ -49,7 +49,7 @@ class StackField:
             found = layer_pulses.motion(stack.rock, pulse, met, places - wave.through, times)
             for sum_, part in zip(total, found, strict=True):
                 sum_ += part
-        return Motion(*total)
+        return WaveMotion(*total)
 
 
 def field_of(scene: RockMass) -> IncidentField:

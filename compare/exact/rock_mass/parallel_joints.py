@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from compare.exact.rock_mass import stack_waves
-from compare.solvers.record import JOINTED, Answer, Kind, Rock, Solver, Words, thin
+from compare.solvers.record import JOINTED, Answer, Rock, Solver, Words, thin
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,11 +36,5 @@ SOLVER = Solver(
     line=thin("#a83200", 8, (9, 18), (9, 2.4, 1.2, 2.4)),
     applies=applies,
     run=solve,
-    distances={
-        Kind.NUMERICAL: {"continuum-jointed": "elements and time stepping of the jointed rock"},
-        Kind.MODELLING: {
-            "dem": "rigid instead of deformable blocks",
-            "continuum-equivalent": "joints smeared out over the rock",
-        },
-    },
+    distances=stack_waves.DISTANCES,
 )

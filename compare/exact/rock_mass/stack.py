@@ -37,7 +37,7 @@ BEGUN = 1e-9  #: of the duration, that a pulse may have met a joint for at t = 0
 
 
 @dataclass(frozen=True)
-class Stack:
+class JointStack:
     """Parallel joints in rock.
 
     direction : unit vector along the joints [2]; their normal is its left. offsets : of the joints
@@ -61,7 +61,7 @@ class Stack:
         return float(np.arctan2(self.direction[1], self.direction[0]))
 
 
-def stack_of(scene: RockMass) -> Stack:
+def stack_of(scene: RockMass) -> JointStack:
     """Return the stack of a scene whose joints are parallel."""
     partition, direction = partition_of(scene), direction_of(scene.joint_sets[0].dip)
     contacts, etas = partition.contacts, set_time_constants(scene)
@@ -76,7 +76,7 @@ def stack_of(scene: RockMass) -> Stack:
     apart = np.diff(depths[order], prepend=-np.inf)  # an opening may cut a joint in parts
     order = order[apart > TOLERANCE * np.ptp(partition.corners, axis=0).max()]
     joints = [laws[k] for k in contacts.joint_set[order]]
-    return Stack(elastic_rock(scene.rock), direction, depths[order], joints, partition)
+    return JointStack(elastic_rock(scene.rock), direction, depths[order], joints, partition)
 
 
 def stiffnesses(scene: RockMass) -> np.ndarray:
@@ -115,7 +115,7 @@ def scatters_otherwise(scene: RockMass) -> str | None:
     return found
 
 
-def begun(scene: RockMass, stack: Stack) -> str | None:
+def begun(scene: RockMass, stack: JointStack) -> str | None:
     """Return how a pulse has met a joint of the domain before the start, None where none has."""
     for i, wave in enumerate(scene.waves):
         incident = plane_wave(scene, wave)
@@ -130,7 +130,7 @@ def begun(scene: RockMass, stack: Stack) -> str | None:
     return None
 
 
-def first_scattered(stack: Stack, wave: PlaneWave) -> float:
+def first_scattered(stack: JointStack, wave: PlaneWave) -> float:
     """Return when the first of what joints return and pass comes to a place of the domain, s.
 
     With the slowness p along the joints and q across them it is p x + q d + min(q_p, q_s) |z - d|

@@ -19,8 +19,8 @@ from cases.sampling import sample_times
 from compare.exact.plane import parallel_joints
 from compare.exact.plane.pulse import Pulse
 from compare.exact.rock_mass.conditions import prestress_of
-from compare.exact.rock_mass.stack import Stack, against, begun, stack_of
-from compare.solvers.record import YES, Answer, no
+from compare.exact.rock_mass.stack import JointStack, against, begun, stack_of
+from compare.solvers.record import YES, Answer, Kind, no
 from results.plane import plane_fields
 
 if TYPE_CHECKING:
@@ -28,6 +28,14 @@ if TYPE_CHECKING:
 
     from cases.schema.rock_mass import RockMass
 
+#: What the engines' distances from these waves are made of.
+DISTANCES = {
+    Kind.NUMERICAL: {"continuum-jointed": "elements and time stepping of the jointed rock"},
+    Kind.MODELLING: {
+        "dem": "rigid instead of deformable blocks",
+        "continuum-equivalent": "joints smeared out over the rock",
+    },
+}
 BESIDE = 1e-13  #: over the size of the domain: far above round-off, far below any wave
 
 
@@ -102,7 +110,9 @@ def solve(scene: RockMass, name: str) -> xr.Dataset:
     return xr.Dataset(*plane_fields(scene, name, times, values, errors=errors))
 
 
-def motion_at(scene: RockMass, stack: Stack, places: np.ndarray, times: np.ndarray) -> StackMotion:
+def motion_at(
+    scene: RockMass, stack: JointStack, places: np.ndarray, times: np.ndarray
+) -> StackMotion:
     """Return the motion of all waves at places [m, 2] (m), from the start of the scene on."""
     m, n = len(places), len(times)
     shapes = (m, 2, n), (m, 2, n), (m, 3, n), (m, 2), (m, 2), (m, 3)
@@ -138,7 +148,7 @@ def motion_at(scene: RockMass, stack: Stack, places: np.ndarray, times: np.ndarr
     return StackMotion(*total)
 
 
-def point_receivers(scene: RockMass, stack: Stack) -> np.ndarray:
+def point_receivers(scene: RockMass, stack: JointStack) -> np.ndarray:
     """Return the points of a scene [m, 2], those on a joint moved into the first of its blocks."""
     points = np.array(scene.record.points, dtype=float).reshape(-1, 2)
     if not len(points):
@@ -151,7 +161,7 @@ def point_receivers(scene: RockMass, stack: Stack) -> np.ndarray:
     return np.where(on_joint, points + (side - apart) * stack.normal, points)
 
 
-def joint_receivers(scene: RockMass, stack: Stack) -> JointReceivers:
+def joint_receivers(scene: RockMass, stack: JointStack) -> JointReceivers:
     """Return the places on joints that are nearest to those that a scene names."""
     asked, contacts = np.array(scene.record.joints).reshape(-1, 2), stack.partition.contacts
     chosen = contact_at(stack.partition, asked) if len(asked) else np.zeros(0, dtype=int)
@@ -168,6 +178,6 @@ def on_face(stress: np.ndarray, normal: np.ndarray) -> np.ndarray:
     return np.stack([xx * n_x + xy * n_y, xy * n_x + yy * n_y], axis=1)
 
 
-def _beside(stack: Stack) -> float:
+def _beside(stack: JointStack) -> float:
     """Return the distance of a place beside a joint from it, m."""
     return BESIDE * float(np.hypot(*np.ptp(stack.partition.corners, axis=0)))
