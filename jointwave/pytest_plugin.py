@@ -1,4 +1,4 @@
-"""What pytest loads: scene files with an [expect] table are tests."""
+"""The pytest plugin: scene files with an [expect] table are tests."""
 
 from compare.cli.pytest_plugin import SceneWarning, pytest_collect_file
 

@@ -1,4 +1,4 @@
-"""What the dashpots of quiet sides are worth: rho a and rho b of the waves along their normals.
+"""Impedances of the dashpots of quiet sides: rho a and rho b of the waves along their normals.
 
 The speeds are those of the intact rock where `numerics.dem.block` cuts it, since a lattice has them
 at its sides, else those of the effective medium of the joint sets.

@@ -1,1 +1,1 @@
-"""What the scene of a rock mass calls for and hardly means."""
+"""Effects and warnings of the scene of a rock mass."""

@@ -1,4 +1,4 @@
-"""What `jointwave explain` says of a rock mass: the blocks that it is cut into."""
+"""Output of `jointwave explain` for a rock mass: the blocks that it is cut into."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the prestress of a rock mass may set in motion."""
+"""Motion that the prestress of a rock mass may cause."""
 
 from __future__ import annotations
 

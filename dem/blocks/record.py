@@ -1,4 +1,4 @@
-"""What a run of rigid blocks in the plane has recorded, as results have it.
+"""Waveforms that a run of rigid blocks in the plane has recorded, as results have them.
 
 The mean stress of a block follows from what acts on it (Love 1927; Weber 1966): with arms x from
 the centroid and forces F,

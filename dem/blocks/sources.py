@@ -1,4 +1,4 @@
-"""What acts on blocks from outside: waves at quiet sides, pressures, forces, a steady stress."""
+"""Actions on blocks from outside: waves at quiet sides, pressures, forces, a steady stress."""
 
 from __future__ import annotations
 

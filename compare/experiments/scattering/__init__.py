@@ -1,1 +1,1 @@
-"""What solvers make of reflection and transmission at one joint, against the angle."""
+"""Reflection and transmission at joints by every solver, against the angle."""

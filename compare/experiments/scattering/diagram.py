@@ -1,5 +1,6 @@
-"""What joints reflect and pass, against the angle or their number: a row a kind of wave, beside it
-what runs cost.
+"""Diagram of reflection and transmission at joints against the angle or their number.
+
+A row for each kind of wave, with the cost of the runs beside it.
 
 The closed form is a line; a solver is its points, in its own colour, a marker for each of the four
 waves.
