@@ -43,7 +43,12 @@ RUNS = {
     ),
     "implicit": (rock("implicit", "joints.tension=false", *SHOT), "continuum-jointed.nc", 1),
     "shared": (
-        rock("explicit", "time.duration=0.02", "record.fields=1e-3"),
+        rock(
+            "explicit",
+            "numerics.continuum.step_fraction=0.05",
+            "time.duration=0.02",
+            "record.fields=1e-3",
+        ),
         "continuum-jointed.nc",
         2,
     ),
