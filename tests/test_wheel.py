@@ -11,10 +11,12 @@ import pytest
 ROOT = Path(__file__).parents[1]
 
 
-@pytest.fixture(scope="module")
-def site(tmp_path_factory):
-    """Return a folder that the wheel of this source is unpacked in, as pip would."""
-    folder = tmp_path_factory.mktemp("wheel")
+#: When the sources are said to have been written, s since 1970: of every file of a wheel.
+WRITTEN = "1700000000"
+
+
+def built(folder):
+    """Return the wheel of this source, built in a folder of its own."""
     files = subprocess.run(
         ["git", "ls-files", "-co", "--exclude-standard"],
         cwd=ROOT, capture_output=True, text=True, check=True,
@@ -26,11 +28,23 @@ def site(tmp_path_factory):
             (source / name).write_bytes((ROOT / name).read_bytes())
     build = "from setuptools import build_meta as b; print(b.build_wheel('..'))"
     done = subprocess.run(
-        [sys.executable, "-c", build], cwd=source, capture_output=True, text=True, check=True
-    )
-    wheel = folder / done.stdout.split()[-1]
-    zipfile.ZipFile(wheel).extractall(folder / "site")
-    return folder / "site"
+        [sys.executable, "-c", build], cwd=source, capture_output=True, text=True, check=True,
+        env={**os.environ, "SOURCE_DATE_EPOCH": WRITTEN},
+    )  # fmt: skip
+    return folder / done.stdout.split()[-1]
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory):
+    """Return the wheel of this source."""
+    return built(tmp_path_factory.mktemp("wheel"))
+
+
+@pytest.fixture(scope="module")
+def site(wheel):
+    """Return a folder that the wheel is unpacked in, as pip would."""
+    zipfile.ZipFile(wheel).extractall(wheel.parent / "site")
+    return wheel.parent / "site"
 
 
 def run(site, *arguments, code=0, **environment):
@@ -44,6 +58,11 @@ def run(site, *arguments, code=0, **environment):
     )
     assert done.returncode == code, done.stderr
     return done.stdout + done.stderr
+
+
+def test_wheel_is_the_same_in_every_bit(wheel, tmp_path):
+    """Built anew, from files of another time in another folder."""
+    assert built(tmp_path).read_bytes() == wheel.read_bytes()
 
 
 def test_one_name_at_the_top(site):

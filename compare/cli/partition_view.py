@@ -20,13 +20,15 @@ ROUND_OFF = 1e-6  # of a stiffness that is fitted
 
 def partition_facts(scene: RockMass) -> dict[str, Any]:
     """Cut a rock mass into blocks and return what they are, SI."""
+    from cases.partition.lattice import further_sets
     from cases.partition.scene import partition_bytes, partition_of
 
-    found = partition_of(scene)
+    found, further = partition_of(scene), further_sets(scene)
     per_set = {name: _of_set(found, k) for k, name in enumerate(found.joint_sets)}
     sides = np.bincount(found.boundary.side, minlength=len(found.sides))
     return {
         "blocks": found.count,
+        "rigid_blocks": partition_of(scene, further).count if further else found.count,
         "area": float(found.area.sum()),
         "smallest": _block(found, int(np.argmin(found.area))),
         "largest": _block(found, int(np.argmax(found.area))),
@@ -54,6 +56,8 @@ def _lack(scene: RockMass) -> float | None:
 def show_partition(facts: dict[str, Any]) -> None:
     """Print the blocks of a rock mass."""
     say(f"{facts['blocks']:,} blocks, {facts['area']:.6g} m2 in all")
+    if facts["rigid_blocks"] != facts["blocks"]:
+        say(f"{facts['rigid_blocks']:,} rigid blocks: numerics.dem.block cuts the rock between")
     for word in ("smallest", "largest"):
         one = facts[word]
         x, y = one["centroid"]

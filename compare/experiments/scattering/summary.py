@@ -89,7 +89,7 @@ def sentences(rows: list[JointsRow]) -> list[str]:
         worst = max(some, key=lambda row: row.error)
         cpu = sum(row.cpu for row in some if isfinite(row.cpu))
         found.append(
-            f"{heading(worst)}: off by at most {percent(worst.error)} % of the incident wave, "
+            f"{heading(worst)}: off by {percent(worst.error)} % of the incident wave at most, "
             f"{_where(worst)}; {len(some)} runs take {cpu:.2g} s of processors."
         )
     return found

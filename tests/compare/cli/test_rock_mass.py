@@ -244,6 +244,15 @@ def test_explain_counts_cuts_through_rock(jointwave_says):
     assert "(cuts in rock)" in found
 
 
+def test_explain_counts_the_blocks_that_are_run(jointwave_says):
+    """With half a block left at every quiet side there are five lines 8 m apart, the joint one of
+    them, and four across it 10 m apart: 6 rows of 5 blocks."""
+    square = "--set joint_sets.0.dip=0 --set rock.intact_poisson=0 --set numerics.dem.block=10"
+    _, out, _ = jointwave_says(f"explain joint.toml {square}")
+    assert "2 blocks, 1600 m2" in out and "30 rigid blocks: numerics.dem.block" in out
+    assert "rigid blocks: numerics" not in jointwave_says("explain mass.toml")[1]
+
+
 def test_explain_refuses_what_cannot_be_cut_in_one_line(jointwave_says):
     opening = "domain.openings=[[[3.0,2.5],[6.0,2.5],[5.0,3.5]]]"
     code, out, err = jointwave_says(f"explain mass.toml --set {opening}")
