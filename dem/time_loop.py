@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from results.snapshots import Film
 
 BLOCK_STEPS_AT_ONCE = 20_000_000  # some 10 ms to 1 s: often enough for a progress bar
+ENOUGH_BLOCKS = 20_000  # from which a second thread gains more than waiting for others costs
 LEAST_STEPS = 64  # at least: threads that follow one another need some to share
 
 
@@ -76,6 +78,19 @@ def sighting_at(guard: Guard, place: float | tuple[float, float]) -> Sighting | 
         return None
     key = "numerics.dem.step_fraction"
     return Sighting("the rigid blocks", key, step, sound, what == ENERGY, place)
+
+
+def thread_count(asked: int | None, blocks: int) -> int:
+    """Return the threads to use: as asked, or one for few blocks and all cores for many."""
+    if asked is not None:
+        return asked
+    return _cores() if blocks >= ENOUGH_BLOCKS else 1
+
+
+def _cores() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def versions() -> str:

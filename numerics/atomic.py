@@ -3,7 +3,7 @@
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.extending import intrinsic
+from numba.extending import intrinsic, register_jitable
 
 
 def _place(context, builder, signature, arguments):
@@ -47,3 +47,14 @@ def give_way(typing):
         return context.get_dummy_value()
 
     return types.none(), generate
+
+
+@register_jitable
+def wait_for_all(counters, own, met):
+    """Wait until all threads, one a counter, have met once more than `met` times; return how often
+    that is. What each wrote before is there for all."""
+    post(counters, own, met + 1)
+    for other in range(len(counters)):
+        while peek(counters, other) <= met:
+            give_way()
+    return met + 1

@@ -79,7 +79,7 @@ def _axial(scene: Scene):
 
 def _spatial(scene: Scene):
     from dem.spatial import simulate
-    from dem.spatial.march import thread_count
+    from dem.time_loop import thread_count
 
     count = scene.pillar.block_count
     freedoms = (3 if scene.motion.rotation == "none" else 6) * count

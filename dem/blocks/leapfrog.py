@@ -6,10 +6,13 @@ is exact at a step of any length: the work of a force from one whole step to the
 its two values times the displacement increment, the kinetic energy v[n-1/2] M v[n+1/2] / 2.
 
 A contact's force is written once and read by both its blocks, in the order of the contacts: every
-block does the same arithmetic however blocks are dealt out, so results are bit-identical.
+block does the same arithmetic however blocks are dealt out. The ledger is summed in chunks of as
+many contacts or blocks each, and these in their order. So results are bit-identical for any number
+of threads, which share the chunks and wait for one another after the forces and after the motion.
 """
 
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from math import copysign
 from typing import Any, NamedTuple
@@ -39,6 +42,7 @@ from joints.formula import formula
 from joints.law import law_of
 from joints.normal import normal_traction, spring_traction
 from joints.shear import cohesion_left, shear_return, shear_strength
+from numerics.atomic import wait_for_all
 from numerics.borrowed import borrowed
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.jit import jitted_for
@@ -48,6 +52,9 @@ SLID, OPENING, COHESION = range(3)
 #: Rows of a contact's samples: F on block j, M and the sum of e L w t_s, opening and slip.
 FORCE_X, FORCE_Y, BEND, ALONG, GAP, SLIP = range(6)
 CONTACT_ROWS = 6
+CHUNK = 256  # contacts, or blocks, that one thread takes in one piece
+#: What chunks of contacts and of blocks add to the ledger in a step.
+SHARES = 12
 #: Running sums of the ledger.
 VISCOUS, FRICTION, BOUNDARY, WORK = range(4)
 #: Terms of the ledger at a sample, in the order of their rows.
@@ -92,6 +99,7 @@ def march(
     steps: tuple[int, int],
     drive: np.ndarray | None = None,
     shake: np.ndarray | None = None,
+    threads: int = 1,
 ) -> None:
     """Take the steps first .. last - 1, with the samples that fall on them, `stride` steps apart.
 
@@ -102,11 +110,26 @@ def march(
     held = model.held or (None, None, None, None)
     if model.held is not None and drive is None:
         drive = np.zeros((last - first, len(model.held.dashpot), 3))
-    loop_for(form)(
-        *contacts, *model.adjacency, b.inertia, model.laws,
-        model.rules, *held, *state, drive, shake, model.places, model.watched, *samples,
-        b.dt, b.keep, b.local, b.gravity_x, b.gravity_y, first, last, -(-first // stride), stride,
-    )  # fmt: skip
+    shares = None
+    if form.ledger:
+        most = max(len(contacts.blocks), len(b.inertia))
+        shares = np.zeros((2, -(-most // CHUNK), SHARES))
+    progress = np.zeros(threads, dtype=np.int64)
+    loop = loop_for(form)
+
+    def share(thread: int) -> None:
+        loop(
+            *contacts, *model.adjacency, b.inertia, model.laws,
+            model.rules, *held, *state, drive, shake, model.places, model.watched, *samples,
+            b.dt, b.keep, b.local, b.gravity_x, b.gravity_y, first, last, -(-first // stride),
+            stride, shares, progress, thread, threads,
+        )  # fmt: skip
+
+    if threads == 1 or first == last:  # nothing to take: compiles
+        share(0)
+        return
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(share, range(threads)))
 
 
 @cache
@@ -124,11 +147,14 @@ def loop_for(form: PlaneForm) -> Callable:
         pair, table, law_index, start, first_side, side, inertia, laws, rules, row, keeps, moves,
         dashpot, u, v, force, rates, drag, history, sums, drive, shake, places, watched,
         displacement, velocity, contact, energy, dt, keep, local, g_x, g_y, first, last, s, stride,
+        shares, progress, thread, threads,
     ):  # fmt: skip
-        """Take steps first .. last - 1, and sample s at step s * stride.
+        """Take this thread's share of steps first .. last - 1, and sample s at step s * stride.
 
-        drive : float array [last - first, h, 3], forces and moments on held blocks. The rest are
-        the arrays of `dem.blocks.model`, None for what the form does not have.
+        drive : float array [last - first, h, 3], forces and moments on held blocks. shares : float
+        array [2, chunks, SHARES], of the ledger, in steps of even and of odd number. progress :
+        int64 array [threads], zero at first. The rest are the arrays of `dem.blocks.model`, None
+        for what the form does not have.
         """
         tiny = flush_tiny()
         # Rows of counted arrays would each cost two atomic operations.
@@ -137,12 +163,29 @@ def loop_for(form: PlaneForm) -> Callable:
         law, rule, second = law_of(laws, 0), rules[0], 0.0
         for p in range(rules.shape[2]):
             second += rule[1, p] * rule[0, p] * rule[0, p]
+        pieces, met = (len(pair) + CHUNK - 1) // CHUNK, 0
+        from_contact = CHUNK * (pieces * thread // threads)
+        to_contact = min(CHUNK * (pieces * (thread + 1) // threads), len(pair))
+        pieces = (len(inertia) + CHUNK - 1) // CHUNK
+        from_block = CHUNK * (pieces * thread // threads)
+        to_block = min(CHUNK * (pieces * (thread + 1) // threads), len(inertia))
         for n in range(first, last):
             sampled = n == s * stride
             elastic, fracture, viscous, friction = 0.0, 0.0, 0.0, 0.0
+            if sampled and thread == 0:
+                # Nothing moves before all forces are there.
+                for r in range(len(places)):
+                    for q in range(3):
+                        displacement[r, q, s] = u[places[r], q]
+                        velocity[r, q, s] = 0.5 * v[places[r], q]
+                for r in range(len(watched)):
+                    seen = watched[r]
+                    gap, slip, _ = relative(u, pair[seen, 0], pair[seen, 1], table[seen])
+                    contact[r, GAP, s], contact[r, SLIP, s] = gap, slip
 
             # Forces of the joints.
-            for c in range(len(pair)):
+            # Unsigned: an index that may be below zero is looked at, from the end.
+            for c in range(np.uintp(from_contact), np.uintp(to_contact)):
                 i, j, k = pair[c, 0], pair[c, 1], table[c]
                 if varied:
                     law = law_of(laws, law_index[c])
@@ -230,26 +273,27 @@ def loop_for(form: PlaneForm) -> Callable:
                 f[F_X], f[F_Y], f[BENDING], f[STRETCH] = f_x, f_y, moment, stretch
                 f[ON_J] = moment + (k[J_X] * f_y - k[J_Y] * f_x)
                 f[ON_I] = moment + (k[I_X] * f_y - k[I_Y] * f_x)
+                done = np.intp(c) + 1
+                if ledger and (done % CHUNK == 0 or done == to_contact):
+                    own_share = shares[n & 1, (done - 1) // CHUNK]
+                    own_share[0], own_share[1] = elastic, fracture
+                    own_share[2], own_share[3] = viscous, friction
+                    elastic, fracture, viscous, friction = 0.0, 0.0, 0.0, 0.0
 
-            if sampled:
-                for r in range(len(places)):
-                    for q in range(3):
-                        displacement[r, q, s] = u[places[r], q]
-                        velocity[r, q, s] = 0.5 * v[places[r], q]
+            if threads > 1:
+                met = wait_for_all(progress, thread, met)
+            if sampled and thread == 0:
                 for r in range(len(watched)):
-                    c, own_samples = watched[r], contact[r]
-                    i, j, f = pair[c, 0], pair[c, 1], force[c]
+                    f, own_samples = force[watched[r]], contact[r]
                     own_samples[FORCE_X, s], own_samples[FORCE_Y, s] = f[F_X], f[F_Y]
                     own_samples[BEND, s], own_samples[ALONG, s] = f[BENDING], f[STRETCH]
-                    gap, slip, _ = relative(u, i, j, table[c])
-                    own_samples[GAP, s], own_samples[SLIP, s] = gap, slip
 
             # Motion of the blocks.
             kinetic, potential, behind = 0.0, 0.0, 0.0
             boundary, boundary_behind, given, given_behind = 0.0, 0.0, 0.0, 0.0
-            for b in range(len(inertia)):
+            for b in range(np.uintp(from_block), np.uintp(to_block)):
                 f_x, f_y, moment = 0.0, 0.0, 0.0
-                for a in range(first_side[b], first_side[b + 1]):
+                for a in range(first_side[b], first_side[b + np.uintp(1)]):
                     f = force[side[a] >> 1]
                     if side[a] & 1:
                         f_x, f_y, moment = f_x + f[F_X], f_y + f[F_Y], moment + f[ON_J]
@@ -322,42 +366,57 @@ def loop_for(form: PlaneForm) -> Callable:
                 u[b, 0] += dt * new_x
                 u[b, 1] += dt * new_y
                 u[b, 2] += dt * new_spin
+                done = np.intp(b) + 1
+                if ledger and (done % CHUNK == 0 or done == to_block):
+                    own_share = shares[n & 1, (done - 1) // CHUNK]
+                    own_share[4], own_share[5], own_share[6] = kinetic, potential, viscous
+                    own_share[7], own_share[8], own_share[9] = behind, boundary, boundary_behind
+                    own_share[10], own_share[11] = given, given_behind
+                    kinetic, potential, viscous, behind = 0.0, 0.0, 0.0, 0.0
+                    boundary, boundary_behind, given, given_behind = 0.0, 0.0, 0.0, 0.0
 
-            if shaken:
+            if shaken and thread == 0:
                 for w in range(shake.shape[1]):
-                    b = len(inertia) + w
+                    wall = len(inertia) + w
                     own_shake = shake[n - first, w]
                     if ledger:
                         # What moves a wall works against the joints.
                         f_x, f_y = 0.0, 0.0
-                        for a in range(first_side[b], first_side[b + 1]):
+                        for a in range(first_side[wall], first_side[wall + 1]):
                             f = force[side[a] >> 1]
                             f_x, f_y = f_x + f[F_X], f_y + f[F_Y]
-                        given -= 0.5 * dt * (f_x * v[b, 0] + f_y * v[b, 1])
+                        given -= 0.5 * dt * (f_x * v[wall, 0] + f_y * v[wall, 1])
                         given_behind -= 0.5 * dt * (f_x * own_shake[0] + f_y * own_shake[1])
                     for q in range(2):
-                        v[b, q] = own_shake[q]
-                        u[b, q] += dt * own_shake[q]
+                        v[wall, q] = own_shake[q]
+                        u[wall, q] += dt * own_shake[q]
 
-            if ledger:
-                sums[VISCOUS] += viscous
-                sums[FRICTION] += friction
-                sums[BOUNDARY] += boundary
-                sums[WORK] += given
+            if threads > 1:
+                met = wait_for_all(progress, thread, met)
+            if ledger and thread == 0:
+                total = shares[n & 1, 0]
+                for piece in range(1, shares.shape[1]):
+                    for q in range(SHARES):
+                        total[q] += shares[n & 1, piece, q]
+                sums[VISCOUS] += total[2] + total[6]
+                sums[FRICTION] += total[3]
+                sums[BOUNDARY] += total[8]
+                sums[WORK] += total[10] + given
             if sampled:
-                for r in range(len(places)):
-                    for q in range(3):
-                        velocity[r, q, s] += 0.5 * v[places[r], q]
-                if ledger:
-                    energy[0, s], energy[1, s], energy[2, s] = kinetic, elastic, sums[VISCOUS]
-                    energy[3, s], energy[4, s] = sums[FRICTION], fracture
-                    energy[5, s], energy[6, s] = sums[BOUNDARY], potential
-                    energy[7, s] = sums[WORK]
+                if thread == 0:
+                    for r in range(len(places)):
+                        for q in range(3):
+                            velocity[r, q, s] += 0.5 * v[places[r], q]
+                    if ledger:
+                        energy[0, s], energy[1, s], energy[2, s] = total[4], total[0], sums[VISCOUS]
+                        energy[3, s], energy[4, s] = sums[FRICTION], total[1]
+                        energy[5, s], energy[6, s] = sums[BOUNDARY], total[5]
+                        energy[7, s] = sums[WORK]
                 s += 1
-            if ledger:
-                sums[VISCOUS] += behind
-                sums[BOUNDARY] += boundary_behind
-                sums[WORK] += given_behind
+            if ledger and thread == 0:
+                sums[VISCOUS] += total[7]
+                sums[BOUNDARY] += total[9]
+                sums[WORK] += total[11] + given_behind
         restore_tiny(tiny)
 
     return loop

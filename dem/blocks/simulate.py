@@ -64,7 +64,7 @@ def simulate_fields(
             blocks=system.blocks.partition.count,
             degrees_of_freedom=3 * system.blocks.partition.count,
             left_over=system.blocks.joints.left_over,
-            threads=1,
+            threads=system.threads,
             bytes=size_of(model, state),
             **({} if rest is None else rest.attributes),
             seconds_setup=built - began,
@@ -109,7 +109,7 @@ def step(
         end = min(begin + size, last)
         drive = sources.drive(begin, end) if model.held is not None else None
         shake = None if system.shaking is None else system.shaking(np.arange(begin, end))
-        march(model, state, samples, system.time.stride, (begin, end), drive, shake)
+        march(model, state, samples, system.time.stride, (begin, end), drive, shake, system.threads)
 
 
 def look(

@@ -74,6 +74,7 @@ class PlaneRelaxation:
         )
         self.state, self.samples = state_at_rest(self.model), samples_for(self.model, 0)
         self.steady, self.count = sources.steady, len(inertia)
+        self.threads = system.threads
         self.mass = blocks.masses.ravel()
         g = np.hypot(model.blocks.gravity_x, model.blocks.gravity_y) if weighed else 0.0
         edges, stress = blocks.partition.boundary, blocks.scene.prestress
@@ -88,7 +89,7 @@ class PlaneRelaxation:
         drive = np.broadcast_to(self.steady, (steps, *self.steady.shape)).copy()
         # From step 1: only step 0 would be a sample.
         model = self.model._replace(blocks=blocks)
-        march(model, self.state, self.samples, NEVER, (1, 1 + steps), drive)
+        march(model, self.state, self.samples, NEVER, (1, 1 + steps), drive, None, self.threads)
 
     def unbalanced(self) -> np.ndarray:
         """Return the net force and moment on every freedom, from the step that they would cause."""

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cases.errors import SceneError
 from cases.incident import IncidentField, free_field
 from cases.material.quiet_sides import impedances
 from cases.sampling import Clock, clock
@@ -19,6 +18,7 @@ from dem.blocks.receivers import BlockReceivers, receivers_of
 from dem.blocks.shaking import Shaking, shaking
 from dem.blocks.sources import Sources, load_pattern, on_sides, reactions
 from dem.blocks.waves import incoming
+from dem.time_loop import thread_count
 from joints.law import table_of
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ class PlaneSystem(NamedTuple):
 
     receivers : what is recorded. sources : what acts on held blocks. resistance : what the velocity
     of each of them gives of forces and sums at quiet edges, with the sign of a resistance
-    [h, 6, 3]. shaking : the motion of walls; None where none moves.
+    [h, 6, 3]. shaking : the motion of walls; None where none moves. threads : that share each step.
     """
 
     blocks: RigidBlocks
@@ -45,6 +45,7 @@ class PlaneSystem(NamedTuple):
     sources: Sources
     resistance: np.ndarray
     shaking: Shaking | None
+    threads: int
 
 
 def prepared(scene: RockMass, incident: IncidentField | None = None) -> PlaneSystem:
@@ -80,7 +81,10 @@ def prepared(scene: RockMass, incident: IncidentField | None = None) -> PlaneSys
         watched=receivers.watched,
         walls=len(blocks.links.walls),
     )
-    return PlaneSystem(blocks, time, critical, model, receivers, sources, resistance, moving)
+    threads = thread_count(scene.numerics.dem.threads, blocks.partition.count)
+    return PlaneSystem(
+        blocks, time, critical, model, receivers, sources, resistance, moving, threads
+    )
 
 
 def clock_of(blocks: RigidBlocks) -> tuple[Clock, float]:
@@ -88,9 +92,6 @@ def clock_of(blocks: RigidBlocks) -> tuple[Clock, float]:
     be taken and for what would not fit the memory."""
     scene, critical, count = blocks.scene, blocks.critical, blocks.partition.count
     numerics = scene.numerics.dem
-    if numerics.threads not in (None, 1):
-        allowed = "must be 1: rigid blocks of rock masses are stepped by one thread"
-        raise SceneError(scene.where, "numerics.dem.threads", numerics.threads, allowed)
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
     parts = {
         "numerics.dem.block": (OF_BLOCK + OF_POINT * blocks.columns.points) * count,

@@ -7,7 +7,6 @@ they are in the cache, and several threads follow one another along the row, eac
 later. Every block does the same arithmetic in whatever order, so results are bit-identical.
 """
 
-import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
@@ -25,7 +24,6 @@ from numerics.divergence import Guard, creates_energy
 from numerics.jit import jitted_for
 
 RUN = 16  # diagonals of tiles between two checks of the others' progress
-ENOUGH_BLOCKS = 20_000  # from which a second thread gains more than following the first costs
 
 
 @cache
@@ -119,16 +117,3 @@ def arguments(
         model.ends, *model.receivers, model.places, model.stride, *state, *samples,
         *buffers[:-1], *guard, progress,
     )  # fmt: skip
-
-
-def thread_count(asked: int | None, blocks: int) -> int:
-    """Return the threads to use: as asked, or one for a short row and all cores for a long one."""
-    if asked is not None:
-        return asked
-    return _cores() if blocks >= ENOUGH_BLOCKS else 1
-
-
-def _cores() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1

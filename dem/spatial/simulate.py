@@ -23,12 +23,12 @@ from dem.spatial.build import (
 )
 from dem.spatial.ends import contact_points, face_of
 from dem.spatial.layout import LANES, STRIDE, unpacked
-from dem.spatial.march import marcher, thread_count
+from dem.spatial.march import marcher
 from dem.spatial.model import RowModel, RowState
 from dem.spatial.record import shooter, waveforms, with_breaks
 from dem.spatial.stability import critical_spatial_step, highest_speeds
 from dem.spatial.start import start
-from dem.time_loop import Run, followed, sighting, versions
+from dem.time_loop import Run, followed, sighting, thread_count, versions
 from numerics.checkpoint import Keeper
 from numerics.divergence import guard, look
 from numerics.instability import stopped

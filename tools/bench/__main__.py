@@ -1,6 +1,6 @@
 """All benchmarks, as ratios and costs of one run on this machine.
 
-usage: python tools/bench [startup] [kernels] [guards] [continuum] [effects] [memory]
+usage: python tools/bench [startup] [kernels] [plane] [guards] [continuum] [effects] [memory]
 """
 
 import sys
@@ -10,11 +10,13 @@ import effects
 import guards
 import kernels
 import memory
+import plane
 import startup
 
 PARTS = {
     "startup": startup.main,
     "kernels": kernels.main,
+    "plane": plane.main,
     "guards": guards.main,
     "continuum": deformable.main,
     "memory": memory.main,

@@ -308,11 +308,6 @@ def test_a_pressure_on_a_part_of_a_side_adds_up(rock_mass):
     assert moment.sum() == pytest.approx(-5.6 * 5.1, rel=1e-12)
 
 
-def test_more_threads_than_there_are_for_are_refused(rock_mass):
-    with pytest.raises(SceneError, match=r"numerics\.dem\.threads = 2: must be 1"):
-        simulate(rock_mass(numerics={"dem": {"block": 1.0, "threads": 2}}))
-
-
 def test_an_unstable_run_is_stopped_with_what_is_sound(rock_mass, wave):
     """Three times the critical step: the monitor ends the run in one line."""
     own = rock_mass(

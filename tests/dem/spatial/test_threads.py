@@ -7,8 +7,9 @@ import pytest
 
 from dem.spatial.build import buffers_for, samples_for, state_at_rest
 from dem.spatial.layout import LANES
-from dem.spatial.march import ENOUGH_BLOCKS, marcher, thread_count
+from dem.spatial.march import marcher
 from dem.spatial.simulate import prepare
+from dem.time_loop import ENOUGH_BLOCKS, thread_count
 
 BLOCKS = 80 * LANES  # five runs of tiles for threads that follow one another
 STEPS = 203  # no multiple of any depth

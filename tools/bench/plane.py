@@ -1,0 +1,98 @@
+"""Rigid blocks in the plane: against the row of blocks in space, by size, and by threads.
+
+A square lattice of blocks of 1 m, two joint sets at right angles, all of it in motion.
+"""
+
+from math import isqrt
+from pathlib import Path
+from statistics import median
+
+import numpy as np
+from kernels import ROUNDS, SLIDES, rate, side_by_side
+
+from cases.schema.rock_mass import RockMass
+from cases.validate import validated
+from compare.experiments.cost.step_cost import Stretch, changed, stretch
+from dem.blocks.leapfrog import march, samples_for
+from dem.blocks.model import PlaneModel, state_at_rest
+from dem.blocks.system import prepared
+
+ELASTIC = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
+COULOMB = ELASTIC | {"friction_angle": 30.0, "cohesion": 1e5}
+BLOCK_STEPS = 500_000  # of one call
+POINTS = 4  # of a block: two contacts of two points; in the row one contact of 2 x 2
+
+
+def scene_of(blocks: int, law: dict) -> RockMass:
+    """Return a square lattice of about so many blocks."""
+    side = isqrt(blocks)
+    joints = {"spacing": 1.0, "through": [0.0, 0.0]} | law
+    sides = dict.fromkeys(("left", "right", "bottom", "top"), "free")
+    tables = {
+        "title": "a square lattice",
+        "domain": {"size": [float(side), float(side)]},
+        "rock": {"density": 2600.0, "intact_modulus": 5e10},
+        "joint_sets": [{"name": "x", "dip": 90.0} | joints, {"name": "y", "dip": 0.0} | joints],
+        "boundaries": sides,
+        "loads": [{"kind": "pressure", "side": "left", "shape": "step", "amplitude": 1e5}],
+        "time": {"duration": 0.01},
+        "record": {"points": [[0.5, 0.5]], "energy": False},
+    }
+    return validated(tables, Path("lattice.toml"), frozenset())
+
+
+def model_of(blocks: int, law: dict) -> PlaneModel:
+    """Return the constants of such a lattice, without the load."""
+    return prepared(scene_of(blocks, law)).model
+
+
+def moving(model: PlaneModel, threads: int = 1) -> Stretch:
+    """Return a function that takes steps of a lattice in motion, and its number of block-steps."""
+    state, samples = state_at_rest(model), samples_for(model, 0)
+    state.v[:] = 1e-3 * np.random.default_rng(1).uniform(-1.0, 1.0, state.v.shape)
+    count = len(model.blocks.inertia)
+    steps = max(16, BLOCK_STEPS // count)
+    drive = None
+    if model.held is not None:
+        drive = np.zeros((steps, len(model.held.dashpot), 3))
+
+    def take() -> None:
+        march(model, state, samples, 2 * steps, (1, 1 + steps), drive, None, threads)
+
+    return take, steps * count
+
+
+def beside_the_row() -> None:
+    """Rates per contact point, with Coulomb slip, over those of the row of blocks in space."""
+    print("blocks in the plane, 2 points a contact, Coulomb slip, over the row in space,")
+    print("2 x 2 points, both per contact point: point-steps/s")
+    for blocks in (1024, 102_400):
+        plane, block_steps = moving(model_of(blocks, COULOMB))
+        row, of_row = stretch(changed(SLIDES, blocks))
+        one, other = (plane, POINTS * block_steps), (row, POINTS * of_row)
+        side_by_side(f"{blocks:,} blocks, one thread", one, other)
+
+
+def by_size() -> None:
+    """What a block-step costs from a thousand blocks to a million, and what two threads gain."""
+    print("blocks in the plane, Coulomb slip, by size, and two threads over one, block-steps/s")
+    sizes = (1024, 10_000, 102_400, 1_000_000)
+    models = [model_of(blocks, COULOMB) for blocks in sizes]
+    stretches = [moving(model) for model in models]
+    for take, _ in stretches:
+        take()
+    rounds = [[1 / rate(*timed) for timed in stretches] for _ in range(ROUNDS)]
+    for blocks, costs in zip(sizes, zip(*rounds, strict=True), strict=True):
+        print(f"  {blocks:>9,} blocks: {1e9 * median(costs):6.1f} ns a block-step", flush=True)
+    for blocks, model in zip(sizes, models, strict=True):
+        side_by_side(f"{blocks:,} blocks, two threads", moving(model, 2), moving(model))
+
+
+def main() -> None:
+    """Print all ratios."""
+    beside_the_row()
+    by_size()
+
+
+if __name__ == "__main__":
+    main()
