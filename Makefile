@@ -42,8 +42,9 @@ check: setup  ## lint, formatting, types, and the direction of imports
 bench: setup  ## both engines: start-up, kernels against bare loops and other solvers, threads, MPI, memory, cost of each effect
 	@$(RUN) python tools/bench
 
-bench-peers: setup  ## the same pillar in LAMMPS, Akantu and Yade, installed apart in .peers, beside ours
+bench-peers: setup  ## the same pillar in LAMMPS, Akantu and Yade, a lattice in LAMMPS, installed apart in .peers, beside ours
 	@$(RUN) python tools/peers
+	@$(RUN) python tools/peers/lattice.py
 
 bench-plan: setup  ## what is planned for every shipped scene, held against all configurations of it (10 min)
 	@$(RUN) python tools/plan

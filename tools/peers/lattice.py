@@ -1,0 +1,177 @@
+"""A square lattice of bodies on BPM bonds in LAMMPS beside rigid blocks in the plane.
+
+    python tools/peers/lattice.py [--rounds N]
+
+Both have as many bodies and bonds, of equal mass, inertia and stiffness (normal, shear, bending),
+begin with the same velocities and take the same steps on one core, in turns. After SHORT steps they
+must be at the same place: what is timed is the same motion.
+"""
+
+import argparse
+import re
+import subprocess
+from pathlib import Path
+from statistics import median
+from time import perf_counter
+from typing import NamedTuple
+
+import environment
+import numpy as np
+from environment import Place
+from job import ONE_THREAD
+from lammps_bonds import UNBREAKABLE
+from measure import on_one_core
+
+from cases.validate import validated
+from dem.blocks.leapfrog import march, samples_for
+from dem.blocks.model import PlaneModel, state_at_rest
+from dem.blocks.system import prepared
+from joints.law import law_of
+
+SIDES = (32, 100, 316)  # bodies along each side
+BODY_STEPS = 2_000_000  # of one run
+SPEED = 0.1  # m/s: turns of 1e-4, above the 1e-8 of an arc cosine near 1 that LAMMPS takes them by
+SHORT = 100  # steps
+ALIKE = 1e-3  # of displacement: turns of 1e-4, which only LAMMPS takes as finite, times their steps
+
+INPUT = """\
+units          si
+atom_style     bpm/sphere
+newton         on off
+boundary       f f f
+special_bonds  lj 0 1 1 coul 1 1 1
+comm_modify    cutoff 2.0 vel yes
+read_data      lattice.data
+pair_style     none
+bond_style     bpm/rotational smooth no
+bond_coeff     1 {bond}
+neigh_modify   once yes
+timestep       {dt!r}
+fix            move all nve/bpm/sphere
+thermo         {steps}
+run            {steps}
+write_dump     all custom end.txt id x y modify sort id format float %.17g
+"""
+
+
+class Lattice(NamedTuple):
+    """Blocks of 1 m, `side` along each side; velocities [bodies, 3], m/s and rad/s; steps."""
+
+    side: int
+    model: PlaneModel
+    centres: np.ndarray
+    velocity: np.ndarray
+    steps: int
+
+
+def lattice(side: int) -> Lattice:
+    """Return the lattice, with the inertia of spheres of diameter 1 m."""
+    size = float(side)
+    joints = {"spacing": 1.0, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
+    sets = [{"name": f"{dip:.0f}", "dip": dip, "through": [0.0, 0.0]} | joints for dip in (0.0, 90)]
+    sides = dict.fromkeys(("left", "right", "bottom", "top"), "free")
+    tables = {
+        "title": "a square lattice",
+        "domain": {"size": [size, size]},
+        "rock": {"density": 2600.0, "intact_modulus": 5e10},
+        "joint_sets": sets,
+        "boundaries": sides,
+        "loads": [{"kind": "pressure", "side": "left", "shape": "step", "amplitude": 1.0}],
+        "time": {"duration": 0.01},
+        "record": {"points": [[0.5, 0.5]], "energy": False},
+    }
+    system = prepared(validated(tables, Path("lattice.toml"), frozenset()))
+    inertia = system.model.blocks.inertia.copy()
+    inertia[:, 1] = inertia[:, 0] / 10
+    blocks = system.model.blocks._replace(inertia=inertia, dt=0.5 * system.model.blocks.dt)
+    model = system.model._replace(blocks=blocks, held=None)
+    model = model._replace(form=model.form._replace(held=False))
+    velocity = SPEED * np.random.default_rng(1).uniform(-1, 1, (len(inertia), 3))
+    centres = system.blocks.partition.centroid
+    return Lattice(side, model, centres, velocity, BODY_STEPS // side**2)
+
+
+def ours(own: Lattice) -> tuple[np.ndarray, float]:
+    """Return displacements [bodies, 2] (m) and seconds of stepping."""
+    state, samples = state_at_rest(own.model), samples_for(own.model, 0)
+    state.v[:] = own.velocity
+    began = perf_counter()
+    march(own.model, state, samples, 2 * own.steps, (1, 1 + own.steps))
+    return state.u[:, :2].copy(), perf_counter() - began
+
+
+def theirs(own: Lattice, place: Place, folder: Path) -> tuple[np.ndarray, float]:
+    """Return the same from LAMMPS, whose own loop time is taken."""
+    law, steps = law_of(own.model.laws, 0), own.steps
+    numbers = [law.normal_stiffness, law.shear_stiffness, law.shear_stiffness / 6]
+    numbers += [law.normal_stiffness / 12, *4 * [UNBREAKABLE], *4 * [0.0]]
+    bond = " ".join(repr(float(number)) for number in numbers)
+    folder.mkdir(parents=True, exist_ok=True)
+    text = INPUT.format(bond=bond, dt=float(own.model.blocks.dt), steps=steps)
+    (folder / "in.lattice").write_text(text)
+    (folder / "lattice.data").write_text(data(own))
+    command = [*place.command, "-in", "in.lattice"]
+    said = subprocess.run(
+        command, cwd=folder, env=ONE_THREAD | place.environment, capture_output=True, text=True
+    )
+    if said.returncode:
+        raise SystemExit(f"lammps: exit {said.returncode}: {said.stdout.splitlines()[-1:]}")
+    end = np.loadtxt(folder / "end.txt", skiprows=9)[:, 1:]
+    return end - own.centres, float(re.findall(r"Loop time of (\S+)", said.stdout)[-1])
+
+
+def data(own: Lattice) -> str:
+    """Return the data file: bodies at the blocks' centres, a bond at each joint."""
+    density = float(own.model.blocks.inertia[0, 0] / (np.pi / 6))
+    pairs, size = own.model.contacts.blocks, float(own.side)
+    head = f"lattice\n\n{len(own.centres)} atoms\n{len(pairs)} bonds\n1 atom types\n1 bond types\n"
+    box = f"\n0 {size!r} xlo xhi\n0 {size!r} ylo yhi\n-1 1 zlo zhi\n"
+    places = [(float(x), float(y)) for x, y in own.centres]
+    atoms = "".join(
+        f"{i} 1 1 1.0 {density!r} {x!r} {y!r} 0\n" for i, (x, y) in enumerate(places, 1)
+    )
+    speeds = [tuple(map(float, row)) for row in own.velocity]
+    moves = "".join(f"{i} {u!r} {v!r} 0 0 0 {w!r}\n" for i, (u, v, w) in enumerate(speeds, 1))
+    bonds = "".join(f"{c} 1 {i + 1} {j + 1}\n" for c, (i, j) in enumerate(pairs.tolist(), 1))
+    parts = f"\nAtoms # bpm/sphere\n\n{atoms}\nVelocities\n\n{moves}\nBonds\n\n{bonds}"
+    return head + box + parts
+
+
+def main() -> None:
+    """Print the ratio of the rates of both for each size, and how far apart they end."""
+    parser = argparse.ArgumentParser(prog="python tools/peers/lattice.py", description=__doc__)
+    parser.add_argument("--rounds", type=int, default=5, help="turns of each run")
+    parser.add_argument("--out", type=Path, default=Path("out/peers/lattice"), help="inputs")
+    options = parser.parse_args()
+    place = environment.lammps()
+    if place.missing:
+        raise SystemExit(f"missing: {place.missing}")
+    on_one_core()
+    print(
+        "square lattice: rigid blocks in the plane over LAMMPS BPM rotational bonds, body-steps/s"
+    )
+    for side in SIDES:
+        own, folder = lattice(side), options.out / str(side)
+        apart = distance(own._replace(steps=SHORT), place, folder)
+        turns = [(ours(own)[1], theirs(own, place, folder)[1]) for _ in range(options.rounds)]
+        ratios = sorted(peer / mine for mine, peer in turns)
+        mine, peer = (side**2 * own.steps / median(column) for column in zip(*turns, strict=True))
+        print(
+            f"  {side**2:>7,} bodies, {len(own.model.contacts.blocks):>7,} bonds: "
+            f"{mine:.2e} over {peer:.2e}: {median(ratios):.1f} ({ratios[0]:.1f} to "
+            f"{ratios[-1]:.1f}); after {SHORT} steps {apart:.0e} apart",
+            flush=True,
+        )
+
+
+def distance(own: Lattice, place: Place, folder: Path) -> float:
+    """Return how far apart both end, of the displacement; exit where that is not alike."""
+    found, expected = ours(own)[0], theirs(own, place, folder)[0]
+    apart = float(np.linalg.norm(found - expected) / np.linalg.norm(expected))
+    if not apart < ALIKE:
+        raise SystemExit(f"{own.side**2} bodies end {apart:.1e} apart: not the same motion")
+    return apart
+
+
+if __name__ == "__main__":
+    main()
