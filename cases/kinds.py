@@ -2,15 +2,37 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
+
+from pydantic_core import PydanticCustomError
 
 from cases.errors import SceneError
+from cases.schema import consistency
 from cases.schema.scene import Scene
 
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
 
     AnyScene = Scene | RockMass
+
+Either = TypeVar("Either", bound="AnyScene")
+
+
+def checked(scene: Either) -> Either:
+    """Return a scene whose tables were changed in memory; raises SceneError where they do not fit
+    together any more."""
+    try:
+        if isinstance(scene, Scene):
+            consistency.check(scene)
+        else:
+            from cases.schema import rock_mass_checks  # with shapely, which no pillar needs
+
+            rock_mass_checks.check(scene)
+    except PydanticCustomError as error:
+        about = error.context or {}
+        key, found, allowed = about.get("key", ""), about.get("found"), error.message()
+        raise SceneError(scene.where, key, found, allowed) from None
+    return scene
 
 
 def pillar_of(scene: AnyScene, what: str = "this") -> Scene:

@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from pydantic_core import PydanticCustomError
-
-from cases.errors import SceneError
 from cases.material.calibrate import calibrate
 from cases.material.stiffness import equivalent_constants
 from cases.schema.discretisation import check_discretisation
@@ -44,18 +41,6 @@ def check(scene: Scene) -> None:
     _check_fracture(scene)
     check_discretisation(scene)
     check_scheme(scene)
-
-
-def checked(scene: Scene) -> Scene:
-    """Return a scene whose tables were changed in memory; raises SceneError where they do not fit
-    together any more."""
-    try:
-        check(scene)
-    except PydanticCustomError as error:
-        about = error.context or {}
-        key, found, allowed = about.get("key", ""), about.get("found"), error.message()
-        raise SceneError(scene.where, key, found, allowed) from None
-    return scene
 
 
 def _check_layers(scene: Scene) -> None:

@@ -72,6 +72,7 @@ MOST_MARKS = 150  # samples of a curve that are marked one by one
 #: Colours along the pillar, and of differences: diverging, even to the eye and told apart under
 #: every colour blindness (ColorBrewer). Of stress, tension is blue and compression red.
 FIELD, DIFFERENCE = "RdBu_r", "PuOr_r"
+UNSIGNED = "YlOrRd"  # from none to the largest
 
 #: Of the terms of an energy ledger: those of Tol (2021), "muted", and black.
 TERMS = {

@@ -14,7 +14,6 @@ from compare.cli.options import (
     StrictOption,
     app,
     load,
-    load_pillars,
 )
 
 if TYPE_CHECKING:
@@ -90,9 +89,9 @@ def _taken(scene: "AnyScene", count: int) -> "SceneSnapshots":
 
 
 def _simulate(
-    scene: Scene, count: int, scale: float | None
+    scene: "AnyScene", count: int, scale: float | None
 ) -> tuple["SceneSnapshots", "ViewSettings"]:
-    """Return so many snapshots of a pillar by both engines, and how they are drawn."""
+    """Return so many snapshots of a scene by both engines, and how they are drawn."""
     from compare.figures.animation.view_settings import settings_for
 
     simulated = _taken(scene, count)
@@ -136,16 +135,17 @@ def view(
     scale: ScaleOption = None,
     strict: StrictOption = False,
 ) -> None:
-    """Show the pillars of both engines in three dimensions, displaced and coloured by the wave.
+    """Show a scene by both engines, displaced and coloured by the wave.
 
-    Opens a window with a slider over time; with --out, or where there is no display, writes a
-    picture instead, of the time T. Needs PyVista.
+    Pillars are seen in three dimensions; a rock mass in its plane, coloured by the size of its
+    displacement. Opens a window with a slider over time; with --out, or where there is no display,
+    writes a picture instead, of the time T. Needs PyVista.
     """
     _require_positive("--scale", scale)
     _require_pyvista()
     from compare.figures.animation.offscreen import has_display
 
-    (one,) = load_pillars(scene, changes, variant, strict, "jointwave view")
+    (one,) = load(scene, changes, variant, strict)
     at = one.time.duration / 2 if time is None else time
     if not 0 < at <= one.time.duration:
         allowed = f"must be greater than 0 and at most time.duration = {one.time.duration:g} s"
@@ -163,7 +163,7 @@ def _require_pyvista() -> None:
         raise SceneError("view", "", None, "needs PyVista: pip install 'jointwave[view]'")
 
 
-def _open(scene: Scene, time: float, scale: float | None) -> None:
+def _open(scene: "AnyScene", time: float, scale: float | None) -> None:
     from compare.figures.animation.view3d import View3D
 
     window = View3D(*_simulate(scene, FRAMES, scale), window=True)
@@ -171,7 +171,7 @@ def _open(scene: Scene, time: float, scale: float | None) -> None:
     window.open()
 
 
-def _write_picture(path: Path, scene: Scene, time: float, scale: float | None) -> None:
+def _write_picture(path: Path, scene: "AnyScene", time: float, scale: float | None) -> None:
     from compare.figures.animation.offscreen import draw
     from compare.figures.animation.snapshots import until
     from compare.runs.output import refuse_foreign, write

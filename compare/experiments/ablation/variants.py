@@ -5,8 +5,8 @@ from typing import Any
 
 from cases.effects import active_effects
 from cases.errors import SceneError
+from cases.kinds import checked
 from cases.material.strength import SLIP, SOFTENING
-from cases.schema.consistency import checked
 from cases.schema.scene import Scene
 
 

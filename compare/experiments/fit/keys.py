@@ -10,8 +10,8 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from cases.errors import SceneError
+from cases.kinds import checked
 from cases.schema.allowed import model_in
-from cases.schema.consistency import checked
 from cases.schema.field_docs import field_comments
 from cases.schema.scene import Scene
 

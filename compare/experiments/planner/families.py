@@ -4,8 +4,8 @@ from math import ceil
 from typing import Any, NamedTuple
 
 from cases.errors import SceneError
+from cases.kinds import checked
 from cases.sampling import sample_times
-from cases.schema.consistency import checked
 from cases.schema.scene import Numerics, Scene
 from compare.engines import ENGINES, applies, solver
 from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK

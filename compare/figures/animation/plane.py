@@ -15,14 +15,12 @@ from matplotlib.figure import Figure
 
 from compare.figures import fonts
 from compare.figures.animation.snapshots import SceneSnapshots
-from compare.figures.animation.view_settings import round_down
-from compare.figures.style import RC, style
+from compare.figures.animation.view_settings import scale_of
+from compare.figures.style import RC, UNSIGNED, style
 from compare.figures.units import unit_for
 from results.snapshots import Snapshots
 
 SIZE = 12.8, 7.2  # inches
-SPEED = "YlOrRd"  # colours of particle speeds, from none to the largest
-FARTHEST = 0.04  # of the domain's size, that the largest displacement is drawn as
 AROUND = 0.05  # of the domain's size
 LETTERS = 160  # of a line
 LOUDEST = 99.8  # per cent of speeds that are not beyond the last colour
@@ -38,11 +36,11 @@ class PlaneFrame:
         self, simulated: SceneSnapshots, scale: float | None = None, dots: int = 100
     ) -> None:
         self.simulated, self.time = simulated, simulated.time
-        self.scale = scale or scale_of(simulated)
+        self.scale = scale or scale_of(simulated.found)
         self.speeds = {name: speeds(s) for name, s in simulated.found.items()}
         peak = max(float(np.percentile(x, LOUDEST)) for x in self.speeds.values()) or 1.0
         self.unit = unit_for("m/s", 1.001 * peak)
-        self.colour = ScalarMappable(Normalize(0.0, peak / self.unit.size), SPEED)
+        self.colour = ScalarMappable(Normalize(0.0, peak / self.unit.size), UNSIGNED)
         with matplotlib.rc_context(RC | {"font.size": 10.0, "font.family": fonts.families()}):
             self.figure = Figure(figsize=SIZE, dpi=dots)
             self.canvas = FigureCanvasAgg(self.figure)
@@ -76,7 +74,7 @@ class PlaneFrame:
         points = self.simulated.found[name].points
         low, high = points.min(axis=0)[:2], points.max(axis=0)[:2]
         margin = AROUND * (high - low).max()
-        faces = PolyCollection([], cmap=SPEED, edgecolors="face", linewidths=0.2)
+        faces = PolyCollection([], cmap=UNSIGNED, edgecolors="face", linewidths=0.2)
         faces.set_norm(self.colour.norm)
         ax.add_collection(faces)
         ax.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin))
@@ -98,11 +96,3 @@ def cells_at(s: Snapshots, i: int, scale: float) -> np.ndarray:
     """Return the corners of every cell at instant i [cells, corners, 2], m, displacements drawn
     `scale` times as large."""
     return (s.points + scale * s.displacement[i])[s.cells][..., :2]
-
-
-def scale_of(simulated: SceneSnapshots) -> float:
-    """Return by what displacements are multiplied so that the largest can be seen; at least 1."""
-    found = simulated.found.values()
-    size = max(float(np.ptp(s.points, axis=0).max()) for s in found)
-    largest = max(float(np.linalg.norm(s.displacement, axis=2).max()) for s in found)
-    return max(1.0, round_down(FARTHEST * size / largest)) if largest else 1.0

@@ -6,8 +6,7 @@ from math import ceil
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cases.errors import SceneError
-from cases.schema.consistency import checked
-from cases.schema.scene import Scene
+from cases.kinds import checked
 from cases.schema.tables import Time
 from compare.engines import ENGINES, Progress, applies, solve
 from compare.figures.subplots import UNITS
@@ -58,11 +57,10 @@ def at_instants(scene: AnyScene, count: int) -> AnyScene:
     between = scene.time.duration / (count - 1)
     interval = between / max(1, ceil(between / scene.interval - 1e-9))
     changes = {"fields": between, "interval": interval}
-    found = scene.model_copy(update={"record": scene.record.model_copy(update=changes)})
-    return checked(found) if isinstance(found, Scene) else found
+    return checked(scene.model_copy(update={"record": scene.record.model_copy(update=changes)}))
 
 
-def until(scene: Scene, time: float) -> Scene:
+def until(scene: AnyScene, time: float) -> AnyScene:
     """Return the scene as far as `time`, s."""
     return checked(scene.model_copy(update={"time": Time(duration=time)}))
 

@@ -1,4 +1,4 @@
-"""The pillars of both engines in three dimensions, by PyVista."""
+"""A scene by both engines in three dimensions, by PyVista."""
 
 from __future__ import annotations
 
@@ -9,42 +9,43 @@ import pyvista
 from matplotlib.ticker import MaxNLocator
 
 from compare.figures import fonts
-from compare.figures.animation.surface import Y, solid, surface_of
-from compare.figures.animation.view_settings import STRESS, ViewSettings, caption
+from compare.figures.animation.layout import layout_of
+from compare.figures.animation.surface import surface_of
+from compare.figures.animation.view_settings import DISPLACEMENT, STRESS, ViewSettings, caption
 from compare.figures.print.layout import wrapped
-from compare.figures.style import FIELD, style
+from compare.figures.style import FIELD, UNSIGNED, style
 
 if TYPE_CHECKING:
     from compare.figures.animation.snapshots import SceneSnapshots
     from results.snapshots import Snapshots
 
 SIZE = 1280, 720  # pixels
-APART = 3.0  # from one pillar's axis to the next, in thicknesses as drawn, at least
-TILT = 0.35, 0.3  # how far the viewer stands to the right and above, of the distance
 BAR = 0.5, 0.06, 0.45, 0.06  # left, bottom, width and height of the colours, of the picture
 LONGEST, WIDE = 110, 0x2E7F  # letters in a line; the last that is no wider than Latin ones
-SHOWN = 1.1  # of the pillar's length, that the picture is wide
+SHOWN = 1.1  # of what must be seen, that the picture shows
 CELLS = {
     "triangle": pyvista.CellType.TRIANGLE,
+    "quad": pyvista.CellType.QUAD,
     "tetra": pyvista.CellType.TETRA,
     "hexahedron": pyvista.CellType.HEXAHEDRON,
 }
 
 
 class View3D:
-    """The pillars, one above the other, at any instant.
+    """The pillars, one above the other, or the rock masses, side by side, at any instant.
 
     grids : by engine, with the points where the nodes are drawn (m), `displacement` (m) of points,
-    and what the colours show, SI, under its name: `axial stress` of cells, `velocity across` of
-    points. Where the pillars stand and how thick they are drawn is their actors' affair.
+    and what the colours show, SI, under its name: `axial stress` of cells, `velocity across` and
+    `size of displacement` of points. Where bodies stand and how thick they are drawn is their
+    actors' affair.
     """
 
     def __init__(
         self, simulated: SceneSnapshots, settings: ViewSettings, window: bool = False
     ) -> None:
         self.settings, self.simulated = settings, simulated
-        side = simulated.scene.pillar.side
-        self.found = {name: solid(s, side) for name, s in simulated.found.items()}
+        self.layout = layout_of(simulated, settings)
+        self.found = self.layout.found
         self.time = simulated.time
         self.plotter = pyvista.Plotter(off_screen=not window, window_size=list(SIZE))
         self.plotter.set_background("white")
@@ -52,7 +53,7 @@ class View3D:
         self.grids, self.edges = {}, {}
         for i, (name, s) in enumerate(self.found.items()):
             self.grids[name], self.edges[name] = grid_of(s), edges_of(s)
-            self._add(name, -i * self._apart * settings.up)
+            self._add(name, i * self.layout.apart)
         self._label_bar()
         self._place_camera()
         self.show(0)
@@ -73,7 +74,7 @@ class View3D:
         self.plotter.close()
 
     def add_slider(self, i: int) -> None:
-        """Put a slider over time below the pillars, at instant i."""
+        """Put a slider over time below the bodies, at instant i."""
         self.show(i)
         self.plotter.add_slider_widget(
             lambda ms: self.show(int(np.abs(1e3 * self.time - ms).argmin())),
@@ -89,20 +90,19 @@ class View3D:
         """Open the window until it is closed."""
         self.plotter.show()
 
-    @property
-    def _apart(self) -> float:
-        """From one pillar's axis to the next, m as drawn."""
-        drawn = [s.points + self.settings.scale * s.displacement for s in self.found.values()]
-        reach = max(float(np.ptp(x @ self.settings.up)) for x in drawn)
-        side = self.simulated.scene.pillar.side
-        return self.settings.stretch * max(APART * side, reach + side)
-
     def _values(self, s: Snapshots, i: int | slice) -> np.ndarray:
         """Return what the colours show, of cells or points, SI."""
         if self.settings.quantity == STRESS:
             assert s.stress is not None
             return s.stress[i]
+        if self.settings.quantity == DISPLACEMENT:
+            return np.linalg.norm(s.displacement[i], axis=-1)
         return s.velocity[i] @ self.settings.up
+
+    @property
+    def _least(self) -> float:
+        """The least that the colours show, SI: 0 of what has no sign."""
+        return -self._peak if self.settings.quantity.sign else 0.0
 
     @property
     def _peak(self) -> float:
@@ -112,12 +112,13 @@ class View3D:
 
     def _label_bar(self) -> None:
         """Write what the colours show above their bar, and numbers below it."""
-        quantity, peak = self.settings.quantity, self._peak * self.settings.quantity.factor
+        quantity = self.settings.quantity
+        least, peak = quantity.factor * self._least, quantity.factor * self._peak
         left, bottom, width, height = BAR
         self._say(quantity.label, (left + width / 2, bottom + height + 0.012), "center")
-        for value in MaxNLocator(4, symmetric=True).tick_values(-peak, peak):
-            if abs(value) <= peak:
-                place = (left + width * (value + peak) / (2 * peak), bottom - 0.032)
+        for value in MaxNLocator(4, symmetric=least < 0).tick_values(least, peak):
+            if least <= value <= peak:
+                place = (left + width * (value - least) / (peak - least), bottom - 0.032)
                 self._say(f"{value:.3g}", place, "center")
 
     def _say(self, text: str, place: tuple[float, float], side: str) -> None:
@@ -134,27 +135,26 @@ class View3D:
         actor.prop.justification_horizontal = side
 
     def _add(self, name: str, place: np.ndarray) -> None:
-        quantity, grid, stretch = self.settings.quantity, self.grids[name], self.settings.stretch
+        quantity, grid = self.settings.quantity, self.grids[name]
         grid[quantity.name] = self._values(self.found[name], 0)
         place_of_bar = dict(zip(("position_x", "position_y", "width", "height"), BAR, strict=True))
-        pillar = self.plotter.add_mesh(
+        body = self.plotter.add_mesh(
             grid,
             scalars=quantity.name,
-            cmap=FIELD,
-            clim=(-self._peak, self._peak),
+            cmap=FIELD if quantity.sign else UNSIGNED,
+            clim=(self._least, self._peak),
             # What the bar says is written by _label_bar, beside its numbers.
             scalar_bar_args={"title": " ", "n_labels": 0, **place_of_bar},
             ambient=0.7,  # a little shade shows the form and leaves the colours as in the bar
             diffuse=0.35,
         )
-        pillar.mapper.SetResolveCoincidentTopologyToPolygonOffset()  # or the edges flicker
+        body.mapper.SetResolveCoincidentTopologyToPolygonOffset()  # or the edges flicker
         lines = self.plotter.add_mesh(self.edges[name], color="#333333", line_width=1)
-        for actor in (pillar, lines):
+        for actor in (body, lines):
             actor.position = place
-            actor.scale = stretch, 1.0, stretch
-        above = 0.8 * stretch * self.simulated.scene.pillar.side * self.settings.up
+            actor.scale = self.layout.stretch
         self.plotter.add_point_labels(
-            [place + above],
+            [place + self.layout.name],
             [name],
             text_color=style(name).colour,
             font_size=18,
@@ -164,17 +164,15 @@ class View3D:
         )
 
     def _place_camera(self) -> None:
-        """Look at the middle from the side, a little from the right and from above."""
-        length, camera = self.simulated.scene.pillar.length, self.plotter.camera
-        middle = Y * length / 2 - self.settings.up * self._apart * (len(self.found) - 1) / 2
-        right, above = TILT
-        towards = np.cross(Y, self.settings.up) + right * Y + above * self.settings.up
+        """Look at the middle of all bodies."""
+        layout, camera = self.layout, self.plotter.camera
+        middle, (wide, tall) = layout.middle + layout.apart * (len(self.found) - 1) / 2, layout.size
+        towards = layout.towards / np.linalg.norm(layout.towards)
         camera.focal_point = middle
-        camera.position = middle + 2 * length * towards / np.linalg.norm(towards)
+        camera.position = middle + 2 * wide * towards
         camera.up = self.settings.up
         camera.enable_parallel_projection()
-        tall = max(length * SIZE[1] / SIZE[0], self._apart * len(self.found))
-        camera.parallel_scale = SHOWN * tall / 2
+        camera.parallel_scale = SHOWN * max(wide * SIZE[1] / SIZE[0], tall) / 2
         self.plotter.renderer.ResetCameraClippingRange()
 
     def _write(self, i: int) -> None:

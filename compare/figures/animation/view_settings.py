@@ -1,7 +1,9 @@
 """Settings of a view: its side, its exaggeration, and the meaning of its colours."""
 
+from __future__ import annotations
+
 from math import floor, log10
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -10,36 +12,43 @@ from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
 from results.snapshots import Snapshots
 
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+
 #: The largest that is drawn: of a block's thickness two neighbours may come closer; of the pillar's
 #: length a node may move along, and aside; of half a block's largest side a corner may turn away.
 CLOSER, FARTHER, ASIDE, TURNED = 0.8, 0.1, 0.04, 0.35
 THIN, THIN_IN_SPACE = 0.045, 0.03  # height of the picture over its length that can be seen well
+FARTHEST = 0.04  # of the size of a rock mass, that its largest displacement is drawn as
 SILENT = 0.1  # axial stress over what the motion would give in a plane wave, that is no wave
 
 
 class Quantity(NamedTuple):
-    """What the colours show: its name, and the factor from SI to the unit that is written."""
+    """What the colours show: its name, the factor from SI to the unit that is written, and what its
+    sign means, "" where it has none."""
 
     name: str
     unit: str
     factor: float
+    sign: str
 
     @property
     def label(self) -> str:
         """The title of the colours."""
-        sign = ", compression positive" if self == STRESS else ", upwards positive"
-        return f"{self.name} ({self.unit}){sign}"
+        return ", ".join(part for part in (f"{self.name} ({self.unit})", self.sign) if part)
 
 
-STRESS = Quantity("axial stress", "MPa", 1e-6)
-VELOCITY = Quantity("velocity across", "m/s", 1.0)
+STRESS = Quantity("axial stress", "MPa", 1e-6, "compression positive")
+VELOCITY = Quantity("velocity across", "m/s", 1.0, "upwards positive")
+DISPLACEMENT = Quantity("size of displacement", "mm", 1e3, "")
 
 
 class ViewSettings(NamedTuple):
     """How a scene is drawn.
 
-    up : unit vector [3], what is upwards in the picture; y is to the right. scale : of the
-    displacements. stretch : of all that is upwards. quantity : what the colours show.
+    up : unit vector [3], what is upwards in the picture; y is to the right, of a rock mass x.
+    scale : of the displacements. stretch : of all that is upwards. quantity : what the colours
+    show.
     """
 
     up: np.ndarray
@@ -48,26 +57,30 @@ class ViewSettings(NamedTuple):
     quantity: Quantity
 
 
-def caption(scene: Scene, settings: ViewSettings) -> str:
+def caption(scene: AnyScene, settings: ViewSettings) -> str:
     """Return what is said of a picture: how much is exaggerated, and what its stress is less."""
     parts = [f"displacements × {settings.scale:,g}"]
     if settings.stretch != 1:
         parts.append(f"thickness × {settings.stretch:g}")
-    if settings.quantity == STRESS and scene.gravity is not None:
+    if settings.quantity != STRESS:
+        return ", ".join(parts)
+    if scene.gravity is not None:
         parts.append("stress less its static state")
-    elif settings.quantity == STRESS and scene.prestress is not None and scene.prestress.normal:
+    elif isinstance(scene, Scene) and scene.prestress and scene.prestress.normal:
         parts.append(f"stress less the prestress of {scene.prestress.normal / 1e6:g} MPa")
     return ", ".join(parts)
 
 
 def settings_for(
-    scene: Scene, found: dict[str, Snapshots], scale: float | None = None
+    scene: AnyScene, found: dict[str, Snapshots], scale: float | None = None
 ) -> ViewSettings:
     """Return how snapshots by engine are drawn; `scale` (of displacements) in place of our own.
 
     A row of blocks is seen from the side to which nothing drives it: its motion along and across
-    its axis lies in the plane of the picture.
+    its axis lies in the plane of the picture, as does a rock mass.
     """
+    if not isinstance(scene, Scene):
+        return ViewSettings(np.array([0.0, 1.0, 0.0]), scale or scale_of(found), 1.0, DISPLACEMENT)
     thin = THIN_IN_SPACE if is_spatial(scene) else THIN
     ratio = scene.pillar.side / scene.pillar.length
     wanted = max(1.0, thin / ratio)
@@ -99,6 +112,14 @@ def round_down(value: float) -> float:
         return 1.0
     power = 10.0 ** floor(log10(value))
     return power * max(k for k in (1, 2, 5) if k * power <= value * (1 + 1e-12))
+
+
+def scale_of(found: dict[str, Snapshots]) -> float:
+    """Return by what the displacements of a rock mass are multiplied so that the largest can be
+    seen; at least 1."""
+    size = max(float(np.ptp(s.points, axis=0).max()) for s in found.values())
+    largest = max(float(np.linalg.norm(s.displacement, axis=2).max()) for s in found.values())
+    return max(1.0, round_down(FARTHEST * size / largest)) if largest else 1.0
 
 
 def _largest_scale(scene: Scene, s: Snapshots, stretch: float) -> float:

@@ -9,6 +9,7 @@ from unittest.mock import patch
 import pandas as pd
 import pytest
 import xarray as xr
+from PIL import Image
 
 import jointwave
 from compare.cli import completion
@@ -88,7 +89,6 @@ PILLARS_ALONE = {
     "fit joint.toml --free rock.density --with curve.csv": "jointwave fit",
     "plan joint.toml --misfit 0.01": "jointwave plan",
     "effects joint.toml": "jointwave effects",
-    "view joint.toml": "jointwave view",
 }
 
 
@@ -132,6 +132,21 @@ def test_a_scene_is_run_and_its_file_says_where_its_receivers_are(jointwave_says
         assert json.loads(found.effects) == ["quiet sides", "energy ledger", "incident waves"]
     again = jointwave_says("run joint.toml --engine exact --resume")
     assert again[0] == 0
+
+
+def test_a_view_of_it_is_a_picture_of_both_engines(jointwave_says, tmp_path, monkeypatch):
+    pytest.importorskip("pyvista")
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    coarse = "--set numerics.dem.block=5 --set record.fields=0.002"
+    code, out, err = jointwave_says(f"view joint.toml {coarse} --time 0.006 --out seen.png")
+    if "needs EGL or OSMesa" in err:
+        pytest.skip("VTK can draw nothing here")
+    assert code == 0 and out.startswith("seen.png: dem and continuum-jointed, displacements × ")
+    with Image.open(tmp_path / "seen.png") as file:
+        assert file.size == (1280, 720) and len(file.getcolors(1_000_000)) > 100
+    code, _, err = jointwave_says("view joint.toml --time 0.06")
+    assert code == 2 and "must be greater than 0 and at most time.duration = 0.03 s" in err
 
 
 def test_a_dry_run_of_it(jointwave_says):

@@ -1,11 +1,16 @@
-"""The picture of a rock mass at an instant: its blocks where they are, coloured by their speed."""
+"""The picture and the view of a rock mass: blocks where they are, coloured by their motion."""
+
+import sys
 
 import numpy as np
 import pytest
 
+from cases import SceneError
 from cases.read import load_tables
-from compare.figures.animation.plane import PlaneFrame, cells_at, scale_of, speeds
-from compare.figures.animation.snapshots import SceneSnapshots, at_instants
+from compare.figures.animation import offscreen
+from compare.figures.animation.plane import PlaneFrame, cells_at, speeds
+from compare.figures.animation.snapshots import SceneSnapshots, at_instants, until
+from compare.figures.animation.view_settings import DISPLACEMENT, scale_of, settings_for
 from results.snapshots import snapshots
 
 TABLES = {
@@ -42,7 +47,7 @@ def test_cells_are_displaced_and_have_the_speed_of_their_corners(simulated):
 
 def test_displacements_are_drawn_as_they_can_be_seen(simulated):
     """4 % of 2 m over 1e-4 m is 800; of 1, 2, 5 times a power of ten at most that is 500."""
-    assert scale_of(simulated) == 500
+    assert scale_of(simulated.found) == 500
 
 
 def test_the_picture_shows_the_block_that_moves_where_it_is(simulated):
@@ -67,3 +72,57 @@ def test_the_picture_shows_the_block_that_moves_where_it_is(simulated):
 def test_instants_are_asked_of_a_rock_mass_as_of_a_pillar():
     asked = at_instants(load_tables(TABLES), 5)
     assert asked.record.fields == 0.0025 and asked.interval <= 0.0025
+
+
+def test_a_rock_mass_is_cut_short_as_a_pillar_is():
+    assert until(load_tables(TABLES), 0.004).time.duration == 0.004
+    sparse = load_tables(TABLES | {"record": {"points": [[0.5, 0.5]], "interval": 0.005}})
+    with pytest.raises(SceneError, match=r"record\.interval = 0\.005: must not exceed"):
+        until(sparse, 0.004)
+
+
+@pytest.fixture
+def view(simulated, monkeypatch):
+    """The two squares by two engines in a view, off screen, displacements 1000 times as large."""
+    pytest.importorskip("pyvista")
+    if sys.platform.startswith("linux"):
+        try:
+            monkeypatch.setenv(offscreen.CHOICE, offscreen._window())
+        except SceneError:
+            pytest.skip("VTK can draw nothing here")
+    from compare.figures.animation.view3d import View3D
+
+    found = {"dem": simulated.found["dem"], "continuum-jointed": simulated.found["dem"]}
+    both = simulated._replace(found=found, reasons={})
+    made = View3D(both, settings_for(both.scene, found, 1000.0))
+    yield made
+    made.plotter.close()
+
+
+def test_the_view_has_blocks_where_they_are_with_the_size_of_their_displacement(view):
+    view.show(1)
+    moved = np.concatenate([SQUARE, SQUARE + np.array([1.06, 0.08])])
+    for grid, edges in zip(view.grids.values(), view.edges.values(), strict=True):
+        np.testing.assert_allclose(grid.points[:, :2], moved)
+        np.testing.assert_array_equal(edges.points, grid.points)
+        np.testing.assert_allclose(grid.point_data[DISPLACEMENT.name], 4 * [0.0] + 4 * [1e-4])
+        assert grid.area == pytest.approx(2.0) and edges.n_lines == 8
+    assert view.settings.quantity.label == "size of displacement (mm)"
+
+
+def test_the_view_looks_along_z_at_both_engines_side_by_side(view):
+    """The picture has all blocks, 2.2 m from one engine's to the other's, at one scale."""
+    view.show(1)
+    camera = view.plotter.camera
+    assert camera.direction == pytest.approx((0.0, 0.0, -1.0)) and camera.up == (0.0, 1.0, 0.0)
+    pixels = np.asarray(view.plotter.screenshot(return_img=True)).astype(int)
+    metre = pixels.shape[0] / (2 * camera.parallel_scale)
+
+    def colour(x, y):
+        off = metre * (np.array([x, y]) - camera.focal_point[:2])
+        return pixels[round(pixels.shape[0] / 2 - off[1]), round(pixels.shape[1] / 2 + off[0])]
+
+    for left in (0.0, 2.2):
+        still, moved = colour(left + 0.5, 0.5), colour(left + 1.56, 0.58)
+        assert moved[0] > 90 and moved[2] < 90 and still.min() > 150  # dark red, pale yellow
+        assert (colour(left + 1.03, 0.5) == 255).all()  # the gap that has opened
