@@ -1,10 +1,28 @@
 """The scene: its vocabulary, its calibration, and the shipped scenes.
 
 `cases.load(path)` reads a scene file and returns one validated `Scene` per variant.
+What validates it is imported when it is asked for: a shell's completion needs none of it.
 """
 
+from typing import TYPE_CHECKING, Any
+
 from cases.errors import SceneError, UnstableError
-from cases.read import load, load_variant
-from cases.schema.scene import Scene
+
+if TYPE_CHECKING:
+    from cases.read import load, load_variant
+    from cases.schema.scene import Scene
 
 __all__ = ["Scene", "SceneError", "UnstableError", "load", "load_variant"]
+
+
+def __getattr__(name: str) -> Any:
+    """Return the class of scenes, or a function that reads them."""
+    if name in ("load", "load_variant"):
+        from cases import read
+
+        return getattr(read, name)
+    if name == "Scene":
+        from cases.schema.scene import Scene
+
+        return Scene
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeVar
 
-from pydantic_core import PydanticCustomError
-
 from cases.errors import SceneError
-from cases.schema import consistency
-from cases.schema.scene import Scene
 
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
+    from cases.schema.scene import Scene
 
     AnyScene = Scene | RockMass
 
@@ -21,6 +18,11 @@ Either = TypeVar("Either", bound="AnyScene")
 def checked(scene: Either) -> Either:
     """Return a scene whose tables were changed in memory; raises SceneError where they do not fit
     together any more."""
+    from pydantic_core import PydanticCustomError
+
+    from cases.schema import consistency
+    from cases.schema.scene import Scene
+
     try:
         if isinstance(scene, Scene):
             consistency.check(scene)
@@ -40,6 +42,8 @@ def pillar_of(scene: AnyScene, what: str = "this") -> Scene:
 
     what : takes pillars alone, in words.
     """
+    from cases.schema.scene import Scene
+
     if isinstance(scene, Scene):
         return scene
     raise SceneError(scene.where, "domain", None, f"is a rock mass; {what} takes pillars alone")

@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cases.errors import SceneError
-from cases.schema.plane import RecordInPlane
 
 if TYPE_CHECKING:
     from cases.kinds import AnyScene
@@ -141,6 +140,8 @@ def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:
     Raises SceneError where one of them would not fit a file.
     """
     record, axes = scene.record, 3 if spatial else 1
+    from cases.schema.plane import RecordInPlane
+
     if isinstance(record, RecordInPlane):
         rows = {
             "record.points": (len(record.points), 3, 7),

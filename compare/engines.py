@@ -8,16 +8,15 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from cases.errors import SceneError
-from cases.size import refuse_beyond_memory, waveform_bytes
 from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
 from compare.solvers.dem import DEM
 from compare.solvers.record import Answer, Solver, no
-from numerics.checkpoint import Keeper
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from cases.kinds import AnyScene
+    from numerics.checkpoint import Keeper
     from results.dataset import Fields
 
 #: The engines by name; their packages are imported when they run.
@@ -102,6 +101,8 @@ def solve(
     Raises SceneError where it does not apply or the name is unknown, UnstableError where a run
     goes unstable.
     """
+    from cases.size import refuse_beyond_memory, waveform_bytes
+
     one = _that_applies(name, scene)
     if one.is_engine:
         return one.run(scene, progress, comm, keeper)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from cases.material.calibrate import calibrate
-from cases.material.stiffness import equivalent_constants
 from cases.schema.discretisation import check_discretisation
 from cases.schema.joint import JointLaw
 from cases.schema.plausible import INTACT, meant
@@ -75,6 +73,8 @@ def _check_receivers(scene: Scene) -> None:
 
 
 def _check_rock(scene: Scene) -> None:
+    from cases.material.stiffness import equivalent_constants
+
     intact, (modulus, _) = scene.rock.intact_modulus, equivalent_constants(scene.rock)
     if intact is not None and intact <= modulus:
         raise contradiction(
@@ -159,6 +159,8 @@ def _check_fracture(scene: Scene) -> None:
     laws = [scene.joints, *scene.layers]
     if all(law.tensile_strength is None for law in laws):
         return
+    from cases.material.calibrate import calibrate
+
     p = calibrate(scene)
     for i, (law, stiffness) in enumerate(
         zip(laws, [p.regular_stiffness, *p.stiffness[p.soft]], strict=True)

@@ -1,12 +1,14 @@
 """The pulse of a load or a wave: its shape in time, or a recorded history."""
 
 from collections.abc import Iterable
-from typing import Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
-from cases.schema.history import History
 from cases.schema.values import Amplitude, Positive, Table, contradiction_here
+
+if TYPE_CHECKING:
+    from cases.schema.history import History
 
 
 class Pulse(Table):
@@ -22,7 +24,7 @@ class Pulse(Table):
     file: str | None = None  #: two-column CSV, s and Pa (or m/s, m/s2); for "table"
 
     file_key: ClassVar[str] = "load.file"
-    _history: History | None = PrivateAttr(default=None)
+    _history: "History | None" = PrivateAttr(default=None)
 
     @model_validator(mode="after")
     def _keys_of_shape(self) -> "Pulse":
@@ -41,6 +43,8 @@ class Pulse(Table):
     @model_validator(mode="after")
     def _read_history(self, info: ValidationInfo) -> "Pulse":
         if self.file is not None:
+            from cases.schema.history import History  # with numpy
+
             context = info.context or {}
             anywhere = self.file_key in context.get("asked", ())
             try:
@@ -50,7 +54,7 @@ class Pulse(Table):
         return self
 
     @property
-    def history(self) -> History | None:
+    def history(self) -> "History | None":
         """The recorded history of shape "table", else None."""
         return self._history
 

@@ -12,9 +12,10 @@ from typing import Any, Literal, get_args, get_origin
 
 import typer
 
-import cases
-from cases.read import load
+from cases.files import read_toml
 from compare.scenes import find, names
+
+LARGEST_FILE = 1_000_000  # bytes: what takes longer to read than a key may take is not looked into
 
 
 def scenes(incomplete: str) -> list[str]:
@@ -42,8 +43,9 @@ def variants(context: typer.Context, incomplete: str) -> list[str]:
     # An option that lacks its value leaves the arguments before it unread.
     unread = [text for text in context.args if not text.startswith("-")]
     scene = context.params.get("scene") or next(iter(unread), "")
-    with suppress(cases.SceneError):
-        return _quoted(_begun([one.name for one in load(find(scene))[1:]], incomplete))
+    with suppress(OSError, ValueError):
+        tables = read_toml(find(scene), LARGEST_FILE).get("variants")
+        return _quoted(_begun(_names(tables), incomplete))
     return []
 
 
@@ -76,6 +78,13 @@ def studies(incomplete: str) -> list[str]:
         *_begun([*known, "stability", "oblique-joint", "parallel-joints"], incomplete),
         *files(incomplete),
     ]
+
+
+def _names(tables: Any) -> list[str]:
+    """Return the names of variants, not validated, as far as a terminal can show them."""
+    found = tables if isinstance(tables, list) else []
+    names = [one.get("name") for one in found if isinstance(one, dict)]
+    return [name for name in names if isinstance(name, str) and name.isprintable()]
 
 
 def _values(kind: Any) -> list[str]:

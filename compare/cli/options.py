@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-import cases
 from cases.errors import SceneError, printable
 from cases.kinds import pillar_of
 from compare import scenes
@@ -20,6 +19,7 @@ from compare.scenes import find
 
 if TYPE_CHECKING:
     from cases.kinds import AnyScene
+    from cases.schema.scene import Scene
 
 app = typer.Typer(
     epilog="Start with: jointwave list, jointwave compare guo-li-2002/fig-03, jointwave report",
@@ -133,7 +133,7 @@ def load(
 
 def load_pillars(
     scene: str, changes: list[str], variant: str | None, strict: bool, what: str
-) -> list[cases.Scene]:
+) -> list["Scene"]:
     """Return scenes as `load` does; raises SceneError of a rock mass.
 
     what : the command, which takes pillars alone.

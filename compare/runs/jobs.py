@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from cases.errors import SceneError
 from compare.engines import ENGINES, applies, selection
-from compare.runs.output import refuse_foreign
 from compare.solvers.record import Solver
 
 if TYPE_CHECKING:
@@ -50,6 +49,8 @@ def engine_of(model: str) -> str:
 def plan(scenes: list[AnyScene], runs: list[tuple[str, str | None]], out: Path) -> list[Job]:
     """Return the jobs, all of which apply; raises SceneError before anything is run, also where a
     file that is no result stands in the place of one."""
+    from compare.runs.output import refuse_foreign
+
     jobs = []
     for scene in scenes:
         folder = out / scene.name if scene.name else out

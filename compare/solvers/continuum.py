@@ -5,8 +5,6 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from cases.schema.scene import Scene
-from cases.size import estimates
 from compare.solvers.incident import incident
 from compare.solvers.record import (
     BAR,
@@ -27,6 +25,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from cases.schema.rock_mass import RockMass
+    from cases.schema.scene import Scene
 
 
 #: How to get what the continuum runs on.
@@ -55,6 +54,7 @@ def run(
 
 def prepare(scene: Scene, model: str) -> Prepared:
     """Return the step and the size of a run; raises SceneError as the run would."""
+    from cases.size import estimates
     from compare.runs.processes import started
     from continuum.run import discrete_and_steps
 

@@ -4,11 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cases.effects import is_spatial
-from cases.material.rigid_blocks import against
-from cases.schema.rock_mass import RockMass
-from cases.schema.scene import Scene
-from cases.size import estimates
 from compare.solvers.incident import incident
 from compare.solvers.record import (
     BLOCKS,
@@ -26,6 +21,8 @@ from compare.solvers.record import (
 if TYPE_CHECKING:
     import xarray as xr
 
+    from cases.schema.rock_mass import RockMass
+    from cases.schema.scene import Scene
     from results.dataset import Fields
 
 
@@ -45,6 +42,10 @@ def run_fields(scene: Scene | RockMass, progress=None, comm=None, keeper=None) -
 
 def prepare(scene: Scene | RockMass) -> Prepared:
     """Return the step and the size of a run; raises SceneError as the run would."""
+    from cases.effects import is_spatial
+    from cases.schema.rock_mass import RockMass
+    from cases.size import estimates
+
     with estimates() as parts:
         if isinstance(scene, RockMass):
             time, critical, freedoms, threads = _in_plane(scene)
@@ -58,6 +59,9 @@ def prepare(scene: Scene | RockMass) -> Prepared:
 
 def applies(scene: Scene | RockMass) -> Answer:
     """Return whether a scene has blocks that can be rigid."""
+    from cases.material.rigid_blocks import against
+    from cases.schema.scene import Scene
+
     reason = None if isinstance(scene, Scene) else against(scene)
     return no(f"numerics.dem.block {reason}") if reason else YES
 

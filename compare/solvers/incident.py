@@ -8,15 +8,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cases.schema.scene import Scene
-
 if TYPE_CHECKING:
     from cases.incident import IncidentField
     from cases.schema.rock_mass import RockMass
+    from cases.schema.scene import Scene
 
 
 def incident(scene: Scene | RockMass) -> IncidentField | None:
     """Return what enters a rock mass through its quiet sides; None for a scene without waves."""
+    from cases.schema.scene import Scene
+
     if isinstance(scene, Scene) or not scene.waves:
         return None
     from compare.exact.rock_mass.field import field_of

@@ -7,9 +7,6 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from cases.schema.scene import Scene
-from cases.size import waveform_bytes
-
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -144,6 +141,8 @@ class Prepared(NamedTuple):
 
 def without_steps(scene: AnyScene) -> Prepared:
     """Return what is known of an exact solution before it is computed."""
+    from cases.size import waveform_bytes
+
     return Prepared("exact", 0, 0.0, 0.0, 0, waveform_bytes(scene), {})
 
 
@@ -219,6 +218,8 @@ class Solver:
         """Return how many of them a run has."""
         if not self.per_block:
             return freedoms
+        from cases.schema.scene import Scene
+
         if isinstance(scene, Scene):
             return scene.pillar.block_count
         return freedoms // OF_BLOCK_IN_PLANE

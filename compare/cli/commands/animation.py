@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from cases.errors import SceneError
-from cases.schema.scene import Scene
 from compare.cli.options import (
     JsonOption,
     SceneArgument,
@@ -68,6 +67,8 @@ def animate(
 
 def _frame(simulated: "SceneSnapshots", scale: float | None, dots: int) -> "Frame | PlaneFrame":
     """Return what draws each instant of a scene of either kind."""
+    from cases.schema.scene import Scene
+
     if not isinstance(simulated.scene, Scene):
         from compare.figures.animation.plane import PlaneFrame
 

@@ -2,12 +2,11 @@
 
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from cases.errors import SceneError
-from cases.schema.scene import Scene
 from compare.cli.options import (
     Engine,
     JsonOption,
@@ -20,6 +19,9 @@ from compare.cli.options import (
     app,
     load_pillars,
 )
+
+if TYPE_CHECKING:
+    from cases.schema.scene import Scene
 
 
 @app.command()
@@ -85,7 +87,7 @@ def fit(
         show_fit(found, scene, one.name, files)
 
 
-def _solver(scene: Scene, engine: Engine | None, models: list[str] | None) -> str | None:
+def _solver(scene: "Scene", engine: Engine | None, models: list[str] | None) -> str | None:
     """Return the one solution that --engine and --model name; None without them."""
     from compare.runs import jobs
 

@@ -10,7 +10,6 @@ from pathlib import Path
 from tempfile import TemporaryFile
 
 from cases.errors import SceneError
-from compare.runs.output import sweep
 
 
 @contextmanager
@@ -21,6 +20,8 @@ def locked(folder: Path, *inner: Path) -> Iterator[None]:
 
     Raises SceneError where another command has locked it, OSError where nothing can be written.
     """
+    from compare.runs.output import sweep
+
     made = [place for place in (folder, *folder.parents) if not place.exists()]
     try:
         with exclusive(folder):

@@ -75,20 +75,66 @@ def test_keys_and_their_values(option):
     assert complete(f"{line}pillar.length=") == []
 
 
-def test_a_broken_scene_is_no_message(tmp_path):
-    (tmp_path / "broken.toml").write_text("[pillar\n")
+BROKEN = ["[pillar\n", "variants = 3\n"]
+BROKEN += ['variants = [1, { name = 2 }, { name = "\\u001b[2J" }]\n']
+
+
+@pytest.mark.parametrize("text", BROKEN)
+def test_a_broken_scene_is_no_message(tmp_path, text):
+    """Nor does a name reach the terminal that moves its cursor."""
+    (tmp_path / "broken.toml").write_text(text)
     assert complete("jointwave run broken.toml --variant ", cwd=tmp_path) == []
 
 
-def test_nothing_heavy_is_imported_for_it():
-    code = (
-        "import sys, compare.cli.options, compare.cli.completion as c; c.scenes(''); c.models('')\n"
-        "c.settings('ends.'); c.studies('')\n"
-        "heavy = {'numba', 'scipy', 'xarray', 'matplotlib', 'dolfinx', 'pandas'}\n"
-        "print(sorted(heavy & set(sys.modules)))"
+#: What validates scenes, computes and draws; `typer` may bring the last two by itself.
+HEAVY = {"cases.schema", "cases.read", "numpy", "scipy", "numba", "xarray", "pandas", "matplotlib"}
+HEAVY |= {"shapely", "obspy", "plotly", "dolfinx", "dem", "continuum", "rich", "pydantic"}
+IMPORTED = """
+import sys, typer
+before = set(sys.modules)
+from compare.cli.start import main
+sys.argv = ["jointwave", *sys.argv[1:]]
+try:
+    main()
+except SystemExit:
+    print(*sorted(set(sys.modules) - before), file=sys.stderr)
+"""
+
+
+def imported(*arguments, **environment):
+    """Return what of HEAVY a command imports."""
+    done = subprocess.run(
+        [sys.executable, "-c", IMPORTED, *arguments],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, **environment},
     )
-    done = subprocess.run((sys.executable, "-c", code), capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
+    assert done.stdout
+    return HEAVY & set(done.stderr.split())
+
+
+@pytest.mark.parametrize("option", ["--help", "--version"])
+def test_commands_are_listed_without_what_carries_them_out(option):
+    assert imported(option) == set()
+
+
+LINES = ["jointwave com", "jointwave run guo", "jointwave run --model j", "jointwave study f"]
+LINES += [f"jointwave run {SCENE} --variant ", f"jointwave run {SCENE} --engine d"]
+
+
+@pytest.mark.parametrize("line", LINES)
+def test_words_are_completed_without_what_validates_and_computes(line):
+    """Newer typer converts the words before the last by pydantic."""
+    place = str(len(line.split(" ")) - 1)
+    asked = {"_JOINTWAVE_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": place}
+    assert imported(**asked) <= {"pydantic"}
+
+
+def test_keys_are_completed_by_their_models_alone():
+    line = f"jointwave run {SCENE} --set joints.damp"
+    asked = {"_JOINTWAVE_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": "4"}
+    assert imported(**asked) <= {"pydantic", "cases.schema"}
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="no bash here")
