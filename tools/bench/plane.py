@@ -3,47 +3,26 @@
 A square lattice of blocks of 1 m, two joint sets at right angles, all of it in motion.
 """
 
-from math import isqrt
-from pathlib import Path
 from statistics import median
 
 import numpy as np
 from kernels import ROUNDS, SLIDES, rate, side_by_side
 
-from cases.schema.rock_mass import RockMass
-from cases.validate import validated
+from compare.experiments.cost.plane_step_cost import ELASTIC, lattice
 from compare.experiments.cost.step_cost import Stretch, changed, stretch
 from dem.blocks.leapfrog import march, samples_for
 from dem.blocks.model import PlaneModel, state_at_rest
 from dem.blocks.system import prepared
 
-ELASTIC = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 COULOMB = ELASTIC | {"friction_angle": 30.0, "cohesion": 1e5}
+PRESSURE = {"kind": "pressure", "side": "left", "shape": "step", "amplitude": 1e5}
 BLOCK_STEPS = 500_000  # of one call
 POINTS = 4  # of a block: two contacts of two points; in the row one contact of 2 x 2
 
 
-def scene_of(blocks: int, law: dict) -> RockMass:
-    """Return a square lattice of about so many blocks."""
-    side = isqrt(blocks)
-    joints = {"spacing": 1.0, "through": [0.0, 0.0]} | law
-    sides = dict.fromkeys(("left", "right", "bottom", "top"), "free")
-    tables = {
-        "title": "a square lattice",
-        "domain": {"size": [float(side), float(side)]},
-        "rock": {"density": 2600.0, "intact_modulus": 5e10},
-        "joint_sets": [{"name": "x", "dip": 90.0} | joints, {"name": "y", "dip": 0.0} | joints],
-        "boundaries": sides,
-        "loads": [{"kind": "pressure", "side": "left", "shape": "step", "amplitude": 1e5}],
-        "time": {"duration": 0.01},
-        "record": {"points": [[0.5, 0.5]], "energy": False},
-    }
-    return validated(tables, Path("lattice.toml"), frozenset())
-
-
 def model_of(blocks: int, law: dict) -> PlaneModel:
     """Return the constants of such a lattice, without the load."""
-    return prepared(scene_of(blocks, law)).model
+    return prepared(lattice(blocks, law, law, {"loads": [PRESSURE]})).model
 
 
 def moving(model: PlaneModel, threads: int = 1) -> Stretch:

@@ -29,7 +29,7 @@ def effects(
     scene: Annotated[
         str | None,
         typer.Argument(
-            help="A scene file or a shipped scene; absent: all that are shipped.",
+            help="A scene file or a shipped scene; absent: every shipped pillar.",
             autocompletion=completion.scenes,
         ),
     ] = None,
@@ -45,7 +45,8 @@ def effects(
 ) -> None:
     """Measure the cost of every effect of a scene, and how far the result is without it.
 
-    Without a scene: of every variant of every shipped scene. That takes a while; what is done is
+    Of a pillar, or of a rock mass that rigid blocks can be. Without a scene: of every variant of
+    every shipped pillar. That takes a while; what is done is
     saved in DIR and not run again.
     """
     from compare.experiments.ablation import runner
@@ -192,11 +193,8 @@ def _cases(scene: str | None, changes: list[str], variant: str | None, strict: b
     from compare.experiments.ablation.runner import Variant, all_shipped
 
     if scene is not None:
-        return [
-            Variant(scene, one)
-            for one in load_pillars(scene, changes, variant or "", strict, "jointwave effects")
-        ]
+        return [Variant(scene, one) for one in load(scene, changes, variant or "", strict)]
     if changes or variant is not None:
         key = "--set" if changes else "--variant"
-        raise SceneError(key, "", None, "needs a scene: without one every shipped scene is taken")
+        raise SceneError(key, "", None, "needs a scene: without one every shipped pillar is taken")
     return all_shipped()

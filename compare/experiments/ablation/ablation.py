@@ -5,19 +5,28 @@ applies; the influence is the relative L2 misfit of the rigid blocks without the
 those of the scene as it stands.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from math import nan
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-import dem
 from cases.effects import active_effects
-from cases.schema.scene import Scene
 from compare.engines import applies, solve
 from compare.experiments.ablation.variants import left_out, only
-from compare.experiments.cost.step_cost import everything, freedoms_in_turns, in_turns, stretch
+from compare.experiments.cost.step_cost import (
+    everything_like,
+    freedoms_in_turns,
+    in_turns,
+    stretch,
+)
 from compare.experiments.failures import FAILURES, reason_of
 from compare.misfit.metrics import misfit
 from compare.solvers.continuum import JOINTED_ROCK
+from compare.solvers.dem import DEM
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 ROCK = JOINTED_ROCK.name
 OWN = "own"  # the scene as it stands, among those without one of its effects
@@ -80,19 +89,19 @@ class Ablation(NamedTuple):
         return f"{self.scene}, {self.variant}" if self.variant else self.scene
 
 
-def prepare(scene: Scene) -> list[Dropped]:
+def prepare(scene: AnyScene) -> list[Dropped]:
     """Return the results without each effect, and compile all that is timed."""
-    result = dem.simulate(scene)
+    result = solve(DEM.name, scene)
     dropped = [_drop(scene, name, result) for name in active_effects(scene)]
     stretch(only(scene, None))[0]()
     _runs(lambda: solve(ROCK, scene))
     return dropped
 
 
-def _drop(scene: Scene, name: str, result: Any) -> Dropped:
+def _drop(scene: AnyScene, name: str, result: Any) -> Dropped:
     try:
         one = left_out(scene, name)
-        without = dem.simulate(one)
+        without = solve(DEM.name, one)
     except FAILURES as error:
         return Dropped(name, nan, nan, False, False, reason_of(error))
     steps = result.attrs["steps"] / without.attrs["steps"]
@@ -109,14 +118,14 @@ def _runs(work: Callable[[], object]) -> bool:
     return True
 
 
-def ablate(name: str, scene: Scene, dropped: list[Dropped]) -> Ablation:
+def ablate(name: str, scene: AnyScene, dropped: list[Dropped]) -> Ablation:
     """Return the cost and the influence of every effect that a scene calls for.
 
     name : of the scene, as its user knows it. dropped : what `prepare` returned.
     """
     alone = {one.effect: only(scene, one.effect) for one in dropped if one.alone}
     without = {one.effect: left_out(scene, one.effect) for one in dropped if not one.reason}
-    first = [everything(scene.pillar.block_count), only(scene, None), scene]
+    first = [everything_like(scene), only(scene, None), scene]
     full, bare, own, *rest = in_turns([*first, *alone.values(), *without.values()])
     ns_alone = dict(zip(alone, rest, strict=False))
     ns_without = dict(zip(without, rest[len(alone) :], strict=True))
@@ -137,7 +146,7 @@ def ablate(name: str, scene: Scene, dropped: list[Dropped]) -> Ablation:
     return Ablation(name, scene.title, scene.name, bare, own, full, rock.get(OWN, nan), found)
 
 
-def _ns_in_rock(scene: Scene, without: dict[str, Scene]) -> dict[str, float]:
+def _ns_in_rock(scene: AnyScene, without: dict[str, AnyScene]) -> dict[str, float]:
     """Return the ns of a freedom-step of jointed rock, as the scene stands and without each effect;
     empty where that rock does not apply."""
     if not applies(ROCK, scene):

@@ -1,7 +1,9 @@
 """The ablation of many scenes: solved and compiled on any executor, then timed one at a time."""
 
+from __future__ import annotations
+
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import cases
 from cases.kinds import pillar_of
@@ -14,6 +16,9 @@ from compare.experiments.pool import Pool, alone
 from compare.experiments.store import Store
 from compare.scenes import find, shipped
 from results.dataset import scene_hash
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 RATE = "effects of a variant"  # what the seconds of cases are remembered by
 PREPARING = 0.8  # of the time, where nothing is compiled yet
@@ -31,7 +36,7 @@ class Variant(NamedTuple):
     """One variant of a scene, and the scene's name as its user knows it."""
 
     name: str
-    scene: Scene
+    scene: AnyScene
 
     @property
     def key(self) -> str:

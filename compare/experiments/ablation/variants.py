@@ -1,23 +1,31 @@
 """Variants of a scene: without one of its effects, or with one alone."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cases.effects import active_effects
 from cases.errors import SceneError
-from cases.kinds import checked
+from cases.kinds import Either, checked
 from cases.material.strength import SLIP, SOFTENING
+from cases.plane.effects import SIDES
 from cases.schema.scene import Scene
 
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
-def left_out(scene: Scene, name: str) -> Scene:
+    Change = Callable[[Any], Any]  # from a scene to one of its kind
+
+
+def left_out(scene: Either, name: str) -> Either:
     """Return a scene without one of its effects; raises SceneError where there is none."""
     if name not in WITHOUT:
         raise SceneError(scene.where, name, None, "is what the scene is about")
     return checked(WITHOUT[name](scene))
 
 
-def only(scene: Scene, name: str | None) -> Scene:
+def only(scene: Either, name: str | None) -> Either:
     """Return a scene with one of its effects, or none, besides those that it cannot be without.
 
     Raises SceneError where the scene cannot be so, or cannot be without the effect either.
@@ -35,10 +43,13 @@ def only(scene: Scene, name: str | None) -> Scene:
     return scene
 
 
-def _joints(**values: Any) -> Callable[[Scene], Scene]:
+def _joints(**values: Any) -> Change:
     """Return a function that changes the law of all joints, those of soft layers included."""
 
-    def change(scene: Scene) -> Scene:
+    def change(scene: AnyScene) -> AnyScene:
+        if not isinstance(scene, Scene):
+            sets = [one.model_copy(update=values) for one in scene.joint_sets]
+            return scene.model_copy(update={"joint_sets": sets})
         layers = [layer.model_copy(update=values) for layer in scene.soft_layers]
         joints = scene.joints.model_copy(update=values)
         return scene.model_copy(update={"joints": joints, "soft_layers": layers})
@@ -46,34 +57,36 @@ def _joints(**values: Any) -> Callable[[Scene], Scene]:
     return change
 
 
-def _table(name: str, **values: Any) -> Callable[[Scene], Scene]:
-    def change(scene: Scene) -> Scene:
+def _table(name: str, **values: Any) -> Change:
+    def change(scene: AnyScene) -> AnyScene:
         table = getattr(scene, name).model_copy(update=values)
         return scene.model_copy(update={name: table})
 
     return change
 
 
-def _free(kind: str) -> Callable[[Scene], Scene]:
-    """Return a function that frees the ends of a kind."""
+def _free(table: str, kind: str) -> Change:
+    """Return a function that frees the ends, or the sides, of a kind."""
 
-    def change(scene: Scene) -> Scene:
-        ends = {k: "free" for k in ("start", "end") if getattr(scene.ends, k) == kind}
-        return scene.model_copy(update={"ends": scene.ends.model_copy(update=ends)})
+    def change(scene: AnyScene) -> AnyScene:
+        held = getattr(scene, table)
+        free = {name: "free" for name, found in held if found == kind}
+        return scene.model_copy(update={table: held.model_copy(update=free)})
 
     return change
 
 
-def _undamped(scene: Scene) -> Scene:
+def _undamped(scene: AnyScene) -> AnyScene:
     return _table("damping", rayleigh=None)(_joints(damping_ratio=None)(scene))
 
 
 #: By effect, what leaves it out of a scene.
-WITHOUT: dict[str, Callable[[Scene], Scene]] = {
+WITHOUT: dict[str, Change] = {
     "dashpots": _undamped,
-    "no tension": _joints(tension=True),
+    "no tension": _joints(tension=None),
     "joints that differ": lambda scene: scene.model_copy(update={"soft_layers": []}),
-    **{f"{kind} ends": _free(kind) for kind in ("quiet", "matched", "fixed")},
+    **{f"{kind} ends": _free("ends", kind) for kind in ("quiet", "matched", "fixed")},
+    **{f"{kind} sides": _free("boundaries", kind) for kind in SIDES},
     "energy ledger": _table("record", energy=False),
     "field output": _table("record", fields=None),
     "finite rotation": _table("motion", rotation="small"),

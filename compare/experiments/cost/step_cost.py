@@ -1,9 +1,12 @@
 """The cost of a step of one block or one freedom, with the effects that a scene calls for."""
 
-from collections.abc import Callable
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
 from math import inf
 from pathlib import Path
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 import cases
 from cases.effects import is_spatial
@@ -12,6 +15,9 @@ from cases.sampling import Clock
 from cases.schema.scene import Scene
 from compare.engines import solve
 from compare.experiments.cost import timings
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 PILLAR = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
 #: A function that takes some samples, and its number of block-steps.
@@ -57,12 +63,21 @@ def everything(blocks: int) -> Scene:
     return changed(EVERYTHING, min(max(blocks, 2), BLOCKS))
 
 
-def nanoseconds(scene: Scene, threads: int = 1) -> float:
+def everything_like(scene: AnyScene) -> AnyScene:
+    """Return a scene of this kind with every effect and about as many rigid blocks."""
+    if isinstance(scene, Scene):
+        return everything(scene.pillar.block_count)
+    from compare.experiments.cost.plane_step_cost import everything_in_plane
+
+    return everything_in_plane(scene, BLOCKS)
+
+
+def nanoseconds(scene: AnyScene, threads: int = 1) -> float:
     """Return what one step of one block of a scene costs, ns: the least of some stretches."""
     return in_turns([scene], threads)[0]
 
 
-def in_turns(scenes: list[Scene], threads: int = 1) -> list[float]:
+def in_turns(scenes: Sequence[AnyScene], threads: int = 1) -> list[float]:
     """Return the same of several scenes, their stretches in turns: what slows the machine for a
     while slows all of them."""
     timed = [stretch(scene, threads) for scene in scenes]
@@ -73,7 +88,7 @@ def in_turns(scenes: list[Scene], threads: int = 1) -> list[float]:
     return [1e9 * s / block_steps for s, (_, block_steps) in zip(least, timed, strict=True)]
 
 
-def freedoms_in_turns(engine: str, scenes: list[Scene]) -> list[float]:
+def freedoms_in_turns(engine: str, scenes: Sequence[AnyScene]) -> list[float]:
     """Return what one step of one freedom of a continuum engine costs, ns: the least of some runs,
     those of the scenes in turns.
 
@@ -98,8 +113,12 @@ def _seconds(march: Callable[[], None]) -> float:
     return spent / calls
 
 
-def stretch(scene: Scene, threads: int = 1) -> Stretch:
+def stretch(scene: AnyScene, threads: int = 1) -> Stretch:
     """Return a function that takes some samples of a scene, and its number of block-steps."""
+    if not isinstance(scene, Scene):
+        from compare.experiments.cost.plane_step_cost import stretch_in_plane
+
+        return stretch_in_plane(scene, threads)
     return stretches(scene, (False,), threads)[0]
 
 
@@ -118,7 +137,7 @@ def _along_axis(scene: Scene, guarded: tuple[bool, ...]) -> list[Stretch]:
 
     scheme = scheme_of(scene)
     model, state, time, _ = scheme.build(scene)
-    count = _samples(time, state.u.size)
+    count = samples_of(time, state.u.size)
     samples, block_steps = buffers(model, state, count), count * time.stride * state.u.size
     run = scheme.runner(scene, time)
 
@@ -135,7 +154,7 @@ def _in_space(scene: Scene, guarded: tuple[bool, ...], threads: int) -> list[Str
     from numerics.divergence import guard
 
     p, model, time, _ = prepare(scene)
-    count = _samples(time, p.block_count, BLOCK_STEPS_IN_SPACE)
+    count = samples_of(time, p.block_count, BLOCK_STEPS_IN_SPACE)
     state, samples = state_at_rest(model), samples_for(model, count)
     steps = count * time.stride
 
@@ -148,7 +167,8 @@ def _in_space(scene: Scene, guarded: tuple[bool, ...], threads: int) -> list[Str
     return [timed(held) for held in guarded]
 
 
-def _samples(time: Clock, blocks: int, most: int = BLOCK_STEPS) -> int:
+def samples_of(time: Clock, blocks: int, most: int = BLOCK_STEPS) -> int:
+    """Return how many samples a stretch takes."""
     return min(time.samples, max(64, most // blocks) // time.stride + 1)
 
 

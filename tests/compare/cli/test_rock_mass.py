@@ -88,7 +88,6 @@ interval = 1e-4
 PILLARS_ALONE = {
     "fit joint.toml --free rock.density --with curve.csv": "jointwave fit",
     "plan joint.toml --misfit 0.01": "jointwave plan",
-    "effects joint.toml": "jointwave effects",
 }
 
 
@@ -132,6 +131,18 @@ def test_a_scene_is_run_and_its_file_says_where_its_receivers_are(jointwave_says
         assert json.loads(found.effects) == ["quiet sides", "energy ledger", "incident waves"]
     again = jointwave_says("run joint.toml --engine exact --resume")
     assert again[0] == 0
+
+
+def test_effects_of_it_are_asked_for(jointwave_says):
+    code, out, _ = jointwave_says("effects joint.toml --dry-run --json")
+    ((part, *_),) = (one.values() for one in json.loads(out))
+    assert code == 0 and part == "joint.toml"
+
+
+def test_effects_of_what_rigid_blocks_cannot_be_are_refused_in_one_line(jointwave_says):
+    code, out, err = jointwave_says("effects joint.toml --workers 1")
+    assert code == 2 and out == "" and len(err.splitlines()) == 1
+    assert "dem does not apply: numerics.dem.block" in err
 
 
 def test_a_view_of_it_is_a_picture_of_both_engines(jointwave_says, tmp_path, monkeypatch):

@@ -1,0 +1,119 @@
+"""Cost and influence of effects of a rock mass: leaving one out leaves exactly that one out."""
+
+import numpy as np
+import pytest
+
+from cases.effects import active_effects, effects
+from cases.errors import SceneError
+from cases.read import load_tables
+from compare.engines import solve
+from compare.experiments.ablation import ablation
+from compare.experiments.ablation.ablation import ablate, prepare
+from compare.experiments.ablation.variants import left_out, only
+from compare.experiments.cost import plane_step_cost, step_cost
+from compare.misfit.metrics import misfit
+
+ROWS = {"name": "rows", "dip": 0.0, "spacing": 2.0, **plane_step_cost.ELASTIC}
+COLUMNS = ROWS | {"name": "columns", "dip": 90.0}
+PRESS = {"kind": "pressure", "side": "top", "shape": "ricker", "amplitude": 1e6, "period": 0.004}
+WAVE = {"kind": "P", "direction": [0.0, 1.0], "shape": "step", "amplitude": 1e6}
+ACTS = {"loads", "incident waves", "shaken base"}
+CALLS = {
+    "dashpots": {"joint_sets": [ROWS | {"damping_ratio": 0.02}, COLUMNS]},
+    "no tension": {"joint_sets": [ROWS | {"tension": False}, COLUMNS]},
+    "slip": {"joint_sets": [ROWS | {"friction_angle": 30.0, "cohesion": 1e4}, COLUMNS]},
+    "softening": {"joint_sets": [ROWS | {"tensile_strength": 1e5, "fracture_energy": 10.0}]},
+    "quiet sides": {"boundaries": {"bottom": "quiet"}},
+    "fixed sides": {"boundaries": {"bottom": "fixed"}},
+    "periodic sides": {"boundaries": {"left": "periodic", "right": "periodic"}},
+    "energy ledger": {"record": {"points": [[6.0, 3.0]]}},
+    "field output": {"record": {"points": [[6.0, 3.0]], "energy": False, "fields": 1e-3}},
+    "mass damping": {"damping": {"mass_proportional": 5.0}},
+    "local damping": {"damping": {"local": 0.5}},
+    "gravity": {"gravity": {"static": False}},
+    "prestress": {"prestress": {"xx": 1e6, "yy": 2e6}},
+}
+
+
+def mass(**tables):
+    """Blocks of 2 m in 12 m by 10 m, free, pressed at the top, without a ledger."""
+    ours = {
+        "title": "blocks",
+        "domain": {"size": [12.0, 10.0]},
+        "rock": {"density": 2600.0, "intact_modulus": 5e10},
+        "joint_sets": [ROWS, COLUMNS],
+        "loads": [PRESS],
+        "time": {"duration": 0.01},
+        "record": {"points": [[6.0, 3.0]], "energy": False},
+    }
+    return load_tables(ours | tables)
+
+
+@pytest.mark.parametrize("effect", CALLS)
+def test_leaving_one_out_leaves_the_others(effect):
+    scene = mass(**CALLS[effect])
+    before, after = set(active_effects(scene)), set(active_effects(left_out(scene, effect)))
+    assert before - after == {effect} and not after - before
+
+
+def test_every_effect_is_left_out_or_is_what_acts():
+    assert {one.name for one in effects(mass())} == set(CALLS) | ACTS
+
+
+@pytest.mark.parametrize("effect", CALLS)
+def test_an_effect_alone_is_the_only_one_beside_what_acts(effect):
+    scene = mass(**{"damping": {"mass_proportional": 1.0}} | CALLS[effect])
+    assert set(active_effects(only(scene, None))) == {"loads"}
+    assert set(active_effects(only(scene, effect))) == {effect, "loads"}
+
+
+def test_what_acts_stays():
+    with pytest.raises(SceneError, match="is what the scene is about"):
+        left_out(mass(), "loads")
+
+
+def test_a_side_that_a_wave_enters_stays():
+    """The reason is the scene's own."""
+    scene = mass(boundaries={"bottom": "quiet"}, waves=[WAVE], loads=[])
+    with pytest.raises(SceneError, match=r"must be 'quiet': waves\[0\] enters there"):
+        left_out(scene, "quiet sides")
+
+
+def test_everything_has_every_effect_but_periodic_sides_and_snapshots():
+    scene = plane_step_cost.everything_in_plane(mass(), 1000)
+    left = {one.name for one in effects(scene) if not one.active}
+    assert left == {"periodic sides", "field output"}
+
+
+@pytest.mark.parametrize(("most", "side"), [(1000, 5.0), (16, 4.0), (1, 2.0)])
+def test_everything_has_as_many_blocks(most, side):
+    """Of 30 blocks the square below; a step has a cost of its own, which few blocks share."""
+    scene = plane_step_cost.everything_in_plane(mass(), most)
+    assert scene.domain.size == [side, side]
+
+
+def test_a_stretch_takes_the_steps_of_a_run():
+    """All of a short scene's: 30 blocks, and one sample more than the steps between them."""
+    scene = mass()
+    march, block_steps = step_cost.stretch(scene)
+    march()
+    result = solve("dem", scene)
+    stride = result.attrs["steps"] // (len(result.time) - 1)
+    assert block_steps == 30 * stride * len(result.time)
+
+
+def test_influence_is_the_misfit_of_the_result_without(monkeypatch):
+    """Local damping, which rigid blocks alone have, and a quiet side; what acts has a reason."""
+    monkeypatch.setattr(ablation, "everything_like", lambda scene: scene)
+    monkeypatch.setattr(step_cost, "REPEATS", 1)
+    scene = mass(damping={"local": 0.3}, boundaries={"bottom": "quiet"})
+    one = ablate("a/b", scene, prepare(scene))
+    found = {e.effect: e for e in one.effects}
+    assert set(found) == {"quiet sides", "local damping", "loads"}
+    full = solve("dem", scene)
+    for name in ("quiet sides", "local damping"):
+        expected = misfit(solve("dem", left_out(scene, name)), full)
+        assert found[name].misfit == expected > 0.01
+        assert np.isfinite([found[name].alone, found[name].cost]).all()
+    assert found["loads"].reason == "is what the scene is about"
+    assert np.isnan(one.rock) and one.own > 0 and one.bare > 0
