@@ -155,10 +155,9 @@ def fit(
 
     Raises SceneError for what cannot be fitted, StoppedError where the search does not converge.
     """
-    from cases.kinds import pillar_of
     from compare.experiments.fit import fit as fitting
 
-    return fitting.fit(pillar_of(scene, "jointwave.fit"), curves, free, solver, progress)
+    return fitting.fit(scene, curves, free, solver, progress)
 
 
 def plan(

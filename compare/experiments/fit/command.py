@@ -17,11 +17,11 @@ from compare.cli.options import (
     VariantOption,
     WithOption,
     app,
-    load_pillars,
+    load,
 )
 
 if TYPE_CHECKING:
-    from cases.schema.scene import Scene
+    from cases.kinds import AnyScene
 
 
 @app.command()
@@ -57,9 +57,12 @@ def fit(
     and unit of every column; noise needs no removal, amplitudes are never scaled.
 
     Without --engine the scene is solved by rigid blocks, exactly in time (lattice) where that
-    holds and the chain is short. Intervals take account of residuals that are alike from one sample
-    to the next; what the waveforms do not tell apart, and keys that stop at a bound, are named. A
-    search that does not converge ends with exit code 3.
+    holds and the chain is short. Of a rock mass keys are joint_sets.0.normal_stiffness or
+    waves.0.amplitude, and waveforms those of its points and joints.
+
+    Intervals take account of residuals that are alike from one sample to the next; what the
+    waveforms do not tell apart, and keys that stop at a bound, are named. A search that does not
+    converge ends with exit code 3.
 
     --out writes fit.csv, fit.json, fitted.toml, a scene that runs, and fit-waveforms as SVG, PDF,
     PNG and CSV, with what is left below each waveform.
@@ -70,7 +73,7 @@ def fit(
     from compare.misfit.external import read_curves
     from compare.runs.checkpoint.lock import locked
 
-    (one,) = load_pillars(scene, changes, variant or "", strict, "jointwave fit")
+    (one,) = load(scene, changes, variant or "", strict)
     curves = read_curves(given, [one])
     solver = _solver(one, engine, model)
     with ExitStack() as held:
@@ -87,7 +90,7 @@ def fit(
         show_fit(found, scene, one.name, files)
 
 
-def _solver(scene: "Scene", engine: Engine | None, models: list[str] | None) -> str | None:
+def _solver(scene: "AnyScene", engine: Engine | None, models: list[str] | None) -> str | None:
     """Return the one solution that --engine and --model name; None without them."""
     from compare.runs import jobs
 

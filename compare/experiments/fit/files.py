@@ -1,19 +1,19 @@
 """The files of a fit: a table, the fitted scene, and the figure of waveforms and residuals."""
 
+from __future__ import annotations
+
 import filecmp
 import json
 import shutil
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
 import cases
 from cases.errors import SceneError
 from cases.schema.scene import Scene
-from cases.size import value_of
-from cases.validate import FILE_KEYS
 from compare.experiments.fit.diagram import draw
 from compare.experiments.fit.keys import CLOCK
 from compare.experiments.fit.result import Fit
@@ -22,10 +22,13 @@ from compare.experiments.store import finite
 from compare.figures.export import save, write_csv
 from compare.runs.output import refuse_foreign, write, write_text
 
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+
 HEAD = "# Fitted by jointwave"
 
 
-def write_fit(found: Fit, given: Scene, folder: Path) -> list[Path]:
+def write_fit(found: Fit, given: AnyScene, folder: Path) -> list[Path]:
     """Write fit.csv, fit.json, fitted.toml and fit-waveforms as SVG, PDF, PNG and CSV.
 
     given : the scene before. Raises SceneError where a scene that no fit wrote is in the way.
@@ -96,7 +99,7 @@ def facts(found: Fit) -> dict[str, Any]:
     }
 
 
-def _write_scene(found: Fit, given: Scene, path: Path) -> list[Path]:
+def _write_scene(found: Fit, given: AnyScene, path: Path) -> list[Path]:
     """Write the fitted scene so that it runs, with the files that it names beside it."""
     about = [f"{HEAD}: {found.solver}, misfit {found.before:.3%} before, {found.after:.3%} after."]
     for e in found.estimates:
@@ -108,12 +111,19 @@ def _write_scene(found: Fit, given: Scene, path: Path) -> list[Path]:
     about.append("")
     written = [write_text(path, "\n".join(about) + scene_text(found.scene))]
     folder = Path(given.where.partition(" [")[0]).parent
-    for name in (value_of(found.scene, key) for key in FILE_KEYS):
-        there = path.parent / str(name)
-        if name is not None and (folder / str(name)).resolve() != there.resolve():
-            if there.exists() and not filecmp.cmp(folder / str(name), there, shallow=False):
+    for name in _files_of(found.scene):
+        there = path.parent / name
+        if (folder / name).resolve() != there.resolve():
+            if there.exists() and not filecmp.cmp(folder / name, there, shallow=False):
                 allowed = "is another file and would be replaced: choose another --out"
                 raise SceneError(str(there), "", None, allowed)
-            written.append(write(there, partial(shutil.copyfile, folder / str(name))))
+            written.append(write(there, partial(shutil.copyfile, folder / name)))
     cases.load(path)  # it runs
     return written
+
+
+def _files_of(scene: AnyScene) -> list[str]:
+    """Return the files that a scene names: histories of its pulses, and the mesh of a pillar."""
+    mesh = scene.numerics.continuum.mesh if isinstance(scene, Scene) else None
+    names = dict.fromkeys([*(pulse.file for pulse in scene.pulses), mesh])
+    return [name for name in names if name is not None]

@@ -1,11 +1,13 @@
 """Fit keys of a scene to measured waveforms by nonlinear least squares."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from cases.errors import SceneError
-from cases.schema.scene import Scene
 from compare.engines import Progress
 from compare.experiments.fit.keys import CLOCK, Free, changed, free_keys
 from compare.experiments.fit.problem import clock_reach, problem_of, solver_of, started_clock
@@ -14,12 +16,15 @@ from compare.experiments.fit.search import FitSearch, misfits
 from compare.experiments.fit.statistics import known, not_told_apart
 from compare.misfit.external import Curves
 
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+
 NEAR = 1e-6  # of an unknown to its bound
 ROUND_OFF = 1e-6  # of a waveform: what is left then is no noise
 
 
 def fit(
-    scene: Scene,
+    scene: AnyScene,
     curves: Sequence[Curves],
     free: Sequence[str],
     solver: str | None = None,
@@ -66,7 +71,7 @@ def _scene_values(keys: Sequence[Free], values: Sequence[float]) -> dict[str, fl
 
 
 def _with_clock(
-    keys: list[Free], scene: Scene, solver: str, curves: list[Curves]
+    keys: list[Free], scene: AnyScene, solver: str, curves: list[Curves]
 ) -> tuple[list[Free], float | None]:
     """Return the keys with the clock's start, by correlation unless given, and that start."""
     clock = next((key for key in keys if key.key == CLOCK), None)
@@ -83,7 +88,7 @@ def _with_clock(
     return [moved if key is clock else key for key in keys], start
 
 
-def _finished(scene: Scene, search: FitSearch, x: np.ndarray) -> Fit:
+def _finished(scene: AnyScene, search: FitSearch, x: np.ndarray) -> Fit:
     residuals = search.residuals(x)
     assert residuals is not None
     measured, keys = search.problem.measured, search.keys

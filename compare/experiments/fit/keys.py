@@ -1,27 +1,37 @@
 """The keys that a fit may change: where each begins, and between which bounds it stays."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Mapping
 from itertools import pairwise
 from math import exp, inf, isfinite, log, nan, nextafter
-from typing import Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from cases.errors import SceneError
-from cases.kinds import checked
+from cases.kinds import Either, checked
 from cases.schema.allowed import model_in
 from cases.schema.field_docs import field_comments
-from cases.schema.scene import Scene
+from cases.schema.pulse import Pulse
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 CLOCK = "clock"  # what is added to the times of the files, s
 DECADES = 3.0  # that a key on a logarithmic scale may change without bounds of its own
 #: What says how a scene is cut, solved and recorded: no number that can change by a little.
-FIXED = ("pillar.length", "pillar.block", "soft_layers.*.y", "time", "record", "numerics", "expect")
+FIXED = (
+    *("pillar.length", "pillar.block", "soft_layers.*.y", "time", "record", "numerics", "expect"),
+    "domain",
+    *(f"joint_sets.*.{key}" for key in ("dip", "spacing", "offset", "scatter")),
+)
 FORMS = "must be KEY, KEY=START, KEY=LOW:HIGH or KEY=LOW:START:HIGH"
 UNIT = re.compile(r"(?<![\w/])(Pa/m|Pa|kg/m3|m/s2|m/s|J/m2|degrees|s|m)(?![\w/])")
-LOADS = {"stress": "Pa", "velocity": "m/s", "acceleration": "m/s2"}  # by load.quantity
+#: Of an amplitude by the quantity that its pulse is of.
+LOADS = {"stress": "Pa", "velocity": "m/s", "acceleration": "m/s2", "force": "N/m"}
 
 
 class Free(NamedTuple):
@@ -51,7 +61,7 @@ class Free(NamedTuple):
         return min(max(found, self.low), self.high)
 
 
-def free_keys(texts: list[str], scene: Scene) -> list[Free]:
+def free_keys(texts: list[str], scene: AnyScene) -> list[Free]:
     """Return what `--free` names, several in one text parted by commas; raises SceneError."""
     found: list[Free] = []
     for text in [part for given in texts for part in given.split(",")]:
@@ -62,7 +72,7 @@ def free_keys(texts: list[str], scene: Scene) -> list[Free]:
     return found
 
 
-def changed(scene: Scene, values: Mapping[str, float]) -> Scene:
+def changed(scene: Either, values: Mapping[str, float]) -> Either:
     """Return a scene with dotted keys set; raises SceneError where it cannot have them so."""
     try:
         for key, value in values.items():
@@ -105,12 +115,12 @@ def _parsed(text: str) -> tuple[str, list[float]]:
     return key, found
 
 
-def _free(key: str, numbers: list[float], scene: Scene) -> Free:
+def _free(key: str, numbers: list[float], scene: AnyScene) -> Free:
     """Return a key with its start and bounds: given, else of the scene and its models."""
     if key == CLOCK:
         start, low, high = _three(numbers, None, -inf, inf)
         return Free(key, nan if start is None else start, low, high, False, 1.0, "s")
-    field, model, old = _find(key, scene)
+    field, owner, old = _find(key, scene)
     number = _number(field)
     if number is None or any(_matches(key, fixed) for fixed in FIXED):
         raise SceneError("--free", key, None, "must be a number that can change by a little")
@@ -127,14 +137,17 @@ def _free(key: str, numbers: list[float], scene: Scene) -> Free:
     if logarithmic:
         low, high = max(low, start * 10**-DECADES), min(high, start * 10**DECADES)
     size = abs(start) or (high - low if isfinite(high) else 1.0)
-    return Free(key, start, low, high, logarithmic, size, _unit(key, model, scene))
+    return Free(key, start, low, high, logarithmic, size, _unit(key, owner))
 
 
-def _unit(key: str, model: type[BaseModel], scene: Scene) -> str:
-    """Return the unit of a key, as the comment of its field begins; "" of a ratio."""
-    if key == "load.amplitude":
-        return "" if scene.load.file else LOADS[scene.load.quantity]
-    about = field_comments(model).get(key.rpartition(".")[2], "")
+def _unit(key: str, owner: type[BaseModel] | BaseModel) -> str:
+    """Return the unit of a key of a table, or of its model where the scene has none, as the comment
+    of its field begins; "" of a ratio."""
+    name = key.rpartition(".")[2]
+    if isinstance(owner, Pulse) and name == "amplitude":
+        return "" if owner.file else LOADS[owner.quantity]
+    model = owner if isinstance(owner, type) else type(owner)
+    about = field_comments(model).get(name, "")
     found = UNIT.search(re.split(r"[;(]", about)[0])
     return found[0] if found else ""
 
@@ -151,16 +164,17 @@ def _three(
     return (numbers[1], numbers[0], numbers[2]) if numbers else (start, low, high)
 
 
-def _find(key: str, scene: Scene) -> tuple[FieldInfo, type[BaseModel], Any]:
-    """Return the field of a dotted key, its model, and its value, None where it is absent."""
+def _find(key: str, scene: AnyScene) -> tuple[FieldInfo, type[BaseModel] | BaseModel, Any]:
+    """Return the field of a dotted key, the table that holds it, or its model where the scene has
+    none, and its value, None where it is absent."""
     table: Any = scene
-    model: type[BaseModel] | None = Scene
+    model: type[BaseModel] | None = type(scene)
     field, owner, parts = None, None, key.split(".")
     for i, part in enumerate(parts):
         if model is None or part not in model.model_fields:
             known = f"; allowed: {', '.join(model.model_fields)}" if model else ""
             raise SceneError("--free", key, None, f"is no key of a scene{known}")
-        field, owner = model.model_fields[part], model
+        field, owner = model.model_fields[part], table or model
         model, table = model_in(field.annotation), getattr(table, part, None)
         if isinstance(table, list) and model is not None and i + 1 < len(parts):
             number = parts.pop(i + 1)

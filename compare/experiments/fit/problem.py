@@ -1,8 +1,10 @@
 """The problem of a fit: waveforms of a solution at the times of measured ones, key by key."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -18,6 +20,9 @@ from compare.misfit.alignment import INSTANT, static_level
 from compare.misfit.external import Curves, is_recorded
 from compare.misfit.places import Place
 from compare.solvers.dem import DEM
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 SHORT = 200  # blocks, up to which matrix exponentials cost little
 FINER = 4  # samples of the solution to one of the scene, where the clock is free
@@ -48,7 +53,7 @@ class Problem:
     every trial, so that a waveform changes smoothly with a key; 0 where the solution has no step.
     """
 
-    scene: Scene
+    scene: AnyScene
     solver: str
     measured: list[Measured]
     steps: int = 0
@@ -76,7 +81,7 @@ class Problem:
         """The change of an unknown that a difference takes."""
         return COMPUTED_STEP if solver(self.solver).is_engine else EXACT_STEP
 
-    def _stepped(self, scene: Scene) -> Scene:
+    def _stepped(self, scene: AnyScene) -> AnyScene:
         if not self.steps:
             return scene
         fraction = scene.interval / self.steps / DEM.prepare(scene).critical
@@ -87,20 +92,20 @@ class Problem:
         return scene.model_copy(update={"numerics": scene.numerics.model_copy(update={"dem": dem})})
 
 
-def solver_of(scene: Scene, asked: str | None) -> str:
+def solver_of(scene: AnyScene, asked: str | None) -> str:
     """Return what solves every trial: what is asked for, else rigid blocks, exact in time where
     they are linear and few; raises SceneError where it does not apply."""
-    if asked is None:
-        few = scene.pillar.block_count <= SHORT
-        return (lattice.SOLVER if few and lattice.applies(scene) else DEM).name
-    answer = applies(asked, scene)
+    if asked is None and isinstance(scene, Scene) and scene.pillar.block_count <= SHORT:
+        asked = lattice.SOLVER.name if lattice.applies(scene) else None
+    name = asked or DEM.name
+    answer = applies(name, scene)
     if not answer:
-        raise SceneError(scene.where, "", None, f"{asked} does not apply: {answer.reason}")
-    return asked
+        raise SceneError(scene.where, "", None, f"{name} does not apply: {answer.reason}")
+    return name
 
 
 def problem_of(
-    scene: Scene, name: str, curves: list[Curves], clock: float | None, reach: float
+    scene: AnyScene, name: str, curves: list[Curves], clock: float | None, reach: float
 ) -> Problem:
     """Return the problem of a fit.
 
@@ -128,7 +133,7 @@ def problem_of(
     return Problem(base, name, found, steps)
 
 
-def _require_samples(found: list[Measured], curves: list[Curves], scene: Scene) -> None:
+def _require_samples(found: list[Measured], curves: list[Curves], scene: AnyScene) -> None:
     if not found:
         raise SceneError(curves[0].file, "", None, "has no waveform where the scene has one")
     for one in found:
@@ -140,7 +145,7 @@ def _require_samples(found: list[Measured], curves: list[Curves], scene: Scene) 
             raise SceneError(one.name, str(one.place), None, allowed)
 
 
-def started_clock(scene: Scene, solver: str, curves: list[Curves]) -> float:
+def started_clock(scene: AnyScene, solver: str, curves: list[Curves]) -> float:
     """Return the shift of the first file's clock that correlates best with the solution, s."""
     from compare.misfit.alignment import lay_beside
 
@@ -148,6 +153,6 @@ def started_clock(scene: Scene, solver: str, curves: list[Curves]) -> float:
     return shift.seconds if shift else 0.0
 
 
-def clock_reach(scene: Scene) -> float:
+def clock_reach(scene: AnyScene) -> float:
     """Return how far a clock may move from where the fit began, s: a period of the load."""
     return shortest_period(scene.pulses) or scene.time.duration / 10

@@ -1,12 +1,16 @@
 """The result of a fit: keys with their intervals, and waveforms as measured and as fitted."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cases.schema.scene import Scene
 from compare.experiments.fit.keys import CLOCK
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 
 class Estimate(NamedTuple):
@@ -48,7 +52,7 @@ class Fit:
     trials : how often the scene was solved. notes : what a reader must know, a sentence each.
     """
 
-    scene: Scene
+    scene: AnyScene
     solver: str
     estimates: list[Estimate]
     correlation: np.ndarray

@@ -1,12 +1,15 @@
 """A scene as the text of a scene file."""
 
+from __future__ import annotations
+
 import json
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from cases.schema.scene import Scene
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 
-def scene_text(scene: Scene) -> str:
+def scene_text(scene: AnyScene) -> str:
     """Return a scene as the text of a scene file, defaults left out."""
     told = scene.model_dump(mode="json", exclude_defaults=True, exclude_none=True)
     told.pop("name", None)

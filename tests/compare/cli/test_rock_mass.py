@@ -86,7 +86,6 @@ interval = 1e-4
 
 #: Of these each takes pillars alone, and says so.
 PILLARS_ALONE = {
-    "fit joint.toml --free rock.density --with curve.csv": "jointwave fit",
     "plan joint.toml --misfit 0.01": "jointwave plan",
 }
 

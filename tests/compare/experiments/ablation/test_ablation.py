@@ -34,7 +34,8 @@ CALLS = {
 
 
 def test_every_effect_that_can_be_left_out_is_tried():
-    assert set(CALLS) == set(WITHOUT)
+    """Those of sides are of rock masses alone."""
+    assert set(CALLS) == {name for name in WITHOUT if not name.endswith(" sides")}
 
 
 @pytest.mark.parametrize("effect", CALLS)

@@ -1,0 +1,155 @@
+"""Keys of rock masses fitted to waveforms of points and joints: known values are found again."""
+
+import json
+
+import numpy as np
+import pytest
+
+import cases
+import jointwave
+from cases.errors import SceneError
+from cases.read import load_tables
+from cases.schema.keys import keys
+from compare.engines import solve
+from compare.experiments.fit.keys import changed, free_keys
+from compare.experiments.fit.problem import problem_of
+from compare.experiments.fit.scene_text import scene_text
+from compare.misfit.external import Curves
+from compare.misfit.places import Place
+from compare.scenes import shipped
+
+STIFFNESS, AMPLITUDE = "joint_sets.0.normal_stiffness", "waves.0.amplitude"
+TRUE = {STIFFNESS: 5e9, AMPLITUDE: 1.3e6}
+ABOVE = Place("velocity", "y", (6.0, 8.0))
+AT_JOINT = Place("traction", "n", (6.0, 5.0))
+TABLES = {
+    "title": "A joint, heard behind it",
+    "domain": {"size": [12.0, 10.0]},
+    "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.0},
+    "joint_sets": [
+        {
+            "name": "joint",
+            "dip": 0.0,
+            "through": [6.0, 5.0],
+            "normal_stiffness": 1e10,
+            "shear_stiffness": 4e9,
+        }
+    ],
+    "waves": [
+        {
+            "kind": "P",
+            "direction": [0.0, 1.0],
+            "shape": "ricker",
+            "amplitude": 1e6,
+            "period": 0.004,
+        }
+    ],
+    "boundaries": dict.fromkeys(("left", "right", "bottom", "top"), "quiet"),
+    "numerics": {"dem": {"block": 2.0}},
+    "time": {"duration": 0.01},
+    "record": {"points": [[6.0, 8.0]], "joints": [[6.0, 5.0]], "interval": 1e-4},
+}
+
+
+@pytest.fixture
+def scene():
+    """Return one joint in blocks of 2 m, met by a P wave from below."""
+    return load_tables(TABLES)
+
+
+def heard(result, places=(ABOVE, AT_JOINT)):
+    """Return the curves of a result at some places."""
+    waveforms = {place: place.waveform(result) for place in places}
+    return Curves("run.nc", "run.nc", result.time.values, waveforms)
+
+
+@pytest.mark.parametrize(("solver", "name"), [(None, "dem"), ("oblique-joint", "oblique-joint")])
+def test_known_values_are_found_to_round_off(solver, name, scene):
+    """Of a point and a joint, by rigid blocks unless asked otherwise, and by the exact solution."""
+    steps = problem_of(scene, name, [heard(solve(name, scene))], None, 0.0)._stepped
+    curves = heard(solve(name, steps(changed(scene, TRUE))))
+    found = jointwave.fit(scene, [curves], list(TRUE), solver)
+    assert found.solver == name and found.before > 0.1 and found.after < 1e-6
+    for estimate in found.estimates:
+        assert estimate.value == pytest.approx(TRUE[estimate.key], rel=1e-6)
+    assert [e.unit for e in found.estimates] == ["Pa/m", "Pa"]
+
+
+def test_rigid_blocks_keep_their_steps(scene):
+    """A stiffer joint would take more of them by itself, and the waveform would jump."""
+    problem = problem_of(scene, "dem", [heard(solve("dem", scene))], None, 0.0)
+    stiff = changed(scene, {STIFFNESS: 3e10, "rock.intact_modulus": 6e10})
+    runs = [solve("dem", problem._stepped(one)) for one in (scene, stiff)]
+    assert problem.steps > 1 and runs[0].attrs["dt"] == pytest.approx(runs[1].attrs["dt"], 1e-12)
+
+
+def test_every_number_of_a_rock_mass_is_free_or_refused(scene):
+    """What cuts it into blocks, solves or records it is refused; a value that is set is read."""
+    free_tables = set()
+    for key, _ in keys(type(scene)):
+        here = key.replace("joint_sets.", "joint_sets.0.").replace("waves.", "waves.0.")
+        try:
+            (free,) = free_keys([f"{here}=0.3"], scene)
+        except SceneError as error:
+            assert "\n" not in str(error) and here in str(error)
+            continue
+        assert free.low < 0.3 < free.high
+        free_tables.add(here.split(".")[0])
+        try:
+            set_here = changed(scene, {here: 0.3})
+        except SceneError:
+            continue
+        assert f"{here.rpartition('.')[2]} = 0.3" in scene_text(set_here)
+    assert {"rock", "joint_sets", "waves"} <= free_tables
+    assert not {"domain", "time", "numerics", "record"} & free_tables
+
+
+@pytest.mark.parametrize("key", ["joint_sets.0.dip", "numerics.dem.block"])
+def test_what_cuts_blocks_is_refused(key, scene):
+    """Their number would jump."""
+    with pytest.raises(SceneError, match="must be a number that can change by a little"):
+        free_keys([key], scene)
+
+
+def test_a_scene_without_rigid_blocks_asks_for_another_solver(scene):
+    tables = {key: value for key, value in TABLES.items() if key != "numerics"}
+    whole = load_tables(tables)
+    with pytest.raises(SceneError, match=r"dem does not apply: numerics\.dem\.block is needed"):
+        jointwave.fit(whole, [heard(solve("oblique-joint", whole))], list(TRUE))
+
+
+def test_rock_mass_is_written_as_it_is_read(tmp_path):
+    """Every shipped one and its variants, by its own numbers."""
+    for path in shipped():
+        for scene in cases.load(path):
+            if scene.kind == "rock mass":
+                (tmp_path / "scene.toml").write_text(scene_text(scene), "utf-8")
+                (again,) = cases.load(tmp_path / "scene.toml")
+                assert again.model_dump() == {**scene.model_dump(), "name": ""}
+
+
+def test_command_fits_a_history_and_writes_a_scene_that_runs(scene, tmp_path, command):
+    """A pulse from a file goes along; the factor on it is found, and the fitted scene has it."""
+    time = np.linspace(0.0, 0.004, 41)
+    pulse = np.c_[time, 1e6 * np.sin(np.pi * time / 0.004) ** 2]
+    np.savetxt(tmp_path / "pulse.csv", pulse, "%.9g", ",")
+    wave = TABLES["waves"][0] | {"shape": "table", "file": "pulse.csv", "amplitude": 1.0}
+    del wave["period"]
+    text = scene_text(scene)
+    old = scene_text(scene).split("[[waves]]")[1].split("\n\n")[0]
+    new = "".join(f"\n{key} = {json.dumps(value)}" for key, value in wave.items())
+    (tmp_path / "scene.toml").write_text(text.replace(old, new))
+    true = jointwave.load(tmp_path / "scene.toml", changes={AMPLITUDE: 1.3})
+    curve = heard(solve("oblique-joint", true), [ABOVE])
+    columns = np.c_[1e3 * curve.time, 1e3 * curve.waveforms[ABOVE]]
+    header = 'time [ms],"velocity_y@[6,8] [mm/s]"'
+    np.savetxt(tmp_path / "gauge.csv", columns, "%.12g", ",", header=header, comments="")
+    asked = ("--with", "gauge.csv", "--free", AMPLITUDE, "--engine", "exact")
+    model = ("--model", "oblique-joint", "--out", "out")
+    facts = json.loads(command("fit", "scene.toml", *asked, *model, "--json").out)
+    (estimate,) = facts["keys"]
+    assert estimate["value"] == pytest.approx(1.3, rel=1e-6) and estimate["unit"] == ""
+    again = cases.load_variant(tmp_path / "out" / "fitted.toml")
+    assert again.waves[0].amplitude == estimate["value"]
+    assert (tmp_path / "out" / "pulse.csv").is_file()
+    assert (tmp_path / "out" / "fit-waveforms.svg").is_file()
