@@ -4,6 +4,7 @@ import gc
 import os
 import re
 import shutil
+from copy import deepcopy
 from pathlib import Path
 
 import numba
@@ -60,6 +61,25 @@ def pillar():
         return cases.load_variant(PILLAR, "", {"variants": []} | overrides)
 
     return scene
+
+
+@pytest.fixture
+def one_joint():
+    """Return a function that gives the tables of rock with one joint at 30 degrees, which a P wave
+    of 1 MPa and 200 Hz meets from below; quiet all around, tables replaced."""
+    joint = {"name": "joint", "dip": 30.0, "through": [10.0, 15.0]}
+    wave = {"kind": "P", "direction": [0.0, 1.0], "shape": "ricker"}
+    tables = {
+        "title": "one joint",
+        "domain": {"size": [20.0, 30.0]},
+        "rock": {"density": 2600.0, "intact_modulus": 5e10},
+        "joint_sets": [joint | {"normal_stiffness": 1e10, "shear_stiffness": 4e9}],
+        "waves": [wave | {"amplitude": 1e6, "period": 0.005}],
+        "boundaries": dict.fromkeys(("left", "right", "bottom", "top"), "quiet"),
+        "time": {"duration": 0.03},
+        "record": {"points": [[10.0, 5.0], [10.0, 25.0]], "joints": [[10.0, 15.0]]},
+    }
+    return lambda **changes: deepcopy(tables | changes)
 
 
 @pytest.fixture

@@ -69,9 +69,11 @@ def applies(scene: Scene | RockMass) -> Answer:
 def _in_plane(scene: RockMass):
     from dem.blocks.build import rigid_blocks
     from dem.blocks.system import clock_of
+    from dem.time_loop import thread_count
 
     blocks = rigid_blocks(scene)
-    return *clock_of(blocks), 3 * blocks.partition.count, 1
+    count = blocks.partition.count
+    return *clock_of(blocks), 3 * count, thread_count(scene.numerics.dem.threads, count)
 
 
 def _axial(scene: Scene):

@@ -7,6 +7,7 @@ import sys
 import pytest
 
 from cases.errors import SceneError
+from cases.read import load_tables
 from compare.engines import ENGINES, EXACT, exact_names, names, selection, solver, solvers
 from compare.misfit.pairs import pairs
 from compare.solvers.record import HEADINGS, Form
@@ -38,9 +39,14 @@ def test_an_unknown_name_is_an_error():
         solver("truth")
 
 
+@pytest.mark.parametrize("kind", ["pillar", "rock mass"])
 @pytest.mark.parametrize("name", ENGINES)
-def test_a_run_is_prepared_as_it_is_made(pillar, name):
+def test_a_run_is_prepared_as_it_is_made(pillar, one_joint, name, kind):
     scene = pillar(time__duration=2e-3, record__velocity=[20.25])
+    if kind == "rock mass":
+        tables = one_joint(numerics={"dem": {"block": 4.0, "threads": 2}}, time={"duration": 2e-3})
+        tables["joint_sets"][0]["spacing"] = 5.0
+        scene = load_tables(tables)
     found, made = solver(name).prepare(scene), solver(name).run(scene).attrs
     assert (found.steps, found.dt, found.critical) == (
         made["steps"],

@@ -16,6 +16,7 @@ from dem.blocks.system import prepared
 
 COULOMB = ELASTIC | {"friction_angle": 30.0, "cohesion": 1e5}
 PRESSURE = {"kind": "pressure", "side": "left", "shape": "step", "amplitude": 1e5}
+SIZES = (1024, 10_000, 102_400, 1_000_000)
 BLOCK_STEPS = 500_000  # of one call
 POINTS = 4  # of a block: two contacts of two points; in the row one contact of 2 x 2
 
@@ -31,12 +32,9 @@ def moving(model: PlaneModel, threads: int = 1) -> Stretch:
     state.v[:] = 1e-3 * np.random.default_rng(1).uniform(-1.0, 1.0, state.v.shape)
     count = len(model.blocks.inertia)
     steps = max(16, BLOCK_STEPS // count)
-    drive = None
-    if model.held is not None:
-        drive = np.zeros((steps, len(model.held.dashpot), 3))
 
     def take() -> None:
-        march(model, state, samples, 2 * steps, (1, 1 + steps), drive, None, threads)
+        march(model, state, samples, 2 * steps, (1, 1 + steps), threads=threads)
 
     return take, steps * count
 
@@ -54,17 +52,18 @@ def beside_the_row() -> None:
 
 def by_size() -> None:
     """What a block-step costs from a thousand blocks to a million, and what two threads gain."""
-    print("blocks in the plane, Coulomb slip, by size, and two threads over one, block-steps/s")
-    sizes = (1024, 10_000, 102_400, 1_000_000)
-    models = [model_of(blocks, COULOMB) for blocks in sizes]
-    stretches = [moving(model) for model in models]
-    for take, _ in stretches:
-        take()
-    rounds = [[1 / rate(*timed) for timed in stretches] for _ in range(ROUNDS)]
-    for blocks, costs in zip(sizes, zip(*rounds, strict=True), strict=True):
-        print(f"  {blocks:>9,} blocks: {1e9 * median(costs):6.1f} ns a block-step", flush=True)
-    for blocks, model in zip(sizes, models, strict=True):
-        side_by_side(f"{blocks:,} blocks, two threads", moving(model, 2), moving(model))
+    for name, law in {"elastic joints": ELASTIC, "Coulomb slip": COULOMB}.items():
+        print(f"blocks in the plane, {name}, ns a block-step, by size", flush=True)
+        models = [model_of(blocks, law) for blocks in SIZES]
+        stretches = [moving(model) for model in models]
+        for take, _ in stretches:
+            take()
+        rounds = [[1 / rate(*timed) for timed in stretches] for _ in range(ROUNDS)]
+        for blocks, costs in zip(SIZES, zip(*rounds, strict=True), strict=True):
+            print(f"  {blocks:>9,} blocks: {1e9 * median(costs):6.1f}", flush=True)
+    print("blocks in the plane, Coulomb slip, two threads over one, block-steps/s", flush=True)
+    for blocks, model in zip(SIZES, models, strict=True):
+        side_by_side(f"{blocks:,} blocks", moving(model, 2), moving(model))
 
 
 def main() -> None:

@@ -22,13 +22,14 @@ from job import ONE_THREAD
 from lammps_bonds import UNBREAKABLE
 from measure import on_one_core
 
-from cases.validate import validated
+from compare.experiments.cost.plane_step_cost import ELASTIC, lattice
 from dem.blocks.leapfrog import march, samples_for
 from dem.blocks.model import PlaneModel, state_at_rest
 from dem.blocks.system import prepared
 from joints.law import law_of
 
 SIDES = (32, 100, 316)  # bodies along each side
+LOAD = {"kind": "pressure", "side": "left", "shape": "step", "amplitude": 1.0}  # taken off again
 BODY_STEPS = 2_000_000  # of one run
 SPEED = 0.1  # m/s: turns of 1e-4, above the 1e-8 of an arc cosine near 1 that LAMMPS takes them by
 SHORT = 100  # steps
@@ -64,23 +65,9 @@ class Lattice(NamedTuple):
     steps: int
 
 
-def lattice(side: int) -> Lattice:
+def bodies(side: int) -> Lattice:
     """Return the lattice, with the inertia of spheres of diameter 1 m."""
-    size = float(side)
-    joints = {"spacing": 1.0, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
-    sets = [{"name": f"{dip:.0f}", "dip": dip, "through": [0.0, 0.0]} | joints for dip in (0.0, 90)]
-    sides = dict.fromkeys(("left", "right", "bottom", "top"), "free")
-    tables = {
-        "title": "a square lattice",
-        "domain": {"size": [size, size]},
-        "rock": {"density": 2600.0, "intact_modulus": 5e10},
-        "joint_sets": sets,
-        "boundaries": sides,
-        "loads": [{"kind": "pressure", "side": "left", "shape": "step", "amplitude": 1.0}],
-        "time": {"duration": 0.01},
-        "record": {"points": [[0.5, 0.5]], "energy": False},
-    }
-    system = prepared(validated(tables, Path("lattice.toml"), frozenset()))
+    system = prepared(lattice(side**2, ELASTIC, ELASTIC, {"loads": [LOAD]}))
     inertia = system.model.blocks.inertia.copy()
     inertia[:, 1] = inertia[:, 0] / 10
     blocks = system.model.blocks._replace(inertia=inertia, dt=0.5 * system.model.blocks.dt)
@@ -151,7 +138,7 @@ def main() -> None:
         "square lattice: rigid blocks in the plane over LAMMPS BPM rotational bonds, body-steps/s"
     )
     for side in SIDES:
-        own, folder = lattice(side), options.out / str(side)
+        own, folder = bodies(side), options.out / str(side)
         apart = distance(own._replace(steps=SHORT), place, folder)
         turns = [(ours(own)[1], theirs(own, place, folder)[1]) for _ in range(options.rounds)]
         ratios = sorted(peer / mine for mine, peer in turns)

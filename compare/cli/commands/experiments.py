@@ -46,8 +46,7 @@ def effects(
     """Measure the cost of every effect of a scene, and how far the result is without it.
 
     Of a pillar, or of a rock mass that rigid blocks can be. Without a scene: of every variant of
-    every shipped pillar. That takes a while; what is done is
-    saved in DIR and not run again.
+    every shipped pillar. That takes a while; what is done is saved in DIR and not run again.
     """
     from compare.experiments.ablation import runner
     from compare.experiments.ablation.summary import summarise

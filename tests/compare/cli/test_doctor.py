@@ -84,6 +84,16 @@ def test_what_breaks_is_a_line_and_fails_the_check_that_needs_it_alone(broken):
     assert lines["numpy"]["state"] == "found" and "chromium" in lines
 
 
+def test_rigid_blocks_alone_are_well(monkeypatch):
+    """Without FEniCSx the table says how to get it, and its engine is not checked."""
+    hint = doctor.HINTS["basix"]
+    absent = Component("continuum", "basix", "missing", "is not installed", hint)
+    monkeypatch.setattr(doctor, "_libraries", lambda: [absent])
+    health = doctor.examine(lambda fraction: None)
+    assert [one.pair for one in health.checks] == [PAIRS[0]] and health.is_well
+    assert found(health.parts, "basix") == absent and "pip install" in hint
+
+
 def test_no_launcher_and_one_that_starts_nothing(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     assert doctor._mpiexec().state == "missing"

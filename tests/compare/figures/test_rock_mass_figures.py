@@ -8,41 +8,20 @@ from compare.figures.subplots import curve_table, panels
 from compare.misfit.pairs import measure
 from compare.report.tables import distance_frame, misfit_table
 
-TABLES = {
-    "title": "one joint",
-    "domain": {"size": [20.0, 20.0]},
-    "rock": {"density": 2600.0, "intact_modulus": 5e10},
-    "joint_sets": [
-        {
-            "name": "joint",
-            "dip": 30.0,
-            "through": [10.0, 10.0],
-            "normal_stiffness": 1e10,
-            "shear_stiffness": 4e9,
-        }
-    ],
-    "waves": [
-        {
-            "kind": "P",
-            "direction": [0.0, 1.0],
-            "shape": "ricker",
-            "amplitude": 1e6,
-            "period": 0.005,
-        }
-    ],
-    "boundaries": dict.fromkeys(("left", "right", "bottom", "top"), "quiet"),
-    "time": {"duration": 0.02},
-    "record": {"points": [[10.0, 5.0]], "joints": [[10.0, 10.0]], "interval": 1e-4},
-}
-LEVEL = [TABLES["joint_sets"][0] | {"dip": 0.0}]
-
 
 @pytest.fixture
-def solved(compared):
-    """Return a function that solves scenes of TABLES with tables changed by a formula."""
+def solved(compared, one_joint):
+    """Return a function that solves the scene, for each dip of its joint (degrees), by formulas."""
 
-    def solve(*changes):
-        scenes = [load_tables(TABLES | one) for one in changes]
+    def solve(*dips):
+        tables = one_joint(
+            domain={"size": [20.0, 20.0]},
+            time={"duration": 0.02},
+            record={"points": [[10.0, 5.0]], "joints": [[10.0, 10.0]], "interval": 1e-4},
+        )
+        (joint,) = tables["joint_sets"]
+        joint["through"] = [10.0, 10.0]
+        scenes = [load_tables(tables | {"joint_sets": [joint | {"dip": dip}]}) for dip in dips]
         return compared(*scenes, by=("oblique-joint", "parallel-joints"))
 
     return solve
@@ -50,7 +29,7 @@ def solved(compared):
 
 def test_a_panel_shows_a_component_that_moves(solved):
     """At a level joint a wave that travels upwards moves nothing sideways."""
-    oblique, level = panels(solved({}, {"joint_sets": LEVEL}))
+    oblique, level = panels(solved(30.0, 0.0))
     assert [panel.heading for panel in oblique] == [
         "velocity x at [10, 5] m",
         "velocity y at [10, 5] m",
@@ -62,7 +41,7 @@ def test_a_panel_shows_a_component_that_moves(solved):
 
 
 def test_all_pictures_are_made(solved):
-    found = solved({})
+    found = solved(30.0)
     figures = figures_of("mass", found, [{}])
     assert [one.name for one in figures] == ["mass-scene", "mass-waveforms", "mass-spectra"]
     waveforms, spectra = figures[1].table, figures[2].table
@@ -76,7 +55,7 @@ def test_all_pictures_are_made(solved):
 
 def test_tables_name_places(solved):
     """Two variants beside each other as two solutions would be: a row a place, x and y apart."""
-    one, other = solved({}, {"joint_sets": LEVEL})
+    one, other = solved(30.0, 0.0)
     results = {
         "continuum-jointed": other.results["oblique-joint"],
         "oblique-joint": one.results["oblique-joint"],

@@ -22,39 +22,27 @@ STIFFNESS, AMPLITUDE = "joint_sets.0.normal_stiffness", "waves.0.amplitude"
 TRUE = {STIFFNESS: 5e9, AMPLITUDE: 1.3e6}
 ABOVE = Place("velocity", "y", (6.0, 8.0))
 AT_JOINT = Place("traction", "n", (6.0, 5.0))
-TABLES = {
-    "title": "A joint, heard behind it",
-    "domain": {"size": [12.0, 10.0]},
-    "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.0},
-    "joint_sets": [
-        {
-            "name": "joint",
-            "dip": 0.0,
-            "through": [6.0, 5.0],
-            "normal_stiffness": 1e10,
-            "shear_stiffness": 4e9,
-        }
-    ],
-    "waves": [
-        {
-            "kind": "P",
-            "direction": [0.0, 1.0],
-            "shape": "ricker",
-            "amplitude": 1e6,
-            "period": 0.004,
-        }
-    ],
-    "boundaries": dict.fromkeys(("left", "right", "bottom", "top"), "quiet"),
-    "numerics": {"dem": {"block": 2.0}},
-    "time": {"duration": 0.01},
-    "record": {"points": [[6.0, 8.0]], "joints": [[6.0, 5.0]], "interval": 1e-4},
-}
 
 
 @pytest.fixture
-def scene():
-    """Return one joint in blocks of 2 m, met by a P wave from below."""
-    return load_tables(TABLES)
+def tables(one_joint):
+    """Return a level joint in blocks of 2 m, met by a P wave from below."""
+    found = one_joint(
+        domain={"size": [12.0, 10.0]},
+        numerics={"dem": {"block": 2.0}},
+        time={"duration": 0.01},
+        record={"points": [[6.0, 8.0]], "joints": [[6.0, 5.0]], "interval": 1e-4},
+    )
+    found["rock"]["intact_poisson"] = 0.0
+    found["joint_sets"][0] |= {"dip": 0.0, "through": [6.0, 5.0]}
+    found["waves"][0]["period"] = 0.004
+    return found
+
+
+@pytest.fixture
+def scene(tables):
+    """Return that as a scene."""
+    return load_tables(tables)
 
 
 def heard(result, places=(ABOVE, AT_JOINT)):
@@ -111,8 +99,8 @@ def test_what_cuts_blocks_is_refused(key, scene):
         free_keys([key], scene)
 
 
-def test_a_scene_without_rigid_blocks_asks_for_another_solver(scene):
-    tables = {key: value for key, value in TABLES.items() if key != "numerics"}
+def test_a_scene_without_rigid_blocks_asks_for_another_solver(tables):
+    del tables["numerics"]
     whole = load_tables(tables)
     with pytest.raises(SceneError, match=r"dem does not apply: numerics\.dem\.block is needed"):
         jointwave.fit(whole, [heard(solve("oblique-joint", whole))], list(TRUE))
@@ -128,12 +116,12 @@ def test_rock_mass_is_written_as_it_is_read(tmp_path):
                 assert again.model_dump() == {**scene.model_dump(), "name": ""}
 
 
-def test_command_fits_a_history_and_writes_a_scene_that_runs(scene, tmp_path, command):
+def test_command_fits_a_history_and_writes_a_scene_that_runs(scene, tables, tmp_path, command):
     """A pulse from a file goes along; the factor on it is found, and the fitted scene has it."""
     time = np.linspace(0.0, 0.004, 41)
     pulse = np.c_[time, 1e6 * np.sin(np.pi * time / 0.004) ** 2]
     np.savetxt(tmp_path / "pulse.csv", pulse, "%.9g", ",")
-    wave = TABLES["waves"][0] | {"shape": "table", "file": "pulse.csv", "amplitude": 1.0}
+    wave = tables["waves"][0] | {"shape": "table", "file": "pulse.csv", "amplitude": 1.0}
     del wave["period"]
     text = scene_text(scene)
     old = scene_text(scene).split("[[waves]]")[1].split("\n\n")[0]
