@@ -100,7 +100,7 @@ class Overlay(NamedTuple):
         if not self.residuals:
             return "no other solution to hold it against"
         peak = max(float(t.curve.abs().max()) for t in self.traces)
-        share = f", at most {100 * self._largest / peak:.2g} % of the peak" if peak else ""
+        share = f", at most {100 * self._largest / peak:.2g}\u00a0% of the peak" if peak else ""
         return f"less {self.reference} ({self.unit.name}){share}"
 
 

@@ -138,13 +138,13 @@ def _draw_domain(ax: Axes, one: Drawn) -> None:
 
 
 def _draw_receivers(ax: Axes, scene: RockMass, size: np.ndarray) -> None:
+    plain = {"facecolor": ROCK, "edgecolor": "none", "pad": 0.5}  # no joint runs through words
     for places, marker in ((scene.record.points, "o"), (scene.record.joints, "^")):
         for x, y in places:
             ax.plot([x], [y], marker, color=RECEIVER, markersize=4.5, zorder=8)
             words = f"[{x:g}, {y:g}]"
-            symbols.note(
-                ax, x + 0.015 * size[0], y + 0.015 * size[1], words, "left", "bottom", zorder=9
-            )
+            right, above = x + 0.015 * size[0], y + 0.015 * size[1]
+            symbols.note(ax, right, above, words, "left", "bottom", zorder=7, bbox=plain)
 
 
 def _joint_lines(partition: Partition, index: int) -> np.ndarray:

@@ -104,7 +104,7 @@ def test_a_residual_is_a_solution_less_the_reference_on_a_scale_of_its_own(pilla
         sizes.append(np.abs(expected).max())
     assert {t.name for t in overlay.traces} - {t.name for t in overlay.residuals} == {"jointed-bar"}
     share = 100 * max(sizes) / np.abs(known).max()
-    assert 1 < share < 50 and f"at most {share:.2g} % of the peak" in overlay.residual_heading
+    assert 1 < share < 50 and f"at most {share:.2g}\u00a0% of the peak" in overlay.residual_heading
     lower = draw("fig", by_solutions([found])).axes[1]
     low, high = lower.get_ylim()
     reach = max(np.abs(line.get_ydata()).max() for line in lower.lines)
