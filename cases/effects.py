@@ -153,7 +153,7 @@ def _of_forces(scene: Scene, p: Properties) -> Iterator[Effect]:
         "no [prestress]" if prestress is None else f"{prestress.normal:.4g} Pa",
     )
     quantity = f"load.quantity = '{scene.load.quantity}'"
-    yield Effect("shaken base", scene.load.shakes_base, quantity)
+    yield Effect("shaken base", scene.shakes_base, quantity)
 
 
 def _why_gravity(scene: AnyScene) -> str:

@@ -26,8 +26,8 @@ SMALL = 10_000_000  # bytes: what takes less is read, however little memory a ru
 LONGEST_LINE = 200_000  # characters, of a table
 
 
-def read_text(path: Path, largest: int, times: int = TEXT) -> str:
-    """Return the text of a file of at most `largest` bytes.
+def read_bytes(path: Path, largest: int, times: int) -> bytes:
+    """Return the content of a file of at most `largest` bytes.
 
     times : bytes of memory that each of the file would take. Raises ValueError, in one phrase. Only
     regular files are opened: a pipe would block.
@@ -36,7 +36,16 @@ def read_text(path: Path, largest: int, times: int = TEXT) -> str:
         content = file.read(largest + 1)  # what the system makes up may have no size
         if len(content) > largest:
             raise ValueError(_too_large(largest))
+        return content
+
+
+def read_text(path: Path, largest: int, times: int = TEXT) -> str:
+    """Return the text of a file as `read_bytes` reads it."""
+    content = read_bytes(path, largest, times)
+    try:
         return content.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+    except UnicodeDecodeError:
+        raise ValueError("is not UTF-8 text") from None
 
 
 def read_lines(path: Path, largest: int) -> Iterator[tuple[int, str]]:

@@ -19,7 +19,7 @@ from cases.loads import history_of
 from cases.material.rock import elastic_rock
 
 if TYPE_CHECKING:
-    from cases.loads import LoadHistory
+    from cases.histories import LoadHistory
     from cases.material.rock import ElasticRock
     from cases.schema.rock_mass import RockMass
     from cases.schema.sources import Wave

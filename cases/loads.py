@@ -1,147 +1,18 @@
-"""The load over time: its value, its time integral, and where it is not smooth.
+"""The load of a scene over time, and what an engine's steps take of it.
 
-All three are exact, so an engine can apply the mean of the load over each of its steps and a
-reference can integrate between breakpoints. Units are those of an end stress, Pa and Pa s; the
-motion of a shaken base has m/s and m, or m/s2 and m/s, in their place.
+Its integral is exact, so an engine applies the mean of the load over each of its steps. Units are
+those of an end stress, Pa and Pa s; the motion of a shaken base has m/s and m, or m/s2 and m/s, in
+their place.
 """
 
-from dataclasses import dataclass
-from math import pi
 from typing import Protocol
 
 import numpy as np
 
+from cases.histories import Integrated, LoadHistory, Recorded, Shape, Step, periodic, triangle
 from cases.sampling import Interpolation
 from cases.schema.pulse import Pulse
 from cases.schema.scene import Scene
-
-
-@dataclass(frozen=True)
-class Sine:
-    """Whole cycles of p0 sin(2 pi t / T), zero before and after (Guo & Li 2002, fig. 2)."""
-
-    amplitude: float
-    period: float
-    cycles: int = 1
-
-    def value(self, t: np.ndarray) -> np.ndarray:
-        """Return the stress (Pa) at times t (s)."""
-        inside = (t > 0) & (t < self.end)
-        return np.where(inside, self.amplitude * np.sin(2 * pi * t / self.period), 0.0)
-
-    def impulse(self, t: np.ndarray) -> np.ndarray:
-        """Return the integral of the stress from minus infinity to t (Pa s)."""
-        w = 2 * pi / self.period
-        return self.amplitude * (1 - np.cos(w * np.clip(t, 0, self.end))) / w
-
-    def rate(self, t: np.ndarray) -> np.ndarray:
-        """Return the rate of the stress (Pa/s) at times t (s)."""
-        inside, w = (t > 0) & (t < self.end), 2 * pi / self.period
-        return np.where(inside, self.amplitude * w * np.cos(w * t), 0.0)
-
-    @property
-    def end(self) -> float:
-        """Time at which the last cycle ends, s."""
-        return self.cycles * self.period
-
-    @property
-    def breaks(self) -> list[float]:
-        """Times at which the load is not smooth, s."""
-        return [0.0, self.end]
-
-
-@dataclass(frozen=True)
-class Ricker:
-    """p0 (1 - 2 a) exp(-a), a = (pi (t - 1.5 T) / T)^2: a Ricker wavelet of peak frequency 1 / T.
-
-    Centred at 1.5 T, where the part before t = 0 is below 1e-8 of the peak.
-    """
-
-    amplitude: float
-    period: float
-
-    def value(self, t: np.ndarray) -> np.ndarray:
-        """Return the stress (Pa) at times t (s)."""
-        a = (pi * (t - 1.5 * self.period) / self.period) ** 2
-        return np.where(t > 0, self.amplitude * (1 - 2 * a) * np.exp(-a), 0.0)
-
-    def impulse(self, t: np.ndarray) -> np.ndarray:
-        """Return the integral of the stress from minus infinity to t (Pa s)."""
-        return self._integral(np.maximum(t, 0.0)) - self._integral(0.0)
-
-    def rate(self, t: np.ndarray) -> np.ndarray:
-        """Return the rate of the stress (Pa/s) at times t (s)."""
-        s, w = t - 1.5 * self.period, (pi / self.period) ** 2
-        a = w * s**2
-        return np.where(t > 0, 2 * self.amplitude * w * s * (2 * a - 3) * np.exp(-a), 0.0)
-
-    def _integral(self, t):
-        s = t - 1.5 * self.period
-        return self.amplitude * s * np.exp(-((pi * s / self.period) ** 2))
-
-    @property
-    def breaks(self) -> list[float]:
-        """Times at which the load is not smooth, s."""
-        return [0.0]
-
-
-@dataclass(frozen=True)
-class Step:
-    """A stress p0 that is applied at t = 0 and stays."""
-
-    amplitude: float
-
-    def value(self, t: np.ndarray) -> np.ndarray:
-        """Return the stress (Pa) at times t (s); half the step at t = 0."""
-        return self.amplitude * np.heaviside(t, 0.5)
-
-    def impulse(self, t: np.ndarray) -> np.ndarray:
-        """Return the integral of the stress from minus infinity to t (Pa s)."""
-        return self.amplitude * np.maximum(t, 0.0)
-
-    @property
-    def breaks(self) -> list[float]:
-        """Times at which the load is not smooth, s."""
-        return [0.0]
-
-
-@dataclass(frozen=True)
-class Recorded:
-    """A piecewise linear history, zero outside its samples.
-
-    `stress` is [n] Pa at `time` [n] s. Its running integral is exact, so a step of any length
-    takes the true mean of the history and nothing is lost to undersampling.
-    """
-
-    time: np.ndarray
-    stress: np.ndarray
-
-    def value(self, t: np.ndarray) -> np.ndarray:
-        """Return the stress (Pa) at times t (s)."""
-        return np.interp(t, self.time, self.stress, left=0.0, right=0.0)
-
-    def impulse(self, t: np.ndarray) -> np.ndarray:
-        """Return the integral of the stress from minus infinity to t (Pa s)."""
-        areas = np.diff(self.time) * (self.stress[1:] + self.stress[:-1]) / 2
-        running = np.concatenate([[0.0], np.cumsum(areas)])
-        t = np.clip(t, self.time[0], self.time[-1])
-        i = np.clip(np.searchsorted(self.time, t, side="right") - 1, 0, len(self.time) - 2)
-        s = t - self.time[i]
-        slope = (self.stress[i + 1] - self.stress[i]) / (self.time[i + 1] - self.time[i])
-        return running[i] + s * (self.stress[i] + slope * s / 2)
-
-    def rate(self, t: np.ndarray) -> np.ndarray:
-        """Return the rate of the stress (Pa/s) at times t (s), that of the line to the left."""
-        slopes = np.concatenate([[0.0], np.diff(self.stress) / np.diff(self.time), [0.0]])
-        return slopes[np.searchsorted(self.time, t)]
-
-    @property
-    def breaks(self) -> list[float]:
-        """Times at which the load is not smooth, s."""
-        return self.time.tolist()
-
-
-LoadHistory = Sine | Ricker | Step | Recorded
 
 
 class Integral(Protocol):
@@ -155,22 +26,38 @@ def load_history(scene: Scene) -> LoadHistory:
     """Return the scene's load as a function of time: its end stress or the motion of its base.
 
     Stress is positive in compression. Without a load the stress is zero. Of an extreme load it is
-    that over `scene.load.scale`, which a result is multiplied by when it is put together.
+    that over `scene.load.scale`, which a result is multiplied by when it is put together. The
+    motion that comes up to a quiet start, a compliant base, is the stress 2 rho c v: its dashpot
+    takes half of it, and the other half enters (Mejia & Dawson, 4th FLAC Symposium, 2006).
     """
-    return history_of(scene.load, scene.load.amplitude / scene.load.scale)
+    load = scene.load
+    amplitude = load.amplitude / load.scale
+    if not load.is_motion or scene.shakes_base:
+        return history_of(load, amplitude)
+    from cases.material.calibrate import calibrate
+
+    p = calibrate(scene)
+    return velocity_of(load, 2 * amplitude * (p.shear_impedance if load.is_across else p.impedance))
 
 
-def history_of(pulse: Pulse, amplitude: float) -> LoadHistory:
+def velocity_of(pulse: Pulse, amplitude: float) -> LoadHistory:
+    """Return the velocity of a pulse of this amplitude that is one, or an acceleration."""
+    found = history_of(pulse, amplitude)
+    return Integrated(found) if pulse.quantity == "acceleration" else found
+
+
+def history_of(pulse: Pulse, amplitude: float) -> Shape:
     """Return a pulse of this amplitude as a function of time."""
     if pulse.shape == "step":
         return Step(amplitude)
     if pulse.shape == "table":
         assert pulse.history is not None
         return Recorded(pulse.history.time, amplitude * pulse.history.stress)
+    if pulse.shape == "triangle":
+        assert pulse.rise is not None and pulse.decay is not None
+        return triangle(amplitude, pulse.rise, pulse.decay)
     assert pulse.period is not None
-    if pulse.shape == "ricker":
-        return Ricker(amplitude, pulse.period)
-    return Sine(amplitude, pulse.period, pulse.cycles or 1)
+    return periodic(pulse.shape, amplitude, pulse.period, pulse.cycles)
 
 
 def step_means(load: Integral, dt: float, count: int) -> np.ndarray:
@@ -192,7 +79,7 @@ def with_load_itself(
     contacts, of which 0 is the loaded face.
     """
     faced = np.flatnonzero((sections.left == 0) & (sections.weight < 1.0))
-    if not faced.size or scene.load.shakes_base or scene.load.arm is not None:
+    if not faced.size or scene.shakes_base or scene.load.arm is not None:
         return stress
     load, found = load_history(scene), stress.copy()
     mean = (load.impulse(times + dt / 2) - load.impulse(times - dt / 2)) / dt

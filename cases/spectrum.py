@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cases.loads import LoadHistory, Recorded, Ricker, Sine, history_of
+from cases.histories import LoadHistory, Recorded, periodic
+from cases.loads import history_of
 from cases.material.calibrate import Properties
 from cases.schema.scene import Scene
 
@@ -67,10 +68,10 @@ def highest_frequency(scene: AnyScene) -> float | None:
 def _of_pulse(pulse: Pulse, duration: float) -> float | None:
     if not pulse.amplitude:
         return None
+    if pulse.shape == "step":
+        return _step_frequency() / duration
     if pulse.period is not None:
         return _at_unit_period(pulse.shape, min(pulse.cycles or 1, MOST_CYCLES)) / pulse.period
-    if pulse.history is None:
-        return _step_frequency() / duration
     history = history_of(pulse, 1.0)
     assert isinstance(history, Recorded)
     if not history.stress.any():
@@ -80,8 +81,8 @@ def _of_pulse(pulse: Pulse, duration: float) -> float | None:
 
 @lru_cache
 def _at_unit_period(shape: str, cycles: int) -> float:
-    load = Ricker(1.0, 1.0) if shape == "ricker" else Sine(1.0, 1.0, cycles)
-    return _below(_means(load, 0.0, 3.0 if shape == "ricker" else float(cycles)))
+    load = periodic(shape, 1.0, 1.0, cycles)
+    return _below(_means(load, 0.0, load.end))
 
 
 @lru_cache

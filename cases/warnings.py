@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cases.effects import is_spatial
+from cases.histories import Gabor, Ricker, Sine, periodic
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.plausible import implausible
 from cases.schema.scene import Scene
@@ -90,10 +91,15 @@ def of_pulse(table: str, pulse: Pulse, end: float, crossings: float = nan) -> It
         return
     if pulse.history is not None:
         yield from _of_table(table, pulse, end, crossings)
-    elif pulse.shape == "ricker" and pulse.period and 1.5 * pulse.period > end:
+    elif pulse.rise is not None and pulse.rise > end:
         yield (
-            f"{table}.period = {pulse.period:g} s: the wavelet peaks at 1.5 periods, after the end "
-            f"of the scene at time.duration = {end:g} s"
+            f"{table}.rise = {pulse.rise:g} s is longer than the scene, time.duration = {end:g} s"
+        )
+    elif pulse.period and (wavelet := _wavelet(pulse)) and wavelet.centre > end:
+        yield (
+            f"{table}.period = {pulse.period:g} s: the wavelet peaks at "
+            f"{wavelet.centre / pulse.period:g} periods, after the end of the scene at "
+            f"time.duration = {end:g} s"
         )
     elif pulse.period and pulse.period > end:
         yield (
@@ -213,13 +219,25 @@ def _fastest(scene: Scene, p: Properties) -> float:
 def onset(pulse: Pulse) -> float:
     """Return when a load or wave first reaches a hundredth of its peak, s."""
     history = pulse.history
-    if pulse.shape == "ricker":
-        return 0.68 * (pulse.period or 0.0)
-    if history is None:
+    if wavelet := _wavelet(pulse):
+        time = np.linspace(0.0, wavelet.centre, 1000)
+        values = wavelet.value(time)
+    elif history is not None:
+        time, values = history.time, history.stress
+    else:
         return 0.0
-    felt = np.abs(history.stress) >= ONSET * np.abs(history.stress).max()
+    felt = np.abs(values) >= ONSET * np.abs(values).max()
     first = int(felt.argmax())
-    return float(history.time[max(first - 1, 0)])
+    return float(time[max(first - 1, 0)])
+
+
+def _wavelet(pulse: Pulse) -> Ricker | Gabor | None:
+    """Return a pulse that swells from nothing; None of any other."""
+    if pulse.shape not in ("ricker", "gabor") or pulse.period is None:
+        return None
+    found = periodic(pulse.shape, 1.0, pulse.period, pulse.cycles)
+    assert not isinstance(found, Sine)
+    return found
 
 
 def _of_quiet_ends(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:

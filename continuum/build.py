@@ -11,6 +11,7 @@ from scipy.sparse import csr_matrix, diags, identity, kron
 from cases.errors import SceneError
 from cases.material.calibrate import Properties, calibrate
 from cases.sampling import Clock
+from cases.schema.pulse import shortest_period
 from cases.schema.scene import Scene
 from continuum.ends import build_ends, end_stiffness, fixed_ends
 from continuum.explicit.critical import any_motion
@@ -107,7 +108,7 @@ def elements_for(scene: Scene, p: Properties, model: str) -> int:
 def resolved_period(scene: Scene | RockMass) -> float:
     """Return the period (s) that elements resolve: the shortest of what acts, or a tenth of the
     scene."""
-    return min((one.period for one in scene.pulses if one.period), default=scene.time.duration / 10)
+    return shortest_period(scene.pulses) or scene.time.duration / 10
 
 
 def critical_step_of(scene: Scene, discrete: Discrete, model: str) -> float:

@@ -30,7 +30,7 @@ def build_ends(
 
 def load_on(scene: Scene, p: Properties, body: Body, time: Clock) -> Loaded | None:
     """Return the end stress as forces on the freedoms of the start, None where there is none."""
-    if scene.load.shakes_base or not scene.load.amplitude:
+    if scene.shakes_base or not scene.load.amplitude:
         return None
     # A moment is traction linear across the face: Lobatto's two points of linear elements miss it.
     points, place = _face(body, body.mesh.start, body.order + 1)
@@ -138,13 +138,13 @@ def fixed_ends(scene: Scene, body: Body, time: Clock | None = None) -> Fixed | N
         for c, area in enumerate(whole):
             freedoms.append(np.flatnonzero(area))
             component = 1 if body.section.components == 1 else c
-            shaken = place == "start" and scene.load.shakes_base
+            shaken = place == "start" and scene.shakes_base
             direction = scene.load.direction[component] if shaken else 0.0
             directions.append(np.full(freedoms[-1].size, direction))
     if not freedoms:
         return None
     step = None
-    if scene.load.shakes_base and time is not None:
+    if scene.shakes_base and time is not None:
         step = base_steps(scene, time.dt, time.steps + 1)
     return Fixed(np.concatenate(freedoms), np.concatenate(directions).astype(float), step)
 

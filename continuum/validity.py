@@ -46,7 +46,7 @@ def _beyond_shear(stiffness: np.ndarray) -> str:
 def _beyond(scene: Scene, p: Properties) -> str:
     if p.local_damping is not None:
         return "the continuum has no local damping"
-    if scene.ends.start == "fixed" and not scene.load.shakes_base and scene.load.amplitude:
+    if scene.ends.start == "fixed" and not scene.shakes_base and scene.load.amplitude:
         return "the load acts on a fixed face"
     return ""
 

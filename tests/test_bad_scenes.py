@@ -189,7 +189,7 @@ MISTAKES = {
         ["rock.intact_modulus = 4000000000.0", "4.374e+09"],
     ),
     # the load
-    "unknown shape": ('"sine"', '"square"', ["load.shape = 'square'", "'sine', 'ricker'"]),
+    "unknown shape": ('"sine"', '"square"', ["load.shape = 'square'", "'ricker', 'gabor'"]),
     "unknown end": ('"quiet"', '"open"', ["ends.end = 'open'", "'matched'"]),
     "sine without period": ("period = 0.01\n", "", ["load.period", "load.shape = 'sine'"]),
     "ricker without period": (
@@ -198,6 +198,21 @@ MISTAKES = {
         ["load.period", "is needed for load.shape = 'ricker'"],
     ),
     "step with a period": ('"sine"', '"step"', ["load.period = 0.01", "no meaning"]),
+    "gabor without cycles": (
+        SINE,
+        'shape = "gabor"\namplitude = 1.0\nperiod = 0.01',
+        ["load.cycles", "is needed for load.shape = 'gabor'"],
+    ),
+    "triangle without decay": (
+        SINE,
+        'shape = "triangle"\namplitude = 1.0\nrise = 0.01',
+        ["load.decay", "is needed for load.shape = 'triangle'"],
+    ),
+    "sine with a rise": (
+        "period = 0.01",
+        "period = 0.01\nrise = 0.1",
+        ["load.rise = 0.1", "has no meaning for shape 'sine'"],
+    ),
     "table without file": (SINE, 'shape = "table"\namplitude = 1.0', ["load.file", "is needed"]),
     "zero direction": (
         "period = 0.01",
@@ -243,6 +258,11 @@ MISTAKES = {
         "[load]",
         '[load]\nquantity = "velocity"',
         ["load.quantity = 'velocity'", "ends.start = 'fixed'"],
+    ),
+    "a compliant base at an angle": (
+        "period = 0.01\n\n[ends]",
+        'period = 0.01\nquantity = "velocity"\ndirection = [0.6, 0.8, 0]\n\n[ends]\nstart = "quiet"',
+        ["load.direction = [0.6, 0.8, 0", "along or across the axis"],
     ),
     "an eccentric motion": (
         "[load]",

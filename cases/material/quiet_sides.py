@@ -45,3 +45,14 @@ def medium_impedances(scene: RockMass, normals: np.ndarray, smeared: bool = True
     longitudinal = np.abs((shapes * normals[:, :, None]).sum(axis=1)).argmax(axis=1)
     at = np.arange(len(normals))
     return density * np.stack([found[at, longitudinal], found[at, 1 - longitudinal]], axis=1)
+
+
+def base_traction(normals: np.ndarray, impedance: np.ndarray, direction: list[float]) -> np.ndarray:
+    """Return the tractions [m, 2] on a compliant base for each m/s that comes up, Pa s/m.
+
+    2 rho a of its normal component and 2 rho b of the other: the dashpots take half of them, and
+    the other half enters (Mejia & Dawson, 4th FLAC Symposium, 2006). normals, impedance : [m, 2].
+    """
+    moved = np.array(direction)
+    along = (normals @ moved)[:, None] * normals
+    return 2 * (impedance[:, :1] * along + impedance[:, 1:] * (moved - along))

@@ -62,8 +62,7 @@ def _of_forces(scene: RockMass) -> Iterator[Effect]:
         if stress is None
         else f"xx {stress.xx:.4g}, yy {stress.yy:.4g}, xy {stress.xy:.4g} Pa",
     )
-    waves, shaken = len(scene.waves), any(load.kind == "base" for load in scene.loads)
+    waves, pushed, shaken = len(scene.waves), len(scene.pushes), bool(scene.bases)
     yield Effect("incident waves", waves > 0, f"{waves} of [[waves]]" if waves else "no [[waves]]")
-    pushed = len(scene.loads) - sum(load.kind == "base" for load in scene.loads)
     yield Effect("loads", pushed > 0, f"{pushed} of [[loads]]" if pushed else "no [[loads]]")
     yield Effect("shaken base", shaken, "a load of kind 'base'" if shaken else "none is shaken")

@@ -127,11 +127,13 @@ def _beyond_scaling(scene: Scene) -> Iterator[tuple[str, object, bool]]:
 
 def _check_ends(scene: Scene) -> None:
     load, ends, gravity = scene.load, scene.ends, scene.gravity
-    if load.shakes_base and ends.start != "fixed":
-        raise contradiction(
-            "load.quantity", load.quantity, "moves the wall of ends.start = 'fixed'"
-        )
-    if ends.start == "fixed" and not load.shakes_base and load.amplitude:
+    if load.is_motion and ends.start not in ("fixed", "quiet"):
+        allowed = "moves the base of ends.start = 'fixed', or what comes up to 'quiet'"
+        raise contradiction("load.quantity", load.quantity, allowed)
+    if load.is_motion and ends.start == "quiet" and load.is_across and load.direction[1]:
+        allowed = "must be along or across the axis where ends.start = 'quiet'"
+        raise contradiction("load.direction", load.direction, allowed)
+    if ends.start == "fixed" and not load.is_motion and load.amplitude:
         raise contradiction(
             "ends.start", ends.start, "needs load.quantity 'velocity' or 'acceleration', or no load"
         )

@@ -1,17 +1,22 @@
-"""A recorded load history: a two-column CSV of time (s) and end stress (Pa), or base motion."""
+"""A recorded load history: a table of time (s) and end stress (Pa), or base motion, or a trace."""
 
 import csv
+import io
 from array import array
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-from cases.files import beside, is_number, read_lines
+from cases.files import beside, is_number, read_bytes, read_lines
 
 LARGEST_FILE = 200_000_000  # bytes; some ten million samples
 LARGEST = 1e30  # s, Pa; what lies beyond is a mistake, and its squares overflow
+TRACE = 16  # bytes of memory for each of a trace's: compressed samples, as two numbers
+#: Formats of traces by the ends of their files' names, as ObsPy names them.
+FORMATS = {".sac": "SAC", ".mseed": "MSEED", ".miniseed": "MSEED"}
 
 
 @dataclass(frozen=True)
@@ -28,13 +33,42 @@ class History:
     stress: np.ndarray
 
     @classmethod
-    def from_csv(cls, folder: str | Path, file: str, anywhere: bool = False) -> "History":
-        """Read `file`, relative to `folder`; text before the numbers is a header, # a comment.
+    def read(cls, folder: str | Path, file: str, anywhere: bool = False) -> "History":
+        """Read `file`, relative to `folder`: SAC or miniSEED where its name ends so, else CSV.
 
         anywhere : whether it may lie outside `folder`. Raises ValueError, in one line, when there
         is nothing to read or it is not a history.
         """
-        numbers, rows = _rows(read_lines(beside(folder, file, anywhere), LARGEST_FILE))
+        path = beside(folder, file, anywhere)
+        form = FORMATS.get(path.suffix.lower())
+        return cls._from_table(path) if form is None else cls._from_trace(path, form)
+
+    @classmethod
+    def _from_trace(cls, path: Path, form: str) -> "History":
+        """Read the one trace of a file: its samples as they are, the first at t = 0."""
+        content = read_bytes(path, LARGEST_FILE, TRACE)
+        import obspy
+
+        try:
+            with catch_warnings():  # of how SAC rounds its steps
+                simplefilter("ignore")
+                traces = obspy.read(io.BytesIO(content), format=form)
+        except Exception:  # of a dozen kinds, for a file that is no such one
+            raise ValueError(f"cannot be read as {form}") from None
+        if len(traces) != 1:
+            raise ValueError(f"must hold one trace without gaps, holds {len(traces)}")
+        trace = traces[0]
+        stress = np.asarray(trace.data, dtype=float)
+        if stress.size < 2:
+            raise ValueError("must hold at least two samples")
+        if not (np.abs(stress) <= LARGEST).all():
+            raise ValueError("must hold finite numbers up to 1e30")
+        return cls(trace.stats.delta * np.arange(stress.size), stress)
+
+    @classmethod
+    def _from_table(cls, path: Path) -> "History":
+        """Read two columns; text before the numbers is a header, # a comment."""
+        numbers, rows = _rows(read_lines(path, LARGEST_FILE))
         if len(rows) < 2:
             raise ValueError("must hold at least two rows of time and load")
         wrong = ~(np.abs(rows) <= LARGEST).all(axis=1)

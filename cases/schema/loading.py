@@ -9,7 +9,8 @@ from cases.schema.values import Direction, Offset, Positive, contradiction, is_e
 
 
 class Load(Pulse):
-    """What acts on the loaded end: the end stress F/A, or the prescribed motion of a fixed start.
+    """What acts on the loaded end: the end stress F/A, the prescribed motion of a fixed start, or
+    the wave that comes up to a quiet start from the rock behind it.
 
     The force acts along `direction` on the start face, `at` (x, z) from its centre; with `arm` it
     is a pure couple A p arm about `direction` instead.
@@ -23,7 +24,7 @@ class Load(Pulse):
     def _one_lever(self) -> "Load":
         if self.arm is not None and self.is_eccentric:
             raise contradiction("load.arm", self.arm, "makes a couple, which has no load.at")
-        if self.shakes_base:
+        if self.is_motion:
             for key, value in (("at", self.at if self.is_eccentric else None), ("arm", self.arm)):
                 if value is not None:
                     raise contradiction(
@@ -41,8 +42,8 @@ class Load(Pulse):
         return 2.0 ** frexp(self.amplitude)[1] if is_extreme(self.amplitude) else 1.0
 
     @property
-    def shakes_base(self) -> bool:
-        """Whether the load is the motion of the start rather than a stress on it."""
+    def is_motion(self) -> bool:
+        """Whether the load is the motion of a base rather than a stress."""
         return self.quantity != "stress"
 
     @property

@@ -65,6 +65,19 @@ class RockMass(Table):
         return (*self.waves, *self.loads)
 
     @property
+    def bases(self) -> list[PlaneLoad]:
+        """The loads that are the motion of a fixed side."""
+        return [one for one in self.loads if self._shakes(one)]
+
+    @property
+    def pushes(self) -> list[PlaneLoad]:
+        """The loads that are forces on the rock, those of compliant bases among them."""
+        return [one for one in self.loads if not self._shakes(one)]
+
+    def _shakes(self, load: PlaneLoad) -> bool:
+        return load.kind == "base" and getattr(self.boundaries, load.side or "") == "fixed"
+
+    @property
     def interval(self) -> float:
         """Time between samples, s."""
         period = shortest_period(self.pulses)

@@ -107,9 +107,9 @@ def _check_side(table: str, load: PlaneLoad, scene: RockMass, outline: Outline) 
     if load.side not in outline.normals():
         known = ", ".join(outline.normals())
         raise contradiction(key, load.side, f"must be a side of this domain, which has {known}")
-    if (held == "fixed") != (load.kind == "base") or held == "periodic":
-        wanted = "'fixed'" if load.kind == "base" else "'free' or 'quiet'"
-        allowed = f"needs boundaries.{load.side} = {wanted}, not '{held}'"
+    wanted = ("fixed", "quiet") if load.kind == "base" else ("free", "quiet")
+    if held not in wanted:
+        allowed = f"needs boundaries.{load.side} = '{wanted[0]}' or '{wanted[1]}', not '{held}'"
         raise contradiction(key, load.side, allowed)
 
 

@@ -91,6 +91,11 @@ class Scene(Table):
         return self._where or self.title
 
     @property
+    def shakes_base(self) -> bool:
+        """Whether the load is the motion of a rigid base, which a fixed start stands on."""
+        return self.load.is_motion and self.ends.start == "fixed"
+
+    @property
     def interval(self) -> float:
         """Time between samples, s."""
         period = shortest_period(self.pulses)

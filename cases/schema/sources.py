@@ -34,14 +34,16 @@ class Wave(Pulse):
 
 
 class PlaneLoad(Pulse):
-    """A pressure on an opening or a side, a force at a point, or the motion of a fixed side."""
+    """A pressure on an opening or a side, a force at a point, the motion of a fixed side, or what
+    comes up to a quiet side from the rock behind it."""
 
     file_key: ClassVar[str] = "loads.file"
 
     amplitude: Number  #: Pa, N/m, m/s or m/s2 by `quantity`; a factor on the history for "table"
     #: stress of a pressure, force of a force, velocity or acceleration of a base
     quantity: Literal["stress", "force", "velocity", "acceleration"] = "stress"  # type: ignore[assignment]
-    #: base: the motion of a side that is fixed
+    #: base: the motion of a side that is fixed; where it is quiet, that of the wave that enters, by
+    #: 2 rho c times its velocity
     kind: Literal["pressure", "force", "base"]
     side: Side | None = None  #: that a pressure acts on, or that is shaken
     opening: Annotated[int, Field(ge=0)] | None = None  #: that a pressure acts in, from 0

@@ -40,8 +40,8 @@ def arrivals(scene: Scene, y: float) -> list[float]:
 
 
 def period(scene: Scene) -> float:
-    """Return the load's period, s; a quarter of the record for a load that has none."""
-    return scene.load.period or scene.time.duration / 4
+    """Return the load's time scale, s; a quarter of the record for a load that has none."""
+    return scene.load.time_scale or scene.time.duration / 4
 
 
 def span(waveform: pd.Series, start: float, stop: float) -> pd.Series:

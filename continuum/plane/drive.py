@@ -12,9 +12,11 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from cases.errors import SceneError
+from cases.histories import LoadHistory
 from cases.incident import FaceTractions, FreeField, enters, tractions
-from cases.loads import LoadHistory, step_means
+from cases.loads import step_means
 from cases.material.quiet_sides import medium_impedances
+from cases.schema.pulse import shortest_period
 from continuum.plane.sides import SidePoints
 
 if TYPE_CHECKING:
@@ -125,8 +127,8 @@ class Entry:
 
     def _sampled(self, scene: RockMass) -> FaceTractions:
         """Return the tractions of a field that is worth asking once for all times."""
-        periods = [one.period for one in scene.waves if one.period]
-        apart = min(scene.interval, IN_INTERVAL * min(periods, default=self.duration))
+        period = shortest_period(scene.waves) or self.duration
+        apart = min(scene.interval, IN_INTERVAL * period)
         count = int(np.ceil(self.duration / apart)) + 8
         if 2 * count * len(self.points.x) > SAMPLES:
             allowed = (

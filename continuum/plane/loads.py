@@ -6,31 +6,40 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cases.loads import history_of
+from cases.loads import velocity_of
+from cases.material.quiet_sides import base_traction, medium_impedances
 from cases.partition.parts import covered
 from continuum.plane.drive import Push
-from continuum.plane.sides import outward
+from continuum.plane.sides import outward, points_on
 from continuum.space import compat
 from continuum.space.evaluation import cells_at, on_freedoms, places_in
 
 if TYPE_CHECKING:
-    from cases.schema.domain import Domain
     from cases.schema.rock_mass import RockMass
     from cases.schema.sources import PlaneLoad
     from continuum.space.body import Body
 
 
 def pushes(scene: RockMass, body: Body) -> list[Push]:
-    """Return the loads of a scene, but for a shaken base."""
-    of_kind = {"pressure": _pressure, "force": _force}
+    """Return the loads of a scene that are forces."""
+    of_kind = {"pressure": _pressure, "force": _force, "base": _base}
     return [
-        Push(of_kind[one.kind](body, one, scene.domain), history_of(one, one.amplitude))
-        for one in scene.loads
-        if one.kind != "base"
+        Push(of_kind[one.kind](body, one, scene), velocity_of(one, one.amplitude))
+        for one in scene.pushes
     ]
 
 
-def _force(body: Body, load: PlaneLoad, domain: Domain) -> np.ndarray:
+def _base(body: Body, load: PlaneLoad, scene: RockMass) -> np.ndarray:
+    """Return the share of every freedom in the force on a compliant base for each m/s."""
+    assert load.side is not None and load.direction is not None
+    points, share = points_on(body, [load.side]), np.zeros(body.mass.size)
+    impedance = medium_impedances(scene, points.normal)
+    force = points.weight[:, None] * base_traction(points.normal, impedance, load.direction)
+    np.add.at(share, body.freedom(points.node[:, None], np.arange(2)), force)
+    return share
+
+
+def _force(body: Body, load: PlaneLoad, scene: RockMass) -> np.ndarray:
     """Return the share of every freedom in a force of 1 N/m at a point."""
     assert load.at is not None and load.direction is not None
     _, cell = cells_at(body, np.array([load.at]))
@@ -39,11 +48,11 @@ def _force(body: Body, load: PlaneLoad, domain: Domain) -> np.ndarray:
     return on_freedoms(body, cell, weights)[0]
 
 
-def _pressure(body: Body, load: PlaneLoad, domain: Domain) -> np.ndarray:
+def _pressure(body: Body, load: PlaneLoad, scene: RockMass) -> np.ndarray:
     """Return the share of every freedom in a pressure of 1 Pa on a side or in an opening."""
     name = load.side or f"opening {load.opening}"
     side = body.mesh.sides[name]
-    low, high = covered(domain, load, side.corners[:, 0], side.corners[:, 1]).T
+    low, high = covered(scene.domain, load, side.corners[:, 0], side.corners[:, 1]).T
     at, weight = compat.quadrature("interval", 2 * body.order)
     place = low[:, None] + (high - low)[:, None] * at[:, 0]
     along = side.corners[:, 1] - side.corners[:, 0]

@@ -108,7 +108,7 @@ def fixed_sides(scene: RockMass, body: Body, time: Clock | None = None) -> Fixed
     names = sides_that_are(scene, body, "fixed")
     if not names:
         return None
-    base = next((one for one in scene.loads if one.kind == "base"), None)
+    base = next(iter(scene.bases), None)
     direction = np.full(body.mass.size, np.nan)
     for name in names:
         nodes = points_on(body, [name]).node

@@ -34,7 +34,7 @@ def element_sizes(scene: RockMass) -> dict[str, float]:
     numerics = scene.numerics.continuum
     if numerics.size is not None:
         return dict.fromkeys(("quadrilateral", "triangle"), numerics.size)
-    sharp = any(one.shape != "ricker" for one in scene.pulses)
+    sharp = any(one.shape not in ("ricker", "gabor") for one in scene.pulses)
     many = IN_PERIOD[numerics.order] * (OF_KINKS if sharp else 1.0)
     size = slowest(scene) * resolved_period(scene) / many
     return {"quadrilateral": size, "triangle": size / OF_TRIANGLES}

@@ -15,10 +15,9 @@ NONLINEAR = ("friction_angle", "cohesion", "tensile_strength", "damping_ratio")
 
 def applies(scene: RockMass, model: str = "jointed") -> str:
     """Return "" where this model can simulate the scene, else the reason why not."""
-    bases = [one for one in scene.loads if one.kind == "base"]
     reasons = [
         (scene.damping.local is not None, "the continuum has no local damping"),
-        (len(bases) > 1, "one base alone can be shaken"),
+        (len(scene.bases) > 1, "one base alone can be shaken"),
     ]
     if model == "equivalent":
         reasons += _beyond_medium(scene)

@@ -95,13 +95,13 @@ def build_model(scene: Scene, p: Properties, time: Clock) -> Model:
     """Return the constants of a scene for a given clock."""
     along, count = scene.load.direction[1], time.steps + time.stride
     load = base = np.zeros(0)
-    if scene.load.shakes_base:
+    if scene.shakes_base:
         base = np.append(0.0, -along * base_steps(scene, time.dt, count))
     else:
         load = along * p.area * step_means(load_history(scene), time.dt, count)
     model = unloaded(scene, p, time.dt, (scene.ends.start, scene.ends.end))
     return model._replace(
-        effects=model.effects._replace(base=scene.load.shakes_base),
+        effects=model.effects._replace(base=scene.shakes_base),
         load=np.trim_zeros(load, "b"),
         base=np.trim_zeros(base, "b"),
     )

@@ -22,7 +22,7 @@ def shaking(scene: RockMass, walls: tuple[str, ...], dt: float) -> Shaking | Non
     A velocity is the mean over the step, so that displacements are exact; an acceleration gives
     the velocity at the half step, as leapfrog does.
     """
-    bases = [one for one in scene.loads if one.kind == "base"]
+    bases = scene.bases
     if not bases:
         return None
 

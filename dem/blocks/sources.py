@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cases.loads import history_of
+from cases.loads import velocity_of
+from cases.material.quiet_sides import base_traction, impedances
 from cases.partition.blocks import Partition
 from cases.partition.locate import block_at
 from cases.partition.parts import loaded_part
@@ -14,7 +15,7 @@ from dem.blocks.edges import gathered, on_rows, points_on, resultant
 from dem.blocks.waves import Delayed, Sampled
 
 if TYPE_CHECKING:
-    from cases.loads import LoadHistory
+    from cases.histories import LoadHistory
     from cases.sampling import Clock
     from cases.schema.plane import StressInPlane
     from cases.schema.rock_mass import RockMass
@@ -127,12 +128,17 @@ def on_sides(partition: Partition, sides: list[str]) -> np.ndarray:
 
 
 def load_pattern(scene: RockMass, partition: Partition, load: PlaneLoad) -> Pattern:
-    """Return a pressure or a force of a scene."""
-    history = history_of(load, load.amplitude)
+    """Return a pressure, a force or a compliant base of a scene."""
+    history = velocity_of(load, load.amplitude)
     if load.kind == "force":
         at = np.array([load.at])
         block = block_at(partition, at)
         return Pattern(block, at - partition.centroid[block], np.array([load.direction]), history)
     chosen, part = loaded_part(scene, partition, load)
     points = points_on(partition, partition.boundary, chosen, part)
-    return Pattern(points.block, points.arm, -points.length[:, None] * points.normal, history)
+    if load.kind == "base":
+        assert load.direction is not None
+        traction = base_traction(points.normal, impedances(scene, points.normal), load.direction)
+    else:
+        traction = -points.normal
+    return Pattern(points.block, points.arm, points.length[:, None] * traction, history)

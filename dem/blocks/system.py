@@ -114,7 +114,7 @@ def held_blocks(
         on_sides(partition, [name for name, kind in held.items() if kind == "quiet"]),
     )
     impedance = impedances(scene, quiet.normal)
-    patterns = [load_pattern(scene, partition, x) for x in scene.loads if x.kind != "base"]
+    patterns = [load_pattern(scene, partition, x) for x in scene.pushes]
     if scene.prestress is not None:
         open_sides = [n for n in partition.sides if held.get(n, "free") in ("free", "quiet")]
         patterns.append(reactions(partition, open_sides, scene.prestress))

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cases.histories import LoadHistory, Step
 from cases.incident import FaceTractions, FreeField, IncidentField, enters, tractions
-from cases.loads import LoadHistory, Step
+from cases.schema.pulse import shortest_period
 from dem.blocks.edges import EdgePoints, gathered, on_rows, resultant
 
 if TYPE_CHECKING:
@@ -101,7 +102,7 @@ def incoming(
             (shape,) = sums(unit, np.array([inf]))
             found.append(Delayed(row, shape, wave.pulse, wave.lateness(points.place)))
         return found
-    period = min((one.period for one in scene.waves if one.period), default=inf)
+    period = shortest_period(scene.waves) or inf
     interval = min(time.dt * time.stride, period / IN_A_PERIOD)
     times = interval * np.arange(int(np.ceil(time.dt * time.steps / interval)) + 4)
     return [Sampled(times, on_rows(sums(field, times), row, len(rows)))]

@@ -124,7 +124,7 @@ def build_ends(scene: Scene, p: Properties, block: Block) -> tuple[bool, bool, n
     that they carry where they give way; None where nothing does and no ledger asks for them."""
     size = 3 if scene.motion.rotation == "none" else 6
     springs, base = end_springs(p, face_of(contact_points(scene)), size), np.zeros(size)
-    base[:3] = scene.load.direction if scene.load.shakes_base else 0.0
+    base[:3] = scene.load.direction if scene.shakes_base else 0.0
     kinds, found = (scene.ends.start, scene.ends.end), []
     for kind, side, moved in zip(kinds, (1.0, -1.0), (base, 0.0 * base), strict=True):
         steady = np.zeros(size)
@@ -138,7 +138,7 @@ def build_ends(scene: Scene, p: Properties, block: Block) -> tuple[bool, bool, n
 def build_load(scene: Scene, p: Properties, time: Clock) -> Load:
     """Return what acts on the start face."""
     steps, size = time.steps + time.stride, 3 if scene.motion.rotation == "none" else 6
-    if scene.load.shakes_base:
+    if scene.shakes_base:
         base = np.append(0.0, base_steps(scene, time.dt, steps + 1))
         return Load(np.zeros(0), np.zeros(size), base)
     means = step_means(load_history(scene), time.dt, steps)

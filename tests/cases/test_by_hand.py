@@ -12,7 +12,8 @@ import pytest
 
 from cases import SceneError
 from cases.face import face_points
-from cases.loads import Recorded, Ricker, Sine, Step, base_steps, load_history, step_means
+from cases.histories import Recorded, Ricker, Sine, Step
+from cases.loads import base_steps, load_history, step_means
 from cases.material.calibrate import calibrate
 from cases.material.elastic import modulus_from_speeds, speeds_from_modulus
 from cases.sampling import clock, interpolation, sample_times
@@ -355,7 +356,7 @@ class TestLoads:
         assert load_history(scene(load=sine | {"cycles": 3})) == Sine(2.0, 0.1, 3)
         assert load_history(scene(load=sine | {"shape": "ricker"})) == Ricker(2.0, 0.1)
         (tmp_path / "a.csv").write_text("# a blast\ntime,load\n0.5,4\n1,6\n")
-        history = History.from_csv(tmp_path, "a.csv")
+        history = History.read(tmp_path, "a.csv")
         assert history.time.tolist() == [0.5, 1.0] and history.stress.tolist() == [4.0, 6.0]
 
     def test_extreme_loads_are_scaled_by_a_power_of_two(self):

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 import cases
-from cases.loads import Recorded, Ricker, Sine, Step, base_steps, load_history, step_means
+from cases.histories import Gabor, Integrated, Recorded, Ricker, Sine, Step, periodic, triangle
+from cases.loads import base_steps, load_history, step_means
 from cases.schema.history import History
 
 amplitudes = st.floats(-1e7, 1e7).filter(lambda a: abs(a) > 1.0)
@@ -27,7 +28,10 @@ def histories(draw):
 
 loads = st.one_of(
     st.builds(Sine, amplitudes, periods, st.integers(1, 5)),
+    st.builds(Sine, amplitudes, periods, st.just(0.5)),
     st.builds(Ricker, amplitudes, periods),
+    st.builds(Gabor, amplitudes, periods, st.integers(1, 5)),
+    st.builds(triangle, amplitudes, st.just(0.0) | periods, periods),
     st.builds(Step, amplitudes),
     histories(),
 )
@@ -35,8 +39,7 @@ loads = st.one_of(
 
 def span(load) -> tuple[float, float]:
     """Return an interval that holds all that happens in a load."""
-    long = {"Sine": lambda: load.end, "Ricker": lambda: 4 * load.period, "Step": lambda: 1.0}
-    end = long.get(type(load).__name__, lambda: load.breaks[-1])()
+    end = 1.25 * load.end or 1.0
     return load.breaks[0] - 0.1 * end, end + 0.1 * abs(end)
 
 
@@ -49,6 +52,50 @@ def test_impulse_is_the_integral_of_value(load, a, b):
     accuracy = {"epsabs": 1e-9 * scale, "epsrel": 1e-9, "limit": 200}
     pieces = [quad(load.value, *ends, **accuracy)[0] for ends in pairwise(kinks)]
     assert load.impulse(b) - load.impulse(a) == pytest.approx(sum(pieces), abs=1e-7 * scale)
+
+
+@given(load=loads, a=st.floats(0, 1), b=st.floats(0, 1))
+def test_an_integrated_history_holds_the_integral_of_the_impulse(load, a, b):
+    velocity = Integrated(load)
+    first, last = span(load)
+    a, b = sorted(first + (last - first) * np.array([a, b]))
+    kinks = [a, *(t for t in load.breaks if a < t < b), b]
+    scale = np.abs(load.value(np.linspace(first, last, 400))).max() * (last - first) ** 2
+    accuracy = {"epsabs": 1e-9 * scale, "epsrel": 1e-9, "limit": 200}
+    pieces = [quad(velocity.value, *ends, **accuracy)[0] for ends in pairwise(kinks)]
+    assert velocity.impulse(b) - velocity.impulse(a) == pytest.approx(sum(pieces), abs=1e-7 * scale)
+
+
+@pytest.mark.parametrize("load", [Sine(2.0, 0.3, 0.5), Ricker(2.0, 0.3), Gabor(2.0, 0.3, 4)])
+def test_rate_is_the_slope_of_value(load):
+    t, h = np.linspace(0.01, 0.14, 30), 1e-6
+    slope = (load.value(t + h) - load.value(t - h)) / (2 * h)
+    assert load.rate(t) == pytest.approx(slope, abs=1e-7 * np.abs(slope).max())
+
+
+def test_a_half_sine_pushes_by_twice_its_amplitude_over_omega():
+    load = periodic("half-sine", 3.0, 0.01, None)
+    assert load.impulse(1.0) == pytest.approx(2 * 3.0 * 0.01 / (2 * np.pi), rel=1e-14)
+    assert not load.value(np.array([-1e-9, 0.005 + 1e-9])).any()
+
+
+def test_a_triangle_rises_and_decays_along_straight_lines():
+    load = triangle(6.0, 0.001, 0.003)
+    assert load.value(np.array([0.0005, 0.001, 0.002, 0.0035])) == pytest.approx([3, 6, 4, 1])
+    assert load.impulse(np.array(1.0)) == pytest.approx(6.0 * 0.004 / 2, rel=1e-14)
+    assert triangle(6.0, 0.0, 0.003).value(np.array([0.0, 0.0015])) == pytest.approx([6, 3])
+
+
+@pytest.mark.parametrize("cycles", [1, 3, 40])
+def test_a_gabor_pulse_peaks_in_the_middle_of_its_envelope(cycles):
+    """Its whole impulse is p0 b sqrt(2 pi) exp(-(2 pi b / T)^2 / 2)."""
+    load = Gabor(5.0, 0.02, cycles)
+    whole = (
+        5.0 * load.width * np.sqrt(2 * np.pi) * np.exp(-((2 * np.pi * load.width / 0.02) ** 2) / 2)
+    )
+    assert load.value(np.array(load.centre)) == 5.0
+    assert np.abs(load.value(np.array([1e-12, load.end]))).max() < 2e-9 * 5.0
+    assert load.impulse(np.array(1e3)) == pytest.approx(whole, abs=2e-8 * 5.0 * load.width)
 
 
 @given(load=loads)
@@ -109,7 +156,7 @@ def test_recorded_history_scaled_by_amplitude(tmp_path, paper_folder):
 def test_first_row_of_a_history_is_not_taken_for_a_header(tmp_path, mark):
     path = tmp_path / "blast.csv"
     path.write_text(f"{mark}0,7\n1,8\n", encoding="utf-8")
-    history = History.from_csv(tmp_path, "blast.csv")
+    history = History.read(tmp_path, "blast.csv")
     assert history.stress.tolist() == [7, 8]
 
 

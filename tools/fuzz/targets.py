@@ -22,7 +22,8 @@ import numpy as np
 import cases
 from cases.effects import active_effects, is_spatial
 from cases.errors import SceneError, UnstableError
-from cases.loads import Recorded, load_history, step_means
+from cases.histories import Recorded
+from cases.loads import load_history, step_means
 from cases.material.calibrate import calibrate
 from cases.partition.scene import partition_bytes, partition_of
 from cases.schema.history import History

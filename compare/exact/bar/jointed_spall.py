@@ -21,7 +21,7 @@ def jointed_spall(scene: Scene) -> Spall | None:
     p, times = calibrate(scene), sample_times(scene)
     if p.tensile_strength is None:
         raise ValueError("no joint has a tensile strength")
-    load, period = load_history(scene), scene.load.period
+    load, period = load_history(scene), scene.load.time_scale
     stress, _, _ = response(bar(scene), load, times, p.joint_y.tolist(), [], period)
     fails = stress <= -p.tensile_strength[:, None]
     if not fails.any():

@@ -20,7 +20,8 @@ from math import pi
 import numpy as np
 import xarray as xr
 
-from cases.loads import Sine, load_history
+from cases.histories import Sine
+from cases.loads import load_history
 from cases.material.calibrate import calibrate
 from cases.sampling import sample_times
 from cases.schema.scene import Scene

@@ -39,7 +39,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from cases.loads import LoadHistory, Recorded, Step, load_history
+from cases.histories import LoadHistory, Recorded, Step
+from cases.loads import load_history
 from cases.sampling import sample_times
 from cases.schema.scene import Scene
 from cases.size import require
@@ -109,7 +110,7 @@ def solved(scene: Scene, name: str, bar: Bar) -> xr.Dataset:
     """Return stress, velocity and displacement of a bar under the scene's load."""
     times, record = sample_times(scene), scene.record
     places = record.stress, record.velocity
-    found, bounds = bounded(bar, load_history(scene), times, *places, scene.load.period)
+    found, bounds = bounded(bar, load_history(scene), times, *places, scene.load.time_scale)
     found[0] = found[0] + static_stress(scene)
     errors = dict(zip(("stress", "velocity", "displacement"), bounds, strict=True))
     return dataset(scene, name, times, *found, errors=errors)

@@ -19,7 +19,8 @@ from math import cos, pi, sin, sqrt
 import numpy as np
 import xarray as xr
 
-from cases.loads import Sine, load_history
+from cases.histories import Sine
+from cases.loads import load_history
 from cases.material.calibrate import calibrate
 from cases.sampling import sample_times
 from cases.schema.scene import Scene

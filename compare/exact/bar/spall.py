@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.loads import LoadHistory, Recorded, Step
+from cases.histories import LoadHistory, Recorded, Step
 from cases.material.calibrate import calibrate
 from cases.sampling import sample_times
 from cases.schema.scene import Scene

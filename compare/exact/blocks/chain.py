@@ -102,8 +102,8 @@ def chain(scene: Scene) -> Chain:
         prestress=prestress,
         gravity=gravity.acceleration * gravity.direction[1] if gravity else 0.0,
         mass_damping=p.mass_damping or 0.0,
-        shaken=scene.load.shakes_base,
-        gain=scene.load.direction[1] * (1.0 if scene.load.shakes_base else p.area),
+        shaken=scene.shakes_base,
+        gain=scene.load.direction[1] * (1.0 if scene.shakes_base else p.area),
     )
 
 

@@ -26,7 +26,7 @@ from compare.exact.drive import Signal
 ORDER = 24
 STEP = 2.0  # over the norm of A: the last term is 2^24 / 24! = 3e-17
 LOAD_STEP = 1 / 24  # of the load's period: its interpolation is off by less than 1e-15
-SETTLED = 4.0  # periods, after which a Ricker wavelet is below 1e-26
+SETTLED = 4 / 3  # of the time after which 1e-8 of a wavelet is left: 1e-24 of it
 LEAST = 1e-6  # of a step: how soon a joint may change again that has changed back and forth at once
 
 _NODES = (1 + chebpts1(10)) / 2
@@ -105,7 +105,7 @@ class _Walk:
         self.longest = STEP / _norm(chain) * (1.0 if noise == 0 else 0.77)
         self.pulse = (0.0, 0.0)
         if period is not None:
-            self.pulse = (period * LOAD_STEP, max(load.breaks[-1], SETTLED * period))
+            self.pulse = (period * LOAD_STEP, SETTLED * load.end)
         elastic = replace(chain, tension=np.ones_like(chain.tension))
         forces, _ = contact_forces(elastic, rest)
         index = np.flatnonzero(~chain.tension)

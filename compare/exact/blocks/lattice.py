@@ -19,7 +19,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from cases.loads import Step
+from cases.histories import Step
 from cases.sampling import sample_times
 from cases.schema.scene import Scene
 from compare.exact.blocks.chain import Chain, chain, rates, receivers

@@ -63,7 +63,7 @@ def solve(scene: Scene) -> xr.Dataset:
     rest, driven, period = (
         at_rest(scene, model),
         signal.value(times) * model.gain,
-        scene.load.period,
+        scene.load.time_scale,
     )
     own, other = (integrate(model, signal, times, rest, period, noise) for noise in (0.0, NOISE))
     found, twin = (

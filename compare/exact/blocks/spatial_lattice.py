@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from cases.effects import is_spatial
-from cases.loads import Step
+from cases.histories import Step
 from cases.material.calibrate import calibrate
 from cases.sampling import interpolation, sample_times
 from cases.schema.scene import Scene
@@ -84,7 +84,7 @@ def solve(scene: Scene) -> xr.Dataset:
 def drive_vector(scene: Scene) -> np.ndarray:
     """Return the force and moment [6] at the start face's centre by an end stress of 1 Pa."""
     load, vector = scene.load, np.zeros(6)
-    if load.shakes_base:
+    if scene.shakes_base:
         return vector
     if load.arm:
         vector[3:] = load.arm * np.array(load.direction)
@@ -105,7 +105,7 @@ def falling(scene: Scene) -> np.ndarray:
 def _base(scene: Scene) -> np.ndarray | None:
     """Return the velocity [6] of the start's held face by a unit drive, None where it stands."""
     load = scene.load
-    return np.array([*load.direction, 0.0, 0.0, 0.0]) if load.shakes_base else None
+    return np.array([*load.direction, 0.0, 0.0, 0.0]) if scene.shakes_base else None
 
 
 def _receivers(scene: Scene, parts: SpatialSystem, c: int, times: np.ndarray) -> list[np.ndarray]:

@@ -19,7 +19,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from cases.loads import LoadHistory, load_history
+from cases.histories import LoadHistory
+from cases.loads import load_history
 from cases.material.calibrate import Properties, calibrate
 from cases.sampling import sample_times
 from cases.schema.scene import Scene

@@ -24,7 +24,8 @@ import numpy as np
 import xarray as xr
 from numpy.polynomial.legendre import leggauss
 
-from cases.loads import LoadHistory, load_history
+from cases.histories import LoadHistory
+from cases.loads import load_history
 from cases.material.calibrate import Properties, calibrate
 from cases.material.strength import UNLIMITED
 from cases.sampling import sample_times

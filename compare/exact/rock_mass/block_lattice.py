@@ -23,6 +23,7 @@ from cases.partition.locate import block_at
 from cases.partition.periodic import PAIRS, periodic_contacts
 from cases.partition.scene import block_count, partition_of
 from cases.sampling import sample_times
+from cases.schema.pulse import shortest_period
 from compare.exact.linear import bound
 from compare.exact.plane.rigid_motion import (
     RigidSystem,
@@ -62,7 +63,7 @@ def applies(scene: RockMass) -> Answer:
         (scene.numerics.dem.block is not None, "intact rock is cut into blocks, too"),
         (not any(one.spacing for one in sets), "no joints with a spacing make blocks"),
         (any(one.damping_ratio for one in sets), "the joints are damped"),
-        (any(one.period is None for one in scene.waves), "a wave has no period"),
+        (any(one.time_scale is None for one in scene.waves), "a wave has no period"),
         (not scene.record.points, "no point records the motion"),
     ]
     reason = beyond_linear_rock(scene) or next((why for there, why in reasons if there), None)
@@ -83,7 +84,8 @@ def solve(scene: RockMass) -> xr.Dataset:
         _stiffness(scene, partition),
         viscosity_of(quiet, impedance, partition.count),
     )
-    period = min(one.period for one in scene.waves if one.period)
+    period = shortest_period(scene.waves)
+    assert period is not None
     stride = 2 * int(np.ceil(scene.interval * IN_A_PERIOD / period / 2))
     fine = scene.interval / stride * np.arange(stride * (len(times) - 1) + 1)
     field = field_of(scene)

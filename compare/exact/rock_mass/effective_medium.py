@@ -36,7 +36,7 @@ from results.plane import plane_fields
 if TYPE_CHECKING:
     import xarray as xr
 
-    from cases.loads import LoadHistory
+    from cases.histories import LoadHistory
     from cases.schema.rock_mass import RockMass
     from cases.schema.sources import Wave
 

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cases.loads import Recorded, Ricker, Sine, Step, history_of
+from cases.histories import Gabor, Recorded, Ricker, Sine, Step
+from cases.loads import history_of
 from cases.material.rock import elastic_rock
 from cases.partition.outline import outline_of
 from cases.sampling import sample_times
@@ -23,10 +24,11 @@ from results.plane import plane_fields
 if TYPE_CHECKING:
     import xarray as xr
 
-    from cases.loads import LoadHistory
+    from cases.histories import Shape
     from cases.schema.rock_mass import RockMass
 
-PARTS = 8  #: of a Ricker pulse, smooth enough for the points of one integral
+#: Of a Ricker wavelet: each is smooth enough for the points of one integral.
+PARTS = 8
 
 
 def applies(scene: RockMass) -> Answer:
@@ -97,22 +99,23 @@ def _distances(scene: RockMass) -> np.ndarray:
     return np.array([np.hypot(*(points - np.array(one.at)).T) for one in scene.loads])
 
 
-def _histories(scene: RockMass) -> list[LoadHistory]:
+def _histories(scene: RockMass) -> list[Shape]:
     return [history_of(one, one.amplitude) for one in scene.loads]
 
 
-def _jumps(history: LoadHistory) -> bool:
+def _jumps(history: Shape) -> bool:
     recorded = isinstance(history, Recorded) and bool(history.stress[[0, -1]].any())
     return recorded or isinstance(history, Step)
 
 
-def _breaks(history: Sine | Ricker | Recorded) -> list[float]:
+def _breaks(history: Sine | Ricker | Gabor | Recorded) -> list[float]:
     """Return times between which a history is smooth, half a cycle or less."""
-    if isinstance(history, Ricker):
-        return [*np.linspace(0, 3 * history.period, PARTS + 1), np.inf]
     if isinstance(history, Recorded):
         return history.breaks
-    return [*np.linspace(0, history.end, 2 * history.cycles + 1)]
+    if isinstance(history, Sine):
+        return [*np.linspace(0, history.end, round(2 * history.cycles) + 1)]
+    parts = round(PARTS * history.end / (3 * history.period))
+    return [*np.linspace(0, history.end, parts + 1), np.inf]
 
 
 SOLVER = Solver(

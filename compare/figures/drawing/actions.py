@@ -21,7 +21,7 @@ def draw_load(ax: Axes, scene: Scene, place: Placement) -> None:
     if not load.amplitude:
         return
     across, along, depth = load.direction
-    if load.shakes_base:
+    if scene.shakes_base:
         x, reach = start - 0.35, 0.2
         ends = [(x + s * reach * along, place.middle + s * reach * across) for s in (-1, 1)]
         symbols.arrow(ax, ends[0], ends[1], style="<|-|>")

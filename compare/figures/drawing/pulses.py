@@ -36,9 +36,6 @@ def pulse_curve(pulse: Pulse, duration: float) -> tuple[np.ndarray, np.ndarray]:
     """
     scale = getattr(pulse, "scale", 1.0)
     history = history_of(pulse, pulse.amplitude / scale)
-    last = max(history.breaks) if len(history.breaks) > 1 else 0.0
-    if pulse.shape == "ricker" and pulse.period:
-        last = 3 * pulse.period
-    end = min(duration, 1.25 * last) if last else duration
+    end = min(duration, 1.25 * history.end or duration)
     time = np.linspace(0, end, SAMPLES)
     return time, scale * np.asarray(history.value(time))

@@ -65,6 +65,6 @@ def _draw_load(ax: Axes, scene: Scene) -> None:
     if load.arm is not None:
         symbols.couple(ax, MIDDLE, 0.22)
         return
-    at = MIDDLE if load.shakes_base else _at(scene, *load.at)
+    at = MIDDLE if load.is_motion else _at(scene, *load.at)
     # The tail where nothing points at the reader, else the tip.
     symbols.along_or_across(ax, at, (depth, across), along, 0.5)

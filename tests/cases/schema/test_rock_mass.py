@@ -258,7 +258,7 @@ MISTAKES = {
     "base that is not held": (
         f"{PRESSURE}\n{SHAPE}",
         'kind = "base"\nside = "top"\nquantity = "velocity"\ndirection = [1.0, 0.0]\n' + SHAPE,
-        ["loads[0].side = 'top'", "needs boundaries.top = 'fixed', not 'free'"],
+        ["loads[0].side = 'top'", "needs boundaries.top = 'fixed' or 'quiet', not 'free'"],
     ),
     "pressure on an outline that is none": (
         "opening = 0",

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cases import Scene
-from cases.loads import Recorded, Sine, Step
+from cases.histories import Recorded, Sine, Step
 from cases.material.calibrate import calibrate
 from compare.exact.bar import equivalent_bar, images, jointed_bar, kelvin_voigt, laplace
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.loads import Recorded
+from cases.histories import Recorded
 from cases.material.calibrate import calibrate
 from compare.exact.blocks import lattice, no_tension
 from compare.exact.blocks.chain import chain

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.signal import lsim
 
-from cases.loads import Recorded, Step
+from cases.histories import Recorded, Step
 from compare.exact.linear import response
 
 A = np.array([[0.0, 3.0], [-3.0, -0.4]])

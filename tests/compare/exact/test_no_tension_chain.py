@@ -5,7 +5,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from cases.loads import Recorded, Sine, load_history
+from cases.histories import Recorded, Sine
+from cases.loads import load_history
 from cases.material.calibrate import calibrate
 from cases.sampling import sample_times
 from compare.exact.blocks import lattice, no_tension

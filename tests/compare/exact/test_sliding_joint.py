@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
-from cases.loads import Recorded, Ricker, Sine, Step, load_history
+from cases.histories import Recorded, Ricker, Sine, Step
+from cases.loads import load_history
 from cases.material.calibrate import calibrate
 from compare.exact.bar import images
 from compare.exact.joint import one_joint, sliding_joint

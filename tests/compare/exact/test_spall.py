@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import fsolve
 
-from cases.loads import Recorded, Ricker, Sine, Step
+from cases.histories import Recorded, Ricker, Sine, Step
 from compare.exact.bar import images
 from compare.exact.bar.spall import lattice_spall, spall
 from compare.exact.blocks import lattice

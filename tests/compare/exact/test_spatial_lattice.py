@@ -81,7 +81,7 @@ class Points:
             push(j + 1, -d / 2, -f)
             push(j, d / 2, f)
         f = self.load.value(t)
-        if load.shakes_base:
+        if load.is_motion:
             wall[:3] = f * np.array(load.direction)
         elif load.arm:
             force[0, 3:] += 0.25 * f * load.arm * np.array(load.direction)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.loads import Ricker
+from cases.histories import Ricker
 from cases.material.contact_points import contact_points
 from cases.material.rock_mass import Stiffness
 from cases.partition.cut import cut

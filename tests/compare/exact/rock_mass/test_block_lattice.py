@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.loads import Ricker
+from cases.histories import Ricker
 from compare.engines import applies, solve
 from compare.exact.linear import response
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.loads import Recorded, Ricker, Sine
+from cases.histories import Recorded, Ricker, Sine
 from compare.engines import applies, solve
 
 A, B = np.sqrt(2.4e7), np.sqrt(8e6)
