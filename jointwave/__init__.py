@@ -168,10 +168,9 @@ def plan(
 
     Raises SceneError where nothing exact is known of the scene, and no run converges in reach.
     """
-    from cases.kinds import pillar_of
     from compare.experiments.planner import planner
 
-    return planner.plan(pillar_of(scene, "jointwave.plan"), misfit, seconds, progress)
+    return planner.plan(scene, misfit, seconds, progress)
 
 
 def figure(

@@ -15,13 +15,22 @@ Voigt's form in the order 11, 22, 12 or 11, 22, 33, 23, 13, 12: C takes engineer
 gamma_12 = 2 e_12, to stresses.
 """
 
-from collections.abc import Callable
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cases.material.rock import ElasticRock
+from cases.material.rock import ElasticRock, elastic_rock
+from cases.partition.joints import direction_of
 
+if TYPE_CHECKING:
+    from cases.schema import joint_set as schema
+    from cases.schema.rock_mass import RockMass
+
+DIRECTIONS = 36  # in which speeds are looked at
 PAIRS = {2: ((0, 0), (1, 1), (0, 1)), 3: ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))}
 
 
@@ -48,6 +57,27 @@ def joint_set(
     if not min(spacing, normal_stiffness, shear_stiffness) > 0:
         raise ValueError("spacing and stiffnesses of a joint set must be positive")
     return JointSet(normal, 1 / (spacing * normal_stiffness), 1 / (spacing * shear_stiffness))
+
+
+def compliant(sets: Iterable[schema.JointSet]) -> list[JointSet]:
+    """Return the sets of a scene that have a spacing; a joint alone is no medium."""
+    found = []
+    for one in sets:
+        if one.spacing:
+            assert one.normal_stiffness and one.shear_stiffness
+            x, y = direction_of(one.dip)
+            laws = one.normal_stiffness, one.shear_stiffness
+            found.append(joint_set(np.array([-y, x]), one.spacing, *laws))
+    return found
+
+
+def slowest(scene: RockMass) -> float:
+    """Return the least speed (m/s) of long waves in any direction, through joints that have a
+    spacing."""
+    angle = np.linspace(0.0, np.pi, DIRECTIONS, endpoint=False)
+    directions = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    medium = stiffness(elastic_rock(scene.rock), compliant(scene.joint_sets))
+    return float(speeds(medium, scene.rock.density, directions)[0].min())
 
 
 def compliance(rock: ElasticRock, sets: list[JointSet], dimension: int = 2) -> np.ndarray:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from cases.errors import SceneError, printable
-from cases.kinds import pillar_of
 from compare import scenes
 from compare.cli import completion
 from compare.engines import selection
@@ -19,7 +18,6 @@ from compare.scenes import find
 
 if TYPE_CHECKING:
     from cases.kinds import AnyScene
-    from cases.schema.scene import Scene
 
 app = typer.Typer(
     epilog="Start with: jointwave list, jointwave compare guo-li-2002/fig-03, jointwave report",
@@ -129,16 +127,6 @@ def load(
         found = [scenes.load_variant(path, variant, overrides)]
     warn(found, strict)
     return found
-
-
-def load_pillars(
-    scene: str, changes: list[str], variant: str | None, strict: bool, what: str
-) -> list["Scene"]:
-    """Return scenes as `load` does; raises SceneError of a rock mass.
-
-    what : the command, which takes pillars alone.
-    """
-    return [pillar_of(one, what) for one in load(scene, changes, variant, strict)]
 
 
 def warn(scenes: Sequence["AnyScene"], strict: bool = False) -> None:

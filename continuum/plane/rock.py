@@ -12,7 +12,7 @@ import numpy as np
 
 from cases.errors import SceneError
 from cases.material.dashpots import set_time_constants
-from cases.material.effective_medium import stiffness
+from cases.material.effective_medium import compliant, stiffness
 from cases.material.rock import elastic_rock
 from cases.material.strength import strength_of
 from cases.partition.scene import partition_of
@@ -20,7 +20,7 @@ from continuum.joints import interfaces
 from continuum.mesh.plane import plane_mesh
 from continuum.mesh.segments import Across, across_periodic
 from continuum.model import Interfaces
-from continuum.plane.size import compliant, element_sizes, refuse_large_mesh
+from continuum.plane.size import element_sizes, refuse_large_mesh
 from continuum.space.body import Body, build_body
 from continuum.space.elasticity import PlaneRock, Section
 from continuum.space.interface import Jumps, jumps
@@ -71,7 +71,7 @@ def discretise(scene: RockMass, model: str) -> PlaneDiscrete:
     sides = [side for side in ("left", "bottom") if getattr(scene.boundaries, side) == "periodic"]
     across = across_periodic(partition, sides)
     rock = PlaneRock(
-        stiffness(elastic_rock(scene.rock), [compliant(one) for one in sets]),
+        stiffness(elastic_rock(scene.rock), compliant(sets)),
         scene.rock.density,
         _rayleigh(scene),
     )

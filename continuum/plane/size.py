@@ -6,18 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cases.material.effective_medium import joint_set, speeds, stiffness
-from cases.material.rock import elastic_rock
-from cases.partition.joints import direction_of
+from cases.material.effective_medium import slowest
 from cases.size import COPIES, refuse_beyond_memory, samples_of
 from continuum.build import resolved_period
 from continuum.size import ENTRY, FREEDOM
 
 if TYPE_CHECKING:
-    from cases.material.effective_medium import JointSet as Compliant
     from cases.partition.blocks import Partition
     from cases.sampling import Clock
-    from cases.schema.joint_set import JointSet
     from cases.schema.rock_mass import RockMass
 
 #: Elements in the way of the slowest wave in one period, by their order.
@@ -25,7 +21,6 @@ IN_PERIOD = {1: 40.0, 2: 12.0, 3: 6.0, 4: 4.0}
 #: Times as many for pulses that start or end with a kink, and in triangles: their diagonal mass
 #: costs them an order.
 OF_KINKS, OF_TRIANGLES = 2.0, 1.5
-DIRECTIONS = 36  # in which speeds are looked at
 
 
 def element_sizes(scene: RockMass) -> dict[str, float]:
@@ -38,23 +33,6 @@ def element_sizes(scene: RockMass) -> dict[str, float]:
     many = IN_PERIOD[numerics.order] * (OF_KINKS if sharp else 1.0)
     size = slowest(scene) * resolved_period(scene) / many
     return {"quadrilateral": size, "triangle": size / OF_TRIANGLES}
-
-
-def slowest(scene: RockMass) -> float:
-    """Return the least speed (m/s) of long waves in any direction, through joints that have a
-    spacing."""
-    angle = np.linspace(0.0, np.pi, DIRECTIONS, endpoint=False)
-    directions = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    sets = [compliant(one) for one in scene.joint_sets if one.spacing]
-    medium = stiffness(elastic_rock(scene.rock), sets)
-    return float(speeds(medium, scene.rock.density, directions)[0].min())
-
-
-def compliant(one: JointSet) -> Compliant:
-    """Return a joint set that has a spacing as a compliance."""
-    assert one.spacing and one.normal_stiffness and one.shear_stiffness
-    x, y = direction_of(one.dip)
-    return joint_set(np.array([-y, x]), one.spacing, one.normal_stiffness, one.shear_stiffness)
 
 
 def refuse_large_mesh(scene: RockMass, partition: Partition, size: float) -> None:

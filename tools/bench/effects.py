@@ -1,6 +1,7 @@
 """What each effect costs: ns per block-step, alone on top of the plain kernel, then all."""
 
-from compare.experiments.cost.step_cost import ACROSS, EVERYTHING, changed, nanoseconds
+from compare.experiments.cost.scenes import ACROSS, EVERYTHING, changed
+from compare.experiments.cost.step_cost import nanoseconds
 
 PLAIN = {"record.energy": False}
 LEDGER = {"record.energy": True}

@@ -14,7 +14,8 @@ from statistics import median
 from kernels import SLIDES, rate
 from rock import Engine, engine_of
 
-from compare.experiments.cost.step_cost import changed, stretches
+from compare.experiments.cost.scenes import changed
+from compare.experiments.cost.step_cost import stretches
 from continuum.explicit.march import march
 from numerics.divergence import Guard, guard
 

@@ -8,7 +8,8 @@ import bare
 import numpy as np
 
 from cases.material.calibrate import calibrate
-from compare.experiments.cost.step_cost import changed, stretch
+from compare.experiments.cost.scenes import changed
+from compare.experiments.cost.step_cost import stretch
 
 ROUNDS = 9
 SHORTEST = 0.03  # s

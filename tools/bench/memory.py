@@ -5,7 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from compare.experiments.cost.step_cost import changed, nanoseconds
+from compare.experiments.cost.scenes import changed
+from compare.experiments.cost.step_cost import nanoseconds
 
 MOST = 1_000_000
 

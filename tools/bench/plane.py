@@ -8,8 +8,8 @@ from statistics import median
 import numpy as np
 from kernels import ROUNDS, SLIDES, rate, side_by_side
 
-from compare.experiments.cost.plane_step_cost import ELASTIC, lattice
-from compare.experiments.cost.step_cost import Stretch, changed, stretch
+from compare.experiments.cost.scenes import ELASTIC, changed, lattice
+from compare.experiments.cost.step_cost import Stretch, stretch
 from dem.blocks.leapfrog import march, samples_for
 from dem.blocks.model import PlaneModel, state_at_rest
 from dem.blocks.system import prepared

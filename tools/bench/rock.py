@@ -7,7 +7,7 @@ from plain_dolfinx import Pillar, Steps, in_order
 
 from cases.sampling import Clock
 from cases.schema.scene import Scene
-from compare.experiments.cost.step_cost import changed
+from compare.experiments.cost.scenes import changed
 from continuum.build import Discrete, build_model
 from continuum.explicit.march import run
 from continuum.model import Model

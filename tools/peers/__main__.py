@@ -17,7 +17,7 @@ from job import Job
 
 import cases
 from cases.schema.scene import Scene
-from compare.experiments.cost.step_cost import PILLAR
+from compare.experiments.cost.scenes import PILLAR
 from compare.figures.export import save
 from compare.figures.peers_diagram import draw
 

@@ -22,7 +22,7 @@ from job import ONE_THREAD
 from lammps_bonds import UNBREAKABLE
 from measure import on_one_core
 
-from compare.experiments.cost.plane_step_cost import ELASTIC, lattice
+from compare.experiments.cost.scenes import ELASTIC, lattice
 from dem.blocks.leapfrog import march, samples_for
 from dem.blocks.model import PlaneModel, state_at_rest
 from dem.blocks.system import prepared

@@ -14,7 +14,7 @@ from pillar import pillar
 import cases
 from cases.schema.scene import Scene
 from compare.engines import solve
-from compare.experiments.cost.step_cost import PILLAR
+from compare.experiments.cost.scenes import PILLAR
 from compare.runs.output import write
 from results.dataset import scene_hash
 

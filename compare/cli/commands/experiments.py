@@ -19,7 +19,6 @@ from compare.cli.options import (
     WorkersOption,
     app,
     load,
-    load_pillars,
 )
 from compare.runs.checkpoint.lock import locked
 
@@ -80,7 +79,7 @@ def plan(
     as_json: JsonOption = False,
 ) -> None:
     """Find the cheapest engine, elements and step that meet a misfit, by a few cheap runs."""
-    scenes = load_pillars(scene, changes, variant or "", strict, "jointwave plan")
+    scenes = load(scene, changes, variant or "", strict)
     from compare.cli import terminal
     from compare.experiments.planner import planner
     from compare.experiments.planner import show as plan_view

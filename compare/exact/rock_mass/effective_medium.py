@@ -20,9 +20,8 @@ import numpy as np
 
 from cases.incident import WaveMotion
 from cases.loads import history_of
-from cases.material.effective_medium import joint_set, speeds, stiffness, tensor
+from cases.material.effective_medium import compliant, speeds, stiffness, tensor
 from cases.material.rock import elastic_rock
-from cases.partition.joints import direction_of
 from cases.sampling import sample_times
 from compare.exact.rock_mass.conditions import (
     all_parallel,
@@ -83,12 +82,7 @@ def medium_field(scene: RockMass) -> MediumField:
 
 def medium_stiffness(scene: RockMass) -> np.ndarray:
     """Return the stiffness of the medium in Voigt's form [3, 3], Pa."""
-    sets = []
-    for one in scene.joint_sets:
-        along = direction_of(one.dip)
-        K = one.normal_stiffness or 0.0, one.shear_stiffness or 0.0
-        sets.append(joint_set(np.array([-along[1], along[0]]), one.spacing or 0.0, *K))
-    return stiffness(elastic_rock(scene.rock), sets)
+    return stiffness(elastic_rock(scene.rock), compliant(scene.joint_sets))
 
 
 def medium_wave(scene: RockMass, wave: Wave, C: np.ndarray) -> MediumWave:

@@ -14,30 +14,31 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from cases.effects import active_effects
 from compare.engines import applies, solve
 from compare.experiments.ablation.variants import left_out, only
-from compare.experiments.cost.step_cost import (
-    everything_like,
-    freedoms_in_turns,
-    in_turns,
-    stretch,
-)
+from compare.experiments.cost.scenes import everything_like
+from compare.experiments.cost.step_cost import StepCost, freedoms_in_turns, in_turns, stretch
 from compare.experiments.failures import FAILURES, reason_of
-from compare.misfit.metrics import misfit
+from compare.misfit.metrics import ROUND_OFF, pairings, rms
 from compare.solvers.continuum import JOINTED_ROCK
 from compare.solvers.dem import DEM
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from cases.kinds import AnyScene
 
 ROCK = JOINTED_ROCK.name
+MISSING = StepCost(nan, nan)  # of what was not timed
 OWN = "own"  # the scene as it stands, among those without one of its effects
 
 
 class Dropped(NamedTuple):
     """The result without an effect.
 
-    misfit : from the result with it. steps : of the scene over those without it, where the effect
-    shortens the step. alone : whether the scene can have it without the others. rock : whether the
-    jointed rock can be without it. reason : why it cannot be left out; empty where it can.
+    misfit : from the result with it, of the waveforms that move with it; nan where none does.
+    steps : of the scene over those without it, where the effect shortens the step. alone : whether
+    the scene can have it without the others. rock : whether the jointed rock can be without it.
+    reason : why it cannot be left out; empty where it can. stirred : a waveform that moves without
+    it alone, in words; empty where there is none.
     """
 
     effect: str
@@ -46,14 +47,16 @@ class Dropped(NamedTuple):
     alone: bool
     rock: bool
     reason: str
+    stirred: str = ""
 
 
 class EffectCost(NamedTuple):
     """One effect of a scene; numbers that there are not are nan.
 
     alone : ns of a block-step that it adds to the scene without any other. cost : ns that it adds
-    to the scene's own set. share : of the scene's own step. steps, misfit, reason : as in
-    `Dropped`. rock : ns that it adds to a step of one freedom of the jointed rock.
+    to the scene's own set. share : of the scene's own step. rock : ns that it adds to a step of one
+    freedom of the jointed rock. noise : ns, of these three by their names, below which they are not
+    resolved. steps, misfit, reason, stirred : as in `Dropped`.
     """
 
     effect: str
@@ -64,6 +67,12 @@ class EffectCost(NamedTuple):
     rock: float
     misfit: float
     reason: str
+    noise: dict[str, float]
+    stirred: str = ""
+
+    def is_resolved(self, name: str) -> bool:
+        """Return whether a cost in ns, by its name, is more than what timings differ by."""
+        return bool(abs(getattr(self, name)) > self.noise[name])
 
 
 class Ablation(NamedTuple):
@@ -107,7 +116,21 @@ def _drop(scene: AnyScene, name: str, result: Any) -> Dropped:
     steps = result.attrs["steps"] / without.attrs["steps"]
     alone = _runs(lambda: stretch(only(scene, name))[0]())
     rock = _runs(lambda: solve(ROCK, one))
-    return Dropped(name, misfit(without, result), float(steps), alone, rock, "")
+    misfit, stirred = _influence(without, result)
+    return Dropped(name, misfit, float(steps), alone, rock, "", stirred)
+
+
+def _influence(without: xr.Dataset, result: xr.Dataset) -> tuple[float, str]:
+    """Return the misfit of the waveform that is furthest off, and one that moves without the effect
+    alone, in words: with it there is nothing but round-off, which no misfit can be relative to."""
+    found = [one for one in pairings(without, result) if not one.faint]
+    loudest: dict[str, float] = {}
+    for one in found:
+        loudest[one.place.quantity] = max(loudest.get(one.place.quantity, 0.0), rms(one.other))
+    moves = [rms(one.other) > ROUND_OFF * loudest[one.place.quantity] for one in found]
+    misfits = [one.misfit for one, here in zip(found, moves, strict=True) if here]
+    stirred = [one.place.words for one, here in zip(found, moves, strict=True) if not here]
+    return max(misfits, default=nan if found else 0.0), next(iter(stirred), "")
 
 
 def _runs(work: Callable[[], object]) -> bool:
@@ -127,27 +150,26 @@ def ablate(name: str, scene: AnyScene, dropped: list[Dropped]) -> Ablation:
     without = {one.effect: left_out(scene, one.effect) for one in dropped if not one.reason}
     first = [everything_like(scene), only(scene, None), scene]
     full, bare, own, *rest = in_turns([*first, *alone.values(), *without.values()])
-    ns_alone = dict(zip(alone, rest, strict=False))
-    ns_without = dict(zip(without, rest[len(alone) :], strict=True))
-    rock = _ns_in_rock(scene, {one.effect: without[one.effect] for one in dropped if one.rock})
-    found = [
-        EffectCost(
-            one.effect,
-            ns_alone.get(one.effect, nan) - bare,
-            (cost := own - ns_without.get(one.effect, nan)),
-            cost / own,
-            one.steps,
-            rock.get(OWN, nan) - rock.get(one.effect, nan),
-            one.misfit,
-            one.reason,
-        )
-        for one in dropped
-    ]
-    return Ablation(name, scene.title, scene.name, bare, own, full, rock.get(OWN, nan), found)
+    in_alone = dict(zip(alone, rest, strict=False))
+    in_without = dict(zip(without, rest[len(alone) :], strict=True))
+    rock = _in_rock(scene, {one.effect: without[one.effect] for one in dropped if one.rock})
+    found = []
+    for one in dropped:
+        pairs = {
+            "alone": (in_alone.get(one.effect, MISSING), bare),
+            "cost": (own, in_without.get(one.effect, MISSING)),
+            "rock": (rock.get(OWN, MISSING), rock.get(one.effect, MISSING)),
+        }
+        ns = {name: more.ns - less.ns for name, (more, less) in pairs.items()}
+        noise = {name: more.noise + less.noise for name, (more, less) in pairs.items()}
+        about = one._asdict() | ns | {"share": ns["cost"] / own.ns, "noise": noise}
+        found.append(EffectCost(**about))
+    ns_rock = rock.get(OWN, MISSING).ns
+    return Ablation(name, scene.title, scene.name, bare.ns, own.ns, full.ns, ns_rock, found)
 
 
-def _ns_in_rock(scene: AnyScene, without: dict[str, AnyScene]) -> dict[str, float]:
-    """Return the ns of a freedom-step of jointed rock, as the scene stands and without each effect;
+def _in_rock(scene: AnyScene, without: dict[str, AnyScene]) -> dict[str, StepCost]:
+    """Return the cost of a freedom-step of jointed rock, of the scene and without each effect;
     empty where that rock does not apply."""
     if not applies(ROCK, scene):
         return {}

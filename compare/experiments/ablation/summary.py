@@ -15,7 +15,6 @@ from compare.runs.output import write_csv
 
 NAME = "effects"
 TITLE = "Cost and influence of every effect"
-RESOLVED = 0.01  # of a step: less does not stand out of the clock's noise
 COLUMNS = [
     "effect",
     "misfit without (%)",
@@ -53,7 +52,8 @@ def write_table(folder: Path, found: list[Ablation]) -> Path:
         {
             "scene": a.scene,
             "variant": a.variant,
-            **e._asdict(),
+            **{key: value for key, value in e._asdict().items() if key != "noise"},
+            **{f"{key}_noise": value for key, value in e.noise.items()},
             "ns_bare": a.bare,
             "ns_own": a.own,
             "ns_everything": a.everything,
@@ -63,6 +63,7 @@ def write_table(folder: Path, found: list[Ablation]) -> Path:
         for e in a.effects
     ]
     named = {"alone": "ns_alone", "cost": "ns_in_scene", "rock": "ns_rock_added"}
+    named |= {f"{key}_noise": f"{name}_noise" for key, name in named.items()}
     return write_csv(folder / f"{NAME}.csv", pd.DataFrame(rows).rename(columns=named), 6)
 
 
@@ -98,14 +99,28 @@ def _cells(e: EffectCost) -> list[str]:
         return [e.effect, *[""] * 6, e.reason]
     return [
         e.effect,
-        "0" if e.misfit == 0 else percent(e.misfit),
-        f"{100 * e.share:.2g}",
-        number(e.cost, "+.2g"),
-        number(e.alone, "+.2g"),
+        _misfit(e),
+        f"{100 * e.share:.2g}" if e.is_resolved("cost") else "not resolved",
+        *(_ns(e, name) for name in ("cost", "alone")),
         f"{e.steps:.3g}",
-        number(e.rock, "+.2g"),
+        _ns(e, "rock"),
         "",
     ]
+
+
+def _misfit(e: EffectCost) -> str:
+    """Return the misfit without an effect, and what stands still with it but not without."""
+    misfit = "0" if e.misfit == 0 else percent(e.misfit) if isfinite(e.misfit) else ""
+    stirred = f"{e.stirred} stands still with it: not resolved" if e.stirred else ""
+    return "; ".join(filter(None, [misfit, stirred]))
+
+
+def _ns(e: EffectCost, name: str) -> str:
+    """Return a cost in ns, or the noise that it does not stand out of."""
+    cost = getattr(e, name)
+    if e.is_resolved(name) or not isfinite(cost):
+        return number(cost, "+.2g")
+    return f"not resolved (within ±{e.noise[name]:.1g})"
 
 
 def sentences(found: list[Ablation]) -> list[str]:
@@ -114,6 +129,7 @@ def sentences(found: list[Ablation]) -> list[str]:
     every = [(a, e) for a in found for e in a.effects if not e.reason]
     idle = [(a, e) for a, e in every if e.misfit == 0]
     active = [(a, e) for a, e in every if e.misfit > 0]
+    idle = [(a, e) for a, e in idle if e.is_resolved("cost")]
     if idle:
         a, e = max(idle, key=lambda pair: pair[1].share)
         said.append(
@@ -141,5 +157,5 @@ def _of_sets(found: list[Ablation]) -> str:
 
 
 def _of_effect(a: Ablation, e: EffectCost) -> str:
-    share = f"{percent(e.share)} % of a step" if e.share > RESOLVED else "nothing that shows"
+    share = f"{percent(e.share)} % of a step" if e.is_resolved("cost") else "nothing that shows"
     return f"{e.effect} in {a.label} ({share}, misfit {percent(e.misfit)} % without)"

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from math import inf
-from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-import cases
 from cases.effects import is_spatial
-from cases.kinds import pillar_of
 from cases.sampling import Clock
 from cases.schema.scene import Scene
 from compare.engines import solve
 from compare.experiments.cost import timings
+from compare.experiments.cost.scenes import everything
+from compare.solvers.incident import incident
 
 if TYPE_CHECKING:
     from cases.kinds import AnyScene
+    from cases.schema.rock_mass import RockMass
 
-PILLAR = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
 #: A function that takes some samples, and its number of block-steps.
 Stretch = tuple[Callable[[], None], int]
 
@@ -28,79 +27,53 @@ SHORTEST = 0.02  # s, of what a clock is read for
 LONGEST = 0.5  # s: of stepping: continuum runs that took as long are not repeated
 BLOCK_STEPS = 5_000_000  # of one call, at most, but for one sample
 BLOCK_STEPS_IN_SPACE = 500_000  # each of them takes ten times as long
-BLOCKS = 1000  # of the pillar that effects are compared on
-
-#: A blow that moves blocks in all their freedoms.
-ACROSS = {"load.direction": [0.6, 0.8, 0.0], "load.at": [0.1, 0.05]}
-
-#: Every effect at once: the line against which a scene's own cost is held.
-EVERYTHING = {
-    **ACROSS,
-    "motion.rotation": "finite",
-    "joints.damping_ratio": 0.02,
-    "joints.friction_angle": 30.0,
-    "joints.cohesion": 1e5,
-    "joints.residual_cohesion": 0.0,
-    "joints.tensile_strength": 1e5,
-    "joints.fracture_energy": 100.0,
-    "soft_layers": [{"y": 0.5, "spacing_stiffness": 4.375e8}],
-    "record.stress": [0.5],
-    "damping.mass_proportional": 1.0,
-    "gravity": {"direction": [1, 0, 0], "static": False},
-    "ends.start": "matched",
-    "ends.end": "quiet",
-}
 
 
-def changed(changes: dict, blocks: int = BLOCKS) -> Scene:
-    """Return the paper's pillar with so many blocks and some dotted keys changed."""
-    return pillar_of(cases.load_variant(PILLAR, "", {"pillar.length": 0.5 * blocks, **changes}))
+class StepCost(NamedTuple):
+    """The least of some timings of a step, ns, and by how much the second least is more: a clock on
+    this machine tells no smaller differences."""
 
-
-def everything(blocks: int) -> Scene:
-    """Return the paper's pillar with every effect and so many blocks, but for very many: few blocks
-    share what a step costs however few they are."""
-    return changed(EVERYTHING, min(max(blocks, 2), BLOCKS))
-
-
-def everything_like(scene: AnyScene) -> AnyScene:
-    """Return a scene of this kind with every effect and about as many rigid blocks."""
-    if isinstance(scene, Scene):
-        return everything(scene.pillar.block_count)
-    from compare.experiments.cost.plane_step_cost import everything_in_plane
-
-    return everything_in_plane(scene, BLOCKS)
+    ns: float
+    noise: float
 
 
 def nanoseconds(scene: AnyScene, threads: int = 1) -> float:
     """Return what one step of one block of a scene costs, ns: the least of some stretches."""
-    return in_turns([scene], threads)[0]
+    return in_turns([scene], threads)[0].ns
 
 
-def in_turns(scenes: Sequence[AnyScene], threads: int = 1) -> list[float]:
+def in_turns(scenes: Sequence[AnyScene], threads: int = 1) -> list[StepCost]:
     """Return the same of several scenes, their stretches in turns: what slows the machine for a
     while slows all of them."""
     timed = [stretch(scene, threads) for scene in scenes]
     for march, _ in timed:
         march()  # compiles, and sets the blocks in motion
     rounds = [[_seconds(march) for march, _ in timed] for _ in range(REPEATS)]
-    least = map(min, zip(*rounds, strict=True))
-    return [1e9 * s / block_steps for s, (_, block_steps) in zip(least, timed, strict=True)]
+    return _least(rounds, [block_steps for _, block_steps in timed])
 
 
-def freedoms_in_turns(engine: str, scenes: Sequence[AnyScene]) -> list[float]:
-    """Return what one step of one freedom of a continuum engine costs, ns: the least of some runs,
-    those of the scenes in turns.
+def freedoms_in_turns(engine: str, scenes: Sequence[AnyScene]) -> list[StepCost]:
+    """Return what one step of one freedom of a continuum engine costs: the least of two runs or
+    more, those of the scenes in turns.
 
     Raises SceneError where the engine does not apply, UnstableError where it goes unstable.
     """
     rounds: list[list[float]] = []
-    while len(rounds) < REPEATS and sum(map(sum, rounds)) < LONGEST * len(scenes):
+    most = LONGEST * len(scenes)
+    while len(rounds) < 2 or (len(rounds) < REPEATS and sum(map(sum, rounds)) < most):
         runs = [solve(engine, scene).attrs for scene in scenes]
         rounds.append([run["seconds_stepping"] for run in runs])
-    counts = [run["steps"] * run["degrees_of_freedom"] for run in runs]
-    least = map(min, zip(*rounds, strict=True))
-    return [1e9 * s / count for s, count in zip(least, counts, strict=True)]
+    return _least(rounds, [run["steps"] * run["degrees_of_freedom"] for run in runs])
+
+
+def _least(rounds: list[list[float]], counts: list[int]) -> list[StepCost]:
+    """Return what one of so many steps costs, of seconds [round][scene]; one round has no noise
+    that is known."""
+    found = []
+    for seconds, count in zip(zip(*rounds, strict=True), counts, strict=True):
+        least, second = (*sorted(seconds), inf)[:2]
+        found.append(StepCost(1e9 * least / count, 1e9 * (second - least) / count))
+    return found
 
 
 def _seconds(march: Callable[[], None]) -> float:
@@ -116,9 +89,7 @@ def _seconds(march: Callable[[], None]) -> float:
 def stretch(scene: AnyScene, threads: int = 1) -> Stretch:
     """Return a function that takes some samples of a scene, and its number of block-steps."""
     if not isinstance(scene, Scene):
-        from compare.experiments.cost.plane_step_cost import stretch_in_plane
-
-        return stretch_in_plane(scene, threads)
+        return _in_plane(scene, threads)
     return stretches(scene, (False,), threads)[0]
 
 
@@ -165,6 +136,20 @@ def _in_space(scene: Scene, guarded: tuple[bool, ...], threads: int) -> list[Str
         return lambda: march(0, steps), steps * p.block_count
 
     return [timed(held) for held in guarded]
+
+
+def _in_plane(scene: RockMass, threads: int) -> Stretch:
+    from dem.blocks.leapfrog import samples_for
+    from dem.blocks.model import state_at_rest
+    from dem.blocks.simulate import step
+    from dem.blocks.system import prepared
+
+    system = prepared(scene, incident(scene))._replace(threads=threads)
+    blocks = system.blocks.partition.count
+    count = samples_of(system.time, blocks, BLOCK_STEPS_IN_SPACE)
+    state, samples = state_at_rest(system.model), samples_for(system.model, count)
+    steps = count * system.time.stride
+    return lambda: step(system, state, samples, 0, steps), steps * blocks
 
 
 def samples_of(time: Clock, blocks: int, most: int = BLOCK_STEPS) -> int:

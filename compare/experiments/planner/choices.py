@@ -1,13 +1,17 @@
 """Choices: configurations with what they give, measured by a trial or predicted from several."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from math import ceil, log2
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from cases.schema.scene import Scene
 from compare.experiments.planner.families import Family, settings
 from compare.experiments.planner.reference import OwnModel
 from compare.experiments.planner.trials import FINEST, Trial, forecast, largest
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 #: What is only predicted must be below this part of the misfit: two steps leave the next term of
 #: the error.
@@ -35,14 +39,16 @@ class Choice(NamedTuple):
         return self.numerical + self.modelling
 
 
-def measured(scene: Scene, family: Family, trial: Trial, own: OwnModel) -> Choice:
+def measured(scene: AnyScene, family: Family, trial: Trial, own: OwnModel) -> Choice:
     """Return the configuration of a trial, with what it gave."""
     numerics = settings(scene, family, trial.per_sample, trial.critical)
     errors = trial.misfit + own.reference.error, own.modelling
     return Choice(family, numerics, trial.per_sample, *errors, trial.seconds, True)
 
 
-def predicted(scene: Scene, family: Family, trials: list[Trial], own: OwnModel) -> Iterator[Choice]:
+def predicted(
+    scene: AnyScene, family: Family, trials: list[Trial], own: OwnModel
+) -> Iterator[Choice]:
     """Yield the configurations of a family from the last trial but one on, as predicted."""
     coarse, fine = trials[-2:]
     told, (start, each) = forecast(trials, family.order), seconds_of(coarse, fine)

@@ -1,19 +1,28 @@
 """Families of configurations: an engine, its scheme and elements, at any number of steps."""
 
-from math import ceil
-from typing import Any, NamedTuple
+from __future__ import annotations
+
+from math import ceil, inf
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cases.errors import SceneError
 from cases.kinds import checked
 from cases.sampling import sample_times
-from cases.schema.scene import Numerics, Scene
+from cases.schema.pulse import shortest_period
+from cases.schema.scene import Scene
 from compare.engines import ENGINES, applies, solver
 from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
 from compare.solvers.dem import DEM
 
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+
 COARSEST = 0.9  # of the critical step, explicit
 #: Explicit steps that an implicit one costs, at least.
 IMPLICIT = 500
+#: In a rock mass, in the length of its slowest waves: rigid blocks, and the fewest elements by
+#: their order.
+BLOCKS_IN_WAVE, ELEMENTS_IN_WAVE = (6, 12, 24, 48), {1: 20, 2: 6, 3: 3, 4: 2}
 
 
 class Family(NamedTuple):
@@ -24,7 +33,7 @@ class Family(NamedTuple):
 
     name: str
     changes: dict[str, Any]
-    order: int
+    order: int = 2
 
     @property
     def engine(self) -> str:
@@ -34,85 +43,120 @@ class Family(NamedTuple):
     @property
     def label(self) -> str:
         """Its name and what it changes, in a line."""
-        return f"{self.name} ({', '.join(f'{k} {v}' for k, v in self.changes.items())})"
+        changes = ", ".join(f"{k} {v}" for k, v in self.changes.items())
+        return f"{self.name} ({changes})" if changes else self.name
 
     @property
     def is_implicit(self) -> bool:
         """Whether its steps are not bounded by a critical one."""
-        return self.changes["scheme"] == "implicit"
+        return self.changes.get("scheme") == "implicit"
+
+    @property
+    def model(self) -> Family:
+        """The model that its finest steps and elements solve: the engine's, with such blocks."""
+        return Family(self.name, {k: v for k, v in self.changes.items() if k == "block"})
+
+    @property
+    def fineness(self) -> tuple[float, ...]:
+        """The order and the number of its elements, and the inverse of their size, or blocks'."""
+        many = (self.changes.get(key, 0) for key in ("order", "elements_per_block"))
+        return *many, *(1 / self.changes.get(key, inf) for key in ("size", "block"))
 
 
-def _rock(name: str, order: int, elements: int) -> Family:
-    changes = {"scheme": "explicit", "order": order, "elements_per_block": elements}
-    return Family(name, changes, 2)
+def families_of(scene: AnyScene) -> list[Family]:
+    """Return the families of a scene, coarse ones first: what they give tells whether finer ones
+    need a trial."""
+    both = JOINTED_ROCK.name, EQUIVALENT_ROCK.name
+    return [
+        *_rigid(scene),
+        *(rock(scene, name, p) for p in (1, 2, 3, 4) for name in both),
+        *(rock(scene, JOINTED_ROCK.name, p, n) for p, n in ((1, 2), (2, 2), (1, 4), (4, 2))),
+        *(_implicit(rock(scene, name, p)) for p in (1, 2, 4) for name in both),
+    ]
 
 
-def _implicit(name: str, order: int) -> Family:
+def _rigid(scene: AnyScene) -> list[Family]:
+    """Return the schemes of a pillar's rigid blocks, or the sizes of a rock mass's."""
+    if isinstance(scene, Scene):
+        schemes = {"leapfrog": 2, "fourth-order": 4}
+        return [Family(DEM.name, {"scheme": name}, order) for name, order in schemes.items()]
+    own, length = scene.numerics.dem.block, _wave_length(scene)
+    sizes = {own or inf, *(float(f"{length / n:.3g}") for n in BLOCKS_IN_WAVE)}
+    return [Family(DEM.name, {} if x == inf else {"block": x}) for x in sorted(sizes)[::-1]]
+
+
+def rock(scene: AnyScene, name: str, order: int, times: int = 1) -> Family:
+    """Return deformable rock under explicit steps, its elements so many times as many in each
+    direction as the fewest."""
+    changes: dict[str, Any] = {"scheme": "explicit", "order": order}
+    if isinstance(scene, Scene):
+        return Family(name, changes | {"elements_per_block": times})
+    size = _wave_length(scene) / (ELEMENTS_IN_WAVE[order] * times)
+    return Family(name, changes | {"size": float(f"{size:.3g}")})
+
+
+def _implicit(rock: Family) -> Family:
     """Without numerical damping: only the accuracy of the waveforms counts here."""
-    found = _rock(name, order, 1)
-    return found._replace(changes={**found.changes, "scheme": "implicit", "spectral_radius": 1.0})
+    return rock._replace(changes=rock.changes | {"scheme": "implicit", "spectral_radius": 1.0})
 
 
-_BOTH = JOINTED_ROCK.name, EQUIVALENT_ROCK.name
-#: Coarse ones first: what they give tells whether finer ones need a trial.
-FAMILIES = (
-    Family(DEM.name, {"scheme": "leapfrog"}, 2),
-    Family(DEM.name, {"scheme": "fourth-order"}, 4),
-    *(_rock(name, p, 1) for p in (1, 2, 3, 4) for name in _BOTH),
-    *(_rock(JOINTED_ROCK.name, p, n) for p, n in ((1, 2), (2, 2), (1, 4), (4, 2))),
-    *(_implicit(name, p) for p in (1, 2, 4) for name in _BOTH),
-)
+def _wave_length(scene: AnyScene) -> float:
+    """Return the length (m) of the slowest waves of a rock mass, of the shortest period."""
+    from cases.material.effective_medium import slowest
+
+    return slowest(scene) * _period(scene)  # type: ignore[arg-type]
+
+
+def _period(scene: AnyScene) -> float:
+    return shortest_period(scene.pulses) or scene.time.duration / 10
 
 
 def is_finer(one: Family, other: Family) -> bool:
     """Return whether a family has all the elements of another and more, so that it costs more."""
-    keys = "order", "elements_per_block"
-    alike = (one.name, one.changes["scheme"]) == (other.name, other.changes["scheme"])
-    return (
-        alike
-        and one != other
-        and all(one.changes.get(key, 0) >= other.changes.get(key, 0) for key in keys)
-    )
+    schemes = (one.name, one.changes.get("scheme")), (other.name, other.changes.get("scheme"))
+    pairs = zip(one.fineness, other.fineness, strict=True)
+    return schemes[0] == schemes[1] and one != other and all(a >= b for a, b in pairs)
 
 
 class Effort(NamedTuple):
     """The cost of a family's coarsest step: steps per sample, and freedom-steps of the run."""
 
     least: int
+    freedoms: int
     work: float
 
 
-def effort(scene: Scene, family: Family) -> Effort:
+def effort(scene: AnyScene, family: Family) -> Effort:
     """Return what a family takes at its coarsest, before it is run; SceneError where it cannot."""
-    answer = applies(family.name, scene)
+    asked = configured(scene, family, {})
+    answer = applies(family.name, asked)
     if not answer:
         raise SceneError(scene.where, "", None, answer.reason)
-    run = solver(family.name).prepare(configured(scene, family, {}))
+    run = solver(family.name).prepare(asked)
     freedoms, critical = run.freedoms, run.critical
     least = 1 if family.is_implicit else ceil(scene.interval / (COARSEST * critical) * (1 - 1e-9))
     each = IMPLICIT if family.is_implicit else family.order**2 / 4  # the fourth order: four forces
-    return Effort(least, each * freedoms * least * len(sample_times(scene)))
+    return Effort(least, freedoms, each * freedoms * least * len(sample_times(scene)))
 
 
-def settings(scene: Scene, family: Family, per_sample: int, critical: float) -> dict[str, Any]:
+def settings(scene: AnyScene, family: Family, per_sample: int, critical: float) -> dict[str, Any]:
     """Return the numerics that take so many steps per sample; critical : the critical step, s."""
     dt = scene.interval / per_sample
     if not family.is_implicit:
         return {"step_fraction": float(f"{dt / critical * (1 + 1e-6):.7g}")}
-    from continuum.build import resolved_period
-
-    return {"steps_per_period": float(f"{resolved_period(scene) / dt * (1 - 1e-6):.7g}")}
+    return {"steps_per_period": float(f"{_period(scene) / dt * (1 - 1e-6):.7g}")}
 
 
-def plain(scene: Scene) -> Scene:
+def plain(scene: AnyScene) -> AnyScene:
     """Return a scene with default numerics, without ledger and snapshots."""
     record = scene.record.model_copy(
         update={"interval": scene.interval, "energy": False, "fields": None}
     )
-    return scene.model_copy(update={"numerics": Numerics(), "record": record, "expect": {}})
+    numerics = type(scene.numerics)()
+    return scene.model_copy(update={"numerics": numerics, "record": record, "expect": {}})
 
 
-def configured(scene: Scene, family: Family, more: dict[str, Any]) -> Scene:
+def configured(scene: AnyScene, family: Family, more: dict[str, Any]) -> AnyScene:
     """Return a scene with a family's numerics, its own where the family has none; raises SceneError
     where it cannot have them."""
     table = getattr(scene.numerics, family.engine).model_copy(update=family.changes | more)

@@ -9,21 +9,22 @@ on until finer steps can be predicted (see `trials`). What by its freedom-steps 
 than what is known to meet the misfit is not tried at all, nor what its modelling error bars.
 """
 
+from __future__ import annotations
+
 from math import inf
 from time import perf_counter
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from cases.errors import StoppedError
-from cases.schema.scene import Scene
 from compare.engines import Progress
 from compare.experiments.failures import FAILURES, reason_of
 from compare.experiments.planner.choices import MARGIN, Choice, cheapest, measured, predicted
 from compare.experiments.planner.families import (
-    FAMILIES,
     Effort,
     Family,
     configured,
     effort,
+    families_of,
     is_finer,
 )
 from compare.experiments.planner.reference import OwnModel, References
@@ -39,10 +40,14 @@ from compare.experiments.planner.trials import (
 from compare.experiments.references import ErrorReference
 from compare.misfit.metrics import misfit as misfit_of
 
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+
 #: A family is not tried where it would be too dear at this share of the least seconds that a
 #: freedom-step has taken so far.
 SAFETY = 0.5
 DEAR = "would cost more than what is known to do"
+SAME = "has the blocks and elements of a family that is tried"
 
 
 class Plan(NamedTuple):
@@ -55,7 +60,7 @@ class Plan(NamedTuple):
     skipped : families that could not or need not be run, with their reason.
     """
 
-    scene: Scene
+    scene: AnyScene
     reference: ErrorReference
     reason: str
     trials: int
@@ -80,12 +85,13 @@ class PlanSearch:
     """Trials so far of one scene, and the choices that they leave."""
 
     def __init__(
-        self, scene: Scene, references: References, misfit: float, seconds: float | None
+        self, scene: AnyScene, references: References, misfit: float, seconds: float | None
     ) -> None:
         self.scene, self.references = scene, references
         self.misfit, self.seconds = misfit, seconds
         self.choices: list[Choice] = []
         self.dear: list[Family] = []
+        self.sizes: set[tuple[object, ...]] = set()
         self.rates: dict[str, float] = {}
         self.trials = 0
 
@@ -104,13 +110,22 @@ class PlanSearch:
         if SAFETY * self._rate(family) * asked.work > self.limit:
             self.dear.append(family)
             raise StoppedError(DEAR)
-        own = self.references.own(family.name)
+        self._refuse_known(family, asked)
+        own = self.references.own(family)
         if own.least >= self.misfit and self.seconds is None:
-            raise StoppedError(own.too_far(family.name))
+            raise StoppedError(own.too_far(family))
         trials = self._run(family, asked, own)
         self.choices += [measured(self.scene, family, trial, own) for trial in trials]
         if len(trials) > 1:
             self.choices += predicted(self.scene, family, trials, own)
+
+    def _refuse_known(self, family: Family, asked: Effort) -> None:
+        """Raise StoppedError where a coarser size was cut or meshed into as many parts."""
+        order, scheme = (family.changes.get(key) for key in ("order", "scheme"))
+        size = family.name, order, scheme, asked.freedoms
+        if size in self.sizes:
+            raise StoppedError(SAME)
+        self.sizes.add(size)
 
     def _run(self, family: Family, asked: Effort, own: OwnModel) -> list[Trial]:
         trials = [first_trial(self.scene, family, own)]
@@ -124,7 +139,7 @@ class PlanSearch:
 
     def obtain(self, choice: Choice) -> Choice:
         """Return a choice with what a run of it gives."""
-        family, own = choice.family, self.references.own(choice.family.name).reference
+        family, own = choice.family, self.references.own(choice.family).reference
         asked = configured(self.scene, family, choice.settings)
         result, seconds = timed(family.name, asked)
         numerical = misfit_of(result, own.result) + own.error
@@ -151,7 +166,7 @@ class PlanSearch:
 
 
 def plan(
-    scene: Scene, misfit: float, seconds: float | None = None, progress: Progress | None = None
+    scene: AnyScene, misfit: float, seconds: float | None = None, progress: Progress | None = None
 ) -> Plan:
     """Return the cheapest configuration predicted to meet a misfit, run.
 
@@ -163,7 +178,7 @@ def plan(
     search = PlanSearch(scene, references, misfit, seconds)
     skipped = _tried(search, progress)
     chosen, obtained = _run_cheapest(search)
-    own = None if chosen is None else references.own(chosen.family.name).reference
+    own = None if chosen is None else references.own(chosen.family).reference
     about = references.finest, references.reason, search.trials, perf_counter() - began, skipped
     return Plan(scene, *about, chosen, own, obtained)
 
@@ -184,13 +199,14 @@ def _run_cheapest(search: PlanSearch) -> tuple[Choice | None, Choice | None]:
 def _tried(search: PlanSearch, progress: Progress | None) -> dict[str, str]:
     """Try all families; return the reasons of those that were not run."""
     skipped = {}
-    for i, family in enumerate(FAMILIES):
+    families = families_of(search.scene)
+    for i, family in enumerate(families):
         try:
             search.try_family(family)
         except FAILURES as error:
             skipped[family.label] = reason_of(error)
         if progress:
-            progress((i + 1) / (len(FAMILIES) + 1))
+            progress((i + 1) / (len(families) + 1))
     return skipped
 
 

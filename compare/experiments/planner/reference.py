@@ -3,19 +3,22 @@
 Either is an exact solution that knows itself well enough, or a run that has converged to itself.
 """
 
-from functools import cached_property
+from __future__ import annotations
+
 from math import inf
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import xarray as xr
 
 from cases.errors import SceneError
-from cases.schema.scene import Scene
 from compare.engines import ENGINES, solve
-from compare.experiments.planner.families import Family, configured, plain, settings
+from compare.experiments.planner.families import Family, configured, plain, rock, settings
 from compare.experiments.references import ErrorReference
 from compare.misfit import ranking
 from compare.misfit.metrics import JUDGED, misfit, worst
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 SHARE = 1 / JUDGED  # of the misfit asked for, that a reference may be wrong itself
 LONGEST = 20.0  # s of stepping of the finest run
@@ -37,9 +40,9 @@ class OwnModel(NamedTuple):
         """The error that no step reduces: of modelling, and of the own reference itself."""
         return self.modelling + self.reference.error
 
-    def too_far(self, engine: str) -> str:
-        """Return why no step of the engine comes within a misfit below its modelling error."""
-        return f"the modelling error of {engine} alone is {100 * self.least:.3g} %"
+    def too_far(self, family: Family) -> str:
+        """Return why no step of a family comes within a misfit below its modelling error."""
+        return f"the modelling error of {family.model.label} alone is {100 * self.least:.3g} %"
 
 
 class References:
@@ -49,35 +52,38 @@ class References:
     Raises SceneError where nothing exact is known of it and no run in reach has converged.
     """
 
-    def __init__(self, scene: Scene, asked: float) -> None:
+    def __init__(self, scene: AnyScene, asked: float) -> None:
         self.scene, self.asked = scene, asked
         self._own: dict[str, OwnModel] = {}
-        found = ranking.finest(self._names, scene)
+        found = ranking.finest(_applicable(scene), scene)
         if found is None:
             raise SceneError(scene.where, "", None, "nothing here resolves all that the scene has")
-        self.finest, self.reason = self._reference(found.name), found.reason
+        self.finest = self._reference(found.name, Family(found.name, {}))
+        self.reason = found.reason
 
-    @cached_property
-    def _names(self) -> list[str]:
-        return [name for name, answer in ranking.applicable(self.scene).items() if answer]
+    def own(self, family: Family) -> OwnModel:
+        """Return the model of a family; raises SceneError where no run of it has converged."""
+        model = family.model
+        if model.label not in self._own:
+            self._own[model.label] = self._find_own(model)
+        return self._own[model.label]
 
-    def own(self, engine: str) -> OwnModel:
-        """Return the model of an engine; raises SceneError where no run of it has converged."""
-        if engine not in self._own:
-            self._own[engine] = self._find_own(engine)
-        return self._own[engine]
-
-    def _find_own(self, engine: str) -> OwnModel:
-        finest, exact = self.finest, ranking.own_exact(engine, self._names, self.scene)
-        if finest.name in (engine, exact):
+    def _find_own(self, model: Family) -> OwnModel:
+        scene, finest = configured(self.scene, model, {}), self.finest
+        exact = ranking.own_exact(model.name, _applicable(scene), scene)
+        block = getattr(self.scene.numerics.dem, "block", None)
+        is_own = finest.name == model.name and model.changes.get("block", block) == block
+        if is_own or finest.name == exact:
             return OwnModel(finest, 0.0)
-        reference = self._reference(exact or engine, finest.result)
+        reference = self._reference(exact or model.name, model, finest.result)
         return OwnModel(reference, misfit(reference.result, finest.result) + finest.error)
 
-    def _reference(self, name: str, finest: xr.Dataset | None = None) -> ErrorReference:
-        """Return an exact solution, or the run of an engine that has converged."""
+    def _reference(
+        self, name: str, model: Family, finest: xr.Dataset | None = None
+    ) -> ErrorReference:
+        """Return an exact solution, or the run of a model that has converged."""
         if name in ENGINES:
-            return _converged(self.scene, name, self.asked, finest)
+            return _converged(self.scene, model, self.asked, finest)
         result = solve(name, plain(self.scene))
         error = worst(result, result).floor
         if error > SHARE * self.asked:
@@ -85,8 +91,14 @@ class References:
         return ErrorReference(name, result, error)
 
 
-def _converged(scene: Scene, name: str, asked: float, finest: xr.Dataset | None) -> ErrorReference:
-    """Return an engine's run that differs from the one before by little enough.
+def _applicable(scene: AnyScene) -> list[str]:
+    return [name for name, answer in ranking.applicable(scene).items() if answer]
+
+
+def _converged(
+    scene: AnyScene, model: Family, asked: float, finest: xr.Dataset | None
+) -> ErrorReference:
+    """Return a model's run that differs from the one before by little enough.
 
     Each has at most half the step, and half the elements' size, of the one before. Its error is at
     most the difference where the error falls at least in proportion to the step. A run is fine
@@ -94,35 +106,35 @@ def _converged(scene: Scene, name: str, asked: float, finest: xr.Dataset | None)
     """
     before, apart = None, inf
     for level in range(LEVELS):
-        family = _family(name, level)
+        family = _refined(scene, model, level)
         most = inf if before is None else float(before.attrs["dt"]) / 2
         numerics, result = _at_most(scene, family, most)
         apart = inf if before is None else misfit(before, result)
         is_far = finest is not None and misfit(result, finest) - apart > asked
         if apart < SHARE * asked or is_far:
             made = ", ".join(f"{k} {v}" for k, v in (family.changes | numerics).items())
-            return ErrorReference(name, result, apart, made)
+            return ErrorReference(model.name, result, apart, made)
         before = result
         if float(result.attrs["seconds_stepping"]) * 4 > LONGEST:
             break
-    what = f"no exact solution to plan by, and {name} within {LONGEST:g} s a run converges"
+    what = f"no exact solution to plan by, and {model.label} within {LONGEST:g} s a run converges"
     raise _not_known(scene, what, apart, asked)
 
 
-def _not_known(scene: Scene, what: str, error: float, asked: float) -> SceneError:
+def _not_known(scene: AnyScene, what: str, error: float, asked: float) -> SceneError:
     """Return the refusal of a reference that is too far off itself."""
     share = f"to {100 * error:.2g} %, not to {100 * SHARE * asked:.2g} %"
     return SceneError(scene.where, "", None, f"{what} {share}: ask for a larger --misfit")
 
 
-def _family(name: str, level: int) -> Family:
-    if ENGINES[name].has_rigid_blocks:
-        return Family(name, {"scheme": "leapfrog"}, 2)
-    changes = {"scheme": "explicit", "order": 2, "elements_per_block": 2**level}
-    return Family(name, changes, 2)
+def _refined(scene: AnyScene, model: Family, level: int) -> Family:
+    """Return a model with elements; rigid blocks have none."""
+    if ENGINES[model.name].has_rigid_blocks:
+        return model
+    return rock(scene, model.name, 2, 2**level)
 
 
-def _at_most(scene: Scene, family: Family, dt: float) -> tuple[dict[str, Any], xr.Dataset]:
+def _at_most(scene: AnyScene, family: Family, dt: float) -> tuple[dict[str, Any], xr.Dataset]:
     """Return the numerics and the result of steps of 0.4 critical ones, or dt (s) if that is less.
 
     The step divides the sampling interval, so that a part of the critical one may be no other.

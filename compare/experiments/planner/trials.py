@@ -5,18 +5,22 @@ is w + c n^-q (Richardson): from two runs its misfit from the engine's own model
 n. From three, so is q: half the steps leave 2^q times the difference. Seconds are a + b n.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from math import inf
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from cases.schema.scene import Scene
 from compare.engines import solve
 from compare.experiments.planner.families import COARSEST, Family, configured, settings
 from compare.experiments.planner.reference import OwnModel
 from compare.misfit.metrics import Stack, stacked
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 SHORT = 0.05  # s: a shorter run is timed three times more, as it is noise alone
 SLOWEST = 0.5  # order at which errors fall, at least: they do at kinks that repeat
@@ -45,7 +49,7 @@ class Trial(NamedTuple):
         return largest(self.misfits)
 
 
-def timed(name: str, scene: Scene) -> tuple[xr.Dataset, float]:
+def timed(name: str, scene: AnyScene) -> tuple[xr.Dataset, float]:
     """Return a result and its seconds of stepping: the least of four runs where it is short, which
     other work on the machine delays least."""
     result = solve(name, scene)
@@ -56,7 +60,7 @@ def timed(name: str, scene: Scene) -> tuple[xr.Dataset, float]:
     return result, seconds
 
 
-def first_trial(scene: Scene, family: Family, own: OwnModel) -> Trial:
+def first_trial(scene: AnyScene, family: Family, own: OwnModel) -> Trial:
     """Run a family at the coarsest of its steps."""
     start: dict[str, Any] = {"step_fraction": COARSEST}
     if family.is_implicit:
@@ -64,12 +68,14 @@ def first_trial(scene: Scene, family: Family, own: OwnModel) -> Trial:
     return _trial(scene, family, start, own)
 
 
-def trial_at(scene: Scene, family: Family, per_sample: int, first: Trial, own: OwnModel) -> Trial:
+def trial_at(
+    scene: AnyScene, family: Family, per_sample: int, first: Trial, own: OwnModel
+) -> Trial:
     """Run a family at so many steps per sample, after its first trial."""
     return _trial(scene, family, settings(scene, family, per_sample, first.critical), own)
 
 
-def _trial(scene: Scene, family: Family, numerics: dict[str, Any], own: OwnModel) -> Trial:
+def _trial(scene: AnyScene, family: Family, numerics: dict[str, Any], own: OwnModel) -> Trial:
     result, seconds = timed(family.name, configured(scene, family, numerics))
     per_sample = round(scene.interval / float(result.attrs["dt"]))
     waves = stacked(result, own.reference.result)

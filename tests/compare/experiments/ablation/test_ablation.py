@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import dem
 from cases.effects import active_effects
@@ -9,6 +10,7 @@ from cases.errors import SceneError
 from compare.experiments.ablation import ablation
 from compare.experiments.ablation.ablation import ablate, prepare
 from compare.experiments.ablation.variants import WITHOUT, left_out, only
+from compare.experiments.cost.step_cost import StepCost
 from compare.misfit.metrics import relative_l2
 
 LAYER = [{"y": 20.0, "spacing_stiffness": 4e8, "damping_ratio": 0.05, "tension": False}]
@@ -78,7 +80,7 @@ def test_what_needs_others_is_not_alone(pillar):
 @pytest.fixture
 def cheap(monkeypatch):
     """The cost of everything, by a step that is quickly compiled; one round of everything."""
-    monkeypatch.setattr("compare.experiments.cost.step_cost.EVERYTHING", {})
+    monkeypatch.setattr("compare.experiments.cost.scenes.EVERYTHING", {})
     monkeypatch.setattr("compare.experiments.cost.step_cost.REPEATS", 1)
 
 
@@ -105,7 +107,8 @@ def test_costs_are_differences_of_what_was_timed(pillar, monkeypatch):
 
     def known(scenes):
         effects = [active_effects(one) for one in scenes[1:]]
-        return [20.0, *(KNOWN["dashpots" in e, "energy ledger" in e] for e in effects)]
+        ns = [20.0, *(KNOWN["dashpots" in e, "energy ledger" in e] for e in effects)]
+        return [StepCost(x, 0.25 * x) for x in ns]
 
     monkeypatch.setattr(ablation, "in_turns", known)
     scene = pillar(joints__damping_ratio=0.05, time__duration=0.01)
@@ -117,6 +120,23 @@ def test_costs_are_differences_of_what_was_timed(pillar, monkeypatch):
     dashpots, ledger = one.effects
     assert (dashpots.alone, dashpots.cost, dashpots.share) == (3.0, 4.0, 4 / 7)
     assert (ledger.alone, ledger.cost, ledger.share) == (2.0, 3.0, 3 / 7)
+    assert (dashpots.noise["alone"], dashpots.noise["cost"]) == (0.25 * 5, 0.25 * 10)
+    assert dashpots.is_resolved("cost") and ledger.is_resolved("alone")
+
+
+def test_what_stands_still_with_an_effect_has_no_misfit():
+    """Round-off across the load; what moves with it has."""
+    still = [[1.0, 1e-17], [2.0, -1e-17], [1.0, 3e-17]]
+    result, without = (
+        xr.Dataset(
+            {"velocity": (("velocity_y", "time", "axis"), [values])},
+            {"time": [0.0, 1.0, 2.0], "velocity_y": [3.0], "axis": ["x", "y"]},
+        )
+        for values in (still, [[1.1, 0.1], [2.0, 0.2], [1.0, 0.1]])
+    )
+    misfit, stirred = ablation._influence(without, result)
+    assert misfit == pytest.approx(0.1 / 6**0.5) and stirred.startswith("velocity y")
+    assert ablation._influence(result, result) == (0.0, "")
 
 
 def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, cheap):

@@ -10,10 +10,10 @@ from compare.engines import solve
 from compare.experiments.ablation import ablation
 from compare.experiments.ablation.ablation import ablate, prepare
 from compare.experiments.ablation.variants import left_out, only
-from compare.experiments.cost import plane_step_cost, step_cost
+from compare.experiments.cost import scenes, step_cost
 from compare.misfit.metrics import misfit
 
-ROWS = {"name": "rows", "dip": 0.0, "spacing": 2.0, **plane_step_cost.ELASTIC}
+ROWS = {"name": "rows", "dip": 0.0, "spacing": 2.0, **scenes.ELASTIC}
 COLUMNS = ROWS | {"name": "columns", "dip": 90.0}
 PRESS = {"kind": "pressure", "side": "top", "shape": "ricker", "amplitude": 1e6, "period": 0.004}
 WAVE = {"kind": "P", "direction": [0.0, 1.0], "shape": "step", "amplitude": 1e6}
@@ -80,7 +80,7 @@ def test_a_side_that_a_wave_enters_stays():
 
 
 def test_everything_has_every_effect_but_periodic_sides_and_snapshots():
-    scene = plane_step_cost.everything_in_plane(mass(), 1000)
+    scene = scenes.everything_in_plane(mass(), 1000)
     left = {one.name for one in effects(scene) if not one.active}
     assert left == {"periodic sides", "field output"}
 
@@ -88,7 +88,7 @@ def test_everything_has_every_effect_but_periodic_sides_and_snapshots():
 @pytest.mark.parametrize(("most", "side"), [(1000, 5.0), (16, 4.0), (1, 2.0)])
 def test_everything_has_as_many_blocks(most, side):
     """Of 30 blocks the square below; a step has a cost of its own, which few blocks share."""
-    scene = plane_step_cost.everything_in_plane(mass(), most)
+    scene = scenes.everything_in_plane(mass(), most)
     assert scene.domain.size == [side, side]
 
 

@@ -13,10 +13,13 @@ from compare.experiments.ablation.diagram import draw
 from compare.experiments.ablation.runner import Variant, all_shipped, reported, run
 from compare.experiments.ablation.summary import sentences, summarise, table
 
-LEDGER = EffectCost("energy ledger", 1.0, 3.0, 0.75, 1.0, nan, 0.0, "")
-LAYER = EffectCost("joints that differ", 0.1, -0.1, -0.025, 1.0, nan, 0.8, "")
-DAMPED = EffectCost("dashpots", 0.2, 2.0, 0.5, 4.0, 1.5, 0.05, "")
-SPACE = EffectCost("spatial motion", nan, nan, nan, nan, nan, nan, "is what the scene is about")
+NOISE = {"alone": 0.05, "cost": 0.2, "rock": 0.1}
+LEDGER = EffectCost("energy ledger", 1.0, 3.0, 0.75, 1.0, nan, 0.0, "", NOISE)
+LAYER = EffectCost("joints that differ", 0.1, -0.1, -0.025, 1.0, nan, 0.8, "", NOISE)
+DAMPED = EffectCost("dashpots", 0.2, 2.0, 0.5, 4.0, 1.5, 0.05, "", NOISE)
+SPACE = EffectCost(
+    "spatial motion", nan, nan, nan, nan, nan, nan, "is what the scene is about", NOISE
+)
 FOUND = [
     Ablation("set/one", "One", "", 0.5, 4.0, 40.0, nan, [LAYER, LEDGER]),
     Ablation("set/two", "Two", "hard", 0.5, 4.0, 20.0, 3.0, [SPACE, DAMPED]),
@@ -94,6 +97,15 @@ def test_table_has_the_dearest_first_and_says_why_an_effect_stays():
     assert two[0][1:] == ["5.00", "50", "+2", "+0.2", "4", "+1.5", ""]
     assert "10.0 % of 40 ns" in next(iter(found.groups))
     assert table(FOUND[:1]).header == found.header[:-1]
+
+
+def test_table_says_what_is_not_resolved():
+    """A cost below the noise of its timing, negative or not; a motion that only round-off has."""
+    stirred = LAYER._replace(misfit=nan, stirred="velocity x at 3 m")
+    rows = table([FOUND[0]._replace(effects=[LAYER, stirred])]).groups.popitem()[1]
+    hidden = ["not resolved", "not resolved (within ±0.2)", "+0.1", "1"]
+    assert rows[0][:6] == ["joints that differ", "80.0", *hidden]
+    assert rows[1][1] == "velocity x at 3 m stands still with it: not resolved"
 
 
 def test_diagram_has_a_point_for_every_effect_that_can_be_left_out():

@@ -4,13 +4,14 @@ import json
 
 import pytest
 
-from compare.experiments.cost import step_cost, timings
-from compare.experiments.cost.step_cost import changed, in_turns, nanoseconds, stretch, whole
+from compare.experiments.cost import scenes, step_cost, timings
+from compare.experiments.cost.scenes import changed
+from compare.experiments.cost.step_cost import in_turns, nanoseconds, stretch, whole
 
 
 def test_stretch_counts_its_block_steps():
     """Blocks times steps of the samples taken, along the axis and in space alike."""
-    for changes in ({}, step_cost.ACROSS):
+    for changes in ({}, scenes.ACROSS):
         scene = changed({**changes, "time.duration": 5e-4, "record.energy": False}, 100)
         march, block_steps = stretch(scene)
         march()
@@ -20,14 +21,14 @@ def test_stretch_counts_its_block_steps():
 def test_a_plain_scene_costs_less_than_one_in_space():
     """One freedom and a spring against six and a face: a factor far beyond any noise."""
     plain = {"record.energy": False}
-    assert nanoseconds(changed(plain)) < nanoseconds(changed({**plain, **step_cost.ACROSS}))
+    assert nanoseconds(changed(plain)) < nanoseconds(changed({**plain, **scenes.ACROSS}))
 
 
 def test_scenes_in_turns_cost_what_they_cost_one_by_one():
     """In the order that they are given, whatever their lengths."""
     plain = changed({"record.energy": False}, 100)
-    space = changed({"record.energy": False, **step_cost.ACROSS}, 100)
-    cheap, dear = in_turns([plain, space])
+    space = changed({"record.energy": False, **scenes.ACROSS}, 100)
+    cheap, dear = (one.ns for one in in_turns([plain, space]))
     assert 0 < 2 * cheap < dear
 
 
@@ -49,7 +50,7 @@ def test_everything_is_measured_once(tmp_path, monkeypatch):
 @pytest.mark.parametrize(("blocks", "measured"), [(1, 2), (2, 2), (100, 100), (10**6, 1000)])
 def test_everything_is_measured_in_as_many_blocks(blocks, measured):
     """A step has a cost of its own, which few blocks share; a thousand hardly feel it."""
-    assert step_cost.everything(blocks).pillar.block_count == measured
+    assert scenes.everything(blocks).pillar.block_count == measured
 
 
 @pytest.mark.parametrize("name", ["finite rotation", "slip", "softening", "dashpots", "gravity"])
@@ -57,4 +58,4 @@ def test_everything_calls_for_everything(name):
     """The line of 100 % has every effect on that joints and motion have."""
     from cases.effects import active_effects
 
-    assert name in active_effects(changed(step_cost.EVERYTHING))
+    assert name in active_effects(changed(scenes.EVERYTHING))

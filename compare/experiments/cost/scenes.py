@@ -1,4 +1,4 @@
-"""The cost of a step of one rigid block of a rock mass in the plane."""
+"""Scenes that costs are measured on: the paper's pillar and a lattice of blocks, with effects."""
 
 from __future__ import annotations
 
@@ -6,17 +6,43 @@ from math import isqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import cases
+from cases.kinds import pillar_of
+from cases.schema.scene import Scene
 from cases.validate import validated
-from compare.experiments.cost.step_cost import BLOCK_STEPS_IN_SPACE, Stretch, samples_of
-from compare.solvers.incident import incident
 
 if TYPE_CHECKING:
+    from cases.kinds import AnyScene
     from cases.schema.rock_mass import RockMass
+
+PILLAR = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
+BLOCKS = 1000  # of the pillar that effects are compared on
+
+#: A blow that moves blocks in all their freedoms.
+ACROSS = {"load.direction": [0.6, 0.8, 0.0], "load.at": [0.1, 0.05]}
+
+#: Every effect at once: the line against which a scene's own cost is held.
+EVERYTHING = {
+    **ACROSS,
+    "motion.rotation": "finite",
+    "joints.damping_ratio": 0.02,
+    "joints.friction_angle": 30.0,
+    "joints.cohesion": 1e5,
+    "joints.residual_cohesion": 0.0,
+    "joints.tensile_strength": 1e5,
+    "joints.fracture_energy": 100.0,
+    "soft_layers": [{"y": 0.5, "spacing_stiffness": 4.375e8}],
+    "record.stress": [0.5],
+    "damping.mass_proportional": 1.0,
+    "gravity": {"direction": [1, 0, 0], "static": False},
+    "ends.start": "matched",
+    "ends.end": "quiet",
+}
 
 ELASTIC = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 STEP = {"shape": "step", "amplitude": 1e5}
 #: Every effect at once, but for periodic sides: the line against which a scene's cost is held.
-EVERYTHING: dict[str, Any] = {
+EVERYTHING_IN_PLANE: dict[str, Any] = {
     "boundaries": {"left": "quiet", "right": "quiet", "bottom": "fixed"},
     "waves": [STEP | {"kind": "P", "direction": [1.0, 0.0]}],
     "loads": [
@@ -36,6 +62,24 @@ FAILING = (
     ELASTIC | FRICTION | {"residual_cohesion": 0.0, "tension": False},
     ELASTIC | FRICTION | {"tensile_strength": 1e6, "fracture_energy": 1e3},
 )
+
+
+def changed(changes: dict, blocks: int = BLOCKS) -> Scene:
+    """Return the paper's pillar with so many blocks and some dotted keys changed."""
+    return pillar_of(cases.load_variant(PILLAR, "", {"pillar.length": 0.5 * blocks, **changes}))
+
+
+def everything(blocks: int) -> Scene:
+    """Return the paper's pillar with every effect and so many blocks, but for very many: few blocks
+    share what a step costs however few they are."""
+    return changed(EVERYTHING, min(max(blocks, 2), BLOCKS))
+
+
+def everything_like(scene: AnyScene) -> AnyScene:
+    """Return a scene of this kind with every effect and about as many rigid blocks."""
+    if isinstance(scene, Scene):
+        return everything(scene.pillar.block_count)
+    return everything_in_plane(scene, BLOCKS)
 
 
 def lattice(blocks: int, along_y: dict, along_x: dict, tables: dict[str, Any]) -> RockMass:
@@ -65,20 +109,4 @@ def everything_in_plane(scene: RockMass, most: int) -> RockMass:
     from dem.blocks.build import rigid_blocks
 
     blocks = min(rigid_blocks(scene).partition.count, most)
-    return lattice(blocks, *FAILING, EVERYTHING)
-
-
-def stretch_in_plane(scene: RockMass, threads: int = 1) -> Stretch:
-    """Return a function that takes some samples of a scene from rest, with what acts on it, and its
-    number of block-steps."""
-    from dem.blocks.leapfrog import samples_for
-    from dem.blocks.model import state_at_rest
-    from dem.blocks.simulate import step
-    from dem.blocks.system import prepared
-
-    system = prepared(scene, incident(scene))._replace(threads=threads)
-    blocks = system.blocks.partition.count
-    count = samples_of(system.time, blocks, BLOCK_STEPS_IN_SPACE)
-    state, samples = state_at_rest(system.model), samples_for(system.model, count)
-    steps = count * system.time.stride
-    return lambda: step(system, state, samples, 0, steps), steps * blocks
+    return lattice(blocks, *FAILING, EVERYTHING_IN_PLANE)
