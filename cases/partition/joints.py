@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, radians, sin
+from math import cos, inf, radians, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 #: Of the sets that one ends at, the signed number of the joint below each cell.
 Stops = dict[str, np.ndarray]
 
+#: Half the width of the uniform distribution of spacings, in standard deviations.
+SPREAD = 3**0.5
 #: Cosine and sine of dips, degrees, that are exact.
 EXACT = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0)}
 
@@ -67,6 +69,11 @@ def in_order(sets: Sequence[JointSet]) -> list[JointSet]:
             raise ValueError(f"sets end at each other: {waiting}")
         ordered.append(ready[0])
     return ordered
+
+
+def widest(one: JointSet) -> float:
+    """Return the largest distance that two joints of a set can have, m; infinite of one alone."""
+    return inf if one.spacing is None else one.spacing * (1 + SPREAD * one.scatter)
 
 
 def _stops(one: JointSet, sets: Sequence[JointSet]) -> list[str]:
@@ -193,7 +200,7 @@ def _scattered(
 def _spacings(one: JointSet, region: np.ndarray, side: int, reach: float) -> np.ndarray:
     """Return the distances of joints from the origin, one beyond the reach at least, m."""
     assert one.spacing is not None and one.seed is not None
-    half = 3**0.5 * one.scatter
+    half = SPREAD * one.scatter
     count = max(int(np.ceil(reach / (one.spacing * (1 - half)))), 0) + 1
     folded = [2 * k if k >= 0 else -2 * k - 1 for k in map(int, region)]
     draws = np.random.default_rng([one.seed, side, *folded]).random(count)

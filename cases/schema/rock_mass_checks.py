@@ -25,6 +25,7 @@ def check(scene: RockMass) -> None:
     """Raise the first contradiction of a rock mass whose tables are each right."""
     check_sets(scene)
     outline = _outline(scene)
+    _check_cuts(scene, outline)
     _check_receivers(scene, outline)
     check_time(scene)  # type: ignore[arg-type]
     check_fields(scene)
@@ -44,6 +45,25 @@ def _outline(scene: RockMass) -> Outline:
         return outline_of(scene.domain)
     except PartitionError as error:
         raise contradiction(error.key, None, str(error)) from None
+
+
+def _check_cuts(scene: RockMass, outline: Outline) -> None:
+    """Refuse joints that miss the domain. Those of spacings that fit into it do not, and sets that
+    end at others are known when they are cut."""
+    from cases.partition.faults import PartitionError
+    from cases.partition.joints import cut_by_sets, direction_of, widest
+    from cases.partition.subdivision import Subdivision
+
+    for i, one in enumerate(scene.joint_sets):
+        x, y = direction_of(one.dip)
+        extent = float(np.ptp(outline.hull @ np.array([-y, x])))
+        if one.ends_at or widest(one) < extent:
+            continue
+        try:
+            cut_by_sets(Subdivision.of_polygon(outline.hull), [one], outline.tolerance)
+        except PartitionError as error:
+            key = error.key.replace("[0]", f"[{i}]")
+            raise contradiction(key, None, str(error)) from None
 
 
 def _check_receivers(scene: RockMass, outline: Outline) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import xarray as xr
 
 from cases.errors import SceneError
-from compare.engines import ENGINES, solve
+from compare.engines import ENGINES, solve, solver
 from compare.experiments.planner.families import Family, configured, plain, rock, settings
 from compare.experiments.references import ErrorReference
 from compare.misfit import ranking
@@ -140,9 +140,7 @@ def _at_most(scene: AnyScene, family: Family, dt: float) -> tuple[dict[str, Any]
     The step divides the sampling interval, so that a part of the critical one may be no other.
     """
     numerics = {"step_fraction": 0.4}
-    result = solve(family.name, configured(scene, family, numerics))
-    if float(result.attrs["dt"]) > dt * (1 + 1e-9):
-        per_sample, critical = round(scene.interval / dt), float(result.attrs["critical_dt"])
-        numerics = settings(scene, family, per_sample, critical)
-        result = solve(family.name, configured(scene, family, numerics))
-    return numerics, result
+    run = solver(family.name).prepare(configured(scene, family, numerics))
+    if run.dt > dt * (1 + 1e-9):
+        numerics = settings(scene, family, round(scene.interval / dt), run.critical)
+    return numerics, solve(family.name, configured(scene, family, numerics))

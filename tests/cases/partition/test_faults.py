@@ -54,9 +54,15 @@ def test_the_scene_is_cut(scene):
     assert partition_of(scene()).count == 6
 
 
-def test_a_set_that_cuts_nothing(scene):
+@pytest.mark.parametrize("scatter", [{}, {"scatter": 0.01, "seed": 1}])
+def test_a_set_that_cuts_nothing_is_refused_when_it_is_read(scene, scatter):
     """Its joints are further apart than the domain is high, and one lies along its bottom."""
-    assert line(scene(joint_sets__0__spacing=7.0)) == "joint_sets[0]: cuts nothing of the domain"
+    changes = {f"joint_sets__0__{key}": value for key, value in scatter.items()}
+    with pytest.raises(
+        SceneError, match=r"rows.toml: joint_sets\[0\]: cuts nothing of the domain$"
+    ):
+        scene(joint_sets__0__spacing=7.0, **changes)
+    assert partition_of(scene(joint_sets__0__spacing=5.5, **changes)).count == 2
 
 
 def test_a_set_along_the_joints_of_another_cuts_nothing(scene):
@@ -69,8 +75,9 @@ def test_one_joint_outside(scene):
     """Through a point of no block."""
     law = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
     one = {"name": "one", "dip": 45.0, "through": [20.0, 3.0], **law}
-    said = line(scene(joint_sets=[one]))
-    assert said == "joint_sets[0].through: must lie in the domain, near [20, 3]"
+    said = r"joint_sets\[0\].through: must lie in the domain, near \[20, 3\]$"
+    with pytest.raises(SceneError, match=said):
+        scene(joint_sets=[one])
 
 
 def test_one_joint_on_the_joint_that_it_ends_at(scene, joints):
