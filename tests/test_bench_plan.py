@@ -21,7 +21,7 @@ def tools(monkeypatch):
     monkeypatch.syspath_prepend(str(TOOLS))
     before = set(sys.modules)
     study = importlib.import_module("full_study")
-    monkeypatch.setattr(study, "FAMILIES", families.FAMILIES[:4])
+    monkeypatch.setattr(study, "families_of", lambda scene: families.families_of(scene)[:4])
     yield importlib.import_module
     for name in set(sys.modules) - before:
         if str(getattr(sys.modules[name], "__file__", "")).startswith(str(TOOLS)):

@@ -7,7 +7,9 @@ import numpy as np
 from cases.partition.assemble import Rings, rings
 from cases.partition.convex import union_is_convex
 from cases.partition.faults import Sliver
+from cases.partition.lines import one_line
 from cases.partition.polygons import least_angles, widths
+from cases.partition.split import split
 from cases.partition.subdivision import OUTSIDE, Subdivision, joined
 
 Limits = tuple[float, float]  # least width, m, and least angle, degrees
@@ -19,9 +21,10 @@ def without_slivers(
     """Return a subdivision without blocks thinner or more pointed than the limits, and its
     outlines.
 
-    joins : each is joined to the neighbour along its longest side with which it is convex; else,
-    and where there is none, it is refused. kept : joint sets, the first ones, that a sliver is
-    joined across only where it fits no other neighbour. Raises Sliver.
+    joins : each is joined to the neighbour along its longest side with which it is convex, or part
+    by part, cut where the sides of neighbours end at it; else, and where nothing fits, it is
+    refused. kept : joint sets, the first ones, that a sliver is joined across only where it fits no
+    other neighbour. Raises Sliver.
     """
     while True:
         found = rings(sub)
@@ -43,27 +46,69 @@ def _slivers(found: Rings, limits: Limits) -> np.ndarray:
 def _joined_to_neighbours(
     sub: Subdivision, found: Rings, thin: np.ndarray, limits: Limits, tolerance: float, kept: int
 ) -> Subdivision:
-    """Return a subdivision with slivers joined, of those that touch only one at a time."""
+    """Return a subdivision with slivers joined, of those that touch only one at a time; where none
+    can be, with a part of one of them joined."""
     root, used = np.arange(sub.count), np.zeros(sub.count, bool)
-    place = np.full(sub.count, -1)
-    place[found.cell] = np.arange(len(found.cell))
-    beside = _neighbours(sub, found.cell[thin], kept)
+    beside, stuck = _neighbours(sub, found.cell[thin], kept), []
     for one in thin:
-        cell, own = int(found.cell[one]), _corners(found, int(one))
+        cell = int(found.cell[one])
         near = beside[cell]
-        fits = (
-            other
-            for other in near
-            if union_is_convex(own, _corners(found, int(place[other])), tolerance)
-        )
         if used[cell] or used[near].any():
             continue
-        other = next(fits, None)
+        other = _fitting(found, _corners(found, int(one)), near, tolerance)
         if other is None:
-            raise _refusal(found, int(one), limits, ", and is convex with none of its neighbours")
+            stuck.append(int(one))
+            continue
         root[cell], used[cell] = other, True
         used[near] = True
-    return joined(sub, root)
+    if used.any():
+        return joined(sub, root)
+    for one in stuck:
+        parted = _parted(sub, found, one, beside[int(found.cell[one])], tolerance)
+        if parted is not None:
+            return parted
+    raise _refusal(found, stuck[0], limits, ", and is convex with none of its neighbours")
+
+
+def _fitting(found: Rings, own: np.ndarray, near: list[int], tolerance: float) -> int | None:
+    """Return the first of some cells with which corners [n, 2] make a convex one."""
+    for cell in near:
+        (other,) = np.flatnonzero(found.cell == cell)
+        if union_is_convex(own, _corners(found, int(other)), tolerance):
+            return cell
+    return None
+
+
+def _parted(
+    sub: Subdivision, found: Rings, one: int, near: list[int], tolerance: float
+) -> Subdivision | None:
+    """Return a subdivision with a sliver cut along a side of a neighbour that ends at it, and a
+    part joined to a neighbour; None where no such cut leaves one that fits."""
+    cell, own = int(found.cell[one]), _corners(found, one)
+    half = sub.halves(np.isin(sub.cells, near).any(axis=1) & (sub.cells != cell).all(axis=1))
+    for start, end in zip(sub.points[half.start], sub.points[half.end], strict=True):
+        along = (end - start) / np.hypot(*(end - start))
+        s = (own - start) @ [-along[1], along[0]]
+        if s.min() > -tolerance or s.max() < tolerance:
+            continue
+        for sign, part in ((-1, cell), (1, sub.count)):
+            other = _fitting(found, _clipped(own, sign * s), near, tolerance)
+            if other is not None:
+                lines = one_line(along, start, np.arange(sub.count) == cell)
+                cut = split(sub, lines, tolerance).subdivision
+                root = np.arange(cut.count)
+                root[part] = other
+                return joined(cut, root)
+    return None
+
+
+def _clipped(corners: np.ndarray, s: np.ndarray) -> np.ndarray:
+    """Return the corners of the part of a convex polygon where s, of each corner, is positive."""
+    after, ahead = np.roll(corners, -1, axis=0), np.roll(s, -1)
+    crosses = s * ahead < 0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = (s / (s - ahead))[crosses, None]
+    return np.concatenate([corners[s >= 0], corners[crosses] * (1 - t) + after[crosses] * t])
 
 
 def _neighbours(sub: Subdivision, cells: np.ndarray, kept: int) -> dict[int, list[int]]:

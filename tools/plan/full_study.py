@@ -4,16 +4,21 @@ A point meets a misfit by its numerical and modelling error together, and where 
 its family do.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from math import inf
+from typing import TYPE_CHECKING
 
 from cases.errors import SceneError
-from cases.schema.scene import Scene
 from compare.experiments.failures import FAILURES, reason_of
 from compare.experiments.planner.choices import Choice, furthest_off, measured, steps
-from compare.experiments.planner.families import FAMILIES, Family, effort
+from compare.experiments.planner.families import Family, effort, families_of
 from compare.experiments.planner.reference import OwnModel, References
 from compare.experiments.planner.trials import FINEST, Trial, first_trial, is_hopeless, trial_at
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 #: A family ends where a run takes so many times the seconds of the cheapest that does, as finer
 #: steps cost more. It is not begun where it would even at half the seconds that a freedom-step has
@@ -25,13 +30,13 @@ LONGEST = 2.0  # s: a run that takes as long is the last of its family
 class Study:
     """All points of a scene, and why the families that are not among them are not."""
 
-    def __init__(self, scene: Scene, references: References, misfits: list[float]) -> None:
+    def __init__(self, scene: AnyScene, references: References, misfits: list[float]) -> None:
         """Run every family at two steps to a doubling until it meets all misfits or cannot win."""
         self.scene, self.references, self.misfits = scene, references, misfits
         self.points: list[Choice] = []
         self.skipped: dict[str, str] = {}
         self._rates: dict[str, float] = {}
-        for family in FAMILIES:
+        for family in families_of(scene):
             try:
                 self._add(family)
             except FAILURES as error:
@@ -47,9 +52,9 @@ class Study:
         rate = rates.get(family.name, min(rates.values(), default=0.0))
         if 0.5 * rate * work > self._dear(self.misfits):
             raise SceneError(self.scene.where, "", None, f"over {DEARER:g} times the cheapest")
-        first, own = None, self.references.own(family.name)
+        first, own = None, self.references.own(family)
         if own.least >= max(self.misfits):
-            raise SceneError(self.scene.where, "", None, own.too_far(family.name))
+            raise SceneError(self.scene.where, "", None, own.too_far(family))
         for trial in self._trials(family, own):
             first = first or trial
             each = trial.seconds / (work * trial.per_sample / first.per_sample)

@@ -1,11 +1,13 @@
 """One scene: what was planned, held against the cheapest of the full study, timed in turns."""
 
+from __future__ import annotations
+
 from math import inf, nan
 from statistics import median
+from typing import TYPE_CHECKING
 
 from full_study import Study
 
-from cases.schema.scene import Scene
 from compare.engines import solve
 from compare.experiments.failures import FAILURES, reason_of
 from compare.experiments.planner.choices import Choice
@@ -13,11 +15,14 @@ from compare.experiments.planner.families import configured
 from compare.experiments.planner.planner import Plan, options_of, plan
 from compare.experiments.planner.reference import References
 
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+
 RIVALS = 4  # of the study: the cheapest by their own timing, which is noise for short runs
 SHORT = 0.05  # s: the longest run that takes part in all rounds; three are enough above
 
 
-def rows_of(scene: Scene, misfits: list[float], rounds: int) -> list[dict]:
+def rows_of(scene: AnyScene, misfits: list[float], rounds: int) -> list[dict]:
     """Return a row for each misfit; a scene that cannot be planned has its reason."""
     try:
         references = References(scene, min(misfits))
@@ -27,7 +32,7 @@ def rows_of(scene: Scene, misfits: list[float], rounds: int) -> list[dict]:
     return [_held(scene, study, m, rounds) for m in misfits]
 
 
-def _held(scene: Scene, study: Study, misfit: float, rounds: int) -> dict:
+def _held(scene: AnyScene, study: Study, misfit: float, rounds: int) -> dict:
     found, rivals = plan(scene, misfit), study.best(misfit)[:RIVALS]
     row = _row(scene, misfit) | _of_plan(found, misfit) | {"points": len(study.points)}
     seconds = _in_turns(scene, [c for c in (found.chosen, *rivals) if c is not None], rounds)
@@ -45,7 +50,7 @@ def _held(scene: Scene, study: Study, misfit: float, rounds: int) -> dict:
     return row
 
 
-def _in_turns(scene: Scene, choices: list[Choice], rounds: int) -> dict[str, float]:
+def _in_turns(scene: AnyScene, choices: list[Choice], rounds: int) -> dict[str, float]:
     """Return the median seconds of stepping of each configuration, all run in every round."""
     runs = {_key(c): (c.family.name, configured(scene, c.family, c.settings)) for c in choices}
     taken: dict[str, list[float]] = {key: [] for key in runs}
@@ -63,15 +68,11 @@ def _key(choice: Choice) -> str:
 
 
 def _text(choice: Choice) -> str:
-    family = choice.family
-    words = [family.changes["scheme"]]
-    if "order" in family.changes:
-        words.append(f"p {family.changes['order']} x {family.changes['elements_per_block']}")
     (fraction,) = choice.settings.values()
-    return f"{family.name} {' '.join(words)} {fraction:.3g}"
+    return f"{choice.family.label} {fraction:.3g}"
 
 
-def _row(scene: Scene, misfit: float) -> dict:
+def _row(scene: AnyScene, misfit: float) -> dict:
     return {"variant": scene.name, "asked": misfit, "met": False, "ratio": nan, "message": ""}
 
 

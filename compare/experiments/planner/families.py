@@ -66,11 +66,12 @@ class Family(NamedTuple):
 def families_of(scene: AnyScene) -> list[Family]:
     """Return the families of a scene, coarse ones first: what they give tells whether finer ones
     need a trial."""
-    both = JOINTED_ROCK.name, EQUIVALENT_ROCK.name
+    both, rigid = (JOINTED_ROCK.name, EQUIVALENT_ROCK.name), _rigid(scene)
     return [
-        *_rigid(scene),
+        *rigid[:2],
         *(rock(scene, name, p) for p in (1, 2, 3, 4) for name in both),
         *(rock(scene, JOINTED_ROCK.name, p, n) for p, n in ((1, 2), (2, 2), (1, 4), (4, 2))),
+        *rigid[2:],
         *(_implicit(rock(scene, name, p)) for p in (1, 2, 4) for name in both),
     ]
 

@@ -125,12 +125,25 @@ def test_a_row_that_is_too_thin(scene, slivers):
         assert said.endswith("near [5, 2.0025]")
 
 
-def test_slivers_that_no_neighbour_takes(rectangle, joints):
-    """A thin row of bricks under rows with joints elsewhere."""
+def test_slivers_that_two_neighbours_take(rectangle, joints):
+    """A thin row of bricks under rows with joints elsewhere: each brick is cut where the joint
+    between the two below it ends."""
     rows = joints("rows", 0.0, spacing=1.0)
     cross = joints("cross", 90.0, spacing=2.0, ends_at=["rows"], offset=0.5)
+    found = cut(rectangle(10.0, 3.005), [rows, cross])
+    assert found.count == cut(rectangle(10.0, 3.0), [rows, cross]).count
+    assert found.area.sum() == pytest.approx(30.05, rel=1e-14)
+    assert found.corners[:, 1].max() == 3.005 and (found.area < 2.1).all()
+
+
+def test_slivers_that_no_neighbour_takes(rectangle, joints):
+    """A joint along the roof of an opening, at less than a degree: what is between them stays
+    pointed, however it is cut."""
+    opening = [[4.0, 2.0], [5.0, 1.0], [6.0, 2.0], [6.5, 2.9], [6.0, 3.0], [4.0, 2.9]]
+    domain = rectangle(10.0, 6.0, openings=[opening], non_convex="cut")
+    sets = [joints("roof", 2.0, through=[6.0, 3.0]), joints("steep", 70.0, through=[5.7, 3.0])]
     with pytest.raises(Sliver, match="is convex with none of its neighbours, near"):
-        cut(rectangle(10.0, 3.005), [rows, cross])
+        cut(domain, sets)
 
 
 def test_a_corner_of_less_than_the_least_angle(rectangle, joints):

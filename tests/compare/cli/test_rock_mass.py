@@ -84,11 +84,6 @@ joints = [[20.0, 20.0]]
 interval = 1e-4
 """
 
-#: Of these each takes pillars alone, and says so.
-PILLARS_ALONE = {
-    "plan joint.toml --misfit 0.01": "jointwave plan",
-}
-
 
 @pytest.fixture
 def jointwave_says(tmp_path, monkeypatch):
@@ -109,15 +104,6 @@ def jointwave_says(tmp_path, monkeypatch):
         return end.value.code, out.getvalue(), err.getvalue()
 
     return says
-
-
-@pytest.mark.parametrize(("command", "what"), PILLARS_ALONE.items())
-def test_what_takes_pillars_alone_says_so_in_one_line(jointwave_says, tmp_path, command, what):
-    code, out, err = jointwave_says(command)
-    assert code == 2 and out == "" and len(err.splitlines()) == 1
-    expected = f"jointwave: joint.toml: domain: is a rock mass; {what} takes pillars alone"
-    assert err.strip() == expected
-    assert {path.name for path in tmp_path.iterdir()} == {"mass.toml", "joint.toml"}
 
 
 def test_a_scene_is_run_and_its_file_says_where_its_receivers_are(jointwave_says, tmp_path):
@@ -307,8 +293,6 @@ def test_the_python_interface_reads_and_solves_it(jointwave_says):
     assert [one.name for one in jointwave.load_variants("mass.toml")] == ["", "bonded", "shifted"]
     with pytest.raises(jointwave.SceneError, match=r"jointwave\.properties takes pillars alone"):
         jointwave.properties(scene)
-    with pytest.raises(jointwave.SceneError, match=r"jointwave\.plan takes pillars alone"):
-        jointwave.plan(scene, 0.01)
 
 
 def test_variants_are_completed(jointwave_says):

@@ -186,6 +186,66 @@ def test_joints_that_slip_are_not_planned_by_homogenised_rock(few):
     assert barred(found, "continuum-equivalent") == pytest.approx(5.6, rel=0.1)
 
 
+#: One joint under an upright wave, in a square that is small beside it.
+ROCK_MASS = {
+    "domain.size": [6.0, 6.0],
+    "joint_sets.0.dip": 0.0,
+    "joint_sets.0.through": [3.0, 3.0],
+    "record.points": [[2.9, 1.4], [2.9, 4.4]],
+    "record.joints": [[3.0, 3.0]],
+    "time.duration": 0.012,
+}
+
+
+def test_a_rock_mass_is_planned_by_sizes_of_blocks_and_elements(few):
+    """Held against the exact field of its joint; blocks of half the size are nearer to it, and what
+    is predicted is obtained by the options that are printed."""
+    few(0, 6)
+    scene = cases.load_variant(find("rock-mass/one-joint"), "", ROCK_MASS)
+    found = plan(scene, 0.008)
+    assert found.reference.name == "oblique-joint" and found.misfit <= 0.008
+    assert found.chosen.family.name == "continuum-jointed"
+    assert found.obtained.numerical == pytest.approx(found.chosen.numerical, rel=0.1)
+    sizes = [family.changes["block"] for family in families.families_of(scene)[:2]]
+    coarse, fine = (barred(found, rf"dem \(block {size:g}\)") for size in sizes)
+    assert sizes[0] > 1.9 * sizes[1] and coarse > 4 * fine > 4
+    overrides = dict(parse_override(text) for text in options_of(found.chosen))
+    overrides |= {"record.interval": scene.interval, "record.energy": False}
+    again = cases.load_variant(find("rock-mass/one-joint"), "", ROCK_MASS | overrides)
+    exact = found.reference.result
+    assert misfit(solve("continuum-jointed", again), exact) == pytest.approx(
+        found.obtained.numerical - found.own.error
+    )
+
+
+def test_sizes_of_a_rock_mass_are_parts_of_its_slowest_wave():
+    """2774 m/s times 5 ms; the scene's own blocks are among them, and finer ones cost more."""
+    found = families.families_of(cases.load_variant(find("rock-mass/one-joint"), ""))
+    rigid = [family for family in found if family.name == "dem"]
+    sizes = [family.changes["block"] for family in rigid]
+    assert sizes == sorted(sizes)[::-1] and sizes[0] == pytest.approx(13.87 / 6, rel=2e-3)
+    assert 0.8 in sizes and families.is_finer(rigid[-1], rigid[0])
+    rock = families.rock(
+        cases.load_variant(find("rock-mass/one-joint"), ""), "continuum-jointed", 2
+    )
+    assert rock.changes["size"] == pytest.approx(13.87 / 6, rel=2e-3)
+
+
+def test_blocks_between_spaced_joints_have_a_model_of_their_own():
+    """As it stands it is exact in time as a lattice; cut into smaller blocks it is not."""
+    changes = {"domain.size": [8.0, 4.0], "record.points": [[2.5, 1.5]], "record.joints": []}
+    changes |= {"joint_sets.1.ends_at": [], "joint_sets.1.offset": 0.0}
+    scene = cases.load_variant(find("rock-mass/brickwork"), "", changes)
+    references = plan_reference.References.__new__(plan_reference.References)
+    references.scene, references.asked, references._own = scene, 0.1, {}
+    lattice = solve("block-lattice", plain(scene))
+    references.finest = plan_reference.ErrorReference("continuum-jointed", lattice, 0.0, "a run")
+    own = references.own(Family("dem", {}))
+    assert own.reference.name == "block-lattice" and own.modelling == 0
+    cut = references.own(Family("dem", {"block": 0.5}))
+    assert cut.reference.name == "dem" and cut.modelling > 0.01
+
+
 SLIPPING = {
     "pillar.length": 10.0,
     "pillar.block": 0.5,
@@ -223,7 +283,7 @@ def test_a_reference_that_does_not_know_itself_well_enough_judges_nothing(pillar
     monkeypatch.setattr(plan_reference, "solve", lambda name, asked: bounded)
     with pytest.raises(SceneError, match=r"jointed-bar knows itself to 0.02 %, not to 0.01 %"):
         plan_reference.References(scene, 1e-3)
-    own = plan_reference.References(scene, 1e-2).own("continuum-jointed")
+    own = plan_reference.References(scene, 1e-2).own(Family("continuum-jointed", {}))
     assert own.modelling == 0 and own.least == pytest.approx(2e-4, rel=1e-3)
 
 
