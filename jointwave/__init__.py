@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-    from xarray import Dataset
+    from xarray import DataArray, Dataset
 
     from cases.kinds import AnyScene
     from cases.material.calibrate import Properties
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "compare",
+    "deconvolve",
     "figure",
     "fit",
     "load",
@@ -123,6 +124,21 @@ def compare(
     from compare.misfit import pairs
 
     return pairs.compare(scene, progress, curves=curves, align=align)
+
+
+def deconvolve(scene: AnyScene, surface: DataArray, water_level: float = 1e-3) -> DataArray:
+    """Return what comes up to a column's quiet start, from the motion of its free end: a table for
+    a compliant base.
+
+    scene : a pillar with linear joints, ends "quiet" and "free"; of its load the direction counts.
+    surface : velocity or acceleration over `time` alone. water_level : of the largest transfer;
+    frequencies that the joints pass less of are held back. The result begins earlier than the
+    record, by the time that intact rock takes. Raises SceneError where the column is not linear.
+    """
+    from cases.kinds import pillar_of
+    from compare.exact.bar import deconvolution
+
+    return deconvolution.deconvolve(pillar_of(scene, "deconvolve"), surface, water_level)
 
 
 def misfit(one: Dataset, other: Dataset) -> float:

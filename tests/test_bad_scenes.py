@@ -260,8 +260,8 @@ MISTAKES = {
         ["load.quantity = 'velocity'", "ends.start = 'fixed'"],
     ),
     "a compliant base at an angle": (
-        "period = 0.01\n\n[ends]",
-        'period = 0.01\nquantity = "velocity"\ndirection = [0.6, 0.8, 0]\n\n[ends]\nstart = "quiet"',
+        "\n\n[ends]",
+        '\nquantity = "velocity"\ndirection = [0.6, 0.8, 0]\n\n[ends]\nstart = "quiet"',
         ["load.direction = [0.6, 0.8, 0", "along or across the axis"],
     ),
     "an eccentric motion": (

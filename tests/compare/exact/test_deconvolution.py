@@ -1,0 +1,105 @@
+"""A free end's motion gives back the wave that came up to the start."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from cases.errors import SceneError
+from cases.histories import Gabor
+from cases.material.calibrate import calibrate
+from cases.read import load_tables
+from compare.engines import solve
+from compare.exact.bar.deconvolution import deconvolve
+
+PERIOD, CYCLES = 0.01, 3
+PULSE = Gabor(0.02, PERIOD, CYCLES)
+
+
+def column(direction=(0, 1, 0), **tables):
+    """Return a column below a free end, with the pulse coming up."""
+    load = {"shape": "gabor", "amplitude": 0.02, "period": PERIOD, "cycles": CYCLES}
+    rock = {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0}
+    return load_tables(
+        {
+            "title": "a column",
+            "pillar": {"length": 10.0, "side": 0.5, "block": 0.25},
+            "rock": rock | tables.pop("rock", {}),
+            "motion": {"rotation": "none"},
+            "load": load | {"quantity": "velocity", "direction": list(direction)},
+            "ends": {"start": "quiet", "end": "free"},
+            "time": {"duration": 0.25},
+            "record": {"velocity": [10.0], "interval": 1e-4},
+            **tables,
+        }
+    )
+
+
+def recovered(scene, solver, early=0.0):
+    """Return what comes up by a solver's surface motion, and the pulse so much early (s)."""
+    found = deconvolve(scene, solve(solver, scene).velocity[0].isel(axis=0))
+    return found.values, PULSE.value(found.time.values + early)
+
+
+JOINTED = {"intact_modulus": 8.64e10}
+SOFT = {"soft_layers": [{"y": 5.0, "spacing_stiffness": 4e8}]}
+
+
+@pytest.mark.parametrize("tables", [{}, SOFT, {"joints": {"damping_ratio": 0.1}} | SOFT])
+@pytest.mark.parametrize("solver", ["equivalent-bar", "jointed-bar"])
+def test_the_exact_bar_gives_back_the_pulse(solver, tables):
+    """Of which it knows 1e-8, and the deconvolution more where joints pass less; where the record
+    ends, the rock still moves."""
+    rock = JOINTED if solver == "jointed-bar" else {}
+    found, pulse = recovered(column(rock=rock, **tables), solver)
+    whole = len(found) // 2
+    assert np.abs(found - pulse)[:whole].max() < 2e-7 * PULSE.amplitude
+    assert np.abs(found - pulse).max() < 3e-5 * PULSE.amplitude
+
+
+def test_uniform_rock_halves_the_record_and_moves_it():
+    scene = column()
+    dt = 10.0 / calibrate(scene).bar_speed / 40  # a wave takes 40 samples
+    time = dt * np.arange(400)
+    record = xr.DataArray(
+        Gabor(2.0, 40 * dt, 2).value(time), {"time": time}, attrs={"units": "m/s"}
+    )
+    found = deconvolve(scene, record)
+    assert found.time.values[0] == pytest.approx(-40 * dt) and found.attrs == record.attrs
+    assert found.values[:-40] == pytest.approx(record.values / 2, abs=1e-12)
+
+
+def test_a_sheared_column_gives_back_what_rigid_blocks_were_given():
+    """Early by d / 4 c (`verification/test_compliant_base`), beside what their quiet end returns,
+    tan(k d / 4) of what comes down, and pi^3 N (d / lambda)^2 / 3 of phase over the N = 2.5 waves
+    up and down; a wave is 32 blocks long."""
+    scene = column((1, 0, 0), **SOFT)
+    found, pulse = recovered(scene, "dem", early=0.25 / (4 * calibrate(scene).shear_speed))
+    bound = np.tan(np.pi / 64) + np.pi**3 * 2.5 / 32**2 / 3
+    assert np.linalg.norm(found - pulse) < bound * np.linalg.norm(pulse)
+
+
+def test_a_water_level_holds_noise_back():
+    """Rock with 39 joints stops high frequencies, whose noise would be all that is left."""
+    scene = column(rock=JOINTED)
+    surface = solve("jointed-bar", scene).velocity[0].isel(axis=0)
+    noise = 1e-5 * np.random.default_rng(0).standard_normal(surface.size)
+    held, free = (deconvolve(scene, surface + noise, level) for level in (1e-2, 0.0))
+    pulse = PULSE.value(held.time.values)
+    assert np.abs(held - pulse).max() < 0.02 * PULSE.amplitude
+    assert not np.abs(free - pulse).max() < PULSE.amplitude
+
+
+@pytest.mark.parametrize(
+    "tables, words",
+    [
+        (
+            {"ends": {"start": "free", "end": "free"}, "load": {"shape": "step", "amplitude": 1.0}},
+            "its ends are not quiet and free",
+        ),
+        ({"joints": {"tension": False}}, "a joint bars tension"),
+    ],
+)
+def test_a_column_that_is_not_linear_is_refused(tables, words):
+    scene = column(**tables)
+    with pytest.raises(SceneError, match=f"cannot be deconvolved: {words}"):
+        deconvolve(scene, xr.DataArray(np.zeros(3), {"time": [0.0, 0.1, 0.2]}))
