@@ -41,7 +41,8 @@ def deconvolve(scene: Scene, surface: xr.DataArray, water_level: float = 1e-3) -
     Parameters
     ----------
     scene : a pillar, of whose load the direction alone counts; ends "quiet" and "free".
-    surface : velocity or acceleration over `time` (s) alone, equally spaced.
+    surface : velocity or acceleration over `time` (s) alone, equally spaced, of
+        the whole motion: where it is cut off, the end of what is found is off.
     water_level : w, of the largest |H|: frequencies that the joints pass less of are held back.
 
     Raises SceneError where the column is not linear.
