@@ -26,21 +26,41 @@ if TYPE_CHECKING:
     from compare.experiments.planner.planner import Plan
     from compare.misfit.external import Curves
     from compare.misfit.pairs import Comparison
+    from compare.readings import (
+        arias_intensity,
+        dispersion,
+        dispersion_theory,
+        peak_velocity,
+        peak_velocity_map,
+        quality_factor,
+        response_spectrum,
+        transfer_function,
+        wave_speed,
+    )
 
 __all__ = [
+    "arias_intensity",
     "compare",
     "deconvolve",
+    "dispersion",
+    "dispersion_theory",
     "figure",
     "fit",
     "load",
     "load_variants",
     "misfit",
+    "peak_velocity",
+    "peak_velocity_map",
     "plan",
     "properties",
+    "quality_factor",
     "read_curves",
+    "response_spectrum",
     "shipped",
     "simulate",
     "solvers",
+    "transfer_function",
+    "wave_speed",
 ]
 
 Progress = Callable[[float], None]
@@ -213,7 +233,8 @@ def _file(scene: str | Path) -> Path:
 
 
 def __getattr__(name: str) -> Any:
-    """Return the exceptions and the class of scenes, imported when they are asked for."""
+    """Return the exceptions, the class of scenes and what is read off results, imported when they
+    are asked for."""
     if name in ("SceneError", "StoppedError", "UnstableError"):
         from cases import errors
 
@@ -222,4 +243,8 @@ def __getattr__(name: str) -> Any:
         from cases.schema.scene import Scene
 
         return Scene
+    if name in __all__:
+        from compare import readings
+
+        return getattr(readings, name)
     raise AttributeError(f"module 'jointwave' has no attribute {name!r}")

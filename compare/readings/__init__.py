@@ -1,0 +1,22 @@
+"""What engineers read off a result: functions of a Dataset that return arrays with units."""
+
+from compare.readings.attenuation import quality_factor, transfer_function, wave_speed
+from compare.readings.dispersion import dispersion, dispersion_theory
+from compare.readings.ground_motion import (
+    arias_intensity,
+    peak_velocity,
+    peak_velocity_map,
+    response_spectrum,
+)
+
+__all__ = [
+    "arias_intensity",
+    "dispersion",
+    "dispersion_theory",
+    "peak_velocity",
+    "peak_velocity_map",
+    "quality_factor",
+    "response_spectrum",
+    "transfer_function",
+    "wave_speed",
+]

@@ -1,0 +1,104 @@
+"""What a wave loses and takes from one receiver to another: transfer function, apparent Q, speed.
+
+Take records of one passage: `result.sel(time=slice(0, 0.02))` leaves out what is reflected later.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from compare.misfit.metrics import delay
+from compare.readings.rows import sampling, waveforms
+
+HEARD = 0.01  # of the largest amplitude of the first record: frequencies that are read
+
+
+def wave_speed(
+    result: xr.Dataset,
+    one: int = 0,
+    other: int = -1,
+    quantity: str = "velocity",
+    axis: str | None = None,
+) -> float:
+    """Return the speed of a wave from one receiver to another, m/s: their distance over the delay
+    at which their waveforms correlate best.
+
+    one, other : receivers by number. quantity, axis : of which waveforms, as `rows.waveforms` has
+    them. Negative where the other one is reached first.
+    """
+    row = waveforms(result, quantity, axis)
+    return _way(row, one, other) / _delay(row, one, other)
+
+
+def transfer_function(
+    result: xr.Dataset,
+    one: int = 0,
+    other: int = -1,
+    quantity: str = "velocity",
+    axis: str | None = None,
+    water_level: float = 1e-3,
+) -> xr.DataArray:
+    """Return the spectrum at one receiver over that at another, complex [frequency], with
+    e^{i omega t}: a wave that arrives later has a falling phase.
+
+    water_level : of the first one's largest amplitude; below it the divisor is held there (Clayton
+    & Wiggins, Geophys. J. R. Astr. Soc. 47, 1976).
+    """
+    row = waveforms(result, quantity, axis)
+    first, last = (np.fft.rfft(row[i].values) for i in (one, other))
+    level = water_level * np.abs(first).max()
+    ratio = last * first.conj() / np.maximum(np.abs(first), level) ** 2
+    attrs = {"long_name": f"transfer function of the {quantity}", "units": "1"}
+    return xr.DataArray(ratio, {"frequency": _frequencies(row)}, name="transfer", attrs=attrs)
+
+
+def quality_factor(
+    result: xr.Dataset,
+    one: int = 0,
+    other: int = -1,
+    quantity: str = "velocity",
+    axis: str | None = None,
+) -> xr.Dataset:
+    """Return attenuation (1/m), phase_speed (m/s) and apparent quality factor [frequency] of the
+    wave between two receivers, where the first one's spectrum is above a hundredth of its largest.
+
+    The ratio of both spectra is exp(-a x - i omega x / c) and Q = omega / (2 a c) (Aki & Richards,
+    Quantitative Seismology, 2002, 5.5). What joints reflect is lost to Q as heat is.
+    """
+    row = waveforms(result, quantity, axis)
+    spectra = [np.fft.rfft(row[i].values) for i in (one, other)]
+    frequency, way, late = _frequencies(row), _way(row, one, other), _delay(row, one, other)
+    heard = np.abs(spectra[0]) > HEARD * np.abs(spectra[0]).max()
+    heard[0] = False
+    omega = 2 * np.pi * frequency.values[heard]
+    ratio = spectra[1][heard] / spectra[0][heard]
+    lag = omega * late - np.angle(
+        ratio * np.exp(1j * omega * late)
+    )  # the rest is below half a turn
+    loss = -np.log(np.abs(ratio))
+    named = {
+        "attenuation": (loss / way, "attenuation", "1/m"),
+        "phase_speed": (omega * way / lag, "phase speed", "m/s"),
+        "quality": (lag / (2 * loss), "apparent quality factor", "1"),
+    }
+    return xr.Dataset(
+        {
+            name: ("frequency", values, {"long_name": words, "units": unit})
+            for name, (values, words, unit) in named.items()
+        },
+        {"frequency": frequency[heard]},
+    )
+
+
+def _frequencies(row: xr.DataArray) -> xr.Variable:
+    frequency = np.fft.rfftfreq(row.sizes["time"], sampling(row))
+    return xr.Variable("frequency", frequency, {"long_name": "frequency", "units": "Hz"})
+
+
+def _way(row: xr.DataArray, one: int, other: int) -> float:
+    return float(row["distance"][other] - row["distance"][one])
+
+
+def _delay(row: xr.DataArray, one: int, other: int) -> float:
+    return delay(row[other].values, row[one].values, sampling(row))

@@ -1,0 +1,115 @@
+"""Phase speed against frequency, of a row of receivers (f-k) and of the theory of a pillar.
+
+The f-k spectrum is that of a row of receivers at any distances x_j with the spectra U_j,
+
+    P(f, k) = |sum_j U_j exp(i k x_j)|^2 / (n sum_j |U_j|^2),
+
+1 where all of the motion is one wave of this wavenumber; the speed is 2 pi f over the k of its peak
+(Capon, Proc. IEEE 57, 1969, the conventional estimate).
+
+In an endless pillar with a joint every d, with e^{i (omega t - k y)} and the joints' eta:
+
+    rigid blocks   sin(k d / 2) = (omega d / 2 c) / sqrt(1 + i omega eta)     (Brillouin 1946)
+    jointed rock   cos(k d) = cos(q d) - omega z / (2 K (1 + i omega eta)) sin(q d),
+                   q = omega / sqrt(E (1 + i omega eta) / rho), z = rho omega / q
+                   (Brekhovskikh 1980, with Schoenberg's joint, JASA 68, 1980)
+    bar            k = (omega / c) / sqrt(1 + i omega eta)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from cases.material.calibrate import Properties, calibrate
+from cases.schema.scene import Scene
+from compare.readings.rows import sampling, waveforms
+
+HEARD = 1e-3  # of the largest amplitude: frequencies that are looked at
+FINER = 64  # wavenumbers in the width of a peak
+
+
+def dispersion(
+    result: xr.Dataset, quantity: str = "velocity", axis: str | None = None
+) -> xr.Dataset:
+    """Return the f-k spectrum of all receivers, `power` [frequency, wavenumber], and of its peak
+    `phase_speed` (m/s) and `coherence` (0 to 1) [frequency].
+
+    Frequencies are those that hold a thousandth of the largest amplitude. Wavenumbers (1/m) reach
+    to half a wave between the two nearest receivers; those of waves that come back are negative.
+    """
+    row = waveforms(result, quantity, axis)
+    x, spectra = row["distance"].values, np.fft.rfft(row.values)
+    size = np.sqrt((np.abs(spectra) ** 2).sum(axis=0))
+    heard = size > HEARD * size.max()
+    heard[0] = False
+    frequency = np.fft.rfftfreq(row.sizes["time"], sampling(row))[heard]
+    highest = np.pi / np.diff(np.sort(x)).min()
+    k = np.linspace(-highest, highest, FINER * len(x) + 1)
+    beams = np.abs(np.exp(1j * np.outer(k, x)) @ spectra[:, heard]) ** 2
+    power = (beams / (len(x) * size[heard] ** 2)).T
+    peak, coherence = _peaks(k, power)
+    named = {
+        "power": (("frequency", "wavenumber"), power, "share of the motion", "1"),
+        "phase_speed": (("frequency",), 2 * np.pi * frequency / peak, "phase speed", "m/s"),
+        "coherence": (("frequency",), coherence, "share of the motion in one wave", "1"),
+    }
+    axes = {"frequency": ("frequency", frequency, "Hz"), "wavenumber": ("wavenumber", k, "1/m")}
+    return xr.Dataset(
+        {n: (dims, x, {"long_name": w, "units": u}) for n, (dims, x, w, u) in named.items()},
+        {n: (n, x, {"long_name": w, "units": u}) for n, (w, x, u) in axes.items()},
+    )
+
+
+def _peaks(k: np.ndarray, power: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return where each row of P is largest and how large, by a parabola through three values."""
+    at = np.arange(len(power))
+    i = np.clip(power.argmax(axis=1), 1, len(k) - 2)
+    left, top, right = (power[at, i + step] for step in (-1, 0, 1))
+    bend = left - 2 * top + right
+    shift = np.divide(left - right, 2 * bend, out=np.zeros_like(top), where=bend < 0)
+    return k[i] + shift * (k[1] - k[0]), top - (left - right) * shift / 4
+
+
+def dispersion_theory(scene: Scene, frequency: Sequence[float] | np.ndarray) -> xr.Dataset:
+    """Return phase_speed (m/s), attenuation (1/m) and quality [rock, frequency] along an endless
+    pillar of a scene's ordinary joints.
+
+    rock : "rigid blocks", "bar" and, where the scene gives intact_modulus, "jointed rock".
+    frequency : Hz. Where waves do not pass, the attenuation says so.
+    """
+    p, omega = calibrate(scene), 2 * np.pi * np.asarray(frequency, dtype=float)
+    loss = 1 + 1j * omega * (p.time_constant or 0.0)
+    slowness = omega / p.bar_speed / np.sqrt(loss)
+    k = {"rigid blocks": 2 / p.spacing * np.arcsin(slowness * p.spacing / 2 + 0j), "bar": slowness}
+    if p.intact_modulus is not None:
+        k["jointed rock"] = _jointed(p, omega, loss)
+    found = np.array(list(k.values()))
+    speed, decay = omega / np.abs(found.real), np.abs(found.imag)
+    with np.errstate(divide="ignore"):
+        quality = np.abs(found.real) / (2 * decay)
+    named = {
+        "phase_speed": (speed, "phase speed", "m/s"),
+        "attenuation": (decay, "attenuation", "1/m"),
+        "quality": (quality, "quality factor", "1"),
+    }
+    at = xr.Variable("frequency", frequency, {"long_name": "frequency", "units": "Hz"})
+    return xr.Dataset(
+        {
+            name: (("rock", "frequency"), values, {"long_name": words, "units": unit})
+            for name, (values, words, unit) in named.items()
+        },
+        {"rock": list(k), "frequency": at},
+    )
+
+
+def _jointed(p: Properties, omega: np.ndarray, loss: np.ndarray) -> np.ndarray:
+    """Return the wavenumber of intact rock with a joint every d, 1/m."""
+    assert p.intact_modulus is not None
+    q = omega / np.sqrt(p.intact_modulus * loss / p.density)
+    z, K = p.density * omega / q, p.regular_own_stiffness * loss
+    return (
+        np.arccos(np.cos(q * p.spacing) - omega * z / (2 * K) * np.sin(q * p.spacing)) / p.spacing
+    )

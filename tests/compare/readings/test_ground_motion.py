@@ -1,0 +1,120 @@
+"""Peaks, Arias intensity and response spectra against closed forms of known pulses."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from cases.errors import SceneError
+from compare.readings.ground_motion import (
+    arias_intensity,
+    peak_velocity,
+    peak_velocity_map,
+    response_spectrum,
+)
+
+
+def moved(velocity, dt):
+    """Return a result of one receiver that moves with a velocity [n], m/s, along y."""
+    velocity = np.asarray(velocity, dtype=float)
+    time = dt * np.arange(len(velocity))
+    dims = ("velocity_y", "time", "axis")
+    return xr.Dataset(
+        {"velocity": (dims, velocity[None, :, None])},
+        {"time": time, "velocity_y": [3.0], "axis": ["y"]},
+    )
+
+
+def sine(cycles, dt, speed=0.2, omega=2 * np.pi):
+    """Return whole cycles of a sine of the period 1 s."""
+    return moved(speed * np.sin(omega * dt * np.arange(round(cycles / dt) + 1)), dt)
+
+
+def test_peak_velocity_is_that_of_the_vector():
+    time = np.linspace(0, 1, 101)
+    swing = np.outer(np.sin(2 * np.pi * time), [3.0, 4.0])
+    turn = np.stack([np.cos(2 * np.pi * time), np.sin(2 * np.pi * time)], axis=1)
+    dims = ("point", "time", "axis")
+    result = xr.Dataset({"velocity": (dims, np.stack([swing, turn]))}, {"time": time})
+    assert peak_velocity(result).values == pytest.approx([5.0, 1.0], rel=1e-12)
+    assert peak_velocity(result).units == "m/s"
+
+
+def test_the_map_is_the_peak_of_every_node_at_its_place():
+    velocity = np.zeros((3, 2, 3))
+    velocity[1, 0], velocity[2, 1] = [0.0, -2.0, 0.0], [3.0, 4.0, 0.0]
+    result = xr.Dataset(
+        {
+            "field_velocity": (("field_time", "node", "component"), velocity),
+            "field_points": (("node", "component"), [[0.0, 1.0, 0.0], [2.0, 3.0, 0.0]]),
+        }
+    )
+    found = peak_velocity_map(result)
+    assert found.values.tolist() == [2.0, 5.0]
+    assert (found.x.values.tolist(), found.y.values.tolist()) == ([0.0, 2.0], [1.0, 3.0])
+    with pytest.raises(SceneError, match=r"record\.fields: is needed"):
+        peak_velocity_map(result.drop_vars("field_velocity"))
+
+
+@pytest.mark.parametrize("dt", [0.02, 0.005])
+def test_arias_intensity_of_a_sine(dt):
+    """pi / (2 g) (V omega)^2 T / 2 a cycle, less (omega dt)^2 / 12 of it by straight lines."""
+    exact = np.pi / (2 * 9.81) * (0.2 * 2 * np.pi) ** 2 * 3 / 2
+    lost = 1 - arias_intensity(sine(3, dt)).item() / exact
+    assert lost == pytest.approx((2 * np.pi * dt) ** 2 / 12, rel=0.01)
+
+
+def test_arias_intensity_of_a_steady_acceleration_is_exact():
+    found = arias_intensity(moved([0, 1, 2, 3, 3, 3], 0.1), gravity=10.0)
+    assert found.item() == pytest.approx(np.pi / 20 * 10.0**2 * 0.3, rel=1e-12)
+
+
+@pytest.mark.parametrize("period, expected", [(0.2, 2.0), (0.8, 2.0), (1.6, 2 * np.sin(np.pi / 4))])
+def test_a_steady_acceleration_of_04_s_asks_twice_itself_of_fast_oscillators(period, expected):
+    """2 a_0 where it lasts half a period, else 2 a_0 sin(pi tau / T) (Biggs 1964); between samples
+    a peak is missed by at most (omega dt)^2 / 8."""
+    dt = 0.002
+    result = moved(3.0 * np.minimum(dt * np.arange(400), 0.4), dt)
+    found = response_spectrum(result, [period], damping=0.0)
+    missed = (2 * np.pi / period * dt) ** 2 / 8
+    ratio = found.pseudo_acceleration.item() / (3.0 * expected)
+    assert 1 - missed - 1e-9 < ratio < 1 + 1e-9
+
+
+def displacement_of_sine(t, omega, damping, speed=0.2, drive=2 * np.pi, stop=4.0):
+    """Return x(t) of x'' + 2 zeta w x' + w^2 x = -v', v a sine up to `stop`, at rest before."""
+    damped = omega * np.sqrt(1 - damping**2)
+    X = -speed * drive / (omega**2 - drive**2 + 2j * damping * omega * drive)
+
+    def free(a, b, s):
+        """From the displacement a and the speed b, a time s later."""
+        c = (b + damping * omega * a) / damped
+        return np.exp(-damping * omega * s) * (a * np.cos(damped * s) + c * np.sin(damped * s))
+
+    def during(s):
+        return (X * np.exp(1j * drive * s)).real + free(-X.real, -(1j * drive * X).real, s)
+
+    h = 1e-6
+    end, slope = during(stop), (during(stop + h) - during(stop - h)) / (2 * h)
+    return np.where(t < stop, during(t), free(end, slope, np.maximum(t - stop, 0.0)))
+
+
+def test_response_spectrum_of_a_sine():
+    """Off by the straight lines of the velocity, (drive dt)^2 / 12, and peaks between samples."""
+    periods, dt = np.array([0.25, 0.7, 1.0, 1.4, 3.0]), 0.002
+    found = response_spectrum(sine(4, dt), periods, damping=0.05)
+    t = np.linspace(0, 7, 70001)
+    exact = [np.abs(displacement_of_sine(t, 2 * np.pi / T, 0.05)).max() for T in periods]
+    assert found.displacement.values.ravel() == pytest.approx(exact, rel=4e-4)
+    omega = 2 * np.pi / periods
+    pseudo = found.pseudo_velocity.values.ravel(), found.pseudo_acceleration.values.ravel()
+    assert pseudo[0] == pytest.approx(omega * exact, rel=4e-4)
+    assert pseudo[1] == pytest.approx(omega**2 * exact, rel=4e-4)
+    assert found.displacement.dims == ("velocity_y", "axis", "period")
+
+
+def test_a_stiff_oscillator_feels_the_peak_acceleration():
+    """And a soft one how far the ground moves: of (1 - cos(2 pi t)) / 10 m/s in a second."""
+    t = 0.0005 * np.arange(2001)
+    found = response_spectrum(moved(0.1 * (1 - np.cos(2 * np.pi * t)), 0.0005), [0.01, 50.0])
+    assert found.pseudo_acceleration[..., 0].item() == pytest.approx(0.2 * np.pi, rel=0.002)
+    assert found.displacement[..., 1].item() == pytest.approx(0.1, rel=0.07)
