@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
     from cases.schema.sources import Wave
 
+BEYOND = 20  # samples on either side of the times that are asked for
 GRAZING = 1e-9  #: cosine up to which a wave that leaves through a side still runs along it
 
 
@@ -125,12 +126,16 @@ class FaceTractions(NamedTuple):
     values: np.ndarray
 
     def at(self, times: np.ndarray) -> np.ndarray:
-        """Return the tractions at times of a run [k], [k, m, 2] in Pa: cubic between samples."""
+        """Return the tractions at times of a run [k], [k, m, 2] in Pa: cubic between samples.
+
+        They do not depend on which times are asked for together: what is not known of the samples
+        beyond falls by 2 - sqrt(3) with each of them.
+        """
         from scipy.interpolate import CubicSpline
 
         dt = self.times[1] - self.times[0]
-        low = max(int((times[0] - self.times[0]) / dt) - 8, 0)
-        high = int((times[-1] - self.times[0]) / dt) + 10
+        low = max(int((times[0] - self.times[0]) / dt) - BEYOND, 0)
+        high = int((times[-1] - self.times[0]) / dt) + BEYOND + 2
         window = slice(low, max(high, low + 4))
         return CubicSpline(self.times[window], self.values[window])(times)
 

@@ -53,13 +53,7 @@ def discretise(scene: Scene, model: str, dim: int | None = None, comm=None) -> D
     rock = materials(scene, p, model, mesh.layers)
     consistent = numerics.mass == "consistent"
     asked = mesh, numerics.order, rock, motion.section, motion.plane_wave, consistent
-    if comm is not None:
-        from continuum.parallel.body import share_of
-
-        body, across = share_of(comm, *asked)
-    else:
-        body = build_body(*asked)
-        across = jumps(body) if mesh.joints.joint.size else None
+    body, across = body_and_jumps(comm, *asked)
     if across is None:
         return Discrete(p, motion, rock, body, None, None)
     law = joint_law(
@@ -74,6 +68,17 @@ def discretise(scene: Scene, model: str, dim: int | None = None, comm=None) -> D
         carried = np.zeros((len(across.matrices), across.weight.size))
         carried[0] = prestress
     return Discrete(p, motion, rock, body, across, interfaces(across, law, carried))
+
+
+def body_and_jumps(comm, mesh: Mesh, *asked, **named) -> tuple[Body, Jumps | None]:
+    """Return the rock of a mesh and the jumps across its joints (None without), or this process's
+    share of them; what is asked is as for `build_body`."""
+    if comm is not None:
+        from continuum.parallel.body import share_of
+
+        return share_of(comm, mesh, *asked, **named)
+    body = build_body(mesh, *asked, **named)
+    return body, jumps(body) if mesh.joints.joint.size else None
 
 
 def mesh_of(scene: Scene, p: Properties, model: str, motion: Kinematics) -> Mesh:

@@ -43,18 +43,19 @@ class Run(NamedTuple):
 def run_of(
     scene: Scene | RockMass,
     rock: str,
-    dim: int | None,
-    comm,
+    dim: int | None = None,
+    comm=None,
     incident: IncidentField | None = None,
 ) -> Run:
     """Return the run of a scene, at rest; comm : mpi4py's communicator of those who share it;
     incident : of the waves of a rock mass, None: in intact rock."""
-    if not isinstance(scene, Scene):
-        from continuum.plane.run import run_of as of_rock_mass
-
-        return of_rock_mass(scene, rock, comm, incident)
     discrete, choice, critical = discrete_and_steps(scene, rock, dim, comm)
-    model = build_model(scene, discrete, rock, choice.time)
+    if isinstance(scene, Scene):
+        model = build_model(scene, discrete, rock, choice.time)
+    else:
+        from continuum.plane.run import build_model as of_rock_mass
+
+        model = of_rock_mass(scene, discrete, choice.time, incident)
     state = state_at_rest(model, scene.record.energy)
     samples = empty_samples(model, state, choice.time.samples)
     return Run(scene, rock, discrete, model, state, samples, choice, critical)
@@ -67,11 +68,12 @@ def discrete_and_steps(
 
     Raises SceneError for a run that cannot be or would not fit in memory.
     """
+    comm = comm if comm is not None and comm.size > 1 else None
     if not isinstance(scene, Scene):
         from continuum.plane.run import discrete_and_steps as of_rock_mass
 
-        return of_rock_mass(scene, rock)
-    discrete = discretise(scene, rock, dim, comm if comm is not None and comm.size > 1 else None)
+        return of_rock_mass(scene, rock, comm)
+    discrete = discretise(scene, rock, dim, comm)
     critical = critical_step_of(scene, discrete, rock)
     choice = choose(scene, discrete, critical)
     refuse_large_run(scene, discrete.kinematics, choice.time)

@@ -41,11 +41,12 @@ def march(
         return lambda first, last: kernel(first, last, stride, model.dt, *arrays)
 
     def in_parts(first: int, last: int) -> int:
+        failed = 0
         for begin, end in driven.filled(first, last):
-            kernel(begin, end, stride, model.dt, *arrays)
-            if limits is not None and limits.found[0] >= 0:
+            failed = failed or kernel(begin, end, stride, model.dt, *arrays)
+            if link is None and limits is not None and limits.found[0] >= 0:
                 break
-        return 0
+        return failed
 
     return in_parts
 

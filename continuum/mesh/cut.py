@@ -5,7 +5,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from continuum.mesh.cells import FACETS
-from continuum.mesh.facets import facet_numbers, facet_vertices
+from continuum.mesh.facets import facet_vertices, shared_facets
 
 
 def split(
@@ -37,10 +37,7 @@ def pieces(cells: np.ndarray) -> np.ndarray:
 def _corners_held_together(kind: str, cells: np.ndarray, cut: np.ndarray) -> coo_matrix:
     """Return the graph of all cells' corners in which uncut facets link those of two cells."""
     table, corners = FACETS[kind], cells.shape[1]
-    number = facet_numbers(kind, cells)
-    order = np.argsort(number, kind="stable")
-    shared = number[order[1:]] == number[order[:-1]]
-    facet = np.stack([order[:-1][shared], order[1:][shared]])
+    facet = shared_facets(kind, cells)
     cell, local = np.divmod(facet[:, ~cut.ravel()[facet].any(axis=0)], len(table))
     corner = cell[..., None] * corners + table[local]
     # The two cells list the facet's vertices in different orders.

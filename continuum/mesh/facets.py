@@ -67,6 +67,15 @@ def row_numbers(rows: np.ndarray) -> np.ndarray:
     return number
 
 
+def shared_facets(kind: str, cells: np.ndarray) -> np.ndarray:
+    """Return the pairs of facets that two cells share, int array [2, pairs], as `facet_numbers`
+    counts them."""
+    number = facet_numbers(kind, cells)
+    order = np.argsort(number, kind="stable")
+    shared = number[order[1:]] == number[order[:-1]]
+    return np.stack([order[:-1][shared], order[1:][shared]])
+
+
 def outer(kind: str, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return cell and local facet number of the facets that belong to one cell only, int arrays."""
     number = facet_numbers(kind, cells)

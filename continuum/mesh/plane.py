@@ -25,12 +25,13 @@ class PlaneMesh(NamedTuple):
 
     mesh : its joints are numbered by contact, first the partition's, then those across periodic
         sides. block : int array [cells], of the partition. piece : int array [cells], of the rock
-        that joints do not cut.
+        that joints do not cut. vertex : int array [cells, corners], two on either side of a joint.
     """
 
     mesh: Mesh
     block: np.ndarray
     piece: np.ndarray
+    vertex: np.ndarray
 
 
 def plane_mesh(
@@ -71,7 +72,8 @@ def plane_mesh(
     }
     joints = _joints(partition, across, segments, edges, x, cuts)
     order = np.argsort(number)
-    return PlaneMesh(Mesh(kind, parts, (), joints, sides), block[order], piece[order])
+    mesh = Mesh(kind, parts, (), joints, sides)
+    return PlaneMesh(mesh, block[order], piece[order], doubled[order])
 
 
 def _joints(

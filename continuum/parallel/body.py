@@ -4,16 +4,18 @@ Cells keep the numbers that they have in the whole mesh, so that all that is dec
 of cells is decided alike everywhere. Cells of others have no nodes here.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from continuum.mesh.description import Mesh
 from continuum.parallel.communicator import Communicator
+from continuum.parallel.graph import ranks_by_graph
 from continuum.parallel.identity import Border, border
-from continuum.parallel.partition import Share, ranks_of_cells, restrict
+from continuum.parallel.partition import Share, cells_enough, copies_of, ranks_of_cells, restrict
 from continuum.space.body import Body, build_body, cell_geometry
-from continuum.space.elasticity import Material, Section
+from continuum.space.elasticity import Material, Rock, Section
 from continuum.space.interface import Jumps, jumps
 
 NOTHING = Material(0.0, 0.0, 0.0)  # of which ghosts are made
@@ -23,18 +25,23 @@ def share_of(
     comm,
     mesh: Mesh,
     order: int,
-    materials: list[Material],
+    materials: Sequence[Rock],
     section: Section,
     plane_wave: bool = False,
     consistent: bool = False,
+    paired: bool = False,
 ) -> tuple[Body, Jumps | None]:
     """Return this process's share of the rock, and of the jumps across joints; None without any.
 
-    comm : mpi4py's communicator. The rest is as for `build_body`.
+    comm : mpi4py's communicator. The rest is as for `build_body`; rock that is kept as pairs of
+    rows is dealt out by its graph, a pillar by stretches along it.
     """
-    rank_of = ranks_of_cells(mesh, comm.size)
-    share = restrict(mesh, rank_of, comm.rank)
-    asked = order, materials, section, plane_wave, consistent
+    # By one process: no other could come to another partition.
+    ranks = ranks_by_graph if paired else ranks_of_cells
+    cells_enough(copies_of(mesh), comm.size)
+    rank_of = comm.bcast(ranks(mesh, comm.size) if comm.rank == 0 else None)
+    share = restrict(mesh, rank_of, comm.rank, together=paired)
+    asked = order, materials, section, plane_wave, consistent, paired
     held, across = held_share(mesh, share, *asked)
     own = np.where(rank_of[:, None] == comm.rank, held.cells, -1)
     meeting = border(mesh, rank_of, order)
@@ -45,7 +52,7 @@ def share_of(
 
 
 def held_share(
-    mesh: Mesh, share: Share, order: int, materials: list[Material], *asked
+    mesh: Mesh, share: Share, order: int, materials: Sequence[Rock], *asked
 ) -> tuple[Body, Jumps | None]:
     """Return the rock that a process holds, ghosts included, and the jumps across its own joints.
 

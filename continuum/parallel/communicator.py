@@ -84,6 +84,11 @@ class Communicator(Serial):
         rows, columns, values = (np.concatenate(parts) for parts in zip(*found, strict=True))
         return csr_matrix((values, (rows, columns)), (size, size))
 
+    def beside(self, rows: np.ndarray) -> tuple[np.ndarray, slice]:
+        parts = self.comm.allgather(rows)
+        first = sum(len(part) for part in parts[: self.rank])
+        return np.concatenate(parts), slice(first, first + len(rows))
+
     def gather(self, waves: np.ndarray) -> None:
         """Replace shares of waveforms by their sums over all processes, the same bits for all."""
         whole = np.empty_like(waves)

@@ -59,10 +59,7 @@ def ranks_of_cells(mesh: Mesh, size: int) -> np.ndarray:
     copies stay whole. Raises SceneError where there are more processes than cells.
     """
     copies = copies_of(mesh)
-    total = int(copies.cells.sum())
-    if size > total:
-        allowed = f"must be at most {total}, the cells of the mesh"
-        raise SceneError("mpiexec", "-n", size, allowed)
+    total = cells_enough(copies, size)
     queue = np.argsort(_heights(mesh), kind="stable")
     order = [_along_pillar(part) for part in mesh.parts]
     cells = np.concatenate([copies.first[c] + order[copies.part[c]] for c in queue])
@@ -70,6 +67,15 @@ def ranks_of_cells(mesh: Mesh, size: int) -> np.ndarray:
     cuts = _cuts(copies.cells[queue], size)
     rank[cells] = np.searchsorted(cuts, np.arange(total), side="right")
     return rank
+
+
+def cells_enough(copies: Copies, size: int) -> int:
+    """Return how many cells there are; raises SceneError for more processes."""
+    total = int(copies.cells.sum())
+    if size > total:
+        allowed = f"must be at most {total}, the cells of the mesh"
+        raise SceneError("mpiexec", "-n", size, allowed)
+    return total
 
 
 def _heights(mesh: Mesh) -> np.ndarray:
@@ -100,35 +106,53 @@ def _cuts(cells: np.ndarray, size: int) -> np.ndarray:
     return np.array(found, dtype=np.int64)
 
 
-def restrict(mesh: Mesh, rank_of: np.ndarray, rank: int) -> Share:
+def restrict(mesh: Mesh, rank_of: np.ndarray, rank: int, together: bool = False) -> Share:
     """Return what a process holds where cells belong to the processes `rank_of` [cells].
 
-    A joint's facet belongs to the process of its left cell.
+    A joint's facet belongs to the process of its left cell. together : whether all that is not
+    a whole copy among others is one last part.
     """
     own, joints = rank_of == rank, mesh.joints
     mine = own[joints.left]
     held = own.copy()
     held[joints.right[mine]] = True
-    parts, cell = [], []
-    for part, numbers in zip(mesh.parts, _numbers(mesh), strict=True):
-        is_whole = own[numbers].all(axis=1)
+    parts, cell, others, of_others = [], [], [], []
+    for part, numbers in zip(mesh.parts, cell_numbers(mesh), strict=True):
+        is_whole = own[numbers].all(axis=1) & (part.copies > 1 or not together)
         if is_whole.any():
             parts.append(part._replace(shifts=part.shifts[is_whole]))
             cell.append(numbers[is_whole].ravel())
         for copy in np.flatnonzero(~is_whole & held[numbers].any(axis=1)):
             some = held[numbers[copy]]
             ghosts = ~own[numbers[copy][some]]
-            parts.append(_some_cells(part, copy, some, ghosts, 1 + len(mesh.layers)))
-            cell.append(numbers[copy][some])
-    number = np.concatenate(cell)
-    return Share(tuple(parts), number, ~own[number], Joints(*(field[mine] for field in joints[:4])))
+            others.append(_some_cells(part, copy, some, ghosts, 1 + len(mesh.layers)))
+            of_others.append(numbers[copy][some])
+    if together and others:
+        others = [_one_part(others)]
+    number = np.concatenate([*cell, *of_others])
+    shift = None if joints.shift is None else joints.shift[mine]
+    whose = joints.joint[mine], joints.left[mine], joints.right[mine], joints.corners[mine]
+    of_process = Joints(*whose, shift)
+    return Share((*parts, *others), number, ~own[number], of_process)
 
 
-def _numbers(mesh: Mesh) -> list[np.ndarray]:
+def cell_numbers(mesh: Mesh) -> list[np.ndarray]:
     """Return for each part the numbers of its cells, int arrays [copies, cells]."""
     counts = [p.copies * len(p.cells) for p in mesh.parts]
     cells = np.split(np.arange(sum(counts)), np.cumsum(counts)[:-1])
     return [n.reshape(p.copies, -1) for n, p in zip(cells, mesh.parts, strict=True)]
+
+
+def _one_part(parts: list[Part]) -> Part:
+    """Return parts that each stand once as one, where they stand."""
+    sizes = [len(part.x) for part in parts]
+    first = np.cumsum(sizes) - sizes
+    return Part(
+        np.concatenate([part.x + part.shifts[0] for part in parts]),
+        np.concatenate([part.cells + n for part, n in zip(parts, first, strict=True)]),
+        np.concatenate([part.material for part in parts]),
+        np.zeros_like(parts[0].shifts),
+    )
 
 
 def _some_cells(part: Part, copy: int, some: np.ndarray, ghosts: np.ndarray, ghost: int) -> Part:

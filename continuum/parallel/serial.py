@@ -79,6 +79,11 @@ class Serial:
         """Return the sum of matrices on the freedoms, on the first process alone."""
         return share
 
+    def beside(self, rows: np.ndarray) -> tuple[np.ndarray, slice]:
+        """Return the rows of every process, one after the other, and where among them those of
+        this one are."""
+        return rows, slice(None)
+
     def gather(self, waves: np.ndarray) -> None:
         """Replace shares of waveforms by their sums over all processes."""
 

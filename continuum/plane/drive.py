@@ -22,6 +22,7 @@ from continuum.plane.sides import SidePoints
 if TYPE_CHECKING:
     from cases.incident import IncidentField
     from cases.schema.rock_mass import RockMass
+    from continuum.parallel.serial import Serial
     from continuum.space.body import Body
 
 BUFFER = 500_000  # numbers in the buffer, at most, but for one step
@@ -44,17 +45,14 @@ class Drive:
     freedom : int array [k]. force : float array [rows, k], N/m; that of step n in row n mod rows.
     """
 
-    def __init__(
-        self, body: Body, dt: float, pushes: list[Push], entry: Entry | None, constant: np.ndarray
-    ) -> None:
+    def __init__(self, body: Body, dt: float, pushes: list[Push], entry: Entry | None) -> None:
         shares = np.array([push.share for push in pushes]).reshape(len(pushes), body.mass.size)
-        acts = (shares != 0).any(axis=0) | (constant != 0)
+        acts = (shares != 0).any(axis=0)
         if entry is not None:
             acts[entry.freedom] = True
         self.freedom = np.flatnonzero(acts)
-        self.dt, self.entry = dt, entry
+        self.dt, self.entry, self.communicator = dt, entry, body.communicator
         self.pushes = [push._replace(share=push.share[self.freedom]) for push in pushes]
-        self.constant = constant[self.freedom]
         rows = int(np.clip(BUFFER // max(1, self.freedom.size), 1, 4096))
         self.force = np.zeros((rows, self.freedom.size))
         if entry is not None:
@@ -73,7 +71,7 @@ class Drive:
 
     def at(self, first: int, last: int) -> np.ndarray:
         """Return the forces of steps first .. last - 1 [steps, k], N/m."""
-        found = np.tile(self.constant, (last - first, 1))
+        found = np.zeros((last - first, self.freedom.size))
         for push in self.pushes:
             mean = step_means(Delayed(push.history, -first * self.dt), self.dt, last - first)
             found += mean[:, None] * push.share
@@ -85,14 +83,14 @@ class Drive:
     def impulse(self, mass: np.ndarray, steps: int) -> float:
         """Return a bound on the integral over all steps of |F| in the norm of 1 / m,
         sqrt(kg) m/s; of waves by one step in a few, with a margin for what is between."""
-        per_step = 0.0
+        per_step, whole = 0.0, self.communicator.sum
         for push in self.pushes:
             mean = step_means(push.history, self.dt, steps + 1)
-            size = np.sqrt((push.share**2 / mass[self.freedom]).sum())
+            size = np.sqrt(whole((push.share**2 / mass[self.freedom]).sum()))
             per_step += float(np.abs(mean).sum() * size)
         if self.entry is not None:
-            per_step += self.entry.largest(mass, self.dt * steps) / self.dt * steps
-        per_step += float(np.sqrt((self.constant**2 / mass[self.freedom]).sum())) * steps
+            largest = np.sqrt(whole(self.entry.largest(mass, self.dt * steps) ** 2))
+            per_step += largest / self.dt * steps
         return self.dt * per_step
 
 
@@ -123,28 +121,37 @@ class Entry:
         self.freedom = body.freedom(self.points.node[:, None], np.arange(2)).T.ravel()
         self.field, self.duration = field, scene.time.duration
         self.impedance = medium_impedances(scene, self.points.normal)
-        self.sampled = None if isinstance(field, FreeField) else self._sampled(scene)
+        self.sampled = None
+        if not isinstance(field, FreeField):
+            self.sampled = self._sampled(scene, body.communicator)
 
-    def _sampled(self, scene: RockMass) -> FaceTractions:
-        """Return the tractions of a field that is worth asking once for all times."""
+    def _sampled(self, scene: RockMass, communicator: Serial) -> FaceTractions:
+        """Return the tractions of a field that is worth asking once for all times.
+
+        It is asked for the points of all processes, since what it makes of some may depend on which
+        others they are asked with.
+        """
+        own = self.points.x, self.points.normal, self.impedance
+        every, here = communicator.beside(np.concatenate(own, axis=1))
         period = shortest_period(scene.waves) or self.duration
         apart = min(scene.interval, IN_INTERVAL * period)
         count = int(np.ceil(self.duration / apart)) + 8
-        if 2 * count * len(self.points.x) > SAMPLES:
+        if 2 * count * len(every) > SAMPLES:
             allowed = (
-                f"gives {count:,} samples of what enters at {len(self.points.x):,} points of quiet "
+                f"gives {count:,} samples of what enters at {len(every):,} points of quiet "
                 f"sides; at most {SAMPLES:.0e} numbers: larger elements (numerics.continuum.size)"
             )
             raise SceneError(scene.where, "time.duration", self.duration, allowed)
-        return self._of_field(apart * np.arange(count))
-
-    def _of_field(self, times: np.ndarray) -> FaceTractions:
-        own = self.points
-        return tractions(self.field, own.x, own.normal, self.impedance, times)
+        times = apart * np.arange(count)
+        found = tractions(self.field, every[:, :2], every[:, 2:4], every[:, 4:], times).values
+        return FaceTractions(times, found[:, here].copy())
 
     def tractions(self, times: np.ndarray) -> np.ndarray:
         """Return the tractions at equally spaced times [n, points, 2], Pa."""
-        return self._of_field(times).values if self.sampled is None else self.sampled.at(times)
+        if self.sampled is not None:
+            return self.sampled.at(times)
+        own = self.points
+        return tractions(self.field, own.x, own.normal, self.impedance, times).values
 
     def onto(self, number: np.ndarray, count: int) -> csr_matrix:
         """Return what makes forces [count] of tractions [points * 2]; number : int array, of each

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 def prestressed(scene: RockMass, discrete: PlaneDiscrete, pushing: float) -> float:
     """Return the root of twice the energy (sqrt(J/m)) that a prestress keeps in rock and joints,
     and that rock gives off by pushing on both sides of joints that open, so long (s/sqrt(kg))."""
-    stress, joints = stress_of(scene), discrete.joints
+    stress, joints, of_all = stress_of(scene), discrete.joints, discrete.body.communicator
     least = np.linalg.eigvalsh(discrete.materials[0].stiffness).min()
     stored = float(stress @ stress) / least * float(discrete.partition.area.sum())
-    if joints is None:
-        return float(np.sqrt(stored))
-    size = float(np.abs(stress).max())
-    softest = min(np.min(joints.law.normal_stiffness), np.min(joints.law.shear_stiffness))
-    length = float(joints.area.sum())
-    stored += 4 * size**2 * length / softest
+    size, softness = float(np.abs(stress).max()), 0.0
+    if joints is not None:
+        law = joints.law
+        softness = max(np.max(1 / law.normal_stiffness), np.max(1 / law.shear_stiffness))
+    length = of_all.sum(0.0 if joints is None else float(joints.area.sum()))
+    stored += 4 * size**2 * length * of_all.largest(softness)
     return float(np.sqrt(stored)) + pushing * 4 * size * length

@@ -43,11 +43,12 @@ def receivers(scene: RockMass, discrete: PlaneDiscrete) -> Receivers:
     at = places_in(body, cell, x[which])
     share = shares_of_pieces(which, body.piece[cell])
     motion = per_component(share[:, None] * at.basis, np.arange(2))
-    elastic = recovered_stress(body, material, x, which, cell)
-    joints = _joints(scene, discrete) if scene.record.joints and discrete.joints else None
+    elastic = recovered_stress(body, material, discrete.vertex, x, which, cell)
+    joints = _joints(scene, discrete)
     rows = 0 if joints is None else joints.traction.shape[0]
     whole = csr_matrix(vstack([elastic, csr_matrix((rows, body.mass.size))]))
-    constant = np.concatenate([np.repeat(stress_of(scene), len(x)), _carried(discrete, joints)])
+    carried = np.repeat(stress_of(scene), len(x)) * (body.communicator.rank == 0)
+    constant = np.concatenate([carried, _carried(discrete, joints)])
     return Receivers(
         point=matrix_of(body, which, cell, motion, len(x)),
         turn=None if joints is None else joints.jump,
@@ -74,27 +75,32 @@ def _carried(discrete: PlaneDiscrete, joints: JointReaders | None) -> np.ndarray
     return joints.traction @ (own.prestress * own.area).ravel()
 
 
-def _joints(scene: RockMass, discrete: PlaneDiscrete) -> JointReaders:
-    """Return how the joints nearest to the places of [record] are read."""
-    joints, across = discrete.joints, discrete.jumps
-    assert joints is not None and across is not None
-    places = np.array(scene.record.joints, dtype=float)
-    contact = contact_at(discrete.partition, places)
-    own, q = discrete.partition.contacts, joints.area.size
-    start, along = own.start[contact], own.end[contact] - own.start[contact]
-    share = ((places - start) * along).sum(axis=1) / (along**2).sum(axis=1)
-    foot = start + np.clip(share, 0, 1)[:, None] * along
+def _joints(scene: RockMass, discrete: PlaneDiscrete) -> JointReaders | None:
+    """Return how the joints nearest to the places of [record] are read; None without any."""
+    joints, across, body = discrete.joints, discrete.jumps, discrete.body
+    facets, places = body.mesh.joints, np.array(scene.record.joints, dtype=float).reshape(-1, 2)
+    if not len(places) or not facets.joint.size:
+        return None
+    if joints is None or across is None:  # they are those of other processes
+        return JointReaders(
+            csr_matrix((2 * len(places), 0)), csr_matrix((2 * len(places), body.mass.size))
+        )
+    mine = body.cells[facets.left, 0] >= 0
     row, point, weight = [], [], []
-    for r, one in enumerate(contact):
-        on = np.flatnonzero(across.joint == one)
-        s = (across.x[on] - start[r]) @ along[r] / own.length[one]
-        on, s = on[np.argsort(s)], np.sort(s)
-        near = _facet(s, (foot[r] - start[r]) @ along[r] / own.length[one], discrete.body.order)
-        weight.append(lagrange(s[near], (foot[r] - start[r]) @ along[r] / own.length[one]))
-        point.append(on[near])
-        row.append(np.full(near.size, r))
+    for r, one in enumerate(contact_at(discrete.partition, places)):
+        on = np.flatnonzero(facets.joint == one)
+        at = _along(facets.corners[on], places[r])
+        nearest = np.abs(at - 0.5).argmin()
+        if mine[on[nearest]]:
+            points = across.of_facet[mine[: on[nearest]].sum()]
+            nodes = _along(facets.corners[on[nearest]], across.x[points])
+            weight.append(lagrange(nodes, np.clip(at[nearest], 0, 1)))
+            point.append(points)
+            row.append(np.full(points.size, r))
+    none = np.zeros(0, dtype=np.int64)
+    entries = np.concatenate([none, *row]), np.concatenate([none, *point])
     read = csr_matrix(
-        (np.concatenate(weight), (np.concatenate(row), np.concatenate(point))), (len(places), q)
+        (np.concatenate([np.zeros(0), *weight]), entries), (len(places), joints.area.size)
     )
     # The second direction of jumps is to the right of the normal.
     per_area = read.multiply(1 / joints.area)
@@ -104,17 +110,16 @@ def _joints(scene: RockMass, discrete: PlaneDiscrete) -> JointReaders:
     return JointReaders(csr_matrix(traction), csr_matrix(vstack([read @ normal, -(read @ right)])))
 
 
+def _along(corners: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Return how far points [..., 2] are along facets with these ends [..., 2, 2]: 0 to 1."""
+    start, along = corners[..., 0, :], corners[..., 1, :] - corners[..., 0, :]
+    return ((x - start) * along).sum(axis=-1) / (along**2).sum(axis=-1)
+
+
 def _beside(left: csr_matrix, right: csr_matrix) -> csr_matrix:
     from scipy.sparse import hstack
 
     return csr_matrix(hstack([left, right]))
-
-
-def _facet(s: np.ndarray, place: float, order: int) -> np.ndarray:
-    """Return the points of the facet that a place is on, of sorted points s that neighbouring
-    facets share."""
-    facet = int(np.clip((np.searchsorted(s, place) - 1) // order, 0, (s.size - 1) // order - 1))
-    return np.arange(facet * order, facet * order + order + 1)
 
 
 def lagrange(nodes: np.ndarray, place: float) -> np.ndarray:

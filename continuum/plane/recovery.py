@@ -31,11 +31,17 @@ FALL = 4.0
 
 
 def recovered_stress(
-    body: Body, material: PlaneRock, x: np.ndarray, which: np.ndarray, cell: np.ndarray
+    body: Body,
+    material: PlaneRock,
+    vertex: np.ndarray,
+    x: np.ndarray,
+    which: np.ndarray,
+    cell: np.ndarray,
 ) -> csr_matrix:
     """Return the stress at points x [n, 2], compression positive: [3 n, freedoms], xx of all
     points, then yy, then xy.
 
+    vertex : int array [cells, corners], of the whole mesh, two on either side of a joint.
     which, cell : int arrays, every cell that each point is in or on; a point on a joint reads the
     mean of both sides.
     """
@@ -47,7 +53,7 @@ def recovered_stress(
         for piece in np.unique(body.piece[cell[own]]):
             here = own & (body.piece[cell] == piece)
             side = share[here].sum()
-            some, local, shares = _patch(body, x[point], cell[here], rule)
+            some, local, shares = _patch(body, vertex, x[point], cell[here], rule)
             row.append(np.full(len(some), point))
             cells.append(some)
             at.append(local)
@@ -70,11 +76,11 @@ def _points(body: Body) -> np.ndarray:
 
 
 def _patch(
-    body: Body, place: np.ndarray, own: np.ndarray, rule: np.ndarray
+    body: Body, vertex: np.ndarray, place: np.ndarray, own: np.ndarray, rule: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return cells [n], places in them [n, 2] and weights [n] of the stresses that make the one at
     a place in or on the cells `own`, which are of one piece."""
-    near = np.isin(body.cells, body.cells[own]).any(axis=1)
+    near = np.isin(vertex, vertex[own]).any(axis=1)
     patch = np.flatnonzero(near & (body.piece == body.piece[own[0]]))
     cells, at = np.repeat(patch, len(rule)), np.tile(rule, (len(patch), 1))
     corners = body.corners[cells]

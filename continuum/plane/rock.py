@@ -16,14 +16,15 @@ from cases.material.effective_medium import compliant, stiffness
 from cases.material.rock import elastic_rock
 from cases.material.strength import strength_of
 from cases.partition.scene import partition_of
+from continuum.build import body_and_jumps
 from continuum.joints import interfaces
 from continuum.mesh.plane import plane_mesh
 from continuum.mesh.segments import Across, across_periodic
 from continuum.model import Interfaces
 from continuum.plane.size import element_sizes, refuse_large_mesh
-from continuum.space.body import Body, build_body
+from continuum.space.body import Body
 from continuum.space.elasticity import PlaneRock, Section
-from continuum.space.interface import Jumps, jumps
+from continuum.space.interface import Jumps
 from continuum.space.kinematics import Kinematics
 from joints.law import Law
 from joints.uniform import law
@@ -40,13 +41,15 @@ class PlaneDiscrete(NamedTuple):
     """A rock mass in space.
 
     resolved : the scene with the joint sets that are resolved alone. partition : of it.
-    across : contacts across periodic sides. block : int array [cells]. joints : None without any.
+    across : contacts across periodic sides. block : int array [cells]; vertex : int array [cells,
+    corners], `PlaneMesh`. jumps, joints : None without any.
     """
 
     resolved: RockMass
     partition: Partition
     across: list[Across]
     block: np.ndarray
+    vertex: np.ndarray
     materials: list[PlaneRock]
     body: Body
     jumps: Jumps | None
@@ -59,9 +62,10 @@ def smeared(scene: RockMass, model: str) -> list[JointSet]:
     return [one for one in scene.joint_sets if model == "equivalent" and one.spacing is not None]
 
 
-def discretise(scene: RockMass, model: str) -> PlaneDiscrete:
+def discretise(scene: RockMass, model: str, comm=None) -> PlaneDiscrete:
     """Return a rock mass in space; `model` is "jointed" or "equivalent".
 
+    comm : mpi4py's communicator of the processes that each take a share of it; None for one alone.
     Raises SceneError where the scene cannot be cut or meshed as it asks for.
     """
     sets = smeared(scene, model)
@@ -77,12 +81,12 @@ def discretise(scene: RockMass, model: str) -> PlaneDiscrete:
     )
     meshed = _mesh(scene, partition, across)
     order = scene.numerics.continuum.order
-    body = build_body(meshed.mesh, order, [rock], MOTION.section, paired=True)
+    body, between = body_and_jumps(comm, meshed.mesh, order, [rock], MOTION.section, paired=True)
     body = body._replace(piece=meshed.piece)
-    found = PlaneDiscrete(resolved, partition, across, meshed.block, [rock], body, None, None)
-    if not meshed.mesh.joints.joint.size:
+    places = meshed.block, meshed.vertex
+    found = PlaneDiscrete(resolved, partition, across, *places, [rock], body, None, None)
+    if between is None:
         return found
-    between = jumps(body)
     own = contact_law(resolved, found, between.joint)
     carried = _carried(scene, found, between.joint)
     return found._replace(jumps=between, joints=interfaces(between, own, carried))

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from cases.material.quiet_sides import medium_impedances
+from continuum.mesh.description import Side
 from continuum.model import Dashpots, Fixed
 from continuum.space.evaluation import places_in
 from continuum.space.interface import facet_points
@@ -19,7 +20,6 @@ from continuum.space.interface import facet_points
 if TYPE_CHECKING:
     from cases.sampling import Clock
     from cases.schema.rock_mass import RockMass
-    from continuum.mesh.description import Side
     from continuum.space.body import Body
 
 INSIDE = 1e-7  # of a cell: how far inside it a field is asked for, lest it is beyond a joint
@@ -58,9 +58,12 @@ def outward(body: Body, side: Side) -> np.ndarray:
 
 
 def points_on(body: Body, names: list[str]) -> SidePoints:
-    """Return the nodes on sides, with the weights of the facets' Lobatto points."""
+    """Return the nodes on sides, with the weights of the facets' Lobatto points; of the facets of
+    this process alone."""
     found = []
     for side in (body.mesh.sides[name] for name in names):
+        own = body.cells[side.cell, 0] >= 0
+        side = Side(side.cell[own], side.corners[own])
         points = facet_points(body, side.corners)
         cell = side.cell[points.facet]
         basis = places_in(body, cell, points.x).basis
@@ -69,35 +72,61 @@ def points_on(body: Body, names: list[str]) -> SidePoints:
         x = points.x + INSIDE * (centre - points.x)
         found.append((node, outward(body, side)[points.facet], points.weight, x))
     if not found:
-        return SidePoints(
-            np.zeros(0, dtype=np.int64), np.zeros((0, 2)), np.zeros(0), np.zeros((0, 2))
-        )
+        none = np.zeros(0, dtype=np.int64)
+        found = [(none, np.zeros((0, 2)), np.zeros(0), np.zeros((0, 2)))]
     node, normal, weight, x = (np.concatenate(parts) for parts in zip(*found, strict=True))
     key = np.column_stack([node, np.rint(1e9 * normal)])
     _, first, group = np.unique(key, axis=0, return_index=True, return_inverse=True)
-    return SidePoints(node[first], normal[first], np.bincount(group.ravel(), weight), x[first])
+    weights = np.bincount(group.ravel(), weight)
+    return SidePoints(node[first], normal[first], weights, _mean(body, node, weight, x)[first])
+
+
+def _mean(body: Body, node: np.ndarray, weight: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Return the mean place [n, 2] of all points on each node: the same on all processes."""
+    freedom = body.freedom(node[:, None], np.arange(2))
+    share = np.zeros((2, body.mass.size))
+    np.add.at(share[0], freedom, weight[:, None])
+    np.add.at(share[1], freedom, weight[:, None] * x)
+    whole, moment = body.communicator.total(share)
+    return moment[freedom] / whole[freedom]
 
 
 def dashpots_on(
-    scene: RockMass, body: Body, points: SidePoints, fixed: Fixed | None, dt: float
+    scene: RockMass,
+    body: Body,
+    points: SidePoints,
+    fixed: Fixed | None,
+    dt: float,
+    mass: np.ndarray,
 ) -> Dashpots | None:
-    """Return the dashpots of the quiet sides, but where the rock is fixed; None without any."""
-    nodes, own = np.unique(points.node, return_inverse=True)
+    """Return the dashpots of the quiet sides, but where the rock is fixed; None without any.
+
+    mass : of all processes together [freedoms], kg.
+    """
     n, Z = points.normal, points.weight[:, None] * medium_impedances(scene, points.normal)
     along = np.einsum("qi,qj->qij", n, n)
     of_point = Z[:, 0, None, None] * along + Z[:, 1, None, None] * (np.eye(2) - along)
-    whole = np.zeros((nodes.size, 2, 2))
-    np.add.at(whole, own, of_point)
-    freedom = body.freedom(nodes[:, None], np.arange(2))
+    own, share = body.freedom(points.node[:, None], np.arange(2)), np.zeros((2, body.mass.size))
+    np.add.at(share[0], own, of_point[:, [0, 1], [0, 1]])
+    np.add.at(share[1], own[:, 0], of_point[:, 0, 1])
+    whole, freedom = body.communicator.total(share), freedoms_of(body)
+    chosen = (whole[0, freedom] > 0).all(axis=1)
     if fixed is not None:
-        free = ~np.isin(freedom, fixed.freedom).any(axis=1)
-        freedom, whole = freedom[free], whole[free]
+        chosen &= ~np.isin(freedom, fixed.freedom).any(axis=1)
+    freedom = freedom[chosen]
     if not freedom.size:
         return None
-    viscosity = np.stack([whole[:, 0, 0], whole[:, 1, 1], whole[:, 0, 1]], axis=1)
+    x, y = freedom.T
+    viscosity, every = (
+        np.stack([part[0, x], part[0, y], part[1, x]], axis=1) for part in (share, whole)
+    )
     braked = 1 + (scene.damping.alpha or 0.0) * dt / 2  # as in the step over the mass
-    beta = viscosity * dt / (2 * braked * body.mass[freedom[:, :1]])
-    return Dashpots(freedom, viscosity, beta)
+    return Dashpots(freedom, viscosity, every * dt / (2 * braked * mass[x, None]))
+
+
+def freedoms_of(body: Body) -> np.ndarray:
+    """Return the freedoms of all nodes, int array [nodes, (x, y)]."""
+    return body.freedom(np.arange(len(body.x))[:, None], np.arange(2))
 
 
 def fixed_sides(scene: RockMass, body: Body, time: Clock | None = None) -> Fixed | None:
@@ -111,7 +140,10 @@ def fixed_sides(scene: RockMass, body: Body, time: Clock | None = None) -> Fixed
     base = next(iter(scene.bases), None)
     direction = np.full(body.mass.size, np.nan)
     for name in names:
-        nodes = points_on(body, [name]).node
+        touched, every = np.zeros(body.mass.size), freedoms_of(body)
+        touched[every[points_on(body, [name]).node]] = 1.0
+        # The facet of a node may be another process's.
+        nodes = np.flatnonzero(body.communicator.total(touched)[every[:, 0]])
         shaken = base is not None and base.side == name
         given = np.array(base.direction) if shaken and base is not None else np.zeros(2)
         for c in range(2):

@@ -40,6 +40,6 @@ def _components(waves: np.ndarray, count: int) -> np.ndarray:
 
 def recorded(run: Run, samples: Samples, times: np.ndarray, about: dict[str, Any]) -> Fields:
     """Return the result of a rock mass at these times, with attributes about its run."""
-    terms, energy = energy_terms(run.model, samples.energy)
+    terms, energy = energy_terms(run.model, samples.energy, run.communicator)
     name, found = f"continuum-{run.rock}", quantities(run, samples)
     return plane_fields(run.scene, name, times, found, energy, terms, **about)

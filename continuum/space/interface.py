@@ -43,6 +43,7 @@ class Jumps(NamedTuple):
         x and z where the motion has these components; far side less near side.
     weight : W [q], m2. joint : int array [q], which of the mesh's joints.
     x : [q, dim], m. flat : bool array [q], whether the joint is square to the axis there.
+    of_facet : int array [facets, points of each], which of the points a facet has.
     """
 
     matrices: list[csr_matrix]
@@ -50,6 +51,7 @@ class Jumps(NamedTuple):
     joint: np.ndarray
     x: np.ndarray
     flat: np.ndarray
+    of_facet: np.ndarray
 
 
 def facet_points(body: Body, corners: np.ndarray, degree: int | None = None) -> Facets:
@@ -109,6 +111,7 @@ def jumps(body: Body) -> Jumps:
         joint=joints.joint[points.facet[kept]],
         x=points.x[kept],
         flat=np.abs(frames[kept, 0, along(body.section)] - 1) < 1e-9,
+        of_facet=group.reshape(len(joints.joint), -1),
     )
 
 

@@ -10,7 +10,7 @@ components of a node. It reads 9 bytes an entry of half of them, not 12 of all.
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import block_diag, bsr_matrix, csr_matrix
+from scipy.sparse import block_diag, coo_matrix, csr_matrix
 
 from continuum.space.simd import WIDTH, multiply_tile
 from numerics.cache_lines import zeros
@@ -118,7 +118,11 @@ def operator(numbering: Layout, matrices, paired: bool = False) -> Operator:
 def _pairs(matrix: csr_matrix) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the upper triangle of a symmetric matrix in blocks of 2 x 2, the diagonal included:
     where each pair of rows begins, the first column of each block, and its values by columns."""
-    full = bsr_matrix(matrix, blocksize=(2, 2))
+    entries, every = matrix.tocoo(), np.arange(matrix.shape[0])
+    # Zeros on the diagonal: rows without any entry have a block of it, too.
+    place = np.append(entries.row, every), np.append(entries.col, every)
+    values = np.append(entries.data, np.zeros(every.size))
+    full = coo_matrix((values, place), matrix.shape).tobsr((2, 2))
     full.sort_indices()
     row = np.repeat(np.arange(len(full.indptr) - 1), np.diff(full.indptr))
     kept = full.indices >= row

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.sparse import coo_matrix, csr_matrix, diags, identity, kron
 
 from cases.errors import SceneError
 from continuum.mesh.description import Joints, Mesh, Part, Side
+from continuum.parallel.graph import halved
 from continuum.parallel.partition import WHOLE, copies_of, ranks_of_cells, restrict
 
 NOBODY = Side(np.zeros(0, dtype=np.int64), np.zeros((0, 1, 1)))
@@ -90,3 +92,40 @@ def test_parts_of_a_share_are_those_of_the_mesh_where_they_stand():
         assert ((material == 1) == share.ghost).all()
         together = [p.copies for p in share.parts if len(p.cells) == 2 and not p.material.any()]
         assert len(together) <= 1
+
+
+def grid(width: int, height: int) -> csr_matrix:
+    """Return the graph of a grid of squares, row by row, each joined to its neighbours."""
+    across, up = (diags(np.ones(n - 1), 1, (n, n)) for n in (width, height))
+    half = kron(identity(height), across) + kron(up, identity(width))
+    return csr_matrix(half + half.T)
+
+
+def cut_edges(graph: csr_matrix, part: np.ndarray) -> int:
+    """Return how many edges join vertices of different parts."""
+    edges = coo_matrix(graph)
+    return int((part[edges.row] != part[edges.col]).sum()) // 2
+
+
+@given(width=st.integers(1, 25), height=st.integers(1, 25), size=st.integers(1, 7))
+def test_a_graph_is_halved_into_equal_parts_with_short_borders(width, height, size):
+    """Parts differ by a vertex for each time that they were halved; of an oblong grid the border of
+    two is no longer than a few rows."""
+    graph, weight = grid(width, height), np.ones(width * height)
+    size = min(size, width * height)
+    part = halved(graph, weight, size)
+    counts = np.bincount(part, minlength=size)
+    assert counts.min() > 0 and np.ptp(counts) <= 1 + np.log2(size)
+    if size == 2:
+        assert cut_edges(graph, part) <= 2 * min(width, height) + 1
+
+
+def test_a_body_that_is_bent_is_cut_across_both_arms():
+    """An L of two arms is cut where it is narrow, not along the arm that holds half of it."""
+    x, y = (c.ravel() for c in np.meshgrid(np.arange(40), np.arange(40)))
+    inside = (x < 6) | (y < 6)
+    graph = grid(40, 40)[inside][:, inside]
+    part = halved(graph, np.ones(inside.sum()), 2)
+    assert cut_edges(graph, part) <= 12
+    leftmost = np.argsort(x[inside], kind="stable") < inside.sum() / 2
+    assert cut_edges(graph, leftmost) > 2 * cut_edges(graph, part)

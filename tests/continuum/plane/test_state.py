@@ -9,7 +9,7 @@ from continuum.explicit.march import readings
 from continuum.implicit.balance import balance, implicit_matrices
 from continuum.implicit.static import settle_static
 from continuum.implicit.substeps import UNLOADED
-from continuum.plane.run import run_of
+from continuum.run import run_of
 from results.arrays import copied
 
 STEP = {"shape": "step", "amplitude": 1e6}

@@ -1,0 +1,70 @@
+"""Partition of a body of any shape: the graph of its cells and joints, halved again and again."""
+
+import numpy as np
+from scipy.sparse import coo_matrix, csc_matrix, csr_matrix
+from scipy.sparse.csgraph import laplacian
+from scipy.sparse.linalg import eigsh
+
+from continuum.mesh.cells import FACETS
+from continuum.mesh.description import Mesh
+from continuum.mesh.facets import shared_facets
+from continuum.parallel.partition import cell_numbers, cells_enough, copies_of
+
+SMALL = 0.02  # of the cells of one process: copies of at most so many stay whole
+FEW = 100  # vertices of a graph up to which all of its modes are found
+SHIFT = 1e-9  # of the largest eigenvalue: how far below zero the lowest ones are looked for
+
+
+def ranks_by_graph(mesh: Mesh, size: int) -> np.ndarray:
+    """Return which of `size` processes each cell belongs to, int array [cells].
+
+    All get as many cells as the others, but that small copies stay whole. Raises SceneError where
+    there are more processes than cells.
+    """
+    copies = copies_of(mesh)
+    total = cells_enough(copies, size)
+    repeated = np.array([part.copies > 1 for part in mesh.parts])[copies.part]
+    whole = repeated & (copies.cells <= SMALL * total / size)
+    copy = copies.of(np.arange(total))
+    unit = np.where(whole[copy], copy, len(whole) + np.arange(total))
+    _, unit = np.unique(unit, return_inverse=True)
+    count = unit.max() + 1
+    pair = unit[_neighbours(mesh)]
+    graph = coo_matrix((np.ones(pair.shape[1]), pair), (count, count)).tocsr()
+    return halved(graph + graph.T, np.bincount(unit).astype(float), size)[unit]
+
+
+def _neighbours(mesh: Mesh) -> np.ndarray:
+    """Return the pairs of cells that have a facet in common, or a joint between them [2, pairs]."""
+    joints, pairs = mesh.joints, []
+    for part, numbers in zip(mesh.parts, cell_numbers(mesh), strict=True):
+        cell = shared_facets(mesh.cell, part.cells) // len(FACETS[mesh.cell])
+        pairs.append(numbers[:, cell].swapaxes(0, 1).reshape(2, -1))
+    return np.concatenate([*pairs, np.stack([joints.left, joints.right])], axis=1)
+
+
+def halved(graph: csr_matrix, weight: np.ndarray, size: int) -> np.ndarray:
+    """Return which of `size` parts each vertex of a graph is in, int array; all weigh alike.
+
+    Recursive spectral bisection (Pothen, Simon & Liou, SIAM J. Matrix Anal. Appl. 11, 1990).
+    """
+    if size == 1:
+        return np.zeros(len(weight), dtype=np.int64)
+    order, first = np.argsort(_fiedler(graph), kind="stable"), size // 2
+    end = np.cumsum(weight[order])
+    cut = np.searchsorted(end - weight[order] / 2, end[-1] * first / size)
+    cut = np.clip(cut, first, len(weight) - (size - first))
+    found = np.empty(len(weight), dtype=np.int64)
+    for some, parts, base in ((order[:cut], first, 0), (order[cut:], size - first, first)):
+        found[some] = base + halved(graph[some][:, some], weight[some], parts)
+    return found
+
+
+def _fiedler(graph: csr_matrix) -> np.ndarray:
+    """Return the mode of the second lowest eigenvalue of a graph's Laplacian."""
+    matrix = csc_matrix(laplacian(graph))
+    if matrix.shape[0] <= FEW:
+        return np.linalg.eigh(matrix.toarray())[1][:, min(1, matrix.shape[0] - 1)]
+    start = np.random.default_rng(0).standard_normal(matrix.shape[0])
+    below = -SHIFT * matrix.diagonal().max()
+    return eigsh(matrix, 2, sigma=below, v0=start)[1][:, 1]
