@@ -37,7 +37,7 @@ def leapfrog_for(parts, directions, shared=False):
     def leapfrog(
         first, last, stride, dt,
         u, v, v_before, force, rate, drag,
-        tiles, k_start, k_column, k_value, c_start, c_column, c_value,
+        tiles, pairs, k_start, k_column, k_value, c_start, c_column, c_value,
         step_over_mass, mass, decay, weight,
         b_first, b_start, b_column, b_value, along,
         table, area, prestress, jump, jump_rate, slip_rate, opening, slide, cohesion,
@@ -54,7 +54,7 @@ def leapfrog_for(parts, directions, shared=False):
         flushing, failed, elastic = flush_tiny(), 0, 0.0
         for n in range(first, last):
             # Forces from the displacements and rates of step n.
-            multiply(tiles, k_start, k_column, k_value, u, force, -1.0)
+            multiply(tiles, pairs, k_start, k_column, k_value, u, force, -1.0)
             if energy is not None and n % stride == 0:
                 elastic = 0.0
                 for i in range(u.size):
@@ -64,7 +64,7 @@ def leapfrog_for(parts, directions, shared=False):
                     rate[i] = 1.5 * v[i] - 0.5 * v_before[i]
                     drag[i] = 0.0
                 if c_start is not None:
-                    multiply(tiles, c_start, c_column, c_value, rate, drag, -1.0)
+                    multiply(tiles, pairs, c_start, c_column, c_value, rate, drag, -1.0)
             if area is not None:
                 multiply_stencils(b_first, b_start, b_column, b_value, u, jumps, 0)
                 if jump_rate is not None:

@@ -57,7 +57,7 @@ def arguments(
     """Return the arguments of the kernel after the steps, in its order; None for what is absent."""
     rock, joints = model.rock, model.interfaces
     loaded, quiet, fixed, dashpots, driven = model.ends
-    tiles, *stiffness = rock.stiffness
+    viscosity = 3 * (None,) if rock.viscosity is None else rock.viscosity[2:]
     springs = None if quiet is None else quiet.springs
     jumps: tuple[Any, ...] = 8 * (None,)
     read, added = readings(model, state)
@@ -66,7 +66,7 @@ def arguments(
         jumps = *joints.stencils, along, joints.table, joints.area, joints.prestress
     return (
         *(state.u, state.v, state.v_before, state.force, state.rate, state.drag),
-        *(tiles, *stiffness, *(3 * (None,) if rock.viscosity is None else rock.viscosity[1:])),
+        *(*rock.stiffness, *viscosity),
         *(rock.step_over_mass, rock.mass, rock.decay, model.weight),
         *(*jumps, state.jump, state.jump_rate, state.slip_rate),
         *(state.opening, state.slide, state.cohesion),

@@ -7,14 +7,14 @@ part, which occurs once, may be kept as pairs of rows: symmetric, in blocks of 2
 components of a node. It reads 9 bytes an entry of half of them, not 12 of all.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.sparse import block_diag, coo_matrix, csr_matrix
 
 from continuum.space.simd import WIDTH, multiply_tile
+from joints.formula import formula
 from numerics.cache_lines import zeros
-from numerics.jit import apart, jitted
 
 TILE = 4  # registers wide; a part's blocks are dealt out evenly, so that tiles have 3 to 5
 ONE, TWO, THREE, FOUR = (np.uint64(n) for n in (1, 2, 3, 4))
@@ -44,13 +44,15 @@ class Operator(NamedTuple):
     """A block-diagonal matrix on the vectors of a layout, for compiled code.
 
     tiles : int64 [tiles, 4], a tile's first value, its lanes, the first row of its matrix in the
-        CSR below, and how many it has. 0 lanes: pairs of rows, which come last.
+        CSR below, and how many it has; None without.
+    pairs : uint64 [3], the same without lanes of a last part in pairs of rows; None without.
     start, column (uint32), value : CSR of the matrices of all parts, one below the other; columns
         are counted within a block. Of pairs of rows the entries are blocks, of which each has one
         column and four values, column by column: the diagonal one first, then those to its right.
     """
 
-    tiles: np.ndarray
+    tiles: Any
+    pairs: Any
     start: np.ndarray
     column: np.ndarray
     value: np.ndarray
@@ -103,12 +105,11 @@ def operator(numbering: Layout, matrices, paired: bool = False) -> Operator:
     empty = csr_matrix((matrices[-1].shape[0] // 2,) * 2)
     found = _rows(numbering, [*matrices[:-1], empty])
     first, column, value = _pairs(matrices[-1])
-    rows = len(first) - 1
-    tiles = found.tiles.copy()
-    tiles[-1, 1] = 0
-    start = np.concatenate([found.start[: len(found.start) - rows], found.start[-1] + first[1:]])
+    rows, begin = len(first) - 1, found.tiles[-1, 2]
+    start = np.concatenate([found.start[: begin + 1], found.start[-1] + first[1:]])
     return Operator(
-        tiles,
+        found.tiles[:-1] if begin else None,
+        np.array([found.tiles[-1, 0], begin, rows], dtype=np.uint64),
         start.astype(np.uint32),
         np.concatenate([found.column, column.astype(np.uint32)]),
         np.concatenate([found.value, value.ravel()]),
@@ -139,7 +140,7 @@ def _rows(numbering: Layout, matrices) -> Operator:
     column = whole.indices - np.repeat(np.repeat(row, size), np.diff(whole.indptr))
     tiles = np.stack([numbering.offset, numbering.width, row[numbering.part], size[numbering.part]])
     start, column = whole.indptr.astype(np.uint32), column.astype(np.uint32)
-    return Operator(np.ascontiguousarray(tiles.T), start, column, whole.data)
+    return Operator(np.ascontiguousarray(tiles.T), None, start, column, whole.data)
 
 
 def without_round_off(matrix: csr_matrix) -> csr_matrix:
@@ -153,23 +154,23 @@ def without_round_off(matrix: csr_matrix) -> csr_matrix:
     return csr_matrix((entries.data[real], places), matrix.shape)
 
 
-@apart
-def multiply_pairs(start, column, value, x, y, factor, first, size):
-    """Set the first 2 size values of y to factor K x, of a K in pairs of rows from `first` on."""
+@formula
+def multiply_pairs(start, column, value, x, y, factor, at, first, size):
+    """Set 2 size values of y, from `at` on, to factor K x, of a K in pairs of rows from `first`."""
     begin = np.uint64(start[first])
-    for i in range(2 * size):
+    for i in range(at, at + TWO * size):
         y[i] = 0.0
     for r in range(size):
-        row = np.uint64(2 * r)
+        row = at + TWO * r
         a, b = x[row], x[row + ONE]
-        k, end = np.uint64(start[first + r]), np.uint64(start[first + r + 1])
+        k, end = np.uint64(start[first + r]), np.uint64(start[first + r + ONE])
         v = begin + FOUR * (k - begin)
         # Two sums for each row: in one, every addition would wait for the last.
         s, t = value[v] * a, value[v + ONE] * a
         p, q = value[v + TWO] * b, value[v + THREE] * b
         for block in range(k + ONE, end):
             v = begin + FOUR * (block - begin)
-            c = np.uint64(column[block])
+            c = at + np.uint64(column[block])
             xx, yx, xy, yy = value[v], value[v + ONE], value[v + TWO], value[v + THREE]
             s += xx * x[c]
             t += yx * x[c]
@@ -181,12 +182,12 @@ def multiply_pairs(start, column, value, x, y, factor, first, size):
         y[row + ONE] += factor * (t + q)
 
 
-@jitted
-def multiply(tiles, start, column, value, x, y, factor):
+@formula
+def multiply(tiles, pairs, start, column, value, x, y, factor):
     """Set y = factor K x of an `Operator` K, whole vectors of the layout; y is not x."""
-    for t in range(tiles.shape[0]):
-        at, width, first, size = tiles[t, 0], tiles[t, 1], tiles[t, 2], tiles[t, 3]
-        if width == 0:
-            multiply_pairs(start, column, value, x[at:], y[at:], factor, first, size)
-        else:
+    if tiles is not None:
+        for t in range(tiles.shape[0]):
+            at, width, first, size = tiles[t, 0], tiles[t, 1], tiles[t, 2], tiles[t, 3]
             multiply_tile(start, column, value, x, y, factor, at, width, first, size)
+    if pairs is not None:
+        multiply_pairs(start, column, value, x, y, factor, pairs[0], pairs[1], pairs[2])

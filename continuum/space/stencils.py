@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, hstack
 
-from numerics.jit import apart
+from joints.formula import formula
 
 ONE, TWO = np.uint64(1), np.uint64(2)
 ROUND_OFF = 1e-11  # of coefficients, which are basis functions and of the order of 1
@@ -77,7 +77,7 @@ def distinct(matrices: list[csr_matrix]) -> tuple[np.ndarray, np.ndarray]:
     return first, group.ravel()
 
 
-@apart
+@formula
 def multiply_stencils(first, start, column, value, x, y, begin):
     """Set y = B x in the rows of stencils `begin` and after; y is not x."""
     for r in range(begin, first.size - 1):
@@ -95,7 +95,7 @@ def multiply_stencils(first, start, column, value, x, y, begin):
                     y[row + i] += a * x[one + i]
 
 
-@apart
+@formula
 def add_transposed(first, start, column, value, t, f):
     """Add B^T t to f."""
     for r in range(first.size - 1):

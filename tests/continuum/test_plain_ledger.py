@@ -47,7 +47,7 @@ CASES = {
 }
 
 
-def multiply(tiles, start, column, value, x, y, factor):
+def multiply(tiles, pairs, start, column, value, x, y, factor):
     """Set y = factor K x, tile by tile: as the compiled one does."""
     for at, width, first, size in tiles.tolist():
         blocks = x[at : at + size * width].reshape(size, width)

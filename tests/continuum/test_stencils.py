@@ -1,18 +1,17 @@
 """Jump operators as stencils: the same matrix, in fewer numbers."""
 
+import numba
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.sparse import csr_matrix
 
-from continuum.space.stencils import (
-    ROUND_OFF,
-    add_transposed,
-    distinct,
-    multiply_stencils,
-    stencils,
-)
+from continuum.space import stencils as formulas
+from continuum.space.stencils import ROUND_OFF, distinct, stencils
+
+add_transposed = numba.njit(lambda *arguments: formulas.add_transposed(*arguments))
+multiply_stencils = numba.njit(lambda *arguments: formulas.multiply_stencils(*arguments))
 
 
 def banded(rows: list[dict[int, float]], columns: int) -> csr_matrix:
