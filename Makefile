@@ -1,6 +1,9 @@
 # `make help` lists the targets. Everything runs in .venv, which `make setup` makes and every target asks for.
 MAKEFLAGS += --no-print-directory
 RUN := tools/run.sh
+# Each process takes neighbouring tests, which share kernels and fixtures. Hundreds of them start Python: none compiles
+# the sources anew, whatever the environment says.
+TESTS := PYTHONDONTWRITEBYTECODE= $(RUN) python -m pytest -n auto --maxprocesses 8 --dist worksteal --junitxml out/tests.xml
 
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test test-all docs check fuzz mutate bench bench-peers bench-plan test-debian13 test-wheel clean distclean
@@ -16,11 +19,11 @@ demo: setup  ## the paper's figures and all studies as one page, report/index.ht
 
 test:  ## all tests, and every shipped scene held to its own bounds
 	@tools/setup.sh browser
-	@$(RUN) python -m pytest -n auto --maxprocesses 8 --junitxml out/tests.xml tests cases
+	@$(TESTS) tests cases
 
 test-all:  ## make test with the slow tests too: the longest of the hard cases
 	@tools/setup.sh browser
-	@$(RUN) python -m pytest -n auto --maxprocesses 8 --junitxml out/tests.xml -m "slow or not slow" tests cases
+	@$(TESTS) -m "slow or not slow" tests cases
 
 docs:  ## the documentation as pages, site/index.html, with the outcomes of the last make test
 	@tools/setup.sh docs

@@ -4,6 +4,7 @@ import gc
 import os
 import re
 import shutil
+import sys
 from copy import deepcopy
 from pathlib import Path
 
@@ -13,8 +14,9 @@ from hypothesis import settings
 
 import cases
 
-# The first example compiles a kernel, which no deadline foresees.
-settings.register_profile("jointwave", deadline=None)
+# The first example compiles a kernel, which no deadline foresees. Every run has the same examples;
+# `make fuzz` looks for others.
+settings.register_profile("jointwave", deadline=None, max_examples=50, derandomize=True)
 settings.load_profile("jointwave")
 
 # Nor does a test how long it takes: no command that it runs speaks of its progress.
@@ -83,6 +85,24 @@ def one_joint():
 
 
 @pytest.fixture
+def jointwave(monkeypatch, capsys):
+    """Return a function that runs the command in this process, checks its exit status, and returns
+    what it has printed: `out` and `err`."""
+    from compare.cli.program import main
+
+    def run(*arguments, code=0):
+        monkeypatch.setattr(sys, "argv", ["jointwave", *map(str, arguments)])
+        capsys.readouterr()
+        with pytest.raises(SystemExit) as end:
+            main()
+        said = capsys.readouterr()
+        assert end.value.code == code and "Traceback" not in said.err, said.err
+        return said
+
+    return run
+
+
+@pytest.fixture(scope="session")
 def without_warnings():
     """Return a function that gives the lines of a text but for warnings of what a scene says."""
     return lambda text: [
@@ -90,7 +110,7 @@ def without_warnings():
     ]
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def instructions():
     """Return a function that counts one kind of instruction in a kernel for given arguments.
 
@@ -98,18 +118,21 @@ def instructions():
     unrolled : whether the copies that unrolling makes of an instruction count, whose names only
     end differently.
     """
+    texts = {}
 
     def count(kernel, arguments, kind, unrolled=True):
-        fresh = numba.njit(error_model="numpy")(kernel.py_func)
-        fresh(*arguments)
-        text = "\n".join(fresh.inspect_llvm().values())
-        found = re.findall(rf"(%\.?\w+)[.\w]* = {kind} ", text)
+        key = kernel.py_func, tuple(map(numba.typeof, arguments))
+        if key not in texts:
+            fresh = numba.njit(error_model="numpy")(kernel.py_func)
+            fresh(*arguments)
+            texts[key] = "\n".join(fresh.inspect_llvm().values())
+        found = re.findall(rf"(%\.?\w+)[.\w]* = {kind} ", texts[key])
         return len(found if unrolled else set(found))
 
     return count
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def mpiexec():
     """Return the launcher of MPI processes, and the environment that it is started in."""
     launcher = shutil.which("mpiexec")

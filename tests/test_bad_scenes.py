@@ -557,37 +557,24 @@ def test_scene_that_cannot_be_read(tmp_path):
     assert "title: is required" in line_of(write(tmp_path / "empty.toml", ""))
 
 
-def run(scene: Path, out: Path, *options: str) -> subprocess.CompletedProcess:
-    """Run the command on a scene as a user does."""
-    command = [sys.executable, "-m", "compare", "run", str(scene), "--engine", "dem"]
-    return subprocess.run(
-        [*command, "--out", str(out), *options], capture_output=True, text=True, timeout=120
-    )
-
-
-def assert_refused(done: subprocess.CompletedProcess, words: list[str], out: Path) -> None:
-    """Assert exit status 2, one line on standard error that holds the words, nothing written.
-
-    What is unusual in the scene may have been warned of before its engines were built.
-    """
-    assert done.returncode == 2
-    (line,) = [x for x in done.stderr.splitlines() if not x.startswith("jointwave: warning: ")]
-    for word in words:
-        assert word in line
-    assert not out.exists()
-
-
 @pytest.mark.parametrize("name", OVERRIDES)
-def test_bad_override_on_the_command_line(name, tmp_path):
+def test_bad_override_on_the_command_line(name, tmp_path, jointwave, without_warnings):
+    """What is unusual in the scene may have been warned of before its engines were built."""
     override, words = OVERRIDES[name]
-    scene = write(tmp_path / "scene.toml", GOOD)
+    scene, out = write(tmp_path / "scene.toml", GOOD), tmp_path / "out"
     if "must be key=value" not in words:  # there the mistake is not in the file
         words = [str(scene), *words]
-    assert_refused(run(scene, tmp_path / "out", "--set", override), words, tmp_path / "out")
+    said = jointwave("run", scene, "--set", override, "--out", out, code=2)
+    (line,) = without_warnings(said.err)
+    assert all(word in line for word in words), line
+    assert said.out == "" and not out.exists()
 
 
-@pytest.mark.parametrize("name", ["text for a number", "not TOML", "bad value in a variant"])
-def test_mistake_on_the_command_line(name, tmp_path):
-    scene = write(tmp_path / "scene.toml", mistaken(name))
-    words = [str(scene), *MISTAKES[name][2]]
-    assert_refused(run(scene, tmp_path / "out"), words, tmp_path / "out")
+def test_mistake_on_the_command_line(tmp_path):
+    """As a user meets it, in a process of its own."""
+    scene, out = write(tmp_path / "scene.toml", mistaken("not TOML")), tmp_path / "out"
+    command = [sys.executable, "-m", "compare", "run", str(scene), "--out", str(out)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 2 and done.stdout == "" and not out.exists()
+    (line,) = done.stderr.splitlines()
+    assert all(word in line for word in [str(scene), *MISTAKES["not TOML"][2]]), line

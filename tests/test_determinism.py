@@ -1,5 +1,6 @@
 """The same scene gives the same bits: in another process, on any number of threads."""
 
+import json
 import os
 import subprocess
 import sys
@@ -7,25 +8,15 @@ import sys
 import pytest
 import xarray as xr
 
+from cases import load_variant
+from compare.engines import solve
+from compare.scenes import find
+
 SCENE = "guo-li-2002/fig-03"
 SHORT = {"time.duration": 2e-3, "record.interval": 1e-4, "pillar.length": 10.0}
 SHORT |= {"record.stress": [0.0, 5.0, 7.3], "record.velocity": [0.25, 6.1]}
 LOSSY = {"joints.damping_ratio": 0.02, "joints.tension": False, "ends.end": "quiet"}
 ROCK = {"numerics.continuum.elements_per_block": 2}
-
-#: Scenes of each engine and scheme: what is run, and what is changed.
-RUNS = {
-    "blocks": (("dem",), LOSSY),
-    "blocks, fourth order": (("dem",), {"numerics.dem.scheme": "fourth-order"}),
-    "rock, explicit": (
-        ("continuum", "--model", "jointed"),
-        LOSSY | ROCK | {"numerics.continuum.scheme": "explicit"},
-    ),
-    "rock, implicit": (
-        ("continuum", "--model", "jointed"),
-        LOSSY | ROCK | {"numerics.continuum.scheme": "implicit"},
-    ),
-}
 
 #: Twenty tiles of 64 blocks, with all that threads share: dashpots, slip, the ledger, receivers.
 ROW = {
@@ -37,26 +28,50 @@ ROW = {
     "record.stress": [2.0, 32.0, 320.0],
     "record.velocity": [0.25, 31.9],
 }
+THREADS = {f"{count} threads": count for count in (1, 2, 3)}
+
+#: Scenes of each engine and scheme: who solves them, and what is changed.
+RUNS = {
+    "blocks": ("dem", LOSSY),
+    "blocks, fourth order": ("dem", {"numerics.dem.scheme": "fourth-order"}),
+    "rock, explicit": (
+        "continuum-jointed",
+        LOSSY | ROCK | {"numerics.continuum.scheme": "explicit"},
+    ),
+    "rock, implicit": (
+        "continuum-jointed",
+        LOSSY | ROCK | {"numerics.continuum.scheme": "implicit"},
+    ),
+    **{name: ("dem", ROW | {"numerics.dem.threads": n}) for name, n in THREADS.items()},
+}
+
+RUN_ALL = """
+import json, sys
+import jointwave
+for name, (engine, changes) in json.loads(sys.argv[2]).items():
+    scene = jointwave.load(sys.argv[1], changes=changes)
+    jointwave.simulate(scene, engine).to_netcdf(f"{name}.nc")
+"""
 
 
-def waves(folder, seed, engine, changes):
-    """Return the result of a run in a process of its own, whose hashes are seeded so."""
-    out = folder / f"run {seed} {len(list(folder.iterdir()))}"
-    options = [x for k, v in changes.items() for x in ("--set", f"{k}={toml(v)}")]
-    command = [sys.executable, "-m", "compare", "run", SCENE, "--variant", "", "--engine", *engine]
-    done = subprocess.run(
-        [*command, *options, "--out", str(out)],
-        capture_output=True,
-        text=True,
-        env={**os.environ, "PYTHONHASHSEED": str(seed)},
-    )
-    assert done.returncode == 0, done.stderr
-    (file,) = out.glob("*.nc")
-    return xr.load_dataset(file)
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    """Return the results of all runs of two processes, whose hashes are seeded differently."""
+    runs = json.dumps({name: (engine, SHORT | keys) for name, (engine, keys) in RUNS.items()})
 
+    def of(seed):
+        folder = tmp_path_factory.mktemp("runs")
+        done = subprocess.run(
+            [sys.executable, "-c", RUN_ALL, SCENE, runs],
+            capture_output=True,
+            text=True,
+            cwd=folder,
+            env={**os.environ, "PYTHONHASHSEED": seed},
+        )
+        assert done.returncode == 0, done.stderr
+        return {name: xr.load_dataset(folder / f"{name}.nc") for name in RUNS}
 
-def toml(value):
-    return str(value).lower() if isinstance(value, bool) else repr(value)
+    return of("1"), of("2")
 
 
 def assert_same_bits(one, other):
@@ -73,25 +88,22 @@ def bits(variable):
 
 
 @pytest.mark.parametrize("name", RUNS)
-def test_a_run_repeats_bit_for_bit(name, tmp_path):
-    engine, changes = RUNS[name]
-    one, other = (waves(tmp_path, seed, engine, SHORT | changes) for seed in (1, 2))
-    assert_same_bits(one, other)
+def test_a_run_repeats_bit_for_bit(results, name):
+    one, other = results
+    assert_same_bits(one[name], other[name])
 
 
-def test_the_last_bit_of_a_load_is_told(tmp_path):
+def test_the_last_bit_of_a_load_is_told():
     """Runs that differ by one unit in the last place are not taken for the same."""
     loads = (1e6, 1e6 * (1 + 2**-52))
-    one, other = (waves(tmp_path, 1, ("dem",), SHORT | {"load.amplitude": x}) for x in loads)
+    one, other = (
+        solve("dem", load_variant(find(SCENE), "", SHORT | {"load.amplitude": x})) for x in loads
+    )
     assert bits(one["stress"]) != bits(other["stress"])
 
 
-def test_threads_change_no_bit_of_a_run(tmp_path):
-    """Whole runs of the command, in processes of their own."""
-    found = [
-        waves(tmp_path, threads, ("dem",), SHORT | ROW | {"numerics.dem.threads": threads})
-        for threads in (1, 2, 3)
-    ]
+def test_threads_change_no_bit_of_a_run(results):
+    found = [results[0][name] for name in THREADS]
     assert [result.attrs["threads"] for result in found] == [1, 2, 3]
     for other in found[1:]:
         assert_same_bits(found[0], other)

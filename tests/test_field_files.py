@@ -1,7 +1,6 @@
 """Field files as a viewer meets them: read back by meshio, whole or not there at all."""
 
 import json
-import subprocess
 import sys
 from xml.etree import ElementTree
 
@@ -125,54 +124,43 @@ def test_a_failed_write_leaves_the_old_files_and_no_others(two_cells, tmp_path, 
     assert sorted(p.name for p in tmp_path.iterdir()) == ["dem-fields", "dem.pvd"]
 
 
-def jointwave(*arguments, code=0):
-    """Run the command and return its process, having checked the exit status."""
-    command = [sys.executable, "-m", "compare", *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert done.returncode == code, done.stderr
-    assert "Traceback" not in done.stderr
-    return done
-
-
 SCENE = ("guo-li-2002/fig-03", "--set", "time.duration=0.02")
 FIELDS = ("--set", "record.fields=4e-3")
 
 
-def test_run_names_the_file_to_open_for_each_variant(tmp_path):
+def test_run_names_the_file_to_open_for_each_variant(jointwave, tmp_path):
     done = jointwave("run", *SCENE, *FIELDS, "--out", tmp_path)
     for path in (tmp_path / "dem.pvd", tmp_path / "zeta 0.02" / "dem.pvd"):
-        assert str(path) in done.stdout.replace("\n", "")
+        assert str(path) in done.out.replace("\n", "")
         assert read_pvd(path).time == pytest.approx(4e-3 * np.arange(6))
 
 
-def test_run_without_fields_writes_none(tmp_path):
-    (fact,) = json.loads(
-        jointwave("run", *SCENE, "--variant", "", "--out", tmp_path, "--json").stdout
-    )
+def test_run_without_fields_writes_none(jointwave, tmp_path):
+    (fact,) = json.loads(jointwave("run", *SCENE, "--variant", "", "--out", tmp_path, "--json").out)
     assert fact["fields"] == [] and [p.name for p in tmp_path.iterdir()] == ["dem.nc"]
 
 
-def test_the_result_holds_what_the_files_show(tmp_path):
+def test_the_result_holds_what_the_files_show(jointwave, tmp_path):
     import xarray as xr
 
     options = ("--variant", "", "--out", tmp_path, "--json")
-    (fact,) = json.loads(jointwave("run", *SCENE, *FIELDS, *options).stdout)
+    (fact,) = json.loads(jointwave("run", *SCENE, *FIELDS, *options).out)
     assert fact["fields"] == [str(tmp_path / "dem.pvd")]
     assert_equal(read_pvd(tmp_path / "dem.pvd"), snapshots_of(xr.load_dataset(tmp_path / "dem.nc")))
 
 
-def test_an_exact_solution_says_that_it_has_no_snapshots(tmp_path):
+def test_an_exact_solution_says_that_it_has_no_snapshots(jointwave, tmp_path):
     exact = ("--engine", "exact", "--model", "images", "--variant", "")
-    assert "no snapshots" in jointwave("run", *SCENE, *FIELDS, *exact, "--out", tmp_path).stdout
+    assert "no snapshots" in jointwave("run", *SCENE, *FIELDS, *exact, "--out", tmp_path).out
 
 
-def test_vtx_needs_snapshots(tmp_path):
+def test_vtx_needs_snapshots(jointwave, tmp_path):
     done = jointwave("run", *SCENE, "--vtx", "--out", tmp_path / "out", code=2)
-    assert done.stderr.count("\n") == 1 and "record.fields: is required by --vtx" in done.stderr
+    assert done.err.count("\n") == 1 and "record.fields: is required by --vtx" in done.err
     assert not (tmp_path / "out").exists()
 
 
-def test_vtx_is_written_where_dolfinx_can_and_refused_where_not(tmp_path):
+def test_vtx_is_written_where_dolfinx_can_and_refused_where_not(jointwave, tmp_path):
     can = forms.vtx_writer() is not None
     options = ("--variant", "", "--vtx", "--out", tmp_path / "out")
     done = jointwave("run", *SCENE, *FIELDS, *options, code=0 if can else 2)
@@ -182,7 +170,7 @@ def test_vtx_is_written_where_dolfinx_can_and_refused_where_not(tmp_path):
         }
         assert sum(p.stat().st_size for p in (tmp_path / "out" / "dem.bp").iterdir()) > 1e5
     else:
-        assert done.stderr.count("\n") == 1 and "built without ADIOS2" in done.stderr
+        assert done.err.count("\n") == 1 and "built without ADIOS2" in done.err
         assert not (tmp_path / "out").exists()
 
 

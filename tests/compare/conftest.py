@@ -1,13 +1,11 @@
 """What tests measure kept apart from the user's own; and a browser for the tests of pages."""
 
 import shutil
-import sys
 from itertools import combinations
 
 import pytest
 from matplotlib.text import Text
 
-from compare.cli.program import main
 from compare.experiments.cost import timings
 
 
@@ -18,26 +16,10 @@ def own_rates(tmp_path_factory, monkeypatch):
     monkeypatch.setattr(timings, "_file", lambda: file)
 
 
-@pytest.fixture
-def jointwave(monkeypatch, capsys):
-    """Return a function that runs the command in this process, checks its exit status, and returns
-    what it has printed: `out` and `err`."""
-
-    def run(*arguments, code=0):
-        monkeypatch.setattr(sys, "argv", ["jointwave", *map(str, arguments)])
-        capsys.readouterr()
-        with pytest.raises(SystemExit) as end:
-            main()
-        said = capsys.readouterr()
-        assert end.value.code == code, said.err
-        return said
-
-    return run
-
-
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser():
-    """Start a headless Chromium once; `make test` installs it on Debian."""
+    """Start a headless Chromium for a file: it holds some hundred megabytes. `make test` installs
+    it on Debian."""
     path = shutil.which("chromium") or shutil.which("google-chrome")
     if path is None:
         pytest.skip("no chromium here: the page is not opened")

@@ -269,7 +269,7 @@ def on_the_edge(one, t_n, step, h, opening, scale):
 
 
 @pytest.mark.parametrize(("dashpots", "opens", "shears"), COMBINATIONS)
-@settings(max_examples=40)
+@settings(max_examples=25)
 @given(data=st.data())
 def test_law_equals_its_twin(dashpots, opens, shears, data):
     """Step by step over a path, each step from the same history: tractions and memory."""

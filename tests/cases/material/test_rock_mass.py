@@ -128,7 +128,7 @@ def partitions(draw):
 
 
 @given(sets=partitions(), ratio=st.floats(0.05, 2.0))
-@settings(max_examples=40)
+@settings(max_examples=25)
 def test_critical_step_is_bounded_on_both_sides(sets, ratio):
     """Against scipy's eigenvalues of the whole system: bound <= 2 / omega <= sqrt(2) bound."""
     found = cut(Domain(size=[4.0, 3.0], least_width=1e-5, least_angle=0.0), sets)

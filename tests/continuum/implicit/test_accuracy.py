@@ -104,7 +104,7 @@ def test_error_falls_with_the_square_of_the_step(pillar, implicit, rho, kind):
     """A smooth pulse against the exact jointed bar; stress at a joint and inside a block,
     velocity."""
     errors = []
-    for interval in (8e-5, 4e-5, 2e-5):
+    for interval in (8e-5, 4e-5):
         scene = pillar(
             **RICKER,
             **kind,
@@ -119,7 +119,7 @@ def test_error_falls_with_the_square_of_the_step(pillar, implicit, rho, kind):
             ]
         )
     rates = np.log2(np.divide(errors[:-1], errors[1:]))
-    assert rates == pytest.approx(np.full((2, 2), 2.0), abs=0.1)
+    assert rates == pytest.approx(np.full((1, 2), 2.0), abs=0.1)
 
 
 def explicit(scene, implicit, stride, kind="jointed"):

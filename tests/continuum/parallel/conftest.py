@@ -6,7 +6,7 @@ import sys
 import pytest
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def under_mpi(mpiexec):
     """Return a function that runs Python with these arguments in `count` processes.
 
@@ -25,7 +25,7 @@ def under_mpi(mpiexec):
     return run
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def jointwave(under_mpi):
     """Return a function that runs the command in `count` processes."""
     return lambda count, *arguments, code=0: under_mpi(

@@ -16,6 +16,60 @@ SHORT = (
 )
 
 
+BLOCKS = ("--engine", "dem", "--engine", "exact", "--model", "lattice")
+FRACTION = "numerics.continuum.step_fraction"
+ALLOWED = ("--set", "numerics.continuum.allow_unstable=true")
+
+#: What all processes are asked, one command after the other; its exit code and words of its line.
+MISTAKES = {
+    "a bad value": (("run", *SCENE, *CONTINUUM, "--set", "pillar.length=-1"), 2, "length = -1"),
+    "no scene": (("run", "no-such.toml", *CONTINUUM), 2, "no-such.toml"),
+    "a comparison": (("compare", *SCENE), 2, "mpiexec: jointwave compare works in one process"),
+    "an explanation": (("explain", *SCENE), 2, "mpiexec: jointwave explain works in one process"),
+    "a step above the critical": (
+        ("run", *SCENE, *CONTINUUM, *SHORT, "--set", f"{FRACTION}=1.5"),
+        2,
+        "above the critical step",
+    ),
+    "a run that is lost": (
+        (
+            *("run", *SCENE, *CONTINUUM, *SHORT, "--set", "time.duration=0.02"),
+            *("--set", f"{FRACTION}=1.2", *ALLOWED),
+        ),
+        3,
+        "the continuum ran away",
+    ),
+    "more processes than cells": (
+        (
+            *("run", *SCENE, *CONTINUUM, *SHORT, "--set", "pillar.length=1.0"),
+            *("--set", "record.stress=[0.5]"),
+        ),
+        2,
+        "jointwave: mpiexec: -n = 3: must be at most 2, the cells of the mesh",
+    ),
+    "a folder that cannot be": (("run", *SCENE, *SHORT), 2, "Not a directory"),
+}
+
+#: Runs commands in turn in the same processes; after each, the first says how it has ended.
+IN_TURN = """
+import json, sys
+from mpi4py import MPI
+from compare.cli import program
+
+ours = sys.stdout, sys.stderr
+for arguments in json.loads(sys.argv[1]):
+    sys.stdout, sys.stderr = ours
+    sys.argv = ["jointwave", *arguments]
+    try:
+        program.main()
+    except SystemExit as end:
+        code = end.code
+    MPI.COMM_WORLD.Barrier()
+    if MPI.COMM_WORLD.rank == 0:
+        print("ended", code, file=ours[1], flush=True)
+"""
+
+
 @pytest.fixture
 def said(without_warnings):
     """Return a function that gives the lines that the command itself has printed as errors."""
@@ -28,46 +82,48 @@ def said(without_warnings):
     return errors
 
 
-@pytest.mark.parametrize(
-    ("arguments", "code", "words"),
-    [
-        (("run", *SCENE, *CONTINUUM, "--set", "pillar.length=-1"), 2, "pillar.length = -1"),
-        (("run", "no-such.toml", *CONTINUUM), 2, "no-such.toml"),
-        (("compare", *SCENE), 2, "mpiexec: jointwave compare works in one process"),
-        (("explain", *SCENE), 2, "mpiexec: jointwave explain works in one process"),
-        (
-            ("run", *SCENE, *CONTINUUM, *SHORT, "--set", "numerics.continuum.step_fraction=1.5"),
-            2,
-            "above the critical step",
-        ),
-        (
-            (
-                *("run", *SCENE, *CONTINUUM, *SHORT, "--set", "time.duration=0.02"),
-                *("--set", "numerics.continuum.step_fraction=1.2"),
-                *("--set", "numerics.continuum.allow_unstable=true"),
-            ),
-            3,
-            "the continuum ran away",
-        ),
-    ],
-)
-def test_what_goes_wrong_is_one_line_of_one_process(
-    arguments, code, words, jointwave, said, tmp_path
-):
+@pytest.fixture(scope="module")
+def told(under_mpi, without_warnings, tmp_path_factory):
+    """Return what three processes say of each mistake, its exit code and its folder, by name; and
+    what a run of rigid blocks after all of them prints."""
+    place = tmp_path_factory.mktemp("mistakes")
+    folders = {name: place / str(i) for i, name in enumerate(MISTAKES)}
+    (place / "file").write_text("")
+    folders["a folder that cannot be"] = place / "file" / "folder"
+    commands = [
+        [*asked, *(("--out", str(folders[name])) if asked[0] != "explain" else ())]
+        for name, (asked, *_) in MISTAKES.items()
+    ]
+    commands.append(["run", *SCENE, *BLOCKS, *SHORT, "--out", str(place / "blocks"), "--json"])
+    done = under_mpi(3, "-c", IN_TURN, json.dumps(commands))
+    assert "Traceback" not in done.stderr
+    found, lines = [], []
+    for line in without_warnings(done.stderr):
+        if line.startswith("ended "):
+            found.append((lines, int(line.split()[1])))
+            lines = []
+        elif line.startswith("jointwave: "):
+            lines.append(line)
+    assert len(found) == len(commands) and found.pop() == ([], 0)
+    by_name = {name: (*one, folders[name]) for name, one in zip(MISTAKES, found, strict=True)}
+    return by_name, (done.stdout, place / "blocks")
+
+
+@pytest.mark.parametrize("name", MISTAKES)
+def test_what_goes_wrong_is_one_line_of_one_process(name, told):
     """All processes meet the same mistake: one says so, all leave with the same status."""
-    where = ("--out", tmp_path) if arguments[0] != "explain" else ()
-    (line,) = said(jointwave(2, *arguments, *where, code=code))
-    assert words in line
-    left = {path.name for path in tmp_path.rglob("*.nc")}
+    (line,), code, folder = told[0][name]
+    assert code == MISTAKES[name][1] and MISTAKES[name][2] in line
+    left = {path.name for path in folder.rglob("*.nc")} if folder.is_dir() else set()
     assert left == ({"continuum-jointed.stopped.nc"} if code == 3 else set())
 
 
-def test_more_processes_than_cells_are_refused(jointwave, said, tmp_path):
-    """There is nothing that some of them could do."""
-    two_cells = ("--set", "pillar.length=1.0", "--set", "record.stress=[0.5]")
-    arguments = ("run", *SCENE, *CONTINUUM, *SHORT, *two_cells, "--out", tmp_path)
-    (line,) = said(jointwave(3, *arguments, code=2))
-    assert line == "jointwave: mpiexec: -n = 3: must be at most 2, the cells of the mesh"
+def test_rigid_blocks_run_once_in_the_first_process(told):
+    """Only the continuum is shared out; results, and what is said of them, are those of one."""
+    said, folder = told[1]
+    facts = json.loads(said)
+    assert [fact["engine"] for fact in facts] == ["dem", "lattice"]
+    assert {path.name for path in folder.iterdir()} == {"dem.nc", "exact-lattice.nc"}
 
 
 #: One process fails where the others wait for it.
@@ -88,9 +144,7 @@ program.main()
 """
 
 
-@pytest.mark.parametrize(
-    ("function", "rank"), [("body.restrict", 0), ("body.held_share", 2), ("build.weight_of", 2)]
-)
+@pytest.mark.parametrize(("function", "rank"), [("body.restrict", 0), ("build.weight_of", 2)])
 def test_a_process_that_fails_alone_ends_all(rank, function, under_mpi, said, tmp_path):
     """Others wait for what it would have sent them; its line is the only one."""
     program = SERIAL.format(error="MemoryError('of one')", rank=rank, function=function)
@@ -106,23 +160,6 @@ def test_a_mistake_of_the_program_on_one_process_ends_all(under_mpi, said, tmp_p
     done = under_mpi(3, "-c", program, *arguments, code=1)
     (line,) = said(done)
     assert "a fault of the program, KeyError" in line and "'bug'" in line
-
-
-def test_rigid_blocks_run_once_in_the_first_process(jointwave, tmp_path):
-    """Only the continuum is shared out; results, and what is said of them, are those of one."""
-    engines = ("--engine", "dem", "--engine", "exact", "--model", "lattice")
-    done = jointwave(2, "run", *SCENE, *engines, *SHORT, "--out", tmp_path, "--json")
-    facts = json.loads(done.stdout)
-    assert [fact["engine"] for fact in facts] == ["dem", "lattice"]
-    assert {path.name for path in tmp_path.iterdir()} == {"dem.nc", "exact-lattice.nc"}
-
-
-def test_a_mistake_of_the_first_process_reaches_the_others(said, jointwave, tmp_path):
-    """Rigid blocks that go unstable, or a folder that cannot be written, end all at once."""
-    blocked = tmp_path / "file"
-    blocked.write_text("")
-    (line,) = said(jointwave(2, "run", *SCENE, *SHORT, "--out", blocked / "folder", code=2))
-    assert "Not a directory" in line
 
 
 def test_an_mpiexec_of_another_mpi_is_refused(

@@ -1,12 +1,16 @@
 """Real processes: the waveforms of one, whatever their number; one file, one message."""
 
 import json
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
+from cases.read import load_variant
+from compare.engines import solve
+from compare.scenes import find
 from results.dataset import energy_residual
 from results.snapshots import snapshots_of
 
@@ -78,6 +82,7 @@ SCENES = {
             "numerics.continuum.order": 2,
             "joints.damping_ratio": 0.02,
             "ends.end": "quiet",
+            "record.fields": 1e-3,
         },
     ),
 }
@@ -96,37 +101,41 @@ WHAT_HAPPENS = {
 WAVES = {"stress", "velocity", "displacement", "shear", "rotation", "energy"}
 
 
-def options(scene, out):
-    """Return the arguments that run a scene into a folder."""
-    model, changes = SCENES[scene]
-    changes = {**SHORT, **changes}
-    keys = [part for k, v in changes.items() for part in ("--set", f"{k}={_toml(v)}")]
-    engine = ("--engine", "continuum", "--model", model)
-    return "run", SCENE, "--variant", "", *engine, *keys, "--out", out, "--json"
+@pytest.fixture(scope="module")
+def runs(jointwave, without_warnings, tmp_path_factory):
+    """Return a function that gives a scene's result by this process and by three, made once."""
+
+    @cache
+    def of(scene):
+        model, changes = SCENES[scene]
+        changes = SHORT | changes
+        out = tmp_path_factory.mktemp("three")
+        keys = [part for k, v in changes.items() for part in ("--set", f"{k}={in_toml(v)}")]
+        engine = ("--engine", "continuum", "--model", model)
+        run = ("run", SCENE, "--variant", "", *engine, *keys, "--out", out, "--json")
+        done = jointwave(3, *run)
+        (fact,) = json.loads(done.stdout)
+        assert without_warnings(done.stderr) == []
+        assert list(out.glob("*.nc")) == [Path(fact["file"])]
+        one = solve(f"continuum-{model}", load_variant(find(SCENE), "", changes))
+        return one, xr.load_dataset(fact["file"])
+
+    return of
 
 
-def _toml(value):
+def in_toml(value):
     """Return a value as TOML spells it; tables inline."""
     if isinstance(value, list):
-        return f"[{', '.join(map(_toml, value))}]"
+        return f"[{', '.join(map(in_toml, value))}]"
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{k} = {_toml(v)}" for k, v in value.items()) + "}"
+        return "{" + ", ".join(f"{k} = {in_toml(v)}" for k, v in value.items()) + "}"
     return json.dumps(value)
 
 
 @pytest.mark.parametrize("scene", SCENES)
-def test_any_number_of_processes_gives_the_same_waveforms(
-    scene, jointwave, without_warnings, tmp_path
-):
+def test_any_number_of_processes_gives_the_same_waveforms(scene, runs):
     """To round-off, with one file and one report; what the scene is there for does happen."""
-    results = []
-    for count in (1, 3):
-        done = jointwave(count, *options(scene, tmp_path / str(count)))
-        (fact,) = json.loads(done.stdout)
-        assert without_warnings(done.stderr) == []
-        assert list((tmp_path / str(count)).glob("*.nc")) == [Path(fact["file"])]
-        results.append(xr.load_dataset(fact["file"]))
-    one, other = results
+    one, other = runs(scene)
     assert other.attrs["processes"] == 3
     assert other.attrs["critical_dt"] == pytest.approx(one.attrs["critical_dt"], rel=1e-12)
     for name in ("dt", "steps", "degrees_of_freedom"):
@@ -138,20 +147,14 @@ def test_any_number_of_processes_gives_the_same_waveforms(
     assert (spent.sel(term=WHAT_HAPPENS[scene]) > 1e-4 * spent.sel(term="work")).all()
 
 
-def test_the_ledger_of_three_processes_closes(jointwave, tmp_path):
+def test_the_ledger_of_three_processes_closes(runs):
     """Shares of every energy and of every work add up to a balance that leapfrog keeps exactly."""
-    done = jointwave(3, *options(CUT, tmp_path))
-    (fact,) = json.loads(done.stdout)
-    assert energy_residual(xr.load_dataset(fact["file"])) < BALANCED
+    assert energy_residual(runs(CUT)[1]) < BALANCED
 
 
-def test_snapshots_are_those_of_one_process(jointwave, tmp_path):
+def test_snapshots_are_those_of_one_process(runs):
     """The same nodes, each once, and the same motion of each; cells in the same order."""
-    one, three = (
-        snapshots_of(xr.load_dataset(tmp_path / str(count) / "continuum-equivalent.nc"))
-        for count in (1, 3)
-        if jointwave(count, *options(CUT, tmp_path / str(count)), "--set", "record.fields=1e-3")
-    )
+    one, three = map(snapshots_of, runs(CUT))
     assert one.displacement.shape == three.displacement.shape
     assert (one.block == three.block).all() and one.time.tolist() == three.time.tolist()
     alike(three.stress, one.stress)

@@ -20,13 +20,13 @@ CHAINS = {
     "quiet end": {"ends__end": "quiet", "joints__damping_ratio": 0.02},
     "matched end": {"ends__end": "matched", "joints__damping_ratio": 0.02},
     "fixed end": {"ends__end": "fixed", "joints__damping_ratio": 0.02},
-    "quiet start": {"ends__start": "quiet"},
+    "quiet start": {"ends": {"start": "quiet", "end": "fixed"}},
     "matched start": {"ends__start": "matched", "ends__end": "matched"},
-    "mass damping": {"damping__mass_proportional": 50.0, "ends__end": "quiet"},
+    "mass damping": {"damping__mass_proportional": 50.0, "joints__damping_ratio": 0.02},
     "Rayleigh damping": {
         "damping__rayleigh": {"frequencies": [50.0, 400.0], "ratios": [0.02, 0.03]}
     },
-    "gravity": {"gravity": DOWN, "ends__end": "fixed"},
+    "gravity": {"gravity": DOWN, "ends__end": "fixed", "joints__damping_ratio": 0.1},
     "gravity between two fixed ends": {
         "gravity": DOWN,
         "ends": {"start": "fixed", "end": "fixed"},
@@ -38,7 +38,11 @@ CHAINS = {
         "joints__damping_ratio": 0.02,
     },
     "prestress": {"prestress": {"normal": 2e6}, "ends": {"start": "quiet", "end": "matched"}},
-    "base of given velocity": {"ends__start": "fixed", "load": SHAKEN},
+    "base of given velocity": {
+        "ends": {"start": "fixed", "end": "matched"},
+        "load": SHAKEN,
+        "joints__damping_ratio": 0.02,
+    },
     "base of given acceleration, dashpots": {
         "ends": {"start": "fixed", "end": "quiet"},
         "load": {**SHAKEN, "amplitude": 100.0, "quantity": "acceleration"},

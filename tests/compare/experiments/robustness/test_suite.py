@@ -2,30 +2,54 @@
 
 from math import isfinite
 
+import numpy as np
 import pytest
 
 from compare.experiments.robustness.case import SCHEMES
+from compare.experiments.robustness.extreme_cases import EXTREME
+from compare.experiments.robustness.linear_cases import LINEAR
 from compare.experiments.robustness.run import CASES, HELD, NONE, places, row_at
 
-#: Rows of deformable rock that take many seconds each; other rows of these cases are quick.
+JOINTED, EQUIVALENT, IMPLICIT = "continuum-jointed", "continuum-equivalent", " implicit"
+#: Rows that take many seconds each, by what the names of their solvers hold; the case's other rows,
+#: or the same judgement of a case nearby, are quick.
 LONG = {
-    "implicit steps far above the critical",
-    "load twice the lattice cut-off, deformable rock",
-    "prestress that cancels the wave",
-    "stick-slip at the exact threshold",
-    "every second joint 1e-8 as stiff",
-    "damping ratio 0",
-    "damping ratio 10",
-    "softening just short of a snap-back",
-    "soft layer of 1e-12 of a joint's stiffness",
+    "implicit steps far above the critical": JOINTED,
+    "load at the lattice cut-off, deformable rock": IMPLICIT,
+    "load twice the lattice cut-off, deformable rock": (JOINTED, IMPLICIT),
+    "prestress that cancels the wave": JOINTED,
+    "stick-slip at the exact threshold": "",
+    "every second joint 1e-8 as stiff": JOINTED,
+    "damping ratio 0": JOINTED,
+    "damping ratio 1": JOINTED,
+    "damping ratio 10": JOINTED,
+    "softening just short of a snap-back": JOINTED,
+    "soft layer of 1e-12 of a joint's stiffness": (JOINTED, IMPLICIT),
+    "joints that open, close, slip and break": JOINTED,
+    "joints that open and close by 1e-40 m": IMPLICIT,
+    "a million blocks": "fourth-order",
+    "one set 1e8 as stiff as the other": IMPLICIT,
+    "the ledger of blocks a thousandth as thin as their neighbours": JOINTED,
+    "the ledger of blocks that end in a point of one degree": JOINTED,
 }
+#: Of linear rock in both models and by both schemes, two rows stand for four.
+CROSSED = (f"{JOINTED} implicit", f"{EQUIVALENT} explicit")
+
+
+def is_long(case, stepper):
+    """Return whether a row is left to `make test-all`."""
+    dear = LONG.get(case.name)
+    if case.slow or dear is not None:
+        return case.slow or any(part in stepper.name for part in np.atleast_1d(dear))
+    same = [one for one in SCHEMES if one.engine is stepper.engine]
+    both = not any(case.why_spared(one) for one in same)
+    return stepper.name in CROSSED and both and case in [*LINEAR, *EXTREME]
 
 
 def rows():
     for i, j in places():
         case, stepper = CASES[i], SCHEMES[j]
-        long = case.name in LONG and stepper.name.startswith("continuum-jointed")
-        marks = [pytest.mark.slow] if case.slow or long else []
+        marks = [pytest.mark.slow] if is_long(case, stepper) else []
         yield pytest.param((i, j), id=f"{case.name}, {stepper.name}", marks=marks)
 
 

@@ -21,6 +21,13 @@ def disk(tmp_path):
     subprocess.run(("umount", str(place)), check=True)
 
 
+@pytest.fixture
+def said(jointwave, without_warnings):
+    """Return a function that runs the command in this process, checks its exit status, and gives
+    its lines on standard error."""
+    return lambda *run, code=0: without_warnings(jointwave(*run, code=code).err)
+
+
 def fill(place):
     """Fill a disk to its last byte; returns the file that does."""
     filler = place / "filler"
@@ -32,18 +39,18 @@ def fill(place):
                 return filler
 
 
-def test_full_disk_leaves_the_old_result(disk, start, finish, arguments):
+def test_full_disk_leaves_the_old_result(disk, said, arguments):
     """The new one has no room."""
     run = arguments("axial", disk, *SHORT)
-    assert finish(start(*run)) == (0, [])
+    assert said(*run) == []
     filler, before = fill(disk), (disk / "dem.nc").read_bytes()
     there = {path.name for path in disk.iterdir()}
-    code, (line,) = finish(start(*run))
-    assert code == 2 and line == f"jointwave: {disk / 'dem.nc'}: No space left on device"
+    (line,) = said(*run, code=2)
+    assert line == f"jointwave: {disk / 'dem.nc'}: No space left on device"
     assert (disk / "dem.nc").read_bytes() == before
     assert {path.name for path in disk.iterdir()} == there
     filler.unlink()
-    assert finish(start(*run)) == (0, [])
+    assert said(*run) == []
 
 
 def test_full_disk_costs_a_checkpoint_but_not_the_run(
@@ -62,18 +69,18 @@ def test_full_disk_costs_a_checkpoint_but_not_the_run(
     refuse_difference(disk / "dem.nc", whole / "dem.nc")
 
 
-def test_read_only_folder_is_one_line(disk, start, finish, arguments):
+def test_read_only_folder_is_one_line(disk, said, arguments):
     """It is said before anything is run."""
     run = arguments("axial", disk, *SHORT)
-    assert finish(start(*run)) == (0, [])
+    assert said(*run) == []
     before = (disk / "dem.nc").read_bytes()
     subprocess.run(("mount", "-o", "remount,ro", str(disk)), check=True)
-    code, (line,) = finish(start(*run))
-    assert code == 2 and str(disk) in line and "Read-only file system" in line
+    (line,) = said(*run, code=2)
+    assert str(disk) in line and "Read-only file system" in line
     assert (disk / "dem.nc").read_bytes() == before
 
 
-def test_protected_result_is_refused_before_the_run(tmp_path, start, finish, arguments):
+def test_protected_result_is_refused_before_the_run(tmp_path, said, arguments):
     """Not when hours have passed."""
     result = tmp_path / "dem.nc"
     result.write_bytes(b"CDF of an earlier run")
@@ -81,18 +88,18 @@ def test_protected_result_is_refused_before_the_run(tmp_path, start, finish, arg
     if done.returncode:
         pytest.skip(f"no file can be protected here: {done.stderr.strip()}")
     try:
-        code, (line,) = finish(start(*arguments("axial", tmp_path, *SHORT)))
-        assert code == 2 and str(result) in line and "protected" in line
+        (line,) = said(*arguments("axial", tmp_path, *SHORT), code=2)
+        assert str(result) in line and "protected" in line
         assert result.read_bytes() == b"CDF of an earlier run"
     finally:
         subprocess.run(("chattr", "-i", str(result)), check=True)
 
 
-def test_folder_in_place_of_a_result_is_refused_before_the_run(tmp_path, start, finish, arguments):
+def test_folder_in_place_of_a_result_is_refused_before_the_run(tmp_path, said, arguments):
     """A file cannot take its place."""
     (tmp_path / "dem.nc").mkdir()
-    code, (line,) = finish(start(*arguments("axial", tmp_path, *SHORT)))
-    assert code == 2 and f"{tmp_path / 'dem.nc'}: is a folder" in line
+    (line,) = said(*arguments("axial", tmp_path, *SHORT), code=2)
+    assert f"{tmp_path / 'dem.nc'}: is a folder" in line
 
 
 def test_full_standard_output_is_one_line(start, finish):
@@ -127,9 +134,9 @@ def test_lock_of_a_killed_run_is_nobodys(tmp_path, start, finish, until, argumen
     assert finish(start(*arguments("axial", tmp_path, *SHORT))) == (0, [])
 
 
-def test_folder_of_a_refused_run_is_not_made(tmp_path, start, finish, arguments):
+def test_folder_of_a_refused_run_is_not_made(tmp_path, said, arguments):
     """A step above the critical one is found when the folder is held already."""
     out = tmp_path / "new" / "folder"
     refused = arguments("axial", out, "--set", "numerics.dem.step_fraction=1.5")
-    code, (line,) = finish(start(*refused))
-    assert code == 2 and "critical" in line and not list(tmp_path.iterdir())
+    (line,) = said(*refused, code=2)
+    assert "critical" in line and not list(tmp_path.iterdir())

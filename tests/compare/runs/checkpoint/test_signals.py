@@ -85,15 +85,15 @@ def test_processes_that_share_a_run_stop_together(
     refuse_difference(out / "continuum-jointed.nc", whole / "continuum-jointed.nc")
 
 
-def test_results_that_are_whole_are_not_made_again(tmp_path, start, finish, arguments):
+def test_results_that_are_whole_are_not_made_again(tmp_path, jointwave, arguments):
     """--resume keeps a result of the same scene, and makes that of another anew."""
     result = tmp_path / "dem.nc"
     short = arguments("axial", tmp_path, "--set", "time.duration=4e-3")
-    assert finish(start(*short)) == (0, [])
+    jointwave(*short)
     before = result.stat().st_mtime_ns
-    assert finish(start(*short, "--resume")) == (0, [])
+    jointwave(*short, "--resume")
     assert result.stat().st_mtime_ns == before
-    assert finish(start(*short, "--resume", "--set", "load.amplitude=2e6")) == (0, [])
+    jointwave(*short, "--resume", "--set", "load.amplitude=2e6")
     assert result.stat().st_mtime_ns != before
 
 
@@ -126,8 +126,10 @@ def test_elsewhere_it_ends_in_one_line_and_leaves_nothing(
     assert all(path.name.startswith("exact-") for path in left)
 
 
-@pytest.mark.parametrize("command", [("study", "convergence"), ("report",)])
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    ("command", "number"),
+    [(("study", "convergence"), signal.SIGINT), (("report",), signal.SIGTERM)],
+)
 def test_workers_end_without_a_word(command, number, tmp_path, start, finish, until, is_locked):
     """Ctrl-C reaches the workers too, SIGTERM does not: neither says anything, none is left."""
     out = tmp_path / "out"
