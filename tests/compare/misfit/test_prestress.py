@@ -11,8 +11,9 @@ SHORT = {"pillar__length": 15.0, "time__duration": 0.02, **RECORD}
 SHEAR = {"load__direction": [1.0, 0.0, 0.0], "motion__rotation": "none"}
 
 
-def solved(scene):
-    return {name: solve(name, scene) for name in names() if applies(name, scene)}
+def solved(scene, chosen=None):
+    chosen = chosen or [name for name in names() if applies(name, scene)]
+    return {name: solve(name, scene) for name in chosen}
 
 
 @pytest.mark.parametrize("ends", ["free", "fixed", "matched"])
@@ -34,9 +35,9 @@ def distances(results, against):
 def test_distances_of_an_axial_scene_do_not_depend_on_its_prestress(pillar):
     """Linear, so the prestress is a constant beside the motion."""
     against = ("lattice", "continuum-equivalent", "jointed-bar")
-    free = distances(solved(pillar(**SHORT)), against)
+    free = distances(solved(pillar(**SHORT), ["dem", *against]), against)
     for normal in (1e5, 1e7):
-        pressed = solved(pillar(prestress={"normal": normal}, **SHORT))
+        pressed = solved(pillar(prestress={"normal": normal}, **SHORT), ["dem", *against])
         assert distances(pressed, against) == pytest.approx(free, rel=1e-6)
 
 
@@ -45,9 +46,9 @@ def test_distances_of_a_shear_wave_at_a_cohesive_joint_do_not_depend_on_its_pres
     layer = {"y": 7.5, "cohesion": 2e5}
     changes = SHORT | SHEAR | {"soft_layers": [layer], "ends__start": "matched"}
     found = []
-    for normal in (1e5, 1e6, 1e7):
-        results = solved(pillar(prestress={"normal": normal}, ends__end="matched", **changes))
-        furthest = worst(results["dem"], results["continuum-equivalent"])
+    for normal in (1e5, 1e7):
+        scene = pillar(prestress={"normal": normal}, ends__end="matched", **changes)
+        furthest = worst(*solved(scene, ["dem", "continuum-equivalent"]).values())
         assert furthest.where.split()[0] in ("shear", "velocity", "displacement")
         found.append(furthest.misfit)
-    assert found == pytest.approx([found[0]] * 3, rel=1e-6)
+    assert found[1] == pytest.approx(found[0], rel=1e-6)

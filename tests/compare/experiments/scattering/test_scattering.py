@@ -70,7 +70,7 @@ def test_deformable_rock_has_them_at_all_angles(incidence):
 @pytest.fixture
 def few(monkeypatch):
     """Leave one angle of each kind of wave, and a solver that does not apply."""
-    monkeypatch.setattr(points, "ANGLES", (0.0, 30.0))
+    monkeypatch.setattr(points, "ANGLES", (30.0,))
     monkeypatch.setattr(points, "SOLVERS", {"oblique-joint": ("oblique-joint", "lattice")})
 
 
@@ -79,14 +79,14 @@ def test_the_study_writes_its_table_and_its_figure(few, tmp_path):
     names = {"oblique-joint.csv", "oblique-joint.svg"}
     assert names <= {file.name for file in found.files}
     assert [*found.table.groups] == [f"joint at an angle, exact: {k} wave" for k in ("P", "SV")]
-    cells = found.table.groups["joint at an angle, exact: P wave"][1]
+    cells = found.table.groups["joint at an angle, exact: P wave"][0]
     assert cells[:5] == ["30", "0.2836", "0.4144", "0.8999", "0.0188"]
-    assert "at 30 degrees" in found.sentences[0] or "at 0 degrees" in found.sentences[0]
+    assert "at 30 degrees" in found.sentences[0]
     why = "is a solution of a pillar, not of a rock mass"
-    assert found.failed == [f"lattice, 4 runs from P at 0 degrees and one joint on: {why}"]
+    assert found.failed == [f"lattice, 2 runs from P at 30 degrees and one joint on: {why}"]
     saved = [file.stat().st_mtime_ns for file in sorted((tmp_path / "oblique-joint").iterdir())]
     again = summary.make_study("oblique-joint", tmp_path)
-    assert again.table == found.table and len(saved) == 8
+    assert again.table == found.table and len(saved) == 4
     assert saved == [f.stat().st_mtime_ns for f in sorted((tmp_path / "oblique-joint").iterdir())]
 
 
@@ -107,10 +107,10 @@ def lines_of(name, rows):
 
 
 def test_several_joints_pass_what_is_known():
-    """|T_p| and |T_s| of 2, 3 and 5 joints a tenth of the P wave apart at 30 degrees, found by
+    """|T_p| and |T_s| of 2 and 5 joints a tenth of the P wave apart at 30 degrees, found by
     solving all their boundary conditions at once. Waves between five joints ring on: a millionth of
     the motion is left at the record's end."""
-    known = {2: (0.9098, 0.0443), 3: (0.9809, 0.0449), 5: (0.9256, 0.0721)}
+    known = {2: (0.9098, 0.0443), 5: (0.9256, 0.0721)}
     for count, (T_p, T_s) in known.items():
         row = measure(JointsPoint("parallel-joints", "P", 30.0, count))
         assert row.state == "done" and row.error < 1e-6 and row.residual < 2e-6
