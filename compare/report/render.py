@@ -64,7 +64,7 @@ class Page:
     @property
     def is_interactive(self) -> bool:
         """Whether any figure of the scenes can be zoomed."""
-        return any(shown.drawn.plot for section in self.all_sections for shown in section.figures)
+        return any(s.drawn and s.drawn.plot for one in self.all_sections for s in one.figures)
 
     @property
     def failed(self) -> list[tuple[Section, Finding]]:

@@ -82,8 +82,8 @@ def build(
             others = peers.read(peers_table)
             page = _of_paper(Path(out), _part(progress, "scenes"), pool)
             page = _with_hard_cases(page, Path(out), pool, progress) if hard else page
-            page = _with_studies(page, Path(out), studies, others, progress)
-            page = _with_joints(page, Path(out), progress)
+            page = _with_studies(page, Path(out), studies, others, pool, progress)
+            page = _with_joints(page, Path(out), pool, progress)
             page = _with_effects(page, Path(out), pool, progress)
     return Report(write_text(Path(out) / "index.html", render(page, Path(out))), page)
 
@@ -149,12 +149,12 @@ def _with_hard_cases(page: Page, out: Path, pool: Pool, progress: Progress | Non
     return replace(page, stability=make_hard_cases(out / "studies", pool, False, part))
 
 
-def _with_joints(page: Page, out: Path, progress: Progress | None) -> Page:
-    """Return the page with what joints reflect and pass, one run at a time."""
+def _with_joints(page: Page, out: Path, pool: Pool, progress: Progress | None) -> Page:
+    """Return the page with what joints reflect and pass."""
     part, names = _part(progress, "rock masses"), list(scattering.TITLES)
     found = []
     for i, name in enumerate(names):
-        found.append(scattering.make_study(name, out / "studies", brief=True))
+        found.append(scattering.make_study(name, out / "studies", brief=True, pool=pool))
         if part:
             part((i + 1) / len(names))
     assert page.rock_masses
@@ -166,12 +166,13 @@ def _with_studies(
     out: Path,
     studies: tuple[str, ...],
     others: DataFrame | None,
+    pool: Pool,
     progress: Progress | None,
 ) -> Page:
     """Return the page with what was measured: the seconds after everything else, and alone."""
     return replace(
         page,
-        studies=reported_studies(out, studies, _part(progress, "studies")),
+        studies=reported_studies(out, studies, _part(progress, "studies"), pool),
         peers=None if others is None else peers.write_section(out / "studies", others),
         peers_file=str(peers.PLACE),
     )

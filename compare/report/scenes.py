@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, Future, as_completed
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,18 +14,24 @@ from compare.engines import Progress
 from compare.experiments.cost import timings
 from compare.experiments.pool import Pool
 from compare.figures.charts.along_axis import along_pillar, recorded_along
+from compare.figures.figure import SceneFigure
+from compare.figures.scene_figures import figures_of
 from compare.misfit.pairs import Comparison, compare
-from compare.report.section import PAPER, SceneRequest, Section, linked, make_section
+from compare.report.section import PAPER, SceneRequest, Section, begin, make_section
 from compare.scenes import find, load
 from results.dataset import scene_hash
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from cases.kinds import AnyScene
 
 #: The shipped scenes of rock masses that the page shows beside the paper's figures.
 ROCK_MASSES = ("rock-mass/one-joint",)
 RATE = "scene of the report"  # what the seconds of scenes are remembered by
 TAKEN = {"", "overview", "made", "said", "rock-masses"}  # what the page calls its own parts
+#: From which to which fraction of the progress scenes are solved, and drawn.
+SOLVED, DRAWN = (0.0, 0.5), (0.5, 1.0)
 Submit = Callable[[Executor], list[Future]]
 
 
@@ -73,14 +79,13 @@ def solve(
     """
     loaded = {one.name: load(one.file) for one in asked}
     unique = {_key(scene): scene for variants in loaded.values() for scene in variants}
+    tell = _teller(progress)
     with timings.timing(RATE, len(asked)), pool() as executor:
         order = _longest_first(unique)
         found = {key: executor.submit(compare, unique[key], None, True) for key in order}
         wide = {_along(scene): scene for variants in loaded.values() for scene in variants}
         along = {key: executor.submit(along_pillar, scene) for key, scene in wide.items()}
-        tell = _counted(
-            [*found.values(), *along.values(), *besides(executor)], len(asked), progress
-        )
+        tell([*found.values(), *along.values(), *besides(executor)], SOLVED)
         comparisons = {
             name: [replace(found[_key(scene)].result(), scene=scene) for scene in variants]
             for name, variants in loaded.items()
@@ -89,30 +94,36 @@ def solve(
             name: [along[_along(scene)].result() for scene in variants]
             for name, variants in loaded.items()
         }
-        drawn = [
-            executor.submit(make_section, folder, a, comparisons[a.name], fields[a.name])
-            for a in asked
-        ]
-        tell(drawn)
-    return Solved(comparisons, linked([future.result() for future in drawn]))
+        drawings = begin(folder, _pictures(asked, comparisons, fields), executor)
+        tell([d.drawn for some in drawings.values() for d in some if d.drawn], DRAWN)
+    sections = [
+        make_section(folder, a, comparisons[a.name], [d.shown() for d in drawings[a.name]])
+        for a in asked
+    ]
+    return Solved(comparisons, sections)
 
 
-def _counted(
-    first: list[Future], more: int, progress: Progress | None
-) -> Callable[[Iterable[Future]], None]:
-    """Wait for the first futures; return what waits for as many more. Both tell the progress."""
-    done, jobs = 0, len(first) + more
+def _pictures(
+    asked: list[SceneRequest],
+    comparisons: dict[str, list[Comparison]],
+    fields: dict[str, list[dict[str, xr.Dataset]]],
+) -> Iterator[tuple[SceneRequest, SceneFigure]]:
+    """Yield the pictures of every scene, in the page's order."""
+    for one in asked:
+        for picture in figures_of(one.name, comparisons[one.name], fields[one.name]):
+            yield one, picture
 
-    def finish(futures: Iterable[Future]) -> None:
-        nonlocal done
-        for future in as_completed(futures):
+
+def _teller(progress: Progress | None) -> Callable[[list[Future], tuple[float, float]], None]:
+    """Return what waits for futures, and tells the progress of them within a part of the whole."""
+
+    def wait(futures: list[Future], part: tuple[float, float]) -> None:
+        for done, future in enumerate(as_completed(futures), start=1):
             future.result()
-            done += 1
             if progress:
-                progress(done / jobs)
+                progress(part[0] + (part[1] - part[0]) * done / len(futures))
 
-    finish(first)
-    return finish
+    return wait
 
 
 def _key(scene: AnyScene) -> str:

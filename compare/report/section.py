@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import re
 import shlex
-from hashlib import sha256
+from collections.abc import Iterable
+from concurrent.futures import Executor, Future
 from pathlib import Path
 from typing import NamedTuple
-
-import xarray as xr
 
 import cases
 from compare.figures.export import Drawn, save
 from compare.figures.figure import SceneFigure
-from compare.figures.scene_figures import figures_of
 from compare.misfit.pairs import Comparison
 from compare.report import tables
 from compare.report.findings import Finding, findings
@@ -21,9 +19,6 @@ from compare.report.verdict import Standing, standings
 from compare.runs.output import write_csv
 
 PAPER = Path(cases.__file__).parent / "guo-li-2002"
-Fields = list[dict[str, xr.Dataset]]
-#: What two drawings of the same may differ by: the names of their parts, and their titles.
-NAMES = re.compile(r"<title>.*?</title>|(?:\bid=\"|url\(#|href=\"#)[^\")]*", re.DOTALL)
 
 
 class SceneRequest(NamedTuple):
@@ -48,13 +43,14 @@ class SceneRequest(NamedTuple):
 class Shown(NamedTuple):
     """A picture as it stands on the page.
 
-    folded : whether it stands in a fold. marks : what no other picture of the page shares. place,
-    words : the id and the words of the same picture further up, which is linked to in its place.
+    folded : whether it stands in a fold. drawn : None where the same picture stands further up:
+    place, words : its id and what the link to it says.
     """
 
-    drawn: Drawn
+    title: str
+    caption: str
     folded: bool
-    marks: frozenset[str]
+    drawn: Drawn | None
     place: str = ""
     words: str = ""
 
@@ -93,21 +89,17 @@ class Section(NamedTuple):
 
 
 def make_section(
-    folder: Path, request: SceneRequest, comparisons: list[Comparison], fields: Fields
+    folder: Path, request: SceneRequest, comparisons: list[Comparison], figures: list[Shown]
 ) -> Section:
-    """Draw all pictures of a scene's variants, write their files into `folder`, return its section.
-
-    fields : each variant's results all along the pillar, for space-time diagrams.
-    """
+    """Return the section of a scene's variants; write their distances into `folder`."""
     scene = comparisons[0].scene
-    pictures = figures_of(request.name, comparisons, fields)
     distances = folder / f"{request.name}-misfits.csv"
     return Section(
         request,
         scene.title,
         scene.source or "",
         request.file.read_text(encoding="utf-8-sig"),
-        [draw(folder, picture) for picture in pictures],
+        figures,
         write_csv(distances, tables.distance_frame(comparisons)),
         findings(request.number, comparisons) if request.number else [],
         tables.misfit_table(comparisons),
@@ -118,33 +110,38 @@ def make_section(
     )
 
 
-def draw(folder: Path, picture: SceneFigure) -> Shown:
+def draw(folder: Path, picture: SceneFigure) -> Drawn:
     """Write a picture's files: those that the page offers."""
     p = picture
-    drawn = save(p.static, folder, p.name, p.title, p.table, p.caption, p.plot, png=False)
-    numbers = drawn.file("csv").read_bytes()
-    seen = NAMES.sub("", drawn.svg)
-    return Shown(
-        drawn, p.folded, frozenset(sha256(x).hexdigest() for x in (seen.encode(), numbers))
-    )
+    return save(p.static, folder, p.name, p.title, p.table, p.caption, p.plot, png=False)
 
 
-def linked(sections: list[Section]) -> list[Section]:
-    """Return sections in which no picture stands twice: a later one is a link to the first, and its
-    files are removed. One is the same where its drawing is, or its numbers are."""
+class Drawing(NamedTuple):
+    """A picture whose files are being written, or the same picture further up in its place."""
+
+    picture: SceneFigure
+    drawn: Future[Drawn] | None
+    place: str = ""
+    words: str = ""
+
+    def shown(self) -> Shown:
+        """Wait for the files, and return how the picture stands on the page."""
+        p, drawn = self.picture, self.drawn.result() if self.drawn else None
+        return Shown(p.title, p.caption, p.folded, drawn, self.place, self.words)
+
+
+def begin(
+    folder: Path, pictures: Iterable[tuple[SceneRequest, SceneFigure]], executor: Executor
+) -> dict[str, list[Drawing]]:
+    """Let an executor write the pictures of scenes, none of the same numbers twice; return them by
+    the scene's name."""
     known: dict[str, tuple[str, str]] = {}
-    found = []
-    for section in sections:
-        figures = []
-        for shown in section.figures:
-            first = next((known[mark] for mark in shown.marks if mark in known), None)
-            if first is None:
-                words = f"{section.request.label}: {shown.drawn.title}"
-                known |= dict.fromkeys(shown.marks, (f"{shown.drawn.name}-figure", words))
-                figures.append(shown)
-                continue
-            for kind in ("svg", "pdf", "csv"):
-                shown.drawn.file(kind).unlink(missing_ok=True)
-            figures.append(shown._replace(place=first[0], words=first[1]))
-        found.append(section._replace(figures=figures))
+    found: dict[str, list[Drawing]] = {}
+    for request, picture in pictures:
+        first = known.get(picture.numbers)
+        known.setdefault(
+            picture.numbers, (f"{picture.name}-figure", f"{request.label}: {picture.title}")
+        )
+        drawn = None if first else executor.submit(draw, folder, picture)
+        found.setdefault(request.name, []).append(Drawing(picture, drawn, *(first or ())))
     return found

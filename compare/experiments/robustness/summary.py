@@ -6,6 +6,7 @@ from pathlib import Path
 import pandas as pd
 
 from compare.engines import Progress
+from compare.experiments import store
 from compare.experiments.pool import Pool
 from compare.experiments.robustness.case import EQUIVALENT, JOINTED, LEAPFROG, CaseTrial
 from compare.experiments.robustness.criteria.energies import Drift, drift
@@ -13,11 +14,13 @@ from compare.experiments.robustness.diagram import draw
 from compare.experiments.robustness.linear_cases import MILLION
 from compare.experiments.robustness.map import StabilityMap
 from compare.experiments.robustness.run import FAILED, HELD, NONE, CaseRow, run, run_maps
+from compare.experiments.store import Store
 from compare.experiments.summary import Summary
 from compare.experiments.tables import frame, grouped, number, write_tables
 from compare.figures.export import save
 from compare.report.tables import Table
 
+LONG = {stepper.name: stepper for stepper in (LEAPFROG, JOINTED, EQUIVALENT)}
 NAME = "stability"
 TITLE = "Hard cases: what both engines are put to, and by what margin they hold"
 NOTE = (
@@ -37,7 +40,7 @@ def make_study(
     """
     rows = run(pool, slow, progress, out / NAME)
     maps = run_maps(pool, out / NAME)
-    figure = save(draw(maps, drifts()), out, NAME, TITLE)
+    figure = save(draw(maps, drifts(pool)), out, NAME, TITLE)
     files = [*write(out, rows, maps), figure.file("svg")]
     said = sentences(rows, maps)
     return Summary(
@@ -54,12 +57,15 @@ def make_study(
     )
 
 
-def drifts() -> dict[str, Drift]:
+def drifts(pool: Pool | None) -> dict[str, Drift]:
     """Return the energies over a million steps where leapfrog's energy holds, by engine and
     scheme."""
-    return {
-        s.name: drift(CaseTrial(MILLION, s), 1_000_000) for s in (LEAPFROG, JOINTED, EQUIVALENT)
-    }
+    found = Store[Drift](Drift, None).compute(list(LONG), store.key, _drift, pool)
+    return dict(zip(LONG, found, strict=True))
+
+
+def _drift(name: str) -> Drift:
+    return drift(CaseTrial(MILLION, LONG[name]), 1_000_000)
 
 
 def table(rows: list[CaseRow]) -> Table:

@@ -22,7 +22,7 @@ from compare.exact.plane.pulse import Pulse, axes_of
 from compare.exact.plane.waves import KINDS, Kind
 from compare.experiments import store
 from compare.experiments.failures import FAILURES, reason_of
-from compare.experiments.pool import alone
+from compare.experiments.pool import Pool, alone
 from compare.experiments.scattering.extraction import Scattered, scattered
 from compare.experiments.store import Store
 
@@ -103,13 +103,17 @@ def points(study: str, brief: bool = False) -> list[JointsPoint]:
 
 
 def run(
-    study: str, folder: Path | None, progress: Progress | None = None, brief: bool = False
+    study: str,
+    folder: Path | None,
+    progress: Progress | None = None,
+    brief: bool = False,
+    pool: Pool | None = None,
 ) -> list[JointsRow]:
-    """Return the rows of its points, in order, one at a time since their seconds count; they are
-    saved in `folder`."""
+    """Return the rows of its points, in order; they are saved in `folder`. Their seconds are those
+    of processors: as many points may run at a time as there are cores."""
     rows: Store[JointsRow] = Store(JointsRow, folder)
     with alone():
-        return rows.compute(points(study, brief), key, measure, None, progress, RATE)
+        return rows.compute(points(study, brief), key, measure, pool, progress, RATE)
 
 
 def key(point: JointsPoint) -> str:

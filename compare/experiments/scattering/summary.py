@@ -8,6 +8,7 @@ from pathlib import Path
 
 from compare.engines import Progress, solver
 from compare.experiments.cost.machine import machine
+from compare.experiments.pool import Pool
 from compare.experiments.scattering.diagram import draw
 from compare.experiments.scattering.points import JointsRow, run
 from compare.experiments.summary import Summary
@@ -32,13 +33,17 @@ COLUMNS = ["R_p", "R_s", "T_p", "T_s", "off", "residual, %", "freedoms", "CPU, s
 
 
 def make_study(
-    name: str, out: Path, progress: Progress | None = None, brief: bool = False
+    name: str,
+    out: Path,
+    progress: Progress | None = None,
+    brief: bool = False,
+    pool: Pool | None = None,
 ) -> Summary:
     """Run a study of TITLES; write its table and figure into `out`, its points into OUT/NAME/.
 
     brief : only every other point, see `points`.
     """
-    rows, title = run(name, out / name, progress, brief), TITLES[name]
+    rows, title = run(name, out / name, progress, brief, pool), TITLES[name]
     table = frame(rows, JointsRow)
     data = table.rename_axis("row").to_xarray().assign_attrs(title=title, **machine())
     figure = save(draw(name, rows), out, name, title)

@@ -22,7 +22,7 @@ from compare.solvers.record import Answer
 if TYPE_CHECKING:
     from cases.kinds import AnyScene
 
-LONG = 0.5  # s: a run that takes as long, its set-up included, is timed once more at most
+LONG = 0.25  # s: a run that takes as long, its set-up included, is timed once more at most
 
 
 class PointRow(NamedTuple):

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from compare.engines import Progress
 from compare.experiments.cost.machine import machine
+from compare.experiments.pool import Pool
 from compare.experiments.study.diagram import write_diagram
 from compare.experiments.study.findings import sentences
 from compare.experiments.study.measure import PointRow
@@ -54,13 +55,16 @@ def summarise(folder: Path, name: str, study: Study, rows: list[PointRow]) -> Su
 
 
 def reported(
-    out: Path, names: tuple[str, ...] = REPORTED, progress: Progress | None = None
+    out: Path,
+    names: tuple[str, ...] = REPORTED,
+    progress: Progress | None = None,
+    pool: Pool | None = None,
 ) -> list[Summary]:
-    """Run studies one after the other, here and alone; write figures and tables into `out`."""
+    """Run studies one after the other; write figures and tables into `out`."""
     found, folder = [], out / "studies"
     for i, name in enumerate(names):
         study = load(name)
-        found.append(summarise(folder, name, study, run(study, folder / name)))
+        found.append(summarise(folder, name, study, run(study, folder / name, pool)))
         if progress:
             progress((i + 1) / len(names))
     return found

@@ -1,5 +1,6 @@
 """Space-time diagrams: y along the pillar over time, the motion as colour."""
 
+from functools import partial
 from typing import Any
 
 import matplotlib
@@ -17,6 +18,10 @@ from compare.figures.charts.spacetime_data import Diagram, Diagrams
 from compare.figures.figure import SceneFigure
 from compare.figures.style import RC, WIDTH
 
+HEIGHT = 3.1  # inches
+LEFT, RIGHT, BETWEEN = 0.6, 0.15, 0.3  # inches beside the diagrams, and between two of them
+TOP, BOTTOM = 0.58, 0.82  # inches above and below them: headings, times and colours
+KEY, THICK = 0.26, 0.06  # inches: where the colours are, and how high they are drawn
 COLOURS = 96  # of an image in print
 TIMES = 120  # of an image on the page
 FINER = 2  # rows of it
@@ -43,9 +48,9 @@ def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> SceneF
         name,
         title,
         _caption(scene, variant, shown),
-        _figure(scene, shown),
+        partial(_figure, scene, shown),
         shown.table(),
-        _plot(scene, shown),
+        partial(_plot, scene, shown),
         shown.exact,
     )
 
@@ -64,22 +69,28 @@ def _caption(scene: Scene, variant: str, shown: Diagrams) -> str:
 
 
 def _figure(scene: Scene, shown: Diagrams) -> Figure:
-    count = len(shown.diagrams)
     with matplotlib.rc_context(RC):
-        figure = Figure(figsize=(WIDTH, 3.1), layout="constrained")
+        figure = Figure(figsize=(WIDTH, HEIGHT))
         FigureCanvasAgg(figure)
-        axes = figure.subplots(1, max(count, 2), sharex=True, sharey=True, squeeze=False)[0]
-        for ax, diagram in zip(axes, shown.diagrams, strict=False):
-            _draw(ax, diagram, shown, scene)
-        for ax in axes[count:]:
-            ax.set_visible(False)
+        columns = max(len(shown.diagrams), 2)
+        across = (WIDTH - LEFT - RIGHT - BETWEEN * (columns - 1)) / columns
+        axes: list[Axes] = []
+        for i, diagram in enumerate(shown.diagrams):
+            left = LEFT + i * (across + BETWEEN)
+            place, key = (
+                (left / WIDTH, low / HEIGHT, across / WIDTH, high / HEIGHT)
+                for low, high in ((BOTTOM, HEIGHT - BOTTOM - TOP), (KEY, THICK))
+            )
+            axes.append(figure.add_axes(place, sharex=axes[0] if i else None))
+            _draw(axes[i], figure.add_axes(key), diagram, shown, scene)
+            axes[i].tick_params(labelleft=i == 0)
         for layer in scene.soft_layers:
             axes[0].annotate("soft layer", (0.99, layer.y), **NAMED)
         axes[0].set_ylabel("y (m)")
     return figure
 
 
-def _draw(ax: Axes, diagram: Diagram, shown: Diagrams, scene: Scene) -> None:
+def _draw(ax: Axes, key: Axes, diagram: Diagram, shown: Diagrams, scene: Scene) -> None:
     time, y = 1e3 * shown.time[[0, -1]], shown.y[[0, -1]]
     values = evenly(shown.y, diagram.values)
     rows, columns = values.shape
@@ -101,7 +112,7 @@ def _draw(ax: Axes, diagram: Diagram, shown: Diagrams, scene: Scene) -> None:
         ax.axhline(layer.y, **LAYER)
     ax.set_title(diagram.heading, pad=4)
     ax.set_xlabel("time (ms)")
-    bar = ax.figure.colorbar(image, ax=ax, location="bottom", aspect=40, pad=0.03)
+    bar = key.figure.colorbar(image, cax=key, orientation="horizontal")
     bar.outline.set_linewidth(0.5)
     bar.set_ticks(MaxNLocator(4, symmetric=True))  # few: long numbers do not meet
 

@@ -5,15 +5,19 @@ from __future__ import annotations
 from typing import Any
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import NullLocator
 
 from compare.figures.charts.chart import Chart, ChartLine, Entry, Mark, Subplot
 from compare.figures.style import RC, WIDTH, Style
 
-HEAD, HEADING = 0.9, 0.2  # inches of the legend and the abscissa, and of each subplot's heading
+HEADING, ABSCISSA = 0.28, 0.48  # inches above each subplot, and below the lowest
+LEFT, RIGHT, BETWEEN = 0.95, 0.15, 0.9  # inches beside the subplots, and between two of them
+LEGEND, LEGEND_LINE = 0.16, 0.165  # inches of the legend, and of each of its lines besides
 SMALLER = 0.76  # of the height of a subplot, where there are more than two rows of cells
 MARK = "#5d6670"  # colour of vertical lines
 
@@ -22,11 +26,7 @@ def draw(name: str, chart: Chart) -> Figure:
     """Return the figure; the group of a line in its SVG is called `name`-PART."""
     with matplotlib.rc_context(RC):
         columns, heights = max(map(len, chart.grid)), _heights(chart)
-        figure = Figure(figsize=(WIDTH, HEAD + sum(h + HEADING for h in heights)))
-        FigureCanvasAgg(figure)
-        axes = figure.subplots(
-            len(heights), columns, squeeze=False, sharex=True, height_ratios=heights
-        )
+        figure, axes = _laid_out(columns, heights, LEGEND + LEGEND_LINE * _depth(chart.legend))
         depth, shared = len(chart.grid[0][0]), dict[str, Axes]()
         for i, row in enumerate(chart.grid):
             for j, cell in enumerate(row):
@@ -45,6 +45,33 @@ def draw(name: str, chart: Chart) -> Figure:
             ax.set_xlabel(chart.abscissa)
         _add_legend(figure, chart.legend)
     return figure
+
+
+def _laid_out(columns: int, heights: list[float], head: float) -> tuple[Figure, np.ndarray]:
+    """Return a figure with rows of axes so many inches high, below `head` inches of legend.
+
+    All is said in inches: to measure texts, as matplotlib's layouts do, takes a third of a drawing.
+    """
+    height = head + sum(heights) + HEADING * len(heights) + ABSCISSA
+    across = (WIDTH - LEFT - RIGHT - BETWEEN * (columns - 1)) / columns
+    figure = Figure(figsize=(WIDTH, height))
+    FigureCanvasAgg(figure)
+    room = {
+        "left": LEFT / WIDTH,
+        "right": 1 - RIGHT / WIDTH,
+        "bottom": ABSCISSA / height,
+        "top": 1 - (head + HEADING) / height,
+        "hspace": HEADING / float(np.mean(heights)),
+        "wspace": BETWEEN / across,
+        "height_ratios": heights,
+    }
+    axes = figure.subplots(len(heights), columns, squeeze=False, sharex=True, gridspec_kw=room)
+    return figure, axes
+
+
+def _depth(legend: dict[str, list[Entry]]) -> int:
+    """Return how many lines a legend has: one, or a heading and its entries."""
+    return 1 if "" in legend else 1 + max(map(len, legend.values()))
 
 
 def _heights(chart: Chart) -> list[float]:
@@ -66,6 +93,7 @@ def _draw(ax: Axes, subplot: Subplot, name: str, is_log: bool) -> None:
         ax.set_xscale("log")
     if subplot.is_log:
         ax.set_yscale("log")
+        ax.yaxis.set_minor_locator(NullLocator())  # their many ticks take longer than the curves
     elif subplot.ticks is not None:
         ax.set_yticks(subplot.ticks)
     elif subplot.is_minor:
@@ -112,10 +140,10 @@ def _add_mark(ax: Axes, mark: Mark) -> None:
 
 def _add_legend(figure: Figure, legend: dict[str, list[Entry]]) -> None:
     """Put the legend above the subplots, where it hides no curve: a column a heading."""
+    depth = _depth(legend)
     if "" in legend:
-        handles, columns, depth = _handles(legend[""]), len(legend[""]), 1
+        handles, columns = _handles(legend[""]), len(legend[""])
     else:
-        depth = 1 + max(map(len, legend.values()))
         empty = Entry("", "", Style("none", 0.0, "-", 0))
         filled = [
             [empty._replace(label=heading), *entries, *[empty] * (depth - 1 - len(entries))]
@@ -135,8 +163,6 @@ def _add_legend(figure: Figure, legend: dict[str, list[Entry]]) -> None:
     for text in found.get_texts():
         if text.get_text() in legend:
             text.set_fontweight("bold")
-    top = 1 - (0.16 + 0.165 * depth) / figure.get_figheight()
-    figure.tight_layout(rect=(0, 0, 1, top), h_pad=0.5, w_pad=1.5)
 
 
 def _handles(entries: list[Entry]) -> list[Line2D]:

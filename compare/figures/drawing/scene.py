@@ -2,6 +2,7 @@
 mass as it is."""
 
 from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -37,7 +38,7 @@ def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
         f"{name}-scene",
         TITLE,
         _caption(groups),
-        _figure(groups),
+        partial(_figure, groups),
         pd.concat([_table(scene, words) for words, scene in groups], ignore_index=True),
     )
 
@@ -50,7 +51,7 @@ def _of_rock_mass(name: str, comparisons: list[Comparison]) -> SceneFigure:
         f"{name}-scene",
         TITLE,
         rock_mass.caption(groups[0].scene),
-        rock_mass.figure_of(groups),
+        partial(rock_mass.figure_of, groups),
         pd.concat([rock_mass.table(one) for one in groups], ignore_index=True),
     )
 

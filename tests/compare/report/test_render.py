@@ -4,18 +4,21 @@ import base64
 import gzip
 import json
 import re
+from concurrent.futures import Executor, Future
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from compare.experiments.summary import Summary
 from compare.figures.charts import interactive
 from compare.figures.export import Drawn
+from compare.figures.figure import SceneFigure
 from compare.report.findings import Finding
 from compare.report.overview import Overview
 from compare.report.render import Page, RockMasses, held_plot, render
-from compare.report.section import PAPER, SceneRequest, Section, Shown, linked
+from compare.report.section import PAPER, SceneRequest, Section, Shown, begin
 from compare.report.tables import Table
 
 
@@ -59,9 +62,9 @@ def section(tmp_path, figure):
     return make
 
 
-def shown(drawn, folded=False, marks=("drawing", "numbers")):
+def shown(drawn, folded=False):
     """Return a figure as it stands on the page."""
-    return Shown(drawn, folded, frozenset(marks))
+    return Shown(drawn.title, drawn.caption, folded, drawn)
 
 
 def test_numbers_of_a_chart_are_held_by_their_steps_and_come_back():
@@ -148,19 +151,28 @@ def test_a_file_that_is_not_there_is_an_error_not_a_dead_link(page, section, fig
         page(sections=[section([], figures=[shown(one)])])
 
 
-@pytest.mark.parametrize("shared", ["drawing", "numbers"])
-def test_no_picture_stands_twice(page, section, figure, shared):
-    """A later one is a link to the first, and its files are gone; so of one of equal numbers."""
-    one, other, third = figure("first"), figure("second"), figure("third")
+def test_no_picture_is_drawn_twice(page, section, figure, tmp_path):
+    """A later one of the same numbers, whatever it is called, is a link to the first."""
+    drawn = []
+
+    class Draws(Executor):
+        def submit(self, work, folder, picture):
+            drawn.append(picture.name)
+            done = Future()
+            done.set_result(figure(picture.name))
+            return done
+
+    requests = [SceneRequest(PAPER / f"{name}.toml", "it", name) for name in ("fig-05", "fig-06")]
+    tables = [pd.DataFrame({"a (m)": values}) for values in ([1.0], [1.0], [2.0])]
+    named = zip(("first", "second", "third"), tables, strict=True)
+    pictures = [SceneFigure(n, "A figure", "Seen.", lambda: None, table) for n, table in named]
+    on_page = zip((requests[0], requests[1], requests[1]), pictures, strict=True)
+    found = begin(tmp_path, on_page, Draws())
+    assert drawn == ["first", "third"]
     sections = [
-        section([], figures=[shown(one)]),
-        section([], figures=[shown(other, marks=(shared, "x")), shown(third, marks=("y", "z"))]),
+        section([], request=r, figures=[one.shown() for one in found[r.name]]) for r in requests
     ]
-    found = linked(sections)
-    assert [s.place for section in found for s in section.figures] == ["", "first-figure", ""]
-    assert other.file("pdf").exists() is False and third.file("pdf").exists()
-    found = [found[0], found[1]._replace(request=found[1].request._replace(name="fig-06"))]
-    html = page(sections=found)
+    html = page(sections=sections)
     assert html.count("<figure id=") == 2 and 'id="second-figure"' not in html
     assert 'The same picture as <a href="#first-figure">fig. 5: A figure</a>.' in html
 
