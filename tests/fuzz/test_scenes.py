@@ -38,7 +38,8 @@ TEXTS = st.one_of(
         ["", "\0", "é\u2028☃", "a" * 5000, "../x", "/dev/zero", "..", "~", "nan", "free"]
     ),
     st.sampled_from(["sine", "ricker", "gabor", "triangle", "step", "table"]),
-    st.sampled_from(["fixed", "quiet", "matched", "implicit"]),
+    st.sampled_from(["fixed", "quiet", "matched", "implicit", "periodic", "top", "outline"]),
+    st.sampled_from(["P", "S", "pressure", "base", "force", "bed", "cut", "merge"]),
 )
 SCALARS = st.one_of(
     NUMBERS, TEXTS, st.booleans(), st.dates(), st.datetimes(max_value=datetime.datetime(9000, 1, 1))

@@ -17,6 +17,9 @@ COMMANDS = (
     "plan guo-li-2002/fig-02 --misfit 0.01 --seconds 3",
     "study series --workers 2 --out out",
     "report --out page",
+    "run rock-mass/tunnel --engine continuum --model jointed --sweep joint_sets.0.dip=10:30:3",
+    "compare rock-mass/one-joint --with load.csv:velocity_x@24,12",
+    "plan rock-mass/blast-hole --set numerics.dem.block=0.5 --misfit 0.2",
 )
 
 

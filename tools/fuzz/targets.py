@@ -163,7 +163,7 @@ def study(data: bytes, folder: Path) -> str:
     def work() -> None:
         for point in load_study(str(path)).points()[:3]:
             key(point)
-            calibrate(point.scene)
+            _examine(point.scene)
 
     return _asked(work)
 

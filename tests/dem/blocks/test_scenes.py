@@ -9,6 +9,8 @@ from compare.exact.rock_mass.field import field_of
 from dem import simulate
 from dem.blocks.build import rigid_blocks
 
+SINE = {"shape": "sine", "amplitude": 1e6, "period": 0.002}
+PRESSURE = SINE | {"kind": "pressure", "side": "bottom"}
 PERIODIC = {"left": "periodic", "right": "periodic"}
 
 
@@ -28,17 +30,9 @@ def column(rock_mass, **changes):
         rock={"intact_poisson": 0.0},
         joint_sets=[bedding | law | changes.pop("joint", {})],
         boundaries={"left": "free", "right": "free", "bottom": "free", "top": changes.pop("top")},
-        loads=[
-            {
-                "kind": "pressure",
-                "side": "bottom",
-                "shape": "sine",
-                "amplitude": 1e6,
-                "period": 0.002,
-            }
-        ],
+        loads=changes.pop("loads", [PRESSURE]),
         numerics={"dem": {"step_fraction": changes.pop("fraction", 0.2)}},
-        time={"duration": 0.01},
+        time=changes.pop("time", {"duration": 0.01}),
         record={"points": [[0.25, 2.25], [0.25, 7.75]], "joints": [[0.25, 5.0]], "interval": 4e-5},
         **changes,
     )
@@ -57,9 +51,9 @@ def chain(pillar, **changes):
         },
         joints={"normal_stiffness": 1e11, "shear_stiffness": 4e10} | changes.pop("joint", {}),
         soft_layers=[],
-        load={"shape": "sine", "amplitude": 1e6, "period": 0.002, "direction": [0, 1, 0]},
+        load=changes.pop("load", SINE | {"direction": [0, 1, 0]}),
         ends={"start": "free", "end": changes.pop("end")},
-        time={"duration": 0.01},
+        time=changes.pop("time", {"duration": 0.01}),
         record={"stress": [5.0], "velocity": [2.25, 7.75], "interval": 4e-5},
         **{"numerics.dem.step_fraction": changes.pop("fraction")},
         **changes,
@@ -88,6 +82,62 @@ def test_a_column_is_the_chain(end, joint, rock_mass, pillar):
         aim = aim[..., 0] if aim.ndim == 3 else aim
         assert np.abs(values - aim).max() < 1e-11 * np.abs(aim).max(), name
     assert np.abs(found.velocity[:, :, 0]).max() == 0
+
+
+SLIPS = {"friction_angle": 5.0, "cohesion": 1e4}
+
+
+@pytest.mark.parametrize("law", [{}, SLIPS], ids=["elastic", "slip"])
+def test_a_row_is_the_row_in_space(law, rock_mass, pillar, plain):
+    """Blocks under an oblique blow beside their axis, which compresses, bends and shears them: per
+    metre of thickness they are the row of square section over its side, to the round-off of 250
+    steps."""
+    law = {"point_rule": "gauss"} | law
+    blow = SINE | {"kind": "force", "quantity": "force", "at": [0.35, 0.0], "amplitude": 5e5}
+    plane = {"loads": [blow | {"direction": [0.6, 0.8]}], "time": {"duration": 2e-3}}
+    critical = rigid_blocks(column(rock_mass, top="free", joint=law, **plane)).critical
+    fraction = 8e-6 / critical * 1.0001
+    found = simulate(column(rock_mass, top="free", joint=law, fraction=fraction, **plane))
+    row = {"load": SINE | {"direction": [0.6, 0.8, 0.0], "at": [0.1, 0.0]}}
+    row |= {"time": {"duration": 2e-3}, "joint": law, "end": "free"}
+    expected = simulate(chain(pillar, fraction=fraction, **row))
+    assert expected.dt == pytest.approx(found.dt, rel=1e-12)
+    for name in ("velocity", "displacement"):
+        aim, own = expected[name].values[:, :, :2], found[name].values
+        assert np.abs(own - aim).max() < 1e-12 * np.abs(aim).max(), name
+    if "cohesion" in law:
+        energy = found.energy.isel(time=-1)
+        assert energy.sel(term="friction") > 0.01 * energy.sel(term="work")
+
+
+def mirrored(scene):
+    """Return tables of a scene in the mirror x -> -x about the middle of its domain."""
+    width = scene.domain.size[0]
+
+    def place(points):
+        return [[width - x, y] for x, y in points]
+
+    (joint,), (wave,) = scene.joint_sets, scene.waves
+    x, y = wave.direction
+    through = {"dip": -joint.dip, "through": place([joint.through])[0]}
+    return {
+        "joint_sets": [joint.model_dump(exclude_none=True) | through],
+        "waves": [wave.model_dump(exclude_none=True) | {"direction": [-x, y]}],
+        "record": {"points": place(scene.record.points), "joints": place(scene.record.joints)},
+    }
+
+
+def test_a_scene_in_the_mirror_records_its_image(rock_mass, wave, joint):
+    """Slip and motion across change their signs; to the round-off of some 300 steps."""
+    slips = joint(friction_angle=20.0, cohesion=1e4, damping_ratio=0.02)
+    own = rock_mass(joint_sets=[slips], waves=[wave(direction=[0.6, 0.8])])
+    one, other = simulate(own), simulate(rock_mass(**mirrored(own)))
+    assert np.abs(one.slip).max() > 1e-6
+    across = [-1, 1]
+    signs = {"velocity": across, "displacement": across, "traction": [1, -1], "gap": 1, "slip": -1}
+    for name, sign in signs.items():
+        off = np.abs(other[name].values * sign - one[name].values).max()
+        assert off < 1e-12 * np.abs(one[name].values).max(), name
 
 
 def turned(scene, angle, shift):
