@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from math import inf
+from statistics import median
 from time import perf_counter
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -30,8 +31,8 @@ BLOCK_STEPS_IN_SPACE = 500_000  # each of them takes ten times as long
 
 
 class StepCost(NamedTuple):
-    """The least of some timings of a step, ns, and by how much the second least is more: a clock on
-    this machine tells no smaller differences."""
+    """The least of some timings of a step, ns, and by how much their median is more: this machine
+    tells no smaller differences."""
 
     ns: float
     noise: float
@@ -67,12 +68,11 @@ def freedoms_in_turns(engine: str, scenes: Sequence[AnyScene]) -> list[StepCost]
 
 
 def _least(rounds: list[list[float]], counts: list[int]) -> list[StepCost]:
-    """Return what one of so many steps costs, of seconds [round][scene]; one round has no noise
-    that is known."""
+    """Return what one of so many steps costs, of seconds [round][scene]."""
     found = []
     for seconds, count in zip(zip(*rounds, strict=True), counts, strict=True):
-        least, second = (*sorted(seconds), inf)[:2]
-        found.append(StepCost(1e9 * least / count, 1e9 * (second - least) / count))
+        least, middle = min(seconds), median(seconds)
+        found.append(StepCost(1e9 * least / count, 1e9 * (middle - least) / count))
     return found
 
 

@@ -17,7 +17,7 @@ from compare.experiments.tables import frame, grouped, number, write_tables
 from compare.report.tables import Table
 
 #: The studies of the report, in its order.
-REPORTED = ("free-pillar", "convergence", "uniform-chain")
+REPORTED = ("free-pillar", "convergence", "uniform-chain", "one-joint")
 CANCELS = "×"
 COLUMNS = [
     *("point", "numerical, %", "modelling, %", "sum, %", "measured, %", "steps", "work", "kB"),
