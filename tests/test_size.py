@@ -16,6 +16,7 @@ import xarray as xr
 
 import cases
 from cases.errors import SceneError
+from cases.gmsh_file import read_tagged
 from cases.schema.history import History
 from cases.size import LIMIT, memory, refuse_beyond_memory, waveform_bytes
 from compare.engines import solve
@@ -28,7 +29,6 @@ from compare.runs.checkpoint.files import Checkpoints
 from compare.runs.checkpoint.resume import result_of
 from compare.runs.output import read_kept
 from compare.runs.processes import ALONE
-from continuum.mesh.tagged import read_tagged
 from results.labels import RECEIVERS
 
 AT_ONCE = 200e6  # bytes: what reading a scene of ten million blocks takes, not one run refused here

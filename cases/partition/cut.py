@@ -10,6 +10,7 @@ import numpy as np
 from cases.partition import assemble
 from cases.partition.blocks import BoundaryEdges, Partition
 from cases.partition.faults import Sliver
+from cases.partition.given import subdivision_of
 from cases.partition.joints import cut_by_sets
 from cases.partition.openings import check_convex, taken_out
 from cases.partition.outline import SIDES, Outline, outline_of
@@ -32,7 +33,7 @@ LATTICE = (0.03, THIN)
 
 
 def cut(domain: Domain, sets: Sequence[JointSet], further: Sequence[JointSet] = ()) -> Partition:
-    """Return a domain in convex blocks.
+    """Return a domain in convex blocks; of a mesh, its cells.
 
     further : sets of cuts, of which some or all may be where joints are.
 
@@ -40,6 +41,10 @@ def cut(domain: Domain, sets: Sequence[JointSet], further: Sequence[JointSet] = 
     convex or a sliver is left.
     """
     outline = outline_of(domain)
+    if domain.given is not None:
+        sub = subdivision_of(domain.given, [one.name for one in sets])
+        found = assemble.ordered(sub, assemble.rings(sub))
+        return _partition(*found, outline, sets, len(domain.holes))
     whole = Subdivision.of_polygon(outline.hull)
     sub = cut_by_sets(whole, [*sets, *further], outline.tolerance, len(sets))
     sub = taken_out(sub, outline.taken, outline.tolerance)
@@ -47,7 +52,7 @@ def cut(domain: Domain, sets: Sequence[JointSet], further: Sequence[JointSet] = 
         check_convex(sub, outline.taken)
     kept = len(sets) if further else None
     sub, rings = _without_slivers(sub, domain, [*sets, *further], kept, outline.tolerance)
-    return _partition(*assemble.ordered(sub, rings), outline, sets, len(domain.openings))
+    return _partition(*assemble.ordered(sub, rings), outline, sets, len(domain.holes))
 
 
 def least_width(domain: Domain, sets: Sequence[JointSet], thin: float = THIN) -> float:

@@ -84,7 +84,7 @@ def outline_of(domain: Domain) -> Outline:
     """Return the shape of a domain; raises PartitionError where it is none."""
     whole = _polygon(domain.corners, "domain.outline")
     openings = [
-        _polygon(opening, f"domain.openings[{k}]") for k, opening in enumerate(domain.openings)
+        _polygon(opening, f"domain.openings[{k}]") for k, opening in enumerate(domain.holes)
     ]
     _check_openings(whole, openings)
     hull = whole.convex_hull

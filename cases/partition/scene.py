@@ -49,6 +49,8 @@ def partition_of(scene: RockMass, further: Sequence[JointSet] = ()) -> Partition
 def block_count(domain: Domain, sets: list[JointSet]) -> float:
     """Return about how many blocks a domain is cut into: one more than there are joints, and
     crossings of joints, openings left out."""
+    if domain.given is not None:
+        return float(domain.given.number)
     corners = np.array(domain.corners)
     size = float(np.hypot(*np.ptp(corners, axis=0)))
     x, y = corners.T

@@ -20,7 +20,7 @@ def check_sets(scene: RockMass) -> None:
     for i, one in enumerate(sets):
         table = f"joint_sets[{i}]"
         _check_names(table, one, i, sets)
-        _check_places(table, one)
+        (_check_places if scene.domain.mesh is None else _check_in_mesh)(table, one)
         _check_law(table, one, scene)
     try:
         in_order(sets)
@@ -40,6 +40,13 @@ def _check_names(table: str, one: JointSet, index: int, sets: list[JointSet]) ->
             )
     if len(set(one.ends_at)) < len(one.ends_at):
         raise contradiction(f"{table}.ends_at", one.ends_at, "must not name a set twice")
+
+
+def _check_in_mesh(table: str, one: JointSet) -> None:
+    for key in ("through", "ends_at", "offset", "scatter", "seed"):
+        if value := getattr(one, key):
+            allowed = "has no meaning: joints are where domain.mesh has them"
+            raise contradiction(f"{table}.{key}", value, allowed)
 
 
 def _check_places(table: str, one: JointSet) -> None:

@@ -25,7 +25,7 @@ def check(scene: RockMass) -> None:
     """Raise the first contradiction of a rock mass whose tables are each right."""
     check_sets(scene)
     outline = _outline(scene)
-    _check_cuts(scene, outline)
+    (_check_cuts if scene.domain.given is None else _check_mesh)(scene, outline)
     _check_receivers(scene, outline)
     check_time(scene)  # type: ignore[arg-type]
     check_fields(scene)
@@ -35,6 +35,21 @@ def check(scene: RockMass) -> None:
         _check_load(f"loads[{i}]", load, scene, outline)
     if scene.gravity is not None and scene.gravity.static and not _held(scene):
         raise contradiction("gravity.static", True, "needs a fixed side, or gravity.static = false")
+
+
+def _check_mesh(scene: RockMass, outline: Outline) -> None:
+    """Check that the joints of a mesh are those of the joint sets."""
+    rock, key = scene.domain.given, "domain.mesh"
+    assert rock is not None
+    names = [one.name.lower() for one in scene.joint_sets]
+    lost = [name for name in rock.joints if name not in names]
+    if lost:
+        allowed = f"has a group 'joint {lost[0]}', which no joint set is named after"
+        raise contradiction(key, scene.domain.mesh, allowed)
+    for i, name in enumerate(names):
+        if name not in rock.joints:
+            allowed = f"must have a group 'joint {name}', of joint_sets[{i}]"
+            raise contradiction(key, scene.domain.mesh, allowed)
 
 
 def _outline(scene: RockMass) -> Outline:
@@ -112,8 +127,8 @@ def _check_waves(scene: RockMass, outline: Outline) -> None:
 def _check_load(table: str, load: PlaneLoad, scene: RockMass, outline: Outline) -> None:
     if load.at is not None:
         _check_in_rock(f"{table}.at", load.at, outline)
-    if load.opening is not None and load.opening >= len(scene.domain.openings):
-        allowed = f"must be one of the {len(scene.domain.openings)} openings, counted from 0"
+    if load.opening is not None and load.opening >= len(scene.domain.holes):
+        allowed = f"must be one of the {len(scene.domain.holes)} openings, counted from 0"
         raise contradiction(f"{table}.opening", load.opening, allowed)
     if load.side is not None:
         _check_side(table, load, scene, outline)

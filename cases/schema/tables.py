@@ -5,7 +5,6 @@ from typing import Annotated, Literal
 
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
-from cases.files import beside
 from cases.schema.values import (
     Direction,
     NonNegative,
@@ -14,6 +13,7 @@ from cases.schema.values import (
     Positive,
     Table,
     contradiction,
+    named_file,
 )
 
 MOST_BLOCKS = 10_000_000  # about 0.4 kB a block: what one machine holds
@@ -164,21 +164,7 @@ class ContinuumNumerics(Table):
     @model_validator(mode="after")
     def _find_mesh(self, info: ValidationInfo) -> "ContinuumNumerics":
         if self.mesh is not None:
-            key, context = "numerics.continuum.mesh", info.context or {}
-            anywhere = key in context.get("asked", ())
-            try:
-                path = beside(context.get("folder", "."), self.mesh, anywhere)
-                if not path.is_file():
-                    found = path.exists()
-                    raise ValueError(
-                        "must be a gmsh file" if found else "cannot be read: no such file"
-                    )
-            except OSError as error:
-                fault = f"cannot be read: {error.strerror}"
-                raise contradiction(key, self.mesh, fault) from None
-            except ValueError as error:
-                raise contradiction(key, self.mesh, str(error)) from None
-            self._mesh_path = path
+            self._mesh_path = named_file(info, "numerics.continuum.mesh", self.mesh)
         return self
 
     @property

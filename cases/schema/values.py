@@ -1,10 +1,13 @@
 """Types of values in a scene file, and the message for a value that does not fit."""
 
 import re
+from pathlib import Path
 from typing import Annotated
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationInfo
 from pydantic_core import PydanticCustomError
+
+from cases.files import beside
 
 #: What a text may not hold: it moves a terminal's cursor (C0, DEL, C1), turns the direction of
 #: what follows, or is no character of XML. Tabs and ends of lines it may.
@@ -80,6 +83,22 @@ def contradiction(key: str, value: object, allowed: str) -> PydanticCustomError:
     return PydanticCustomError(
         "contradiction", "{allowed}", {"allowed": allowed, "key": key, "found": value}
     )
+
+
+def named_file(info: ValidationInfo, key: str, name: str) -> Path:
+    """Return the path of the gmsh file that a key names, relative to the scene's folder."""
+    context = info.context or {}
+    try:
+        path = beside(context.get("folder", "."), name, key in context.get("asked", ()))
+        if not path.is_file():
+            raise ValueError(
+                "must be a gmsh file" if path.exists() else "cannot be read: no such file"
+            )
+    except OSError as error:
+        raise contradiction(key, name, f"cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise contradiction(key, name, str(error)) from None
+    return path
 
 
 def contradiction_here(key: str, value: object, allowed: str) -> PydanticCustomError:

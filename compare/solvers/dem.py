@@ -62,6 +62,8 @@ def applies(scene: Scene | RockMass) -> Answer:
     from cases.material.rigid_blocks import against
     from cases.schema.scene import Scene
 
+    if not isinstance(scene, Scene) and scene.domain.given is not None:
+        return no("the cells of domain.mesh are not rigid blocks")
     reason = None if isinstance(scene, Scene) else against(scene)
     return no(f"numerics.dem.block {reason}") if reason else YES
 

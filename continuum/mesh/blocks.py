@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import connected_components
 from continuum.mesh.cells import FACETS, oriented
 from continuum.mesh.facets import row_numbers
 from continuum.mesh.segments import Loops, Segments
-from continuum.mesh.templates import Template, quadrilaterals, triangles
+from continuum.mesh.templates import ONE, Template, quadrilaterals, triangles
 
 ALIKE = 1e-9  # of the domain: blocks of one shape
 
@@ -123,9 +123,11 @@ def _templates(
             for k, (m, n) in enumerate(different.tolist())
         ]
     around = np.concatenate([[0], np.cumsum(counts[loops.segment])])
+    is_cell = np.diff(around[loops.first]) == 3
+    alone = [(ONE, np.flatnonzero(is_cell))] if is_cell.any() else []
     alike: dict[bytes, list[int]] = {}
     shapes = []
-    for block in range(len(loops.first) - 1):
+    for block in np.flatnonzero(~is_cell):
         own = slice(loops.first[block], loops.first[block + 1])
         corners, many = x[vertex[around[:-1][own]]], counts[loops.segment[own]]
         shape = np.rint((corners - corners[0]) / (ALIKE * np.ptp(x, axis=0).max()))
@@ -133,8 +135,8 @@ def _templates(
         if key not in alike:
             shapes.append((corners, many))
         alike.setdefault(key, []).append(block)
-    found = triangles(shapes, size)
-    return [(t, np.array(own)) for t, own in zip(found, alike.values(), strict=True)]
+    found = triangles(shapes, size) if shapes else []
+    return alone + [(t, np.array(own)) for t, own in zip(found, alike.values(), strict=True)]
 
 
 def _with_cells(edges: BlockEdges, kind: str, cells: np.ndarray, block: np.ndarray) -> BlockEdges:

@@ -31,15 +31,6 @@ FACETS = {
     ),
 }
 
-#: gmsh numbers a face's corners around it: its corner at each of basix's places, and back.
-FROM_GMSH = {
-    "interval": [0, 1],
-    "triangle": [0, 1, 2],
-    "quadrilateral": [0, 1, 3, 2],
-    "tetrahedron": [0, 1, 2, 3],
-    "hexahedron": [0, 1, 3, 2, 4, 5, 7, 6],
-}
-
 #: Exchanges the first two coordinates of the reference cell: the mirrored cell.
 MIRRORED = {
     "interval": [1, 0],

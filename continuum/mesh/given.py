@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from cases.errors import SceneError
+from cases.gmsh_file import MeshError, Tagged, read_tagged
 from cases.material.calibrate import Properties
 from cases.schema.scene import Scene
 from continuum.mesh import facets
@@ -19,7 +20,6 @@ from continuum.mesh.cut import pieces, split
 from continuum.mesh.description import Mesh, Part, Side
 from continuum.mesh.facets import Facets
 from continuum.mesh.paired import paired_joints, place
-from continuum.mesh.tagged import MeshError, Tagged, read_tagged
 
 PLACE = 1e-6  #: of the pillar's length and side: how exactly the file must have them
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from cases.gmsh_file import MeshError
 from cases.material.calibrate import Properties
 from continuum.mesh import facets
 from continuum.mesh.description import Joints
 from continuum.mesh.facets import Facets
-from continuum.mesh.tagged import MeshError
 
 ACROSS = 1e-6  #: of the pillar's length: how exactly a facet lies across it
 

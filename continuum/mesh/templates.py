@@ -27,6 +27,10 @@ class Template(NamedTuple):
         return corners[:, :1] + self.inside
 
 
+#: Of a triangle that is one cell.
+ONE = Template(np.array([[0, 1, 2]]), np.zeros((0, 2)))
+
+
 def quadrilaterals(m: int, n: int) -> Template:
     """Return m times n quadrilaterals between four edges, the first of them cut into m."""
     grid = np.full((m + 1, n + 1), -1)

@@ -25,10 +25,11 @@ OF_KINKS, OF_TRIANGLES = 2.0, 1.5
 
 def element_sizes(scene: RockMass) -> dict[str, float]:
     """Return about how large quadrilaterals and triangles are, m: `numerics.continuum.size`, or
-    what resolves the slowest waves of the shortest pulse, in rock with its joints."""
+    what resolves the slowest waves of the shortest pulse, in rock with its joints; those of a mesh
+    as they are."""
     numerics = scene.numerics.continuum
-    if numerics.size is not None:
-        return dict.fromkeys(("quadrilateral", "triangle"), numerics.size)
+    if numerics.size is not None or scene.domain.given is not None:
+        return dict.fromkeys(("quadrilateral", "triangle"), numerics.size or np.inf)
     sharp = any(one.shape not in ("ricker", "gabor") for one in scene.pulses)
     many = IN_PERIOD[numerics.order] * (OF_KINKS if sharp else 1.0)
     size = slowest(scene) * resolved_period(scene) / many

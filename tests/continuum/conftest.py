@@ -6,14 +6,14 @@ import meshio
 import numpy as np
 import pytest
 
+from cases.gmsh_file import FACET_NAMES, FROM_GMSH, KINDS
 from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from cases.schema.scene import Scene
 from continuum.build import Discrete, build_model, critical_step_of, discretise
 from continuum.explicit.march import run
-from continuum.mesh.cells import DIMENSION, FROM_GMSH
+from continuum.mesh.cells import DIMENSION
 from continuum.mesh.pillar import pillar_mesh
-from continuum.mesh.tagged import FACET_NAMES, KINDS
 from continuum.space.body import build_body
 from continuum.space.elasticity import Material, Section
 from continuum.state import empty_samples, state_at_rest

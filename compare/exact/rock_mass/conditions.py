@@ -25,6 +25,8 @@ def beyond_linear_rock(scene: RockMass) -> str | None:
         (bool(damping.rayleigh and damping.rayleigh.coefficients[1]), "the rock is damped"),
         (bool(damping.local), "the damping is local, which is not linear"),
     ]
+    meshed = scene.domain.given is not None and bool(scene.joint_sets)
+    reasons.append((meshed, "the joints are those of a mesh, wherever these are"))
     laws = (beyond_linear_law(one) for one in scene.joint_sets)
     return next((why for there, why in reasons if there), None) or next(filter(None, laws), None)
 

@@ -107,7 +107,7 @@ def applies(scene: RockMass) -> Answer:
         (not scene.waves, "no wave enters"),
         (bool(scene.loads), "a load acts"),
         (gravity, "gravity acts"),
-        (bool(scene.domain.openings), "the domain has openings"),
+        (bool(scene.domain.holes), "the domain has openings"),
         (not scene.joint_sets, "there is no joint"),
         (all_parallel(scene), "joints are parallel: see parallel-joints"),
         (any(one.spacing is None for one in scene.joint_sets), "a joint has no spacing"),

@@ -92,7 +92,7 @@ def against(scene: RockMass) -> str | None:
         (not scene.waves, "no wave enters"),
         (bool(scene.loads), "a load acts"),
         (gravity, "gravity acts"),
-        (bool(scene.domain.openings), "the domain has openings"),
+        (bool(scene.domain.holes), "the domain has openings"),
     ]
     return next((why for there, why in reasons if there), None) or scatters_otherwise(scene)
 
@@ -110,7 +110,7 @@ def scatters_otherwise(scene: RockMass) -> str | None:
         reasons.append((runs_along, f"waves[{i}] travels along the joints"))
     found = beyond_linear_rock(scene) or next((why for there, why in reasons if there), None)
     found = found or reflecting_side(scene)
-    if found is None and len(outline_of(scene.domain).taken) > len(scene.domain.openings):
+    if found is None and len(outline_of(scene.domain).taken) > len(scene.domain.holes):
         found = "the domain is not convex"
     return found
 

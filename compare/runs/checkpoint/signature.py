@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import cases
+from cases.schema.scene import Scene
 from compare.engines import solver
 from results.dataset import scene_hash
 
@@ -50,7 +51,8 @@ def program() -> str:
 
 def _scene(scene: AnyScene) -> str:
     """Return a hash of a scene, the mesh that it names included."""
-    mesh = getattr(scene.numerics.continuum, "mesh_path", None)
+    holds_it = scene.numerics.continuum if isinstance(scene, Scene) else scene.domain
+    mesh = holds_it.mesh_path
     # One that cannot be read is refused, in its own words, by what would use it.
     if mesh is None or not Path(mesh).is_file():
         return scene_hash(scene)

@@ -4,11 +4,11 @@ import basix
 import numpy as np
 import pytest
 
+from cases.gmsh_file import FROM_GMSH
 from continuum.mesh.cells import (
     CORNERS,
     DIMENSION,
     FACETS,
-    FROM_GMSH,
     MIRRORED,
     jacobians,
     oriented,

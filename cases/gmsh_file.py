@@ -9,7 +9,6 @@ from warnings import catch_warnings, simplefilter
 import numpy as np
 
 from cases.size import memory, require, within
-from continuum.mesh.cells import FROM_GMSH
 
 #: meshio's names of the kinds of cells, and of their facets.
 KINDS = {
@@ -24,6 +23,15 @@ FACET_NAMES = {
     "quadrilateral": "line",
     "tetrahedron": "triangle",
     "hexahedron": "quad",
+}
+
+#: gmsh numbers a face's corners around it: its corner at each of basix's places, and back.
+FROM_GMSH = {
+    "interval": [0, 1],
+    "triangle": [0, 1, 2],
+    "quadrilateral": [0, 1, 3, 2],
+    "tetrahedron": [0, 1, 2, 3],
+    "hexahedron": [0, 1, 3, 2, 4, 5, 7, 6],
 }
 
 #: Bytes that reading may take beside what the process has: in all, and for each byte of the file.
