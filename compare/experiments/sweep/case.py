@@ -112,7 +112,7 @@ class Comparing(NamedTuple):
         if not found.rows:
             allowed = "has nothing to compare: no two solutions of a pair apply"
             raise SceneError(scene.where, "", None, allowed)
-        rows = [row.facts for row in found.rows]
+        rows = [row.facts | {"faint": str(row.faint).lower()} for row in found.rows]
         return [{k: v if isinstance(v, str) else _real(v) for k, v in row.items()} for row in rows]
 
 

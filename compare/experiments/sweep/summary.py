@@ -20,6 +20,7 @@ from compare.report.tables import Table
 NAME = "sweep"
 #: The numbers of a run, of a receiver of it, and of a pair of solutions at a receiver.
 OF_RUNS = ("steps", "freedoms", "seconds", "energy_residual")
+OF_PAIR, MOST = ("variant", "one", "other"), 12  # what tells pairs apart; waveforms shown at most
 OF_RECEIVERS, OF_PAIRS = ("peak", "time_of_peak"), Distance._fields
 UNITS = {"x": "m", "y": "m", "time_of_peak": "s", "seconds": "s", "delay": "s"}
 #: Columns shown of runs and of comparisons: name, heading, and format of a number.
@@ -64,26 +65,39 @@ def summarise(asked: Sweep, found: list[SweepOutcome]) -> Summary:
         data = grid(axes, done).assign_attrs(scene=asked.scene)
         files = write_tables(asked.out, NAME, rows, data)
     columns = SHOWN_OF_PAIRS if "one" in rows else SHOWN_OF_RUNS
+    shown, legend, where = _shown(done, list(axes))
 
     def cells(row: dict[str, Any]) -> list[str]:
         numbers = (number(float(row[name]), form, "-") for name, _, form in columns)
-        return [_point(row, axes), *numbers]
+        return [_point(row, axes), *([_place(row)] * len(where)), *numbers]
 
-    groups = grouped((_heading(row), cells(row)) for row in done.to_dict("records"))
+    groups = grouped((_heading(row, not where), cells(row)) for row in shown.to_dict("records"))
     return Summary(
         NAME,
         asked.scene,
-        Table([", ".join(axes), *(head for _, head, _ in columns)], groups),
+        Table([", ".join(axes), *where, *(head for _, head, _ in columns)], groups),
         [],
         [f"{_point(r, axes)} {r['variant']}: {r['message']}" for r in failed.to_dict("records")],
         files,
         {"rows": json.loads(rows.to_json(orient="records")), "files": list(map(str, files))},
+        legend=legend,
     )
+
+
+def _shown(done: pd.DataFrame, axes: list[str]) -> tuple[pd.DataFrame, str, list[str]]:
+    """Return the rows that a terminal shows, what they are, and the heading of their places: of
+    comparisons with more waveforms than a reader looks at the worst of each pair at each point."""
+    if "one" not in done or len(done.drop_duplicates([*OF_PAIR, "quantity", *_at(done)])) <= MOST:
+        return done, "", []
+    of_point = [*axes, *OF_PAIR]
+    loud = done[done.faint == "false"].sort_values("misfit")
+    worst = loud.drop_duplicates(of_point, keep="last").sort_index()
+    return worst, "The worst waveform of each pair; all of them are in sweep.csv.", ["of"]
 
 
 def grid(axes: dict[str, list[Any]], done: pd.DataFrame) -> xr.Dataset:
     """Return rows on the grid of swept keys, variants, and engines or pairs; nan where none is."""
-    point, at = [*axes, "variant"], [name for name in ("x", "y") if name in done]
+    point, at = [*axes, "variant"], _at(done)
     if "one" in done:
         pairs = done.assign(pair=done["one"] + " ~ " + done["other"])
         found = _on_grid(pairs, [*point, "pair", "quantity", *at], OF_PAIRS)
@@ -97,15 +111,23 @@ def grid(axes: dict[str, list[Any]], done: pd.DataFrame) -> xr.Dataset:
     return found
 
 
+def _at(rows: pd.DataFrame) -> list[str]:
+    return [name for name in ("x", "y") if name in rows]
+
+
 def _on_grid(rows: pd.DataFrame, index: list[str], numbers: Sequence[str]) -> xr.Dataset:
     return rows.set_index(index)[list(numbers)].astype(float).to_xarray()
 
 
-def _heading(row: dict[str, Any]) -> str:
+def _heading(row: dict[str, Any], has_place: bool) -> str:
     solved = f"{row['one']} ~ {row['other']}" if "one" in row else row["engine"]
-    at = tuple(row[name] for name in ("x", "y") if name in row)
-    place = f", {Place(row['quantity'], '', at).heading}" if row["quantity"] else ""
+    place = f", {_place(row)}" if row["quantity"] and has_place else ""
     return f"{row['variant']}: {solved}{place}" if row["variant"] else f"{solved}{place}"
+
+
+def _place(row: dict[str, Any]) -> str:
+    at = tuple(row[name] for name in ("x", "y") if name in row)
+    return Place(row["quantity"], "", at).heading
 
 
 def _point(row: dict[str, Any], axes: Iterable[str]) -> str:

@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -10,6 +11,9 @@ import pytest
 import xarray as xr
 
 import cases
+from compare.experiments.sweep.case import SweepCase, SweepOutcome
+from compare.experiments.sweep.runner import Sweep
+from compare.experiments.sweep.summary import summarise
 from compare.scenes import find
 from dem import simulate
 
@@ -98,6 +102,25 @@ def test_a_comparison_is_swept(command, tmp_path):
     found = data.misfit.sel(pair="dem ~ lattice", quantity="stress", y=4.0, variant="")
     assert ((found > 0) & (found < 5e-3)).all() and float(np.ptp(found.values)) > 0
     assert (tmp_path / "out" / "ends.start=quiet" / "comparison.svg").is_file()
+
+
+def test_the_worst_of_many_waveforms_is_shown():
+    """Of thirteen one is faint, and furthest off: it decides nothing. Of twelve all are shown."""
+    numbers = dict.fromkeys(("peak_ratio", "delay", "envelope", "phase"), 1.0)
+    rows = [
+        {"one": "dem", "other": "lattice", "quantity": f"stress {k}", "x": 1.0, "y": 2.0}
+        | {"misfit": 0.01 * k, "faint": str(k == 13).lower()}
+        | numbers
+        for k in range(1, 14)
+    ]
+    case = SweepCase({"key": 3}, Path(), None)
+    asked = Sweep("scene", {"key": [3]}, [case], None)
+    found = summarise(asked, [SweepOutcome("done", "", rows)])
+    assert found.table.header[:3] == ["key", "of", "misfit"] and "worst" in found.legend
+    assert found.table.groups["dem ~ lattice"][0][:3] == ["3", "stress 12 at [1, 2] m", "12.000%"]
+    assert len(found.facts["rows"]) == 13
+    few = summarise(asked, [SweepOutcome("done", "", rows[:12])])
+    assert len(few.table.groups) == 12 and few.legend == ""
 
 
 def test_curves_of_others_are_swept_too(command, tmp_path):
