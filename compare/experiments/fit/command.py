@@ -87,7 +87,7 @@ def fit(
     if as_json:
         terminal.print_json({**facts(found), "files": list(map(str, files))})
     else:
-        show_fit(found, scene, one.name, files)
+        show_fit(found, scene, changes, files)
 
 
 def _solver(scene: "AnyScene", engine: Engine | None, models: list[str] | None) -> str | None:

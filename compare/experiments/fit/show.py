@@ -8,8 +8,11 @@ from compare.cli.terminal import say, show_numbers
 from compare.experiments.fit.result import Estimate, Fit
 
 
-def show_fit(found: Fit, scene: str, variant: str, files: list[Path]) -> None:
-    """Print values with intervals, correlations, misfits, and the command that goes on."""
+def show_fit(found: Fit, scene: str, changes: list[str], files: list[Path]) -> None:
+    """Print values with intervals, correlations, misfits, and the command that goes on.
+
+    changes : those that the scene was given, KEY=VALUE.
+    """
     worst = max(found.waveforms, key=lambda one: one.after)
     say(
         f"{found.scene.title} {found.scene.name}".strip() + f", fitted by {found.solver} in "
@@ -36,8 +39,8 @@ def show_fit(found: Fit, scene: str, variant: str, files: list[Path]) -> None:
     say(
         "The intervals hold if the model is right: jointwave compare says how far models are apart."
     )
-    arguments = ["jointwave", "compare", scene, *(["--variant", variant] if variant else [])]
-    for setting in found.settings:
+    arguments = ["jointwave", "compare", scene, "--variant", found.scene.name]
+    for setting in [*changes, *found.settings]:
         arguments += ["--set", setting]
     say(f"run it: {shlex.join(arguments)}")
     for path in files:

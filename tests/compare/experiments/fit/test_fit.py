@@ -334,8 +334,9 @@ def test_command_fits_writes_and_says_how_to_go_on(files, tmp_path, command):
     )
     assert np.allclose(left["measured"] - left["fitted"], left["residual"], atol=2)
     assert (out / "fit-waveforms.png").stat().st_size > 10_000
-    said = command(*asked(files), "--free", LOAD).out
-    assert "fitted by lattice" in said and "--set load.amplitude=" in said
+    said = command(*asked(files), "--free", LOAD, "--set", "title=mine").out
+    assert "fitted by lattice" in said
+    assert "--variant '' --set title=mine --set load.amplitude=" in said
 
 
 def test_a_scene_that_no_fit_wrote_is_not_replaced(files, tmp_path, command):
