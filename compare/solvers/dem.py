@@ -43,15 +43,15 @@ def run_fields(scene: Scene | RockMass, progress=None, comm=None, keeper=None) -
 def prepare(scene: Scene | RockMass) -> Prepared:
     """Return the step and the size of a run; raises SceneError as the run would."""
     from cases.effects import is_spatial
-    from cases.schema.rock_mass import RockMass
+    from cases.schema.scene import Scene
     from cases.size import estimates
 
     with estimates() as parts:
-        if isinstance(scene, RockMass):
-            time, critical, freedoms, threads = _in_plane(scene)
-        else:
+        if isinstance(scene, Scene):
             time, critical, freedoms, threads = (_spatial if is_spatial(scene) else _axial)(scene)
-    scheme = "leapfrog" if isinstance(scene, RockMass) else scene.numerics.dem.scheme
+        else:
+            time, critical, freedoms, threads = _in_plane(scene)
+    scheme = scene.numerics.dem.scheme if isinstance(scene, Scene) else "leapfrog"
     settings = {"scheme": scheme, "threads": threads}
     size = sum(parts.values())
     return Prepared(scheme, time.steps, time.dt, critical, freedoms, size, settings)
@@ -59,12 +59,15 @@ def prepare(scene: Scene | RockMass) -> Prepared:
 
 def applies(scene: Scene | RockMass) -> Answer:
     """Return whether a scene has blocks that can be rigid."""
-    from cases.material.rigid_blocks import against
     from cases.schema.scene import Scene
 
-    if not isinstance(scene, Scene) and scene.domain.given is not None:
+    if isinstance(scene, Scene):
+        return YES
+    if scene.domain.given is not None:
         return no("the cells of domain.mesh are not rigid blocks")
-    reason = None if isinstance(scene, Scene) else against(scene)
+    from cases.material.rigid_blocks import against
+
+    reason = against(scene)
     return no(f"numerics.dem.block {reason}") if reason else YES
 
 
