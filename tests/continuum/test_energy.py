@@ -12,11 +12,9 @@ DAMPED = {"joints__damping_ratio": 0.05}
 LINEAR = {
     "undamped": {},
     "soft layer": LAYER,
-    "quiet": {"ends__start": "quiet", "ends__end": "matched"},
-    "matched, damped": {**DAMPED, "ends__start": "matched", "ends__end": "quiet"},
-    "fixed": {"ends__end": "fixed"},
-    "damped": DAMPED,
+    "damped, matched": {**DAMPED, "ends__start": "matched", "ends__end": "quiet"},
     "damped soft layer, quiet": {**DAMPED, **LAYER, "ends__end": "quiet"},
+    "fixed": {"ends__end": "fixed"},
 }
 
 
