@@ -11,6 +11,7 @@ from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from cases.schema.scene import Scene
 from continuum.build import Discrete, build_model, critical_step_of, discretise
+from continuum.explicit import leapfrog, march
 from continuum.explicit.march import run
 from continuum.mesh.cells import DIMENSION
 from continuum.mesh.pillar import pillar_mesh
@@ -164,3 +165,48 @@ def vertices(x, cells, cell, corners):
     """Return which vertices of these cells are at the corners of facets [facets, corners]."""
     apart = np.linalg.norm(x[cells[cell]][:, None] - corners[:, :, None], axis=-1)
     return np.take_along_axis(cells[cell], apart.argmin(axis=2), axis=1)
+
+
+def multiply(tiles, pairs, start, column, value, x, y, factor):
+    """Set y = factor K x, tile by tile: as the compiled one does."""
+    for at, width, first, size in tiles.tolist():
+        blocks = x[at : at + size * width].reshape(size, width)
+        for i in range(size):
+            own = slice(int(start[first + i]), int(start[first + i + 1]))
+            y[at + i * width : at + (i + 1) * width] = factor * value[own] @ blocks[column[own]]
+
+
+def rows(first, start):
+    """Yield each row of stencils, how far it is from its first, and its entries."""
+    first, start = first.astype(int).tolist(), start.astype(int).tolist()
+    for r, begin in enumerate(first[:-1]):
+        for i in range(first[r + 1] - begin):
+            yield begin + i, i, slice(start[r], start[r + 1])
+
+
+def multiply_stencils(first, start, column, value, x, y, begin):
+    """Set y = B x in the rows of stencils `begin` and after."""
+    for row, i, own in rows(first[int(begin) :], start[int(begin) :]):
+        y[row] = value[own] @ x[column[own].astype(int) + i]
+
+
+def add_transposed(first, start, column, value, t, f):
+    """Add B^T t to f."""
+    for row, i, own in rows(first, start):
+        np.add.at(f, column[own].astype(int) + i, value[own] * t[row])
+
+
+@pytest.fixture
+def plain(monkeypatch):
+    """Let explicit steps run as plain Python: nothing is compiled."""
+    kernel_for = march.leapfrog_for
+
+    def python_for(*effects, **shared):
+        kernel = kernel_for(*effects, **shared)
+        return getattr(kernel, "py_func", kernel)
+
+    monkeypatch.setattr(march, "leapfrog_for", python_for)
+    for function in (multiply, multiply_stencils, add_transposed):
+        monkeypatch.setattr(leapfrog, function.__name__, function)
+    monkeypatch.setattr(leapfrog, "flush_tiny", lambda: 0)
+    monkeypatch.setattr(leapfrog, "restore_tiny", lambda old: None)

@@ -40,7 +40,7 @@ def momenta(run) -> tuple[np.ndarray, np.ndarray]:
     + [(3, "hexahedron", kind) for kind in JOINTS]
     + [(2, "simplex", "slip"), (3, "simplex", "slip")],
 )
-def test_momenta_are_the_impulse_of_the_load(dim, cell, joints, short, ready):
+def test_momenta_are_the_impulse_of_the_load(plain, dim, cell, joints, short, ready):
     """Of a step load up to half a step before the last, whatever the joints do: their tractions
     act at one place on both sides. To 1e-11 of the largest."""
     scene = short(load=blow(dim), numerics__continuum__cell=cell, **JOINTS[joints])
@@ -55,7 +55,7 @@ def test_momenta_are_the_impulse_of_the_load(dim, cell, joints, short, ready):
 
 @pytest.mark.parametrize("mirror", [0, 2], ids=["x", "z"])
 @pytest.mark.parametrize("joints", JOINTS)
-def test_mirrored_blow_gives_the_mirrored_motion(joints, mirror, short, ready):
+def test_mirrored_blow_gives_the_mirrored_motion(plain, joints, mirror, short, ready):
     """x to -x: the displacement along x and the turns about y and z change their signs; z alike."""
     way, at = (np.array(values) for values in WAYS[3])
     other_way, other_at = way.copy(), at.copy()
@@ -83,7 +83,7 @@ def alike(found: np.ndarray, expected: np.ndarray) -> None:
     assert np.abs(found - expected).max() < 1e-10 * peak
 
 
-def test_load_on_the_axis_bends_nothing(short, ready):
+def test_load_on_the_axis_bends_nothing(plain, short, ready):
     scene = short(load=blow(3, "sine", direction=[0.0, 1.0, 0.0], at=[0.0, 0.0]))
     waves = ready(scene, "jointed", 3, samples=201).to_the_end().waves
     peak = np.abs(waves["velocity"]).max()

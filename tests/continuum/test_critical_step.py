@@ -1,4 +1,7 @@
-"""The critical step is sharp: bounded just below it, growing without limit just above."""
+"""The critical step is sharp: bounded just below it, growing without limit just above.
+
+Steps of the bar and in the plane are taken as plain Python.
+"""
 
 import numpy as np
 import pytest
@@ -10,59 +13,71 @@ from continuum.run import discrete_and_steps
 
 QUIET = {
     "load__amplitude": 0.0,
-    "record": {"stress": [1.0], "velocity": []},
+    "record": {"stress": [1.0], "velocity": [], "energy": False},
 }
 SHORT = {**QUIET, "pillar__length": 4.0}
 LAYER = {"soft_layers": [{"y": 2.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.1}]}
 DAMPED = {"joints__damping_ratio": 0.05}
 KINDS = {
     "undamped": {},
-    "damped, matched": {**DAMPED, "ends__start": "quiet", "ends__end": "matched"},
-    "damped soft layer, quiet": {**DAMPED, **LAYER, "ends__end": "quiet"},
+    "soft layer": LAYER,
+    "damped soft layer": {**DAMPED, **LAYER},
     "quiet": {"ends__start": "quiet", "ends__end": "quiet"},
+    "damped quiet": {**DAMPED, "ends__end": "quiet"},
+    "matched": {"ends__start": "matched", "ends__end": "matched"},
+    "damped matched": {**DAMPED, "ends__start": "quiet", "ends__end": "matched"},
     "fixed": {"ends__end": "fixed"},
 }
-STEPS = 4000  # in which a step 1e-4 above the critical one lets a mode grow by exp(113)
 
 
 @pytest.fixture
 def growth(ready):
-    """Return a function: the largest speed after STEPS over the largest of a random start.
+    """Return a function: the magnitude of the largest eigenvalue of one step, which is a fraction
+    of the critical one; that is within 1e-4 of the true one, from below.
 
-    The step is a fraction of the critical one, which is within 1e-4 of the true one from below.
+    Its rows are displacements, velocities half a step and a step and a half before, and closures of
+    the ends, of all freedoms that nothing holds.
     """
 
     def of(scene, model: str, dim: int, fraction: float) -> float:
         run = ready(scene, model, dim, fraction=fraction, samples=1)
-        run = run._replace(time=run.time._replace(stride=STEPS))
-        body, start = run.discrete.body, np.random.default_rng(1).standard_normal
+        body, fixed, state = run.discrete.body, run.model.ends.fixed, run.state
         nodes = np.arange(len(body.x))
-        freedoms = np.unique([body.freedom(nodes, c) for c in range(body.section.components)])
-        run.state.v[freedoms] = start(freedoms.size)
-        if run.model.ends.fixed is not None:
-            run.state.v[run.model.ends.fixed.freedom] = 0.0
-        run.state.v_before[:] = run.state.v
-        run.take(0, STEPS)
-        return float(np.nan_to_num(np.abs(run.state.v).max(), nan=np.inf))
+        free = np.unique([body.freedom(nodes, c) for c in range(body.section.components)])
+        if fixed is not None:
+            free = np.setdiff1d(free, fixed.freedom)
+        parts = [(x, free) for x in (state.u, state.v, state.v_before)]
+        if state.closure is not None:
+            parts.append((state.closure.reshape(-1), np.arange(state.closure.size)))
+        columns = []
+        for here, own in parts:
+            for i in own:
+                for x, _ in parts:
+                    x[:] = 0.0
+                here[i] = 1.0
+                run.take(0, 1)
+                columns.append(np.concatenate([x[kept] for x, kept in parts]))
+        return float(np.abs(np.linalg.eigvals(np.array(columns))).max())
 
     return of
 
 
+def is_sharp(growth, scene, model, dim):
+    """No eigenvalue leaves the unit circle below it, where double ones of rigid motion split by the
+    square root of round-off; one does 0.1 % above."""
+    return growth(scene, model, dim, 0.999) < 1 + 1e-6 < 1 + 1e-3 < growth(scene, model, dim, 1.001)
+
+
 @pytest.mark.parametrize("model", ["jointed", "equivalent"])
 @pytest.mark.parametrize("kind", KINDS)
-def test_critical_step_is_sharp(short, growth, kind, model):
-    """Below it no mode is amplified by more than 1 / sqrt(1 - 0.999^2) = 22; above it the fastest
-    one grows at every step."""
-    scene = short(**{**SHORT, **KINDS[kind]})
-    assert growth(scene, model, 1, 0.999) < 100
-    assert growth(scene, model, 1, 1.001) > 1e6
+def test_critical_step_is_sharp(plain, short, growth, kind, model):
+    assert is_sharp(growth, short(**{**SHORT, **KINDS[kind]}), model, 1)
 
 
 @pytest.mark.parametrize("order", [1, 3, 4])
-def test_critical_step_is_sharp_at_every_order(short, growth, order):
+def test_critical_step_is_sharp_at_every_order(plain, short, growth, order):
     scene = short(**SHORT, **DAMPED, numerics__continuum__order=order)
-    assert growth(scene, "jointed", 1, 0.999) < 100
-    assert growth(scene, "jointed", 1, 1.001) > 1e6
+    assert is_sharp(growth, scene, "jointed", 1)
 
 
 IN_SPACE = {
@@ -84,12 +99,13 @@ IN_SPACE = {
 
 
 @pytest.mark.parametrize("kind", IN_SPACE)
-def test_critical_step_is_sharp_in_space(short, growth, kind):
+def test_critical_step_is_sharp_in_space(short, growth, kind, request):
     """Joints, dashpots, elements of every kind; two blocks with up to 324 freedoms."""
     dim, changes = IN_SPACE[kind]
+    if dim == 2:
+        request.getfixturevalue("plain")
     scene = short(**QUIET, pillar__length=1.0, **changes)
-    assert growth(scene, "jointed", dim, 0.999) < 100
-    assert growth(scene, "jointed", dim, 1.001) > 1e6
+    assert is_sharp(growth, scene, "jointed", dim)
 
 
 @pytest.mark.parametrize(

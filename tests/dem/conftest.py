@@ -1,22 +1,28 @@
-"""What the tests of rigid blocks share: the row in space as plain Python."""
+"""What the tests of rigid blocks share: the chain and the row in space as plain Python."""
 
 import pytest
 
+from dem.axial import leapfrog
 from dem.spatial import march
 
 
 @pytest.fixture
 def plain(monkeypatch):
-    """Let rows in space take their steps as plain Python, on one thread: nothing is compiled."""
-    kernel_for = march.march_for
+    """Let the chain and rows in space take their steps as plain Python, on one thread: nothing is
+    compiled."""
 
-    def python_for(form):
-        kernel = kernel_for(form)
-        return getattr(kernel, "py_func", kernel)
+    def in_python(kernel_for):
+        def python_for(form):
+            kernel = kernel_for(form)
+            return getattr(kernel, "py_func", kernel)
 
-    monkeypatch.setattr(march, "march_for", python_for)
+        return python_for
+
+    monkeypatch.setattr(leapfrog, "loop_for", in_python(leapfrog.loop_for))
+    monkeypatch.setattr(march, "march_for", in_python(march.march_for))
+    for module in (leapfrog, march):
+        monkeypatch.setattr(module, "flush_tiny", lambda: 0)
+        monkeypatch.setattr(module, "restore_tiny", lambda old: None)
     monkeypatch.setattr(march, "borrowed", lambda value: value)
-    monkeypatch.setattr(march, "flush_tiny", lambda: 0)
-    monkeypatch.setattr(march, "restore_tiny", lambda old: None)
     monkeypatch.setattr(march, "peek", lambda counters, i: counters[i])
     monkeypatch.setattr(march, "post", lambda counters, i, value: counters.__setitem__(i, value))

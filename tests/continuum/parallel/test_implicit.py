@@ -77,11 +77,11 @@ def test_any_number_of_processes_gives_the_same_waveforms(scene, jointwave, tmp_
     """Newton's method ends far below what it may leave, so that sums in another order differ by
     round-off; an iterate more or less, where a residual is at the bound, changes nothing."""
     changes = {**SHORT, **SCENES[scene]}
+    one = solve("continuum-jointed", load_variant(find(SCENE), "", changes))
     keys = [part for k, v in changes.items() for part in ("--set", f"{k}={json.dumps(v)}")]
     engine = ("--engine", "continuum", "--model", "jointed")
     done = jointwave(3, "run", SCENE, "--variant", "", *engine, *keys, "--out", tmp_path, "--json")
     (fact,) = json.loads(done.stdout)
-    one = solve("continuum-jointed", load_variant(find(SCENE), "", changes))
     other = xr.load_dataset(fact["file"])
     assert one.attrs["scheme"] == changes["numerics.continuum.scheme"]
     assert other.attrs["processes"] == 3

@@ -11,8 +11,9 @@ from dem.axial.state import state_at_rest
 
 
 @pytest.fixture
-def step_matrix():
-    """Return a function of (scene, dt) that gives the matrix of one linear step dt (s).
+def step_matrix(plain):
+    """Return a function of (scene, dt) that gives the matrix of one linear step dt (s), taken as
+    plain Python.
 
     Its rows are displacements, velocities, gap rates half a step before and closures of the ends.
     """

@@ -1,4 +1,7 @@
-"""What no law of a joint may change: momenta, energy, and the choice of axes."""
+"""What no law of a joint may change: momenta, energy, and the choice of axes.
+
+The ledger is kept throughout, so that each law is compiled once.
+"""
 
 import numpy as np
 import pytest
@@ -40,7 +43,7 @@ def kicked(model, turn=None, seed=0):
 def test_momentum_is_kept(law, lattice):
     """The forces of a joint cancel. Across periodic sides angular momentum has no meaning."""
     fields, points = LAWS[law]
-    model, _, _ = lattice(Law(**fields), points)
+    model, _, _ = lattice(Law(**fields), points, ledger=True)
     state, mass = kicked(model), model.blocks.inertia[:, :1]
     before = (mass * state.v[:, :2]).sum(axis=0)
     march(model, state, samples_for(model, 0), 1 << 40, (1, 2001))
@@ -52,7 +55,7 @@ def test_momentum_is_kept(law, lattice):
 def test_moments_of_a_contact_cancel_about_any_point(law, lattice):
     """Both blocks get one force at one place: about the origin its moments are opposite."""
     fields, points = LAWS[law]
-    model, _, _ = lattice(Law(**fields), points)
+    model, _, _ = lattice(Law(**fields), points, ledger=True)
     state = kicked(model)
     march(model, state, samples_for(model, 0), 1 << 40, (1, 101))
     f, table = state.force, model.contacts.table
@@ -122,8 +125,10 @@ def test_a_rock_mass_that_is_turned_and_shifted_moves_alike(law, turned, lattice
     """Vectors turn with it, to the round-off of sines, cosines and 200 steps; which point slides
     first, or opens, is decided alike."""
     fields, points = LAWS[law]
-    one, _, _ = lattice(Law(**fields), points)
-    other, _, turn = lattice(Law(**fields), points, turned=turned, shifted=(300.0, -20.0))
+    one, _, _ = lattice(Law(**fields), points, ledger=True)
+    other, _, turn = lattice(
+        Law(**fields), points, ledger=True, turned=turned, shifted=(300.0, -20.0)
+    )
     states = kicked(one), kicked(other, turn)
     for model, state in zip((one, other), states, strict=True):
         march(model, state, samples_for(model, 0), 1 << 40, (1, 201))
@@ -136,7 +141,7 @@ def test_a_rock_mass_that_is_turned_and_shifted_moves_alike(law, turned, lattice
 def test_a_rigid_motion_makes_no_force(law, lattice):
     """All blocks with one velocity: joints feel nothing, now and later."""
     fields, points = LAWS[law]
-    model, _, _ = lattice(Law(**fields), points)
+    model, _, _ = lattice(Law(**fields), points, ledger=True)
     state = state_at_rest(model)
     state.v[:, :2] = 3.0, -2.0
     march(model, state, samples_for(model, 0), 1 << 40, (1, 101))
