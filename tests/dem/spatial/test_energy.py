@@ -79,9 +79,12 @@ def never_falls(energy):
     "joints",
     [
         {"joints": {"tension": False}},
-        {"joints": {"tension": False, **SLIP}},
+        pytest.param({"joints": {"tension": False, **SLIP}}, marks=pytest.mark.slow),
         {"joints": BREAK},
-        {"soft_layers": [{"y": 3.0, "residual_cohesion": 1e3, **BREAK}]},
+        pytest.param(
+            {"soft_layers": [{"y": 3.0, "residual_cohesion": 1e3, **BREAK}]},
+            marks=pytest.mark.slow,
+        ),
     ],
     ids=["no tension", "no tension, slip", "softening", "one joint that softens"],
 )

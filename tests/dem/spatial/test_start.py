@@ -11,16 +11,21 @@ UNLOADED = {"load": {"shape": "step", "amplitude": 0.0, "direction": [1, 0, 0]}}
 FIELDS = ("stress", "shear", "velocity", "displacement", "rotation")
 G = 9.81
 
+#: Of a pair of blocks, as plain Python: test_static_by_hand.py.
+OTHER_ENDS = [
+    pytest.param(*x, marks=pytest.mark.slow) for x in (("quiet", "matched"), ("free", "fixed"))
+]
 
-@pytest.mark.parametrize("ends", [("free", "free"), ("quiet", "matched"), ("free", "fixed")])
-def test_prestressed_row_with_friction_is_at_rest_at_once(row, ends):
+
+@pytest.mark.parametrize(("start", "end"), [("free", "free"), *OTHER_ENDS])
+def test_prestressed_row_with_friction_is_at_rest_at_once(row, start, end):
     """Displacements count from there; A sigma^2 / 2 K' a joint is stored, nothing moves."""
     y = (0.25 + 0.5 * np.arange(16)).tolist()
     scene = row(
         **UNLOADED,
         joints=SLIP,
         prestress={"normal": 2e6},
-        ends=dict(zip(("start", "end"), ends, strict=True)),
+        ends={"start": start, "end": end},
         record={"stress": [0.0, 2.0, 8.0], "velocity": y, "interval": 1e-3},
     )
     p, result = calibrate(scene), dem.simulate(scene)
@@ -76,6 +81,7 @@ def test_tighter_balance_gives_a_smaller_difference(row):
     assert rough["static_steps"] < fine["static_steps"]
 
 
+@pytest.mark.slow
 def test_local_damping_leaves_the_static_state(row):
     """Damping decides how blocks come to rest, not where: the same state, bit by bit."""
     still = {**UNLOADED, "gravity": {"direction": [1, 0, 0]}, "ends__end": "fixed"}
@@ -93,6 +99,7 @@ def test_free_fall_is_a_parabola(row):
     assert np.abs(result.velocity.values - G * t * direction).max() < 1e-11
 
 
+@pytest.mark.slow  # of the chain: tests/dem/axial/test_start.py
 def test_base_in_acceleration_is_gravity_against_it(row):
     """In the frame of a base accelerated at a, the row has the weight -a: to round-off."""
     held = {"ends__start": "fixed", "load__at": [0.0, 0.0]}
