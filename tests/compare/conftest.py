@@ -1,6 +1,7 @@
 """What tests measure kept apart from the user's own; and a browser for the tests of pages."""
 
 import shutil
+from functools import cache
 from itertools import combinations
 
 import pytest
@@ -11,9 +12,14 @@ from compare.experiments.cost import timings
 
 @pytest.fixture(autouse=True)
 def own_rates(tmp_path_factory, monkeypatch):
-    """Keep what is measured here apart: `--dry-run` foretells from what the machine has done."""
-    file = tmp_path_factory.mktemp("rates") / "rates.json"
-    monkeypatch.setattr(timings, "_file", lambda: file)
+    """Keep what is measured here apart: `--dry-run` foretells from what the machine has done. Few
+    tests ask for the file."""
+
+    @cache
+    def file():
+        return tmp_path_factory.mktemp("rates") / "rates.json"
+
+    monkeypatch.setattr(timings, "_file", file)
 
 
 @pytest.fixture(scope="module")
