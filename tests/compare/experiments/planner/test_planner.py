@@ -246,6 +246,26 @@ def test_blocks_between_spaced_joints_have_a_model_of_their_own():
     assert cut.reference.name == "dem" and cut.modelling > 0.01
 
 
+def test_a_reference_of_small_blocks_has_elements_of_half_the_size_each(monkeypatch):
+    """Bricks of 2 m by 1 m have the same elements at the first sizes, parts of a wave of 16 m: such
+    runs would agree, and say nothing of their error."""
+    found = []
+
+    def noted(name, scene):
+        found.append(solve(name, scene))
+        return found[-1]
+
+    monkeypatch.setattr(plan_reference, "solve", noted)
+    changes = {"domain.size": [8.0, 4.0], "record.points": [[2.5, 1.5]], "record.joints": []}
+    scene = cases.load_variant(find("rock-mass/brickwork"), "", changes | {"time.duration": 0.02})
+    model = Family("continuum-jointed", {})
+    reference = plan_reference._converged(scene, model, 20.0, None)
+    first, second = (one.attrs["degrees_of_freedom"] for one in found)
+    assert second > 2.5 * first and 0 < reference.error < 2
+    sizes = [rock.changes["size"] for rock in plan_reference._refined(scene, model)]
+    assert f"size {sizes[1]}" not in reference.settings and len(found) == 2
+
+
 SLIPPING = {
     "pillar.length": 10.0,
     "pillar.block": 0.5,
