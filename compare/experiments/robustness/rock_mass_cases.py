@@ -1,12 +1,14 @@
 """Hard cases of rock masses: thin blocks, short contacts, contrasts, grazing waves, sliding."""
 
+from functools import partial
 from math import cos, radians, sin
 from typing import Any
 
 from compare.experiments.robustness.case import STEP, HardCase, rock_is_spared
 from compare.experiments.robustness.criteria import energies, rock_masses
 
-ONE_JOINT, BRICKWORK = "rock-mass/one-joint", "rock-mass/brickwork"
+at_one_joint = partial(HardCase, scene="rock-mass/one-joint")
+in_brickwork = partial(HardCase, scene="rock-mass/brickwork")
 SIDES = ("left", "right", "bottom", "top")
 PULSE = {"shape": "ricker", "amplitude": 1e6, "period": 5e-3}
 RIGID = rock_is_spared("its rock deforms: see the ledger, or the case of rock")
@@ -61,16 +63,10 @@ def _shapes() -> list[HardCase]:
         "a block held by one corner": _struck([CROSS], **held),
         "T-junctions of brickwork under shear": _struck(_bricks(0.5)),
     }
-    spared = EXPLICIT | RIGID
+    judged, ledger = rock_masses.as_leapfrog, rock_masses.balanced
     return [
-        *(
-            HardCase(n, rock_masses.as_leapfrog, x, spared, scene=ONE_JOINT)
-            for n, x in bodies.items()
-        ),
-        *(
-            HardCase(f"the ledger of {n}", rock_masses.balanced, x, EXPLICIT, scene=ONE_JOINT)
-            for n, x in bodies.items()
-        ),
+        *(at_one_joint(n, judged, x, EXPLICIT | RIGID) for n, x in bodies.items()),
+        *(at_one_joint(f"the ledger of {n}", ledger, x, EXPLICIT) for n, x in bodies.items()),
     ]
 
 
@@ -81,17 +77,12 @@ def _contrast() -> list[HardCase]:
     rigid = changes | {"rock.intact_modulus": 1e29}
     coarse = changes | {"numerics.continuum.size": 1.0}
     name, judge = "one set 1e8 as stiff as the other", rock_masses.without_stiff_set
+    exact = rock_masses.as_leapfrog
     many = PLANE | ROCK | {"explicit": "takes 1e4 times as many steps: see the implicit ones"}
     return [
-        HardCase(f"{name}, rigid blocks", judge, rigid, EXPLICIT | RIGID, scene=ONE_JOINT),
-        HardCase(name, judge, coarse, many, scene=ONE_JOINT),
-        HardCase(
-            f"{name}, in closed form",
-            rock_masses.as_leapfrog,
-            rigid,
-            EXPLICIT | RIGID,
-            scene=ONE_JOINT,
-        ),
+        at_one_joint(f"{name}, rigid blocks", judge, rigid, EXPLICIT | RIGID),
+        at_one_joint(name, judge, coarse, many),
+        at_one_joint(f"{name}, in closed form", exact, rigid, EXPLICIT | RIGID),
     ]
 
 
@@ -116,23 +107,15 @@ def _met(sets: list[dict[str, Any]], size: float, waves: list[dict[str, Any]]) -
 
 def _grazing() -> list[HardCase]:
     joint = [_set("joint", 0.0, through=[0.0, 5.0])]
-    near = [*joint, _set("next", 0.0, through=[0.0, 5.01])]
-    found = [
-        HardCase(
-            "two joints a hundredth of a metre apart",
-            rock_masses.near_joints,
-            _met(near, 10.0, _wave(30)),
-            EXPLICIT | ROCK,
-            scene=ONE_JOINT,
-        )
-    ]
+    near = _met([*joint, _set("next", 0.0, through=[0.0, 5.01])], 10.0, _wave(30))
+    lattice, exact = rock_masses.near_lattice, rock_masses.near_joints
+    found = [at_one_joint("two joints a hundredth of a metre apart", exact, near, EXPLICIT | ROCK)]
     for angle in (80, 88):
         name, waves = f"a wave at {angle} degrees", _wave(angle)
         blocks, rock = _met([BEDS, CROSS], 6.0, waves), _met(joint, 10.0, waves)
-        lattice, exact = rock_masses.near_lattice, rock_masses.near_joints
         found += [
-            HardCase(f"{name}, rigid blocks", lattice, blocks, EXPLICIT | RIGID, scene=ONE_JOINT),
-            HardCase(f"{name} on a joint", exact, rock, EXPLICIT | ROCK, scene=ONE_JOINT),
+            at_one_joint(f"{name}, rigid blocks", lattice, blocks, EXPLICIT | RIGID),
+            at_one_joint(f"{name} on a joint", exact, rock, EXPLICIT | ROCK),
         ]
     return found
 
@@ -144,8 +127,8 @@ def _sliding() -> list[HardCase]:
     changes |= {"prestress": {"xx": 8e6, "yy": 8e6}, "numerics.continuum.size": 1.0}
     name = "T-junctions of brickwork that slide"
     return [
-        HardCase(name, rock_masses.within_friction, changes, EXPLICIT, scene=ONE_JOINT),
-        HardCase(f"the ledger of {name}", rock_masses.balanced, changes, EXPLICIT, scene=ONE_JOINT),
+        at_one_joint(name, rock_masses.within_friction, changes, EXPLICIT),
+        at_one_joint(f"the ledger of {name}", rock_masses.balanced, changes, EXPLICIT),
     ]
 
 
@@ -164,8 +147,8 @@ def _long() -> list[HardCase]:
     million, fewer = energies.no_trend(1_000_000), energies.no_trend(100_000)
     fewer_steps = "a hundred thousand undamped steps of bricks of rock"
     return [
-        HardCase("a million undamped steps of bricks", million, patch, blocks, scene=BRICKWORK),
-        HardCase(fewer_steps, fewer, patch, EXPLICIT | ROCK, scene=BRICKWORK),
+        in_brickwork("a million undamped steps of bricks", million, patch, blocks),
+        in_brickwork(fewer_steps, fewer, patch, EXPLICIT | ROCK),
     ]
 
 
