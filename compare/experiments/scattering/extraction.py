@@ -42,11 +42,13 @@ def scattered(
     velocity: np.ndarray,
     interval: float,
     omega: float,
+    half: float = 0.0,
 ) -> Scattered:
-    """Return what joints about the origin make of a wave.
+    """Return what joints about the origin make of a wave, at the first and the last of them.
 
     axes : of the joints for this wave. places : [m, 2], m, on both sides. velocity :
     [m, n, (x, y)], m/s, every `interval` (s). omega : rad/s.
+    half : of the way from the first joint to the last, m: what is evanescent falls along it.
     """
     n = velocity.shape[1]
     spectrum = np.exp(1j * omega * interval * np.arange(n)) @ velocity * interval
@@ -60,6 +62,7 @@ def scattered(
     for front, waves in ((True, [incident, 2, 3]), (False, [0, 1])):
         here = (along[:, 1] < 0) == front
         x, z = along[here].T
+        z = z + half if front else z - half
         phases = np.exp(1j * omega * (axes.slowness * x + np.outer(q[waves], z)))
         matrix = np.einsum("wm,wc->mcw", phases, modes[waves]).reshape(-1, len(waves))
         motion = spectrum[here].ravel()

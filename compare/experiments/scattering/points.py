@@ -176,7 +176,8 @@ def amplitudes(scene: RockMass, velocity: np.ndarray) -> Scattered:
     axes = axes_of(rock, pulse, np.radians(scene.joint_sets[0].dip))
     middle = np.mean([one.through or [0.0, 0.0] for one in scene.joint_sets], axis=0)
     places, omega = np.array(scene.record.points) - middle, 2 * np.pi / wave.period
-    return scattered(rock, axes, places, velocity, scene.interval, omega)
+    half = SPACING * (len(scene.joint_sets) - 1) / 2
+    return scattered(rock, axes, places, velocity, scene.interval, omega, half)
 
 
 def closed_form(scene: RockMass, angle: Values | None = None) -> Coefficients:

@@ -110,6 +110,7 @@ def test_mass_and_area_are_those_of_the_domain(meshed):
         ("quadrilateral", 1),
         ("quadrilateral", 2),
         ("quadrilateral", 3),
+        ("quadrilateral", 4),
         ("triangle", 1),
         ("triangle", 2),
     ],

@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 from cases.errors import UnstableError
+from cases.incident import FreeField, PlaneWave, plane_wave
+from cases.loads import history_of
+from compare.exact.plane.quiet_face import coefficients
 from compare.exact.rock_mass.effective_medium import medium_field
 from compare.exact.rock_mass.field import field_of
 from compare.exact.rock_mass.line_force import SOLVER as LINE_FORCE
@@ -34,6 +37,50 @@ def test_a_pulse_at_one_joint_is_the_exact_one(kind, dip, struck):
     for name in ("velocity", "displacement", "stress", "traction", *names):
         assert misfit(found[name].values, exact[name].values).max() < 2e-3
     assert gap_of_ledger(found) < 1e-11
+
+
+def sent_back(scene, shares):
+    """Return the P and SV wave that the top sends back of the wave of a scene, in time with it, of
+    these shares of its amplitude."""
+    (wave,) = scene.waves
+    one, found = plane_wave(scene, wave), []
+    corner = np.array([0.0, 20.0])
+    for k, (speed, share) in enumerate(
+        zip((one.rock.p_speed, one.rock.s_speed), shares, strict=True)
+    ):
+        along = float(speed) * one.direction[0] / one.speed
+        back = np.array([along, -np.sqrt(1 - along**2)])
+        through = corner - back * speed * one.lateness(corner[None])[0]
+        left, amplitude = np.array([-back[1], back[0]]), wave.amplitude / one.rock.density
+        pulse = history_of(wave, share * amplitude / one.speed)
+        found.append(PlaneWave(one.rock, back, back if k == 0 else left, speed, through, pulse))
+    return found
+
+
+LATER = {"time": {"duration": 0.03}, "record": {"points": [[10.0, 12.0], [9.0, 16.0]]}}
+
+
+@pytest.mark.parametrize("kind, angle", [("P", 30.0), ("P", 60.0), ("S", 20.0)])
+def test_a_quiet_side_sends_back_what_its_closed_form_says(kind, angle, struck):
+    """The incident wave and what the formula has come back enter through the other sides; the top
+    gets dashpots alone: of both together its tractions are none. What comes back is fitted."""
+    a = np.radians(angle)
+    scene = struck(kind, (np.sin(a), np.cos(a)), joints=[], **LATER)
+    one = plane_wave(scene, scene.waves[0])
+    # SV waves of the formula move to the right of their travel, those of scenes to the left.
+    closed = np.real(coefficients("P" if kind == "P" else "SV", a, one.rock))
+    closed = closed * (1 if kind == "P" else -1)
+    back = sent_back(scene, closed)
+    x, top = np.array(scene.record.points), np.array([[4.0, 20.0], [16.0, 20.0]])
+    found = simulate(scene, incident=FreeField((one, *back), True))
+    t = found.time.values
+    whole, Z = FreeField((one, *back), True)(top, t), (one.rock.s_impedance, one.rock.p_impedance)
+    pulls = whole.stress[:, [2, 1]] + np.array(Z)[:, None] * whole.velocity
+    assert np.abs(pulls).max() < 1e-9 * np.abs(whole.stress).max()
+    own = found.velocity.values.swapaxes(1, 2) - one.motion(x, t).velocity
+    unit = [wave.motion(x, t).velocity.ravel() for wave in sent_back(scene, (1.0, 1.0))]
+    measured = np.linalg.lstsq(np.stack(unit, axis=1), own.ravel(), rcond=None)[0]
+    assert measured == pytest.approx(closed, abs=1e-3)
 
 
 def test_its_error_falls_with_the_third_power_of_the_size(struck):

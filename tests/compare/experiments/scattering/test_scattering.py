@@ -59,11 +59,12 @@ def test_motion_that_is_no_plane_wave_is_left_over():
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("joints", [1, 3])
 @pytest.mark.parametrize("incidence", ["P", "SV"])
-def test_deformable_rock_has_them_at_all_angles(incidence):
+def test_deformable_rock_has_them_at_all_angles(incidence, joints):
     """Elements of order 2, about 8 to the S wave: a thousandth."""
     for angle in points.ANGLES:
-        row = measure(JointsPoint("continuum-jointed", incidence, angle, 1))
+        row = measure(JointsPoint("continuum-jointed", incidence, angle, joints))
         assert row.state == "done" and row.error < 1e-3, row
 
 
