@@ -1,6 +1,7 @@
 """All benchmarks, as ratios and costs of one run on this machine.
 
-usage: python tools/bench [startup] [kernels] [plane] [guards] [continuum] [effects] [memory]
+usage: python tools/bench [PART ...], of
+    startup, kernels, plane, guards, continuum, masses, memory, effects
 """
 
 import sys
@@ -9,6 +10,7 @@ import deformable
 import effects
 import guards
 import kernels
+import masses
 import memory
 import plane
 import startup
@@ -19,6 +21,7 @@ PARTS = {
     "plane": plane.main,
     "guards": guards.main,
     "continuum": deformable.main,
+    "masses": masses.main,
     "memory": memory.main,
     "effects": effects.main,
 }

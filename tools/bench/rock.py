@@ -1,11 +1,15 @@
-"""The two cases of the continuum's benchmark: for the engine, and in plain numbers."""
+"""The cases of the continuum's benchmark: for the engine, and in plain numbers."""
 
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from plain_dolfinx import Pillar, Steps, in_order
 
+import cases
+from cases.read import load
 from cases.sampling import Clock
+from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 from compare.experiments.cost.scenes import changed
 from continuum.build import Discrete, build_model
@@ -21,6 +25,15 @@ DIRECTION = (0.6, 0.8, 0.0)
 
 #: Elements in each direction of a block, and their order.
 CASES = {"linear": (4, 1), "cubic": (1, 3)}
+
+
+SCENE = Path(cases.__file__).parent / "rock-mass" / "random-network.toml"
+LARGE = {"domain.size": [60.0, 60.0], "record.energy": False, "numerics.continuum.size": 0.5}
+
+
+def network(**changes) -> RockMass:
+    """Return a network of joints, 60 m x 60 m in elements of 0.5 m, with dotted keys changed."""
+    return load(SCENE, {**LARGE, **changes})[0]  # type: ignore[return-value]
 
 
 class Engine(NamedTuple):
