@@ -51,9 +51,12 @@ def exact_names() -> tuple[str, ...]:
     return tuple(EXACT)
 
 
-def names() -> tuple[str, ...]:
-    """Return the names of everything that can solve a scene."""
-    return (*ENGINES, *EXACT)
+def names(kind: str | None = None) -> tuple[str, ...]:
+    """Return the names of everything that can solve a scene, of this kind alone where it is given:
+    a pillar imports nothing of rock masses, whose solutions have a folder of their own."""
+    masses = kind == "rock mass"
+    exact = (n for n, at in EXACT.items() if not kind or at.startswith("rock_mass.") == masses)
+    return (*ENGINES, *exact)
 
 
 @cache

@@ -5,7 +5,7 @@ No node can be faster than all forces together can make it, and no energy come f
 import numpy as np
 
 from continuum.run import Run
-from numerics.divergence import ENERGY, EVERY, gains_energy, guard, look, speed_that
+from numerics.divergence import ENERGY, EVERY, audit, guard, look, speed_that
 from numerics.instability import Sighting, stopped
 
 
@@ -47,12 +47,7 @@ class Monitor:
         if self.energy is not self.run.samples.energy:
             own = self.run.samples.energy[:, first:last]
             self.energy[:, first:last] = self.communicator.sum(own)
-        with np.errstate(over="ignore", invalid="ignore"):
-            gains = (gains_energy(self.guard.peak, self.energy, s) for s in range(first, last))
-            lost = next((s for s, gain in enumerate(gains, first) if gain), last)
-        n, found = lost * self.time.stride, self.guard.found
-        if lost < last and (found[0] < 0 or n < found[0]):
-            found[:] = n, ENERGY, n - EVERY - 1
+        audit(self.guard, self.energy, first, last, self.time.stride)
 
     def check(self, first: int, last: int) -> None:
         """Raise StoppedError where the run is lost when samples first .. last - 1 are taken, with

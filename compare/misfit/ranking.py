@@ -105,5 +105,4 @@ def _fineness(name: str) -> tuple[int, int]:
 
 def applicable(scene: AnyScene) -> dict[str, Answer]:
     """Return of every engine and exact solution of a scene's kind whether it applies to it."""
-    of_kind = (name for name in names() if scene.kind in solver(name).kinds)
-    return {name: applies(name, scene) for name in of_kind}
+    return {name: applies(name, scene) for name in names(scene.kind)}

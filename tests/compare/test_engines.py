@@ -59,7 +59,10 @@ def test_a_run_is_prepared_as_it_is_made(pillar, one_joint, name, kind):
 
 
 def test_names_are_known_without_what_solves():
-    """Neither an exact solution, nor what it or an engine runs by, is imported for a name."""
+    """Neither an exact solution, nor what it or an engine runs by, is imported for a name, not even
+    for those of one kind of scenes."""
+    for kind in ("pillar", "rock mass"):
+        assert set(names(kind)) == {name for name in names() if kind in solver(name).kinds}
     script = (
         "import sys; from compare.engines import names; names()\n"
         "heavy = {'xarray', 'matplotlib', 'scipy', 'numba', 'dolfinx', 'dem', 'continuum'}\n"

@@ -18,7 +18,6 @@ from numerics.divergence import (
     guard,
     look,
     out_of_bounds,
-    runs_away,
 )
 from numerics.jit import jitted
 
@@ -36,12 +35,6 @@ def beyond(v, bits):
     one, other = both(v, bits, np.int64(bits).view(np.float64))
     assert one == other
     return one
-
-
-@jitted
-def lost(held, v, n, energy, s, stride):
-    """Return whether speeds, after n steps, or the energies of sample s are out of bounds."""
-    return runs_away(held, v, n) or creates_energy(held, energy, s, s * stride)
 
 
 NUMBERS = st.floats(allow_nan=False)
@@ -89,11 +82,22 @@ def test_what_is_found_at_the_first_step_stays():
 
 
 def test_energy_is_found_at_the_step_of_its_sample():
-    """Sample 2 of every tenth step holds 5 J of which 1 J was put in, as step 27 is done."""
+    """Sample 2 of every tenth step holds 5 J of which 1 J was put in."""
     held, energy = guard(2.0), np.array([[0.0, 0.0, 5.0], [0.0, 0.0, 1.0]])
-    assert not lost(held, np.zeros(3), 17, energy, 1, 10)
-    assert lost(held, np.zeros(3), 27, energy, 2, 10)
+    assert not creates_energy(held, energy, 1, 10)
+    assert creates_energy(held, energy, 2, 20)
     assert held.found.tolist() == [20, ENERGY, 20 - EVERY - 1]
+
+
+@given(arrays(float, (4, 9), elements=st.floats(-9, 9) | st.sampled_from([np.inf, np.nan])))
+def test_all_samples_at_once_are_judged_as_one_by_one(energy):
+    """In two stretches, the largest change of the first held over to the second."""
+    one, other = guard(1.0), guard(1.0)
+    with np.errstate(invalid="ignore"):
+        next((s for s in range(9) if creates_energy(one, energy, s, 5 * s)), None)
+    audit(other, energy, 0, 4, 5)
+    audit(other, energy, 4, 9, 5)
+    assert one.found.tolist() == other.found.tolist()
 
 
 @pytest.mark.parametrize("speed", [np.nan, np.inf])
