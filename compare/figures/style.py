@@ -101,7 +101,7 @@ RC: dict[Any, Any] = {
     "svg.fonttype": "none",
     "pdf.fonttype": 42,  # TrueType, which editors of drawings can read
     "path.simplify": True,
-    "path.simplify_threshold": 0.3,
+    "path.simplify_threshold": 0.5,  # points: half of the thinnest line
 }
 
 

@@ -9,8 +9,6 @@ from typing import NamedTuple
 from compare.engines import ENGINES
 from compare.report.verdict import NOT_CHECKED, Standing
 
-LONGEST = 22  # characters of a scene in the table
-
 
 class RankedScene(NamedTuple):
     """A scene's name on the page, its label and title, and where its engines stand.
@@ -26,9 +24,8 @@ class RankedScene(NamedTuple):
 
     @property
     def heading(self) -> str:
-        """Number or name, and the title as far as there is room."""
-        text = f"{self.label.removeprefix('fig. ')} {self.title}"
-        return text if len(text) <= LONGEST else text[: LONGEST - 1].rstrip() + "…"
+        """Number or name, and the title."""
+        return f"{self.label.removeprefix('fig. ')} {self.title}"
 
     def ratio(self, engine: str) -> float:
         """Return an engine's seconds over those of the cheapest engine of the scene."""

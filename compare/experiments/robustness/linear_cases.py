@@ -22,7 +22,7 @@ def _steps() -> list[HardCase]:
         "numerics.continuum.steps_per_period": 0.5,
         "record.interval": 2e-3,
         "load.period": 1e-3,
-        "time.duration": 20.0,
+        "time.duration": 5.0,
         "numerics.continuum.elements_per_block": 1,
     }
     explicit = {
