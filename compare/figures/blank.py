@@ -11,10 +11,12 @@ from compare.figures.style import RC, WIDTH
 
 
 @contextmanager
-def blank(height: float, width: float = WIDTH) -> Iterator[Figure]:
-    """Give an empty figure to be drawn on, inches; constraints lay it out once that is done."""
+def blank(height: float, width: float = WIDTH, laid_out: bool = False) -> Iterator[Figure]:
+    """Give an empty figure to be drawn on, inches; constraints lay it out once that is done, unless
+    the drawing lays it out itself."""
     with matplotlib.rc_context(RC):
         figure = Figure(figsize=(width, height))
         FigureCanvasAgg(figure)
         yield figure
-        figure.set_layout_engine("constrained")
+        if not laid_out:
+            figure.set_layout_engine("constrained")

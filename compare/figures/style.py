@@ -99,7 +99,7 @@ RC: dict[Any, Any] = {
     "xtick.major.width": 0.7,
     "ytick.major.width": 0.7,
     "svg.fonttype": "none",
-    "pdf.fonttype": 42,  # TrueType, which editors of drawings can read
+    "pdf.fonttype": 3,  # outlines: TrueType takes longer to embed than all else to draw
     "path.simplify": True,
     "path.simplify_threshold": 0.5,  # points: half of the thinnest line
 }

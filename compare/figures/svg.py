@@ -9,6 +9,7 @@ drawing takes 22.
 import base64
 import io
 import re
+from hashlib import sha256
 
 from PIL import Image
 
@@ -16,6 +17,7 @@ from PIL import Image
 COUNTED = re.compile(
     r' id="(?:figure|axes|patch|line2d|text|legend|[xy]tick|matplotlib\.axis|[A-Z]\w+)_\d+"'
 )
+HASHED = re.compile(r"[A-Za-z]+[0-9a-f]{10}")
 USE = re.compile(r'(<use xlink:href="#([^"]+)"[^>]*?) style="([^"]*)"')
 PLACE = re.compile(r"([ML]) (-?[\d.]+(?:e-?\d+)?) (-?[\d.]+(?:e-?\d+)?) ?\n?")
 
@@ -30,10 +32,29 @@ def compact(svg: str, name: str) -> str:
     svg = re.sub(r"<[^>]+>", lambda match: re.sub(r"(\d\.\d\d)\d+", r"\1", match[0]), svg)
     svg = _without_overruled_styles(COUNTED.sub("", svg))
     svg = re.sub(r"image-rendering:[^;\"]*;?", "", svg)  # viewers smooth images unless told not to
-    svg = re.sub(rf'\bid="(?!{name})', f'id="{name}-', svg)
-    svg = re.sub(rf'(url\(#|href="#)(?!{name})', rf"\g<1>{name}-", svg)
+    svg = svg.replace(' transform="rotate(-0 ', ' transform="rotate(0 ')
+    svg = re.sub(r' transform="rotate\(0 [^"]*"', "", svg)
+    svg = _with_one_family(_with_own_ids(svg, name))
     svg = _without_bare_groups(re.sub(r"\s+\n|\n\s+", "\n", _without_repeated_ids(svg)))
     return re.sub(r'(?<=data:image/png;base64,)[^"]+', lambda match: _with_palette(match[0]), svg)
+
+
+def _with_own_ids(svg: str, name: str) -> str:
+    """Return an SVG whose ids begin with its name; those that matplotlib makes up are short."""
+    short = sha256(name.encode()).hexdigest()[:6]
+    ids = dict.fromkeys(re.findall(rf'\bid="(?!{name})([^"]+)"', svg))
+    own = {x: f"{short}{i}" if HASHED.fullmatch(x) else f"{name}-{x}" for i, x in enumerate(ids)}
+    return re.sub(r'(\bid="|url\(#|href="#)([^")]+)', lambda m: m[1] + own.get(m[2], m[2]), svg)
+
+
+def _with_one_family(svg: str) -> str:
+    """Return an SVG that names its fonts once where all its texts have the same."""
+    families = set(re.findall(r"font-family: ([^;\"]+)", svg))
+    if len(families) != 1:
+        return svg
+    (family,) = families
+    svg = svg.replace(f"font-family: {family}; ", "")
+    return svg.replace("<svg ", f'<svg font-family="{family}" ', 1)
 
 
 def _relative(path: str) -> str:

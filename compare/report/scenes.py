@@ -94,12 +94,9 @@ def solve(
             name: [along[_along(scene)].result() for scene in variants]
             for name, variants in loaded.items()
         }
-        drawings = begin(folder, _pictures(asked, comparisons, fields), executor)
-        tell([d.drawn for some in drawings.values() for d in some if d.drawn], DRAWN)
-    sections = [
-        make_section(folder, a, comparisons[a.name], [d.shown() for d in drawings[a.name]])
-        for a in asked
-    ]
+        shown = begin(folder, _pictures(asked, comparisons, fields), executor)
+        tell([one.files for some in shown.values() for one in some if one.files], DRAWN)
+    sections = [make_section(folder, a, comparisons[a.name], shown[a.name]) for a in asked]
     return Solved(comparisons, sections)
 
 

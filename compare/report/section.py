@@ -43,16 +43,21 @@ class SceneRequest(NamedTuple):
 class Shown(NamedTuple):
     """A picture as it stands on the page.
 
-    folded : whether it stands in a fold. drawn : None where the same picture stands further up:
-    place, words : its id and what the link to it says.
+    folded : whether it stands in a fold. files : its drawing once it is written; None where the
+    same picture stands further up: place, words : its id and what the link to it says.
     """
 
     title: str
     caption: str
     folded: bool
-    drawn: Drawn | None
+    files: Future[Drawn] | None
     place: str = ""
     words: str = ""
+
+    @property
+    def drawn(self) -> Drawn | None:
+        """The drawing, waited for."""
+        return self.files.result() if self.files else None
 
 
 class Section(NamedTuple):
@@ -116,32 +121,17 @@ def draw(folder: Path, picture: SceneFigure) -> Drawn:
     return save(p.static, folder, p.name, p.title, p.table, p.caption, p.plot, png=False)
 
 
-class Drawing(NamedTuple):
-    """A picture whose files are being written, or the same picture further up in its place."""
-
-    picture: SceneFigure
-    drawn: Future[Drawn] | None
-    place: str = ""
-    words: str = ""
-
-    def shown(self) -> Shown:
-        """Wait for the files, and return how the picture stands on the page."""
-        p, drawn = self.picture, self.drawn.result() if self.drawn else None
-        return Shown(p.title, p.caption, p.folded, drawn, self.place, self.words)
-
-
 def begin(
     folder: Path, pictures: Iterable[tuple[SceneRequest, SceneFigure]], executor: Executor
-) -> dict[str, list[Drawing]]:
+) -> dict[str, list[Shown]]:
     """Let an executor write the pictures of scenes, none of the same numbers twice; return them by
     the scene's name."""
     known: dict[str, tuple[str, str]] = {}
-    found: dict[str, list[Drawing]] = {}
-    for request, picture in pictures:
-        first = known.get(picture.numbers)
-        known.setdefault(
-            picture.numbers, (f"{picture.name}-figure", f"{request.label}: {picture.title}")
-        )
-        drawn = None if first else executor.submit(draw, folder, picture)
-        found.setdefault(request.name, []).append(Drawing(picture, drawn, *(first or ())))
+    found: dict[str, list[Shown]] = {}
+    for request, p in pictures:
+        first = known.get(p.numbers, ())
+        known.setdefault(p.numbers, (f"{p.name}-figure", f"{request.label}: {p.title}"))
+        files = None if first else executor.submit(draw, folder, p)
+        shown = Shown(p.title, p.caption, p.folded, files, *first)
+        found.setdefault(request.name, []).append(shown)
     return found

@@ -6,17 +6,17 @@ from typing import Any
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from cases.schema.scene import Scene
+from compare.figures.blank import blank
 from compare.figures.charts import interactive
 from compare.figures.charts.chart import Subplot
 from compare.figures.charts.spacetime_data import Diagram, Diagrams
 from compare.figures.figure import SceneFigure
-from compare.figures.style import RC, WIDTH
+from compare.figures.style import WIDTH
 
 HEIGHT = 3.1  # inches
 LEFT, RIGHT, BETWEEN = 0.6, 0.15, 0.3  # inches beside the diagrams, and between two of them
@@ -69,9 +69,7 @@ def _caption(scene: Scene, variant: str, shown: Diagrams) -> str:
 
 
 def _figure(scene: Scene, shown: Diagrams) -> Figure:
-    with matplotlib.rc_context(RC):
-        figure = Figure(figsize=(WIDTH, HEIGHT))
-        FigureCanvasAgg(figure)
+    with blank(HEIGHT, laid_out=True) as figure:
         columns = max(len(shown.diagrams), 2)
         across = (WIDTH - LEFT - RIGHT - BETWEEN * (columns - 1)) / columns
         axes: list[Axes] = []

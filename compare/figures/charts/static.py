@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import NullLocator
 
+from compare.figures.blank import blank
 from compare.figures.charts.chart import Chart, ChartLine, Entry, Mark, Subplot
-from compare.figures.style import RC, WIDTH, Style
+from compare.figures.style import WIDTH, Style
 
 HEADING, ABSCISSA = 0.28, 0.48  # inches above each subplot, and below the lowest
 LEFT, RIGHT, BETWEEN = 0.95, 0.15, 0.9  # inches beside the subplots, and between two of them
@@ -24,9 +23,10 @@ MARK = "#5d6670"  # colour of vertical lines
 
 def draw(name: str, chart: Chart) -> Figure:
     """Return the figure; the group of a line in its SVG is called `name`-PART."""
-    with matplotlib.rc_context(RC):
-        columns, heights = max(map(len, chart.grid)), _heights(chart)
-        figure, axes = _laid_out(columns, heights, LEGEND + LEGEND_LINE * _depth(chart.legend))
+    columns, heights = max(map(len, chart.grid)), _heights(chart)
+    head = LEGEND + LEGEND_LINE * _depth(chart.legend)
+    with blank(head + sum(h + HEADING for h in heights) + ABSCISSA, laid_out=True) as figure:
+        axes = _axes(figure, columns, heights)
         depth, shared = len(chart.grid[0][0]), dict[str, Axes]()
         for i, row in enumerate(chart.grid):
             for j, cell in enumerate(row):
@@ -47,26 +47,22 @@ def draw(name: str, chart: Chart) -> Figure:
     return figure
 
 
-def _laid_out(columns: int, heights: list[float], head: float) -> tuple[Figure, np.ndarray]:
-    """Return a figure with rows of axes so many inches high, below `head` inches of legend.
+def _axes(figure: Figure, columns: int, heights: list[float]) -> np.ndarray:
+    """Return rows of axes so many inches high, at the foot of a figure.
 
     All is said in inches: to measure texts, as matplotlib's layouts do, takes a third of a drawing.
     """
-    height = head + sum(heights) + HEADING * len(heights) + ABSCISSA
-    across = (WIDTH - LEFT - RIGHT - BETWEEN * (columns - 1)) / columns
-    figure = Figure(figsize=(WIDTH, height))
-    FigureCanvasAgg(figure)
+    height, rows = figure.get_figheight(), len(heights)
     room = {
         "left": LEFT / WIDTH,
         "right": 1 - RIGHT / WIDTH,
         "bottom": ABSCISSA / height,
-        "top": 1 - (head + HEADING) / height,
+        "top": (ABSCISSA + sum(heights) + HEADING * (rows - 1)) / height,
         "hspace": HEADING / float(np.mean(heights)),
-        "wspace": BETWEEN / across,
+        "wspace": BETWEEN * columns / (WIDTH - LEFT - RIGHT - BETWEEN * (columns - 1)),
         "height_ratios": heights,
     }
-    axes = figure.subplots(len(heights), columns, squeeze=False, sharex=True, gridspec_kw=room)
-    return figure, axes
+    return figure.subplots(rows, columns, squeeze=False, sharex=True, gridspec_kw=room)
 
 
 def _depth(legend: dict[str, list[Entry]]) -> int:

@@ -4,22 +4,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import matplotlib
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from cases.partition.scene import partition_of
+from compare.figures.blank import blank
 from compare.figures.drawing import symbols
 from compare.figures.drawing.pulses import draw_pulse
 from compare.figures.drawing.rock_mass_actions import draw_actions
 from compare.figures.drawing.symbols import EDGE, INK, RECEIVER, ROCK
 from compare.figures.drawing.words import law_words
-from compare.figures.style import RC
 
 if TYPE_CHECKING:
     from cases.partition.blocks import Partition
@@ -62,11 +60,8 @@ def appearance(scene: RockMass) -> str:
 def figure_of(groups: list[Drawn]) -> Figure:
     """Return the drawings, one above the other, each with its loads over time and its legend."""
     heights = [_height(one) for one in groups]
-    width, height = WIDTH + BESIDE, sum(heights)
-    with matplotlib.rc_context(RC):
-        figure = Figure(figsize=(width, height))
-        FigureCanvasAgg(figure)
-        top = height
+    top = sum(heights)
+    with blank(top, WIDTH + BESIDE, laid_out=True) as figure:
         for i, (one, tall) in enumerate(zip(groups, heights, strict=True)):
             heading = f"({chr(97 + i)})  {one.words}" if len(groups) > 1 else ""
             _draw_row(figure, one, top, tall, heading)

@@ -6,19 +6,17 @@ from functools import partial
 from itertools import pairwise
 from typing import Any
 
-import matplotlib
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from cases.schema.scene import Scene
+from compare.figures.blank import blank
 from compare.figures.drawing import section, side
 from compare.figures.drawing.placement import HEIGHT, WIDTH
 from compare.figures.drawing.pulses import draw_pulse
 from compare.figures.drawing.words import law_words
 from compare.figures.figure import SceneFigure
-from compare.figures.style import RC
 from compare.figures.subplots import variant_names
 from compare.misfit.pairs import Comparison
 
@@ -90,9 +88,7 @@ def _figure(groups: list[tuple[str, Scene]]) -> Figure:
     heading = HEADING if len(groups) > 1 else 0.0
     width = WIDTH + section.WIDTH + GAP + LOAD_WIDTH
     height = len(groups) * (HEIGHT + heading)
-    with matplotlib.rc_context(RC):
-        figure = Figure(figsize=(width, height))
-        FigureCanvasAgg(figure)
+    with blank(height, width, laid_out=True) as figure:
         above = None
         for i, (words, scene) in enumerate(groups):
             bottom = height - (i + 1) * (HEIGHT + heading)

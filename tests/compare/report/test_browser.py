@@ -201,7 +201,7 @@ def _check_svg(content, beside):
 
 def _check_pdf(content, beside):
     assert content.startswith(b"%PDF") and content == beside.read_bytes()
-    assert b"/FontFile2" in content  # TrueType, embedded
+    assert b"/Type3" in content  # letters as embedded outlines
 
 
 def _check_csv(content, beside):

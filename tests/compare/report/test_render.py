@@ -64,7 +64,14 @@ def section(tmp_path, figure):
 
 def shown(drawn, folded=False):
     """Return a figure as it stands on the page."""
-    return Shown(drawn.title, drawn.caption, folded, drawn)
+    return Shown(drawn.title, drawn.caption, folded, done(drawn))
+
+
+def done(result):
+    """Return a future that has its result."""
+    future = Future()
+    future.set_result(result)
+    return future
 
 
 def test_numbers_of_a_chart_are_held_by_their_steps_and_come_back():
@@ -158,9 +165,7 @@ def test_no_picture_is_drawn_twice(page, section, figure, tmp_path):
     class Draws(Executor):
         def submit(self, work, folder, picture):
             drawn.append(picture.name)
-            done = Future()
-            done.set_result(figure(picture.name))
-            return done
+            return done(figure(picture.name))
 
     requests = [SceneRequest(PAPER / f"{name}.toml", "it", name) for name in ("fig-05", "fig-06")]
     tables = [pd.DataFrame({"a (m)": values}) for values in ([1.0], [1.0], [2.0])]
@@ -169,9 +174,7 @@ def test_no_picture_is_drawn_twice(page, section, figure, tmp_path):
     on_page = zip((requests[0], requests[1], requests[1]), pictures, strict=True)
     found = begin(tmp_path, on_page, Draws())
     assert drawn == ["first", "third"]
-    sections = [
-        section([], request=r, figures=[one.shown() for one in found[r.name]]) for r in requests
-    ]
+    sections = [section([], request=r, figures=found[r.name]) for r in requests]
     html = page(sections=sections)
     assert html.count("<figure id=") == 2 and 'id="second-figure"' not in html
     assert 'The same picture as <a href="#first-figure">fig. 5: A figure</a>.' in html
