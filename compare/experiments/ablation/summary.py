@@ -136,7 +136,9 @@ def sentences(found: list[Ablation]) -> list[str]:
             f"The dearest effect that changes nothing of the result is the {e.effect}: "
             f"{percent(e.share)} % of a step of {a.label}."
         )
-    if active:
+    if len(active) == 1:
+        said.append(f"The only one that changes it is {_of_effect(*active[0])}.")
+    elif active:
         dearest = max(active, key=lambda pair: pair[1].share)
         most = max(active, key=lambda pair: pair[1].misfit)
         least = min(active, key=lambda pair: pair[1].misfit)
@@ -157,5 +159,7 @@ def _of_sets(found: list[Ablation]) -> str:
 
 
 def _of_effect(a: Ablation, e: EffectCost) -> str:
-    share = f"{percent(e.share)} % of a step" if e.is_resolved("cost") else "nothing that shows"
+    share = "nothing that shows"
+    if e.is_resolved("cost"):
+        share = f"{percent(abs(e.share))} % of a step{' less with it' if e.share < 0 else ''}"
     return f"{e.effect} in {a.label} ({share}, misfit {percent(e.misfit)} % without)"

@@ -88,6 +88,15 @@ def test_sentences_have_the_numbers_of_the_extremes():
     assert "influential is joints that differ in set/one (nothing that shows, misfit 80.0 %" in some
 
 
+def test_a_sentence_says_what_costs_less_with_an_effect():
+    held = DAMPED._replace(cost=-2.0, share=-0.5)
+    _, some = sentences([FOUND[1]._replace(effects=[held])])
+    assert some == (
+        "The only one that changes it is dashpots in set/two, hard (50.0 % of a step less with it, "
+        "misfit 5.00 % without)."
+    )
+
+
 def test_table_has_the_dearest_first_and_says_why_an_effect_stays():
     found = table(FOUND)
     one, two = found.groups.values()
