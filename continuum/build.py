@@ -162,16 +162,9 @@ def _of_joints(joints: Interfaces, normal, shear) -> csr_matrix:
 def build_model(scene: Scene, discrete: Discrete, model: str, time: Clock) -> Model:
     """Return the constants of a scene in space, for a given clock."""
     p, body = discrete.properties, discrete.body
-    alpha = (p.mass_damping or 0.0) * time.dt / 2
     mass = body.communicator.total(body.mass)
     return Model(
-        rock=RockOperators(
-            stiffness=body.stiffness,
-            viscosity=body.viscosity,
-            mass=body.mass,
-            step_over_mass=step_over_mass(mass, time.dt, alpha),
-            decay=None if p.mass_damping is None else (1 - alpha) / (1 + alpha),
-        ),
+        rock=rock_operators(body, mass, time.dt, p.mass_damping),
         interfaces=discrete.joints,
         ends=build_ends(scene, p, body, model, time, mass),
         weight=weight_of(scene, body),
@@ -180,12 +173,14 @@ def build_model(scene: Scene, discrete: Discrete, model: str, time: Clock) -> Mo
     )
 
 
-def step_over_mass(mass: np.ndarray, dt: float, alpha: float) -> np.ndarray:
-    """Return dt / ((1 + alpha) m), s/kg; mass : of all processes together [freedoms], kg."""
-    found = zeros(mass.size)
+def rock_operators(body: Body, mass: np.ndarray, dt: float, damping: float | None) -> RockOperators:
+    """Return the rock of a body; mass : of all processes together [freedoms], kg; damping : of
+    mass-proportional damping, 1/s, None without."""
+    alpha, step = (damping or 0.0) * dt / 2, zeros(mass.size)
     # Nothing moves what has no mass: nodes of another process's cell beyond a joint.
-    np.divide(dt / (1 + alpha), mass, out=found, where=mass > 0)
-    return found
+    np.divide(dt / (1 + alpha), mass, out=step, where=mass > 0)
+    decay = None if damping is None else (1 - alpha) / (1 + alpha)
+    return RockOperators(body.stiffness, body.viscosity, body.mass, step, decay)
 
 
 def weight_of(scene: Scene | RockMass, body: Body) -> np.ndarray | None:

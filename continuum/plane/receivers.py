@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.sparse import csr_matrix, vstack
+from scipy.sparse import block_diag, csr_matrix, vstack
 
 from cases.partition.locate import contact_at
 from continuum.model import Receivers
@@ -104,22 +104,15 @@ def _joints(scene: RockMass, discrete: PlaneDiscrete) -> JointReaders | None:
     )
     # The second direction of jumps is to the right of the normal.
     per_area = read.multiply(1 / joints.area)
-    none = csr_matrix(read.shape)
-    traction = vstack([_beside(per_area, none), _beside(none, -per_area)])
+    traction = csr_matrix(block_diag([per_area, -per_area]))
     normal, right = across.matrices
-    return JointReaders(csr_matrix(traction), csr_matrix(vstack([read @ normal, -(read @ right)])))
+    return JointReaders(traction, csr_matrix(vstack([read @ normal, -(read @ right)])))
 
 
 def _along(corners: np.ndarray, x: np.ndarray) -> np.ndarray:
     """Return how far points [..., 2] are along facets with these ends [..., 2, 2]: 0 to 1."""
     start, along = corners[..., 0, :], corners[..., 1, :] - corners[..., 0, :]
     return ((x - start) * along).sum(axis=-1) / (along**2).sum(axis=-1)
-
-
-def _beside(left: csr_matrix, right: csr_matrix) -> csr_matrix:
-    from scipy.sparse import hstack
-
-    return csr_matrix(hstack([left, right]))
 
 
 def lagrange(nodes: np.ndarray, place: float) -> np.ndarray:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from cases.incident import free_field
 from cases.material.prestress import refuse_beyond_strength
-from continuum.build import critical_step, step_over_mass, weight_of
-from continuum.model import Ends, Model, RockOperators
+from continuum.build import critical_step, rock_operators, weight_of
+from continuum.model import Ends, Model
 from continuum.plane.drive import Drive, Entry
 from continuum.plane.loads import pushes
 from continuum.plane.receivers import receivers
@@ -39,7 +39,7 @@ def build_model(
 ) -> Model:
     """Return the constants of a rock mass, for a given clock; incident : of the waves, None: in
     intact rock."""
-    body, alpha = discrete.body, (scene.damping.alpha or 0.0) * time.dt / 2
+    body = discrete.body
     mass = body.communicator.total(body.mass)
     quiet = points_on(body, sides_that_are(scene, body, "quiet"))
     fixed = fixed_sides(scene, body, time)
@@ -51,13 +51,7 @@ def build_model(
     if loads or entry is not None:
         driven = Drive(body, time.dt, loads, entry)
     return Model(
-        rock=RockOperators(
-            stiffness=body.stiffness,
-            viscosity=body.viscosity,
-            mass=body.mass,
-            step_over_mass=step_over_mass(mass, time.dt, alpha),
-            decay=None if scene.damping.alpha is None else (1 - alpha) / (1 + alpha),
-        ),
+        rock=rock_operators(body, mass, time.dt, scene.damping.alpha),
         interfaces=discrete.joints,
         ends=Ends(None, None, fixed, dashpots, driven),
         weight=weight_of(scene, body),

@@ -4,28 +4,10 @@ Holds for one linear joint, with a dashpot or without, in undamped rock whose si
 through, and any number of plane waves that meet it after the start (`stack`).
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from functools import partial
 
 from compare.exact.rock_mass import stack_waves
-from compare.solvers.record import JOINTED, Answer, Rock, Solver, Words, thin
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from cases.schema.rock_mass import RockMass
-
-
-def applies(scene: RockMass) -> Answer:
-    """Return whether a scene is one of plane waves at one joint."""
-    return stack_waves.holds(scene, one=True)
-
-
-def solve(scene: RockMass) -> xr.Dataset:
-    """Return what the receivers of a scene record of its waves at the joint."""
-    return stack_waves.solve(scene, SOLVER.name)
-
+from compare.solvers.record import JOINTED, Rock, Solver, Words, thin
 
 SOLVER = Solver(
     name="oblique-joint",
@@ -34,7 +16,7 @@ SOLVER = Solver(
     dimension=2,
     words=Words(JOINTED, "joint at an angle, exact", "斜节理（精确解）"),
     line=thin("#d55e00", 8, (4.5, 8.5), (6, 2.4, 1.2, 2.4)),
-    applies=applies,
-    run=solve,
+    applies=partial(stack_waves.holds, one=True),
+    run=partial(stack_waves.solve, name="oblique-joint"),
     distances=stack_waves.DISTANCES,
 )

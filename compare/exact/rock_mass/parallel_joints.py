@@ -4,28 +4,10 @@ Holds for any parallel linear joints, with dashpots or without, in undamped rock
 leave through, and any number of plane waves that meet them after the start (`stack`).
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from functools import partial
 
 from compare.exact.rock_mass import stack_waves
-from compare.solvers.record import JOINTED, Answer, Rock, Solver, Words, thin
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from cases.schema.rock_mass import RockMass
-
-
-def applies(scene: RockMass) -> Answer:
-    """Return whether a scene is one of plane waves at several joints."""
-    return stack_waves.holds(scene, one=False)
-
-
-def solve(scene: RockMass) -> xr.Dataset:
-    """Return what the receivers of a scene record of its waves at the joints."""
-    return stack_waves.solve(scene, SOLVER.name)
-
+from compare.solvers.record import JOINTED, Rock, Solver, Words, thin
 
 SOLVER = Solver(
     name="parallel-joints",
@@ -34,7 +16,7 @@ SOLVER = Solver(
     dimension=2,
     words=Words(JOINTED, "parallel joints, exact", "平行节理（精确解）"),
     line=thin("#a83200", 8, (9, 18), (9, 2.4, 1.2, 2.4)),
-    applies=applies,
-    run=solve,
+    applies=partial(stack_waves.holds, one=False),
+    run=partial(stack_waves.solve, name="parallel-joints"),
     distances=stack_waves.DISTANCES,
 )

@@ -99,7 +99,7 @@ def test_it_says_why_it_does_not_hold(blocks, changes, reason):
 
 def test_it_holds_for_blocks_between_linear_joints_alone(blocks, joint, wave):
     def reason(**keys):
-        bed = joint(**LAW | {"spacing": 0.5, "dip": 0.0} | keys)
+        bed = joint(**LAW | {"spacing": 0.5, "dip": 0.0, "through": [0.0, 1.0]} | keys)
         return applies("block-lattice", blocks(joint_sets=[bed])).reason
 
     assert reason() == ""
