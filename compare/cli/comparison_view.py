@@ -19,15 +19,23 @@ HINT = "every distance, and what does not apply: --all; as JSON: --json"
 ANSWER = ["engine", "worst misfit", "of", "held against", "own error", "stepping", "verdict"]
 
 
-def show_comparisons(found: list[Comparison], every: bool, as_json: bool) -> None:
-    """Print where each engine stands; every : also all distances, and why a solution is missing."""
+def show_comparisons(
+    found: list[Comparison], every: bool, as_json: bool, reads: bool = False
+) -> None:
+    """Print where each engine stands; every : also all distances, and why a solution is missing.
+
+    reads : also what engineers read off the velocities of all solutions.
+    """
     if as_json:
-        print_json([_comparison_facts(c) for c in found])
+        read = [_readings(c) for c in found] if reads else [{}] * len(found)
+        print_json([_comparison_facts(c) | more for c, more in zip(found, read, strict=True)])
         return
     _show_answer(found, every)
     if every:
         for comparison in found:
             _show_distances(comparison)
+    if reads:
+        _show_readings(found)
 
 
 def _show_answer(found: list[Comparison], every: bool) -> None:
@@ -46,6 +54,24 @@ def _show_answer(found: list[Comparison], every: bool) -> None:
         files = [*files[: room - 1], f"{len(files) - room + 1} more curves"]
     for line in [*below, *files, *([hint] if hint else [])]:
         say(line, "dim" if line == hint else "")
+
+
+def _readings(comparison: Comparison) -> dict[str, Any]:
+    from compare.report.reading_table import reading_frame
+
+    return {"readings": reading_frame([comparison]).to_dict("records")}
+
+
+def _show_readings(found: list[Comparison]) -> None:
+    """Print peak velocities, Arias intensities, response spectra and speeds."""
+    from compare.report.reading_table import reading_frame, reading_table
+
+    header, groups = reading_table(reading_frame(found))
+    say("")
+    if groups:
+        show_numbers(header, groups)
+    else:
+        say("nothing to read: record.velocity or record.points is empty")
 
 
 def _engine_cells(engine: str, one: Standing, found: list[Comparison], several: bool) -> list[str]:

@@ -28,6 +28,7 @@ from compare.report import peers, tables
 from compare.report.cost import seconds
 from compare.report.findings.overview import mostly_dispersion
 from compare.report.overview import Overview, RankedScene
+from compare.report.reading_table import reading_frame
 from compare.report.render import Page, RockMasses, render
 from compare.report.scenes import ROCK_MASSES, Solved, asked_for, solve
 from compare.report.snapshots import make_snapshots
@@ -186,7 +187,8 @@ def _with_effects(page: Page, out: Path, pool: Pool, progress: Progress | None) 
 
 
 def write_comparisons(comparisons: list[Comparison], out: Path) -> None:
-    """Write the figure, the curves and the distances of one scene's variants into a folder.
+    """Write the figure, the curves, the distances and what is read off one scene's variants into a
+    folder.
 
     With curves of others also how they were aligned, as comparison-alignment.csv.
     """
@@ -194,5 +196,6 @@ def write_comparisons(comparisons: list[Comparison], out: Path) -> None:
     curves = curve_table(comparisons).reset_index()
     save(draw(name, by_solutions(comparisons)), folder, name, comparisons[0].scene.title, curves)
     write_csv(folder / f"{name}-misfits.csv", tables.distance_frame(comparisons))
+    write_csv(folder / f"{name}-readings.csv", reading_frame(comparisons))
     if any(comparison.besides for comparison in comparisons):
         write_csv(folder / f"{name}-alignment.csv", tables.alignment_frame(comparisons))

@@ -15,6 +15,7 @@ from compare.figures.figure import SceneFigure
 from compare.misfit.pairs import Comparison
 from compare.report import tables
 from compare.report.findings import Finding, findings
+from compare.report.reading_table import reading_frame, reading_table
 from compare.report.verdict import Standing, standings
 from compare.runs.output import write_csv
 
@@ -69,9 +70,11 @@ class Section(NamedTuple):
     toml: str
     figures: list[Shown]
     distances_file: Path
+    readings_file: Path
     findings: list[Finding]
     misfits: tables.Table
     distances: tables.Table
+    readings: tables.Table
     runs: tables.Table
     reasons: tables.Table
     standings: dict[str, Standing]
@@ -96,9 +99,11 @@ class Section(NamedTuple):
 def make_section(
     folder: Path, request: SceneRequest, comparisons: list[Comparison], figures: list[Shown]
 ) -> Section:
-    """Return the section of a scene's variants; write their distances into `folder`."""
+    """Return the section of a scene's variants; write its distances and what is read off into
+    `folder`."""
     scene = comparisons[0].scene
-    distances = folder / f"{request.name}-misfits.csv"
+    distances, readings = (folder / f"{request.name}-{x}.csv" for x in ("misfits", "readings"))
+    read = reading_frame(comparisons)
     return Section(
         request,
         scene.title,
@@ -106,9 +111,11 @@ def make_section(
         request.file.read_text(encoding="utf-8-sig"),
         figures,
         write_csv(distances, tables.distance_frame(comparisons)),
+        write_csv(readings, read),
         findings(request.number, comparisons) if request.number else [],
         tables.misfit_table(comparisons),
         tables.distance_table(comparisons),
+        reading_table(read),
         tables.run_table(comparisons),
         tables.reason_table(comparisons),
         standings(comparisons),

@@ -48,6 +48,9 @@ def compare(
     every: Annotated[
         bool, typer.Option("--all", help="Also every distance, and why a solution is missing.")
     ] = False,
+    reads: Annotated[
+        bool, typer.Option("--read", help="Also peak velocity, Arias intensity, spectra, speeds.")
+    ] = False,
     as_json: JsonOption = False,
 ) -> None:
     """Solve a scene by all that applies, and say how far each engine is from the finest of it.
@@ -106,7 +109,7 @@ def compare(
         from compare.report.report import write_comparisons
 
         write_comparisons(found, out)
-    comparison_view.show_comparisons(found, every, as_json)
+    comparison_view.show_comparisons(found, every, as_json, reads)
 
 
 class Style(StrEnum):

@@ -56,7 +56,7 @@ def section(tmp_path, figure):
     def make(findings, **changes):
         request = SceneRequest(PAPER / "fig-05.toml", "five", "fig-05")
         about = request, "Ends", "source", "toml"
-        one = Section(*about, [shown(figure("ends"))], file, findings, *[empty] * 4, {})
+        one = Section(*about, [shown(figure("ends"))], file, file, findings, *[empty] * 5, {})
         return one._replace(**changes)
 
     return make

@@ -1,0 +1,64 @@
+"""The table of what is read off the velocities: numbers of known pulses, in print and as JSON."""
+
+import json
+
+import numpy as np
+import pytest
+
+from cases.read import load_tables
+from compare.cli.comparison_view import show_comparisons
+from compare.engines import solve
+from compare.misfit.pairs import Comparison, measure
+from compare.report.reading_table import NUMBERS, reading_frame, reading_table
+
+
+@pytest.fixture(scope="module")
+def compared():
+    """A sine in a bar: v = p0 / (rho c), (v omega)^2 T / 2 of squared acceleration."""
+    scene = load_tables(
+        {
+            "title": "a bar",
+            "pillar": {"length": 60.0, "side": 0.5, "block": 0.5},
+            "rock": {
+                "density": 2000.0,
+                "equivalent_modulus": 2000.0 * 1000.0**2,
+                "equivalent_poisson": 0.25,
+            },
+            "load": {"shape": "sine", "amplitude": 1e6, "period": 0.01},
+            "time": {"duration": 0.06},
+            "record": {"velocity": [10.0, 30.0]},
+        }
+    )
+    results = {"images": solve("images", scene)}
+    return Comparison(scene, results, {}, measure(results))
+
+
+def test_a_sine_has_the_numbers_of_its_closed_forms(compared):
+    frame = reading_frame([compared])
+    assert list(frame["at"]) == ["10 m", "30 m"]
+    first = frame.iloc[1]
+    assert first["peak velocity (m/s)"] == pytest.approx(0.5, rel=1e-4)
+    squared = (0.5 * 200 * np.pi) ** 2 * 0.01 / 2
+    assert first["Arias intensity (m/s)"] == pytest.approx(np.pi / 19.62 * squared, rel=2e-4)
+    assert first["speed (m/s)"] == pytest.approx(1000.0, rel=1e-5)
+    assert np.isnan(frame.iloc[0]["speed (m/s)"])
+    assert 0.5 * 200 * np.pi < first["spectral acceleration (m/s2)"] < 4 * 0.5 * 200 * np.pi
+
+
+def test_the_table_is_printed_and_is_in_the_json(compared, capsys):
+    show_comparisons([compared], False, False, reads=True)
+    lines = capsys.readouterr().out.splitlines()
+    assert [" ".join(line.split()) for line in lines][-1].startswith("images 30 m 0.5 ")
+    assert all(name in "\n".join(lines) for name in NUMBERS)
+    show_comparisons([compared], False, True, reads=True)
+    (facts,) = json.loads(capsys.readouterr().out)
+    assert [row["at"] for row in facts["readings"]] == ["10 m", "30 m"]
+    assert facts["readings"][0]["speed (m/s)"] is None
+
+
+def test_nothing_is_read_where_no_velocity_is_recorded(compared, capsys):
+    silent = {name: result.isel(velocity_y=[]) for name, result in compared.results.items()}
+    nothing = compared.__class__(compared.scene, silent, {}, compared.rows)
+    assert not reading_table(reading_frame([nothing])).groups
+    show_comparisons([nothing], False, False, reads=True)
+    assert "nothing to read: record.velocity or record.points is empty" in capsys.readouterr().out
