@@ -2,18 +2,25 @@
 # Build sdist and wheel of the committed sources, install the wheel into an empty environment of $PYTHON (default python3) and
 # try it there, away from the repository. With Python 3.12 or newer on x86-64 Linux the continuum is installed by pip, too.
 set -eu
+umask 022  # modes of files are part of a wheel
 python=${PYTHON:-python3}
 root=$(git rev-parse --show-toplevel)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 SOURCE_DATE_EPOCH=$(git -C "$root" log -1 --format=%ct)
 export SOURCE_DATE_EPOCH
-git -C "$root" archive --prefix=source/ HEAD | tar x -C "$work"
+git -C "$root" -c tar.umask=022 archive --prefix=source/ HEAD | tar x -C "$work"
 "$python" -m venv "$work/build" "$work/env"
 "$work/build/bin/pip" install -q build
-(cd "$work/source" && umask 022 && "$work/build/bin/python" -m build -q --outdir "$root/dist" .)
+build() { (cd "$1" && "$work/build/bin/python" -m build -q --outdir "$2" .); }  # sources, into
+build "$work/source" "$root/dist"
 wheel=$(ls -t "$root"/dist/jointwave-*.whl | head -1)
-sha256sum "$wheel"
+sum=$(sha256sum <"$wheel")
+# Again from files of another time in another folder: the same, bit for bit.
+cp -r "$work/source" "$work/again"
+build "$work/again" "$work/dist"
+test "$sum" = "$(sha256sum <"$work/dist/$(basename "$wheel")")"
+echo "${sum%% *}  $(basename "$wheel")"
 extra=''
 if "$python" -c 'import sys; sys.exit(sys.version_info < (3, 12))'; then extra='[continuum]'; fi
 "$work/env/bin/pip" install -q "$wheel$extra" pytest

@@ -92,6 +92,7 @@ def render(page: Page, out: Path) -> str:
         "source": lambda name: Markup(_asset(environment, name)),
         "colour": lambda name: style(name).colour,
         "charts": charts,
+        "licences": licences,
     }
     environment.filters |= {
         "units": unbroken,
@@ -140,6 +141,21 @@ def charts() -> str:
     from plotly.offline import get_plotlyjs
 
     return held(get_plotlyjs())
+
+
+def licences(interactive: bool) -> dict[str, str]:
+    """Return the licence texts of what the page holds of others: the letters of its figures, and
+    plotly.js where it is `interactive`."""
+    from importlib.metadata import files
+
+    import matplotlib
+
+    fonts = Path(matplotlib.get_data_path(), "fonts", "ttf", "LICENSE_DEJAVU")
+    found = {"DejaVu, the letters of figures": fonts.read_text(encoding="utf-8")}
+    for file in files("plotly") or ():
+        if interactive and file.name == "LICENSE.txt" and ".dist-info" in str(file):
+            found["plotly.js, which draws the interactive figures"] = file.read_text()
+    return found
 
 
 def unbroken(text: str) -> str:

@@ -17,7 +17,7 @@ from compare.figures.export import Drawn
 from compare.figures.figure import SceneFigure
 from compare.report.findings import Finding
 from compare.report.overview import Overview
-from compare.report.render import Page, RockMasses, held_plot, render
+from compare.report.render import Page, RockMasses, held_plot, licences, render
 from compare.report.section import PAPER, SceneRequest, Section, Shown, begin
 from compare.report.tables import Table
 
@@ -149,6 +149,13 @@ def test_hard_cases_stand_with_their_margins_and_what_failed(page, figure):
 def test_a_page_without_charts_does_not_carry_what_draws_them(page, section):
     still = page(sections=[section([])])
     assert len(still) < 100_000 and 'id="held-charts"' not in still
+
+
+def test_a_page_holds_the_licences_of_what_it_holds_of_others(page, section):
+    assert "Bitstream Vera" in page(sections=[section([])])
+    texts = licences(interactive=True)
+    assert "Permission is hereby granted" in texts["plotly.js, which draws the interactive figures"]
+    assert len(texts) == 2 and len(licences(interactive=False)) == 1
 
 
 def test_a_file_that_is_not_there_is_an_error_not_a_dead_link(page, section, figure):
