@@ -67,6 +67,9 @@ def _of_joints(scene: Scene, p: Properties) -> Iterator[Effect]:
     damped, rayleigh = p.joint_time_constant is not None, scene.damping.rayleigh
     source = "damping.rayleigh" if rayleigh else "damping_ratio"
     yield Effect("dashpots", damped, f"{source} is given" if damped else "no damping_ratio")
+    stiffens = p.maximum_closure is not None
+    why = "maximum_closure is given" if stiffens else "no maximum_closure"
+    yield Effect("closure", stiffens, why)
     joints, barred, differ = len(p.tension), int((~p.tension).sum()), len(p.soft)
     yield Effect(
         "no tension",

@@ -67,7 +67,7 @@ def discretise(scene: Scene, model: str, dim: int | None = None, comm=None) -> D
     if prestress:
         carried = np.zeros((len(across.matrices), across.weight.size))
         carried[0] = prestress
-    return Discrete(p, motion, rock, body, across, interfaces(across, law, carried))
+    return Discrete(p, motion, rock, body, across, interfaces(across, law, carried, scene))
 
 
 def body_and_jumps(comm, mesh: Mesh, *asked, **named) -> tuple[Body, Jumps | None]:
@@ -117,7 +117,7 @@ def resolved_period(scene: Scene | RockMass) -> float:
 
 
 def critical_step_of(scene: Scene, discrete: Discrete, model: str) -> float:
-    """Return the critical step (s) with all joints closed, the stiffest state."""
+    """Return the critical step (s) with all joints closed, the stiffest state in reach."""
     p, body = discrete.properties, discrete.body
     springs = end_stiffness(scene, p, body, model)
     return critical_step(discrete, fixed_ends(scene, body), springs)
@@ -145,7 +145,7 @@ def operators(discrete: Discrete | PlaneDiscrete) -> tuple[csr_matrix, csr_matri
     if joints is None:
         return stiffness, viscosity
     law = joints.law
-    stiffness = stiffness + _of_joints(joints, law.normal_stiffness, law.shear_stiffness)
+    stiffness = stiffness + _of_joints(joints, joints.stiffest, law.shear_stiffness)
     if law.normal_viscosity is not None:
         dashpots = _of_joints(joints, law.normal_viscosity, law.shear_viscosity)
         viscosity = dashpots if viscosity is None else viscosity + dashpots

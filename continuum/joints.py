@@ -1,16 +1,24 @@
 """The joints that a model resolves, and their law at every quadrature point."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix, vstack
 
 from cases.material.calibrate import Properties
+from cases.material.closure import stress_in_reach
 from continuum.model import Interfaces
 from continuum.space.interface import Jumps
 from continuum.space.stencils import stencils
+from joints.closure import closure_stiffness
 from joints.law import Law, parts_of, table_of
 from joints.uniform import law
+
+if TYPE_CHECKING:
+    from cases.schema.rock_mass import RockMass
+    from cases.schema.scene import Scene
 
 #: Over an ordinary joint: the stiffness of one that differs from it in strength alone, where the
 #: homogenised bar holds it already. It makes the rock softer by a tenth of one joint.
@@ -57,7 +65,7 @@ def _excess(compliance: np.ndarray, regular: float) -> np.ndarray:
 
 
 def _fails(p: Properties, shears: bool) -> np.ndarray:
-    """Return which joints can open, slide or break, bool array [N - 1]."""
+    """Return which joints can open, slide, break or stiffen, bool array [N - 1]."""
     from joints.shear import UNLIMITED
 
     found = ~p.tension
@@ -65,8 +73,9 @@ def _fails(p: Properties, shears: bool) -> np.ndarray:
         found = found | (p.cohesion < UNLIMITED)
     elif shears and p.friction is not None:
         found = np.ones_like(found)
-    if p.tensile_strength is not None:
-        found = found | (p.tensile_strength < UNLIMITED)
+    for limit in (p.tensile_strength, p.maximum_closure):
+        if limit is not None:
+            found = found | (limit < UNLIMITED)
     return found
 
 
@@ -85,9 +94,14 @@ def joint_law(p: Properties, joints: Resolved, joint: np.ndarray, shears: bool) 
     )
 
 
-def interfaces(jumps: Jumps, law: Law, prestress: np.ndarray | None) -> Interfaces:
+def interfaces(
+    jumps: Jumps, law: Law, prestress: np.ndarray | None, scene: Scene | RockMass
+) -> Interfaces:
     """Return the joints of a model; prestress : [directions, q], Pa."""
-    jump = csr_matrix(vstack(jumps.matrices))
+    jump, stiffest = csr_matrix(vstack(jumps.matrices)), law.normal_stiffness
+    if law.maximum_closure is not None:
+        law = law._replace(rock_compliance=0.0)
+        stiffest = closure_stiffness(law, stress_in_reach(scene))
     return Interfaces(
         jump=jump,
         stencils=stencils(jump),
@@ -97,4 +111,5 @@ def interfaces(jumps: Jumps, law: Law, prestress: np.ndarray | None) -> Interfac
         table=table_of(law),
         parts=parts_of(law),
         prestress=prestress,
+        stiffest=stiffest,
     )

@@ -42,7 +42,8 @@ class Interfaces(NamedTuple):
     law : per unit area; parameters are one number or an array [q]. table, parts : the same as
         compiled code takes it.
     prestress : [directions, q], tractions (Pa) that every point and the rock between them carry at
-        u = 0; the gap is then short by the normal one over K_n; None without.
+        u = 0, where the gap is what the normal one makes of it; None without.
+    stiffest : K_n of joints that have closed as far as is in reach, Pa/m, one number or [q].
     """
 
     jump: csr_matrix
@@ -53,6 +54,7 @@ class Interfaces(NamedTuple):
     table: np.ndarray
     parts: Parts
     prestress: Any
+    stiffest: Any
 
 
 class Loaded(NamedTuple):

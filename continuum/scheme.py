@@ -106,11 +106,17 @@ def _costs(discrete: Discrete | PlaneDiscrete, many: float, few: int) -> tuple[f
 
 
 def _bends(discrete: Discrete | PlaneDiscrete) -> bool:
-    """Return whether joints open, slide or break."""
+    """Return whether joints open, slide, break or stiffen."""
     law = None if discrete.joints is None else discrete.joints.law
     return law is not None and any(
         part is not None
-        for part in (law.carries_tension, law.tensile_strength, law.cohesion, law.friction)
+        for part in (
+            law.carries_tension,
+            law.tensile_strength,
+            law.cohesion,
+            law.friction,
+            law.maximum_closure,
+        )
     )
 
 

@@ -52,15 +52,19 @@ def _beyond(scene: Scene, p: Properties) -> str:
 
 
 def _beyond_the_homogenised(p: Properties, shears: bool) -> str:
+    from joints.shear import UNLIMITED
+
     ordinary = np.setdiff1d(np.arange(p.block_count - 1), p.soft)
     if not p.tension[ordinary].all():
         return "a homogenised bar has no joints to open where tension is barred"
+    if p.maximum_closure is not None:
+        stiffens = p.maximum_closure < UNLIMITED
+        if stiffens[ordinary].any() or (p.excess_compliance[stiffens] == 0).any():
+            return "a homogenised bar has no ordinary joints to stiffen"
     if (p.excess_compliance < 0).any():
         return "a joint stiffer than the others cannot be added to the homogenised bar"
     if p.damps_alone.any():
         return "a homogenised bar cannot damp one ordinary joint by itself"
-    from joints.shear import UNLIMITED
-
     for strength in (p.cohesion if shears else None, p.tensile_strength):
         if strength is not None and (strength[ordinary] < UNLIMITED).any():
             return "a homogenised bar has no joints that slide or break"

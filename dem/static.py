@@ -10,6 +10,7 @@ some ln(1 / tolerance) / (omega dt) steps. Underwood, Dynamic relaxation, in: Co
 for Transient Analysis (1983).
 """
 
+from dataclasses import replace
 from math import sqrt
 from typing import Any, NamedTuple, Protocol
 
@@ -17,9 +18,13 @@ import numpy as np
 
 from cases.errors import SceneError
 from cases.material.calibrate import Properties
+from cases.material.closure import stress_in_reach
 from cases.sampling import Interpolation
 from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
+from joints.closure import closure_stiffness
+from joints.law import Law, parts_of
+from joints.normal import gap_under
 
 STEPS_BETWEEN_LOOKS = 10
 PATIENCE = 20  # a stall is a twentieth of the most steps without progress
@@ -73,11 +78,33 @@ def prestressed(scene: Scene, p: Properties) -> np.ndarray:
     has zero mean.
     """
     normal = scene.prestress.normal if scene.prestress else 0.0
-    u = np.append(0.0, np.cumsum(-normal / p.stiffness))
+    u = np.append(0.0, np.cumsum(gaps_under(p, normal)))
     half = normal / (2 * p.regular_stiffness)
     if scene.ends.end == "fixed":
         return u - u[-1] + half
     return u - half if scene.ends.start == "fixed" else u - u.mean()
+
+
+def gaps_under(p: Properties, stress: float | np.ndarray) -> np.ndarray:
+    """Return the gaps of joints whose springs carry a normal stress (Pa), or each its own, m."""
+    law = _springs(p)
+    return gap_under(law, parts_of(law), stress)
+
+
+def stiffest(scene: Scene, p: Properties) -> Properties:
+    """Return the numbers of a scene with its joints as stiff as they become within reach, dashpots
+    as they are; p itself where none stiffens."""
+    if p.maximum_closure is None:
+        return p
+    stiffness, eta = closure_stiffness(_springs(p), stress_in_reach(scene)), p.joint_time_constant
+    if eta is None:
+        return replace(p, stiffness=stiffness)
+    eta = eta * p.stiffness / stiffness
+    return replace(p, stiffness=stiffness, joint_time_constant=eta, time_constant=float(eta.max()))
+
+
+def _springs(p: Properties) -> Law:
+    return Law(p.stiffness, maximum_closure=p.maximum_closure, rock_compliance=p.rock_compliance)
 
 
 def since_prestress(

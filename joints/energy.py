@@ -1,16 +1,21 @@
 """The energy that a joint stores and dissipates, per unit area (J/m2)."""
 
+from joints.closure import closure_energy
 from joints.formula import formula
 from joints.normal import spring_traction
 
 
 @formula
 def elastic_energy(law, parts, gap, opening, ex, ez):
-    """Return the energy in the springs, half of traction times elastic displacement.
+    """Return the energy in the springs, half of traction times elastic displacement where they are
+    linear.
 
     gap, opening : m; ex, ez : elastic slip, m.
     """
-    energy = -0.5 * spring_traction(law, parts, gap, opening) * gap
+    t = spring_traction(law, parts, gap, opening)
+    energy = -0.5 * t * gap
+    if parts.closure and gap < 0.0:
+        energy = closure_energy(law, t)
     if parts.shear:
         energy = energy + 0.5 * law.shear_stiffness * (ex * ex + ez * ez)
     return energy

@@ -26,6 +26,8 @@ class Law(NamedTuple):
     cohesion, friction : c, Pa, and tan(phi); None where no joint slides.
     residual_cohesion : what slip leaves of the cohesion, Pa; None where it leaves all.
     tensile_strength, critical_opening : s_t, Pa, and w_c, m; None without softening.
+    maximum_closure, rock_compliance : d_m, m, of joints that stiffen, K at first; None without.
+        And what rock has of the compliance 1/K, m/Pa; None where it has none.
 
     A joint without a strength that others have is given `joints.shear.UNLIMITED`.
     """
@@ -40,6 +42,8 @@ class Law(NamedTuple):
     residual_cohesion: Any = None
     tensile_strength: Any = None
     critical_opening: Any = None
+    maximum_closure: Any = None
+    rock_compliance: Any = None
 
 
 class Parts(NamedTuple):
@@ -57,6 +61,7 @@ class Parts(NamedTuple):
     residual: bool
     limited: bool
     varied: bool
+    closure: bool
 
 
 class History(NamedTuple):
@@ -86,6 +91,7 @@ def parts_of(law: Law) -> Parts:
         residual=law.residual_cohesion is not None,
         limited=shear and (slip or no_tension or softening),
         varied=any(np.ndim(value) for value in law if value is not None),
+        closure=law.maximum_closure is not None,
     )
 
 
@@ -106,7 +112,7 @@ def law_of(table, j):
     """Return the law of joint j, of column 0 where all are alike: every parameter a number."""
     return Law(
         table[0, j], table[1, j], table[2, j], table[3, j], table[4, j],
-        table[5, j], table[6, j], table[7, j], table[8, j], table[9, j],
+        table[5, j], table[6, j], table[7, j], table[8, j], table[9, j], table[10, j], table[11, j],
     )  # fmt: skip
 
 

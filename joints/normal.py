@@ -1,6 +1,8 @@
 """Normal traction of a joint: spring, dashpot, softening, no tension."""
 
+from joints.closure import closure_traction, closure_under
 from joints.formula import formula
+from joints.shear import UNLIMITED
 from joints.softening import stiffness_left, strength_left
 
 
@@ -12,7 +14,7 @@ def normal_traction(law, parts, gap, gap_rate, opening):
 
     The total gap decides opening, equation (10); a force kept by increments would forget it.
     """
-    t = -law.normal_stiffness * gap
+    t = spring_alone(law, parts, gap)
     if parts.dashpots:
         t = t - law.normal_viscosity * gap_rate
     return _cut(law, parts, t, gap, opening)
@@ -21,7 +23,26 @@ def normal_traction(law, parts, gap, gap_rate, opening):
 @formula
 def spring_traction(law, parts, gap, opening):
     """Return the elastic part of t_n (Pa): what is stored, not dissipated."""
-    return _cut(law, parts, -law.normal_stiffness * gap, gap, opening)
+    return _cut(law, parts, spring_alone(law, parts, gap), gap, opening)
+
+
+@formula
+def spring_alone(law, parts, gap):
+    """Return the traction (Pa) of the spring whatever it can pull."""
+    t = -law.normal_stiffness * gap
+    if parts.closure:
+        closed = closure_traction(law, -gap if gap < 0.0 else 0.0)
+        t = closed if gap < 0.0 and law.maximum_closure < UNLIMITED else t
+    return t
+
+
+@formula
+def gap_under(law, parts, traction):
+    """Return the gap (m) at which the spring alone carries a traction (Pa), or gaps of many."""
+    if parts.closure:
+        pressed = 0.5 * (traction + abs(traction))
+        return (pressed - traction) / law.normal_stiffness - closure_under(law, pressed)
+    return -traction / law.normal_stiffness
 
 
 @formula

@@ -13,8 +13,9 @@ closed, one at its largest opening unloads, shear on the strength has not slippe
 from math import sqrt
 from typing import NamedTuple
 
+from joints.closure import closure_stiffness
 from joints.formula import formula
-from joints.normal import normal_traction
+from joints.normal import normal_traction, spring_alone
 from joints.shear import UNLIMITED, shear_strength, shear_traction
 from joints.softening import stiffness_left, strength_left
 
@@ -62,7 +63,9 @@ def tangent(law, parts, gap, gap_rate, slip, slip_rate, history, r):
 def normal_tangent(law, parts, gap, gap_rate, before, r):
     """Return d t_n / d gap (Pa/m) alone; before : the largest opening before this gap, m; the
     others as in `tangent`."""
-    t, slope = -law.normal_stiffness * gap, -law.normal_stiffness
+    t, slope = spring_alone(law, parts, gap), -law.normal_stiffness
+    if parts.closure and gap < 0.0:
+        slope = -closure_stiffness(law, t)
     if parts.dashpots:
         t, slope = t - law.normal_viscosity * gap_rate, slope - law.normal_viscosity * r
     if parts.softening:

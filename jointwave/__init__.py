@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from cases.kinds import AnyScene
     from cases.material.calibrate import Properties
+    from cases.material.closure import Closure
     from compare.experiments.fit.result import Fit
     from compare.experiments.planner.planner import Plan
     from compare.misfit.external import Curves
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "arias_intensity",
+    "bandis_closure",
     "compare",
     "deconvolve",
     "dispersion",
@@ -105,6 +107,17 @@ def properties(scene: AnyScene) -> Properties:
     from cases.material.calibrate import calibrate
 
     return calibrate(pillar_of(scene, "jointwave.properties"))
+
+
+def bandis_closure(roughness: float, wall_strength: float, rock_strength: float) -> Closure:
+    """Return initial aperture (m), normal stiffness (Pa/m) and maximum closure (m) of a joint from
+    its JRC, its JCS (Pa) and the uniaxial compressive strength of the rock (Pa).
+
+    Raises ValueError beyond what Bandis et al. (1983) measured.
+    """
+    from cases.material import closure
+
+    return closure.bandis_closure(roughness, wall_strength, rock_strength)
 
 
 def solvers(scene: AnyScene) -> dict[str, str]:

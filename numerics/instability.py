@@ -57,6 +57,6 @@ def _cause(scene: Scene | RockMass, time: Clock, critical: float, seen: Sighting
     if any(abs(one.amplitude or 0.0) > HUGE for one in scene.pulses):
         return "numbers grow beyond 1e308; take a smaller load.amplitude"
     return (
-        "joints open, close or slide within a step, or the scene goes beyond what the scheme can "
-        f"do; {'halve' if seen.key.endswith('fraction') else 'double'} {seen.key}"
+        "joints open, close, stiffen or slide within a step, or the scene goes beyond what the "
+        f"scheme can do; {'halve' if seen.key.endswith('fraction') else 'double'} {seen.key}"
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import sqrt
+from math import inf, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -95,6 +95,14 @@ class Properties(Strength):
         assert self.own_shear_stiffness is not None
         ordinary = np.setdiff1d(np.arange(self.block_count - 1), self.soft)
         return float(self.own_shear_stiffness[ordinary[0] if ordinary.size else 0])
+
+    @property
+    def rock_compliance(self) -> np.ndarray | None:
+        """What rock has of the compliance between rigid blocks [N - 1], m/Pa, at most all but a
+        billionth of it; None where no joint stiffens."""
+        if self.maximum_closure is None:
+            return None
+        return np.minimum(self.spacing / (self.intact_modulus or inf), (1 - 1e-9) / self.stiffness)
 
     @property
     def excess_compliance(self) -> np.ndarray:

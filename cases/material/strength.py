@@ -1,4 +1,4 @@
-"""The strength of every joint, from its own keys or those of [joints]."""
+"""The strength and the closure of every joint, from its own keys or those of [joints]."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ if TYPE_CHECKING:
     from cases.schema.joint import JointLaw
     from cases.schema.scene import Scene
 
-#: Strength (Pa) and opening (m) of a joint that never fails beside joints that do; its square is
-#: still a number.
+#: Strength (Pa) and opening (m) of a joint that never fails beside joints that do, and closure (m)
+#: of one that does not stiffen; its square is still a number.
 UNLIMITED = 1e100
 
 #: The keys of slip and of softening: without them no joint has that effect.
 SLIP = ("friction_angle", "cohesion", "residual_cohesion")
 SOFTENING = ("tensile_strength", "fracture_energy")
+CLOSURE = "maximum_closure"
 
 #: The parameters that act along a joint, which axial motion leaves out.
 ALONG = ("friction", "cohesion", "residual_cohesion")
@@ -27,11 +28,12 @@ ALONG = ("friction", "cohesion", "residual_cohesion")
 
 @dataclass(frozen=True)
 class Strength:
-    """The parameters of the joints' strength, the one list of them: float arrays [N - 1], each None
-    where no joint has it. They bear the names that the joint law gives them.
+    """The parameters of the joints' strength and closure, the one list of them: float arrays
+    [N - 1], each None where no joint has it. They bear the names that the joint law gives them.
 
     friction : tan of the friction angle. cohesion, residual_cohesion, tensile_strength : Pa.
     critical_opening : w_c = 2 G_c / sigma_t, at which softening has used up the strength, m.
+    maximum_closure : d_m, m.
     """
 
     friction: np.ndarray | None = None
@@ -39,6 +41,7 @@ class Strength:
     residual_cohesion: np.ndarray | None = None
     tensile_strength: np.ndarray | None = None
     critical_opening: np.ndarray | None = None
+    maximum_closure: np.ndarray | None = None
 
     def strengths(
         self, shears: bool = True, joint: np.ndarray | slice = np.s_[:]
@@ -60,12 +63,13 @@ def strength_of(laws: Sequence[JointLaw], which: np.ndarray) -> Strength:
     """Return the strength of joints, of which each has the law `which` (int array [n]) of `laws`.
 
     Beside joints that slip, one without friction and cohesion of its own has a cohesion without
-    limit; beside joints that break, one without tensile strength likewise.
+    limit; beside joints that break, one without tensile strength likewise, and beside joints that
+    stiffen one that closes linearly.
     """
-    keys = (*SLIP, *SOFTENING)
+    keys = (*SLIP, *SOFTENING, CLOSURE)
     if all(getattr(law, key) is None for law in laws for key in keys):
         return Strength()
-    angle, cohesion, residual, limit, energy = (
+    angle, cohesion, residual, limit, energy, closure = (
         np.array([_number(getattr(law, key)) for law in laws])[which] for key in keys
     )
     slips = ~(np.isnan(angle) & np.isnan(cohesion))
@@ -77,6 +81,7 @@ def strength_of(laws: Sequence[JointLaw], which: np.ndarray) -> Strength:
         residual_cohesion=_where_given(residual, np.where(np.isnan(residual), whole, residual)),
         tensile_strength=_where_given(limit, np.nan_to_num(limit, nan=UNLIMITED)),
         critical_opening=_where_given(limit, np.nan_to_num(2 * energy / limit, nan=UNLIMITED)),
+        maximum_closure=_where_given(closure, np.nan_to_num(closure, nan=UNLIMITED)),
     )
 
 

@@ -32,6 +32,8 @@ def _of_joints(scene: RockMass) -> Iterator[Effect]:
         yield Effect("dashpots", True, "damping.rayleigh is given")
     else:
         yield _of_sets("dashpots", damped, "damping_ratio is given", "no damping_ratio")
+    stiffens = [one for one in scene.joint_sets if one.maximum_closure is not None]
+    yield _of_sets("closure", stiffens, "maximum_closure is given", "no maximum_closure")
     barred = [one for one in scene.joint_sets if one.tension is False]
     yield _of_sets("no tension", barred, "tension = false", "every joint carries tension")
     slips = [s for s in scene.joint_sets if s.friction_angle is not None or s.cohesion is not None]

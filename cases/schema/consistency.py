@@ -121,7 +121,7 @@ def _beyond_scaling(scene: Scene) -> Iterator[tuple[str, object, bool]]:
     laws: dict[str, JointLaw] = {"joints": scene.joints}
     laws |= {f"soft_layers[{i}]": layer for i, layer in enumerate(scene.soft_layers)}
     for table, law in laws.items():
-        for key in ("tensile_strength", "cohesion"):
+        for key in ("tensile_strength", "cohesion", "maximum_closure"):
             yield f"{table}.{key}", getattr(law, key), getattr(law, key) is not None
 
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from cases.schema.scene import Scene
 
 #: What the law of a joint has and a layer of rock has not.
-STRENGTH = ("tension", "tensile_strength", "friction_angle", "cohesion")
+STRENGTH = ("tension", "tensile_strength", "friction_angle", "cohesion", "maximum_closure")
 
 
 def check_discretisation(scene: Scene) -> None:

@@ -13,6 +13,7 @@ class JointLaw(Table):
     """What one joint can do. Keys that are absent leave their effect out of the computation."""
 
     normal_stiffness: Positive | None = None  #: Pa/m, the joint's own K_n; absent: from (4)
+    maximum_closure: Positive | None = None  #: m, d_m: a joint that closes stiffens, from K_n on
     shear_stiffness: Positive | None = None  #: Pa/m, the joint's own K_s; absent: from (7)
     tension: bool | None = None  #: False: a joint that would be pulled apart carries nothing (10)
     damping_ratio: NonNegative | None = None  #: zeta; dashpot c_n = 2 zeta sqrt(m k_n)

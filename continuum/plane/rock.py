@@ -89,7 +89,7 @@ def discretise(scene: RockMass, model: str, comm=None) -> PlaneDiscrete:
         return found
     own = contact_law(resolved, found, between.joint)
     carried = _carried(scene, found, between.joint)
-    return found._replace(jumps=between, joints=interfaces(between, own, carried))
+    return found._replace(jumps=between, joints=interfaces(between, own, carried, scene))
 
 
 def _mesh(scene: RockMass, partition: Partition, across: list[Across]):

@@ -10,7 +10,13 @@ if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
 
 #: Keys of a joint set that the effective medium has no room for.
-NONLINEAR = ("friction_angle", "cohesion", "tensile_strength", "damping_ratio")
+NONLINEAR = (
+    "friction_angle",
+    "cohesion",
+    "tensile_strength",
+    "maximum_closure",
+    "damping_ratio",
+)
 
 
 def applies(scene: RockMass, model: str = "jointed") -> str:

@@ -5,10 +5,11 @@ that the law does not have are None. With the jump operator B (displacements to 
 and the traction t (compression positive, on the far side) the force on the freedoms is B^T W t.
 """
 
+from joints.closure import closure_energy
 from joints.energy import fracture_energy_spent, friction_work
 from joints.formula import formula
 from joints.law import History, law_of
-from joints.normal import normal_traction, spring_traction
+from joints.normal import gap_under, normal_traction, spring_traction
 from joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
 from joints.tangent import tangent
 
@@ -38,7 +39,7 @@ def joint_loads(
             law = law_of(table, q)
         gap, gap_rate = jump[0, q], 0.0
         if prestress is not None:
-            gap -= prestress[0, q] / law.normal_stiffness
+            gap += gap_under(law, parts, prestress[0, q])
         if rate is not None:
             gap_rate = rate[0, q]
         widest = gap
@@ -98,15 +99,19 @@ def joint_loads(
 @formula
 def joint_energy(parts, directions, table, area, prestress, jump, opening, slide, loads):
     """Return the elastic energy of the joints, half of their forces times elastic displacements
-    less what prestressed rock gives off as they open, and what opening them has spent, J."""
+    where they are linear, less what prestressed rock gives off as they open, and what opening them
+    has spent, J."""
     stored, spent = 0.0, 0.0
     for q in range(area.size):
-        gap, push = jump[0, q], loads[0, q]
+        gap, push, law = jump[0, q], loads[0, q], law_of(table, q if parts.varied else 0)
         if prestress is not None:
             stored += area[q] * prestress[0, q] * gap
-            gap -= prestress[0, q] / table[0, q if parts.varied else 0]
+            gap += gap_under(law, parts, prestress[0, q])
             push += area[q] * prestress[0, q]
-        stored -= 0.5 * push * gap
+        if parts.closure and gap < 0.0:
+            stored += area[q] * closure_energy(law, push / area[q])
+        else:
+            stored -= 0.5 * push * gap
         for d in range(1, directions):
             slip, push = jump[d, q], loads[d, q]
             if slide is not None:
@@ -116,7 +121,6 @@ def joint_energy(parts, directions, table, area, prestress, jump, opening, slide
                 slip -= slide[d - 1, q]
             stored -= 0.5 * push * slip
         if opening is not None:
-            law = law_of(table, q if parts.varied else 0)
             spent += area[q] * fracture_energy_spent(law, opening[q])
     return stored, spent
 
@@ -139,7 +143,7 @@ def joint_tangents(
         gap, gap_rate = jump[0, q], 0.0
         x, z, rate_x, rate_z, widest, left = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         if prestress is not None:
-            gap -= prestress[0, q] / law.normal_stiffness
+            gap += gap_under(law, parts, prestress[0, q])
         if opening is not None:
             widest = opening[q]
         if cohesion is not None:

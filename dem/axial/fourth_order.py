@@ -35,6 +35,7 @@ from dem.axial.springs import spring_forces
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State, state_at_rest
 from dem.size import refuse_large
+from dem.static import stiffest
 from joints.energy import elastic_energy
 from joints.law import law_of
 from numerics.denormals import flush_tiny, restore_tiny
@@ -95,7 +96,7 @@ def build(scene: Scene) -> tuple[Model, State, Clock, float]:
     The model at an instant has a step of no length, and the load at whole steps.
     """
     p, numerics, ends = calibrate(scene), scene.numerics.dem, (scene.ends.start, scene.ends.end)
-    critical = stability_limit() / 2 * critical_chain_step(p, *ends)
+    critical = stability_limit() / 2 * critical_chain_step(stiffest(scene, p), *ends)
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
     refuse_large(scene, time, stages=1 + len(EDGES))
     at_steps = time.dt * np.arange(time.steps + time.stride)

@@ -12,6 +12,7 @@ from dem.axial.ends import End, build_end
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State, state_at_rest
 from dem.size import refuse_large
+from dem.static import stiffest
 from joints.law import Law, Parts, parts_of, table_of
 from joints.uniform import law
 
@@ -83,7 +84,7 @@ class Model(NamedTuple):
 def build(scene: Scene) -> tuple[Model, State, Clock, float]:
     """Return the model, the unloaded state at rest, the clock and the critical step (s)."""
     p = calibrate(scene)
-    critical = critical_chain_step(p, scene.ends.start, scene.ends.end)
+    critical = critical_chain_step(stiffest(scene, p), scene.ends.start, scene.ends.end)
     numerics = scene.numerics.dem
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
     refuse_large(scene, time)
@@ -140,7 +141,8 @@ def unloaded(scene: Scene, p: Properties, dt: float, ends: tuple[str, str]) -> M
 def law_of_joints(p: Properties) -> Law:
     """Return the law of the joints along the axis, per unit area."""
     strengths = p.strengths(shears=False)
-    return law(p.stiffness, p.joint_time_constant, p.tension, **strengths)
+    rock = p.rock_compliance
+    return law(p.stiffness, p.joint_time_constant, p.tension, rock_compliance=rock, **strengths)
 
 
 def with_mass_damping(model: Model, alpha: float) -> Model:

@@ -11,7 +11,7 @@ from dem.axial.model import Model, unloaded, with_mass_damping
 from dem.axial.springs import spring_forces
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State
-from dem.static import Rest, settle
+from dem.static import Rest, gaps_under, settle, stiffest
 from numerics.jit import jitted
 
 STEP_FRACTION = 0.9  # of the critical step: only where it ends counts
@@ -56,7 +56,7 @@ class Relaxation:
         start, end = (
             kind if kind == "fixed" else "free" for kind in (scene.ends.start, scene.ends.end)
         )
-        dt = STEP_FRACTION * critical_chain_step(p, start, end)
+        dt = STEP_FRACTION * critical_chain_step(stiffest(scene, p), start, end)
         model = unloaded(scene, p, dt, (start, end))
         if not weighed:
             model = model._replace(chain=model.chain._replace(weight=0.0))
@@ -65,7 +65,7 @@ class Relaxation:
             gap_rate=None, work=None, last_force=None, viscous=None, behind=None, dashpot_force=None
         )
         self.prestress = scene.prestress.normal * p.area if scene.prestress else 0.0
-        self.stiffness = p.stiffness * p.area
+        self.properties, self.stiffness = p, p.stiffness * p.area
         self.mass = np.full(p.block_count, p.block_mass)
         self.scale = max(abs(self.chain.weight) * p.block_count, abs(self.prestress))
         self.most_steps = 10_000 + 1000 * p.block_count
@@ -102,7 +102,7 @@ class Relaxation:
         that give way the displacement has zero mean.
         """
         s, forces = self.state, self.elastic_forces(weight)
-        gaps = -forces[1:-1] / self.stiffness
+        gaps = gaps_under(self.properties, forces[1:-1] / self.chain.area)
         u = np.append(0.0, np.cumsum(gaps))
         shift = -u.mean()
         if self.ends[0]:

@@ -15,7 +15,8 @@ from dem.blocks.joints import Columns, columns
 from dem.blocks.links import Links, links_of
 from dem.blocks.model import Blocks, Contacts, PlaneForm, contacts_of
 from dem.blocks.stability import critical_plane_step
-from joints.law import parts_of
+from joints.law import Law, parts_of
+from joints.normal import gap_under
 
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
@@ -105,8 +106,7 @@ def contacts(blocks: RigidBlocks) -> Contacts:
         return found
     traction = links.normal @ np.array([[stress.xx, stress.xy], [stress.xy, stress.yy]])
     along = np.stack([-links.normal[:, 1], links.normal[:, 0]], axis=1)
-    carried = [(traction * axis).sum(axis=1) for axis in (links.normal, along)]
-    stiffness = (values[links.column] for values in (own.normal, own.shear))
-    return found._replace(
-        start=np.stack([-t / k for t, k in zip(carried, stiffness, strict=True)], axis=1)
-    )
+    t_n, t_s = ((traction * axis).sum(axis=1) for axis in (links.normal, along))
+    law = Law(*(x[links.column] if np.ndim(x) else x for x in own.law))
+    gap, slip = gap_under(law, parts_of(law), t_n), -t_s / own.shear[links.column]
+    return found._replace(start=np.stack([gap, slip], axis=1))

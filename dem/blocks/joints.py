@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from cases.material.closure import stress_in_reach
 from cases.material.contact_points import CUT, points_of
 from cases.material.dashpots import set_time_constants
 from cases.material.rigid_blocks import RigidJoints
 from cases.material.strength import strength_of
 from cases.schema.joint import JointLaw
+from joints.closure import closure_stiffness
 from joints.law import Law
 from joints.uniform import law, uniform
 
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 class Columns(NamedTuple):
     """The law in its columns, and K_n and K_s of each [columns], Pa/m, as they are.
 
+    stiffest : K_n of joints that have closed as far as is in reach [columns], Pa/m.
     time_constants : viscosity over stiffness, normal and in shear [2, columns], s; None without
     dashpots. rules : places over length from the centre and weights of points [1, 2, points] or
     [columns, 2, points].
@@ -32,6 +35,7 @@ class Columns(NamedTuple):
     law: Law
     normal: np.ndarray
     shear: np.ndarray
+    stiffest: np.ndarray
     time_constants: np.ndarray | None
     rules: np.ndarray
     points: int
@@ -50,14 +54,24 @@ def columns(scene: RockMass, joints: RigidJoints, others: Stiffness) -> Columns:
     tension = np.ones(len(normal), dtype=bool)
     tension[: len(sets)] = [one.tension is not False for one in sets]
     strengths = strength_of([*sets, JointLaw()], which).strengths()
-    found = law(normal, None, tension, shear_stiffness=shear, **strengths)
+    stiffens, rock = strengths["maximum_closure"] is not None, None
+    if stiffens:
+        rock = np.zeros(len(normal))
+        rock[: len(sets)] = np.minimum(
+            joints.excess[0, : len(sets)], (1 - 1e-9) / normal[: len(sets)]
+        )
+    found = law(normal, None, tension, shear_stiffness=shear, rock_compliance=rock, **strengths)
     eta = _time_constants(scene, normal, shear)
     if eta is not None:
         viscosities = (uniform(values) for values in (eta[0] * normal, eta[1] * shear))
         found = found._replace(**dict(zip(VISCOSITIES, viscosities, strict=True)))
     fails = not tension.all() or any(values is not None for values in strengths.values())
     rules = _rules(scene, len(normal))
-    return Columns(found, normal, shear, eta, rules, rules.shape[2] if fails else 0)
+    stiffest = closure_stiffness(found, stress_in_reach(scene)) if stiffens else normal
+    points = rules.shape[2] if fails else 0
+    return Columns(
+        found, normal, shear, np.broadcast_to(stiffest, normal.shape), eta, rules, points
+    )
 
 
 VISCOSITIES = ("normal_viscosity", "shear_viscosity")

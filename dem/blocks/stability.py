@@ -1,9 +1,10 @@
 """The critical step of a rock mass of rigid blocks, with dashpots and what holds its sides.
 
 The bound of `cases.material.rigid_step`, block by block, on stiffness and damping together. Slip
-and opening only take stiffness away. Dashpots of quiet sides take the mean velocity of a step and
-change no bound, nor does mass-proportional damping; local damping alpha makes forces that turn a
-velocity round 1 + alpha times as large.
+and opening only take stiffness away; joints that stiffen are as stiff as in the stiffest state in
+reach. Dashpots of quiet sides take the mean velocity of a step and change no bound, nor does
+mass-proportional damping; local damping alpha makes forces that turn a velocity round 1 + alpha
+times as large.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from joints.stability import critical_step
 def critical_plane_step(links: Links, columns: Columns, inertia: Inertia, local: float) -> float:
     """Return a lower bound of the critical step, s; local : Cundall's damping."""
     count, eta = len(inertia.mass), columns.time_constants
-    own = _stiffness(links, columns, (columns.normal, columns.shear), count)
+    own = _stiffness(links, columns, (columns.stiffest, columns.shear), count)
     damping = None
     if eta is not None:
         damping = _stiffness(

@@ -72,7 +72,7 @@ def energy_terms(scene: Scene, p: Properties) -> tuple[str, ...]:
 
 
 def _is_nonlinear(p: Properties) -> bool:
-    limits = (p.friction, p.cohesion, p.tensile_strength)
+    limits = (p.friction, p.cohesion, p.tensile_strength, p.maximum_closure)
     return not p.tension.all() or any(limit is not None for limit in limits)
 
 
@@ -115,6 +115,7 @@ def build_law(p: Properties) -> Law:
         p.joint_time_constant,
         p.tension,
         shear_stiffness=p.shear_stiffness,
+        rock_compliance=p.rock_compliance,
         **p.strengths(),
     )
 

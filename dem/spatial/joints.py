@@ -57,6 +57,7 @@ def law_at(table, i):
     return Law(
         table[i], table[L + i], table[2 * L + i], table[3 * L + i], table[4 * L + i],
         table[5 * L + i], table[6 * L + i], table[7 * L + i], table[8 * L + i], table[9 * L + i],
+        table[10 * L + i], table[11 * L + i],
     )  # fmt: skip
 
 

@@ -28,6 +28,7 @@ from dem.spatial.model import RowModel, RowState
 from dem.spatial.record import shooter, waveforms, with_breaks
 from dem.spatial.stability import critical_spatial_step, highest_speeds
 from dem.spatial.start import start
+from dem.static import stiffest
 from dem.time_loop import Run, followed, sighting, thread_count, versions
 from numerics.checkpoint import Keeper
 from numerics.divergence import guard, look
@@ -62,7 +63,8 @@ def prepare(scene: Scene) -> Prepared:
 def critical_step_of(scene: Scene, p: Properties) -> float:
     """Return the critical step of a scene, s."""
     face, ends = face_of(contact_points(scene)), scene.ends
-    return critical_spatial_step(p, face, (ends.start, ends.end), scene.motion.rotation != "none")
+    turns = scene.motion.rotation != "none"
+    return critical_spatial_step(stiffest(scene, p), face, (ends.start, ends.end), turns)
 
 
 def simulate_fields(

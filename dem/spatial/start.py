@@ -13,7 +13,7 @@ from dem.spatial.layout import LANES, STRIDE, packed, unpacked
 from dem.spatial.march import marcher
 from dem.spatial.model import RowModel, RowState
 from dem.spatial.stability import critical_spatial_step
-from dem.static import Rest, prestressed, settle
+from dem.static import Rest, prestressed, settle, stiffest
 from results.arrays import copied, fill
 
 NEVER = 1 << 60  # steps between samples where none are taken
@@ -53,7 +53,7 @@ class Relaxation:
         scene = _at_rest(scene, weighed)
         turns, face = scene.motion.rotation != "none", face_of(contact_points(scene))
         dt = STEP_FRACTION * critical_spatial_step(
-            p, face, (scene.ends.start, scene.ends.end), turns
+            stiffest(scene, p), face, (scene.ends.start, scene.ends.end), turns
         )
         self.blocks = p.block_count
         model = build_model(scene, p, Clock(dt, 1, 1))._replace(stride=NEVER)

@@ -52,7 +52,7 @@ def test_joints_that_all_carry_tension_one_by_one_change_nothing(pillar, waves):
         every = np.ones(built.interfaces.area.size, dtype=bool)
         law = built.interfaces.law._replace(carries_tension=every)
         jumps = discretise(scene, "jointed").jumps
-        return built._replace(interfaces=interfaces(jumps, law, None))
+        return built._replace(interfaces=interfaces(jumps, law, None, scene))
 
     assert np.array_equal(waves(scene, "jointed"), waves(scene, "jointed", change))
 

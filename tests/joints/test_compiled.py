@@ -12,11 +12,14 @@ from joints.tangent import Tangent, tangent
 N, DT = 64, 1e-5
 ELASTIC = Law(9e9, shear_stiffness=3e9)
 WHOLE = Law(9e9, 1e5, False, 3e9, 3e4, 1e6, 0.5, 1e5, 1e6, 1e-3)
+CLOSES = {"maximum_closure": 5e-4, "rock_compliance": 1e-11}
 LAWS = {
     "elastic": ELASTIC,
     "no tension": ELASTIC._replace(carries_tension=False),
     "friction": ELASTIC._replace(normal_viscosity=1e5, shear_viscosity=3e4, friction=0.5),
     "all of shear": WHOLE._replace(tensile_strength=None, critical_opening=None),
+    "closure": ELASTIC._replace(**CLOSES),
+    "all of softening, closure": WHOLE._replace(carries_tension=None, **CLOSES),
     "all of softening": WHOLE._replace(carries_tension=None),
 }
 

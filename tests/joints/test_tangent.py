@@ -8,8 +8,9 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from joints.closure import closing, closure_stiffness
 from joints.law import History, Law, law_of, parts_of, table_of, traction
-from joints.normal import normal_traction
+from joints.normal import normal_traction, spring_alone
 from joints.shear import shear_strength, shear_traction
 from joints.softening import stiffness_left, strength_left
 from joints.tangent import normal_tangent, tangent
@@ -20,7 +21,10 @@ SHARE = 1e-5  # step of a central difference, of the length over which the law b
 
 # What limits the shear traction, by letter: cohesion, friction, residual cohesion. None: no shear.
 SHEARS = (None, "", "c", "f", "cf", "cfr")
-COMBINATIONS = list(product(("", "dashpots"), ("ties", "no tension", "softening"), SHEARS))
+COMBINATIONS = [
+    *product(("", "dashpots"), ("ties", "no tension", "softening"), SHEARS),
+    *product(("", "dashpots"), ("closes", "closes, no tension", "closes, softening"), (None, "cf")),
+]
 
 
 def some(low, high):
@@ -38,7 +42,10 @@ def one_law(draw, dashpots, opens, shears):
     """Return a law of these parts, its history before a step, and the rate factor of the step."""
     k, eta, parts = 1e9 * draw(some(0.1, 10)), 1e-4 * draw(some(0.01, 10)), {}
     cohesion, before = 1e5 * draw(some(0, 2)), 0.0
-    if opens == "softening":
+    if "closes" in opens:
+        parts.update(maximum_closure=1e-4 * draw(some(0.1, 10)))
+        parts.update(rock_compliance=draw(some(0.01, 0.9)) / k)
+    if "softening" in opens:
         first, ductility = draw(some(0.01, 0.5)) * 1e-4, draw(some(1.1, 100))
         parts.update(tensile_strength=k * first, critical_opening=ductility * first)
         before = draw(some(0, 1.2)) * ductility * first
@@ -46,7 +53,7 @@ def one_law(draw, dashpots, opens, shears):
         parts.update(shear_stiffness=k / 3, shear_viscosity=k / 3 * eta if dashpots else None)
         wanted = {"cohesion": cohesion, "friction": draw(some(0, 2)), "residual_cohesion": cohesion}
         parts.update((name, value) for name, value in wanted.items() if name[0] in shears)
-    law = Law(k, k * eta if dashpots else None, False if opens == "no tension" else None, **parts)
+    law = Law(k, k * eta if dashpots else None, False if "no tension" in opens else None, **parts)
     slips = (0.0, 0.0) if shears is None else (1e-4 * draw(some(-1, 1)), 1e-4 * draw(some(-1, 1)))
     history = History(before, *slips, cohesion)
     return law, history, draw(st.sampled_from([0.0, 1e2, 2e5]))
@@ -90,7 +97,7 @@ class Step:
         if parts.softening:
             left = strength_left(law, opening)
             share = stiffness_left(law, opening) if gap > 0 else 1.0
-        free = -share * (law.normal_stiffness * gap + law.normal_viscosity * gap_rate)
+        free = share * (spring_alone(law, parts, gap) - law.normal_viscosity * gap_rate)
         signs = [gap > 0, t_n > 0, t_n == 0, free < -left * (1 + EPS)]
         if parts.softening:
             first = law.tensile_strength / law.normal_stiffness
@@ -110,6 +117,8 @@ def test_tangent_is_the_derivative(dashpots, opens, shears, data):
     Normal: the law is linear in the gap g but for s(k) / k, whose third derivative is below 6 / k^4
     of s_t w_c^2 / (w_c - w_0) <= 11 s_t w_c. Over a step of a share e of k (of |g| elsewhere)
     this truncates 11 e^2 of the tractions S that are added up, over k; round-off adds 2 eps S / h.
+    Closed: over (s_m + sigma) / k the hyperbola's slope k doubles, and its third derivative is
+    below 24 k (k / (s_m + sigma))^2, rock beside it or not: steps of e of that truncate 4 e^2 k.
     Shear: the direction of T* turns over |T*| / a, a = K_s + r C_s; its third derivative is below
     9 (a / |T*|)^3, so steps of e |T*| / a truncate 9 / 6 e^2 a, and round-off adds as before.
     """
@@ -120,6 +129,13 @@ def test_tangent_is_the_derivative(dashpots, opens, shears, data):
     viscosity = law.normal_viscosity or 0.0
     normal = law.normal_stiffness * abs(gap) + viscosity * abs(gap_rate)
     normal += viscosity * r * bend + (law.tensile_strength or 0.0)
+    curved, law_here = 0.0, step.point[0]
+    if law.maximum_closure is not None and gap < 0:
+        pressed, s_m = spring_alone(*step.point, gap), closing(law_here)[1]
+        steepest = closure_stiffness(law_here, pressed)
+        bend = min(bend, (s_m + pressed) / steepest)
+        normal += pressed + steepest * abs(gap)
+        curved = 4 * SHARE**2 * steepest
     steps, sums = [SHARE * bend], [normal, 0.0, 0.0]
     if law.shear_stiffness is not None:
         drag = law.shear_viscosity or 0.0
@@ -136,7 +152,9 @@ def test_tangent_is_the_derivative(dashpots, opens, shears, data):
         assume(all(step.branch(end) == step.branch(step.at) for end in ends))
         difference = (step.traction(ends[1]) - step.traction(ends[0])) / (ends[1] - ends[0])[i]
         bound = (11 * SHARE**2 * SHARE + 4 * EPS) * sums / h
-        if i:
+        if i == 0:
+            bound += curved * np.array([1, law.friction or 0.0, law.friction or 0.0])
+        else:
             bound[1:] += 1.5 * SHARE**2 * a
         assert (np.abs(difference - found[:, i]) <= bound).all()
 

@@ -11,8 +11,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.polynomial.legendre import leggauss
+from scipy.optimize import brentq
 
 from joints import energy, softening
+from joints.closure import closure_stiffness, closure_traction
 from joints.law import History, Law, law_of, parts_of, table_of, traction
 from joints.normal import spring_traction
 from joints.shear import UNLIMITED
@@ -56,12 +59,27 @@ def twin_holds(law, gap, opening):
     return law.carries_tension is not False and not twin_is_broken(law, opening)
 
 
+def twin_closure_traction(law, closure):
+    """Return sigma (Pa) where D = d + c sigma and sigma = k_ni d / (1 - d / d_m), by its root.
+
+    Bandis, Lumsden & Barton (1983). A millionth of 1 / k_ni is in c whatever the rock.
+    """
+    own = 1 / law.normal_stiffness - (law.rock_compliance or 0.0)
+    c, k = (law.rock_compliance or 0.0) + 1e-6 * own, 1 / (own * (1 - 1e-6))
+
+    def left(sigma):
+        return c * sigma + sigma / (k + sigma / law.maximum_closure) - closure
+
+    return brentq(left, 0.0, closure / c, xtol=1e-300, rtol=4 * np.finfo(float).eps)
+
+
 def twin_normal_traction(law, gap, gap_rate, opening=None):
     """Return t_n of a spring and a dashpot in parallel.
 
     An open joint that softened has its secant stiffness, and a dashpot less by the same factor.
     A joint that does not carry tension carries nothing when open, and never pulls: Guo & Li
-    (2002), equation (10); any other never pulls by more than the strength it has left.
+    (2002), equation (10); any other never pulls by more than the strength it has left. One with a
+    maximum closure stiffens as it closes.
     """
     stiffness, viscosity = law.normal_stiffness, law.normal_viscosity or 0.0
     if gap > 0:
@@ -69,7 +87,10 @@ def twin_normal_traction(law, gap, gap_rate, opening=None):
             return 0.0
         stiffness = twin_secant_stiffness(law, opening)
         viscosity *= stiffness / law.normal_stiffness
-    t = -stiffness * gap - viscosity * gap_rate
+    t = -stiffness * gap
+    if law.maximum_closure is not None and gap < 0:
+        t = twin_closure_traction(law, -gap)
+    t -= viscosity * gap_rate
     pull = 0.0 if law.carries_tension is False else twin_strength_left(law, opening)
     return max(t, -pull)
 
@@ -171,11 +192,26 @@ def twin_elastic_energy(
     if gap > 0:
         stiffness = twin_secant_stiffness(law, opening) if twin_holds(law, gap, opening) else 0.0
     normal = stiffness * gap**2 / 2
+    if law.maximum_closure is not None and gap < 0:
+        nodes, weights = leggauss(60)  # with the slope of the curve, from the traction's other side
+        normal = twin_closure_energy(law, twin_closure_traction(law, -gap), nodes, weights)
     return (
         normal
         if law.shear_stiffness is None
         else normal + law.shear_stiffness * (ex**2 + ez**2) / 2
     )
+
+
+def twin_closure_energy(law, sigma, nodes, weights):
+    """Return the area beside the curve, from 0 to sigma: that of sigma dD / dsigma, by Gauss in the
+    logarithm of 1 + sigma / s_m, in which it is smooth."""
+    own = 1 / law.normal_stiffness - (law.rock_compliance or 0.0)
+    c, k = (law.rock_compliance or 0.0) + 1e-6 * own, 1 / (own * (1 - 1e-6))
+    most = k * law.maximum_closure
+    whole = np.log1p(sigma / most)
+    z = whole * (nodes + 1) / 2
+    at, growth = most * np.expm1(z), most * np.exp(z)
+    return float(whole / 2 * weights @ (at * (c + 1 / (k * (1 + at / most) ** 2)) * growth))
 
 
 def twin_friction_work(law, ex_old, ez_old, ex, ez, dx, dz):
@@ -197,7 +233,14 @@ def twin_fracture_energy_spent(law, opening):
 
 # What limits the shear traction, by letter: cohesion, friction, residual cohesion. None: no shear.
 SHEARS = (None, "", "c", "f", "cf", "cr", "cfr")
-COMBINATIONS = list(product(("", "dashpots"), ("ties", "no tension", "softening"), SHEARS))
+OPENS = ("ties", "no tension", "softening")
+CLOSES = ("closes", "closes between rock")
+COMBINATIONS = [
+    *product(("", "dashpots"), OPENS, SHEARS),
+    *product(("", "dashpots"), CLOSES, (None, "cfr")),
+    ("dashpots", "closes, no tension", "f"),
+    ("dashpots", "closes, softening", "cf"),
+]
 
 
 @st.composite
@@ -209,7 +252,10 @@ def one_law(draw, dashpots, opens, shears):
         return np.array([round(draw(st.floats(low, high)), 9)])
 
     stiffness, parts = some(1e8, 1e11), {}
-    if opens == "softening":
+    if "closes" in opens:
+        parts["maximum_closure"] = some(1e-6, 1e-3)
+        parts["rock_compliance"] = some(0, 0.99) / stiffness if "rock" in opens else None
+    if "softening" in opens:
         parts["tensile_strength"] = some(1e3, 1e7)
         parts["critical_opening"] = some(1.1, 100) * parts["tensile_strength"] / stiffness
     if shears is not None:
@@ -218,7 +264,7 @@ def one_law(draw, dashpots, opens, shears):
         wanted["residual_cohesion"] = wanted["cohesion"] * some(0, 1)
         parts.update((name, value) for name, value in wanted.items() if name[0] in shears)
     eta = some(1e-9, 1e-3) if dashpots else None
-    return law(stiffness, eta, np.array([opens != "no tension"]), **parts)
+    return law(stiffness, eta, np.array(["no tension" not in opens]), **parts)
 
 
 @st.composite
@@ -248,6 +294,9 @@ def scales(one, gap, rate, slip, slip_rate, h):
     cohesion = one.cohesion or 0.0
     n = one.normal_stiffness * abs(gap) + (one.normal_viscosity or 0) * abs(rate)
     n += one.tensile_strength or 0.0
+    if one.maximum_closure is not None and gap < 0:  # what the last digit of the gap is worth
+        law = at_point(one)[0]
+        n += closure_stiffness(law, closure_traction(law, -gap)) * abs(gap)
     if one.shear_stiffness is None:
         return n, 0.0
     s = one.shear_stiffness * (abs(h.ex) + abs(h.ez) + abs(slip[0]) + abs(slip[1]))
@@ -291,7 +340,7 @@ def test_law_equals_its_twin(dashpots, opens, shears, data):
         h = after
 
 
-@pytest.mark.parametrize("opens", ["ties", "no tension", "softening"])
+@pytest.mark.parametrize("opens", [*OPENS, *CLOSES])
 @given(data=st.data())
 def test_energies_equal_their_twins(opens, data):
     """What is stored, slid away and broken, and whether anything is left to break."""
@@ -324,9 +373,10 @@ def test_unlike_joints_behave_as_if_alone(data):
         data.draw(one_law("dashpots", "ties", "")),
         data.draw(one_law("dashpots", "no tension", "cf")),
         data.draw(one_law("dashpots", "softening", "")),
+        data.draw(one_law("dashpots", "closes between rock", "cf")),
         data.draw(one_law("dashpots", "softening", "cfr")),
     ]
-    without = {"friction": 0.0, "carries_tension": True}
+    without = {"friction": 0.0, "carries_tension": True, "rock_compliance": 0.0}
     parts = {
         name: np.array(
             [
@@ -364,8 +414,8 @@ def test_alike_joints_become_one_number_and_absent_parts_none():
     )
     assert mixed.normal_stiffness.tolist() == [1, 2]
     assert mixed.normal_viscosity.tolist() == [0.5, 1]
-    assert law_of(table_of(mixed), 1) == Law(2.0, 1.0, 0.0, 4.0, 2.0, 0.0, 0.5, 0.0, 0.0, 0.0)
-    assert table_of(mixed).shape == (10, 2) and table_of(Law(9e9)).shape == (10, 1)
+    assert law_of(table_of(mixed), 1) == Law(2.0, 1.0, 0.0, 4.0, 2.0, 0.0, 0.5, *5 * [0.0])
+    assert table_of(mixed).shape == (12, 2) and table_of(Law(9e9)).shape == (12, 1)
     assert parts_of(mixed).varied and not parts_of(Law(9e9)).varied
     assert uniform(np.array([3.0, 3.0])) == 3.0
     assert uniform(None) is None

@@ -12,6 +12,7 @@ ALONG = {
     "no tension": {"joints.tension": False},
     "joints that differ": {"soft_layers": [{"y": 20.0, "spacing_stiffness": 4.375e8}]},
     "softening": {"joints.tensile_strength": 1e9, "joints.fracture_energy": 1e9},
+    "closure": {"joints.maximum_closure": 1e-3},
     "quiet end": {"ends.end": "quiet"},
     "matched end": {"ends.end": "matched"},
     "mass-proportional damping": {"damping.mass_proportional": 1.0},
@@ -37,6 +38,7 @@ IN_SPACE = {
     "slip": {"joints.friction_angle": 5.0, "joints.cohesion": 1e3},
     "no tension": {"joints.tension": False},
     "softening": {"joints.tensile_strength": 1e9, "joints.fracture_energy": 1e9},
+    "closure": {"joints.maximum_closure": 1e-3},
     "3 x 3 points (with slip)": {
         "joints.friction_angle": 30.0,
         "joints.cohesion": 1e12,

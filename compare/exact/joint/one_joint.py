@@ -27,7 +27,7 @@ from cases.schema.scene import Scene
 from compare.exact.bar.images import ENTERS
 from compare.exact.conditions import holds, static_stress
 from compare.exact.linear import errors, twins
-from compare.solvers.record import JOINTED, Answer, Rock, Solver, Words, no, thin
+from compare.solvers.record import JOINTED, YES, Answer, Rock, Solver, Words, no, thin
 from results.dataset import dataset
 
 HELD = ("prestress", "damped joints", "soft layers", "stiff layers")
@@ -52,12 +52,15 @@ def applies(scene: Scene) -> Answer:
         (bool((compliance < 0).any()), "the layer is stiffer than the ordinary joints"),
         (scene.ends.end not in ("quiet", "matched"), "the far end reflects"),
     )
-    if not answer or scene.ends.start != "free":
-        return answer
+    return answer if not answer else back_in_time(scene, the_joint(p).y, p.bar_speed)
+
+
+def back_in_time(scene: Scene, joint_y: float, speed: float) -> Answer:
+    """Return whether what a joint at y (m) reflects is back at no receiver by a free start."""
     nearest = min([*scene.record.stress, *scene.record.velocity])
-    back = (2 * the_joint(p).y + nearest) / p.bar_speed
-    if back >= scene.time.duration:
-        return answer
+    back = (2 * joint_y + nearest) / speed
+    if scene.ends.start != "free" or back >= scene.time.duration:
+        return YES
     return no(f"the free start sends the reflection back, to a receiver at {back:.4g} s")
 
 

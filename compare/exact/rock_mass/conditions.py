@@ -37,6 +37,8 @@ def beyond_linear_law(one: JointSet) -> str | None:
         return f"joint set {one.name!r} bars tension"
     if one.tensile_strength is not None:
         return f"joint set {one.name!r} has a tensile strength"
+    if one.maximum_closure is not None:
+        return f"joint set {one.name!r} stiffens as it closes"
     if one.friction_angle is not None or one.cohesion is not None:
         return f"joint set {one.name!r} can slip"
     return None

@@ -8,6 +8,7 @@ bound of the error.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -51,6 +52,10 @@ class StackMotion(NamedTuple):
     stress_error: np.ndarray
 
 
+#: Of (scene, stack, places [m, 2] (m), times (s)).
+Motion = Callable[["RockMass", JointStack, np.ndarray, np.ndarray], StackMotion]
+
+
 class JointReceivers(NamedTuple):
     """Places on joints [m, 2] (m), and the axes there [m, (n, s), 2]: the normal out of the block
     with the smaller number, and its left."""
@@ -71,15 +76,15 @@ def holds(scene: RockMass, one: bool) -> Answer:
     return no(reason) if reason else YES
 
 
-def solve(scene: RockMass, name: str) -> xr.Dataset:
-    """Return what the receivers of a scene record."""
+def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Dataset:
+    """Return what the receivers of a scene record; motion : in place of `motion_at`."""
     import xarray as xr
 
     stack, times = stack_of(scene), sample_times(scene)
     points, joints = point_receivers(scene, stack), joint_receivers(scene, stack)
     beside = _beside(stack) * joints.axes[:, 0]
     places = np.concatenate([points, joints.places - beside, joints.places + beside])
-    found = motion_at(scene, stack, places, times)
+    found = (motion or motion_at)(scene, stack, places, times)
     m, k = len(points), len(points) + len(joints.places)
     at_points, here, there = (
         StackMotion(*(x[part] for x in found))

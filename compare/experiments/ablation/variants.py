@@ -84,6 +84,7 @@ def _undamped(scene: AnyScene) -> AnyScene:
 WITHOUT: dict[str, Change] = {
     "dashpots": _undamped,
     "no tension": _joints(tension=None),
+    "closure": _joints(maximum_closure=None),
     "joints that differ": lambda scene: scene.model_copy(update={"soft_layers": []}),
     **{f"{kind} ends": _free("ends", kind) for kind in ("quiet", "matched", "fixed")},
     **{f"{kind} sides": _free("boundaries", kind) for kind in SIDES},

@@ -31,6 +31,7 @@ EVERYTHING = {
     "joints.residual_cohesion": 0.0,
     "joints.tensile_strength": 1e5,
     "joints.fracture_energy": 100.0,
+    "joints.maximum_closure": 1e-3,
     "soft_layers": [{"y": 0.5, "spacing_stiffness": 4.375e8}],
     "record.stress": [0.5],
     "damping.mass_proportional": 1.0,
@@ -56,7 +57,7 @@ EVERYTHING_IN_PLANE: dict[str, Any] = {
     "prestress": {"xx": 1e5, "yy": 1e5},
     "record": {"points": [[0.5, 0.5]]},
 }
-FRICTION = {"damping_ratio": 0.02, "friction_angle": 30.0, "cohesion": 1e6}
+FRICTION = {"damping_ratio": 0.02, "maximum_closure": 1e-3, "friction_angle": 30.0, "cohesion": 1e6}
 #: The joints along y and along x of that.
 FAILING = (
     ELASTIC | FRICTION | {"residual_cohesion": 0.0, "tension": False},

@@ -39,6 +39,13 @@ def _breaking() -> list[HardCase]:
         HardCase("softening just short of a snap-back", contact.whole_joints, tough, HOMOGENEOUS),
         HardCase("softening that snaps back", extremes.refused, brittle, HOMOGENEOUS),
         HardCase(mixed, energies.passive, {}, HOMOGENEOUS, scene=ALL),
+        HardCase(
+            f"{mixed}, closed to a hundredth of their compliance",
+            energies.passive,
+            {"joints.maximum_closure": 1e-6},
+            HOMOGENEOUS,
+            scene=ALL,
+        ),
         HardCase(f"the ledger of {mixed}", contact.ledger, {}, HOMOGENEOUS, scene=ALL),
     ]
 

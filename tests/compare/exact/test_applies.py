@@ -10,6 +10,7 @@ from compare.exact.blocks import lattice
 
 BARRED, DAMPED = {"joints": {"tension": False}}, {"joints": {"damping_ratio": 0.02}}
 LAYER = [{"y": 20.0, "spacing_stiffness": 4.375e8}]
+CLOSES = [LAYER[0] | {"maximum_closure": 2e-3}]
 STIFF = [{"y": 20.0, "spacing_stiffness": 4.375e10}]
 QUIET = {"ends": {"start": "quiet", "end": "quiet"}}
 STEP = {
@@ -45,6 +46,7 @@ YES = [
     ("series", {}),
     ("kelvin-voigt", DAMPED),
     ("one-joint", QUIET | {"soft_layers": LAYER}),
+    ("closing-joint", QUIET | {"soft_layers": CLOSES}),
     ("spatial-lattice", ACROSS | DAMPED | {"soft_layers": LAYER, "ends": {"end": "quiet"}}),
     ("slip-joint", SHEAR | {"soft_layers": SLIPS, "time": {"duration": 0.04}}),
     ("sliding-block", SLOPE),
@@ -96,6 +98,25 @@ NO = [
         {"soft_layers": LAYER, "ends": {"end": "quiet"}},
         "the free start sends the reflection back, to a receiver at 0.02963 s",
     ),
+    ("closing-joint", QUIET | {"soft_layers": LAYER}, "not exactly one joint stiffens"),
+    (
+        "closing-joint",
+        QUIET | {"joints": {"maximum_closure": 1e-3}},
+        "not exactly one joint stiffens",
+    ),
+    ("closing-joint", QUIET | DAMPED | {"soft_layers": CLOSES}, "the joints are damped"),
+    (
+        "closing-joint",
+        QUIET | {"soft_layers": [*CLOSES, {"y": 30.0, "spacing_stiffness": 4.375e8}]},
+        "another joint differs in stiffness",
+    ),
+    (
+        "closing-joint",
+        QUIET | {"soft_layers": [CLOSES[0] | {"maximum_closure": 1e-5}]},
+        "the joint becomes stiffer than the ordinary joints",
+    ),
+    ("closing-joint", {"soft_layers": CLOSES}, "the far end reflects"),
+    ("one-joint", QUIET | {"soft_layers": CLOSES}, "a joint stiffens as it closes"),
     ("spatial-lattice", {}, "the motion is axial: see lattice"),
     ("spatial-lattice", ACROSS | BARRED, "a joint bars tension"),
     ("spatial-lattice", ACROSS | {"soft_layers": SLIPS}, "a joint can slip"),
@@ -149,6 +170,7 @@ BEYOND = [
     (ACROSS, "the motion is spatial"),
     ({"load": {"direction": [0.0, -1.0, 0.0]}}, "the load acts against the axis"),
     ({"joints": BREAKS}, "a joint has a tensile strength"),
+    ({"joints": {"maximum_closure": 1e-3}}, "a joint stiffens as it closes"),
     ({"gravity": UP, "ends": {"end": "fixed"}}, "gravity acts"),
     ({"damping": {"mass_proportional": 1.0}}, "the damping is proportional to mass"),
     ({"damping": {"local": 0.1}}, "the damping is local, which is not linear"),

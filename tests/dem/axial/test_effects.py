@@ -190,6 +190,6 @@ def test_every_effect_is_a_flag(pillar):
     effects = build(scene)[0].effects
     along = Parts(
         dashpots=True, no_tension=True, softening=False, varied=True,
-        shear=False, slip=False, residual=False, limited=False,
+        shear=False, slip=False, residual=False, limited=False, closure=False,
     )  # fmt: skip
     assert effects == (along, True, True, True, True, True, True, False)

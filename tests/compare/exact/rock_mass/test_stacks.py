@@ -32,6 +32,7 @@ NO = [
 ]  # fmt: skip
 LAWS = [
     ({"tension": False}, "joint set 'joint' bars tension"),
+    ({"maximum_closure": 1e-3}, "joint set 'joint' stiffens as it closes"),
     ({"friction_angle": 30.0}, "joint set 'joint' can slip"),
     ({"cohesion": 1e6}, "joint set 'joint' can slip"),
     ({"tensile_strength": 1e5, "fracture_energy": 10.0},

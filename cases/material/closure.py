@@ -1,0 +1,118 @@
+"""Joints that stiffen as they close: their constants from roughness and strength, and how far
+they may close in a scene.
+
+Bandis, Lumsden & Barton, Int. J. Rock Mech. Min. Sci. 20, 249-268 (1983), and Barton, Bandis &
+Bakhtar, 22, 121-140 (1985), measured joints of JRC 5 to 15 and JCS 22 to 182 MPa. In their units,
+MPa and mm, of the third cycle of loading, to which joints in the ground are nearest:
+
+    a = JRC / 5 (0.2 sigma_c / JCS - 0.1),   k_ni = -7.15 + 1.75 JRC + 0.02 JCS / a,
+    d_m = -0.1032 - 0.0074 JRC + 1.135 (JCS / a)^-0.251.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from cases.loads import velocity_of
+from cases.schema.scene import Scene
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+    from cases.schema.pulse import Pulse
+    from cases.schema.rock_mass import RockMass
+
+SAMPLES = 10_001  # of a pulse, whose peak is looked for among them and its breaks
+
+
+class Closure(NamedTuple):
+    """Initial aperture, m; initial normal stiffness, Pa/m; maximum closure, m."""
+
+    aperture: float
+    normal_stiffness: float
+    maximum_closure: float
+
+
+def bandis_closure(roughness: float, wall_strength: float, rock_strength: float) -> Closure:
+    """Return the closure of a joint of JRC `roughness`, JCS `wall_strength` (Pa), in rock of
+    uniaxial compressive strength sigma_c `rock_strength` (Pa).
+
+    Raises ValueError beyond what was measured: JRC 5 to 15, JCS 22 to 182 MPa and at most sigma_c,
+    aperture 0.1 to 0.6 mm.
+    """
+    jcs, sigma_c = wall_strength / 1e6, rock_strength / 1e6
+    a = roughness / 5 * (0.2 * sigma_c / jcs - 0.1)
+    for name, value, least, most in (
+        ("JRC", roughness, 5.0, 15.0),
+        ("JCS, MPa,", jcs, 22.0, min(182.0, sigma_c)),
+        ("the aperture, mm,", a, 0.1, 0.6),
+    ):
+        if not least * (1 - 1e-9) <= value <= most * (1 + 1e-9):
+            raise ValueError(f"{name} is {value:g}, measured were {least:g} to {most:g}")
+    stiffness = -7.15 + 1.75 * roughness + 0.02 * jcs / a
+    closure = -0.1032 - 0.0074 * roughness + 1.135 * (jcs / a) ** -0.251
+    return Closure(1e-3 * a, 1e9 * stiffness, 1e-3 * closure)
+
+
+def stress_in_reach(scene: AnyScene) -> float:
+    """Return the normal stress (Pa) that the critical step lets joints stiffen up to.
+
+    What stands before anything acts, and twice the peaks of all that acts, as before a wall that
+    does not give way. Waves that gather in one place can exceed it: it bounds no run.
+    """
+    pulses = sum(_stress_of(one, scene) * _peak(one, scene.time.duration) for one in scene.pulses)
+    return _at_rest(scene) + 2 * pulses
+
+
+def _at_rest(scene: AnyScene) -> float:
+    """Return the stress of prestress and weight, twice that of a weight put on at once, Pa."""
+    if isinstance(scene, Scene):
+        stress = abs(scene.prestress.normal) if scene.prestress else 0.0
+        extent = scene.pillar.length
+    else:
+        given = scene.prestress
+        stress = 0.0 if given is None else _principal(given.xx, given.yy, given.xy)
+        extent = float(np.hypot(*np.ptp(np.array(scene.domain.corners), axis=0)))
+    if scene.gravity is None:
+        return stress
+    weight = scene.rock.density * scene.gravity.acceleration * extent
+    return stress + (1 if scene.gravity.static else 2) * weight
+
+
+def _principal(xx: float, yy: float, xy: float) -> float:
+    """Return the largest principal stress of a state in the plane, not below zero."""
+    return max(0.0, (xx + yy) / 2 + sqrt(((xx - yy) / 2) ** 2 + xy**2))
+
+
+def _peak(pulse: Pulse, duration: float) -> float:
+    """Return the largest magnitude of a pulse, of an acceleration that of its integral."""
+    history = velocity_of(pulse, pulse.amplitude)
+    times = np.linspace(0.0, min(duration, history.end) or duration, SAMPLES)
+    return float(np.abs(history.value(np.append(times, history.breaks))).max())
+
+
+def _stress_of(pulse: Pulse, scene: AnyScene) -> float:
+    """Return the stress in rock by a pulse of one: itself, that of a velocity by the impedance, of
+    a force over the least spacing of joints."""
+    if isinstance(scene, Scene) and pulse.quantity == "stress":
+        lever = sum(map(abs, scene.load.at)) + (scene.load.arm or 0.0)
+        return 1 + 6 * lever / scene.pillar.side  # at the edges of the section
+    if pulse.quantity == "stress":
+        return 1.0
+    if isinstance(scene, Scene):
+        from cases.material.calibrate import calibrate
+
+        modulus = scene.rock.intact_modulus or calibrate(scene).modulus
+        return sqrt(modulus * scene.rock.density)
+    if pulse.quantity == "force":
+        return 1 / _least_spacing(scene)
+    from cases.material.rock import elastic_rock
+
+    return float(elastic_rock(scene.rock).p_impedance)
+
+
+def _least_spacing(scene: RockMass) -> float:
+    extent = float(np.ptp(np.array(scene.domain.corners), axis=0).max())
+    return min((one.spacing for one in scene.joint_sets if one.spacing), default=extent)

@@ -1,0 +1,190 @@
+"""One joint that stiffens as it closes, between two half-spaces of rock, at normal incidence.
+
+The joint closes by e(s) under the normal stress s = sigma_T + prestress; with the impedance Z of
+the rock and the incident stress sigma_I (Zhao & Cai, Rock Mech. Rock Eng. 34, 2001)
+
+    (Z / 2) e'(s) sigma_T' = sigma_I - sigma_T,   sigma_R = sigma_T - sigma_I
+
+with the hyperbola of Bandis et al. (1983) e' = 1 / (k_ni (1 + s / (k_ni d_m))^2), and 1 / k_ni
+where s pulls, each less the compliance that the rock has without this joint. What passes is
+integrated by Runge-Kutta of order 8 (Dormand & Prince) from break to break of the load: the
+equation forgets its errors, and a run of a thousandth of the accuracy shows their size.
+
+Holds for one such joint in the homogenised bar, as `one_joint` does, without dashpots, or alone in
+intact rock that a P wave crosses along a periodic strip.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from cases.loads import LoadHistory, load_history
+from cases.material.calibrate import Properties, calibrate
+from cases.material.strength import UNLIMITED
+from cases.sampling import sample_times
+from compare.exact.bar.images import ENTERS
+from compare.exact.conditions import holds, static_stress
+from compare.exact.joint.one_joint import around, back_in_time
+from compare.exact.linear import errors
+from compare.solvers.record import JOINTED, Answer, Kind, Rock, Solver, Words, no, thin
+from results.dataset import dataset
+
+if TYPE_CHECKING:
+    from cases.schema.scene import Scene
+
+HELD = ("closure", "prestress", "soft layers", "stiff layers")
+TOLERANCES = (1e-12, 1e-9)  # of the solution and of its twin, of the largest stress
+SAMPLES, SHORTEST = 2001, 1e-9  # of the load, whose peak is looked for; s, of an integration
+
+
+@dataclass(frozen=True)
+class ClosingJoint:
+    """A joint: y, m; k_ni, Pa/m; d_m, m; the compliance of the rock without it, m/Pa; prestress,
+    Pa."""
+
+    y: float
+    stiffness: float
+    maximum: float
+    without: float = 0.0
+    prestress: float = 0.0
+
+    def closure(self, stress: np.ndarray) -> np.ndarray:
+        """Return e (m) of a stress (Pa)."""
+        pressed, most = np.maximum(stress, 0.0), self.stiffness * self.maximum
+        return (
+            self.maximum * pressed / (most + pressed)
+            + np.minimum(stress, 0.0) / self.stiffness
+            - self.without * stress
+        )
+
+    def compliance(self, stress: float | np.ndarray) -> np.ndarray:
+        """Return de/ds (m/Pa) at a stress (Pa)."""
+        share = 1 + np.maximum(stress, 0.0) / (self.stiffness * self.maximum)
+        return 1 / (self.stiffness * share**2) - self.without
+
+
+def applies(scene: Scene) -> Answer:
+    """Return whether one joint that stiffens is all that the waves meet within the duration."""
+    p = calibrate(scene)
+    stiffens = np.zeros(len(p.stiffness), dtype=bool)
+    if p.maximum_closure is not None:
+        stiffens = p.maximum_closure < UNLIMITED
+    answer = holds(
+        scene,
+        HELD,
+        (np.count_nonzero(stiffens) != 1, "not exactly one joint stiffens"),
+        (bool(p.excess_compliance[~stiffens].any()), "another joint differs in stiffness"),
+        (scene.ends.end not in ("quiet", "matched"), "the far end reflects"),
+    )
+    if not answer:
+        return answer
+    joint, times = the_joint(scene, p), sample_times(scene)
+    most = ENTERS[scene.ends.start] * np.abs(load_history(scene).value(times)).max()
+    if joint.compliance(joint.prestress + most) <= 0:
+        return no("the joint becomes stiffer than the ordinary joints")
+    return back_in_time(scene, joint.y, p.bar_speed)
+
+
+def solve(scene: Scene) -> xr.Dataset:
+    """Return stress, velocity and displacement on both sides of the joint that stiffens."""
+    p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
+    joint, enters, places = the_joint(scene, p), ENTERS[scene.ends.start], scene.record
+
+    def waveforms(tolerance: float) -> list[np.ndarray]:
+        passed = Passed(joint, p.impedance, load, times[-1], enters, tolerance)
+
+        def waves(y: list[float]) -> np.ndarray:
+            return enters * around(joint.y, p.bar_speed, passed, load, times, y)
+
+        there, back = waves(places.stress)
+        stress = there[0] + back[0] + static_stress(scene)
+        there, back = waves(places.velocity)
+        return [stress, *((there - back) / p.impedance)]
+
+    found, twin = (waveforms(tolerance) for tolerance in TOLERANCES)
+    return dataset(scene, SOLVER.name, times, *found, errors=errors(found, twin))
+
+
+def the_joint(scene: Scene, p: Properties) -> ClosingJoint:
+    """Return the only joint that stiffens."""
+    assert p.maximum_closure is not None and p.rock_compliance is not None
+    j = int(np.argmin(p.maximum_closure))
+    own = 1 / p.stiffness[j] - p.rock_compliance[j]
+    return ClosingJoint(
+        y=float(p.joint_y[j]),
+        stiffness=float(1 / own),
+        maximum=float(p.maximum_closure[j]),
+        without=float(1 / p.regular_stiffness - p.rock_compliance[j]),
+        prestress=static_stress(scene),
+    )
+
+
+class Passed:
+    """sigma_T (Pa) and its impulse (Pa s), both over a factor, at any times up to `end` (s), for
+    the incident stress factor times the load.
+
+    impedance : Z, Pa s/m. tolerance : of each step, of the largest incident stress.
+    """
+
+    def __init__(
+        self,
+        joint: ClosingJoint,
+        impedance: float,
+        load: LoadHistory,
+        end: float,
+        factor: float = 1.0,
+        tolerance: float = TOLERANCES[0],
+    ) -> None:
+        from scipy.integrate import solve_ivp
+
+        self.joint, self.impedance, self.load, self.factor = joint, impedance, load, factor
+
+        def rate(t: float, stress: np.ndarray) -> np.ndarray:
+            incident = factor * load.value(np.array([t]))
+            return (
+                2 * (incident - stress) / (impedance * joint.compliance(joint.prestress + stress))
+            )
+
+        first = load.breaks[0]
+        edges = [*(t for t in load.breaks if t < end), max(end, first + SHORTEST)]
+        peak = np.abs(factor * load.value(np.linspace(first, edges[-1], SAMPLES))).max()
+        self._parts, now = [], np.zeros(1)
+        for part in pairwise(edges):
+            found = solve_ivp(
+                rate, part, now, "DOP853", dense_output=True, rtol=tolerance, atol=tolerance * peak
+            )
+            self._parts.append((*part, found.sol))
+            now = found.y[:, -1]
+
+    def __call__(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return both at times (s)."""
+        stress, joint = np.zeros(np.shape(times)), self.joint
+        for start, end, solution in self._parts:
+            own = (times > start) & (times <= end)
+            if own.any():
+                stress[own] = solution(times[own])[0]
+        moved = joint.closure(joint.prestress + stress) - joint.closure(np.array(joint.prestress))
+        impulse = self.load.impulse(times) - self.impedance * moved / (2 * self.factor)
+        return stress / self.factor, impulse
+
+
+SOLVER = Solver(
+    name="closing-joint",
+    rock=Rock.HOMOGENISED,
+    words=Words(JOINTED, "joint that stiffens, exact", "闭合硬化节理（精确解）"),
+    line=thin("#b8860b", 7, (6, 8.5), (4, 2, 1, 2)),
+    applies=applies,
+    run=solve,
+    distances={
+        Kind.NUMERICAL: {"continuum-equivalent": "elements, time stepping, the joint's excess"},
+        Kind.MODELLING: {
+            "dem": "discrete blocks against a smooth bar",
+            "continuum-jointed": "every joint against a smooth bar",
+        },
+    },
+)

@@ -1,0 +1,128 @@
+"""Scenes of a P wave that meets one joint that stiffens straight on (`joint.closing_joint`).
+
+Holds for one such joint that does not slide, open or damp, in undamped rock whose sides waves leave
+through. The stress along the front is nu / (1 - nu) of that across it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cases.incident import WaveMotion, plane_wave
+from cases.loads import history_of
+from cases.material.rock import elastic_rock
+from compare.exact.joint.closing_joint import TOLERANCES, ClosingJoint, Passed
+from compare.exact.joint.one_joint import around
+from compare.exact.linear import bound
+from compare.exact.rock_mass import stack_waves
+from compare.exact.rock_mass.conditions import along, prestress_of
+from compare.exact.rock_mass.stack import JointStack, stack_of
+from compare.solvers.record import JOINTED, Answer, Rock, Solver, Words, no, thin
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from cases.schema.rock_mass import RockMass
+
+
+def applies(scene: RockMass) -> Answer:
+    """Return whether a P wave meets one joint that stiffens, at a right angle."""
+    if all(one.maximum_closure is None for one in scene.joint_sets):
+        return no("no joint stiffens: see oblique-joint")
+    linear = [one.model_copy(update={"maximum_closure": None}) for one in scene.joint_sets]
+    answer = stack_waves.holds(scene.model_copy(update={"joint_sets": linear}), one=True)
+    if not answer:
+        return answer
+    if any(one.damping_ratio for one in scene.joint_sets):
+        return no("the joint is damped")
+    wave, normal = scene.waves[0], stack_of(scene).normal
+    if len(scene.waves) > 1 or wave.kind != "P" or not along(np.array(wave.direction), normal):
+        return no("the wave is not one of P straight on the joint")
+    return answer
+
+
+def solve(scene: RockMass) -> xr.Dataset:
+    """Return what the receivers of a scene record of the wave at the joint."""
+    return stack_waves.solve(scene, SOLVER.name, _motion)
+
+
+BESIDE = 2e-9  # m
+
+
+class ClosingField:
+    """The wave of a scene with all that its joint makes of it: `cases.incident.IncidentField`."""
+
+    whole = True
+
+    def __init__(self, scene: RockMass, tolerance: float = TOLERANCES[0]) -> None:
+        wave, one = scene.waves[0], scene.joint_sets[0]
+        stack, rock = stack_of(scene), elastic_rock(scene.rock)
+        self.wave, self.share = (
+            plane_wave(scene, wave),
+            float(rock.lame / (rock.p_impedance * rock.p_speed)),
+        )
+        n, (xx, yy, xy) = self.wave.direction, prestress_of(scene)
+        assert one.normal_stiffness and one.maximum_closure
+        self.joint = ClosingJoint(
+            y=float(n @ (stack.offsets[0] * stack.normal - self.wave.through)),
+            stiffness=one.normal_stiffness,
+            maximum=one.maximum_closure,
+            prestress=float(n @ np.array([[xx, xy], [xy, yy]]) @ n),
+        )
+        self.impedance = float(rock.p_impedance)
+        over = 1.0 if wave.quantity == "stress" else self.impedance
+        self.load = history_of(wave, wave.amplitude * over)
+        extent = np.hypot(*np.ptp(np.array(scene.domain.corners), axis=0))
+        end = scene.time.duration + float(extent / self.wave.speed)
+        self.passed = Passed(self.joint, self.impedance, self.load, end, tolerance=tolerance)
+
+    def waves(self, points: np.ndarray, times: np.ndarray) -> np.ndarray:
+        """Return the waves to and fro [2, stress and impulse, m, n]; Pa, compression positive."""
+        y = (np.asarray(points) - self.wave.through) @ self.wave.direction
+        joint, speed = self.joint, self.wave.speed
+        # On one of its sides, not on the joint, where `around` takes the mean of both.
+        off = np.copysign(np.maximum(np.abs(y - joint.y), BESIDE), y - joint.y)
+        y = joint.y + off
+        return around(joint.y, speed, self.passed, self.load, np.asarray(times), y.tolist())
+
+    def stress(self, across: np.ndarray) -> np.ndarray:
+        """Return (xx, yy, xy) [m, 3, n], tension positive, of the stress on the fronts [m, n]."""
+        x, y = self.wave.direction
+        share = [self.share + (1 - self.share) * c for c in (x * x, y * y)]
+        return -across[:, None] * np.array([*share, (1 - self.share) * x * y])[:, None]
+
+    def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
+        (there, _), (back, _) = self.waves(points, times)
+        velocity = (there - back)[:, None] / self.impedance * self.wave.direction[:, None]
+        return WaveMotion(velocity, self.stress(there + back))
+
+
+def _motion(
+    scene: RockMass, stack: JointStack, places: np.ndarray, times: np.ndarray
+) -> stack_waves.StackMotion:
+    """Return the motion at places [m, 2] (m), displacement from the start of the scene on."""
+    found = []
+    for tolerance in TOLERANCES:
+        field = ClosingField(scene, tolerance)
+        there, back = field.waves(places, times)
+        velocity, moved = (
+            (there - back)[:, :, None] / field.impedance * field.wave.direction[:, None]
+        )
+        found.append((velocity, moved - moved[..., :1], field.stress(there[0] + back[0])))
+    errors = (bound(one, twin) for one, twin in zip(*found, strict=True))
+    return stack_waves.StackMotion(*found[0], *errors)
+
+
+SOLVER = Solver(
+    name="normal-incidence",
+    rock=Rock.JOINTED,
+    kinds=("rock mass",),
+    dimension=2,
+    words=Words(JOINTED, "joint that stiffens, exact", "闭合硬化节理（精确解）"),
+    line=thin("#b8860b", 8, (4.5, 8.5), (4, 2, 1, 2)),
+    applies=applies,
+    run=solve,
+    distances=stack_waves.DISTANCES,
+)

@@ -1,0 +1,68 @@
+"""Closure of a joint that stiffens: a hyperbola up to a maximum closure, elastic.
+
+A joint of initial stiffness k_ni that closes by d carries, up to its maximum closure d_m,
+
+    sigma = k_ni d / (1 - d / d_m),   d sigma / dd = k_ni (1 + sigma / s_m)^2,   s_m = k_ni d_m
+
+(Bandis, Lumsden & Barton, Int. J. Rock Mech. Min. Sci. 20, 1983; Barton, Bandis & Bakhtar, 22,
+1985). It unloads along the same curve, and opens with k_ni.
+
+Between rigid blocks the compliance c of the rock is in series with it. Of D = d + c sigma follows
+
+    c sigma^2 + (c s_m + d_m - D) sigma - s_m D = 0,
+
+whose one root of the sign of D is the traction: no D is too large for it. A joint between rock
+that deforms has no c of its own; a millionth of its compliance is taken for c, so that it is a
+million times as stiff as at first, and no stiffer, where it would close beyond d_m.
+"""
+
+from math import log1p, sqrt
+
+from joints.formula import formula
+
+FACES = 1e-6  # of the joint's own compliance: what is left of it when it is closed
+SMALL = 1e-3  # traction over s_m below which the energy is a series: its terms cancel
+
+
+@formula
+def closing(law):
+    """Return c, m/Pa, and s_m, Pa, of a law."""
+    own = 1.0 / law.normal_stiffness - law.rock_compliance
+    return law.rock_compliance + FACES * own, law.maximum_closure / ((1.0 - FACES) * own)
+
+
+@formula
+def closure_traction(law, closure):
+    """Return sigma (Pa) of a closure D >= 0 (m)."""
+    c, s_m = closing(law)
+    b = c * s_m + law.maximum_closure - closure
+    root = sqrt(b * b + 4.0 * c * s_m * closure)
+    return 2.0 * s_m * closure / (b + root) if b > 0.0 else (root - b) / (2.0 * c)
+
+
+@formula
+def closure_under(law, traction):
+    """Return D (m) of sigma >= 0 (Pa)."""
+    c, s_m = closing(law)
+    return c * traction + law.maximum_closure * traction / (s_m + traction)
+
+
+@formula
+def closure_stiffness(law, traction):
+    """Return d sigma / dD (Pa/m) at sigma >= 0 (Pa)."""
+    c, s_m = closing(law)
+    share = s_m / (s_m + traction)
+    return 1.0 / (c + law.maximum_closure / s_m * share * share)
+
+
+@formula
+def closure_energy(law, traction):
+    """Return what is stored at sigma >= 0 (Pa), J/m2: c sigma^2 / 2 + s_m d_m (ln(1 + x) - x /
+    (1 + x)), x = sigma / s_m."""
+    c, s_m = closing(law)
+    x = traction / s_m
+    if x < SMALL:
+        whole = x * x * (1 / 2 - x * (2 / 3 - x * (3 / 4 - x * (4 / 5 - x * 5 / 6))))
+    else:
+        whole = log1p(x) - x / (1.0 + x)
+    return 0.5 * c * traction * traction + s_m * law.maximum_closure * whole
