@@ -26,6 +26,7 @@ def test_a_plain_scene_calls_for_its_sides_its_waves_and_its_ledger(mass):
         ({"joint_sets__0__damping_ratio": 0.02}, "dashpots"),
         ({"damping__rayleigh": {"frequencies": [10, 200], "ratios": [0.02, 0.02]}}, "dashpots"),
         ({"joint_sets__0__tension": False}, "no tension"),
+        ({"joint_sets__0__maximum_closure": 1e-3}, "closure"),
         ({"joint_sets__0__friction_angle": 30.0}, "slip"),
         ({"joint_sets__0__cohesion": 1e5}, "slip"),
         (

@@ -19,6 +19,7 @@ FALL = {"direction": [0, 1, 0], "static": False}
 CALLS = {
     "dashpots": {"joints__damping_ratio": 0.02, "soft_layers": LAYER},
     "no tension": {"joints__tension": False, "soft_layers": LAYER},
+    "closure": {"joints__maximum_closure": 1e-3},
     "joints that differ": {"soft_layers": LAYER},
     "quiet ends": {"ends__end": "quiet"},
     "matched ends": {"ends__start": "matched"},

@@ -21,6 +21,7 @@ ACTS = {"loads", "incident waves", "shaken base"}
 CALLS = {
     "dashpots": {"joint_sets": [ROWS | {"damping_ratio": 0.02}, COLUMNS]},
     "no tension": {"joint_sets": [ROWS | {"tension": False}, COLUMNS]},
+    "closure": {"joint_sets": [ROWS | {"maximum_closure": 1e-3}, COLUMNS]},
     "slip": {"joint_sets": [ROWS | {"friction_angle": 30.0, "cohesion": 1e4}, COLUMNS]},
     "softening": {"joint_sets": [ROWS | {"tensile_strength": 1e5, "fracture_energy": 10.0}]},
     "quiet sides": {"boundaries": {"bottom": "quiet"}},
