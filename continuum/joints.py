@@ -8,7 +8,6 @@ import numpy as np
 from scipy.sparse import csr_matrix, vstack
 
 from cases.material.calibrate import Properties
-from cases.material.closure import stress_in_reach
 from continuum.model import Interfaces
 from continuum.space.interface import Jumps
 from continuum.space.stencils import stencils
@@ -100,6 +99,8 @@ def interfaces(
     """Return the joints of a model; prestress : [directions, q], Pa."""
     jump, stiffest = csr_matrix(vstack(jumps.matrices)), law.normal_stiffness
     if law.maximum_closure is not None:
+        from cases.material.closure import stress_in_reach
+
         law = law._replace(rock_compliance=0.0)
         stiffest = closure_stiffness(law, stress_in_reach(scene))
     return Interfaces(

@@ -18,7 +18,6 @@ import numpy as np
 
 from cases.errors import SceneError
 from cases.material.calibrate import Properties
-from cases.material.closure import stress_in_reach
 from cases.sampling import Interpolation
 from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
@@ -96,6 +95,8 @@ def stiffest(scene: Scene, p: Properties) -> Properties:
     as they are; p itself where none stiffens."""
     if p.maximum_closure is None:
         return p
+    from cases.material.closure import stress_in_reach
+
     stiffness, eta = closure_stiffness(_springs(p), stress_in_reach(scene)), p.joint_time_constant
     if eta is None:
         return replace(p, stiffness=stiffness)

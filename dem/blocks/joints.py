@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cases.material.closure import stress_in_reach
 from cases.material.contact_points import CUT, points_of
 from cases.material.dashpots import set_time_constants
 from cases.material.rigid_blocks import RigidJoints
@@ -55,11 +54,9 @@ def columns(scene: RockMass, joints: RigidJoints, others: Stiffness) -> Columns:
     tension[: len(sets)] = [one.tension is not False for one in sets]
     strengths = strength_of([*sets, JointLaw()], which).strengths()
     stiffens, rock = strengths["maximum_closure"] is not None, None
-    if stiffens:
-        rock = np.zeros(len(normal))
-        rock[: len(sets)] = np.minimum(
-            joints.excess[0, : len(sets)], (1 - 1e-9) / normal[: len(sets)]
-        )
+    if stiffens:  # rock's share of the compliance, at most all but a billionth of it
+        rock = np.minimum(np.resize(joints.excess[0], len(normal)), (1 - 1e-9) / normal)
+        rock[len(sets) :] = 0.0
     found = law(normal, None, tension, shear_stiffness=shear, rock_compliance=rock, **strengths)
     eta = _time_constants(scene, normal, shear)
     if eta is not None:
@@ -67,11 +64,14 @@ def columns(scene: RockMass, joints: RigidJoints, others: Stiffness) -> Columns:
         found = found._replace(**dict(zip(VISCOSITIES, viscosities, strict=True)))
     fails = not tension.all() or any(values is not None for values in strengths.values())
     rules = _rules(scene, len(normal))
-    stiffest = closure_stiffness(found, stress_in_reach(scene)) if stiffens else normal
-    points = rules.shape[2] if fails else 0
-    return Columns(
-        found, normal, shear, np.broadcast_to(stiffest, normal.shape), eta, rules, points
-    )
+    stiffest = _stiffest(scene, found, len(normal)) if stiffens else normal
+    return Columns(found, normal, shear, stiffest, eta, rules, rules.shape[2] if fails else 0)
+
+
+def _stiffest(scene: RockMass, found: Law, count: int) -> np.ndarray:
+    from cases.material.closure import stress_in_reach
+
+    return np.broadcast_to(closure_stiffness(found, stress_in_reach(scene)), count)
 
 
 VISCOSITIES = ("normal_viscosity", "shear_viscosity")

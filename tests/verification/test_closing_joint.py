@@ -12,12 +12,11 @@ import xarray as xr
 
 import continuum
 import dem
-import dem.static
 from cases.errors import StoppedError
 from cases.histories import Sine
+from cases.material import closure
 from compare.exact.joint import closing_joint
 from compare.exact.joint.closing_joint import ClosingJoint, Passed
-from continuum import joints
 from dem.spatial import simulate as row
 
 PERIOD, DENSITY, SPEED, PEAK = 0.02, 2400.0, 2000.0, 1e6
@@ -138,8 +137,8 @@ def test_small_waves_see_the_tangent(closing):
         assert np.linalg.norm(one - other) <= 2e-4 * np.linalg.norm(other)
 
 
-@pytest.mark.parametrize(("engine", "module"), [(dem.simulate, dem.static), (jointed, joints)])
-def test_a_run_beyond_the_stress_in_reach_is_stopped(closing, monkeypatch, engine, module):
+@pytest.mark.parametrize("engine", [dem.simulate, jointed])
+def test_a_run_beyond_the_stress_in_reach_is_stopped(closing, monkeypatch, engine):
     """Joints that are taken not to stiffen, and do: the run is stopped in one line, and what is
     kept of it are numbers. With the stress in reach it ends."""
     scene = closing(
@@ -155,7 +154,7 @@ def test_a_run_beyond_the_stress_in_reach_is_stopped(closing, monkeypatch, engin
         },
     )
     assert np.isfinite(engine(scene).stress).all()
-    monkeypatch.setattr(module, "stress_in_reach", lambda scene: 0.0)
+    monkeypatch.setattr(closure, "stress_in_reach", lambda scene: 0.0)
     with pytest.raises(StoppedError) as stopped:
         engine(scene)
     assert "\n" not in str(stopped.value) and "stiffen" in str(stopped.value)
