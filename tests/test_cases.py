@@ -18,7 +18,13 @@ from results.dataset import energy_residual, scene_hash
 
 REFEREES = {
     "dem": ("lattice", "no-tension-chain", "spatial-lattice"),
-    "continuum-jointed": ("jointed-bar", "oblique-joint", "parallel-joints", "line-force"),
+    "continuum-jointed": (
+        "jointed-bar",
+        "oblique-joint",
+        "parallel-joints",
+        "line-force",
+        "normal-incidence",
+    ),
     "continuum-equivalent": ("equivalent-bar", "images", "kelvin-voigt", "effective-medium"),
 }
 BOUNDS = {"dem": 2e-3, "continuum-jointed": 5e-3, "continuum-equivalent": 5e-3}
@@ -57,8 +63,8 @@ def solved(request):
 
 
 def is_linear(scene):
-    """Return whether every joint holds and carries tension."""
-    return not {"slip", "softening", "no tension"} & set(active_effects(scene))
+    """Return whether every joint holds, carries tension and closes linearly."""
+    return not {"slip", "softening", "no tension", "closure"} & set(active_effects(scene))
 
 
 @pytest.mark.parametrize("engine", ENGINES)
