@@ -155,12 +155,15 @@ def _moving(comparison: Comparison, quantity: str, receiver: int) -> list[tuple[
 def in_page(rows: list[list[Panel]]) -> list[list[Panel]]:
     """Return the panels of variants as they fit a page's width: at most two beside each other.
 
-    Variants down and receivers across; of more than two receivers the other way round, or in turn.
+    Variants down and receivers across; of more than two receivers the other way round, or in turn,
+    those of a rock mass with a row begun for each variant.
     """
     if max(map(len, rows)) <= 2:
         return rows
     every = [panel for row in rows for panel in row]
-    if len(rows) == 1 or any(len(row) != len(rows[0]) for row in rows):
+    if len(every[0].place.at) > 1 or any(len(row) != len(rows[0]) for row in rows):
+        return [row[i : i + 2] for row in rows for i in range(0, len(row), 2)]
+    if len(rows) == 1:
         return [[panel] for panel in every]
     if len(rows) == 2:
         return [list(column) for column in zip(*rows, strict=True)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from string import ascii_lowercase
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,9 @@ from compare.figures.charts.chart import Chart, ChartLine, Entry, Mark, Subplot
 from compare.figures.style import WIDTH, Style
 
 HEADING, ABSCISSA = 0.28, 0.48  # inches above each subplot, and below the lowest
-LEFT, RIGHT, BETWEEN = 0.95, 0.15, 0.9  # inches beside the subplots, and between two of them
+LEFT, RIGHT, BETWEEN = 0.95, 0.15, 0.9  # inches beside the subplots, and between two of them,
+NUMBERS = 0.55  # where the ordinate they share has its label but once
+MOST = 6  # entries of a legend beside each other
 LEGEND, LEGEND_LINE = 0.16, 0.165  # inches of the legend, and of each of its lines besides
 SMALLER = 0.76  # of the height of a subplot, where there are more than two rows of cells
 MARK = "#5d6670"  # colour of vertical lines
@@ -26,7 +29,9 @@ def draw(name: str, chart: Chart) -> Figure:
     columns, heights = max(map(len, chart.grid)), _heights(chart)
     head = LEGEND + LEGEND_LINE * _depth(chart.legend)
     with blank(head + sum(h + HEADING for h in heights) + ABSCISSA, laid_out=True) as figure:
-        axes = _axes(figure, columns, heights)
+        alone = any(not cell[0].share for row in chart.grid for cell in row)
+        axes = _axes(figure, columns, heights, BETWEEN if alone else NUMBERS)
+        letters = iter(ascii_lowercase)
         depth, shared = len(chart.grid[0][0]), dict[str, Axes]()
         for i, row in enumerate(chart.grid):
             for j, cell in enumerate(row):
@@ -36,19 +41,19 @@ def draw(name: str, chart: Chart) -> Figure:
                     _draw(ax, subplot, name, chart.is_log)
                     if j == 0 or not subplot.share:
                         ax.set_ylabel(subplot.label)
-                if chart.is_lettered and (k := i * columns + j) < 26:
-                    ax = axes[depth * i, j]
-                    ax.set_title(f"({chr(97 + k)})  {cell[0].heading}", pad=4)
+                if chart.is_lettered and (letter := next(letters, "")):
+                    axes[depth * i, j].set_title(f"({letter})  {cell[0].heading}", pad=4)
             for ax in axes[depth * i : depth * (i + 1), len(row) :].ravel():
                 ax.set_visible(False)
-        for ax in axes[-1]:
+        for ax in (next(ax for ax in column[::-1] if ax.get_visible()) for column in axes.T):
+            ax.tick_params(labelbottom=True)
             ax.set_xlabel(chart.abscissa)
         _add_legend(figure, chart.legend)
     return figure
 
 
-def _axes(figure: Figure, columns: int, heights: list[float]) -> np.ndarray:
-    """Return rows of axes so many inches high, at the foot of a figure.
+def _axes(figure: Figure, columns: int, heights: list[float], between: float) -> np.ndarray:
+    """Return rows of axes so many inches high and `between` each other, at the foot of a figure.
 
     All is said in inches: to measure texts, as matplotlib's layouts do, takes a third of a drawing.
     """
@@ -59,15 +64,15 @@ def _axes(figure: Figure, columns: int, heights: list[float]) -> np.ndarray:
         "bottom": ABSCISSA / height,
         "top": (ABSCISSA + sum(heights) + HEADING * (rows - 1)) / height,
         "hspace": HEADING / float(np.mean(heights)),
-        "wspace": BETWEEN * columns / (WIDTH - LEFT - RIGHT - BETWEEN * (columns - 1)),
+        "wspace": between * columns / (WIDTH - LEFT - RIGHT - between * (columns - 1)),
         "height_ratios": heights,
     }
     return figure.subplots(rows, columns, squeeze=False, sharex=True, gridspec_kw=room)
 
 
 def _depth(legend: dict[str, list[Entry]]) -> int:
-    """Return how many lines a legend has: one, or a heading and its entries."""
-    return 1 if "" in legend else 1 + max(map(len, legend.values()))
+    """Return how many lines a legend has: those of its entries, or a heading above them."""
+    return -(-len(legend[""]) // MOST) if "" in legend else 1 + max(map(len, legend.values()))
 
 
 def _heights(chart: Chart) -> list[float]:
@@ -138,7 +143,7 @@ def _add_legend(figure: Figure, legend: dict[str, list[Entry]]) -> None:
     """Put the legend above the subplots, where it hides no curve: a column a heading."""
     depth = _depth(legend)
     if "" in legend:
-        handles, columns = _handles(legend[""]), len(legend[""])
+        handles, columns = _handles(legend[""]), -(-len(legend[""]) // depth)
     else:
         empty = Entry("", "", Style("none", 0.0, "-", 0))
         filled = [
@@ -152,8 +157,8 @@ def _add_legend(figure: Figure, legend: dict[str, list[Entry]]) -> None:
         loc="upper center",
         bbox_to_anchor=(0.5, 1.0),
         frameon=False,
-        handlelength=4.5 if depth > 1 else 3.5,
-        columnspacing=4.0 if depth > 1 else 2.0,
+        handlelength=3.5 if "" in legend else 4.5,
+        columnspacing=2.0 if "" in legend else 4.0,
         labelspacing=0.25,
     )
     for text in found.get_texts():
