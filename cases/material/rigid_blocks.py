@@ -66,6 +66,8 @@ def rigid_joints(scene: RockMass, further: list[JointSet]) -> RigidJoints:
 
 def against(scene: RockMass) -> str | None:
     """Return why a scene is none of rigid blocks, None where it is one."""
+    if scene.domain.given is not None:
+        return "cannot make rigid blocks of the cells of domain.mesh"
     if scene.numerics.dem.block is not None or any(one.spacing for one in scene.joint_sets):
         return None
     has = "has only joints that are alone" if scene.joint_sets else "has no joints"

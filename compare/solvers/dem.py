@@ -63,8 +63,6 @@ def applies(scene: Scene | RockMass) -> Answer:
 
     if isinstance(scene, Scene):
         return YES
-    if scene.domain.given is not None:
-        return no("the cells of domain.mesh are not rigid blocks")
     from cases.material.rigid_blocks import against
 
     reason = against(scene)
