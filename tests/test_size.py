@@ -293,7 +293,7 @@ BOMBS = {
     "curves as CSV": lambda p: read_columns(lines(p / "a.csv", "0,0\n" * 5_000_000)),
     "curves in one line": lambda p: read_columns(lines(p / "a.csv", "0," * 1_500_000)),
     "a hollow CSV": lambda p: read_columns(hollow(p / "a.csv", b"0,0\n", 20_000_000)),
-    "a load": lambda p: History.from_csv(p, lines(p / "a.csv", "0,0\n" * 5_000_000).name),
+    "a load": lambda p: History.read(p, lines(p / "a.csv", "0,0\n" * 5_000_000).name),
     "a checkpoint that is compressed": lambda p: resumed(
         p / "a.nc", (50_000_000,), 40_000_000, zipfile.ZIP_DEFLATED
     ),

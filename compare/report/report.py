@@ -196,6 +196,7 @@ def write_comparisons(comparisons: list[Comparison], out: Path) -> None:
     curves = curve_table(comparisons).reset_index()
     save(draw(name, by_solutions(comparisons)), folder, name, comparisons[0].scene.title, curves)
     write_csv(folder / f"{name}-misfits.csv", tables.distance_frame(comparisons))
-    write_csv(folder / f"{name}-readings.csv", reading_frame(comparisons))
+    if not (read := reading_frame(comparisons)).empty:
+        write_csv(folder / f"{name}-readings.csv", read)
     if any(comparison.besides for comparison in comparisons):
         write_csv(folder / f"{name}-alignment.csv", tables.alignment_frame(comparisons))

@@ -17,7 +17,7 @@ from compare.figures.charts.along_axis import along_pillar, recorded_along
 from compare.figures.figure import SceneFigure
 from compare.figures.scene_figures import figures_of
 from compare.misfit.pairs import Comparison, compare
-from compare.report.section import PAPER, SceneRequest, Section, begin, make_section
+from compare.report.section import PAPER, SceneRequest, Section, begin, finish, make_section
 from compare.scenes import find, load
 from results.dataset import scene_hash
 
@@ -94,9 +94,9 @@ def solve(
             name: [along[_along(scene)].result() for scene in variants]
             for name, variants in loaded.items()
         }
-        shown = begin(folder, _pictures(asked, comparisons, fields), executor)
-        tell([one.files for some in shown.values() for one in some if one.files], DRAWN)
-    sections = [make_section(folder, a, comparisons[a.name], shown[a.name]) for a in asked]
+        begun = begin(folder, _pictures(asked, comparisons, fields), executor)
+        tell([files for some in begun.values() for _, files in some if files], DRAWN)
+    sections = [make_section(folder, a, comparisons[a.name], finish(begun[a.name])) for a in asked]
     return Solved(comparisons, sections)
 
 

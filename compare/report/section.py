@@ -44,21 +44,20 @@ class SceneRequest(NamedTuple):
 class Shown(NamedTuple):
     """A picture as it stands on the page.
 
-    folded : whether it stands in a fold. files : its drawing once it is written; None where the
-    same picture stands further up: place, words : its id and what the link to it says.
+    folded : whether it stands in a fold. drawn : its files; None where the same picture stands
+    further up: place, words : its id and what the link to it says.
     """
 
     title: str
     caption: str
     folded: bool
-    files: Future[Drawn] | None
+    drawn: Drawn | None = None
     place: str = ""
     words: str = ""
 
-    @property
-    def drawn(self) -> Drawn | None:
-        """The drawing, waited for."""
-        return self.files.result() if self.files else None
+
+#: A picture, and its files while they are being written; None where it stands further up.
+Begun = tuple[Shown, Future[Drawn] | None]
 
 
 class Section(NamedTuple):
@@ -70,7 +69,7 @@ class Section(NamedTuple):
     toml: str
     figures: list[Shown]
     distances_file: Path
-    readings_file: Path
+    readings_file: Path | None
     findings: list[Finding]
     misfits: tables.Table
     distances: tables.Table
@@ -111,7 +110,7 @@ def make_section(
         request.file.read_text(encoding="utf-8-sig"),
         figures,
         write_csv(distances, tables.distance_frame(comparisons)),
-        write_csv(readings, read),
+        None if read.empty else write_csv(readings, read),
         findings(request.number, comparisons) if request.number else [],
         tables.misfit_table(comparisons),
         tables.distance_table(comparisons),
@@ -130,15 +129,20 @@ def draw(folder: Path, picture: SceneFigure) -> Drawn:
 
 def begin(
     folder: Path, pictures: Iterable[tuple[SceneRequest, SceneFigure]], executor: Executor
-) -> dict[str, list[Shown]]:
+) -> dict[str, list[Begun]]:
     """Let an executor write the pictures of scenes, none of the same numbers twice; return them by
     the scene's name."""
     known: dict[str, tuple[str, str]] = {}
-    found: dict[str, list[Shown]] = {}
+    found: dict[str, list[Begun]] = {}
     for request, p in pictures:
-        first = known.get(p.numbers, ())
+        first = known.get(p.numbers, ("", ""))
         known.setdefault(p.numbers, (f"{p.name}-figure", f"{request.label}: {p.title}"))
-        files = None if first else executor.submit(draw, folder, p)
-        shown = Shown(p.title, p.caption, p.folded, files, *first)
-        found.setdefault(request.name, []).append(shown)
+        files = None if first[0] else executor.submit(draw, folder, p)
+        shown = Shown(p.title, p.caption, p.folded, None, *first)
+        found.setdefault(request.name, []).append((shown, files))
     return found
+
+
+def finish(begun: list[Begun]) -> list[Shown]:
+    """Return pictures with their drawings, waited for."""
+    return [one._replace(drawn=files.result()) if files else one for one, files in begun]

@@ -140,7 +140,7 @@ def load(data: bytes, folder: Path) -> str:
     """A load's CSV file."""
     _written(folder, "load.csv", data)
     try:
-        history = History.from_csv(folder, "load.csv")
+        history = History.read(folder, "load.csv")
     except ValueError as error:
         _check(str(error))
         return "refused"

@@ -176,7 +176,7 @@ class Passed:
 SOLVER = Solver(
     name="closing-joint",
     rock=Rock.HOMOGENISED,
-    words=Words(JOINTED, "joint that stiffens, exact", "闭合硬化节理（精确解）"),
+    words=Words(JOINTED, "stiffening joint, exact", "闭合硬化节理（精确解）"),
     line=thin("#d55e00", 7, (6, 8.5), (4, 2, 1, 2)),
     applies=applies,
     run=solve,

@@ -292,6 +292,7 @@ def test_compare_writes_figure_curves_and_distances(jointwave, tmp_path):
     jointwave("compare", SCENE, "--variant", "", *SHORT, "--no-spectral", "--out", out)
     assert {path.suffix for path in out.iterdir()} == {".svg", ".pdf", ".png", ".csv"}
     assert all(path.stat().st_size > 1000 for path in out.iterdir())
+    assert {path.stem for path in out.iterdir()} == {"comparison", "comparison-misfits"}
 
 
 @pytest.mark.parametrize("arguments", [("list",), ("compare", SCENE, *SHORT, "--no-spectral")])

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from cases.histories import Recorded
+from cases.histories import Integrated, Recorded
 from cases.material.calibrate import calibrate
 from compare.exact.blocks import lattice, no_tension
 from compare.exact.blocks.chain import chain
-from compare.exact.drive import Integrated
 from compare.exact.linear import response
 
 FIELDS = ("stress", "velocity", "displacement")

@@ -18,7 +18,7 @@ from compare.figures.figure import SceneFigure
 from compare.report.findings import Finding
 from compare.report.overview import Overview
 from compare.report.render import Page, RockMasses, held_plot, licences, render
-from compare.report.section import PAPER, SceneRequest, Section, Shown, begin
+from compare.report.section import PAPER, SceneRequest, Section, Shown, begin, finish
 from compare.report.tables import Table
 
 
@@ -64,7 +64,7 @@ def section(tmp_path, figure):
 
 def shown(drawn, folded=False):
     """Return a figure as it stands on the page."""
-    return Shown(drawn.title, drawn.caption, folded, done(drawn))
+    return Shown(drawn.title, drawn.caption, folded, drawn)
 
 
 def done(result):
@@ -181,7 +181,7 @@ def test_no_picture_is_drawn_twice(page, section, figure, tmp_path):
     on_page = zip((requests[0], requests[1], requests[1]), pictures, strict=True)
     found = begin(tmp_path, on_page, Draws())
     assert drawn == ["first", "third"]
-    sections = [section([], request=r, figures=found[r.name]) for r in requests]
+    sections = [section([], request=r, figures=finish(found[r.name])) for r in requests]
     html = page(sections=sections)
     assert html.count("<figure id=") == 2 and 'id="second-figure"' not in html
     assert 'The same picture as <a href="#first-figure">fig. 5: A figure</a>.' in html

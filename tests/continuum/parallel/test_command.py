@@ -134,7 +134,7 @@ from compare.cli import program
 from continuum import build
 from continuum.parallel import body
 
-def broken(*arguments):
+def broken(*arguments, **named):
     raise {error}
 
 if MPI.COMM_WORLD.rank == {rank}:

@@ -59,7 +59,7 @@ def test_what_the_scene_is_about_stays(pillar):
 def test_an_end_that_the_load_needs_stays(pillar):
     """The base that shakes cannot be free; the reason is the scene's own."""
     load = {"shape": "sine", "amplitude": 0.1, "period": 0.01, "quantity": "velocity"}
-    with pytest.raises(SceneError, match=r"load\.quantity .*moves the wall of ends\.start"):
+    with pytest.raises(SceneError, match=r"load\.quantity .*moves the base of ends\.start"):
         left_out(pillar(ends__start="fixed", load=load), "fixed ends")
 
 
@@ -144,7 +144,7 @@ def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, cheap):
     """The wall that the load shakes; the ledger beside it is measured."""
     load = {"shape": "sine", "amplitude": 0.1, "period": 0.01, "quantity": "velocity"}
     stays = ablation._drop(pillar(ends__start="fixed", load=load), "fixed ends", None)
-    assert "moves the wall" in stays.reason
+    assert "moves the base" in stays.reason
     scene = pillar(time__duration=0.01)
     there = ablation.Dropped("energy ledger", 0.0, 1.0, True, False, "")
     fixed, ledger = ablate("a/b", scene, [stays, there]).effects
