@@ -12,12 +12,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.sparse import block_diag, coo_matrix, csr_matrix
 
-from continuum.space.simd import WIDTH, multiply_tile
+from continuum.space.simd import WIDTH, multiply_pair, multiply_tile
 from joints.formula import formula
 from numerics.cache_lines import zeros
 
 TILE = 4  # registers wide; a part's blocks are dealt out evenly, so that tiles have 3 to 5
-ONE, TWO, THREE, FOUR = (np.uint64(n) for n in (1, 2, 3, 4))
+ONE, TWO = np.uint64(1), np.uint64(2)
 ROUND_OFF = 1e-13  # of two diagonal entries: what quadrature leaves of entries that are zero
 
 
@@ -109,7 +109,7 @@ def operator(numbering: Layout, matrices, paired: bool = False) -> Operator:
     start = np.concatenate([found.start[: begin + 1], found.start[-1] + first[1:]])
     return Operator(
         found.tiles[:-1] if begin else None,
-        np.array([found.tiles[-1, 0], begin, rows], dtype=np.uint64),
+        np.array([found.tiles[-1, 0], begin, rows], dtype=type(ONE)),
         start.astype(np.uint32),
         np.concatenate([found.column, column.astype(np.uint32)]),
         np.concatenate([found.value, value.ravel()]),
@@ -162,22 +162,8 @@ def multiply_pairs(start, column, value, x, y, factor, at, first, size):
         y[i] = 0.0
     for r in range(size):
         row = at + TWO * r
-        a, b = x[row], x[row + ONE]
         k, end = np.uint64(start[first + r]), np.uint64(start[first + r + ONE])
-        v = begin + FOUR * (k - begin)
-        # Two sums for each row: in one, every addition would wait for the last.
-        s, t = value[v] * a, value[v + ONE] * a
-        p, q = value[v + TWO] * b, value[v + THREE] * b
-        for block in range(k + ONE, end):
-            v = begin + FOUR * (block - begin)
-            c = at + np.uint64(column[block])
-            xx, yx, xy, yy = value[v], value[v + ONE], value[v + TWO], value[v + THREE]
-            s += xx * x[c]
-            t += yx * x[c]
-            p += xy * x[c + ONE]
-            q += yy * x[c + ONE]
-            y[c] += factor * (xx * a + yx * b)
-            y[c + ONE] += factor * (xy * a + yy * b)
+        s, t, p, q = multiply_pair(column, value, x, y, factor, at, row, k, end, begin)
         y[row] += factor * (s + p)
         y[row + ONE] += factor * (t + q)
 

@@ -57,11 +57,22 @@ def multiply_tile(start, column, value, x, y, factor, at, width, first, size):
             here = at + int(column[k]) * width
             total = total + value[k] * x[here : here + width]
         y[at + i * width : at + (i + 1) * width] = factor * total
+
+def multiply_pair(column, value, x, y, factor, at, row, first, last, begin):
+    at, row, first, last, begin = int(at), int(row), int(first), int(last), int(begin)
+    own, sums = x[row : row + 2], None
+    for k in range(first, last):
+        block, place = value[begin + 4 * (k - begin) :][:4].reshape(2, 2), at + int(column[k])
+        terms = block * x[place : place + 2, None]
+        sums = terms if sums is None else sums + terms
+        if k > first:
+            y[place : place + 2] += factor * (block * own).sum(axis=1)
+    return tuple(sums.ravel())
 """,
 }
 #: Modules that count without a sign for the compiler's sake: numpy 1 makes a float, which indexes
 #: nothing, of the sum of such a number and one of Python's.
-UNSIGNED = {"continuum.space.stencils": {"ONE": 1, "TWO": 2}}
+UNSIGNED = {f"continuum.space.{name}": {"ONE": 1, "TWO": 2} for name in ("operator", "stencils")}
 PACKAGES = ("cases", "results", "numerics", "joints", "dem", "continuum", "compare")
 
 
