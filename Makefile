@@ -6,12 +6,12 @@ RUN := tools/run.sh
 TESTS := PYTHONDONTWRITEBYTECODE= $(RUN) python -m pytest -n auto --maxprocesses 8 --dist worksteal --junitxml out/tests.xml
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-all docs check fuzz mutate bench bench-peers bench-plan test-debian13 test-wheel clean distclean
+.PHONY: help setup demo test test-all docs check fuzz mutate bench bench-peers bench-plan lock test-lowest test-debian13 test-wheel clean distclean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
 
-setup:  ## .venv with dolfinx and this project: from the active environment, apt or conda
+setup:  ## .venv with dolfinx and this project: from the active environment, apt, pip or conda (LOCKED=1: constraints.txt's versions)
 	@tools/setup.sh
 
 demo: setup  ## the paper's figures and all studies as one page, report/index.html
@@ -52,7 +52,19 @@ bench-peers: setup  ## the same pillar in LAMMPS, Akantu and Yade, a lattice in 
 bench-plan: setup  ## what is planned for every shipped scene, held against all configurations of it (10 min)
 	@$(RUN) python tools/plan
 
-test-debian13:  ## make test in a fresh Debian 13, with newer dolfinx, numpy and Python (needs root or sudo)
+.uv/bin/uv:
+	@python3 -m venv .uv
+	@.uv/bin/python -m pip install -q uv
+
+lock: .uv/bin/uv  ## constraints.txt anew: the newest set of versions, for numpy 1 (Python 3.11) and for numpy 2
+	@.uv/bin/uv pip compile -q pyproject.toml --all-extras --universal --upgrade --no-annotate --custom-compile-command 'make lock' -o constraints.txt
+
+test-lowest: setup .uv/bin/uv  ## make test with the oldest versions that pyproject.toml admits, in .lowest
+	@tools/setup.sh browser
+	@tools/lowest.sh
+	@VENV=.lowest $(TESTS) --junitxml out/lowest.xml tests cases
+
+test-debian13:  ## make test in a fresh Debian 13, with pip's dolfinx and with apt's (needs root or sudo)
 	@tools/debian13.sh
 
 test-wheel:  ## the wheel in an empty environment of $PYTHON (default python3): compare, report, MPI, scenes as tests
@@ -63,4 +75,4 @@ clean:  ## remove reports and caches
 	find cases results numerics joints dem continuum compare tests -name __pycache__ -prune -exec rm -rf {} +
 
 distclean: clean  ## remove .venv, the other codes and the fuzzer too
-	rm -rf .venv .peers .fuzz
+	rm -rf .venv .lowest .uv .peers .fuzz

@@ -10,6 +10,11 @@ import numpy as np
 
 from cases.size import memory, require, within
 
+#: How to get gmsh itself, and what its wheel loads of the system.
+INSTALL = (
+    "pip install gmsh; on Debian also apt install libglu1-mesa libxcursor1 libxft2 libxinerama1"
+)
+
 #: meshio's names of the kinds of cells, and of their facets.
 KINDS = {
     "triangle": "triangle",

@@ -97,7 +97,7 @@ def mesh_of(scene: Scene, p: Properties, model: str, motion: Kinematics) -> Mesh
         return pillar_mesh(
             p, motion.dim, numerics.cell, elements, numerics.elements_across, cut, layers
         )
-    except (ImportError, OSError) as error:
+    except ImportError as error:
         key = "numerics.continuum.cell"
         raise SceneError(scene.where, key, numerics.cell, f"needs gmsh ({error})") from None
 

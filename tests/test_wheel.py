@@ -1,6 +1,7 @@
 """What is installed: one name in site-packages, and a program that runs without the repository."""
 
 import os
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -17,15 +18,14 @@ WRITTEN = "1700000000"
 
 def built(folder):
     """Return the wheel of this source, built in a folder of its own."""
-    files = subprocess.run(
-        ["git", "ls-files", "-co", "--exclude-standard"],
-        cwd=ROOT, capture_output=True, text=True, check=True,
-    ).stdout.split("\n")  # fmt: skip
     source = folder / "source"
-    for name in filter(None, files):
-        if (ROOT / name).is_file():
-            (source / name).parent.mkdir(parents=True, exist_ok=True)
-            (source / name).write_bytes((ROOT / name).read_bytes())
+    source.mkdir()
+    for path in ROOT.iterdir():
+        if (path / "__init__.py").is_file():
+            caches = shutil.ignore_patterns("__pycache__")
+            shutil.copytree(path, source / path.name, False, caches, shutil.copyfile)
+        elif path.is_file() and path.name[0] != ".":
+            shutil.copyfile(path, source / path.name)
     build = "from setuptools import build_meta as b; print(b.build_wheel('..'))"
     done = subprocess.run(
         [sys.executable, "-c", build], cwd=source, capture_output=True, text=True, check=True,

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Runs `make test` in a fresh Debian 13, whose dolfinx, numpy and Python are newer than Debian 12's, and compares
-# waveforms with those of this machine's .venv, to 1e-9.
-#   usage: tools/debian13.sh [COMMAND]    (default: make test, then tools/waveforms.py)
-# The root is made once and kept under the user's cache directory; every run copies the working tree into it anew.
+# Runs `make test` in a fresh Debian 13, whose Python and numpy are newer than Debian 12's, with pip's dolfinx and with
+# Debian's own, one after the other, and compares waveforms with those of this machine's .venv, to 1e-9.
+#   usage: [DOLFINX="pip apt"] tools/debian13.sh [COMMAND]    (default: make test, then tools/waveforms.py)
+# The root is made once and kept under the user's cache directory; every run copies the working tree into it anew. pip
+# comes first: what apt's dolfinx brings along might hide what the wheel lacks.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -72,16 +73,16 @@ share_network() {
     done
 }
 
-copy_sources() {
-    mkdir -p "$root/src"
+copy_sources() {  # into
+    mkdir -p "$1"
     # .venv stays: its stamp knows whether it still fits, and a second run is quick.
-    find "$root/src" -mindepth 1 -maxdepth 1 ! -name .venv -exec rm -rf {} +
+    find "$1" -mindepth 1 -maxdepth 1 ! -name .venv -exec rm -rf {} +
     git -c safe.directory="$PWD" ls-files -z --cached --others --exclude-standard |
         while IFS= read -r -d '' file; do
             # A file deleted but not committed is still listed.
             if [ -e "$file" ] || [ -L "$file" ]; then printf '%s\0' "$file"; fi
-        done | tar --create --file=- --no-recursion --null --files-from=- | tar --extract --no-same-owner --directory="$root/src"
-    if [ -f "$waveforms" ]; then install -D "$waveforms" "$root/src/$waveforms"; fi
+        done | tar --create --file=- --no-recursion --null --files-from=- | tar --extract --no-same-owner --directory="$1"
+    if [ -f "$waveforms" ]; then install -D "$waveforms" "$1/$waveforms"; fi
 }
 
 mount_kernel() {
@@ -94,7 +95,6 @@ mount_kernel() {
 
 [ -f "$complete" ] || make_root
 share_network
-copy_sources
 mount_kernel
 
 environment=(HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 TERM="${TERM:-dumb}")
@@ -106,5 +106,12 @@ done
 
 compare="! [ -f $waveforms ] || tools/run.sh python tools/waveforms.py $waveforms"
 [ $# -gt 0 ] || set -- sh -c "make test && { $compare; }"
-say "$* (in $root)"
-chroot "$root" env -i "${environment[@]}" sh -c 'cd /src && exec "$@"' sh "$@"
+failed=0
+for way in ${DOLFINX:-pip apt}; do
+    copy_sources "$root/src/$way"
+    say "$* (in $root/src/$way)"
+    began=$SECONDS outcome=passed
+    chroot "$root" env -i "${environment[@]}" DOLFINX="$way" sh -c "cd /src/$way"' && exec "$@"' sh "$@" || { outcome=failed; failed=1; }
+    say "dolfinx by $way: $outcome after $((SECONDS - began)) s"
+done
+exit $failed

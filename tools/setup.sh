@@ -3,11 +3,21 @@
 #   usage: tools/setup.sh [browser | docs]    ("browser": also the headless Chromium that the tests of the report's page drive,
 #                                              and what the tests of `view` and of the examples need;
 #                                              "docs": also mkdocs, which builds the documentation)
+# In the environment, kept for this .venv until they are given anew:
+#   DOLFINX=active|apt|pip|conda  dolfinx in this way alone; any: in the first that there is
+#   LOCKED=1                      the versions of constraints.txt; 0: the newest that pyproject.toml admits
 set -euo pipefail
 cd "$(dirname "$0")/.."
+asked=$(cat .venv/.setup-asked 2>/dev/null || echo any 0)
+way=${DOLFINX:-${asked% *}} locked=${LOCKED:-${asked#* }}
 
 say() { printf 'setup: %s\n' "$*"; }
 fail() { printf 'setup: %s\n' "$*" >&2; exit 1; }
+
+case $way in
+    any | active | apt | pip | conda) ;;
+    *) fail "DOLFINX=$way: must be active, apt, pip, conda or any" ;;
+esac
 
 every=30  # s
 
@@ -29,9 +39,10 @@ PATH=$(printf %s "$PATH" | tr : '\n' | grep -vFx -e "$PWD/.venv/bin" | paste -sd
 unset PYTHONHOME
 
 # pip's wheel of dolfinx brings an MPI that must be loaded first.
-dolfinx='from importlib.util import find_spec as f
-if f("dolfinx_solver"): import dolfinx_solver
-import dolfinx'
+find='from importlib.util import find_spec as f'
+dolfinx="$find
+if f('dolfinx_solver'): import dolfinx_solver
+import dolfinx"
 imports_dolfinx() { "$1" -c "$dolfinx, ensurepip, sys; sys.exit(sys.version_info < (3, 11))" >/dev/null 2>&1; }
 
 in_log() { local log=$1; shift; "$@" >"$log" 2>&1; }
@@ -60,21 +71,6 @@ apt_install() {
     return 1
 }
 
-# Prints the Python below .venv: the active one if it has dolfinx, else Debian's own. Fails where there is neither.
-base_python() {
-    local active
-    active=$(command -v python3 || true)
-    if [ -n "$active" ] && imports_dolfinx "$active"; then
-        "$active" -c 'import sys; print(sys.executable)'
-        return
-    fi
-    command -v apt-get >/dev/null || return 1
-    # Messages go to standard error here: standard output is the answer.
-    apt_install python3-dolfinx python3-gmsh python3-venv >&2 || return 1
-    imports_dolfinx /usr/bin/python3 || return 1
-    echo /usr/bin/python3
-}
-
 # Prints a Python that pip has a wheel of dolfinx for: 3.12 or newer on x86-64 Linux.
 wheel_python() {
     local python
@@ -87,14 +83,35 @@ wheel_python() {
     return 1
 }
 
-make_venv() {
+make_venv() {  # over a Python that has dolfinx
+    say ".venv over $1, which has dolfinx $("$1" -c "$dolfinx; print(dolfinx.__version__)")"
     "$1" -m venv --system-site-packages .venv
     # A venv made from another venv sees neither that one's packages nor its dolfinx: name them.
     "$1" -c 'import site, sys; print(*(site.getsitepackages() if sys.prefix != sys.base_prefix else []), sep="\n")' \
         >"$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/active-environment.pth"
 }
 
-make_conda() {
+# The ways to a .venv with dolfinx; each fails where it is not to be had.
+by_active() {
+    local python
+    python=$(command -v python3) && imports_dolfinx "$python" || return 1
+    make_venv "$("$python" -c 'import sys; print(sys.executable)')"
+}
+
+by_apt() {
+    command -v apt-get >/dev/null && apt_install python3-dolfinx python3-gmsh python3-venv &&
+        imports_dolfinx /usr/bin/python3 && make_venv /usr/bin/python3
+}
+
+by_pip() {
+    local python
+    # A bare machine has no Python, and Debian's no venv.
+    python=$(wheel_python) || { command -v apt-get >/dev/null && apt_install python3-venv && python=$(wheel_python); } || return 1
+    say ".venv of $python, with dolfinx by pip"
+    "$python" -m venv .venv
+}
+
+by_conda() {
     local conda
     conda=$(command -v micromamba || command -v mamba || command -v conda) || return 1
     say "$(basename "$conda") creates .venv from environment.yml (some minutes)"
@@ -104,16 +121,44 @@ make_conda() {
     esac
 }
 
+# Debian 12's dolfinx comes before the wheel, which its Python is too old for; any other apt's after it.
+ways() {
+    if [ "$way" != any ]; then
+        echo "$way"
+    elif grep -qs '^VERSION_CODENAME=bookworm' /etc/os-release; then
+        echo active apt pip conda
+    else
+        echo active pip apt conda
+    fi
+}
+
+make_environment() {
+    local one
+    for one in $(ways); do
+        rm -rf .venv
+        if "by_$one"; then return 0; fi
+    done
+    rm -rf .venv
+    return 1
+}
+
 install_project() {  # with these extras
-    # A string, not an array: macOS's bash 3.2 takes an empty array for an unset variable.
-    local constraints=
+    # Strings, not arrays: macOS's bash 3.2 takes an empty array for an unset variable.
+    local numpy='' lock=''
     # dolfinx and petsc4py are compiled against one numpy major version, and must keep it.
     if .venv/bin/python -c 'import numpy, sys; sys.exit(numpy.__version__.split(".")[0] != "1")' 2>/dev/null; then
-        constraints='-c constraints-numpy1.txt'
+        numpy='numpy<2'
     fi
-    say "pip install -e .[$1] $constraints (about a minute)"
+    if [ "$locked" != 0 ]; then lock='-c constraints.txt'; fi
+    say "pip install -e .[$1] $numpy $lock (about a minute)"
     # shellcheck disable=SC2086
-    telling 'pip install' .venv/bin/python -m pip --disable-pip-version-check install -q $constraints -e ".[$1]"
+    telling 'pip install' .venv/bin/python -m pip --disable-pip-version-check install -q -e ".[$1]" $numpy $lock
+}
+
+# What gmsh's wheel and forms of dolfinx's need of the system; without it their tests fail.
+install_libraries() {
+    .venv/bin/python -c 'import dolfinx_solver' 2>/dev/null && command -v apt-get >/dev/null || return 0
+    apt_install gcc libc6-dev python3-dev libglu1-mesa libxcursor1 libxft2 libxinerama1 || say "tests of gmsh and of forms will fail"
 }
 
 install_browser() {
@@ -133,12 +178,12 @@ install_docs() {
 
 # The folder is part of both keys because a venv does not survive being moved or copied. They are asked for anew each time:
 # a bare machine has no Python before Debian's is installed.
-base_key() { echo "$PWD $(python3 -c 'import sys; print(sys.executable, sys.version)' 2>/dev/null || echo none)"; }
-key() { echo "$(base_key) $(cat pyproject.toml constraints-numpy1.txt environment.yml tools/setup.sh | cksum)"; }
+base_key() { echo "$PWD $way $(python3 -c 'import sys; print(sys.executable, sys.version)' 2>/dev/null || echo none)"; }
+key() { echo "$(base_key) $locked $(cat pyproject.toml constraints.txt environment.yml tools/setup.sh | cksum)"; }
 
 ready() {
     [ "$(cat .venv/.setup-done 2>/dev/null)" = "$(key)" ] &&
-        .venv/bin/python -c 'from importlib.util import find_spec as f; assert f("dolfinx") and f("compare")' 2>/dev/null
+        .venv/bin/python -c "$find; assert f('dolfinx') and f('compare')" 2>/dev/null
 }
 
 if ready; then
@@ -146,26 +191,19 @@ if ready; then
 else
     rm -f .venv/.setup-done
     if [ "$(cat .venv/.setup-base 2>/dev/null)" != "$(base_key)" ] || ! imports_dolfinx .venv/bin/python; then
-        rm -rf .venv
-        if base=$(base_python); then
-            say ".venv over $base, which has dolfinx $("$base" -c "$dolfinx; print(dolfinx.__version__)")"
-            make_venv "$base"
-        elif base=$(wheel_python); then
-            say ".venv of $base, with dolfinx by pip"
-            "$base" -m venv .venv
-        else
-            make_conda || fail "no dolfinx: activate an environment that has it, or install Python 3.12 or newer (x86-64 Linux), conda or Debian/Ubuntu's python3-dolfinx python3-gmsh python3-venv, then run make again"
-        fi
+        make_environment || fail "no dolfinx ($way): activate an environment that has it, or install Python 3.12 or newer (x86-64 Linux), conda or Debian/Ubuntu's python3-dolfinx python3-gmsh python3-venv, then run make again"
         base_key >.venv/.setup-base
     fi
     extras=test,check
-    imports_dolfinx .venv/bin/python || extras=$extras,continuum
+    # Only pip's dolfinx is ours to install.
+    .venv/bin/python -c "$find; import sys; sys.exit(bool(f('dolfinx')) and not f('dolfinx_solver'))" && extras=$extras,continuum
+    echo "$way $locked" >.venv/.setup-asked
     install_project "$extras"
     .venv/bin/python -c "$dolfinx, numba, compare" || fail ".venv does not import dolfinx, numba and compare"
     key >.venv/.setup-done
     say "done: .venv/bin/jointwave, or activate it by: . .venv/bin/activate"
 fi
 case "${1:-}" in
-    browser) install_browser; install_extras ;;
+    browser) install_libraries; install_browser; install_extras ;;
     docs) install_docs ;;
 esac

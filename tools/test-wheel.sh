@@ -23,7 +23,7 @@ test "$sum" = "$(sha256sum <"$work/dist/$(basename "$wheel")")"
 echo "${sum%% *}  $(basename "$wheel")"
 extra=''
 if "$python" -c 'import sys; sys.exit(sys.version_info < (3, 12))'; then extra='[continuum]'; fi
-"$work/env/bin/pip" install -q "$wheel$extra" pytest
+"$work/env/bin/pip" install -q "$wheel$extra" pytest pytest-xdist hypothesis
 cd "$work"
 PATH="$work/env/bin:$PATH"
 jointwave doctor || [ -z "$extra" ]
@@ -32,6 +32,11 @@ shipped=$(python -c 'import jointwave._lib.cases as c, os; print(os.path.dirname
 mkdir scenes
 cp "$shipped"/guo-li-2002/fig-0[37].toml scenes
 python -m pytest -q scenes
+# Tests that need no checkout, with the names that are installed.
+packages='cases|results|numerics|joints|dem|continuum|compare'
+cp -r "$work/source/tests" tests
+find tests -name '*.py' -exec sed -Ei "s/^( *from )($packages)([. ])/\1jointwave._lib.\2\3/; s/^( *)import ($packages)\$/\1from jointwave._lib import \2/" {} +
+python -m pytest -q -n auto --import-mode=importlib -m 'not slow' tests/cases tests/joints tests/results tests/dem/axial tests/test_jointwave.py
 if [ -n "$extra" ]; then mpiexec -n 2 jointwave run guo-li-2002/fig-07 --engine continuum --out ranks; fi
 jointwave report scenes/fig-07.toml --out page
 ls -l page/index.html

@@ -6,17 +6,22 @@ import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from cases.gmsh_file import INSTALL
+
 
 @contextmanager
 def gmsh_session() -> Iterator:
     """Start gmsh with its own defaults and an empty model, and yield its module.
 
+    Raises ImportError, which says how to get it, where gmsh cannot be loaded.
     Raises RuntimeError where a session is open already, whose options would change the mesh; before
     4.9 gmsh cannot tell, and that session ends with this one.
     """
     with _process_as_it_was():
-        import gmsh
-
+        try:
+            import gmsh
+        except (ImportError, OSError) as error:
+            raise ImportError(f"{error}; {INSTALL}") from None
         if getattr(gmsh, "isInitialized", int)():
             raise RuntimeError("gmsh is in use: call gmsh.finalize() first")
         takes_interrupts = "interruptible" in inspect.signature(gmsh.initialize).parameters

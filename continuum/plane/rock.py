@@ -100,7 +100,7 @@ def _mesh(scene: RockMass, partition: Partition, across: list[Across]):
     except ValueError as error:
         key = "numerics.continuum.cell"
         raise SceneError(scene.where, key, numerics.cell, str(error)) from None
-    except (ImportError, OSError) as error:
+    except ImportError as error:
         key, allowed = "numerics.continuum.cell", f"needs gmsh for triangles ({error})"
         raise SceneError(scene.where, key, numerics.cell, allowed) from None
     if found.mesh.cell == "triangle" and numerics.order > 2:

@@ -17,6 +17,7 @@ from pathlib import Path
 from shutil import which
 from typing import NamedTuple
 
+from cases.gmsh_file import INSTALL as GMSH
 from compare.cli.diagnostics.accuracy import PAIRS, Check, bound_of
 from compare.solvers.continuum import INSTALL
 
@@ -42,7 +43,7 @@ HINTS = {
     "basix": f"make setup; or {INSTALL}",
     "dolfinx": "apt install python3-dolfinx; only --vtx and studies of a plain loop need it",
     "PETSc": "comes with dolfinx; implicit steps and static states need it",
-    "gmsh": "pip install gmsh; only tetrahedra need it",
+    "gmsh": f"{GMSH}; only triangles and tetrahedra need it",
     "MPI": "comes with dolfinx; or pip install mpi4py",
     "ADIOS2": "only --vtx needs it; dolfinx of conda-forge has it",
     "mpiexec": "apt install openmpi-bin; or conda install -c conda-forge mpich",

@@ -2,6 +2,7 @@
 
 import locale
 import signal
+import sys
 
 import pytest
 
@@ -41,3 +42,17 @@ def test_an_open_session_is_refused_where_gmsh_can_tell():
         with pytest.raises(RuntimeError, match="gmsh is in use"), gmsh_session():
             pass
         assert gmsh.model.getEntities() == []
+
+
+def test_a_system_that_lacks_its_libraries_is_told_them(tmp_path, monkeypatch, jointwave):
+    """The wheel raises OSError when the loader misses one: one line, with what to install."""
+    reason = "libGLU.so.1: cannot open shared object file"
+    (tmp_path / "gmsh.py").write_text(f"raise OSError({reason!r})")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.delitem(sys.modules, "gmsh", raising=False)
+    changes = ("numerics.continuum.dim=3", "numerics.continuum.cell=simplex")
+    sets = [word for change in changes for word in ("--set", change)]
+    scene = ("guo-li-2002/fig-03", "--variant", "", "--engine", "continuum", "--model", "jointed")
+    said = jointwave("run", *scene, *sets, "--out", tmp_path, code=2).err.splitlines()[-1]
+    assert f"numerics.continuum.cell = 'simplex': needs gmsh ({reason}; pip install gmsh" in said
+    assert "libglu1-mesa" in said
