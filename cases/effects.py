@@ -12,6 +12,8 @@ from cases.schema.scene import Scene
 if TYPE_CHECKING:
     from cases.kinds import AnyScene
 
+NO_SHEAR = "nothing shears the joints"
+
 
 @dataclass(frozen=True)
 class Effect:
@@ -119,6 +121,9 @@ def _of_motion(scene: Scene, p: Properties) -> Iterator[Effect]:
     )
     slips = p.friction is not None or p.cohesion is not None
     yield Effect("slip", slips and cause is not None, _why_slip(slips, cause))
+    weakens = p.weakening_distance is not None
+    why = "weakening_distance is given" if weakens else "no weakening_distance"
+    yield Effect("weakening", weakens and cause is not None, why if cause else NO_SHEAR)
     softens = p.tensile_strength is not None
     yield Effect(
         "softening", softens, "tensile_strength is given" if softens else "no tensile_strength"
@@ -127,7 +132,7 @@ def _of_motion(scene: Scene, p: Properties) -> Iterator[Effect]:
 
 def _why_slip(slips: bool, cause: str | None) -> str:
     if cause is None:
-        return "nothing shears the joints"
+        return NO_SHEAR
     return "friction_angle or cohesion is given" if slips else "neither friction_angle nor cohesion"
 
 

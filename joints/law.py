@@ -14,7 +14,7 @@ import numpy as np
 
 from joints.formula import formula
 from joints.normal import normal_traction
-from joints.shear import cohesion_left, shear_return, shear_strength
+from joints.shear import cohesion_left, path_after, shear_return, shear_strength
 
 
 class Law(NamedTuple):
@@ -28,6 +28,8 @@ class Law(NamedTuple):
     tensile_strength, critical_opening : s_t, Pa, and w_c, m; None without softening.
     maximum_closure, rock_compliance : d_m, m, of joints that stiffen, K at first; None without.
         And what rock has of the compliance 1/K, m/Pa; None where it has none.
+    dynamic_friction, weakening_distance : what a path of slip leaves of tan(phi), and that path D,
+        m; None where friction stays.
 
     A joint without a strength that others have is given `joints.shear.UNLIMITED`.
     """
@@ -44,6 +46,8 @@ class Law(NamedTuple):
     critical_opening: Any = None
     maximum_closure: Any = None
     rock_compliance: Any = None
+    dynamic_friction: Any = None
+    weakening_distance: Any = None
 
 
 class Parts(NamedTuple):
@@ -62,19 +66,21 @@ class Parts(NamedTuple):
     limited: bool
     varied: bool
     closure: bool
+    weakening: bool
 
 
 class History(NamedTuple):
     """What one point of a joint remembers; 0 for what its law does not use.
 
     opening : the largest so far, m. ex, ez : elastic part of the slip, m. cohesion : of this
-    point, Pa, where slip changes it.
+    point, Pa, where slip changes it. path : slid so far, m, where the law asks for it.
     """
 
     opening: float = 0.0
     ex: float = 0.0
     ez: float = 0.0
     cohesion: float = 0.0
+    path: float = 0.0
 
 
 def parts_of(law: Law) -> Parts:
@@ -92,6 +98,7 @@ def parts_of(law: Law) -> Parts:
         limited=shear and (slip or no_tension or softening),
         varied=any(np.ndim(value) for value in law if value is not None),
         closure=law.maximum_closure is not None,
+        weakening=shear and law.weakening_distance is not None,
     )
 
 
@@ -113,6 +120,7 @@ def law_of(table, j):
     return Law(
         table[0, j], table[1, j], table[2, j], table[3, j], table[4, j],
         table[5, j], table[6, j], table[7, j], table[8, j], table[9, j], table[10, j], table[11, j],
+        table[12, j], table[13, j],
     )  # fmt: skip
 
 
@@ -126,11 +134,13 @@ def traction(law, parts, gap, gap_rate, slip, slip_rate, dt, history):
     opening = max(history.opening, gap)
     t_n = normal_traction(law, parts, gap, gap_rate, opening)
     if not parts.shear:
-        return t_n, 0.0, 0.0, History(opening, history.ex, history.ez, history.cohesion)
-    tau = shear_strength(law, parts, t_n, gap, opening, history.cohesion)
+        h = history
+        return t_n, 0.0, 0.0, History(opening, h.ex, h.ez, h.cohesion, h.path)
+    ex, ez, path = history.ex + slip[0], history.ez + slip[1], history.path
+    tau = shear_strength(law, parts, t_n, gap, opening, history.cohesion, path)
+    tau, path = path_after(law, parts, t_n, path, tau, ex, ez, slip_rate[0], slip_rate[1], dt)
     t_x, t_z, ex, ez, slipped = shear_return(
-        law, parts, history.ex + slip[0], history.ez + slip[1],
-        history.ex, history.ez, slip_rate[0], slip_rate[1], tau, dt,
-    )  # fmt: skip
+        law, parts, ex, ez, history.ex, history.ez, slip_rate[0], slip_rate[1], tau, dt
+    )
     cohesion = cohesion_left(law, parts, history.cohesion, slipped)
-    return t_n, t_x, t_z, History(opening, ex, ez, cohesion)
+    return t_n, t_x, t_z, History(opening, ex, ez, cohesion, path)

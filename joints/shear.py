@@ -10,6 +10,7 @@ from math import sqrt
 
 from joints.formula import formula
 from joints.softening import is_broken, strength_left
+from joints.weakening import friction_left, weakened
 
 # Pa; more than any joint carries, and still a number when squared.
 UNLIMITED = 1e100
@@ -25,13 +26,14 @@ def shear_traction(law, parts, slip_x, slip_z, rate_x, rate_z):
 
 
 @formula
-def shear_strength(law, parts, t_n, gap, opening, cohesion):
+def shear_strength(law, parts, t_n, gap, opening, cohesion, path):
     """Return the limit of |T| (Pa); `UNLIMITED` where there is none.
 
     c s(k) / s_t + t_n tan(phi), not below zero; zero where the joint does not hold.
 
     t_n, gap : normal traction, Pa, and gap, m.
     opening : the largest so far, m. cohesion : of this point, Pa, where slip changes it.
+    path : that it has slid, m, where that weakens it.
     """
     tau = UNLIMITED
     if parts.slip:
@@ -39,7 +41,7 @@ def shear_strength(law, parts, t_n, gap, opening, cohesion):
         # A cohesion that stands for no limit has none where broken faces touch either.
         if parts.softening and c < UNLIMITED:
             c = c * (strength_left(law, opening) / law.tensile_strength)
-        tau = max(c + t_n * law.friction, 0.0)
+        tau = max(c + t_n * friction_left(law, parts, t_n, path), 0.0)
     return tau if holds(law, parts, gap, opening) else 0.0
 
 
@@ -50,6 +52,27 @@ def holds(law, parts, gap, opening):
         law, parts, opening
     )
     return gap <= 0.0 or pulls
+
+
+@formula
+def path_after(law, parts, t_n, path, tau, ex, ez, rate_x, rate_z, dt):
+    """Return the strength (Pa) and the path (m) at the end of a step, where slip weakens the joint.
+
+    path, tau : before it. ex, ez, rate_x, rate_z, dt : as for `shear_return`.
+    """
+    if not parts.weakening:
+        return tau, path
+    t_x, t_z = shear_traction(law, parts, ex, ez, rate_x, rate_z)
+    size, stiffness = sqrt(t_x * t_x + t_z * t_z), resistance(law, parts, dt)
+    return weakened(law, t_n, path, tau, size, stiffness)
+
+
+@formula
+def resistance(law, parts, dt):
+    """Return what a slide within a step takes off the traction, Pa/m: spring and dashpot."""
+    if parts.dashpots:
+        return law.shear_stiffness + law.shear_viscosity / dt
+    return law.shear_stiffness
 
 
 @formula

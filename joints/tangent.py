@@ -16,8 +16,9 @@ from typing import NamedTuple
 from joints.closure import closure_stiffness
 from joints.formula import formula
 from joints.normal import normal_traction, spring_alone
-from joints.shear import UNLIMITED, shear_strength, shear_traction
+from joints.shear import UNLIMITED, path_after, resistance, shear_strength, shear_traction
 from joints.softening import stiffness_left, strength_left
+from joints.weakening import friction_left, strength_fall
 
 
 class Tangent(NamedTuple):
@@ -33,11 +34,11 @@ class Tangent(NamedTuple):
 
 
 @formula
-def tangent(law, parts, gap, gap_rate, slip, slip_rate, history, r):
+def tangent(law, parts, gap, gap_rate, slip, slip_rate, dt, history, r):
     """Return the `Tangent` of one point, for the arguments of `joints.law.traction`.
 
     gap, gap_rate : m and m/s at the end of the step; slip : its increments (dx, dz) over the
-    step, m; slip_rate : (x, z), m/s; history : before the step; r : rate factor, 1/s.
+    step, m; slip_rate : (x, z), m/s; dt : s; history : before the step; r : rate factor, 1/s.
     """
     before = history.opening
     nn = normal_tangent(law, parts, gap, gap_rate, before, r)
@@ -50,13 +51,29 @@ def tangent(law, parts, gap, gap_rate, slip, slip_rate, history, r):
         return Tangent(nn, 0.0, 0.0, slope, 0.0, slope)
     opening = max(before, gap)
     t_n = normal_traction(law, parts, gap, gap_rate, opening)
-    tau = shear_strength(law, parts, t_n, gap, opening, history.cohesion)
-    rise = _strength_rise(law, parts, nn, tau, gap, before, history.cohesion)
-    t_x, t_z = shear_traction(
-        law, parts, history.ex + slip[0], history.ez + slip[1], slip_rate[0], slip_rate[1]
-    )
-    xn, zn, xx, xz, zz = _returned(tau, rise, t_x, t_z, slope)
+    ex, ez, path = history.ex + slip[0], history.ez + slip[1], history.path
+    tau = shear_strength(law, parts, t_n, gap, opening, history.cohesion, path)
+    tau, path = path_after(law, parts, t_n, path, tau, ex, ez, slip_rate[0], slip_rate[1], dt)
+    rise = _strength_rise(law, parts, nn, tau, gap, before, history.cohesion, t_n, path)
+    t_x, t_z = shear_traction(law, parts, ex, ez, slip_rate[0], slip_rate[1])
+    share = 1.0
+    if parts.weakening:
+        share = _share_of_trial(law, parts, t_n, path, tau, t_x, t_z, dt)
+        rise = share * rise
+    xn, zn, xx, xz, zz = _returned(parts, tau, rise, t_x, t_z, slope, share)
     return Tangent(nn, xn, zn, xx, xz, zz)
+
+
+@formula
+def _share_of_trial(law, parts, t_n, path, tau, t_x, t_z, dt):
+    """Return by how much a slide exceeds, for what changes it, that of a strength that stays.
+
+    Of tau = tau(S + l), l = (|T*| - tau) / a, with the strength's fall h at the end of the step:
+    d tau = share rise d gap + (1 - share) d|T*|, share = a / (a - h).
+    """
+    a, slips = resistance(law, parts, dt), t_x * t_x + t_z * t_z > tau * tau
+    left = a - strength_fall(law, t_n, path)
+    return a / left if slips and left > 0.0 else 1.0
 
 
 @formula
@@ -91,9 +108,9 @@ def _strength_loss(law, gap, before):
 
 
 @formula
-def _strength_rise(law, parts, nn, tau, gap, before, cohesion):
+def _strength_rise(law, parts, nn, tau, gap, before, cohesion, t_n, path):
     """Return d tau / d gap (Pa/m) of the shear strength tau, zero where nothing is left of it."""
-    rise = law.friction * nn
+    rise = friction_left(law, parts, t_n, path) * nn
     if parts.softening:
         c = cohesion if parts.residual else law.cohesion
         rise += (
@@ -103,10 +120,11 @@ def _strength_rise(law, parts, nn, tau, gap, before, cohesion):
 
 
 @formula
-def _returned(tau, rise, t_x, t_z, slope):
+def _returned(parts, tau, rise, t_x, t_z, slope, share):
     """Return (xn, zn, xx, xz, zz) of a trial traction of this slope with slip.
 
-    On the strength T = tau n, n = T* / |T*|: dT = n dtau + tau / |T*| (1 - n n^T) dT*.
+    On the strength T = tau n, n = T* / |T*|: dT = n dtau + tau / |T*| (1 - n n^T) dT*; share : of
+    `_share_of_trial`.
     """
     size = sqrt(t_x * t_x + t_z * t_z)
     slips = size > tau
@@ -114,6 +132,15 @@ def _returned(tau, rise, t_x, t_z, slope):
     # Without any strength left the traction is zero, whether there is a trial one or not.
     left = 0.0 if tau <= 0.0 else slope
     turn = left * tau / size if slips else left
+    if parts.weakening:
+        along = (1.0 - share) * left
+        return (
+            n_x * rise,
+            n_z * rise,
+            turn + (along - turn) * n_x * n_x,
+            (along - turn) * n_x * n_z,
+            turn + (along - turn) * n_z * n_z,
+        )
     return (
         n_x * rise,
         n_z * rise,

@@ -325,6 +325,21 @@ MISTAKES = {
         f"cohesion = 1e4\n\n{LAYER}residual_cohesion = 2e4\n",
         ["soft_layers[0].residual_cohesion = 20000.0", "at most the cohesion 10000 Pa"],
     ),
+    "a weakening distance alone": (
+        "[joints]",
+        "[joints]\nfriction_angle = 30.0\nweakening_distance = 1e-3",
+        ["joints.dynamic_friction_angle", "is needed with joints.weakening_distance"],
+    ),
+    "dynamic friction without friction": (
+        "[joints]",
+        "[joints]\ndynamic_friction_angle = 20.0\nweakening_distance = 1e-3",
+        ["joints.dynamic_friction_angle = 20.0", "needs a friction_angle"],
+    ),
+    "friction that rises with slip": (
+        "[joints]",
+        "[joints]\nfriction_angle = 20.0\ndynamic_friction_angle = 30.0\nweakening_distance = 1e-3",
+        ["joints.dynamic_friction_angle = 30.0", "at most friction_angle = 20"],
+    ),
     "a vertical friction angle": (
         "[joints]",
         "[joints]\nfriction_angle = 90.0",

@@ -17,13 +17,20 @@ if TYPE_CHECKING:
 #: of one that does not stiffen; its square is still a number.
 UNLIMITED = 1e100
 
-#: The keys of slip and of softening: without them no joint has that effect.
+#: The keys of slip, of its weakening and of softening: without them no joint has that effect.
 SLIP = ("friction_angle", "cohesion", "residual_cohesion")
+WEAKENING = ("dynamic_friction_angle", "weakening_distance")
 SOFTENING = ("tensile_strength", "fracture_energy")
 CLOSURE = "maximum_closure"
 
 #: The parameters that act along a joint, which axial motion leaves out.
-ALONG = ("friction", "cohesion", "residual_cohesion")
+ALONG = (
+    "friction",
+    "cohesion",
+    "residual_cohesion",
+    "dynamic_friction",
+    "weakening_distance",
+)
 
 
 @dataclass(frozen=True)
@@ -34,6 +41,7 @@ class Strength:
     friction : tan of the friction angle. cohesion, residual_cohesion, tensile_strength : Pa.
     critical_opening : w_c = 2 G_c / sigma_t, at which softening has used up the strength, m.
     maximum_closure : d_m, m.
+    dynamic_friction, weakening_distance : tan of the angle that is left, and the path of slip, m.
     """
 
     friction: np.ndarray | None = None
@@ -42,6 +50,8 @@ class Strength:
     tensile_strength: np.ndarray | None = None
     critical_opening: np.ndarray | None = None
     maximum_closure: np.ndarray | None = None
+    dynamic_friction: np.ndarray | None = None
+    weakening_distance: np.ndarray | None = None
 
     def strengths(
         self, shears: bool = True, joint: np.ndarray | slice = np.s_[:]
@@ -64,29 +74,36 @@ def strength_of(laws: Sequence[JointLaw], which: np.ndarray) -> Strength:
 
     Beside joints that slip, one without friction and cohesion of its own has a cohesion without
     limit; beside joints that break, one without tensile strength likewise, and beside joints that
-    stiffen one that closes linearly.
+    stiffen one that closes linearly; beside joints that slip weakens, one whose friction stays.
     """
-    keys = (*SLIP, *SOFTENING, CLOSURE)
+    keys = (*SLIP, *SOFTENING, CLOSURE, *WEAKENING)
     if all(getattr(law, key) is None for law in laws for key in keys):
         return Strength()
-    angle, cohesion, residual, limit, energy, closure = (
+    angle, cohesion, residual, limit, energy, closure, dynamic, distance = (
         np.array([_number(getattr(law, key)) for law in laws])[which] for key in keys
     )
     slips = ~(np.isnan(angle) & np.isnan(cohesion))
     never = ~slips & slips.any()
     whole = np.where(never, UNLIMITED, np.nan_to_num(cohesion))
+    friction, weakens = _tangent(angle), np.where(np.isnan(dynamic), angle, dynamic)
     return Strength(
-        friction=_where_given(angle, np.tan(np.radians(np.nan_to_num(angle)))),
+        friction=_where_given(angle, friction),
         cohesion=whole if never.any() or not np.isnan(cohesion).all() else None,
         residual_cohesion=_where_given(residual, np.where(np.isnan(residual), whole, residual)),
         tensile_strength=_where_given(limit, np.nan_to_num(limit, nan=UNLIMITED)),
         critical_opening=_where_given(limit, np.nan_to_num(2 * energy / limit, nan=UNLIMITED)),
         maximum_closure=_where_given(closure, np.nan_to_num(closure, nan=UNLIMITED)),
+        dynamic_friction=_where_given(dynamic, _tangent(weakens)),
+        weakening_distance=_where_given(distance, np.nan_to_num(distance, nan=1.0)),
     )
 
 
 def _number(value: float | None) -> float:
     return np.nan if value is None else value
+
+
+def _tangent(angle: np.ndarray) -> np.ndarray:
+    return np.tan(np.radians(np.nan_to_num(angle)))
 
 
 def _where_given(given: np.ndarray, filled: np.ndarray) -> np.ndarray | None:

@@ -39,6 +39,8 @@ def _of_joints(scene: RockMass) -> Iterator[Effect]:
     slips = [s for s in scene.joint_sets if s.friction_angle is not None or s.cohesion is not None]
     given = "friction_angle or cohesion is given"
     yield _of_sets("slip", slips, given, "neither friction_angle nor cohesion")
+    weakens = [one for one in scene.joint_sets if one.weakening_distance is not None]
+    yield _of_sets("weakening", weakens, "weakening_distance is given", "no weakening_distance")
     softens = [one for one in scene.joint_sets if one.tensile_strength is not None]
     yield _of_sets("softening", softens, "tensile_strength is given", "no tensile_strength")
 

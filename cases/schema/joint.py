@@ -18,6 +18,9 @@ class JointLaw(Table):
     tension: bool | None = None  #: False: a joint that would be pulled apart carries nothing (10)
     damping_ratio: NonNegative | None = None  #: zeta; dashpot c_n = 2 zeta sqrt(m k_n)
     friction_angle: Annotated[float, Field(ge=0, lt=90)] | None = None  #: degrees (3)
+    #: degrees, what slip over weakening_distance leaves of friction_angle, linearly in its tangent
+    dynamic_friction_angle: Annotated[float, Field(ge=0, lt=90)] | None = None
+    weakening_distance: Positive | None = None  #: m
     cohesion: NonNegative | None = None  #: Pa (3)
     residual_cohesion: NonNegative | None = None  #: Pa, what a point keeps after its first slip
     tensile_strength: Positive | None = None  #: Pa

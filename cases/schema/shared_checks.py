@@ -13,6 +13,11 @@ if TYPE_CHECKING:
 
 MOST_SAMPLES = 10_000_000  # 80 MB for each section, point and energy term
 MOST_SNAPSHOTS = 10_000
+#: Keys of a joint that need one another.
+PAIRS = (
+    ("tensile_strength", "fracture_energy"),
+    ("dynamic_friction_angle", "weakening_distance"),
+)
 SNAP = 1 + 1e-6  # how far the fracture energy must stay from a vertical softening line
 
 
@@ -49,10 +54,10 @@ def check_fields(scene: AnyScene) -> None:
 
 def check_strength(table: str, law: JointLaw) -> None:
     """Raise a contradiction between the keys of strength in one table, given by its path."""
-    pair = ("tensile_strength", "fracture_energy")
-    for key, other in (pair, pair[::-1]):
-        if getattr(law, key) is None and getattr(law, other) is not None:
-            raise contradiction(f"{table}.{key}", None, f"is needed with {table}.{other}")
+    for pair in PAIRS:
+        for key, other in (pair, pair[::-1]):
+            if getattr(law, key) is None and getattr(law, other) is not None:
+                raise contradiction(f"{table}.{key}", None, f"is needed with {table}.{other}")
     if law.tension is not None and law.tensile_strength is not None:
         raise contradiction(
             f"{table}.tension", law.tension, "tensile_strength says otherwise: give one of them"
@@ -63,6 +68,12 @@ def check_strength(table: str, law: JointLaw) -> None:
             "needs a cohesion" if cohesion is None else f"at most the cohesion {cohesion:g} Pa"
         )
         raise contradiction(f"{table}.residual_cohesion", residual, allowed)
+    dynamic, static = law.dynamic_friction_angle, law.friction_angle
+    if dynamic is not None and (static is None or dynamic > static):
+        allowed = (
+            "needs a friction_angle" if static is None else f"at most friction_angle = {static:g}"
+        )
+        raise contradiction(f"{table}.dynamic_friction_angle", dynamic, allowed)
 
 
 def rounded_up(x: float) -> float:

@@ -40,7 +40,7 @@ def leapfrog_for(parts, directions, shared=False):
         tiles, pairs, k_start, k_column, k_value, c_start, c_column, c_value,
         step_over_mass, mass, decay, weight,
         b_first, b_start, b_column, b_value, along,
-        table, area, prestress, jump, jump_rate, slip_rate, opening, slide, cohesion,
+        table, area, prestress, jump, jump_rate, slip_rate, opening, slide, cohesion, path,
         loads, drags, jumps, jump_rates, slip_rates, load_vector, drag_vector,
         loaded, share, pressure, driven, drive,
         quiet, viscosity, beta, reaction, stiffness, closure_decay, gain, closure,
@@ -73,7 +73,7 @@ def leapfrog_for(parts, directions, shared=False):
                     multiply_stencils(b_first, b_start, b_column, b_value, v, slip_rates, along)
                 sliding = joint_loads(
                     parts, directions, shears, table, area, prestress,
-                    jump, jump_rate, slip_rate, opening, slide, cohesion, loads, drags, dt,
+                    jump, jump_rate, slip_rate, opening, slide, cohesion, path, loads, drags, dt,
                 )  # fmt: skip
                 if ledger is not None:
                     ledger[1] += sliding

@@ -69,7 +69,7 @@ def arguments(
         *(*rock.stiffness, *viscosity),
         *(rock.step_over_mass, rock.mass, rock.decay, model.weight),
         *(*jumps, state.jump, state.jump_rate, state.slip_rate),
-        *(state.opening, state.slide, state.cohesion),
+        *(state.opening, state.slide, state.cohesion, state.path),
         *(state.loads, state.drags, _flat(state.jump), _flat(state.jump_rate)),
         *(_flat(state.slip_rate), _flat(state.loads), _flat(state.drags)),
         *(3 * (None,) if loaded is None else loaded),

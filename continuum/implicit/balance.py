@@ -90,7 +90,7 @@ def balance(
 
 
 def _history(state: State) -> tuple:
-    return state.opening, state.slide, state.cohesion
+    return state.opening, state.slide, state.cohesion, state.path
 
 
 def _add_joint_forces(
@@ -109,8 +109,8 @@ def _add_joint_forces(
     work = joint_balance_for(joints.parts, joints.directions)(
         joints.table, joints.area, joints.prestress,
         trial.jump, trial.jump_rate, trial.slip_rate,
-        trial.opening, trial.slide, trial.cohesion, trial.loads, trial.drags, model.dt,
-        now.opening, now.slide, now.cohesion, r, tangents,
+        trial.opening, trial.slide, trial.cohesion, trial.path, trial.loads, trial.drags, model.dt,
+        now.opening, now.slide, now.cohesion, now.path, r, tangents,
     )  # fmt: skip
     if trial.ledger is not None:
         trial.ledger[1] += work
@@ -145,18 +145,18 @@ def joint_balance_for(parts, directions):
 
     @jitted
     def joint_balance(
-        table, area, prestress, jump, jump_rate, slip_rate, opening, slide, cohesion, loads, drags,
-        dt, opening_before, slide_before, cohesion_before, r, tangents,
+        table, area, prestress, jump, jump_rate, slip_rate, opening, slide, cohesion, path, loads,
+        drags, dt, opening_before, slide_before, cohesion_before, path_before, r, tangents,
     ):  # fmt: skip
         """Set forces, history and tangents of all points; return the work of sliding, J."""
         flushing = flush_tiny()
         joint_tangents(
             parts, directions, shears, table, area, prestress, jump, jump_rate,
-            opening_before, slide_before, cohesion_before, r, tangents,
+            opening_before, slide_before, cohesion_before, path_before, dt, r, tangents,
         )  # fmt: skip
         sliding = joint_loads(
             parts, directions, shears, table, area, prestress,
-            jump, jump_rate, slip_rate, opening, slide, cohesion, loads, drags, dt,
+            jump, jump_rate, slip_rate, opening, slide, cohesion, path, loads, drags, dt,
         )  # fmt: skip
         restore_tiny(flushing)
         return sliding

@@ -10,7 +10,13 @@ from joints.energy import fracture_energy_spent, friction_work
 from joints.formula import formula
 from joints.law import History, law_of
 from joints.normal import gap_under, normal_traction, spring_traction
-from joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
+from joints.shear import (
+    cohesion_left,
+    path_after,
+    shear_return,
+    shear_strength,
+    shear_traction,
+)
 from joints.tangent import tangent
 
 #: Rows of the tangents: t_n with the gap; t_x, t_z with it; t_x with x, either with the other, t_z
@@ -21,7 +27,7 @@ NN, XN, ZN, XX, XZ, ZZ = range(6)
 @formula
 def joint_loads(
     parts, directions, shears, table, area, prestress,
-    jump, rate, slip_rate, opening, slide, cohesion, loads, drags, dt,
+    jump, rate, slip_rate, opening, slide, cohesion, path, loads, drags, dt,
 ):  # fmt: skip
     """Set the forces W t (N) of all points, and what the points remember; return the work of
     sliding in this step, J.
@@ -29,9 +35,9 @@ def joint_loads(
     parts, directions : constants of the caller; shears : None without shear.
     table, area, prestress : as in `Interfaces`.
     jump, m; rate : of the jump, m/s; slip_rate : of the slip over the step, m/s.
-    opening, slide, cohesion : history, replaced; a prestress along the joint is in `slide` from the
-    start, and without any `slide` it changes nothing. loads : of the springs, prestress left out;
-    drags : of the dashpots, None where loads have all.
+    opening, slide, cohesion, path : history, replaced; a prestress along the joint is in `slide`
+    from the start, and without any `slide` it changes nothing. loads : of the springs, prestress
+    left out; drags : of the dashpots, None where loads have all.
     """
     sliding, law = 0.0, law_of(table, 0)
     for q in range(area.size):
@@ -65,10 +71,15 @@ def joint_loads(
             else:
                 x, z = x - slide[0, q], z - slide[1, q] if directions == 3 else 0.0
                 dx, dz = dt * slip_rate[1, q], dt * slip_rate[2, q] if directions == 3 else 0.0
-                left = 0.0
+                left, slid = 0.0, 0.0
                 if cohesion is not None:
                     left = cohesion[q]
-                tau = shear_strength(law, parts, t_n, gap, widest, left)
+                if path is not None:
+                    slid = path[q]
+                tau = shear_strength(law, parts, t_n, gap, widest, left, slid)
+                if path is not None:
+                    tau, slid = path_after(law, parts, t_n, slid, tau, x, z, rate_x, rate_z, dt)
+                    path[q] = slid
                 t_x, t_z, ex, ez, slipped = shear_return(
                     law, parts, x, z, x - dx, z - dz, rate_x, rate_z, tau, dt
                 )
@@ -128,12 +139,12 @@ def joint_energy(parts, directions, table, area, prestress, jump, opening, slide
 @formula
 def joint_tangents(
     parts, directions, shears, table, area, prestress,
-    jump, rate, opening, slide, cohesion, r, stiffness,
+    jump, rate, opening, slide, cohesion, path, dt, r, stiffness,
 ):  # fmt: skip
     """Set how the joints resist displacement, [6, q], N/m: the tangents at every point less than
     zero, times its area.
 
-    opening, slide, cohesion : history before the step; r : rate factor, 1/s
+    opening, slide, cohesion, path : history before the step; r : rate factor, 1/s
     (`joints.tangent`); the rest is as for `joint_loads`.
     """
     law = law_of(table, 0)
@@ -141,13 +152,15 @@ def joint_tangents(
         if parts.varied:
             law = law_of(table, q)
         gap, gap_rate = jump[0, q], 0.0
-        x, z, rate_x, rate_z, widest, left = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        x, z, rate_x, rate_z, widest, left, slid = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         if prestress is not None:
             gap += gap_under(law, parts, prestress[0, q])
         if opening is not None:
             widest = opening[q]
         if cohesion is not None:
             left = cohesion[q]
+        if path is not None:
+            slid = path[q]
         if rate is not None:
             gap_rate = rate[0, q]
         if shears is not None:
@@ -157,8 +170,8 @@ def joint_tangents(
             if slide is not None:
                 x, z = x - slide[0, q], z - slide[1, q] if directions == 3 else 0.0
         # The whole elastic slip of the trial: what the step adds to the old one is in it.
-        before = History(widest, x, z, left)
-        found = tangent(law, parts, gap, gap_rate, (0.0, 0.0), (rate_x, rate_z), before, r)
+        before = History(widest, x, z, left, slid)
+        found = tangent(law, parts, gap, gap_rate, (0.0, 0.0), (rate_x, rate_z), dt, before, r)
         stiffness[NN, q] = -area[q] * found.nn
         if shears is not None:
             stiffness[XN, q], stiffness[ZN, q] = -area[q] * found.xn, -area[q] * found.zn

@@ -41,14 +41,14 @@ from joints.energy import elastic_energy, fracture_energy_spent, friction_work
 from joints.formula import formula
 from joints.law import law_of
 from joints.normal import normal_traction, spring_traction
-from joints.shear import cohesion_left, shear_return, shear_strength
+from joints.shear import cohesion_left, path_after, shear_return, shear_strength
 from numerics.atomic import wait_for_all
 from numerics.borrowed import borrowed
 from numerics.denormals import flush_tiny, restore_tiny
 from numerics.jit import jitted_for
 
-#: Columns of a point's history: what has slid, the largest opening and the cohesion.
-SLID, OPENING, COHESION = range(3)
+#: Columns of a point's history: what has slid, the largest opening, the cohesion and the path.
+SLID, OPENING, COHESION, PATH = range(4)
 #: Rows of a contact's samples: F on block j, M and the sum of e L w t_s, opening and slip.
 FORCE_X, FORCE_Y, BEND, ALONG, GAP, SLIP = range(6)
 CONTACT_ROWS = 6
@@ -137,7 +137,7 @@ def loop_for(form: PlaneForm) -> Callable:
     """Return the time loop of rock masses with these effects: what they lack is not compiled."""
     parts, points = form.parts, form.points
     dashpots, varied, softening = parts.dashpots, parts.varied, parts.softening
-    residual, held, ledger = parts.residual, form.held, form.ledger
+    residual, weakening, held, ledger = parts.residual, parts.weakening, form.held, form.ledger
     ruled, stressed, shaken = form.ruled, form.stressed, form.shaken
     mass_damping, local_damping, gravity = form.mass_damping, form.local_damping, form.gravity
     damped, drags = form.mass_damping or form.local_damping, form.parts.dashpots and form.ledger
@@ -231,16 +231,22 @@ def loop_for(form: PlaneForm) -> Callable:
                     for p in range(points):
                         e, share, own = rule[0, p] * length, rule[1, p] * length, history[c, p]
                         here, here_rate = gap - e * turn, rate - e * spin
-                        opening, cohesion = 0.0, 0.0
+                        opening, cohesion, path = 0.0, 0.0, 0.0
                         if softening:
                             opening = max(own[OPENING], here)
                             own[OPENING] = opening
                         if residual:
                             cohesion = own[COHESION]
+                        if weakening:
+                            path = own[PATH]
                         t_n = normal_traction(law, parts, here, here_rate, opening)
-                        tau = shear_strength(law, parts, t_n, here, opening, cohesion)
+                        tau = shear_strength(law, parts, t_n, here, opening, cohesion, path)
                         ex = slip - own[SLID]
                         old = ex - slide
+                        if weakening:
+                            tau, own[PATH] = path_after(
+                                law, parts, t_n, path, tau, ex, 0.0, slip_rate, 0.0, dt
+                            )
                         t_s, _, left, _, slipped = shear_return(
                             law, parts, ex, 0.0, old, 0.0, slip_rate, 0.0, tau, dt
                         )

@@ -48,7 +48,13 @@ from joints.energy import friction_work
 from joints.formula import formula
 from joints.law import Law
 from joints.normal import normal_traction, spring_traction
-from joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
+from joints.shear import (
+    cohesion_left,
+    path_after,
+    shear_return,
+    shear_strength,
+    shear_traction,
+)
 
 
 @formula
@@ -57,7 +63,7 @@ def law_at(table, i):
     return Law(
         table[i], table[L + i], table[2 * L + i], table[3 * L + i], table[4 * L + i],
         table[5 * L + i], table[6 * L + i], table[7 * L + i], table[8 * L + i], table[9 * L + i],
-        table[10 * L + i], table[11 * L + i],
+        table[10 * L + i], table[11 * L + i], table[12 * L + i], table[13 * L + i],
     )  # fmt: skip
 
 
@@ -140,7 +146,8 @@ def joints_for(form: Form) -> Callable:
     softening, residual, drags = parts.softening, parts.residual, parts.dashpots and form.ledger
     velocity = rows = form.freedoms * R
     first_point, point_rows = form.rate_rows * L, form.point_rows * L
-    cohesions = (2 + softening) * L
+    cohesions, weakening = (2 + softening) * L, parts.weakening
+    paths = cohesions + residual * L
 
     @formula
     def centred_rates(b, m, h, i):
@@ -232,7 +239,7 @@ def joints_for(form: Form) -> Callable:
                 area = whole
                 if finite:
                     area = area_in_contact(b, whole, x, z, gap, slip_x, slip_z)
-                rate, rate_x, rate_z, opening, cohesion = 0.0, 0.0, 0.0, 0.0, 0.0
+                rate, rate_x, rate_z, opening, cohesion, path = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
                 if dashpots:
                     rate, rate_x, rate_z = at_point(q, CENTRED + i, x, z, turns, finite)
                 if softening:
@@ -240,13 +247,19 @@ def joints_for(form: Form) -> Callable:
                     own[2 * L + i] = opening
                 if residual:
                     cohesion = own[cohesions + i]
+                if weakening:
+                    path = own[paths + i]
                 t_n = normal_traction(law, parts, gap, rate, opening)
-                tau = shear_strength(law, parts, t_n, gap, opening, cohesion)
+                tau = shear_strength(law, parts, t_n, gap, opening, cohesion, path)
                 ex, ez = slip_x - own[i], slip_z - own[L + i]
                 if slides:
                     _, dx, dz = at_point(q, RATE + i, x, z, turns, finite)
                     dx, dz = b.dt * dx, b.dt * dz
                     old_x, old_z = ex - dx, ez - dz
+                    if weakening:
+                        tau, own[paths + i] = path_after(
+                            law, parts, t_n, path, tau, ex, ez, rate_x, rate_z, b.dt
+                        )
                     t_x, t_z, ex, ez, slipped = shear_return(
                         law, parts, ex, ez, old_x, old_z, rate_x, rate_z, tau, b.dt
                     )

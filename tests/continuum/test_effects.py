@@ -18,6 +18,9 @@ from continuum.state import state_at_rest
 
 SUDDEN = {"direction": [0.0, 1.0, 0.0], "static": False}
 SHAKEN = {"shape": "sine", "amplitude": 0.1, "period": 1e-3, "quantity": "velocity"}
+WEAKENS = {"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3}
+NEVER = {"dynamic_friction_angle": 0.0, "weakening_distance": 1e-3}
+KEPT = ("opening", "slide", "cohesion", "path")
 BREAKS = {"tensile_strength": 5e6, "fracture_energy": 2000.0}
 SILENT = {"record__energy": False}
 
@@ -75,11 +78,12 @@ def test_barred_tension_changes_nothing_while_all_is_compressed(pillar):
     [
         {"joints": {"cohesion": 1e12}},
         {"joints": {"cohesion": 1e12, "residual_cohesion": 0.0}},
+        {"joints": {"cohesion": 1e12, "friction_angle": 0.0} | NEVER},
         {"joints": {"tensile_strength": 1e12, "fracture_energy": 1e18}},
         {"prestress": {"normal": 0.0}},
         {"gravity": {"direction": [0.6, 0.8, 0.0], "acceleration": 0.0, "static": False}},
     ],
-    ids=["cohesion", "residual cohesion", "tensile strength", "prestress", "weight"],
+    ids=["cohesion", "residual cohesion", "weakening", "tensile strength", "prestress", "weight"],
 )
 def test_strength_that_nothing_reaches_changes_nothing(idle, short):
     """An oblique and eccentric blow in the plane, which opens and shears the joints."""
@@ -116,7 +120,7 @@ def test_absent_effects_leave_no_array(short, ready):
     state = at.state
     assert (state.rate, state.drag, state.loads, state.drags) == (None,) * 4
     assert (state.jump, state.jump_rate, state.slip_rate) == (None,) * 3
-    assert (state.opening, state.slide, state.cohesion) == (None,) * 3
+    assert (state.opening, state.slide, state.cohesion, state.path) == (None,) * 4
     assert (state.closure, state.reaction, state.base_force, state.ledger) == (None,) * 4
     assert state.fields.size == 3 * at.model.rock.mass.size
 
@@ -128,7 +132,7 @@ def test_alike_undamped_joints_are_one_number(short, ready):
     assert law[1:] == (None,) * (len(law) - 1)
     assert at.model.interfaces.table.shape == (len(law), 1)
     state = at.state
-    assert (state.opening, state.slide, state.cohesion) == (None,) * 3
+    assert (state.opening, state.slide, state.cohesion, state.path) == (None,) * 4
     assert (state.rate, state.drag, state.drags, state.jump_rate, state.slip_rate) == (None,) * 5
     assert state.loads.shape == state.jump.shape == (1, 3)
 
@@ -143,12 +147,13 @@ def test_alike_undamped_joints_are_one_number(short, ready):
             {"cohesion": 1e5, "residual_cohesion": 1e4},
             ("slide", "cohesion"),
         ),
+        ({"friction_angle": 30.0, **WEAKENS}, ("slide", "path")),
         (BREAKS, ("opening", "slide")),
     ],
 )
 def test_joints_remember_what_their_law_asks_for(joints, kept, short, ready):
     at = ready(short(joints=joints), "jointed", 3)
-    history = {name: getattr(at.state, name) for name in ("opening", "slide", "cohesion")}
+    history = {name: getattr(at.state, name) for name in KEPT}
     assert {name for name, values in history.items() if values is not None} == set(kept)
     assert at.state.drags is None
 
@@ -197,8 +202,8 @@ def test_joints_of_the_bar_have_no_shear(short, ready, instructions):
         at = ready(short(**SILENT), "jointed", dim)
         joints, state = at.model.interfaces, at.state
         given = (
-            *(joints.table, joints.area, None, state.jump, None, None, None, None, None),
-            *(state.loads, None, at.model.dt, None, None, None, 0.0, empty_tangents(at.model)),
+            *(joints.table, joints.area, None, state.jump, *6 * [None]),
+            *(state.loads, None, at.model.dt, *4 * [None], 0.0, empty_tangents(at.model)),
         )
         return instructions(joint_balance_for(joints.parts, joints.directions), given, "fmul")
 

@@ -14,6 +14,7 @@ POINTS, DT, RATE, PRESTRESS = 12, 1e-3, 2e3, (3e4, 5e3, -2e3)
 HELD = {"normal_stiffness": 1e9, "shear_stiffness": 4e8}
 DAMPED = {"normal_viscosity": 1e5, "shear_viscosity": 4e4}
 SLIPS = {"cohesion": 1e4, "friction": 0.4}
+WEAKENS = {"dynamic_friction": 0.1, "weakening_distance": 5e-5}
 BREAKS = {"tensile_strength": 3e4, "critical_opening": 2e-4}
 LAWS = {
     "elastic": HELD,
@@ -21,6 +22,8 @@ LAWS = {
     "slips": HELD | SLIPS,
     "slips, damped": HELD | SLIPS | DAMPED,
     "no tension": HELD | {"carries_tension": False},
+    "weakens": HELD | SLIPS | WEAKENS,
+    "weakens, damped": HELD | DAMPED | SLIPS | WEAKENS,
     "softens, damped": HELD | DAMPED | SLIPS | BREAKS | {"residual_cohesion": 2e3},
 }
 laws = pytest.mark.parametrize("given", LAWS.values(), ids=LAWS)
@@ -35,7 +38,8 @@ class Points:
         random = np.random.default_rng(7)
         if directions == 1:
             away = ("shear_stiffness", "shear_viscosity", "cohesion", "friction")
-            given = {k: v for k, v in given.items() if k not in (*away, "residual_cohesion")}
+            away += ("residual_cohesion", "dynamic_friction", "weakening_distance")
+            given = {k: v for k, v in given.items() if k not in away}
         stiffness = given["normal_stiffness"] * random.uniform(1, 2, POINTS)
         self.law = Law(**given | {"normal_stiffness": stiffness})
         self.parts, self.table = parts_of(self.law), table_of(self.law)
@@ -58,6 +62,7 @@ class Points:
         self.slide = random.uniform(-5e-5, 5e-5, (directions - 1, POINTS)) if shear else None
         cohesion = shear and self.parts.residual
         self.cohesion = random.uniform(5e3, 1e4, POINTS) if cohesion else None
+        self.path = random.uniform(0, 6e-5, POINTS) if self.parts.weakening else None
 
     @property
     def common(self):
@@ -72,7 +77,7 @@ class Points:
 
     @property
     def history(self):
-        found = self.opening, self.slide, self.cohesion
+        found = self.opening, self.slide, self.cohesion, self.path
         return [None if part is None else part.copy() for part in found]
 
     def loads(self, jump):
@@ -100,7 +105,8 @@ class Points:
         old = slip - moved
         opening = gap if self.opening is None else self.opening[q]
         cohesion = 0.0 if self.cohesion is None else self.cohesion[q]
-        before = History(opening, old[0], old[1], cohesion)
+        path = 0.0 if self.path is None else self.path[q]
+        before = History(opening, old[0], old[1], cohesion, path)
         *t, after = traction(law, self.parts, gap, rate[0], moved, rate[1:], DT, before)
         return np.array(t), after
 
@@ -111,7 +117,7 @@ class Points:
 def test_forces_are_those_of_the_law_at_every_point(given, directions, prestress):
     """Areas times tractions, less what the prestress carries; slides are what is not elastic."""
     points = Points(given, directions, prestress)
-    loads, drags, (opening, slide, cohesion), _ = points.loads(points.jump)
+    loads, drags, (opening, slide, cohesion, path), _ = points.loads(points.jump)
     whole = loads if drags is None else loads + drags
     slipped = 0
     for q in range(POINTS):
@@ -126,6 +132,8 @@ def test_forces_are_those_of_the_law_at_every_point(given, directions, prestress
             slipped += (slide[:, q] != points.slide[:, q]).any()
         if cohesion is not None:
             assert cohesion[q] == after.cohesion
+        if path is not None:
+            np.testing.assert_allclose(path[q], after.path, rtol=1e-11)
     if points.slide is not None:
         assert 0 < slipped < POINTS or "carries_tension" in given
 
@@ -139,7 +147,7 @@ def test_tangents_are_the_slopes_of_the_forces(given, directions, prestress):
     points, found = Points(given, directions, prestress), np.zeros((6, POINTS))
     points.slip_rate[:] = 0.0  # what the step adds is in the jump
     rate = points.rate_at(points.jump)
-    joint_tangents(*points.common, points.jump, rate, *points.history, RATE, found)
+    joint_tangents(*points.common, points.jump, rate, *points.history, DT, RATE, found)
     nn, xn, zn, xx, xz, zz = found
     whole = np.array([[nn, 0 * nn, 0 * nn], [xn, xx, xz], [zn, xz, zz]])[:directions, :directions]
     for d in range(directions):
@@ -160,7 +168,7 @@ def test_energy_is_what_springs_hold_and_cracks_have_spent(given, directions, pr
     """Half of what a joint carries in all times its elastic length, from where it carries nothing;
     and p u, what the prestress p of the rock around it gains where its faces move apart by u."""
     points = Points(given, directions, prestress)
-    loads, _, (opening, slide, _), _ = points.loads(points.jump)
+    loads, _, (opening, slide, *_), _ = points.loads(points.jump)
     stored, spent = joint_energy(
         points.parts, directions, points.table, points.area, points.prestress, points.jump,
         opening, slide, loads,

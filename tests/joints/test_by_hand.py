@@ -89,7 +89,7 @@ def test_a_joint_remembers_its_largest_opening():
     h = History(1e-4)
     for gap, expected in ((2e-4, 2e-4), (-1e-4, 2e-4), (1.5e-4, 2e-4), (2.5e-4, 2.5e-4)):
         _, t_x, t_z, h = step(SOFTENING, gap, h=h)
-        assert h == (expected, 0.0, 0.0, 0.0) and t_x == t_z == 0
+        assert h == (expected, 0.0, 0.0, 0.0, 0.0) and t_x == t_z == 0
 
 
 def test_shear_below_the_strength_is_elastic():
@@ -193,7 +193,7 @@ def test_tangent_of_a_joint_that_slips():
     it; tau follows the normal traction by 0.5 * -1e9."""
     one = COULOMB._replace(residual_cohesion=None)
     found = tangent(
-        *at_point(one), -1e-4, 0.0, (6e-5, 8e-5), (0.0, 0.0), History(0.0, 0.0, 0.0), 0.0
+        *at_point(one), -1e-4, 0.0, (6e-5, 8e-5), (0.0, 0.0), DT, History(0.0, 0.0, 0.0), 0.0
     )
     assert found.nn == near(-1e9)
     # The traction is against the slip: T = -tau n, so its growth with tau is, too.
@@ -204,7 +204,9 @@ def test_tangent_of_a_joint_that_slips():
 def test_tangent_counts_a_dashpot_as_a_spring():
     """r = 1e4 / s: K + 1e4 * 1e4 Pa s/m, K_s + 1e4 * 2e4."""
     one = Law(K, 1e4, None, K_S, 2e4)
-    found = tangent(*at_point(one), -1e-4, 0.0, (0.0, 0.0), (0.0, 0.0), History(0.0, 0.0, 0.0), 1e4)
+    found = tangent(
+        *at_point(one), -1e-4, 0.0, (0.0, 0.0), (0.0, 0.0), DT, History(0.0, 0.0, 0.0), 1e4
+    )
     assert (found.nn, found.xx, found.xz, found.zz) == near((-1.1e9, -2.2e9, 0, -2.2e9))
 
 
@@ -212,7 +214,7 @@ def test_tangent_of_a_softening_joint():
     """Opening further falls by 1e5 / 0.2 mm; unloading goes by the secant, 5e4 / 0.2 mm."""
     one = SOFTENING._replace(normal_viscosity=None)
     for before, slope in ((1.5e-4, 5e8), (2e-4, -2.5e8), (4e-4, 0.0)):
-        found = tangent(*at_point(one), 2e-4, 0.0, (0.0, 0.0), (0.0, 0.0), History(before), 0.0)
+        found = tangent(*at_point(one), 2e-4, 0.0, (0.0, 0.0), (0.0, 0.0), DT, History(before), 0.0)
         assert found.nn == near(slope)
 
 
@@ -221,7 +223,9 @@ def test_tangent_of_a_cohesion_that_softens():
     one = Law(K, None, None, K_S, None, 3e4, None, None, 1e5, 3e-4)
     for before, rise in ((1.5e-4, 1.5e8), (2.5e-4, 0.0)):
         h = History(before, 0.0, 0.0)
-        assert tangent(*at_point(one), 2e-4, 0.0, (1e-3, 0.0), (0.0, 0.0), h, 0.0).xn == near(rise)
+        assert tangent(*at_point(one), 2e-4, 0.0, (1e-3, 0.0), (0.0, 0.0), DT, h, 0.0).xn == near(
+            rise
+        )
 
 
 def test_dashpot_behind_a_spring():

@@ -20,6 +20,7 @@ LAWS = {
     "all of shear": WHOLE._replace(tensile_strength=None, critical_opening=None),
     "closure": ELASTIC._replace(**CLOSES),
     "all of softening, closure": WHOLE._replace(carries_tension=None, **CLOSES),
+    "weakening": WHOLE._replace(dynamic_friction=0.2, weakening_distance=2e-3),
     "all of softening": WHOLE._replace(carries_tension=None),
 }
 
@@ -33,14 +34,15 @@ def kernel_of(parts):
         for i in range(motion.shape[1]):
             if parts.varied:
                 law = law_of(table, i)
-            before = History(memory[0, i], memory[1, i], memory[2, i], memory[3, i])
+            before = History(memory[0, i], memory[1, i], memory[2, i], memory[3, i], memory[4, i])
             step = motion[0, i], motion[1, i], (motion[2, i], motion[3, i])
             rate = (motion[4, i], motion[5, i])
             force[0, i], force[1, i], force[2, i], after = traction(
                 law, parts, *step, rate, DT, before
             )
-            memory[0, i], memory[1, i], memory[2, i], memory[3, i] = after
-            found = tangent(law, parts, *step, rate, before, r)
+            for k in range(5):
+                memory[k, i] = after[k]
+            found = tangent(law, parts, *step, rate, DT, before, r)
             for k in range(6):
                 slope[k, i] = found[k]
 
@@ -48,10 +50,11 @@ def kernel_of(parts):
 
 
 def points(seed=1):
-    """Return motions [6, n] that reach every branch, and memories [4, n] before them."""
+    """Return motions [6, n] that reach every branch, and memories [5, n] before them."""
     r = np.random.default_rng(seed)
     motion = r.uniform(-1, 1, (6, N)) * np.array([[1e-3], [1.0], [1e-3], [1e-3], [1.0], [1.0]])
-    memory = np.abs(r.uniform(-1, 1, (4, N))) * np.array([[1.2e-3], [1e-4], [1e-4], [1e6]])
+    memory = np.abs(r.uniform(-1, 1, (5, N)))
+    memory *= np.array([[1.2e-3], [1e-4], [1e-4], [1e6], [1e-3]])
     return motion, memory
 
 
@@ -74,7 +77,7 @@ def test_kernel_is_python_and_is_vectorised(one, varied):
         assert force[:, i] == pytest.approx(expected, rel=1e-12, abs=1e-6)
         assert after[:, i] == pytest.approx(history, rel=1e-12, abs=1e-18)
         assert slope[:, i] == pytest.approx(
-            tangent(law, parts, *step, before, 1e3), rel=1e-9, abs=1e-3
+            tangent(law, parts, *step, DT, before, 1e3), rel=1e-9, abs=1e-3
         )
 
 
@@ -85,14 +88,14 @@ def counts(one, kinds, formula="traction"):
 
         @numba.njit(error_model="numpy")
         def point(table, gap, rate, dx, vx, opening, ex, cohesion):
-            law, h = law_of(table, 0), History(opening, ex, ex, cohesion)
+            law, h = law_of(table, 0), History(opening, ex, ex, cohesion, 0.0)
             return traction(law, parts, gap, rate, (dx, dx), (vx, vx), DT, h)[:3]
     else:
 
         @numba.njit(error_model="numpy")
         def point(table, gap, rate, dx, vx, opening, ex, cohesion):
-            law, h = law_of(table, 0), History(opening, ex, ex, cohesion)
-            return tangent(law, parts, gap, rate, (dx, dx), (vx, vx), h, 1e3)
+            law, h = law_of(table, 0), History(opening, ex, ex, cohesion, 0.0)
+            return tangent(law, parts, gap, rate, (dx, dx), (vx, vx), DT, h, 1e3)
 
     point(table, 1e-6, 0.1, 1e-6, 0.1, 0.0, 0.0, 0.0)
     text = "\n".join(point.inspect_llvm().values())
@@ -118,5 +121,5 @@ def test_absent_parts_leave_no_instruction_in_the_tangent():
     assert counts(Law(9e9, None, False), kinds, "tangent")[0] > 0
     assert counts(ELASTIC._replace(friction=0.5), kinds, "tangent")[1] > 0
     bare = law_of(table_of(Law(9e9)), 0), parts_of(Law(9e9))
-    found = tangent(*bare, 1e-6, 0.1, (0.0, 0.0), (0.0, 0.0), History(), 1e5)
+    found = tangent(*bare, 1e-6, 0.1, (0.0, 0.0), (0.0, 0.0), DT, History(), 1e5)
     assert found == Tangent(-9e9)

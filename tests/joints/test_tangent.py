@@ -19,8 +19,9 @@ DT = 1e-5
 EPS = np.finfo(float).eps
 SHARE = 1e-5  # step of a central difference, of the length over which the law bends
 
-# What limits the shear traction, by letter: cohesion, friction, residual cohesion. None: no shear.
-SHEARS = (None, "", "c", "f", "cf", "cfr")
+# What limits the shear traction, by letter: cohesion, friction, residual cohesion, dynamic friction
+# with its weakening distance. None: no shear.
+SHEARS = (None, "", "c", "f", "cf", "cfr", "fdw", "cfrdw")
 COMBINATIONS = [
     *product(("", "dashpots"), ("ties", "no tension", "softening"), SHEARS),
     *product(("", "dashpots"), ("closes", "closes, no tension", "closes, softening"), (None, "cf")),
@@ -52,10 +53,12 @@ def one_law(draw, dashpots, opens, shears):
     if shears is not None:
         parts.update(shear_stiffness=k / 3, shear_viscosity=k / 3 * eta if dashpots else None)
         wanted = {"cohesion": cohesion, "friction": draw(some(0, 2)), "residual_cohesion": cohesion}
+        wanted["dynamic_friction"] = wanted["friction"] * draw(some(0, 0.9))
+        wanted["weakening_distance"] = 1e-4 * draw(some(0.1, 10))
         parts.update((name, value) for name, value in wanted.items() if name[0] in shears)
     law = Law(k, k * eta if dashpots else None, False if "no tension" in opens else None, **parts)
     slips = (0.0, 0.0) if shears is None else (1e-4 * draw(some(-1, 1)), 1e-4 * draw(some(-1, 1)))
-    history = History(before, *slips, cohesion)
+    history = History(before, *slips, cohesion, 1e-4 * draw(some(0, 1)))
     return law, history, draw(st.sampled_from([0.0, 1e2, 2e5]))
 
 
@@ -75,11 +78,14 @@ class Step:
         return *self.point, at[0], gap_rate, tuple(at[1:]), tuple(slip_rate)
 
     def traction(self, at):
-        return np.array(traction(*self.arguments(at), DT, self.history)[:3])
+        return np.array(self.after(at)[:3])
+
+    def after(self, at):
+        return traction(*self.arguments(at), DT, self.history)
 
     def tangent(self):
         """Return the tangent as a matrix [traction, displacement]."""
-        nn, *shear = tangent(*self.arguments(self.at), self.history, self.r)
+        nn, *shear = tangent(*self.arguments(self.at), DT, self.history, self.r)
         xn, zn, xx, xz, zz = shear
         return np.array([[nn, 0, 0], [xn, xx, xz], [zn, xz, zz]])
 
@@ -103,8 +109,11 @@ class Step:
             first = law.tensile_strength / law.normal_stiffness
             signs += [gap > self.history.opening, opening > first, opening >= law.critical_opening]
         if parts.shear:
-            tau = shear_strength(law, parts, t_n, gap, opening, self.history.cohesion)
+            h = self.history
+            tau = shear_strength(law, parts, t_n, gap, opening, h.cohesion, h.path)
             signs += [tau > 0, hypot(*self.trial(at)) > tau]
+            if parts.weakening:
+                signs += [self.after(at)[3].path < law.weakening_distance]
         return signs
 
 
@@ -211,7 +220,9 @@ def test_shear_turns_and_grows_with_the_pressure_once_it_slips():
     """At 3-4-5 on the surface: no stiffness along the slip, tau / |T*| of it across, and
     friction carries the normal stiffness over."""
     at = (1.2 * LIMIT, -1.6 * LIMIT)  # twice the limit, towards (0.6, -0.8)
-    nn, xn, zn, *shear = tangent(*at_point(COULOMB), CLOSED, 0.0, at, (0.0, 0.0), History(), 0.0)
+    nn, xn, zn, *shear = tangent(
+        *at_point(COULOMB), CLOSED, 0.0, at, (0.0, 0.0), DT, History(), 0.0
+    )
     n = np.array([-0.6, 0.8])
     assert nn == -9e9
     assert [xn, zn] == pytest.approx(0.5 * -9e9 * n, rel=1e-12)
@@ -229,7 +240,7 @@ def test_shear_turns_and_grows_with_the_pressure_once_it_slips():
 )
 def test_shear_kink_has_the_slope_of_either_side(slip, expected):
     """Inside elastic; outside all that is left is to turn, at first with the whole stiffness."""
-    found = tangent(*at_point(COULOMB), CLOSED, 0.0, (slip, 0.0), (0.0, 0.0), History(), 0.0)
+    found = tangent(*at_point(COULOMB), CLOSED, 0.0, (slip, 0.0), (0.0, 0.0), DT, History(), 0.0)
     assert (found.xn, found.xx, found.zz) == pytest.approx(expected, rel=1e-8)
     assert (found.zn, found.xz) == (0.0, 0.0)
 
@@ -239,5 +250,5 @@ def test_joint_without_strength_left_resists_nothing():
     bars = COULOMB._replace(carries_tension=False)
     for law, gap in ((bars, 1e-6), (COULOMB, 1e-4)):
         for slip in (0.0, 1e-4):
-            found = tangent(*at_point(law), gap, 0.0, (slip, slip), (0.0, 0.0), History(), 0.0)
+            found = tangent(*at_point(law), gap, 0.0, (slip, slip), (0.0, 0.0), DT, History(), 0.0)
             assert not any(found[1:])

@@ -9,7 +9,7 @@ from math import hypot, inf
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.polynomial.legendre import leggauss
 from scipy.optimize import brentq
@@ -100,7 +100,16 @@ def twin_spring_traction(law, gap, opening=None):
     return twin_normal_traction(law._replace(normal_viscosity=None), gap, 0.0, opening)
 
 
-def twin_shear_strength(law, t_n, gap, opening=None, cohesion=None):
+def twin_friction(law, t_n, path):
+    """Return tan(phi): pressed faces have less by as much of the difference as of the distance is
+    behind them, and no less than the dynamic one. Ida (1972); Andrews (1976)."""
+    friction = law.friction or 0.0
+    if law.weakening_distance is None or t_n <= 0:
+        return friction
+    return np.interp(path, [0, law.weakening_distance], [friction, law.dynamic_friction])
+
+
+def twin_shear_strength(law, t_n, gap, opening=None, cohesion=None, path=0.0):
     """Return what |T| cannot exceed: |T| <= c + t_n tan(phi), Guo & Li (2002), equation (3).
 
     Cohesion is lost in proportion to the tensile strength, unless it stands for no limit. A joint
@@ -113,7 +122,20 @@ def twin_shear_strength(law, t_n, gap, opening=None, cohesion=None):
     c = (law.cohesion or 0.0) if law.residual_cohesion is None else cohesion
     if law.tensile_strength is not None and c < UNLIMITED:
         c *= twin_strength_left(law, opening) / law.tensile_strength
-    return max(c + t_n * (law.friction or 0.0), 0.0)
+    return max(c + t_n * twin_friction(law, t_n, path), 0.0)
+
+
+def twin_slide(law, t_n, size, strength, path, dt):
+    """Return the path (m) after a step of trial traction `size`, Pa: where spring and dashpot,
+    unloaded by the slide, carry the strength (a function of the path) that is left there."""
+    if law.weakening_distance is None or t_n <= 0 or size <= strength(path):
+        return path
+    a = law.shear_stiffness + (law.shear_viscosity or 0.0) / dt
+
+    def left(slide):
+        return size - a * slide - strength(path + slide)
+
+    return path + brentq(left, 0.0, size / a, xtol=1e-300, rtol=4 * np.finfo(float).eps)
 
 
 def twin_shear_traction(law, slip_x, slip_z, rate_x, rate_z):
@@ -170,14 +192,20 @@ def twin_traction(
     t_n = twin_normal_traction(law, gap, gap_rate, opening)
     if law.shear_stiffness is None:
         return t_n, 0.0, 0.0, history._replace(opening=opening)
-    tau = twin_shear_strength(law, t_n, gap, opening, cohesion)
     trial = history.ex + slip[0], history.ez + slip[1]
+
+    def strength(path):
+        return twin_shear_strength(law, t_n, gap, opening, cohesion, path)
+
+    size = hypot(*twin_shear_traction(law, *trial, *slip_rate))
+    path = twin_slide(law, t_n, size, strength, history.path, dt)
+    tau = strength(path)
     t_x, t_z, ex, ez, slipped = twin_shear_return(
         law, *trial, history.ex, history.ez, *slip_rate, tau, dt
     )
     if slipped and law.residual_cohesion is not None:
         cohesion = min(cohesion, law.residual_cohesion)
-    return t_n, t_x, t_z, History(opening, ex, ez, cohesion)
+    return t_n, t_x, t_z, History(opening, ex, ez, cohesion, path)
 
 
 def twin_elastic_energy(
@@ -231,13 +259,14 @@ def twin_fracture_energy_spent(law, opening):
     return area - left * end / 2
 
 
-# What limits the shear traction, by letter: cohesion, friction, residual cohesion. None: no shear.
-SHEARS = (None, "", "c", "f", "cf", "cr", "cfr")
+# What limits the shear traction, by letter: cohesion, friction, residual cohesion, dynamic friction
+# with its weakening distance. None: no shear.
+SHEARS = (None, "", "c", "f", "cf", "cr", "cfr", "fdw", "cfrdw")
 OPENS = ("ties", "no tension", "softening")
 CLOSES = ("closes", "closes between rock")
 COMBINATIONS = [
     *product(("", "dashpots"), OPENS, SHEARS),
-    *product(("", "dashpots"), CLOSES, (None, "cfr")),
+    *product(("", "dashpots"), CLOSES, (None, "cfr", "cfdw")),
     ("dashpots", "closes, no tension", "f"),
     ("dashpots", "closes, softening", "cf"),
 ]
@@ -262,6 +291,8 @@ def one_law(draw, dashpots, opens, shears):
         parts["shear_stiffness"] = some(1e8, 1e11)
         wanted = {"cohesion": some(0, 1e6), "friction": some(0, 2)}
         wanted["residual_cohesion"] = wanted["cohesion"] * some(0, 1)
+        wanted["dynamic_friction"] = wanted["friction"] * some(0, 1)
+        wanted["weakening_distance"] = 1e-4 * some(0.01, 10)
         parts.update((name, value) for name, value in wanted.items() if name[0] in shears)
     eta = some(1e-9, 1e-3) if dashpots else None
     return law(stiffness, eta, np.array(["no tension" not in opens]), **parts)
@@ -313,8 +344,18 @@ def on_the_edge(one, t_n, step, h, opening, scale):
     """Return whether the last digit decides if a step slips."""
     gap, _, slip, slip_rate = step
     trial = twin_shear_traction(one, h.ex + slip[0], h.ez + slip[1], *slip_rate)
-    tau = twin_shear_strength(one, t_n, gap, opening, h.cohesion)
+    tau = twin_shear_strength(one, t_n, gap, opening, h.cohesion, h.path)
     return abs(hypot(*trial) - tau) <= 1e-12 * scale
+
+
+def steepness(one, t_n):
+    """Return by how much a step's own fall of the strength enlarges what round-off does to it."""
+    if one.weakening_distance is None:
+        return 1.0
+    a = one.shear_stiffness + (one.shear_viscosity or 0.0) / DT
+    fall = max(t_n, 0.0) * (one.friction - one.dynamic_friction) / one.weakening_distance
+    assume(abs(a - fall) > 1e-3 * a)
+    return a / abs(a - fall) + 1
 
 
 @pytest.mark.parametrize(("dashpots", "opens", "shears"), COMBINATIONS)
@@ -328,6 +369,10 @@ def test_law_equals_its_twin(dashpots, opens, shears, data):
         n, s = scales(one, *step, h)
         t_n, t_x, t_z, after = traction(*point, *step, DT, h)
         r_n, r_x, r_z, expected = twin_traction(one, *step, DT, h)
+        if one.weakening_distance is not None:
+            assume(not on_the_edge(one, r_n, step, h, expected.opening, s))
+            s *= steepness(one, r_n)
+            near(after.path, expected.path, h.path + s / one.shear_stiffness)
         near(t_n, r_n, n)
         near(t_x, r_x, s)
         near(t_z, r_z, s)
@@ -375,8 +420,10 @@ def test_unlike_joints_behave_as_if_alone(data):
         data.draw(one_law("dashpots", "softening", "")),
         data.draw(one_law("dashpots", "closes between rock", "cf")),
         data.draw(one_law("dashpots", "softening", "cfr")),
+        data.draw(one_law("dashpots", "softening", "cfdw")),
     ]
     without = {"friction": 0.0, "carries_tension": True, "rock_compliance": 0.0}
+    without |= {"dynamic_friction": 0.0}
     parts = {
         name: np.array(
             [
@@ -396,6 +443,7 @@ def test_unlike_joints_behave_as_if_alone(data):
             *t_mixed, b = traction(*among, *step, DT, b)
             assert t_alone == t_mixed
             assert (a.ex, a.ez) == (b.ex, b.ez)
+            assert a.path == b.path or one.weakening_distance is None
 
 
 def test_alike_joints_become_one_number_and_absent_parts_none():
@@ -414,8 +462,8 @@ def test_alike_joints_become_one_number_and_absent_parts_none():
     )
     assert mixed.normal_stiffness.tolist() == [1, 2]
     assert mixed.normal_viscosity.tolist() == [0.5, 1]
-    assert law_of(table_of(mixed), 1) == Law(2.0, 1.0, 0.0, 4.0, 2.0, 0.0, 0.5, *5 * [0.0])
-    assert table_of(mixed).shape == (12, 2) and table_of(Law(9e9)).shape == (12, 1)
+    assert law_of(table_of(mixed), 1) == Law(2.0, 1.0, 0.0, 4.0, 2.0, 0.0, 0.5, *7 * [0.0])
+    assert table_of(mixed).shape == (14, 2) and table_of(Law(9e9)).shape == (14, 1)
     assert parts_of(mixed).varied and not parts_of(Law(9e9)).varied
     assert uniform(np.array([3.0, 3.0])) == 3.0
     assert uniform(None) is None

@@ -36,6 +36,12 @@ IN_SPACE = {
     "dashpots": {"joints.damping_ratio": 0.02},
     "slip that nothing reaches": {"joints.friction_angle": 30.0, "joints.cohesion": 1e12},
     "slip": {"joints.friction_angle": 5.0, "joints.cohesion": 1e3},
+    "slip that weakens": {
+        "joints.friction_angle": 5.0,
+        "joints.cohesion": 1e3,
+        "joints.dynamic_friction_angle": 2.0,
+        "joints.weakening_distance": 1e-3,
+    },
     "no tension": {"joints.tension": False},
     "softening": {"joints.tensile_strength": 1e9, "joints.fracture_energy": 1e9},
     "closure": {"joints.maximum_closure": 1e-3},

@@ -9,16 +9,18 @@ shear impedance Z and the compliance 1/K that the joint adds to the rock
 and a joint as stiff as the others is rigid before it slips: s = sigma_I, cut off at +-tau (Miller,
 Bull. Seism. Soc. Am. 68, 1978, for the harmonic wave). s leaves the linear solution only where it
 reaches tau while |sigma_I| > tau, once between two crossings of sigma_I with +-tau, and clings to
-tau up to the next; from crossing to crossing it is integrated exactly.
+tau up to the next; from crossing to crossing it is integrated exactly. Where slip weakens the
+joint, `compare.exact.joint.weakening_joint` integrates it.
 
 Holds for blocks that do not turn, a load across the axis, ends that absorb, one joint with cohesion
 or with friction under the prestress, and all else elastic and undamped.
 """
 
+from collections.abc import Callable
 from functools import cache
 from itertools import pairwise
-from math import asin, ceil, cos, exp, pi, sin, sqrt
-from typing import NamedTuple
+from math import asin, ceil, cos, exp, inf, isfinite, pi, sin, sqrt
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -37,18 +39,31 @@ from compare.exact.linear import bound
 from compare.solvers.record import ALONE, Answer, Kind, Rock, Solver, Words, no, thin
 from results.dataset import dataset
 
-HELD = ("spatial motion", "prestress", "fixed start", *LAYERS)
+HELD = ("spatial motion", "prestress", "fixed start", "weakening", *LAYERS)
 _gauss = cache(leggauss)
 ROUND_OFF = 1e-11  # of the largest waveform: the roots' tolerance
+TOLERANCES = 1e-11, 1e-9  # of the integration where slip weakens the joint, and of its twin
 FORGOTTEN = 40.0  # time constants after which exp has lost all digits
 
 
 class SlipJoint(NamedTuple):
-    """A joint: y (m), the compliance 1/K that it adds (m/Pa) and its strength tau (Pa)."""
+    """A joint: y (m), the compliance 1/K that it adds (m/Pa), its strength tau (Pa), and the path
+    of slip (m) that leaves the dynamic one (Pa)."""
 
     y: float
     compliance: float
     strength: float
+    dynamic: float = 0.0
+    distance: float = inf
+
+    @property
+    def fall(self) -> float:
+        """What the strength loses per path, Pa/m."""
+        return (self.strength - self.dynamic) / self.distance
+
+    def left(self, path: Any) -> Any:
+        """Return the strength (Pa) after a path of slip (m)."""
+        return self.strength - self.fall * np.minimum(path, self.distance)
 
 
 def applies(scene: Scene) -> Answer:
@@ -65,19 +80,36 @@ def applies(scene: Scene) -> Answer:
         (p.residual_cohesion is not None, "slip weakens the joint"),
         (bool(compliance[~slips].any()), "a joint that cannot slip differs in stiffness"),
         (bool((compliance < 0).any()), "the joint is stiffer than the others"),
+        (_snaps(scene, p), "the joint is softer than its friction falls with slip"),
     )
+
+
+def _snaps(scene: Scene, p: Properties) -> bool:
+    if p.weakening_distance is None or not _slips(p).any():
+        return False
+    joint = the_joint(scene, p)
+    return joint.fall * joint.compliance >= 1
 
 
 def solve(scene: Scene) -> xr.Dataset:
     """Return shear, velocity and displacement on both sides of the joint that slips."""
     p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
     joint, enters = the_joint(scene, p), ENTERS[scene.ends.start]
-    scaled = joint._replace(strength=joint.strength / enters)  # slip is positively homogeneous
+    # Slip is positively homogeneous.
+    scaled = joint._replace(
+        strength=joint.strength / enters,
+        dynamic=joint.dynamic / enters,
+        distance=joint.distance / enters,
+    )
 
     def waveforms(parts: int) -> dict[str, np.ndarray]:
-        def passed(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            stress, impulse = transmitted(scaled, p.shear_impedance, load, _finer(at, parts))
-            return stress[::parts], impulse[::parts]
+        if isfinite(joint.distance):
+            passed = _weakened(scaled, p.shear_impedance, load, times[-1], TOLERANCES[parts - 1])
+        else:
+
+            def passed(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+                stress, impulse = transmitted(scaled, p.shear_impedance, load, _finer(at, parts))
+                return stress[::parts], impulse[::parts]
 
         def waves(places: list[float]) -> np.ndarray:
             return enters * around(joint.y, p.shear_speed, passed, load, times, places)
@@ -94,6 +126,14 @@ def solve(scene: Scene) -> xr.Dataset:
     stress = np.full((len(scene.record.stress), len(times)), normal)
     rotation = np.zeros_like(found["velocity"])
     return dataset(scene, SOLVER.name, times, stress, **found, rotation=rotation, errors=errors)
+
+
+def _weakened(
+    joint: SlipJoint, impedance: float, load: LoadHistory, end: float, tolerance: float
+) -> Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]:
+    from compare.exact.joint.weakening_joint import Passed
+
+    return Passed(joint, impedance, load, end, tolerance)
 
 
 def _finer(times: np.ndarray, parts: int) -> np.ndarray:
@@ -121,7 +161,11 @@ def the_joint(scene: Scene, p: Properties) -> SlipJoint:
     cohesion = 0.0 if p.cohesion is None else float(p.cohesion[j])
     friction = 0.0 if p.friction is None else float(p.friction[j])
     strength = max(cohesion + friction * normal, 0.0)
-    return SlipJoint(float(p.joint_y[j]), float(_excess_compliance(p)[j]), strength)
+    found = SlipJoint(float(p.joint_y[j]), float(_excess_compliance(p)[j]), strength)
+    if p.weakening_distance is None or p.dynamic_friction is None or normal <= 0:
+        return found
+    dynamic = cohesion + float(p.dynamic_friction[j]) * normal
+    return found._replace(dynamic=dynamic, distance=float(p.weakening_distance[j]))
 
 
 def _slips(p: Properties) -> np.ndarray:

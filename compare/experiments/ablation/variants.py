@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from cases.effects import active_effects
 from cases.errors import SceneError
 from cases.kinds import Either, checked
-from cases.material.strength import SLIP, SOFTENING
+from cases.material.strength import SLIP, SOFTENING, WEAKENING
 from cases.plane.effects import SIDES
 from cases.schema.scene import Scene
 
@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from cases.kinds import AnyScene
 
     Change = Callable[[Any], Any]  # from a scene to one of its kind
+
+
+#: Effects that are nothing without another one.
+NEEDS: dict[str | None, str] = {"weakening": "slip"}
 
 
 def left_out(scene: Either, name: str) -> Either:
@@ -26,14 +30,15 @@ def left_out(scene: Either, name: str) -> Either:
 
 
 def only(scene: Either, name: str | None) -> Either:
-    """Return a scene with one of its effects, or none, besides those that it cannot be without.
+    """Return a scene with one of its effects, or none, besides those that it, or the effect, cannot
+    be without.
 
     Raises SceneError where the scene cannot be so, or cannot be without the effect either.
     """
     if name is not None and name in active_effects(only(scene, None)):
         raise SceneError(scene.where, name, None, "stays when all others go")
     for other in active_effects(scene):
-        if other != name and other in WITHOUT:
+        if other not in (name, NEEDS.get(name)) and other in WITHOUT:
             try:
                 scene = left_out(scene, other)
             except SceneError:  # it stays, as it does when every other effect does
@@ -91,7 +96,8 @@ WITHOUT: dict[str, Change] = {
     "energy ledger": _table("record", energy=False),
     "field output": _table("record", fields=None),
     "finite rotation": _table("motion", rotation="small"),
-    "slip": _joints(**dict.fromkeys(SLIP)),
+    "slip": _joints(**dict.fromkeys((*SLIP, *WEAKENING))),
+    "weakening": _joints(**dict.fromkeys(WEAKENING)),
     "softening": _joints(**dict.fromkeys(SOFTENING)),
     "mass damping": _table("damping", mass_proportional=None, rayleigh=None),
     "local damping": _table("damping", local=None),

@@ -46,6 +46,13 @@ def _breaking() -> list[HardCase]:
             HOMOGENEOUS,
             scene=ALL,
         ),
+        HardCase(
+            f"{mixed}, whose friction falls with slip",
+            energies.passive,
+            {"joints.dynamic_friction_angle": 5.0, "joints.weakening_distance": 1e-4},
+            HOMOGENEOUS,
+            scene=ALL,
+        ),
         HardCase(f"the ledger of {mixed}", contact.ledger, {}, HOMOGENEOUS, scene=ALL),
     ]
 

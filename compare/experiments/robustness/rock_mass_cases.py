@@ -125,10 +125,13 @@ def _sliding() -> list[HardCase]:
     strong[0]["amplitude"] = 4e6
     changes = _met(_bricks(0.5, friction_angle=15.0), 6.0, strong)
     changes |= {"prestress": {"xx": 8e6, "yy": 8e6}, "numerics.continuum.size": 1.0}
+    less = {"dynamic_friction_angle": 5.0, "weakening_distance": 1e-4}
+    weakens = changes | {"joint_sets": _bricks(0.5, friction_angle=15.0, **less)}
     name = "T-junctions of brickwork that slide"
     return [
         at_one_joint(name, rock_masses.within_friction, changes, EXPLICIT),
         at_one_joint(f"the ledger of {name}", rock_masses.balanced, changes, EXPLICIT),
+        at_one_joint(f"{name}, less friction by slip", energies.passive, weakens, EXPLICIT),
     ]
 
 

@@ -30,6 +30,14 @@ def test_a_plain_scene_calls_for_its_sides_its_waves_and_its_ledger(mass):
         ({"joint_sets__0__friction_angle": 30.0}, "slip"),
         ({"joint_sets__0__cohesion": 1e5}, "slip"),
         (
+            {
+                "joint_sets__0__friction_angle": 30.0,
+                "joint_sets__0__dynamic_friction_angle": 20.0,
+                "joint_sets__0__weakening_distance": 1e-3,
+            },
+            "weakening",
+        ),
+        (
             {"joint_sets__0__tensile_strength": 1e5, "joint_sets__0__fracture_energy": 10.0},
             "softening",
         ),

@@ -26,6 +26,9 @@ UP = {"direction": [0.0, -1.0, 0.0], "static": False}
 NO_SHEAR = "there is no plane shear wave: a load across, on blocks that do not turn"
 SLIPS = [{"y": 20.0, "cohesion": 1e5}]
 STIFF_SLIPS = [{"y": 20.0, "cohesion": 1e5, "shear_stiffness": 1e12}]
+WEAKENS = {"friction_angle": 35.0, "dynamic_friction_angle": 15.0, "weakening_distance": 1e-3}
+SNAPS = {"y": 20.0, "shear_stiffness": 1e8} | WEAKENS
+PRESSED = SHEAR | {"prestress": {"normal": 1e6}}
 SOFT_SHEAR = [*SLIPS, {"y": 30.0, "shear_stiffness": 1e8}]
 SLOPE = {
     "pillar": {"length": 1.0},
@@ -49,6 +52,7 @@ YES = [
     ("closing-joint", QUIET | {"soft_layers": CLOSES}),
     ("spatial-lattice", ACROSS | DAMPED | {"soft_layers": LAYER, "ends": {"end": "quiet"}}),
     ("slip-joint", SHEAR | {"soft_layers": SLIPS, "time": {"duration": 0.04}}),
+    ("slip-joint", PRESSED | {"soft_layers": [{"y": 20.0} | WEAKENS], "time": {"duration": 0.04}}),
     ("sliding-block", SLOPE),
 ]
 NO = [
@@ -134,6 +138,11 @@ NO = [
         "slip-joint",
         SHEAR | {"soft_layers": [SLIPS[0] | {"residual_cohesion": 0.0}]},
         "slip weakens the joint",
+    ),
+    (
+        "slip-joint",
+        PRESSED | {"soft_layers": [SNAPS]},
+        "the joint is softer than its friction falls with slip",
     ),
     (
         "slip-joint",

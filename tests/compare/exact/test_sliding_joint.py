@@ -10,6 +10,7 @@ from cases.material.calibrate import calibrate
 from compare.exact.bar import images
 from compare.exact.joint import one_joint, sliding_joint
 from compare.exact.joint.sliding_joint import SlipJoint, transmitted
+from compare.exact.joint.weakening_joint import Passed
 
 Z = 2400.0 * 800.0
 OMEGA = 2 * np.pi / 0.01
@@ -99,6 +100,50 @@ def test_the_impulse_is_the_integral_of_the_stress():
         s, _ = transmitted(joint._replace(compliance=compliance), Z, load, fine[::10])
         steps = np.cumsum((s[1:] + s[:-1]) / 2 * fine[10])
         assert np.abs(impulse[1:] - steps[9::10]).max() < 1e-6 * 0.01
+
+
+@pytest.mark.parametrize("load", [Sine(1e6, 0.01, 2), Ricker(1e6, 0.01), Step(1e6)])
+@pytest.mark.parametrize("compliance", [0.0, 1e-9])
+def test_friction_that_does_not_fall_is_the_constant_one(load, compliance, misfit):
+    """By quadrature between crossings, and by Runge-Kutta from phase to phase."""
+    times = np.linspace(-1e-3, 0.04, 4001)
+    one = SlipJoint(0.0, compliance, 4e5)
+    other = Passed(one._replace(dynamic=4e5, distance=1e-3), Z, load, times[-1], 1e-11)
+    for found, expected in zip(other(times), transmitted(one, Z, load, times), strict=True):
+        assert misfit(found, expected) < 1e-9
+
+
+@pytest.mark.parametrize("compliance", [0.0, 1e-9])
+def test_a_step_weakens_the_joint_in_closed_form(compliance):
+    """(Z / 2)(1 - h / K) S' = q - tau + h S from 0: S = (q - tau) (exp(h t / m) - 1) / h up to D, m
+    the factor of S'; with 1/K from when s = q (1 - exp(-t 2K/Z)) reaches tau. Then q - tau_d."""
+    q, tau, dynamic, distance = 1e6, 4e5, 1e5, 2e-3
+    h, joint = (tau - dynamic) / distance, SlipJoint(0.0, compliance, tau, dynamic, distance)
+    t, m = np.linspace(1e-6, 0.01, 5001), Z / 2 * (1 - h * compliance)
+    onset = -np.log(1 - tau / q) * Z * compliance / 2
+    weakest = onset + m / h * np.log(1 + h * distance / (q - tau))
+    s = tau - (q - tau) * np.expm1(h * (t - onset) / m)
+    s = np.where(t > weakest, dynamic, s)
+    if compliance:
+        s = np.where(t < onset, -q * np.expm1(-2 * t / (Z * compliance)), s)
+    found, _ = Passed(joint, Z, Step(q), t[-1], 1e-11)(t)
+    assert np.abs(found - s).max() < 1e-7 * q
+
+
+@pytest.mark.parametrize("compliance", [0.0, 1e-9])
+def test_a_joint_that_weakens_keeps_the_balance_of_energy(compliance):
+    """int sigma_I^2/Z = int (sigma_T^2 + sigma_R^2)/Z + int |s| dS + s^2/2K: the work at the joint,
+    by its slip from the impulses, and the trapezoid to h^2 and half a step at each onset."""
+    load, times = Sine(1.0, 0.01, 3), np.linspace(0.0, 0.05, 20_001)
+    joint = SlipJoint(0.0, compliance, 0.6, 0.2, 2e-3 / Z)
+    s, impulse = Passed(joint, Z, load, times[-1], 1e-11)(times)
+    incident, slip = load.value(times), 2 * (load.impulse(times) - impulse) / Z
+    slide = np.diff(slip - compliance * s)
+    mean = (s[1:] + s[:-1]) / 2
+    assert (mean * slide >= -1e-12 * np.abs(slide).max()).all()
+    spent = trapezoid((s**2 + (s - incident) ** 2) / Z, times) + mean @ slide
+    whole = trapezoid(incident**2 / Z, times)
+    assert abs(spent + compliance * s[-1] ** 2 / 2 - whole) < 2.5e-4 * whole
 
 
 def test_a_joint_that_holds_lets_the_shear_wave_pass(scene, misfit):

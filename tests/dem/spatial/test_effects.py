@@ -89,7 +89,8 @@ def test_blocks_that_do_not_turn_have_three_freedoms(row, at_rest):
 
 
 def test_only_what_slides_or_softens_is_remembered(row, at_rest):
-    """A point has two slides, an opening with softening, a cohesion that slip may weaken."""
+    """A point has two slides, an opening with softening, a cohesion that slip may weaken, and the
+    path that weakens its friction."""
     slip = {"friction_angle": 20.0, "cohesion": 1e4}
     soft = {"tensile_strength": 1e5, "fracture_energy": 50.0}
 
@@ -105,6 +106,8 @@ def test_only_what_slides_or_softens_is_remembered(row, at_rest):
     assert kept(**slip) == (0, 2)
     assert kept(**slip, **soft) == (0, 3)
     assert kept(**slip, residual_cohesion=1e3, damping_ratio=0.1) == (6, 3)
+    weakens = {"dynamic_friction_angle": 10.0, "weakening_distance": 1e-3}
+    assert kept(**slip, **weakens, residual_cohesion=1e3) == (0, 4)
     assert kept(**slip, contact_points=3) == (0, 2)
 
 

@@ -9,7 +9,7 @@ from cases.effects import active_effects
 from cases.errors import SceneError
 from compare.experiments.ablation import ablation
 from compare.experiments.ablation.ablation import ablate, prepare
-from compare.experiments.ablation.variants import WITHOUT, left_out, only
+from compare.experiments.ablation.variants import NEEDS, WITHOUT, left_out, only
 from compare.experiments.cost.step_cost import StepCost
 from compare.misfit.metrics import relative_l2
 
@@ -28,6 +28,12 @@ CALLS = {
     "field output": {"record__fields": 0.01},
     "finite rotation": {**ACROSS, "motion__rotation": "finite"},
     "slip": {**ACROSS, "joints__friction_angle": 30.0, "joints__cohesion": 1e4},
+    "weakening": {
+        **ACROSS,
+        "joints__friction_angle": 30.0,
+        "joints__dynamic_friction_angle": 20.0,
+        "joints__weakening_distance": 1e-3,
+    },
     "softening": {"joints__tensile_strength": 1e5, "joints__fracture_energy": 10.0},
     "mass damping": {"damping__mass_proportional": 5.0},
     "local damping": {"damping": {"local": 0.5}},
@@ -65,11 +71,15 @@ def test_an_end_that_the_load_needs_stays(pillar):
 
 @pytest.mark.parametrize("effect", CALLS)
 def test_an_effect_alone_is_the_only_one(effect, pillar):
-    """Of all that can be left out; finite rotation and slip need the space that the scene is in."""
+    """Of all that can be left out; finite rotation and slip need the space that the scene is in,
+    and what becomes of slip needs slip."""
     changes = {"record__energy": True} | CALLS[effect]
     scene = pillar(**{"joints__damping_ratio": 0.02} | changes)
     assert set(active_effects(only(scene, None))) <= {"spatial motion"}
-    assert set(active_effects(only(scene, effect))) - {"spatial motion"} == {effect}
+    assert set(active_effects(only(scene, effect))) - {"spatial motion"} == {
+        effect,
+        NEEDS.get(effect, effect),
+    }
 
 
 def test_what_needs_others_is_not_alone(pillar):

@@ -9,7 +9,7 @@ from cases.read import load_tables
 from compare.engines import solve
 from compare.experiments.ablation import ablation
 from compare.experiments.ablation.ablation import ablate, prepare
-from compare.experiments.ablation.variants import left_out, only
+from compare.experiments.ablation.variants import NEEDS, left_out, only
 from compare.experiments.cost import scenes, step_cost
 from compare.misfit.metrics import misfit
 
@@ -18,11 +18,13 @@ COLUMNS = ROWS | {"name": "columns", "dip": 90.0}
 PRESS = {"kind": "pressure", "side": "top", "shape": "ricker", "amplitude": 1e6, "period": 0.004}
 WAVE = {"kind": "P", "direction": [0.0, 1.0], "shape": "step", "amplitude": 1e6}
 ACTS = {"loads", "incident waves", "shaken base"}
+WEAKENS = {"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3}
 CALLS = {
     "dashpots": {"joint_sets": [ROWS | {"damping_ratio": 0.02}, COLUMNS]},
     "no tension": {"joint_sets": [ROWS | {"tension": False}, COLUMNS]},
     "closure": {"joint_sets": [ROWS | {"maximum_closure": 1e-3}, COLUMNS]},
     "slip": {"joint_sets": [ROWS | {"friction_angle": 30.0, "cohesion": 1e4}, COLUMNS]},
+    "weakening": {"joint_sets": [ROWS | {"friction_angle": 30.0} | WEAKENS, COLUMNS]},
     "softening": {"joint_sets": [ROWS | {"tensile_strength": 1e5, "fracture_energy": 10.0}]},
     "quiet sides": {"boundaries": {"bottom": "quiet"}},
     "fixed sides": {"boundaries": {"bottom": "fixed"}},
@@ -65,7 +67,7 @@ def test_every_effect_is_left_out_or_is_what_acts():
 def test_an_effect_alone_is_the_only_one_beside_what_acts(effect):
     scene = mass(**{"damping": {"mass_proportional": 1.0}} | CALLS[effect])
     assert set(active_effects(only(scene, None))) == {"loads"}
-    assert set(active_effects(only(scene, effect))) == {effect, "loads"}
+    assert set(active_effects(only(scene, effect))) == {effect, NEEDS.get(effect, effect), "loads"}
 
 
 def test_what_acts_stays():

@@ -1,0 +1,119 @@
+"""A joint whose friction falls with slip, by every engine, against its exact solution.
+
+A shear pulse of 1 MPa meets one joint under 1 MPa: of tan(phi) 0.7 are 0.27 left after 4 mm. The
+wave is 32 m long; Z_s = 1.92e6 Pa s/m.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cases
+import continuum
+import dem
+from cases.histories import Ricker
+from cases.validate import validated
+from compare.exact.joint import sliding_joint
+from compare.exact.joint.sliding_joint import SlipJoint
+from compare.exact.joint.weakening_joint import Passed
+from compare.misfit.metrics import relative_l2
+from compare.scenes import SHIPPED
+from results.dataset import energy_residual
+
+SCENE = SHIPPED / "beyond" / "slip-weakening.toml"
+
+
+def weakening(**changes):
+    """Return the shipped scene without its bounds, keys changed."""
+    return cases.load_variant(SCENE, "", {"expect": {}, "record.interval": 2e-4, **changes})
+
+
+def shear(result):
+    """Return the shear stress along the load behind the joint, Pa."""
+    return result["shear"].values[1, :, 0]
+
+
+def test_blocks_and_rock_tend_to_the_exact_joint():
+    """Blocks of 1, 0.5 and 0.25 m: first order, as for a joint of one strength, for as much rock is
+    in series with the joint as a block has. Friction takes the work that it takes there."""
+    misfits = []
+    for block in (1.0, 0.5, 0.25):
+        scene = weakening(**{"pillar.block": block, "rock.intact_modulus": 8.64e10})
+        exact = shear(sliding_joint.solve(scene))
+        found = dem.simulate(scene), continuum.simulate(scene, "jointed", 1)
+        assert max(map(energy_residual, found)) < 1e-11
+        misfits.append([relative_l2(shear(one), exact) for one in found])
+    misfits = np.array(misfits)
+    assert (misfits[1:] < 0.6 * misfits[:-1]).all()
+    assert (np.abs(2 * misfits[-1] - misfits[-2]) < 0.005).all()
+
+
+@pytest.mark.parametrize("scheme", ["explicit", "implicit"])
+def test_one_joint_in_homogenised_rock(scheme):
+    """1 % of the exact waveform, explicit and in steps of a thousandth of the period."""
+    scene = weakening(
+        **{
+            "numerics.continuum.scheme": scheme,
+            "numerics.continuum.steps_per_period": 1000,
+            "numerics.continuum.elements_per_block": 1,
+        }
+    )
+    found = continuum.simulate(scene, "equivalent", 1)
+    assert relative_l2(shear(found), shear(sliding_joint.solve(scene))) < 0.01
+    assert energy_residual(found) < 1e-6
+
+
+FAULT = {
+    "title": "a fault",
+    "domain": {"size": [4.0, 48.0]},
+    "rock": {"density": 2600.0, "intact_modulus": 4e10, "intact_poisson": 0.0},
+    "prestress": {"xx": 4e6, "yy": 4e6},
+    "waves": [
+        {"kind": "S", "direction": [0.0, 1.0], "shape": "ricker", "amplitude": 2e6, "period": 0.02}
+    ],
+    "boundaries": {"left": "periodic", "right": "periodic", "bottom": "quiet", "top": "quiet"},
+    "time": {"duration": 0.06},
+    "record": {"points": [[1.0, 36.0]], "joints": [[1.0, 24.0]]},
+}
+JOINT = {
+    "name": "fault",
+    "dip": 0.0,
+    "through": [1.0, 24.0],
+    "normal_stiffness": 1e11,
+    "shear_stiffness": 2e10,
+    "friction_angle": float(np.degrees(np.arctan(0.4))),
+    "dynamic_friction_angle": float(np.degrees(np.arctan(0.2))),
+    "weakening_distance": 5e-4,
+}
+SIDES = {"name": "sides", "dip": 90.0, "spacing": 2.0}
+SIDES |= {"normal_stiffness": 1e13, "shear_stiffness": 1e13}
+IMPLICIT = {"scheme": "implicit", "steps_per_period": 400}
+
+
+@pytest.mark.parametrize(
+    ("engine", "rock", "bound"),
+    [
+        (dem.simulate, {}, 0.006),
+        (continuum.simulate, {"scheme": "explicit"}, 0.02),
+        (continuum.simulate, IMPLICIT, 0.02),
+    ],
+    ids=["blocks", "rock", "implicit"],
+)
+def test_one_joint_in_the_plane(engine, rock, bound):
+    """Its slip, and what it carries, in a column of a wide rock mass whose sides are joints a
+    thousand times as stiff: blocks of 0.8 m, elements of 2 m, in a wave of 55 m."""
+    numerics = {"dem": {"block": 0.8}, "continuum": {"size": 2.0, **rock}}
+    tables = FAULT | {"joint_sets": [JOINT, SIDES], "numerics": numerics}
+    scene = validated(tables, Path("fault.toml"), frozenset())
+    found = engine(scene)
+    t, z = found["time"].values, 2600.0 * np.sqrt(2e10 / 2600.0)
+    joint = SlipJoint(0.0, 1 / 2e10, 1.6e6, 0.8e6, 5e-4)
+    load, later = Ricker(2e6, 0.02), t - 24.0 / np.sqrt(2e10 / 2600.0)
+    stress, impulse = Passed(joint, z, load, t[-1], 1e-10)(later)
+    slip = 2 * (load.impulse(later) - impulse) / z
+    carried, slipped = found["traction"].values[0, :, 1], found["slip"].values[0]
+    sign = np.sign(carried @ stress)
+    assert relative_l2(sign * carried, stress) < bound
+    assert relative_l2(np.sign(slipped @ slip) * slipped, slip) < bound
+    assert energy_residual(found) < 1e-6
