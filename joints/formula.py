@@ -1,4 +1,7 @@
-"""Formulas that are plain Python, and that numba compiles into the kernels that call them."""
+"""Formulas that are plain Python, and that numba compiles into the kernels that call them.
+
+`flags` marks a NamedTuple of booleans that is a constant of kernels: formulas know it beforehand.
+"""
 
 from typing import Any
 
@@ -10,8 +13,14 @@ KNOWN = ((0, 68),)
 
 options: dict[str, Any] = {"forceinline": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 if numba.version_info.short in KNOWN:
-    from joints.formula_compiler import FormulaCompiler
+    from joints.formula_compiler import FormulaCompiler, flags
 
     options["pipeline_class"] = FormulaCompiler
+else:
+
+    def flags(kind: type) -> type:
+        """Return a NamedTuple of booleans as it is: what is untrue is left to the optimiser."""
+        return kind
+
 
 formula = register_jitable(**options)

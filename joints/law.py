@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from joints.formula import formula
+from joints.formula import flags, formula
 from joints.normal import normal_traction
 from joints.shear import cohesion_left, path_after, shear_return, shear_strength
 
@@ -50,6 +50,7 @@ class Law(NamedTuple):
     weakening_distance: Any = None
 
 
+@flags
 class Parts(NamedTuple):
     """Which parts the law has: constants of a compiled kernel.
 

@@ -5,11 +5,12 @@ import re
 import numba
 import numpy as np
 import pytest
+from numba.core import event
 
 from joints.law import History, Law, law_of, parts_of, table_of, traction
 from joints.tangent import Tangent, tangent
 
-N, DT = 64, 1e-5
+N, DT, HISTORY = 64, 1e-5, History()
 ELASTIC = Law(9e9, shear_stiffness=3e9)
 WHOLE = Law(9e9, 1e5, False, 3e9, 3e4, 1e6, 0.5, 1e5, 1e6, 1e-3)
 CLOSES = {"maximum_closure": 5e-4, "rock_compliance": 1e-11}
@@ -123,3 +124,32 @@ def test_absent_parts_leave_no_instruction_in_the_tangent():
     bare = law_of(table_of(Law(9e9)), 0), parts_of(Law(9e9))
     found = tangent(*bare, 1e-6, 0.1, (0.0, 0.0), (0.0, 0.0), DT, History(), 1e5)
     assert found == Tangent(-9e9)
+
+
+@pytest.mark.parametrize("closes", [False, True])
+def test_what_a_law_lacks_is_not_compiled(closes):
+    """Not typed either, which takes most of a first run: of the formulas of closure, those of a
+    law that closes alone."""
+    compiled = set()
+
+    class Seen(event.Listener):
+        def on_start(self, one):
+            compiled.add(one.data["dispatcher"].py_func.__name__)
+
+        def on_end(self, one):
+            pass
+
+    law = LAWS["closure" if closes else "elastic"]
+    parts = parts_of(law)
+
+    @numba.njit(error_model="numpy")
+    def pressed(table):
+        return traction(law_of(table, 0), parts, -1e-4, 0.0, (0.0, 0.0), (0.0, 0.0), DT, HISTORY)
+
+    # Single precision: no other test has compiled the formulas for it.
+    table = table_of(law).astype(np.float32)
+    with event.install_listener("numba:compile", Seen()):
+        found = pressed(table)[0]
+    assert found == pytest.approx(traction(law, parts, -1e-4, 0, (0, 0), (0, 0), DT, HISTORY)[0])
+    assert {"normal_traction", "shear_return"} <= compiled
+    assert ("closure_traction" in compiled) == closes and "strength_left" not in compiled

@@ -22,6 +22,8 @@ apart = inlined = jitted
     "joints.formula": """
 def formula(function):
     return function
+
+flags = formula
 """,
     "numerics.borrowed": """
 def borrowed(value):
