@@ -26,7 +26,7 @@ class Effect:
 
 def is_spatial(scene: Scene) -> bool:
     """Return whether a scene moves across its axis or turns its blocks; else it is axial."""
-    return _off_axis(scene) is not None
+    return off_axis(scene) is not None
 
 
 def effects(scene: AnyScene) -> list[Effect]:
@@ -51,8 +51,8 @@ def active_effects(scene: AnyScene) -> list[str]:
     return [effect.name for effect in effects(scene) if effect.active]
 
 
-def _off_axis(scene: Scene) -> str | None:
-    """Return what takes the scene off its axis, None where nothing does."""
+def off_axis(scene: Scene) -> str | None:
+    """Return what takes the scene off its axis; None where nothing does."""
     if scene.load.arm is not None:
         return "the load is a couple"
     if scene.load.is_across:
@@ -72,6 +72,10 @@ def _of_joints(scene: Scene, p: Properties) -> Iterator[Effect]:
     stiffens = p.maximum_closure is not None
     why = "maximum_closure is given" if stiffens else "no maximum_closure"
     yield Effect("closure", stiffens, why)
+    parts = len(p.each)
+    words = f"{parts} of other rock" if parts > 1 else "no [[segments]]: one rock"
+    yield Effect("segments", parts > 1, words)
+    alike = "all joints are alike: one number, no array" if parts == 1 else "no soft layers"
     joints, barred, differ = len(p.tension), int((~p.tension).sum()), len(p.soft)
     yield Effect(
         "no tension",
@@ -81,7 +85,7 @@ def _of_joints(scene: Scene, p: Properties) -> Iterator[Effect]:
     yield Effect(
         "joints that differ",
         differ > 0,
-        f"{differ} soft layers" if differ else "all joints are alike: one number, no array",
+        f"{differ} soft layers" if differ else alike,
     )
 
 
@@ -105,7 +109,7 @@ def of_fields(scene: AnyScene) -> Effect:
 
 
 def _of_motion(scene: Scene, p: Properties) -> Iterator[Effect]:
-    cause, rotation = _off_axis(scene), scene.motion.rotation
+    cause, rotation = off_axis(scene), scene.motion.rotation
     freedoms = 3 if rotation == "none" else 6
     yield Effect(
         "spatial motion",

@@ -36,7 +36,7 @@ def load_history(scene: Scene) -> LoadHistory:
         return history_of(load, amplitude)
     from cases.material.calibrate import calibrate
 
-    p = calibrate(scene)
+    p = calibrate(scene).at_start
     return velocity_of(load, 2 * amplitude * (p.shear_impedance if load.is_across else p.impedance))
 
 

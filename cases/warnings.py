@@ -134,15 +134,18 @@ def _of_table(table: str, pulse: Pulse, end: float, crossings: float) -> Iterato
 def _of_wavelength(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
     if wave is None or wave.blocks >= LEAST_BLOCKS:
         return
+    block = f"pillar.block = {p.spacing:g} m"
+    if len(p.each) > 1:
+        block = f"a block of {wave.speed / (wave.frequency * wave.blocks):g} m"
     where = f"at {wave.frequency:.4g} Hz, below which 95 % of the load's energy lies"
     if wave.frequency >= wave.cut_off:
         yield (
-            f"pillar.block = {p.spacing:g} m: rigid blocks pass nothing above {wave.cut_off:.4g} "
+            f"{block}: rigid blocks pass nothing above {wave.cut_off:.4g} "
             f"Hz; the load reaches {wave.frequency:.4g} Hz, below which 95 % of its energy lies"
         )
     else:
         yield (
-            f"pillar.block = {p.spacing:g} m gives {wave.blocks:.3g} blocks a wavelength {where}; "
+            f"{block} gives {wave.blocks:.3g} blocks a wavelength {where}; "
             f"at least {LEAST_BLOCKS:g} resolve it"
         )
     count = scene.numerics.continuum.elements_per_block
@@ -175,7 +178,7 @@ def _least_critical_step(scene: Scene, p: Properties) -> float:
     dashpots 2 / omega (sqrt(1 + (omega eta)^2) - omega eta), as leapfrog's that extrapolates rates.
     """
     normal, shear = float(p.stiffness.max()) * p.area, float(p.shear_stiffness.max()) * p.area
-    square = 4 * normal / p.block_mass
+    square = 4 * normal / (p.block_mass if p.masses is None else float(p.masses.min()))
     if is_spatial(scene):
         turning = shear * p.spacing**2 / 4 + normal * p.side**2 / 4
         twisting = shear * p.side**2 / 2
@@ -198,10 +201,12 @@ def _of_arrivals(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iter
     begin, end, speed = onset(scene.load), scene.time.duration, _fastest(scene, p)
     for key in ("stress", "velocity"):
         for y in getattr(scene.record, key):
-            if begin + y / speed >= end:
+            reached = begin + (y / speed if len(p.each) == 1 else p.travel_time(y))
+            if reached >= end:
                 yield (
-                    f"record.{key} = {y:g} m is reached at {begin + y / speed:.4g} s, at "
-                    f"{speed:.4g} m/s: after the end of the scene at time.duration = {end:g} s"
+                    f"record.{key} = {y:g} m is reached at {reached:.4g} s, at "
+                    f"{y / (reached - begin):.4g} m/s: after the end of the scene at "
+                    f"time.duration = {end:g} s"
                 )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from math import ceil, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -91,8 +91,9 @@ def mesh_of(scene: Scene, p: Properties, model: str, motion: Kinematics) -> Mesh
         return given_mesh(numerics.mesh_path, scene, p, motion.dim)
     layers = layer_thickness(scene, p)
     cut = resolved_joints(p, model, motion.shears, tuple(layers)).number
-    elements = numerics.elements_per_block or elements_for(scene, p, model)
-    refuse_large_mesh(scene, motion, elements)
+    elements = [numerics.elements_per_block or elements_for(scene, one, model) for one in p.each]
+    blocks = [one.block_count for one in p.each]
+    refuse_large_mesh(scene, motion, ceil(np.average(elements, weights=blocks)))
     try:
         return pillar_mesh(
             p, motion.dim, numerics.cell, elements, numerics.elements_across, cut, layers

@@ -1,6 +1,7 @@
 """Actions on the two end faces: load, absorbing and fixed ends."""
 
 from collections.abc import Iterator
+from math import isfinite
 
 import numpy as np
 
@@ -104,12 +105,13 @@ def absorbers(
         kind = getattr(scene.ends, place)
         if kind not in ("quiet", "matched"):
             continue
-        sprung = kind == "matched" and model == "jointed"
+        own = p.at_start if place == "start" else p.at_end
+        sprung = kind == "matched" and model == "jointed" and isfinite(own.regular_own_stiffness)
         springs = [
-            _half_joint(p, z, c == along(body.section), dt)
+            _half_joint(own, z, c == along(body.section), dt)
             if sprung
             else HalfSpring(0.0, z, 0.0, 0.0, 0.0)
-            for c, z in enumerate(impedances(scene, p, model, body.dim, components))
+            for c, z in enumerate(impedances(scene, own, model, body.dim, components))
         ]
         yield face_area(body, getattr(body.mesh, place)), springs
 

@@ -27,12 +27,14 @@ RIGID = 10.0
 class Resolved(NamedTuple):
     """The joints that a model resolves, by their number in the pillar.
 
-    number : int array [n]. stiffness, shear_stiffness : [pillar's joints], Pa/m.
+    number : int array [n]. stiffness, shear_stiffness : [pillar's joints], Pa/m. time_constant :
+    eta of theirs, s; None without dashpots.
     """
 
     number: np.ndarray
     stiffness: np.ndarray
     shear_stiffness: np.ndarray
+    time_constant: np.ndarray | None
 
 
 def resolved_joints(
@@ -45,20 +47,20 @@ def resolved_joints(
     """
     if model == "jointed":
         assert p.own_stiffness is not None and p.own_shear_stiffness is not None
-        number = np.arange(p.block_count - 1)
+        number, etas = p.resolved, p.own_time_constant
         normal, shear = p.own_stiffness, p.own_shear_stiffness
     else:
-        number = p.soft
-        normal = _excess(p.excess_compliance, p.regular_stiffness)
+        number, etas = p.soft, p.joint_time_constant
+        normal = _excess(p.excess_compliance, p.regular)
         same = np.isclose(p.shear_stiffness, p.regular_shear_stiffness, rtol=1e-9, atol=0)
         compliance = np.where(same, 0.0, 1 / p.shear_stiffness - 1 / p.regular_shear_stiffness)
         shear = _excess(compliance, p.regular_shear_stiffness)
         differs = (p.excess_compliance != 0) | (shears & (compliance != 0)) | _fails(p, shears)
         number = number[differs[number]]
-    return Resolved(np.setdiff1d(number, meshed), normal, shear)
+    return Resolved(np.setdiff1d(number, meshed), normal, shear, etas)
 
 
-def _excess(compliance: np.ndarray, regular: float) -> np.ndarray:
+def _excess(compliance: np.ndarray, regular: float | np.ndarray) -> np.ndarray:
     with np.errstate(divide="ignore"):
         return np.where(compliance == 0, RIGID * regular, 1 / compliance)
 
@@ -83,7 +85,7 @@ def joint_law(p: Properties, joints: Resolved, joint: np.ndarray, shears: bool) 
 
     shears : whether the motion has components along the joints.
     """
-    damping = p.joint_time_constant
+    damping = joints.time_constant
     return law(
         joints.stiffness[joint],
         None if damping is None else damping[joint],

@@ -13,7 +13,7 @@ FILE = 10
 
 def refuse_large_mesh(scene: Scene, motion: Kinematics, elements: int) -> None:
     """Raise SceneError where blocks of so many elements along the pillar would not fit."""
-    numerics, count = scene.numerics.continuum, float(scene.pillar.block_count)
+    numerics, count = scene.numerics.continuum, float(scene.block_count)
     order, across, components = numerics.order, motion.dim - 1, motion.section.components
     nodes = count * (elements * order + 1) * (numerics.elements_across * order + 1) ** across
     entries = components * (order + 1) ** motion.dim

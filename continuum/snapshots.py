@@ -84,7 +84,7 @@ class RockFilm(Film):
         stress = stresses[0] if stresses else None
         if self.axial:
             height = x[cells, axis(x.shape[1])].mean(axis=1)
-            block = np.floor(height / self.discrete.properties.spacing).astype(int)
+            block = np.searchsorted(self.discrete.properties.contact_y, height) - 1
         else:
             block = np.repeat(self.discrete.block, len(self.parts))
         return snapshots(time, x, KINDS[self.discrete.body.mesh.cell], cells, block, u, v, stress)

@@ -19,17 +19,18 @@ def fragments(p: Properties, broken: np.ndarray, velocity: np.ndarray) -> list[d
     velocity : float array [N] along y, or [N, 3] along x, y, z, of every block, m/s.
 
     Each piece has `from_y` and `to_y` (m, in the unloaded pillar), `mass` (kg) and `velocity`
-    (m/s), the mean of its blocks: a number along y or three components.
+    (m/s), of its centre of mass: a number along y or three components.
     """
     edges = np.concatenate([[0], np.flatnonzero(broken) + 1, [p.block_count]])
-    counts = np.diff(edges)
-    sums = np.add.reduceat(velocity, edges[:-1], axis=0)
-    means = (sums.T / counts).T
+    masses, y = p.masses, p.contact_y.tolist()
+    weights = np.ones(p.block_count) if masses is None else masses
+    sums = np.add.reduceat((weights * velocity.T).T, edges[:-1], axis=0)
+    means = (sums.T / np.add.reduceat(weights, edges[:-1])).T
     return [
         {
-            "from_y": p.spacing * first,
-            "to_y": p.spacing * last,
-            "mass": p.block_mass * (last - first),
+            "from_y": y[first],
+            "to_y": y[last],
+            "mass": p.block_mass * (last - first) if masses is None else sum(masses[first:last]),
             "velocity": mean,
         }
         for first, last, mean in zip(

@@ -17,7 +17,7 @@ def refuse_large(scene: Scene, time: Clock, points: int | None = None, stages: i
     points : contact points that each joint of blocks in space looks after; None for axial motion.
     stages : of a step, at each of which the load acts.
     """
-    spatial, blocks = points is not None, scene.pillar.block_count
+    spatial, blocks = points is not None, scene.block_count
     block = SPATIAL + POINT * points if points is not None else AXIAL
     parts = {
         "pillar.block": block * blocks,

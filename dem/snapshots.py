@@ -58,7 +58,7 @@ class BlockFilm(Film):
         """Return the run's result with its snapshots."""
         time, count = result.coords["time"][1][:: self.every], self.p.block_count
         corners, centres = corners_of(self.p), np.zeros((count, 1, 3))
-        centres[:, 0, 1] = self.p.spacing * (np.arange(count) + 0.5)
+        centres[:, 0, 1] = self.p.centre_y
         shots = self.shots[: len(time)]
         motion = [corner_motion(shot, corners, self.p) for shot in shots]
         u, v = (np.stack(x) for x in zip(*motion, strict=True))
@@ -67,14 +67,14 @@ class BlockFilm(Film):
         u, v = (x.reshape(len(time), -1, 3) for x in (u, v))
         stress = np.stack([shot.stress for shot in shots])
         if self.step is not None:
-            y = self.p.spacing * np.arange(count + 1)
+            y = self.p.contact_y
             contacts = interpolation(y, y.tolist())
             stress = with_load_itself(stress.T, self.scene, contacts, time, self.step).T
         found = snapshots(
             time,
             (centres + corners).reshape(-1, 3),
             "hexahedron",
-            np.arange(count * len(corners)).reshape(count, -1),
+            np.arange(count * CORNERS_OF_A_BLOCK).reshape(count, -1),
             np.arange(count),
             u,
             v,
@@ -84,8 +84,13 @@ class BlockFilm(Film):
 
 
 def corners_of(p: Properties) -> np.ndarray:
-    """Return the corners of a block from its centroid [8, 3], m, in VTK's order."""
-    return (np.array(CORNERS["hexahedron"]) - 0.5) * [p.side, p.spacing, p.side]
+    """Return the corners of blocks from their centroids, m, in VTK's order: [8, 3] of all, or [N,
+    8, 3] where they differ."""
+    unit = np.array(CORNERS["hexahedron"]) - 0.5
+    if p.masses is None:
+        return unit * [p.side, p.spacing, p.side]
+    sides = np.stack(np.broadcast_arrays(p.side, np.diff(p.contact_y), p.side), axis=-1)
+    return unit * sides[:, None]
 
 
 def corner_motion(shot: Shot, corners: np.ndarray, p: Properties) -> tuple[np.ndarray, np.ndarray]:
@@ -93,7 +98,7 @@ def corner_motion(shot: Shot, corners: np.ndarray, p: Properties) -> tuple[np.nd
     freedoms = shot.displacement.shape[1]
     along = slice(min(freedoms, 3))
     u, v = (in_space(x[:, along])[:, None] for x in (shot.displacement, shot.velocity))
-    u, v = (np.broadcast_to(x, (len(x), *corners.shape)) for x in (u, v))
+    u, v = (np.broadcast_to(x, (len(x), *corners.shape[-2:])) for x in (u, v))
     if freedoms == 6:
         turn, spin = shot.displacement[:, None, 3:], shot.velocity[:, None, 3:]
         return u + np.cross(turn, corners), v + np.cross(spin, corners)

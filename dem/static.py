@@ -78,9 +78,9 @@ def prestressed(scene: Scene, p: Properties) -> np.ndarray:
     """
     normal = scene.prestress.normal if scene.prestress else 0.0
     u = np.append(0.0, np.cumsum(gaps_under(p, normal)))
-    half = normal / (2 * p.regular_stiffness)
     if scene.ends.end == "fixed":
-        return u - u[-1] + half
+        return u - u[-1] + normal / (2 * p.at_end.regular_stiffness)
+    half = normal / (2 * p.at_start.regular_stiffness)
     return u - half if scene.ends.start == "fixed" else u - u.mean()
 
 

@@ -65,10 +65,11 @@ def followed(
     return result(run.time.samples)
 
 
-def sighting(guard: Guard, speed: np.ndarray, spacing: float) -> Sighting | None:
-    """Return what a guard has found, None where nothing; speed : of each block, m/s."""
+def sighting(guard: Guard, speed: np.ndarray, centre_y: np.ndarray) -> Sighting | None:
+    """Return what a guard has found, None where nothing; speed : of each block, m/s; centre_y : of
+    them, m."""
     fastest = int(np.nan_to_num(speed, nan=np.inf).argmax())
-    return sighting_at(guard, (fastest + 0.5) * spacing)
+    return sighting_at(guard, float(centre_y[fastest]))
 
 
 def sighting_at(guard: Guard, place: float | tuple[float, float]) -> Sighting | None:

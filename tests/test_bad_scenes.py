@@ -65,6 +65,42 @@ TENSILE = "tensile_strength = 1e5\nfracture_energy = 1.0"
 RAYLEIGH = "rayleigh = { frequencies = [10.0, 20.0], ratios = [0.02, 0.02] }"
 LAYER = "[[soft_layers]]\ny = 20.0\nspacing_stiffness = 4.375e8\n"
 
+SEGMENT = "[[segments]]\ny = [10.0, 30.0]\n"
+WRONG_SEGMENTS = {
+    "no place": ("[[segments]]", ["segments[1].y", "is required"]),
+    "from end to start": (
+        "[[segments]]\ny = [40.0, 35.0]",
+        ["segments[1].y = [40.0, 35.0]", "increasing"],
+    ),
+    "beyond the pillar": (
+        "[[segments]]\ny = [40.0, 51.0]",
+        ["segments[1].y = [40.0, 51.0]", "within pillar.length = 50"],
+    ),
+    "overlap": (
+        "[[segments]]\ny = [29.5, 40.0]",
+        ["segments[1].y = [29.5, 40.0]", "before 30 m", "another segment"],
+    ),
+    "blocks": ("block = 0.3", ["segments[0].block = 0.3", "10 to 30 m"]),
+    "place": (
+        "[[segments]]\ny = [30.0, 40.2]",
+        ["segments[1].y = [30.0, 40.2]", "0.5 m must divide", "30 to 40.2 m"],
+    ),
+    "key": ("modulus = 1e9", ["segments[0].modulus", "intact_modulus"]),
+    "half a pair": ("p_speed = 3000.0", ["segments[0].p_speed = 3000.0", "one pair or none"]),
+    "speeds": (
+        "p_speed = 900.0\ns_speed = 800.0",
+        ["segments[0].p_speed = 900.0", "sqrt(4/3) times s_speed = 800"],
+    ),
+    "too soft": (
+        "intact_modulus = 1e9",
+        ["segments[0].intact_modulus = 1000000000.0", "exceed the equivalent modulus", "joints"],
+    ),
+    "intact and jointed": (
+        "joints = false\nnormal_stiffness = 1e9",
+        ["segments[0].normal_stiffness", "segments[0].joints = false give intact_modulus"],
+    ),
+}
+
 MISTAKES = {
     # wrong types
     "text for a number": ("length = 50.0", 'length = "50"', ["pillar.length = '50'", "a number"]),
@@ -395,6 +431,46 @@ MISTAKES = {
         "[ends]",
         "[gravity]\ndirection = [0, 1, 0]\n[ends]",
         ["gravity.static = true", "a fixed end, or gravity.static = false"],
+    ),
+    # segments
+    **{
+        f"segments: {name}": ("[load]", f"{SEGMENT}{keys}\n[load]", words)
+        for name, (keys, words) in WRONG_SEGMENTS.items()
+    },
+    "segments and gravity": (
+        "[load]",
+        f"{SEGMENT}[gravity]\ndirection = [0, 1, 0]\nstatic = false\n[load]",
+        ["gravity.acceleration = 9.81", "without segments"],
+    ),
+    "segments and a shear wave": (
+        "[load]",
+        f"{SEGMENT}[load]\ndirection = [1, 0, 0]",
+        ["segments = 1", "along the axis", "a component across"],
+    ),
+    "segments and blocks that do not turn": (
+        "[load]",
+        f'{SEGMENT}[motion]\nrotation = "none"\n[load]',
+        ["motion.rotation = 'none'", "segments"],
+    ),
+    "segments in a mesh": (
+        "[load]",
+        f'{SEGMENT}[numerics]\ndem.scheme = "fourth-order"\n[load]',
+        ["numerics.dem.scheme = 'fourth-order'", "'leapfrog'"],
+    ),
+    "a layer within an intact segment": (
+        f"damping_ratio = 0.02\n\n{LAYER}",
+        f"\n[[soft_layers]]\ny = 20.0\n{SEGMENT}joints = false\n",
+        ["soft_layers[0].y = 20.0", "needs a normal_stiffness"],
+    ),
+    "a thick layer beside a segment": (
+        LAYER,
+        f"{LAYER}thickness = 0.1\n{SEGMENT}",
+        ["soft_layers[0].thickness = 0.1", "a segment of its own"],
+    ),
+    "a layer off the joints of a segment": (
+        "y = 20.0\n",
+        "y = 20.25\n",
+        ["soft_layers[0].y = 20.25", "must be on a joint"],
     ),
     # variants and expectations
     "variants not tables": (

@@ -74,6 +74,60 @@ class Properties(Strength):
     soft: np.ndarray
 
     @property
+    def at_start(self) -> Properties:
+        """Those of the rock at the start; of one rock these."""
+        return self
+
+    @property
+    def at_end(self) -> Properties:
+        """Those of the rock at the end; of one rock these."""
+        return self
+
+    @property
+    def each(self) -> tuple[Properties, ...]:
+        """Those of each segment by itself; of one rock these alone."""
+        return (self,)
+
+    @property
+    def segment(self) -> np.ndarray:
+        """Which of `each` the blocks belong to, int array [N]."""
+        return np.zeros(self.block_count, dtype=np.int64)
+
+    @property
+    def contact_y(self) -> np.ndarray:
+        """Where blocks begin and the last one ends, m [N + 1]."""
+        return self.spacing * np.arange(self.block_count + 1)
+
+    @property
+    def centre_y(self) -> np.ndarray:
+        """Centres of the blocks, m [N]."""
+        return self.contact_y[1:] - self.spacing / 2
+
+    def travel_time(self, y: float) -> float:
+        """Return when what the start sends along the homogenised bar is at y (m), s."""
+        return y / self.bar_speed
+
+    @property
+    def masses(self) -> np.ndarray | None:
+        """Mass of each block, kg [N]; None where all have `block_mass`."""
+        return None
+
+    @property
+    def own_time_constant(self) -> np.ndarray | None:
+        """eta of each joint by itself, s [N - 1]; None without any dashpot."""
+        return self.joint_time_constant
+
+    @property
+    def regular(self) -> float | np.ndarray:
+        """K'_n that the homogenised bar has at each joint, Pa/m: a number, or [N - 1]."""
+        return self.regular_stiffness
+
+    @property
+    def resolved(self) -> np.ndarray:
+        """The joints of the jointed rock, int array: all, but for welds of intact rock."""
+        return np.arange(self.block_count - 1)
+
+    @property
     def regular_stiffness(self) -> float:
         """K'_n of an ordinary joint, Pa/m."""
         return self.modulus / self.spacing
@@ -102,7 +156,12 @@ class Properties(Strength):
         billionth of it; None where no joint stiffens."""
         if self.maximum_closure is None:
             return None
-        return np.minimum(self.spacing / (self.intact_modulus or inf), (1 - 1e-9) / self.stiffness)
+        return np.minimum(self._rock_between, (1 - 1e-9) / self.stiffness)
+
+    @property
+    def _rock_between(self) -> float | np.ndarray:
+        """Compliance of intact rock from centre to centre, m/Pa."""
+        return self.spacing / (self.intact_modulus or inf)
 
     @property
     def excess_compliance(self) -> np.ndarray:
@@ -110,8 +169,8 @@ class Properties(Strength):
 
         1/K = 1/K'_n - 1/K'_n(regular) [N - 1]; exactly zero for a joint as stiff as the others.
         """
-        same = np.isclose(self.stiffness, self.regular_stiffness, rtol=1e-9, atol=0)
-        return np.where(same, 0.0, 1 / self.stiffness - 1 / self.regular_stiffness)
+        same = np.isclose(self.stiffness, self.regular, rtol=1e-9, atol=0)
+        return np.where(same, 0.0, 1 / self.stiffness - 1 / self.regular)
 
     @property
     def damps_alone(self) -> np.ndarray:
@@ -121,12 +180,21 @@ class Properties(Strength):
         """
         if self.joint_time_constant is None:
             return np.zeros_like(self.tension)
-        differs = self.joint_time_constant != (self.time_constant or 0.0)
+        differs = self.joint_time_constant != self._regular_time_constant
         return differs & (self.excess_compliance == 0)
+
+    @property
+    def _regular_time_constant(self) -> float | np.ndarray:
+        """eta that a joint as stiff as the others has, s."""
+        return self.time_constant or 0.0
 
 
 def calibrate(scene: Scene) -> Properties:
     """Return the properties of a scene: every joint's stiffness, damping, tension and strength."""
+    if scene.segments:
+        from cases.material.layered import calibrate_layered
+
+        return calibrate_layered(scene)
     pillar, density = scene.pillar, scene.rock.density
     count, spacing = pillar.block_count, pillar.length / pillar.block_count
     block_mass, mass = density * pillar.area * spacing, rock_mass(scene, spacing)

@@ -104,8 +104,8 @@ def _stress_of(pulse: Pulse, scene: AnyScene) -> float:
     if isinstance(scene, Scene):
         from cases.material.calibrate import calibrate
 
-        modulus = scene.rock.intact_modulus or calibrate(scene).modulus
-        return sqrt(modulus * scene.rock.density)
+        p = calibrate(scene).at_start
+        return sqrt((p.intact_modulus or p.modulus) * p.density)
     if pulse.quantity == "force":
         return 1 / _least_spacing(scene)
     from cases.material.rock import elastic_rock

@@ -4,7 +4,7 @@ The rock mass is intact rock in series with its joints. Rigid blocks have no com
 own, so their joints carry all of it: K'_n = E_eq / S.
 """
 
-from math import sqrt
+from math import inf, sqrt
 
 
 def modulus_from_speeds(p_speed: float, s_speed: float, density: float) -> tuple[float, float]:
@@ -26,7 +26,10 @@ def shear_modulus(modulus: float, poisson: float) -> float:
 
 
 def joint_stiffness(equivalent: float, intact: float, spacing: float) -> float:
-    """Return the joint's own K_n (Pa/m) that gives the rock mass its modulus, equation (4)."""
+    """Return the joint's own K_n (Pa/m) that gives the rock mass its modulus, equation (4);
+    infinite where that is the intact rock's."""
+    if equivalent == intact:
+        return inf
     return 1 / (spacing * (1 / equivalent - 1 / intact))
 
 

@@ -9,6 +9,8 @@ from cases.schema.discretisation import check_discretisation
 from cases.schema.joint import JointLaw
 from cases.schema.plausible import INTACT, meant
 from cases.schema.scheme import check_scheme
+from cases.schema.segment import Segment
+from cases.schema.segment_checks import check_segments
 from cases.schema.shared_checks import (
     SNAP,
     check_fields,
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 
 def check(scene: Scene) -> None:
     """Raise the first contradiction of a scene whose tables are each right."""
+    check_segments(scene)
     _check_layers(scene)
     _check_receivers(scene)
     _check_rock(scene)
@@ -42,20 +45,24 @@ def check(scene: Scene) -> None:
 
 
 def _check_layers(scene: Scene) -> None:
-    pillar, seen = scene.pillar, set()
+    if not scene.soft_layers:
+        return
+    from cases.material.contacts import contacts
+
+    pillar, seen, joints = scene.pillar, set(), contacts(scene)[1:-1]
     for i, layer in enumerate(scene.soft_layers):
-        joint = layer.y / pillar.block
-        if abs(joint - round(joint)) > 1e-6 or not 1 <= round(joint) < pillar.block_count:
+        joint = int(abs(joints - layer.y).argmin())
+        if abs(joints[joint] - layer.y) > 1e-6 * pillar.block:
             last = pillar.length - pillar.block
-            raise contradiction(
-                f"soft_layers[{i}].y",
-                layer.y,
-                f"must be on a joint: a multiple of {pillar.block:g} "
-                f"from {pillar.block:g} to {last:g}",
+            where = (
+                f"a multiple of {pillar.block:g} from {pillar.block:g} to {last:g}"
+                if not scene.segments
+                else f"the nearest is at {joints[joint]:g}"
             )
-        if round(joint) in seen:
+            raise contradiction(f"soft_layers[{i}].y", layer.y, f"must be on a joint: {where}")
+        if joint in seen:
             raise contradiction(f"soft_layers[{i}].y", layer.y, "has a soft layer already")
-        seen.add(round(joint))
+        seen.add(joint)
 
 
 def _check_receivers(scene: Scene) -> None:
@@ -144,9 +151,9 @@ def _check_ends(scene: Scene) -> None:
 def _check_damping(scene: Scene) -> None:
     if scene.damping.rayleigh is None:
         return
-    named = {"joints": scene.joints} | {
-        f"soft_layers[{i}]": layer for i, layer in enumerate(scene.soft_layers)
-    }
+    named: dict[str, JointLaw | Segment] = {"joints": scene.joints}
+    named |= {f"soft_layers[{i}]": layer for i, layer in enumerate(scene.soft_layers)}
+    named |= {f"segments[{i}]": segment for i, segment in enumerate(scene.segments)}
     for table, law in named.items():
         if law.damping_ratio is not None:
             raise contradiction(

@@ -14,6 +14,7 @@ from cases.schema.damping import Damping, Rayleigh
 from cases.schema.joint import JointLaw, Joints, SoftLayer
 from cases.schema.loading import NO_LOAD, Load
 from cases.schema.pulse import shortest_period
+from cases.schema.segment import Segment, regions
 from cases.schema.tables import (
     ContinuumNumerics,
     DemNumerics,
@@ -46,6 +47,7 @@ __all__ = [
     "Record",
     "Rock",
     "Scene",
+    "Segment",
     "SoftLayer",
     "Time",
 ]
@@ -61,6 +63,7 @@ class Scene(Table):
     motion: Motion = Motion()
     joints: Joints = Joints()
     soft_layers: list[SoftLayer] = []
+    segments: list[Segment] = []
     load: Load = NO_LOAD
     ends: Ends = Ends()
     damping: Damping = Damping()
@@ -94,6 +97,11 @@ class Scene(Table):
     def shakes_base(self) -> bool:
         """Whether the load is the motion of a rigid base, which a fixed start stands on."""
         return self.load.is_motion and self.ends.start == "fixed"
+
+    @property
+    def block_count(self) -> int:
+        """Number of blocks N."""
+        return sum(one.blocks for one in regions(self))
 
     @property
     def interval(self) -> float:

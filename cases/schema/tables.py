@@ -1,7 +1,7 @@
 """The small tables of a scene: the pillar, its rock, what holds and fills it, what is recorded."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
@@ -15,6 +15,10 @@ from cases.schema.values import (
     contradiction,
     named_file,
 )
+
+SPEEDS = ("p_speed", "s_speed")
+CONSTANTS = ("equivalent_modulus", "equivalent_poisson")
+PAIRS = " and ".join(SPEEDS) + ", or " + " and ".join(CONSTANTS)
 
 MOST_BLOCKS = 10_000_000  # about 0.4 kB a block: what one machine holds
 
@@ -65,22 +69,24 @@ class Rock(Table):
 
     @model_validator(mode="after")
     def _one_pair(self) -> "Rock":
-        pairs = ("p_speed", "s_speed"), ("equivalent_modulus", "equivalent_poisson")
-        given = [[key for key in pair if getattr(self, key) is not None] for pair in pairs]
+        given = given_pairs(self)
         if sorted(map(len, given)) != [0, 2]:
-            raise contradiction(
-                "rock",
-                given[0] + given[1],
-                "give exactly one pair: p_speed and s_speed, "
-                "or equivalent_modulus and equivalent_poisson",
-            )
-        if self.p_speed and self.s_speed and self.p_speed**2 <= 4 / 3 * self.s_speed**2:
-            raise contradiction(
-                "rock.p_speed",
-                self.p_speed,
-                f"must exceed sqrt(4/3) times s_speed = {self.s_speed:g} (positive bulk modulus)",
-            )
+            raise contradiction("rock", given[0] + given[1], f"give exactly one pair: {PAIRS}")
+        if wrong := wrong_speeds(self):
+            raise contradiction("rock.p_speed", self.p_speed, wrong)
         return self
+
+
+def given_pairs(table: Table) -> list[list[str]]:
+    """Return which speeds and which elastic constants of the rock mass a table gives."""
+    return [[k for k in pair if getattr(table, k) is not None] for pair in (SPEEDS, CONSTANTS)]
+
+
+def wrong_speeds(table: Any) -> str | None:
+    """Return why a table's p_speed does not fit its s_speed; None where it does."""
+    if table.p_speed and table.s_speed and table.p_speed**2 <= 4 / 3 * table.s_speed**2:
+        return f"must exceed sqrt(4/3) times s_speed = {table.s_speed:g} (positive bulk modulus)"
+    return None
 
 
 class Motion(Table):

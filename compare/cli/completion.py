@@ -53,7 +53,9 @@ def settings(incomplete: str) -> list[str]:
     """Return keys of a scene, `KEY=`; once the key is there its values, where they are few."""
     from cases.schema.keys import keys
 
-    known = {key: field for key, field in keys() if not key.startswith("soft_layers.")}
+    known = {
+        key: field for key, field in keys() if not key.startswith(("soft_layers.", "segments."))
+    }
     key, equals, _ = incomplete.partition("=")
     if not equals:
         found = _begun([f"{key}=" for key in known], incomplete)

@@ -76,7 +76,7 @@ def _prepared(scene: AnyScene, engines: list[str]) -> tuple[dict[str, Prepared],
 
 
 def _cost(scene: Scene, measured: bool) -> tuple[float | None, float | None]:
-    count = scene.pillar.block_count
+    count = scene.block_count
     if not measured:
         return timings.block_step(scene), remembered_whole(count)
     own = nanoseconds(scene)

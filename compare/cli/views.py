@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from cases.size import spoken
 from compare.cli.partition_view import show_partition
@@ -136,7 +140,22 @@ def show_explanation(found: Explanation, as_json: bool) -> None:
 
 
 def _show_properties(p: Properties) -> None:
-    say(
+    if len(p.each) == 1:
+        say(_rock_words(p))
+        return
+    ends = p.contact_y[np.cumsum([0, *(one.block_count for one in p.each)])].tolist()
+    for (start, stop), one in zip(pairwise(ends), p.each, strict=True):
+        joints = "" if isfinite(one.regular_own_stiffness) else ", without joints"
+        say(f"{start:g} to {stop:g} m: {_rock_words(one)}{joints}")
+    passed = [
+        f"{2 * b.impedance / (a.impedance + b.impedance):.4g} at {y:g} m"
+        for (a, b), y in zip(pairwise(p.each), ends[1:-1], strict=True)
+    ]
+    say(f"of the stress of a long wave passes 2 Z2 / (Z1 + Z2): {', '.join(passed)}")
+
+
+def _rock_words(p: Properties) -> str:
+    return (
         f"{p.block_count} blocks of {p.spacing:g} m; E_eq {p.modulus:.4g} Pa, Poisson "
         f"{p.poisson:.4g}, bar speed {p.bar_speed:.5g} m/s, K'_n {p.regular_stiffness:.4g} Pa/m"
     )

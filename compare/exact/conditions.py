@@ -20,6 +20,7 @@ def beyond(scene: Scene, *held: str) -> str | None:
         "spatial motion": (is_spatial(scene), "the motion is spatial"),
         "reversed load": (scene.load.direction[1] < 0, "the load acts against the axis"),
         "softening": (p.tensile_strength is not None, "a joint has a tensile strength"),
+        "segments": (len(p.each) > 1, "the pillar has segments of other rock"),
         "closure": (p.maximum_closure is not None, "a joint stiffens as it closes"),
         "weakening": (p.weakening_distance is not None, "slip weakens a joint"),
         "gravity": (scene.gravity is not None, "gravity acts"),

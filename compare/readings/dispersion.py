@@ -23,6 +23,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from cases.errors import SceneError
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
 from compare.readings.rows import sampling, waveforms
@@ -78,8 +79,11 @@ def dispersion_theory(scene: Scene, frequency: Sequence[float] | np.ndarray) -> 
     pillar of a scene's ordinary joints.
 
     rock : "rigid blocks", "bar" and, where the scene gives intact_modulus, "jointed rock".
-    frequency : Hz. Where waves do not pass, the attenuation says so.
+    frequency : Hz. Where waves do not pass, the attenuation says so. Raises SceneError of a pillar
+    with segments.
     """
+    if scene.segments:
+        raise SceneError(scene.where, "segments", None, "give each rock as a scene of its own")
     p, omega = calibrate(scene), 2 * np.pi * np.asarray(frequency, dtype=float)
     loss = 1 + 1j * omega * (p.time_constant or 0.0)
     slowness = omega / p.bar_speed / np.sqrt(loss)

@@ -83,14 +83,14 @@ def _axial(scene: Scene):
     from dem.axial.simulate import scheme_of
 
     _, _, time, critical = scheme_of(scene).build(scene)
-    return time, critical, scene.pillar.block_count, 1
+    return time, critical, scene.block_count, 1
 
 
 def _spatial(scene: Scene):
     from dem.spatial import simulate
     from dem.time_loop import thread_count
 
-    count = scene.pillar.block_count
+    count = scene.block_count
     freedoms = (3 if scene.motion.rotation == "none" else 6) * count
     prepared = simulate.prepare(scene)
     threads = thread_count(scene.numerics.dem.threads, count)

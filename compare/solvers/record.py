@@ -221,5 +221,5 @@ class Solver:
         from cases.schema.scene import Scene
 
         if isinstance(scene, Scene):
-            return scene.pillar.block_count
+            return scene.block_count
         return freedoms // OF_BLOCK_IN_PLANE

@@ -12,7 +12,8 @@ class Part(NamedTuple):
     x : float array [vertices, dim], m: (y,), (x, y) or (x, y, z); y along the pillar.
     cells : int array [cells, corners], vertex numbers in basix's corner order (the tensor order for
         quadrilaterals and hexahedra), with positive Jacobians.
-    material : int array [cells], 0 the rock, k the k-th of `Mesh.layers` counted from 1.
+    material : int array [cells], 0 the rock, k the k-th of `Mesh.layers` counted from 1; of
+        a pillar of segments the segment.
     shifts : float array [copies, dim], m, added to x.
     """
 

@@ -1,6 +1,7 @@
 """The pillar of a scene as a mesh: straight pieces between the joints that cut it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from math import ceil
 
 import numpy as np
@@ -32,7 +33,7 @@ def pillar_mesh(
     p: Properties,
     dim: int,
     cell: str,
-    elements_per_block: int,
+    elements_per_block: int | Sequence[int],
     elements_across: int,
     interfaces: np.ndarray,
     layers: Mapping[int, float] | None = None,
@@ -43,7 +44,7 @@ def pillar_mesh(
     Parameters
     ----------
     dim, cell : 1 to 3, and "hexahedron" or "simplex" as in `numerics.continuum`.
-    elements_per_block : equal elements in each block along y.
+    elements_per_block : equal elements in each block along y; or in the blocks of each segment.
     elements_across : elements in each direction of the section.
     interfaces : int array, the joints that cut the pillar, 0 nearest the loaded end.
     layers : thickness (m) of the joints that are layers of rock: bonded to the blocks on both
@@ -54,12 +55,16 @@ def pillar_mesh(
     interface and layer, or a layer that leaves nothing of a block.
     """
     kind, layers = KINDS[dim, cell], dict(sorted((layers or {}).items()))
+    each = [elements_per_block] if isinstance(elements_per_block, int) else elements_per_block
     _refuse_impossible(p, interfaces, layers)
     parts = []
-    for first, last, starts in _pieces(p.block_count, np.unique(interfaces), np.array([*layers])):
-        column = _column(p, first, last, layers, elements_per_block, elements_per_layer)
+    for first, last, starts in _pieces(p, np.unique(interfaces), np.array([*layers])):
+        if len(p.each) > 1:
+            column = _segmented(p, first, last, each)
+        else:
+            column = _column(p, first, last, layers, each[0], elements_per_layer)
         shifts = np.zeros((starts.size, dim))
-        shifts[:, min(1, dim - 1)] = p.spacing * starts
+        shifts[:, min(1, dim - 1)] = p.contact_y[starts]
         parts.append(Part(*extruded(kind, p.side, elements_across, column), shifts))
     return _joined(p, kind, tuple(parts), tuple(layers))
 
@@ -76,14 +81,18 @@ def _refuse_impossible(p: Properties, interfaces: np.ndarray, layers: dict[int, 
 
 
 def _pieces(
-    block_count: int, cuts: np.ndarray, layers: np.ndarray
+    p: Properties, cuts: np.ndarray, layers: np.ndarray
 ) -> list[tuple[int, int, np.ndarray]]:
     """Return first and past-the-last block of each distinct piece, and where its copies start.
 
-    Pieces with a layer are distinct, because each layer is a material of its own.
+    Pieces with a layer are distinct, because each layer is a material of its own; others are alike
+    that have as many blocks of the same segments.
     """
-    ends = np.r_[0, cuts + 1, block_count].astype(np.int64)
+    ends = np.r_[0, cuts + 1, p.block_count].astype(np.int64)
     like = np.diff(ends)
+    if len(p.each) > 1:
+        rows = [p.segment[a:b].tobytes() for a, b in pairwise(ends)]
+        like = np.unique(np.array(rows, dtype=object), return_inverse=True)[1].astype(np.int64)
     layered = np.unique(np.searchsorted(ends, layers + 1) - 1).astype(np.int64)
     like[layered] = -1 - np.arange(layered.size)
     _, first, kind = np.unique(like, return_index=True, return_inverse=True)
@@ -120,6 +129,17 @@ def _column(
     return Column(np.concatenate(edges), np.concatenate(material))
 
 
+def _segmented(p: Properties, first: int, last: int, elements: Sequence[int]) -> Column:
+    """Return the rows of elements of blocks `first` to `last` - 1 of a pillar of segments."""
+    y, own = p.contact_y[first : last + 1] - p.contact_y[first], p.segment[first:last]
+    count = np.array(elements)[own]
+    edges = [
+        a + (b - a) / n * np.arange(n)
+        for (a, b), n in zip(pairwise(y), count.tolist(), strict=True)
+    ]
+    return Column(np.append(np.concatenate(edges), y[-1]), np.repeat(own, count))
+
+
 def _joined(p: Properties, kind: str, parts: tuple[Part, ...], layers: tuple[int, ...]) -> Mesh:
     """Return the mesh with its facets: the end faces, and the pairs between its parts' copies."""
     length, tolerance = p.spacing * p.block_count, PLACE * p.spacing
@@ -127,6 +147,6 @@ def _joined(p: Properties, kind: str, parts: tuple[Part, ...], layers: tuple[int
     start, end = (facets.lies_at(outer, y, tolerance) for y in (0.0, length))
     cut = outer.chosen(facets.lies_across(outer, tolerance) & ~start & ~end)
     pair = facets.pairs(cut)
-    joint = np.rint(cut.y[pair[:, 0]] / p.spacing).astype(np.int64) - 1
+    joint = np.searchsorted(p.centre_y, cut.y[pair[:, 0]]) - 1
     sides = {"start": outer.side(start), "end": outer.side(end)}
     return Mesh(kind, parts, layers, facets.joints(cut, pair, joint), sides)

@@ -10,6 +10,7 @@ from cases.errors import SceneError
 from cases.material.calibrate import Properties
 from cases.material.elastic import equivalent_modulus
 from cases.schema.scene import Scene
+from cases.schema.segment import alone, regions
 from continuum.space.elasticity import Material, Section
 
 if TYPE_CHECKING:
@@ -76,16 +77,18 @@ def _leaves_plane(scene: Scene) -> bool:
 
 
 def materials(scene: Scene, p: Properties, model: str, layers: tuple[int, ...]) -> list[Material]:
-    """Return the rock, intact or homogenised, and the layers that are meshed.
+    """Return the rock of each segment, intact or homogenised, and the layers that are meshed.
 
     A layer of thickness h is rock of modulus K_n h that does not widen when it is compressed: held
     by the rock on both sides, a thin layer can not either, and K_n is its whole stiffness.
     """
-    modulus, poisson = p.modulus, p.poisson
-    if model == "jointed":
-        assert p.intact_modulus is not None
-        modulus, poisson = p.intact_modulus, scene.rock.intact_poisson
-    found = [Material(modulus, poisson, p.density, p.time_constant or 0.0)]
+    found = []
+    for one, region in zip(p.each, regions(scene), strict=True):
+        modulus, poisson = one.modulus, one.poisson
+        if model == "jointed":
+            assert one.intact_modulus is not None
+            modulus, poisson = one.intact_modulus, alone(scene, region).rock.intact_poisson
+        found.append(Material(modulus, poisson, one.density, one.time_constant or 0.0))
     thickness = layer_thickness(scene, p)
     etas = p.joint_time_constant
     for joint in layers:

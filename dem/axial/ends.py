@@ -51,15 +51,16 @@ def _half_block(kind: str, p: Properties, dt: float = 0.0) -> HalfSpring:
 
 
 @formula
-def end_reaction(c, end, w, v, force, wall):
+def end_reaction(c, end, x, w, v, force, wall):
     """Return the reaction (N, compression positive) of an end: k w + c (v + v') / 2.
 
-    c : `dem.axial.model.Chain`; end : `End`; w : closure of its spring, m. v : outward velocity of
-    the end block before the step, m/s; force : the outward force on it of everything else, N.
-    wall : sum of a shaken wall's outward velocities in the step before and in this one, m/s.
+    c : `dem.axial.model.Chain`; end : `End`; x : `impulse_to_speed` of the end block; w : closure
+    of its spring, m. v : outward velocity of the end block before the step, m/s; force : the
+    outward force on it of everything else, N. wall : sum of a shaken wall's outward velocities in
+    the step before and in this one, m/s.
     The velocity after the step, v' = keep v + (dt / m) (force - reaction), is solved on the one
     block, so no dashpot of an end changes the critical step.
     """
-    pace = v + (c.keep * v + c.impulse_to_speed * force) - wall
+    pace = v + (c.keep * v + x * force) - wall
     spring, drag = end.stiffness * w, 0.5 * end.viscosity * pace
-    return (spring + drag) / (1.0 + 0.5 * c.impulse_to_speed * end.viscosity)
+    return (spring + drag) / (1.0 + 0.5 * x * end.viscosity)

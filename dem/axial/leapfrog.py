@@ -56,7 +56,7 @@ def arguments(model: Model, state: State, samples: Samples, monitor: Guard | Non
     limits, every = (guard(0.0), 0) if monitor is None else (monitor, EVERY)
     limit = limits.limit.view(np.float64)[0]
     return (
-        model.chain, model.laws, model.load, model.base,
+        model.chain, model.laws, model.blocks, model.load, model.base,
         *model.receivers.sections, *model.receivers.points, *state, *samples,
         limit, limits.peak, limits.found, every,
     )  # fmt: skip
@@ -72,6 +72,7 @@ def loop_for(effects):
     parts = effects.joints
     dashpots, softening, varied = parts.dashpots, parts.softening, parts.varied
     start_held, end_held, shaken = effects.start, effects.end, effects.base
+    masses = effects.masses
     mass_damping, local_damping = effects.mass_damping, effects.local_damping
     gravity, ledger, fracture_row = effects.gravity, effects.ledger, 3 + softening
     joint_ledger = ledger and dashpots
@@ -79,14 +80,14 @@ def loop_for(effects):
 
     @jitted
     def loop(
-        c, laws, load, base, left, right, weight, before, after, share,
+        c, laws, blocks, load, base, left, right, weight, before, after, share,
         u, v, force, gap_rate, opening, broke, start, end,
         work, last_force, viscous, behind, dashpot_force,
         stress, velocity, displacement, energy, v_before,
         limit, peak, found, every, first, last, s, stride,
     ):  # fmt: skip
         tiny = flush_tiny()
-        count, law, dt, x = u.size, law_of(laws, 0), c.dt, c.impulse_to_speed
+        count, law, dt, x, mass = u.size, law_of(laws, 0), c.dt, c.impulse_to_speed, c.mass
         due = first + every if first + every < last else last
         for n in range(first, last):
             # Forces of the joints, compression positive.
@@ -122,13 +123,17 @@ def loop_for(effects):
                     base_before = base[n] if n < base.size else 0.0
                     base_now = base[n + 1] if n + 1 < base.size else 0.0
                     wall = (base_before + base_now) / dt
-                start[1] = end_reaction(c, c.start, start[0], -v[0], outward, wall)
+                if masses:
+                    x = blocks[0, 1]
+                start[1] = end_reaction(c, c.start, x, start[0], -v[0], outward, wall)
                 force[0] += start[1]
             if end_held:
                 outward = force[count - 1] - force[count]
                 if gravity:
                     outward += c.weight
-                end[1] = end_reaction(c, c.end, end[0], v[count - 1], outward, 0.0)
+                if masses:
+                    x = blocks[count - 1, 1]
+                end[1] = end_reaction(c, c.end, x, end[0], v[count - 1], outward, 0.0)
                 force[count] += end[1]
             if ledger:
                 v_start, v_end = v[0], v[count - 1]
@@ -182,6 +187,8 @@ def loop_for(effects):
                 f = force[j] - force[j + 1]
                 if gravity:
                     f += c.weight
+                if masses:
+                    mass, x = blocks[j, 0], blocks[j, 1]
                 kept, gain = v[j], x * f
                 if mass_damping:
                     kept *= c.keep
@@ -191,7 +198,7 @@ def loop_for(effects):
                 if block_ledger:
                     # Known only once the block has moved, as what is missing in its momentum: the
                     # half step behind the whole step is added by the next step.
-                    half_impulse = 0.5 * (c.mass * (after_step - v[j]) - dt * f)
+                    half_impulse = 0.5 * (mass * (after_step - v[j]) - dt * f)
                     viscous[j] -= behind[j] + half_impulse * v[j]
                     behind[j] = half_impulse * after_step
                 v[j] = after_step
@@ -210,6 +217,8 @@ def loop_for(effects):
                 if ledger:
                     for j in range(count):
                         v_before[j] *= v[j]
+                        if masses:
+                            v_before[j] *= blocks[j, 0] / c.mass
                     energy[0, s] = 0.5 * c.mass * total_of(v_before)
                     if joint_ledger or block_ledger:
                         energy[2, s] = total_of(viscous)

@@ -27,11 +27,13 @@ class Receivers(NamedTuple):
 class Effects(NamedTuple):
     """What a chain has: the constants that its kernel is compiled for.
 
-    joints : parts of their law. start, end : whether these are held by a spring or a dashpot.
-    base : whether the start is shaken. ledger : whether energies are summed.
+    joints : parts of their law. masses : whether blocks differ in mass. start, end : whether these
+    are held by a spring or a dashpot. base : whether the start is shaken. ledger : whether energies
+    are summed.
     """
 
     joints: Parts
+    masses: bool = False
     start: bool = False
     end: bool = False
     base: bool = False
@@ -44,7 +46,7 @@ class Effects(NamedTuple):
 class Chain(NamedTuple):
     """The constants of one step; those of absent effects change nothing.
 
-    dt : s; mass : of a block, kg; area : m2.
+    dt : s; mass : of a block, kg, of the lightest where they differ; area : m2.
     impulse_to_speed : dt / m, s/kg, less by mass-proportional damping.
     keep : the share of a velocity that mass-proportional damping leaves in a step.
     local : Cundall's damping. weight : m g along y, N.
@@ -68,6 +70,8 @@ class Model(NamedTuple):
     """The constants of a run.
 
     laws : of the joints, per unit area, as `joints.law.table_of` returns them.
+    blocks : float array [N, 2], mass (kg) and `impulse_to_speed` (s/kg) of each block; None where
+        all are alike.
     load : float array, N, mean of the load over each step, cut after the last that acts.
     base : float array, m, the displacement increment of a shaken base in each step, against y
         (outward), the first the one before the run, cut after the last that moves.
@@ -79,6 +83,7 @@ class Model(NamedTuple):
     load: np.ndarray
     base: np.ndarray
     receivers: Receivers
+    blocks: np.ndarray | None = None
 
 
 def build(scene: Scene) -> tuple[Model, State, Clock, float]:
@@ -114,8 +119,11 @@ def unloaded(scene: Scene, p: Properties, dt: float, ends: tuple[str, str]) -> M
     alpha, gravity, joints = p.mass_damping, scene.gravity, law_of_joints(p)
     force = scene.prestress.normal * p.area if scene.prestress else 0.0
     start, end = ends
+    masses = p.masses
+    mass = p.block_mass if masses is None else float(masses.min())
     effects = Effects(
         joints=parts_of(joints),
+        masses=masses is not None,
         start=start != "free",
         end=end != "free",
         local_damping=p.local_damping is not None,
@@ -123,18 +131,19 @@ def unloaded(scene: Scene, p: Properties, dt: float, ends: tuple[str, str]) -> M
     )
     chain = Chain(
         dt=dt,
-        mass=p.block_mass,
+        mass=mass,
         area=p.area,
-        impulse_to_speed=dt / p.block_mass,
+        impulse_to_speed=dt / mass,
         local=p.local_damping or 0.0,
-        weight=p.block_mass * gravity.acceleration * gravity.direction[1] if gravity else 0.0,
+        weight=mass * gravity.acceleration * gravity.direction[1] if gravity else 0.0,
         start_force=0.0 if scene.ends.start == "fixed" else force,
         end_force=0.0 if scene.ends.end == "fixed" else force,
-        start=build_end(start, p, dt),
-        end=build_end(end, p, dt),
+        start=build_end(start, p.at_start, dt),
+        end=build_end(end, p.at_end, dt),
     )
     none = np.zeros(0)
-    model = Model(effects, chain, table_of(joints), none, none, receivers(scene, p))
+    blocks = None if masses is None else np.stack([masses, dt / masses], axis=1)
+    model = Model(effects, chain, table_of(joints), none, none, receivers(scene, p), blocks)
     return model if alpha is None else with_mass_damping(model, alpha)
 
 
@@ -153,13 +162,14 @@ def with_mass_damping(model: Model, alpha: float) -> Model:
     dt, mass = model.chain.dt, model.chain.mass
     a = alpha * dt / 2
     chain = model.chain._replace(keep=(1 - a) / (1 + a), impulse_to_speed=dt / mass / (1 + a))
-    return model._replace(chain=chain, effects=model.effects._replace(mass_damping=True))
+    blocks = None if model.blocks is None else model.blocks / [1, 1 + a]
+    effects = model.effects._replace(mass_damping=True)
+    return model._replace(chain=chain, blocks=blocks, effects=effects)
 
 
 def receivers(scene: Scene, p: Properties) -> Receivers:
     """Return where the scene records its blocks."""
-    contacts = p.spacing * np.arange(p.block_count + 1)
     return Receivers(
-        interpolation(contacts, scene.record.stress),
-        interpolation(contacts[1:] - p.spacing / 2, scene.record.velocity),
+        interpolation(p.contact_y, scene.record.stress),
+        interpolation(p.centre_y, scene.record.velocity),
     )

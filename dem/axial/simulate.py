@@ -118,7 +118,7 @@ def simulate_fields(
     def check(samples: int) -> None:
         speed = np.abs(state.v)
         look(monitor, speed.max(), samples * time.stride)
-        seen = time_loop.sighting(monitor, speed, calibrate(scene).spacing)
+        seen = time_loop.sighting(monitor, speed, calibrate(scene).centre_y)
         if seen is not None:
             raise stopped(scene, time, critical, seen)
 
@@ -159,8 +159,7 @@ def _film(
 
 
 def _everywhere(p: Properties) -> Receivers:
-    contacts = p.spacing * np.arange(p.block_count + 1)
-    centres = contacts[1:] - p.spacing / 2
+    contacts, centres = p.contact_y, p.centre_y
     return Receivers(
         interpolation(contacts, contacts.tolist()), interpolation(centres, centres.tolist())
     )

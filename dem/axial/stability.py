@@ -17,7 +17,7 @@ from joints.stability import critical_step, critical_step_of_modes
 
 def critical_chain_step(p: Properties, start: str, end: str) -> float:
     """Return the critical step (s) of a chain whose ends are held as `start` and `end` say."""
-    alike = (p.stiffness == p.stiffness[0]).all() and not p.damps_alone.any()
+    alike = len(p.each) == 1 and (p.stiffness == p.stiffness[0]).all() and not p.damps_alone.any()
     pushed = 1 + (p.local_damping or 0.0)
     if alike and {start, end} <= {"free", "quiet"}:
         rigid = 2 * sqrt(p.stiffness[0] * p.area / p.block_mass)
@@ -29,13 +29,17 @@ def critical_chain_step(p: Properties, start: str, end: str) -> float:
     k = p.stiffness * p.area
     c = k * (0.0 if p.joint_time_constant is None else p.joint_time_constant)
     ends = np.zeros(p.block_count)
-    ends[0], ends[-1] = end_stiffness(start, p), end_stiffness(end, p)
+    ends[0], ends[-1] = end_stiffness(start, p.at_start), end_stiffness(end, p.at_end)
+    masses = p.masses
+    lightness = np.ones(p.block_count) if masses is None else p.block_mass / masses
 
     def largest(a: float, b: float) -> float:
         joints = a * k + b * c
         diagonal = a * ends
         diagonal[:-1] += joints
         diagonal[1:] += joints
+        diagonal *= lightness
+        joints *= np.sqrt(lightness[1:] * lightness[:-1])
         last = (p.block_count - 1,) * 2
         top = eigh_tridiagonal(diagonal, -joints, True, select="i", select_range=last)
         return pushed * top[0] / p.block_mass

@@ -66,7 +66,7 @@ class Relaxation:
         )
         self.prestress = scene.prestress.normal * p.area if scene.prestress else 0.0
         self.properties, self.stiffness = p, p.stiffness * p.area
-        self.mass = np.full(p.block_count, p.block_mass)
+        self.mass = np.full(p.block_count, p.block_mass) if p.masses is None else p.masses
         self.scale = max(abs(self.chain.weight) * p.block_count, abs(self.prestress))
         self.most_steps = 10_000 + 1000 * p.block_count
 

@@ -112,7 +112,7 @@ def simulate_fields(
     def check(samples: int) -> None:
         speed = speeds(model, state, p.block_count)
         look(held, speed.max(axis=1), samples * time.stride)
-        seen = sighting(held, speed[:3].max(axis=0), p.spacing)
+        seen = sighting(held, speed[:3].max(axis=0), p.centre_y)
         if seen is not None:
             raise stopped(scene, time, critical, seen)
         refuse_large_turns(scene, model, state, samples * time.stride * time.dt)

@@ -2,7 +2,7 @@
 
 A bar of the rock mass's modulus E_eq (1 + s eta); a soft layer is an interface of the compliance
 that it adds, 1/K = 1/K'_n(soft) - 1/K'_n(regular), with its own time constant, because the bar
-already holds one ordinary joint there.
+already holds one ordinary joint there. Segments of other rock are bars of their own, bonded.
 
 Holds for any load; every joint carries tension and no layer is stiffer than the ordinary joints.
 """
@@ -12,11 +12,11 @@ import xarray as xr
 
 from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
-from compare.exact.bar.laplace import Bar, end_of, solved
+from compare.exact.bar.laplace import Bar, end_of, rocks, solved
 from compare.exact.conditions import DAMPED, holds
 from compare.solvers.record import BAR, Answer, Kind, Rock, Solver, Words, thin
 
-HELD = ("prestress", "soft layers", *DAMPED)
+HELD = ("prestress", "soft layers", "segments", *DAMPED)
 
 
 def applies(scene: Scene) -> Answer:
@@ -37,14 +37,15 @@ def bar(scene: Scene) -> Bar:
     etas = p.joint_time_constant
     return Bar(
         length=scene.pillar.length,
-        density=p.density,
-        modulus=p.modulus,
-        time_constant=p.time_constant or 0.0,
+        density=p.at_start.density,
+        modulus=p.at_start.modulus,
+        time_constant=p.at_start.time_constant or 0.0,
         joint_y=p.joint_y,
         joint_compliance=p.excess_compliance,
         joint_time_constant=np.zeros_like(p.joint_y) if etas is None else etas,
-        start=end_of(scene.ends.start, p.impedance),
-        end=end_of(scene.ends.end, p.impedance),
+        start=end_of(scene.ends.start, p.at_start.impedance),
+        end=end_of(scene.ends.end, p.at_end.impedance),
+        rocks=rocks(p, [one.modulus for one in p.each]),
     )
 
 

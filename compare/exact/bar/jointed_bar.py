@@ -1,9 +1,10 @@
 """Intact rock with every joint resolved, by marching in the Laplace variable (`laplace`).
 
-Segments of intact rock (E, Kelvin-Voigt eta of the rock) between joints of their own stiffness
-K_n (Guo & Li 2002, equation 4) and time constants; quiet, matched, free or fixed ends, the
-dashpots with the rock mass's impedance. This is the physics that both the rigid blocks and the
-homogenised bar approximate (Schoenberg, JASA 68, 1980; Pyrak-Nolte et al., JGR 95, 1990).
+Intact rock (E, Kelvin-Voigt eta of the rock) between joints of their own stiffness K_n (Guo & Li
+2002, equation 4) and time constants; of another E and density in each segment; quiet, matched, free
+or fixed ends, the dashpots with the rock mass's impedance there. This is the physics that both the
+rigid blocks and the homogenised bar approximate (Schoenberg, JASA 68, 1980; Pyrak-Nolte et al., JGR
+95, 1990).
 
 Holds for any load; every joint carries tension and the scene gives intact_modulus.
 """
@@ -11,13 +12,13 @@ Holds for any load; every joint carries tension and the scene gives intact_modul
 import numpy as np
 import xarray as xr
 
-from cases.material.calibrate import calibrate
+from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
-from compare.exact.bar.laplace import Bar, end_of, solved
+from compare.exact.bar.laplace import Bar, End, end_of, rocks, solved
 from compare.exact.conditions import DAMPED, holds
 from compare.solvers.record import JOINTED, Answer, Kind, Rock, Solver, Words, thin
 
-HELD = ("prestress", "soft layers", "stiff layers", *DAMPED)
+HELD = ("prestress", "soft layers", "stiff layers", "segments", *DAMPED)
 
 
 def applies(scene: Scene) -> Answer:
@@ -35,19 +36,25 @@ def bar(scene: Scene) -> Bar:
     """Return the scene's intact rock with its N - 1 joints."""
     p = calibrate(scene)
     assert p.own_stiffness is not None and p.intact_modulus is not None
-    etas, eta = p.joint_time_constant, p.time_constant or 0.0
-    half_joint = 1 / (2 * p.regular_own_stiffness)
+    etas = p.own_time_constant
     return Bar(
         length=scene.pillar.length,
-        density=p.density,
-        modulus=p.intact_modulus,
-        time_constant=eta,
+        density=p.at_start.density,
+        modulus=p.at_start.intact_modulus or p.intact_modulus,
+        time_constant=p.at_start.time_constant or 0.0,
         joint_y=p.joint_y,
         joint_compliance=1 / p.own_stiffness,
         joint_time_constant=np.zeros_like(p.joint_y) if etas is None else etas,
-        start=end_of(scene.ends.start, p.impedance, half_joint, eta),
-        end=end_of(scene.ends.end, p.impedance, half_joint, eta),
+        start=_end(scene.ends.start, p.at_start),
+        end=_end(scene.ends.end, p.at_end),
+        rocks=rocks(p, [one.intact_modulus or 0.0 for one in p.each]),
     )
+
+
+def _end(kind: str, p: Properties) -> End:
+    """Return an end behind half a joint of this rock."""
+    half_joint = 1 / (2 * p.regular_own_stiffness)
+    return end_of(kind, p.impedance, half_joint, p.time_constant or 0.0)
 
 
 SOLVER = Solver(

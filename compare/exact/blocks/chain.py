@@ -17,6 +17,7 @@ w times the displacement of the two faces; w = 2 sqrt(k/m) makes its parts equal
 from dataclasses import dataclass
 from functools import cached_property
 from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,20 +26,28 @@ from cases.sampling import interpolation
 from cases.schema.scene import Scene
 
 
+class EndOfChain(NamedTuple):
+    """What holds an end: its kind; the spring (N/m) and dashpot (N s/m) of the half block behind
+    it; the dashpot Z A of a quiet or matched one, N s/m."""
+
+    kind: str
+    stiffness: float
+    viscosity: float
+    dashpot: float
+
+
 @dataclass(frozen=True)
 class Chain:
     """What the equations of motion hold: forces in N, not tractions.
 
     Attributes
     ----------
-    mass : of one block, kg.
+    mass : of one block, kg; or [N], of each.
     area : of the section, m2.
-    spacing : block thickness, m.
+    contact_y, centre_y : float arrays [N + 1] and [N], faces and centres of the blocks, m.
     stiffness, viscosity : float arrays [N - 1], N/m and N s/m.
     tension : bool array [N - 1], whether a joint carries tension.
-    ends : what holds the start and the end.
-    half_stiffness, half_viscosity : of the half block behind an end, N/m and N s/m.
-    dashpot : Z A of a quiet or matched end, N s/m.
+    start, end : what holds them.
     prestress : N, compression positive.
     gravity : its component along y, m/s2.
     mass_damping : alpha, 1/s.
@@ -46,16 +55,15 @@ class Chain:
     gain : the drive by the scene's `drive` signal: the area (m2) or 1, along y.
     """
 
-    mass: float
+    mass: float | np.ndarray
     area: float
-    spacing: float
+    contact_y: np.ndarray
+    centre_y: np.ndarray
     stiffness: np.ndarray
     viscosity: np.ndarray
     tension: np.ndarray
-    ends: tuple[str, str]
-    half_stiffness: float
-    half_viscosity: float
-    dashpot: float
+    start: EndOfChain
+    end: EndOfChain
     prestress: float
     gravity: float
     mass_damping: float
@@ -70,7 +78,8 @@ class Chain:
     @cached_property
     def rate(self) -> float:
         """2 sqrt(k/m) of an ordinary joint, rad/s: the largest frequency of a long chain."""
-        return 2 * sqrt(self.half_stiffness / 2 / self.mass)
+        stiffness = max(self.start.stiffness, self.end.stiffness) / 2
+        return 2 * sqrt(stiffness / np.min(self.mass))
 
     @property
     def size(self) -> int:
@@ -85,26 +94,30 @@ class Chain:
 
 def chain(scene: Scene) -> Chain:
     """Return the scene's chain of rigid blocks."""
-    p, gravity, ends = calibrate(scene), scene.gravity, (scene.ends.start, scene.ends.end)
-    half = 2 * p.regular_stiffness * p.area
+    p, gravity = calibrate(scene), scene.gravity
+    masses, contacts = p.masses, p.contact_y
     prestress = scene.prestress.normal * p.area if scene.prestress else 0.0
     return Chain(
-        mass=p.block_mass,
+        mass=p.block_mass if masses is None else masses,
         area=p.area,
-        spacing=p.spacing,
+        contact_y=contacts,
+        centre_y=p.spacing * (np.arange(p.block_count) + 0.5) if masses is None else p.centre_y,
         stiffness=p.stiffness * p.area,
         viscosity=_viscosity(p),
         tension=p.tension,
-        ends=ends,
-        half_stiffness=half,
-        half_viscosity=half * (p.time_constant or 0.0),
-        dashpot=p.impedance * p.area,
+        start=_end(scene.ends.start, p.at_start),
+        end=_end(scene.ends.end, p.at_end),
         prestress=prestress,
         gravity=gravity.acceleration * gravity.direction[1] if gravity else 0.0,
         mass_damping=p.mass_damping or 0.0,
         shaken=scene.shakes_base,
         gain=scene.load.direction[1] * (1.0 if scene.shakes_base else p.area),
     )
+
+
+def _end(kind: str, p: Properties) -> EndOfChain:
+    half = 2 * p.regular_stiffness * p.area
+    return EndOfChain(kind, half, half * (p.time_constant or 0.0), p.impedance * p.area)
 
 
 def _viscosity(p: Properties) -> np.ndarray:
@@ -149,23 +162,23 @@ def contact_forces(
     if chain.bars_tension:
         force[~chain.tension & ((spring < 0) | (force < 0))] = 0.0
     forces[..., 1:-1] = force
-    start, first = reaction(chain, chain.ends[0], u[..., 0], v[..., 0], faces[..., 0], wall)
-    end, last = reaction(chain, chain.ends[1], u[..., -1], v[..., -1], faces[..., 1])
+    start, first = reaction(chain.start, u[..., 0], v[..., 0], faces[..., 0], wall)
+    end, last = reaction(chain.end, u[..., -1], v[..., -1], faces[..., 1])
     forces[..., 0], forces[..., -1] = chain.prestress + push - start, chain.prestress + end
     return forces, (first, last)
 
 
-def reaction(chain: Chain, kind: str, u, v, face, wall=0.0):
+def reaction(end: EndOfChain, u, v, face, wall=0.0):
     """Return what an end takes from its block (N) and the velocity of its face (m/s)."""
-    if kind == "free":
+    if end.kind == "free":
         return 0.0, 0.0
-    if kind == "quiet":
-        return chain.dashpot * v, 0.0
-    spring = chain.half_stiffness * (u - face) + chain.half_viscosity * (v - wall)
-    if kind == "fixed":
+    if end.kind == "quiet":
+        return end.dashpot * v, 0.0
+    spring = end.stiffness * (u - face) + end.viscosity * (v - wall)
+    if end.kind == "fixed":
         return spring, wall
-    rate = spring / (chain.dashpot + chain.half_viscosity)
-    return chain.dashpot * rate, rate
+    rate = spring / (end.dashpot + end.viscosity)
+    return end.dashpot * rate, rate
 
 
 def receivers(
@@ -176,7 +189,6 @@ def receivers(
     Stress is interpolated between the start, the contacts and the end; velocity and displacement
     between the block centres.
     """
-    n, d = chain.block_count, chain.spacing
     u, v, _ = split(chain, state)
     forces, _ = contact_forces(chain, state, drive)
 
@@ -184,6 +196,6 @@ def receivers(
         left, right, weight = interpolation(nodes, places)
         return (1 - weight) * values[..., left] + weight * values[..., right]
 
-    centres, points = d * (np.arange(n) + 0.5), scene.record.velocity
-    stress = read(forces / chain.area, d * np.arange(n + 1), scene.record.stress)
+    centres, points = chain.centre_y, scene.record.velocity
+    stress = read(forces / chain.area, chain.contact_y, scene.record.stress)
     return stress, read(v, centres, points), read(u, centres, points)

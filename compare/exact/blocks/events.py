@@ -185,8 +185,8 @@ class _Walk:
         """Set the forces over the mass at both ends; return the velocities of their faces."""
         chain, n, w = self.chain, self.chain.block_count, self.chain.rate
         push, wall = (0.0, drive) if chain.shaken else (drive, 0.0)
-        start, first = reaction(chain, chain.ends[0], x[0] / w, x[n], x[-2] / w, wall)
-        end, last = reaction(chain, chain.ends[1], x[n - 1] / w, x[2 * n - 1], x[-1] / w)
+        start, first = reaction(chain.start, x[0] / w, x[n], x[-2] / w, wall)
+        end, last = reaction(chain.end, x[n - 1] / w, x[2 * n - 1], x[-1] / w)
         force[0], force[-1] = (push - start) / chain.mass, end / chain.mass
         return first, last
 

@@ -10,8 +10,8 @@ Its error is that of round-off, and bounded by what a twin of the solution shows
 The solution is a sum: what the drive does from rest, the static state under gravity (or what
 gravity does that acts suddenly), and the prestress.
 
-Holds for any load or shaken base, soft layers, dashpots, mass-proportional damping, ends, gravity
-along the axis and prestress; every joint carries tension.
+Holds for any load or shaken base, soft layers, segments, dashpots, mass-proportional damping, ends,
+gravity along the axis and prestress; every joint carries tension.
 """
 
 from dataclasses import replace
@@ -30,13 +30,22 @@ from compare.solvers.record import BLOCKS, Answer, Kind, Rock, Solver, Words, th
 from results.dataset import dataset
 
 MOST_BLOCKS = 2000
-HELD = ("reversed load", "gravity", "prestress", "mass damping", "fixed start", *DAMPED, *LAYERS)
+HELD = (
+    "reversed load",
+    "segments",
+    "gravity",
+    "prestress",
+    "mass damping",
+    "fixed start",
+    *DAMPED,
+    *LAYERS,
+)
 
 
 def applies(scene: Scene) -> Answer:
     """Return whether the scene's chain of rigid blocks is linear and not too long."""
     many = f"more than {MOST_BLOCKS:,} blocks: the matrix exponential is dense"
-    return holds(scene, HELD, (scene.pillar.block_count > MOST_BLOCKS, many))
+    return holds(scene, HELD, (scene.block_count > MOST_BLOCKS, many))
 
 
 def solve(scene: Scene) -> xr.Dataset:

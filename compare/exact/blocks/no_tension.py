@@ -42,7 +42,7 @@ def applies(scene: Scene) -> Answer:
         scene,
         (*HELD, "no tension"),
         (carried, "every joint carries tension: see lattice"),
-        (scene.pillar.block_count > MOST_BLOCKS, MANY),
+        (scene.block_count > MOST_BLOCKS, MANY),
     )
     if answer and _pulled(scene):
         return no("a joint that bars tension is pulled at rest")

@@ -82,7 +82,7 @@ def everything(blocks: int) -> Scene:
 def everything_like(scene: AnyScene) -> AnyScene:
     """Return a scene of this kind with every effect and about as many rigid blocks."""
     if isinstance(scene, Scene):
-        return everything(scene.pillar.block_count)
+        return everything(scene.block_count)
     return everything_in_plane(scene, BLOCKS)
 
 

@@ -175,4 +175,4 @@ def whole(blocks: int) -> float:
 
 
 def _of_everything(scene: Scene) -> str:
-    return f"every effect in {scene.pillar.block_count} blocks"
+    return f"every effect in {scene.block_count} blocks"

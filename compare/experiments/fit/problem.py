@@ -95,7 +95,7 @@ class Problem:
 def solver_of(scene: AnyScene, asked: str | None) -> str:
     """Return what solves every trial: what is asked for, else rigid blocks, exact in time where
     they are linear and few; raises SceneError where it does not apply."""
-    if asked is None and isinstance(scene, Scene) and scene.pillar.block_count <= SHORT:
+    if asked is None and isinstance(scene, Scene) and scene.block_count <= SHORT:
         asked = lattice.SOLVER.name if lattice.applies(scene) else None
     name = asked or DEM.name
     answer = applies(name, scene)

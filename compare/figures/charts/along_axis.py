@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
+from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
 from compare.engines import ENGINES, applies, names, solve
 from compare.misfit.ranking import own_exact
@@ -24,7 +25,7 @@ def along_pillar(scene: AnyScene) -> dict[str, xr.Dataset]:
     model. Empty where the pillar has too few blocks for a wave to be seen, and of a rock mass.
     Raises what `compare.engines.solve` does.
     """
-    if not isinstance(scene, Scene) or scene.pillar.block_count < FEWEST:
+    if not isinstance(scene, Scene) or scene.block_count < FEWEST:
         return {}
     wide = recorded_along(scene)
     every = [name for name in names() if applies(name, wide)]
@@ -35,9 +36,16 @@ def along_pillar(scene: AnyScene) -> dict[str, xr.Dataset]:
 
 def sections(scene: Scene) -> list[float]:
     """Return y of the start, every k-th joint and the end, m."""
-    count = scene.pillar.block_count
-    places = [*range(0, count, -(-count // SECTIONS)), count]
+    places = _contacts(scene)
+    if scene.segments:
+        return calibrate(scene).contact_y[places].tolist()
     return [scene.pillar.block * i for i in places]
+
+
+def _contacts(scene: Scene) -> list[int]:
+    """Return every k-th contact between blocks, from the start to the end."""
+    count = scene.block_count
+    return [*range(0, count, -(-count // SECTIONS)), count]
 
 
 def recorded_along(scene: AnyScene) -> AnyScene:
@@ -52,7 +60,10 @@ def recorded_along(scene: AnyScene) -> AnyScene:
     # A couple about the axis strains no section; what it turns is recorded with the velocity.
     points = places if scene.load.arm is not None else []
     if scene.record.velocity and not scene.record.stress:
-        points, places = [y + scene.pillar.block / 2 for y in places[:-1]], []
+        points = [y + scene.pillar.block / 2 for y in places[:-1]]
+        if scene.segments:
+            points = calibrate(scene).centre_y[_contacts(scene)[:-1]].tolist()
+        places = []
     record = scene.record.model_copy(update={"stress": places, "velocity": points, "fields": None})
     return scene.model_copy(update={"record": record})
 

@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from cases.schema.scene import Scene, SoftLayer
+from cases.schema.segment import regions
 from compare.figures.drawing.actions import ASIDE, gravity_at, gravity_words
 from compare.figures.drawing.placement import WIDTH, Placement
 from compare.figures.drawing.symbols import CHARACTER, INK, LAYER, RECEIVER, SOFT, note
@@ -120,8 +121,7 @@ def draw_scale(ax: Axes, scene: Scene, place: Placement) -> None:
         note(ax, place.x(y), level - 0.07, f"{y:g}", va="top")
     times = place.thick / (place.scale * pillar.side)
     drawn = f"; drawn {times:.2g} times as thick" if times > 1.01 else ""
-    words = (
-        f"y (m): {pillar.block_count:,} blocks of {pillar.block:g} m, "
-        f"{pillar.side:g} m × {pillar.side:g} m across{drawn}"
-    )
+    blocks = f"{scene.block_count:,} blocks"
+    blocks += f" in {len(regions(scene))} segments" if scene.segments else f" of {pillar.block:g} m"
+    words = f"y (m): {blocks}, {pillar.side:g} m × {pillar.side:g} m across{drawn}"
     note(ax, place.start, level - 0.24, words, "left", "top", color=SOFT)

@@ -24,7 +24,10 @@ MOST = 4  # drawings of one scene
 GAP, LOAD_WIDTH = 0.45, 1.75  # inches before and of the load over time
 HEADING = 0.22  # inches of a heading
 TITLE = "The scene"
-SEEN = ("pillar", "soft_layers", "load", "ends", "gravity", "prestress", "record", "motion")
+SEEN = (
+    *("pillar", "soft_layers", "segments", "load", "ends", "gravity", "prestress", "record"),
+    "motion",
+)
 
 
 def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
@@ -77,10 +80,12 @@ def _caption(groups: list[tuple[str, Scene]]) -> str:
     else:
         speeds = f"a modulus of {(rock.equivalent_modulus or 0) / 1e9:.3g} GPa"
     words = law_words(joints) or "elastic"
+    count = len(scene.segments)
+    segments = f"; other rock in {count} segment{'s' * (count > 1)}" if count else ""
     return (
         f"Drawn from the scene: rock mass of {rock.density:g} kg/m³ with {speeds}; "
-        f"joints: {words}. Triangles: sections whose stress is recorded; circles: points whose "
-        "velocity is."
+        f"joints: {words}{segments}. Triangles: sections whose stress is recorded; circles: points "
+        "whose velocity is."
     )
 
 
@@ -130,6 +135,7 @@ def _table(scene: Scene, variant: str) -> pd.DataFrame:
     rows += [
         ("soft layer", x.y, x.y, f"thickness {x.thickness or 0:g} m") for x in scene.soft_layers
     ]
+    rows += [("segment", x.y[0], x.y[1], x.name or "") for x in scene.segments]
     rows += [
         ("end", 0.0, 0.0, scene.ends.start),
         ("end", pillar.length, pillar.length, scene.ends.end),

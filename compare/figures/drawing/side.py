@@ -10,7 +10,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 
+from cases.material.contacts import contacts, welds
 from cases.schema.scene import Scene
+from cases.schema.segment import regions
 from compare.figures.drawing import symbols
 from compare.figures.drawing.actions import draw_forces, draw_load
 from compare.figures.drawing.labels import draw_receivers, draw_scale, ticks
@@ -18,6 +20,7 @@ from compare.figures.drawing.placement import HEIGHT, WIDTH, Placement, placemen
 from compare.figures.drawing.symbols import CHARACTER, EDGE, INK, LAYER, ROCK
 
 MOST = 400  # blocks that are drawn one by one
+SHADES = (ROCK, "#cfc7b5", "#dcdde0")  # of segments, in turn
 ROOM = 0.5  # inches of what stands beyond an end
 
 
@@ -42,9 +45,24 @@ def draw_strip(ax: Axes, scene: Scene) -> None:
 
 
 def block_edges(scene: Scene) -> list[float]:
-    """Return y of the edges of the blocks that are drawn, m: all, or one for a pillar of many."""
-    count, length = scene.pillar.block_count, scene.pillar.length
+    """Return y of the edges of the blocks that are drawn, m: all, or one for a pillar of many; of
+    segments without joints, and of many blocks, one a segment."""
+    if scene.segments:
+        every = contacts(scene)
+        edges = every[np.r_[True, ~welds(scene), True]]
+        starts = [one.start for one in regions(scene)]
+        return np.union1d(edges if len(edges) <= MOST else every[[0, -1]], starts).tolist()
+    count, length = scene.block_count, scene.pillar.length
     return np.linspace(0, length, (count if count <= MOST else 1) + 1).tolist()
+
+
+def _shades(scene: Scene) -> str | list[str]:
+    """Return the colour of the blocks, or of each that is drawn where segments differ."""
+    if not scene.segments:
+        return ROCK
+    stops = [one.stop for one in regions(scene)]
+    middles = [(a + b) / 2 for a, b in pairwise(block_edges(scene))]
+    return [SHADES[int(np.searchsorted(stops, y)) % len(SHADES)] for y in middles]
 
 
 def _draw_rock(ax: Axes, scene: Scene, place: Placement) -> None:
@@ -53,7 +71,8 @@ def _draw_rock(ax: Axes, scene: Scene, place: Placement) -> None:
         [(a, place.bottom), (b, place.bottom), (b, place.top), (a, place.top)]
         for a, b in pairwise(edges)
     ]
-    blocks = PolyCollection(corners, facecolors=ROCK, edgecolors="none", zorder=1, gid="blocks")
+    colours = _shades(scene)
+    blocks = PolyCollection(corners, facecolors=colours, edgecolors="none", zorder=1, gid="blocks")
     ax.add_collection(blocks, autolim=False)
     lines = [[(x, place.bottom), (x, place.top)] for x in edges[1:-1]]
     width = min(0.8, 40 / len(edges))

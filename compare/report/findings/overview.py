@@ -33,7 +33,7 @@ def mostly_dispersion(comparison: Comparison) -> Finding:
         f"0 to {1e3 * scene.time.duration:g} ms) the rigid blocks lie {share(total)} from the "
         f"homogenised bar. The engine itself errs by only {share(own, 2)} (dem ~ lattice), and "
         f"rigid instead of deformable blocks cost {share(rigid)} (dem ~ jointed-bar). Elastic rock "
-        f"with its {scene.pillar.block_count - 1} joints resolved lies {share(joints)} from the "
+        f"with its {scene.block_count - 1} joints resolved lies {share(joints)} from the "
         f"homogenised bar as well. {end}",
         holds,
     )

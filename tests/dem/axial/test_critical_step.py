@@ -8,6 +8,10 @@ from cases.errors import SceneError, UnstableError
 from cases.material.calibrate import calibrate
 from dem.axial.stability import critical_chain_step
 
+SEGMENTS = [
+    {"y": [2.0, 4.0], "density": 5000.0, "block": 0.25},
+    {"y": [8.0, 12.0], "joints": False, "block": 0.4, "intact_modulus": 1e10},
+]
 CHAINS = {
     "undamped": {},
     "damped": {"joints__damping_ratio": 0.1},
@@ -20,6 +24,12 @@ CHAINS = {
     "quiet": {"ends__end": "quiet", "ends__start": "quiet", "joints__damping_ratio": 0.1},
     "matched": {"ends__end": "matched", "joints__damping_ratio": 0.1},
     "matched at both, undamped": {"ends__end": "matched", "ends__start": "matched"},
+    "segments": {"segments": SEGMENTS, "ends__end": "matched"},
+    "damped segments": {
+        "segments": SEGMENTS,
+        "joints__damping_ratio": 0.1,
+        "ends": {"start": "matched", "end": "quiet"},
+    },
     "fixed": {"ends__end": "fixed", "joints__damping_ratio": 0.1},
     "mass damping": {"damping__mass_proportional": 500.0, "ends__end": "quiet"},
     "Rayleigh damping": {

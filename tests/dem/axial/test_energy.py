@@ -6,6 +6,11 @@ import dem
 from results.dataset import energy_residual
 
 DOWN = {"direction": [0, 1, 0]}
+HELD = {"start": "matched", "end": "fixed"}
+SEGMENTS = [
+    {"y": [5.0, 12.0], "density": 5000.0, "block": 0.25},
+    {"y": [30.0, 50.0], "joints": False, "block": 0.4, "intact_modulus": 1e10},
+]
 SHAKEN = {"shape": "sine", "amplitude": 1.0, "period": 0.01, "quantity": "velocity"}
 
 
@@ -23,6 +28,8 @@ SHAKEN = {"shape": "sine", "amplitude": 1.0, "period": 0.01, "quantity": "veloci
         {"damping__local": 0.3, "ends__end": "quiet"},
         {"gravity": DOWN, "ends__end": "fixed"},
         {"gravity": {**DOWN, "static": False}, "ends__end": "fixed"},
+        {"segments": SEGMENTS, "joints__damping_ratio": 0.1, "ends": HELD},
+        {"segments": SEGMENTS, "damping__mass_proportional": 50.0, "prestress": {"normal": 2e6}},
         {"prestress": {"normal": 2e6}, "ends": {"start": "quiet", "end": "matched"}},
         {"load": SHAKEN, "ends__start": "fixed", "joints__damping_ratio": 0.1},
         {
@@ -47,6 +54,8 @@ SHAKEN = {"shape": "sine", "amplitude": 1.0, "period": 0.01, "quantity": "veloci
         "local damping",
         "gravity",
         "sudden gravity",
+        "segments",
+        "damped segments",
         "prestress",
         "shaken base",
         "all",

@@ -20,6 +20,7 @@ CALLS = {
     "dashpots": {"joints__damping_ratio": 0.02, "soft_layers": LAYER},
     "no tension": {"joints__tension": False, "soft_layers": LAYER},
     "closure": {"joints__maximum_closure": 1e-3},
+    "segments": {"segments": [{"y": [10.0, 20.0], "density": 2600.0}]},
     "joints that differ": {"soft_layers": LAYER},
     "quiet ends": {"ends__end": "quiet"},
     "matched ends": {"ends__start": "matched"},

@@ -1,0 +1,243 @@
+"""The numbers of a pillar of several segments: those of each segment, put together.
+
+A block of thickness S has half of its compliance on either side of its centre: S / (2 E) of intact
+rock and half a joint, 1 / (2 K_n), together S / (2 E_eq). A joint between two segments is half a
+joint of each, so that rigid blocks, jointed rock and the homogenised bar have one compliance, and a
+matched end the other half. Two Kelvin-Voigt elements in series are one for slow motion, with the
+time constants weighted by the compliances.
+
+The pillar as a whole is known by its mean density and compliance: the uniform one that it is for
+long waves (Backus, J. Geophys. Res. 67, 1962). Only estimates and drawings use these.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, sqrt
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cases.material.calibrate import Properties, calibrate
+from cases.material.contacts import contacts, welds
+from cases.material.strength import strength_of
+from cases.schema.joint import JointLaw
+from cases.schema.segment import alone, regions
+
+if TYPE_CHECKING:
+    from cases.schema.scene import Scene
+
+
+@dataclass(frozen=True, kw_only=True)
+class LayeredProperties(Properties):
+    """The numbers of a pillar of several segments; one number for all of it is a mean.
+
+    Attributes
+    ----------
+    segments : the numbers of each segment as if it were alone. of_block : int array [N], `segment`.
+    contacts : float array [N + 1], where blocks begin and the last one ends, m.
+    half : float array [N], half of each block's compliance S / E_eq, m/Pa; half_rock : of its rock.
+    weld : bool array [N - 1], whether a contact is no joint, between blocks of intact segments.
+    own_constants : float array [N - 1], `own_time_constant`; None without any dashpot.
+    """
+
+    segments: tuple[Properties, ...]
+    of_block: np.ndarray
+    contacts: np.ndarray
+    half: np.ndarray
+    half_rock: np.ndarray
+    weld: np.ndarray
+    own_constants: np.ndarray | None
+
+    @property
+    def at_start(self) -> Properties:
+        """Those of the first segment."""
+        return self.segments[0]
+
+    @property
+    def at_end(self) -> Properties:
+        """Those of the last segment."""
+        return self.segments[-1]
+
+    @property
+    def each(self) -> tuple[Properties, ...]:
+        """Those of each segment by itself."""
+        return self.segments
+
+    @property
+    def segment(self) -> np.ndarray:
+        """Which of `each` the blocks belong to, int array [N]."""
+        return self.of_block
+
+    @property
+    def contact_y(self) -> np.ndarray:
+        """Where blocks begin and the last one ends, m [N + 1]."""
+        return self.contacts
+
+    @property
+    def centre_y(self) -> np.ndarray:
+        """Centres of the blocks, m [N]."""
+        return (self.contacts[1:] + self.contacts[:-1]) / 2
+
+    def travel_time(self, y: float) -> float:
+        """Return when what the start sends along the homogenised bar is at y (m), s."""
+        slowness = np.array([1 / one.bar_speed for one in self.segments])[self.of_block]
+        arrivals = np.append(0.0, np.cumsum(slowness * np.diff(self.contacts)))
+        return float(np.interp(y, self.contacts, arrivals))
+
+    @property
+    def masses(self) -> np.ndarray:
+        """Mass of each block, kg [N]."""
+        return np.array([one.block_mass for one in self.segments])[self.segment]
+
+    @property
+    def own_time_constant(self) -> np.ndarray | None:
+        """eta of each joint by itself, s [N - 1]: between segments that of its halves."""
+        return self.own_constants
+
+    @property
+    def regular(self) -> np.ndarray:
+        """K'_n that the homogenised bar has at each joint, Pa/m [N - 1]."""
+        return 1 / _of_pairs(self.half)
+
+    @property
+    def resolved(self) -> np.ndarray:
+        """The joints of the jointed rock, int array."""
+        return np.flatnonzero(~self.weld)
+
+    @property
+    def regular_stiffness(self) -> float:
+        """The least K'_n of an ordinary joint, Pa/m."""
+        return float(self.regular.min())
+
+    @property
+    def _rock_between(self) -> np.ndarray:
+        return _of_pairs(self.half_rock)
+
+    @property
+    def _regular_time_constant(self) -> np.ndarray:
+        return _weighted(self.half, _constants(self.segments)[self.segment])
+
+
+def calibrate_layered(scene: Scene) -> LayeredProperties:
+    """Return the properties of a scene with segments."""
+    parts = tuple(calibrate(alone(scene, one)) for one in regions(scene))
+    segment = np.repeat(np.arange(len(parts)), [one.block_count for one in parts])
+    half, half_rock = (
+        np.array([one.spacing / (2 * modulus) for one, modulus in zip(parts, of, strict=True)])
+        for of in ([one.modulus for one in parts], [one.intact_modulus or inf for one in parts])
+    )
+    joints = _joints(scene, parts, segment, half[segment], half_rock[segment])
+    return LayeredProperties(
+        segments=parts,
+        of_block=segment,
+        contacts=contacts(scene),
+        half=half[segment],
+        half_rock=half_rock[segment],
+        **joints,
+        **_as_one(scene, parts),
+    )
+
+
+def _joints(
+    scene: Scene,
+    parts: tuple[Properties, ...],
+    segment: np.ndarray,
+    half: np.ndarray,
+    half_rock: np.ndarray,
+) -> dict[str, Any]:
+    """Return what `Properties` has of each joint; half, half_rock : of each block, m/Pa."""
+    inner, weld, eta = contacts(scene)[1:-1], welds(scene), _constants(parts)[segment]
+    spacing = _of_pairs(np.diff(contacts(scene)) / 2)
+    own, compliance = _of_pairs(half - half_rock), _of_pairs(half)
+    own_eta, joint_eta = _weighted(half - half_rock, eta), _weighted(half, eta)
+    areal = _of_pairs(np.array([one.block_mass / one.area for one in parts])[segment] / 2)
+    soft = np.array([np.abs(inner - one.y).argmin() for one in scene.layers], dtype=np.int64)
+    for j, given, layer in zip(soft, scene.soft_layers, scene.layers, strict=True):
+        if k := given.own_stiffness(spacing[j]):
+            own[j], compliance[j] = 1 / k, 1 / k + _of_pairs(half_rock)[j]
+            weld[j] = False
+        if scene.damping.rayleigh is not None:
+            own_eta[j] = joint_eta[j] = scene.damping.rayleigh.coefficients[1]
+        elif layer.damping_ratio is not None:
+            own_eta[j] = joint_eta[j] = 2 * layer.damping_ratio * sqrt(areal[j] * compliance[j])
+    which = np.where(weld, 1 + len(soft), 0)
+    which[soft] = 1 + np.arange(len(soft))
+    laws = (scene.joints, *scene.layers, JointLaw())
+    tension = np.array([law.tension is not False for law in laws])[which]
+    known, damped = all(one.intact_modulus for one in parts), bool(eta.any() or joint_eta.any())
+    with np.errstate(divide="ignore"):
+        own_stiffness = 1 / own
+    shears = _shear(parts, segment, known)
+    return {
+        "joint_y": inner,
+        "soft": soft,
+        "weld": weld,
+        "tension": tension,
+        "stiffness": 1 / compliance,
+        "own_stiffness": own_stiffness if known else None,
+        "joint_time_constant": joint_eta if damped else None,
+        "own_constants": own_eta if damped else None,
+        **shears,
+        **vars(strength_of(laws, which)),
+    }
+
+
+def _shear(parts: tuple[Properties, ...], segment: np.ndarray, known: bool) -> dict[str, Any]:
+    """Return the stiffness of joints along them, which axial motion leaves out."""
+    half = np.array([one.spacing / (2 * one.shear_modulus) for one in parts])[segment]
+    shear = 1 / _of_pairs(half)
+    return {"shear_stiffness": shear, "own_shear_stiffness": shear if known else None}
+
+
+def _as_one(scene: Scene, parts: tuple[Properties, ...]) -> dict[str, Any]:
+    """Return the numbers of the uniform pillar that the segments are for long waves."""
+    length, count = scene.pillar.length, sum(one.block_count for one in parts)
+    share = np.array([one.block_count * one.spacing for one in parts]) / length
+    intact = [one.intact_modulus for one in parts]
+    modulus, shear = (
+        float(1 / (share / np.array(of)).sum())
+        for of in ([one.modulus for one in parts], [one.shear_modulus for one in parts])
+    )
+    density = float(share @ [one.density for one in parts])
+    eta = float(_constants(parts).max())
+    speed, shear_speed, first = sqrt(modulus / density), sqrt(shear / density), parts[0]
+    mass, side, spacing = density * first.area * length / count, first.side, length / count
+    return {
+        "block_count": count,
+        "spacing": spacing,
+        "side": side,
+        "area": first.area,
+        "density": density,
+        "block_mass": mass,
+        "inertia_across": mass * (side**2 + spacing**2) / 12,
+        "inertia_along": mass * side**2 / 6,
+        "modulus": modulus,
+        "poisson": max((one.poisson for one in parts), key=abs),
+        "shear_modulus": shear,
+        "intact_modulus": float(1 / (share / np.array(intact)).sum()) if all(intact) else None,
+        "bar_speed": speed,
+        "shear_speed": shear_speed,
+        "impedance": density * speed,
+        "shear_impedance": density * shear_speed,
+        "time_constant": eta or None,
+        "mass_damping": first.mass_damping,
+        "local_damping": first.local_damping,
+    }
+
+
+def _constants(parts: tuple[Properties, ...]) -> np.ndarray:
+    """Return the time constant of each segment, s."""
+    return np.array([one.time_constant or 0.0 for one in parts])
+
+
+def _of_pairs(half: np.ndarray) -> np.ndarray:
+    """Return the sum of two neighbours [N - 1]."""
+    return half[1:] + half[:-1]
+
+
+def _weighted(compliance: np.ndarray, eta: np.ndarray) -> np.ndarray:
+    """Return the time constant of two halves in series, 0 where both are rigid [N - 1], s."""
+    whole = _of_pairs(compliance)
+    viscous = _of_pairs(compliance * eta)
+    return np.divide(viscous, whole, out=np.zeros_like(whole), where=whole > 0)

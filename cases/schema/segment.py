@@ -1,0 +1,140 @@
+"""Segments of a pillar: lengths of other rock, joints or block thickness than the rest."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, NamedTuple
+
+from pydantic import Field, model_validator
+
+from cases.schema.tables import CONSTANTS, PAIRS, SPEEDS, Pillar, Rock, given_pairs, wrong_speeds
+from cases.schema.values import (
+    NonNegative,
+    Poisson,
+    Positive,
+    Table,
+    Words,
+    contradiction,
+    contradiction_here,
+)
+
+if TYPE_CHECKING:
+    from cases.schema.scene import Scene
+
+CLOSE = 1e-6  # of a block: what lengths are rounded to
+#: What an intact segment has not.
+OF_JOINTED = (*SPEEDS, *CONSTANTS, "normal_stiffness", "damping_ratio")
+
+
+class Segment(Table):
+    """A length of the pillar; keys that are absent are those of [rock], [joints] and [pillar]."""
+
+    y: Annotated[list[NonNegative], Field(min_length=2, max_length=2)]  #: m, its start and end
+    name: Words | None = None  #: what drawings and `explain` call it
+    joints: bool = True  #: False: an intact bar; its blocks are welded pieces of it
+    block: Positive | None = None  #: m, block thickness = joint spacing
+    density: Positive | None = None  #: kg/m3
+    p_speed: Positive | None = None  #: m/s, unbounded rock mass
+    s_speed: Positive | None = None  #: m/s
+    equivalent_modulus: Positive | None = None  #: Pa, E_eq of the rock mass
+    equivalent_poisson: Poisson | None = None  #: of the rock mass
+    intact_modulus: Positive | None = None  #: Pa, E of the blocks
+    intact_poisson: Poisson | None = None  #: of the blocks
+    normal_stiffness: Positive | None = None  #: Pa/m, its joints' own K_n
+    damping_ratio: NonNegative | None = None  #: zeta of its joints
+
+    @model_validator(mode="after")
+    def _is_one(self) -> Segment:
+        if not self.y[0] < self.y[1]:
+            raise contradiction_here("y", self.y, "must be two increasing numbers")
+        for key in OF_JOINTED:
+            if not self.joints and getattr(self, key) is not None:
+                allowed = "is of jointed rock: with {table}.joints = false give intact_modulus"
+                raise contradiction_here(key, getattr(self, key), allowed)
+        if sorted(map(len, given := given_pairs(self))) not in ([0, 0], [0, 2]):
+            key = (given[0] + given[1])[0]
+            raise contradiction_here(key, getattr(self, key), f"give one pair or none: {PAIRS}")
+        if wrong := wrong_speeds(self):
+            raise contradiction_here("p_speed", self.p_speed, wrong)
+        return self
+
+    @property
+    def is_other_mass(self) -> bool:
+        """Whether it gives the elastic constants of its rock mass."""
+        return self.p_speed is not None or self.equivalent_modulus is not None
+
+    def rock(self, rest: Rock) -> Rock:
+        """Return the segment's rock, given that of the rest of the pillar."""
+        own = {k: v for k in Rock.model_fields if (v := getattr(self, k)) is not None}
+        if self.is_other_mass or not self.joints:
+            own = dict.fromkeys((*SPEEDS, *CONSTANTS)) | own
+        rock = rest.model_copy(update=own)
+        if self.joints:
+            return rock
+        intact = dict(zip(CONSTANTS, (rock.intact_modulus, rock.intact_poisson), strict=True))
+        return rock.model_copy(update=intact)
+
+
+class Region(NamedTuple):
+    """A part of a pillar that has one rock: from start to stop (m), its number of blocks, and the
+    index of its segment, None of what [rock] describes."""
+
+    start: float
+    stop: float
+    blocks: int
+    segment: int | None
+
+    def pillar(self, side: float) -> Pillar:
+        """Return it as a pillar of its own; one block will do."""
+        length = self.stop - self.start
+        return Pillar.model_construct(length=length, side=side, block=length / self.blocks)
+
+
+def regions(scene: Scene) -> list[Region]:
+    """Return the parts of a pillar from its loaded end on: one without segments.
+
+    Raises a contradiction where segments overlap or blocks do not divide them.
+    """
+    pillar, found, at = scene.pillar, [], 0.0
+    if not scene.segments:
+        return [Region(0.0, pillar.length, pillar.block_count, None)]
+    close = CLOSE * pillar.block
+    for i, one in sorted(enumerate(scene.segments), key=lambda item: item[1].y[0]):
+        (start, stop), key = one.y, f"segments[{i}].y"
+        if start < at - close:
+            raise contradiction(key, one.y, f"begins before {at:g} m, where another segment ends")
+        if stop > pillar.length + close:
+            raise contradiction(key, one.y, f"must end within pillar.length = {pillar.length:g}")
+        if start > at + close:
+            found.append(_region(at, start, pillar.block, None, "pillar.block", pillar.block))
+        whole = (key, one.y) if one.block is None else (f"segments[{i}].block", one.block)
+        found.append(_region(start, stop, one.block or pillar.block, i, *whole))
+        at = stop
+    if pillar.length > at + close:
+        found.append(_region(at, pillar.length, pillar.block, None, "pillar.block", pillar.block))
+    return found
+
+
+def _region(
+    start: float, stop: float, block: float, segment: int | None, key: str, value: object
+) -> Region:
+    count = (stop - start) / block
+    if abs(count - round(count)) > CLOSE * max(count, 1) or round(count) < 1:
+        allowed = f"blocks of {block:g} m must divide the pillar from {start:g} to {stop:g} m"
+        raise contradiction(key, value, allowed)
+    return Region(start, stop, round(count), segment)
+
+
+def alone(scene: Scene, region: Region) -> Scene:
+    """Return a region as a scene of one rock without soft layers; it is not validated."""
+    update = {"pillar": region.pillar(scene.pillar.side), "segments": [], "soft_layers": []}
+    if region.segment is None:
+        return scene.model_copy(update=update)
+    one = scene.segments[region.segment]
+    keys = ("normal_stiffness", "damping_ratio")
+    own = {key: value for key in keys if (value := getattr(one, key)) is not None}
+    if one.is_other_mass or not one.joints:
+        own = {"normal_stiffness": None} | own
+    if not one.joints:
+        own = own | {"damping_ratio": None}
+    joints = scene.joints.model_copy(update=own)
+    return scene.model_copy(update={**update, "rock": one.rock(scene.rock), "joints": joints})

@@ -1,0 +1,68 @@
+"""Contradictions of segments with each other and with the rest of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from cases.schema.segment import CLOSE, Segment, regions
+from cases.schema.values import contradiction
+
+if TYPE_CHECKING:
+    from cases.schema.scene import Scene
+
+
+def check_segments(scene: Scene) -> None:
+    """Raise the first contradiction of the segments."""
+    if not scene.segments:
+        return
+    if sum(one.blocks for one in regions(scene)) < 2:
+        raise contradiction("segments", None, "must leave at least 2 blocks")
+    for i, one in enumerate(scene.segments):
+        _check_intact(f"segments[{i}]", one, scene)
+    for key, value, allowed in (*_beside(scene), *_of_layers(scene)):
+        if value is not None:
+            raise contradiction(key, value, allowed)
+
+
+def _check_intact(table: str, one: Segment, scene: Scene) -> None:
+    from cases.material.stiffness import equivalent_constants
+
+    rock = one.rock(scene.rock)
+    if rock.intact_modulus is None:
+        if not one.joints:
+            raise contradiction(f"{table}.intact_modulus", None, "is required with joints = false")
+        return
+    modulus = equivalent_constants(rock)[0]
+    if one.joints and rock.intact_modulus <= modulus:
+        allowed = f"must exceed the equivalent modulus {modulus:.4g}, or give joints = false"
+        raise contradiction(f"{table}.intact_modulus", rock.intact_modulus, allowed)
+
+
+def _beside(scene: Scene) -> Iterator[tuple[str, object, str]]:
+    """Yield what segments must not meet: its key, its value (None where it is not there), why."""
+    from cases.effects import off_axis
+
+    numerics, why = scene.numerics, off_axis(scene)
+    yield "segments", why and len(scene.segments), f"are for motion along the axis: {why}"
+    gravity = None if scene.gravity is None else scene.gravity.acceleration
+    yield "gravity.acceleration", gravity, "acts on pillars without segments alone"
+    yield "numerics.continuum.mesh", numerics.continuum.mesh, "has no segments"
+    rotation = "none" if scene.motion.rotation == "none" else None
+    yield "motion.rotation", rotation, "keeps rock from widening: not in a pillar with segments"
+    scheme = None if numerics.dem.scheme == "leapfrog" else numerics.dem.scheme
+    yield "numerics.dem.scheme", scheme, "steps blocks of one mass: with segments give 'leapfrog'"
+
+
+def _of_layers(scene: Scene) -> Iterator[tuple[str, object, str]]:
+    """Yield the same of soft layers, where these are on joints."""
+    from cases.material.contacts import contacts, welds
+
+    inner, no_joint = contacts(scene)[1:-1], welds(scene)
+    for i, layer in enumerate(scene.soft_layers):
+        table = f"soft_layers[{i}]"
+        yield f"{table}.thickness", layer.thickness, "is a segment of its own beside segments"
+        welded = no_joint[abs(inner - layer.y) <= CLOSE * scene.pillar.block].any()
+        given = layer.normal_stiffness or layer.spacing_stiffness
+        why = "needs a normal_stiffness: between intact segments there is no joint"
+        yield f"{table}.y", layer.y if welded and not given else None, why
