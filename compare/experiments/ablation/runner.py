@@ -29,6 +29,7 @@ REPORTED = {
     "guo-li-2002/fig-05": ["matched"],
     "guo-li-2002/fig-07": ["soft layer"],
     "guo-li-2002/fig-09": ["no tension"],
+    "beyond/paper-effects": [""],
 }
 
 
