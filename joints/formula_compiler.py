@@ -17,11 +17,15 @@ from numba.core import compiler, compiler_machinery, ir, typed_passes, types, un
 from numba.core.codegen import JITCodeLibrary
 from numba.core.imputils import lower_constant, lower_getattr_generic
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
-from numba.extending import NativeValue, models, register_model, typeof_impl, unbox
+from numba.extending import models, register_model, typeof_impl
 
 
 class Flags(types.Opaque):
-    """The type of a tuple of flags with these values [(name, value)]."""
+    """The type of a tuple of flags with these values [(name, value)].
+
+    Python cannot call a kernel with one: numba remembers types of arguments by the types of their
+    members, and would take two tuples of other values for the same.
+    """
 
     def __init__(self, name: str, values: tuple[tuple[str, bool], ...]):
         self.values = values
@@ -62,12 +66,6 @@ def flag(context, builder, kind, value, attribute):
 def nothing(context, builder, kind, value):
     """Return what is there of flags when a kernel runs."""
     return context.get_dummy_value()
-
-
-@unbox(Flags)
-def given(kind, value, c):
-    """Return the same of flags that Python calls a kernel with."""
-    return NativeValue(c.context.get_dummy_value())
 
 
 @compiler_machinery.register_pass(mutates_CFG=False, analysis_only=False)

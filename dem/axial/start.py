@@ -1,6 +1,8 @@
 """Initial state of a scene: unloaded, under its prestress, or in equilibrium with gravity."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -12,6 +14,7 @@ from dem.axial.springs import spring_forces
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State
 from dem.static import Rest, gaps_under, settle, stiffest
+from joints.law import Parts
 from numerics.jit import jitted
 
 STEP_FRACTION = 0.9  # of the critical step: only where it ends counts
@@ -80,7 +83,8 @@ class Relaxation:
         force[0] = c.start_force + c.start.stiffness * s.start[0]
         force[-1] = c.end_force + c.end.stiffness * s.end[0]
         opening = s.u if s.opening is None else s.opening
-        joint_forces(self.model.effects.joints, c.area, self.model.laws, s.u, opening, force)
+        joint_forces = joint_forces_for(self.model.effects.joints)
+        joint_forces(c.area, self.model.laws, s.u, opening, force)
         return force[:-1] - force[1:] + c.weight
 
     def displacement(self) -> np.ndarray:
@@ -135,7 +139,13 @@ def _undamped(p: Properties) -> Properties:
     )
 
 
-@jitted
-def joint_forces(parts, area, laws, u, opening, force):
-    """Compute `spring_forces` for Python."""
-    spring_forces(parts, area, laws, u, opening, force)
+@cache
+def joint_forces_for(parts: Parts) -> Callable:
+    """Return `spring_forces` for Python, of laws with these parts."""
+
+    @jitted
+    def joint_forces(area, laws, u, opening, force):
+        """Set the forces of the joints, N."""
+        spring_forces(parts, area, laws, u, opening, force)
+
+    return joint_forces

@@ -153,3 +153,10 @@ def test_what_a_law_lacks_is_not_compiled(closes):
     assert found == pytest.approx(traction(law, parts, -1e-4, 0, (0, 0), (0, 0), DT, HISTORY)[0])
     assert {"normal_traction", "shear_return"} <= compiled
     assert ("closure_traction" in compiled) == closes and "strength_left" not in compiled
+
+
+def test_parts_are_no_arguments_of_a_kernel():
+    """numba would take two of them for one type, and the second call would have the first's law."""
+    called = numba.njit(lambda parts: parts.dashpots)
+    with pytest.raises(TypeError, match="can't unbox"):
+        called(parts_of(ELASTIC))
