@@ -75,7 +75,10 @@ def _of_joints(scene: Scene, p: Properties) -> Iterator[Effect]:
     parts = len(p.each)
     words = f"{parts} of other rock" if parts > 1 else "no [[segments]]: one rock"
     yield Effect("segments", parts > 1, words)
-    alike = "all joints are alike: one number, no array" if parts == 1 else "no soft layers"
+    random = scene.scatter
+    why = "no [scatter]" if random is None else f"seed {random.seed}"
+    yield Effect("scatter", random is not None, why)
+    alike = "all joints are alike: one number, no array" if p.is_uniform else "no soft layers"
     joints, barred, differ = len(p.tension), int((~p.tension).sum()), len(p.soft)
     yield Effect(
         "no tension",

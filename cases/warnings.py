@@ -201,7 +201,7 @@ def _of_arrivals(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iter
     begin, end, speed = onset(scene.load), scene.time.duration, _fastest(scene, p)
     for key in ("stress", "velocity"):
         for y in getattr(scene.record, key):
-            reached = begin + (y / speed if len(p.each) == 1 else p.travel_time(y))
+            reached = begin + (y / speed if p.is_uniform else p.travel_time(y))
             if reached >= end:
                 yield (
                     f"record.{key} = {y:g} m is reached at {reached:.4g} s, at "

@@ -440,7 +440,7 @@ MISTAKES = {
     "segments and gravity": (
         "[load]",
         f"{SEGMENT}[gravity]\ndirection = [0, 1, 0]\nstatic = false\n[load]",
-        ["gravity.acceleration = 9.81", "without segments"],
+        ["gravity.acceleration = 9.81", "without segments and scatter"],
     ),
     "segments and a shear wave": (
         "[load]",
@@ -471,6 +471,28 @@ MISTAKES = {
         "y = 20.0\n",
         "y = 20.25\n",
         ["soft_layers[0].y = 20.25", "must be on a joint"],
+    ),
+    # scatter
+    "scatter of nothing": (
+        "[load]",
+        "[scatter]\nseed = 1\n[load]",
+        ["scatter:", "give scatter.spacing"],
+    ),
+    "scatter without a seed": (
+        "[load]",
+        "[scatter]\nspacing = 0.2\n[load]",
+        ["scatter.seed", "is required"],
+    ),
+    "scatter beyond the mean": (
+        "[load]",
+        "[scatter]\ncompliance = 0.6\nseed = 1\n[load]",
+        ["scatter.compliance = 0.6", "at most 0.5"],
+    ),
+    "scatter and gravity": (
+        "[load]",
+        "[gravity]\ndirection = [0, 1, 0]\nstatic = false\n"
+        "[scatter]\nspacing = 0.2\nseed = 1\n[load]",
+        ["gravity.acceleration = 9.81", "without segments and scatter"],
     ),
     # variants and expectations
     "variants not tables": (

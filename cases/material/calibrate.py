@@ -84,6 +84,11 @@ class Properties(Strength):
         return self
 
     @property
+    def is_uniform(self) -> bool:
+        """Whether all blocks are alike, and all joints but for the soft layers."""
+        return True
+
+    @property
     def each(self) -> tuple[Properties, ...]:
         """Those of each segment by itself; of one rock these alone."""
         return (self,)
@@ -191,7 +196,7 @@ class Properties(Strength):
 
 def calibrate(scene: Scene) -> Properties:
     """Return the properties of a scene: every joint's stiffness, damping, tension and strength."""
-    if scene.segments:
+    if not scene.is_uniform:
         from cases.material.layered import calibrate_layered
 
         return calibrate_layered(scene)

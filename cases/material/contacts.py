@@ -6,24 +6,44 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cases.schema.segment import regions
+from cases.schema.segment import Region, regions
 
 if TYPE_CHECKING:
     from cases.schema.scene import Scene
 
+SPREAD = 3**0.5  # half the width of a uniform distribution, in standard deviations
+
 
 def contacts(scene: Scene) -> np.ndarray:
     """Return where the blocks begin and the last one ends, m [N + 1]."""
-    found = [
-        one.start + (one.stop - one.start) / one.blocks * np.arange(one.blocks)
-        for one in regions(scene)
-    ]
+    spacing, found = scene.scatter.spacing if scene.scatter else 0.0, []
+    for i, one in enumerate(regions(scene)):
+        share = np.arange(one.blocks) / one.blocks
+        if spacing and not is_intact(scene, one):
+            thickness = 1 + spacing * drawn(scene, i, 0, one.blocks)
+            share = np.append(0.0, np.cumsum(thickness))[:-1] / thickness.sum()
+        found.append(one.start + (one.stop - one.start) * share)
     return np.append(np.concatenate(found), scene.pillar.length)
+
+
+def is_intact(scene: Scene, region: Region) -> bool:
+    """Return whether a region has no joints."""
+    return region.segment is not None and not scene.segments[region.segment].joints
+
+
+def drawn(scene: Scene, region: int, what: int, count: int) -> np.ndarray:
+    """Return random numbers [count] of mean 0 and standard deviation 1, uniformly distributed.
+
+    what : 0 for spacings, 1 for compliances; each, and each region, has a stream of its own.
+    """
+    assert scene.scatter is not None
+    draws = np.random.default_rng([scene.scatter.seed, what, region]).random(count)
+    return SPREAD * (2 * draws - 1)
 
 
 def welds(scene: Scene) -> np.ndarray:
     """Return which contacts between blocks are no joints, as rock on both sides is intact, bool
     array [N - 1]."""
-    intact = [i is not None and not scene.segments[i].joints for *_, i in regions(scene)]
+    intact = [is_intact(scene, one) for one in regions(scene)]
     of_block = np.repeat(intact, [one.blocks for one in regions(scene)])
     return of_block[1:] & of_block[:-1]

@@ -1,10 +1,12 @@
-"""The numbers of a pillar of several segments: those of each segment, put together.
+"""The numbers of a pillar of segments, or of joints at random: those of each segment, put together.
 
 A block of thickness S has half of its compliance on either side of its centre: S / (2 E) of intact
 rock and half a joint, 1 / (2 K_n), together S / (2 E_eq). A joint between two segments is half a
 joint of each, so that rigid blocks, jointed rock and the homogenised bar have one compliance, and a
 matched end the other half. Two Kelvin-Voigt elements in series are one for slow motion, with the
 time constants weighted by the compliances.
+
+Joints at random have their own thickness of block before and behind, and their own compliance.
 
 The pillar as a whole is known by its mean density and compliance: the uniform one that it is for
 long waves (Backus, J. Geophys. Res. 67, 1962). Only estimates and drawings use these.
@@ -19,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cases.material.calibrate import Properties, calibrate
-from cases.material.contacts import contacts, welds
+from cases.material.contacts import contacts, drawn, welds
 from cases.material.strength import strength_of
 from cases.schema.joint import JointLaw
 from cases.schema.segment import alone, regions
@@ -30,13 +32,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class LayeredProperties(Properties):
-    """The numbers of a pillar of several segments; one number for all of it is a mean.
+    """The numbers of a pillar whose blocks or joints differ; one number for all of it is a mean.
 
     Attributes
     ----------
     segments : the numbers of each segment as if it were alone. of_block : int array [N], `segment`.
     contacts : float array [N + 1], where blocks begin and the last one ends, m.
-    half : float array [N], half of each block's compliance S / E_eq, m/Pa; half_rock : of its rock.
+    half_rock : float array [N], half of each block's compliance S / E of intact rock, m/Pa.
+    ordinary, ordinary_constants : float arrays [N - 1], compliance (m/Pa) and eta (s) between rigid
+        blocks without soft layers.
     weld : bool array [N - 1], whether a contact is no joint, between blocks of intact segments.
     own_constants : float array [N - 1], `own_time_constant`; None without any dashpot.
     """
@@ -44,10 +48,16 @@ class LayeredProperties(Properties):
     segments: tuple[Properties, ...]
     of_block: np.ndarray
     contacts: np.ndarray
-    half: np.ndarray
     half_rock: np.ndarray
+    ordinary: np.ndarray
+    ordinary_constants: np.ndarray
     weld: np.ndarray
     own_constants: np.ndarray | None
+
+    @property
+    def is_uniform(self) -> bool:
+        """Whether all blocks are alike, and all joints but for the soft layers."""
+        return False
 
     @property
     def at_start(self) -> Properties:
@@ -88,7 +98,8 @@ class LayeredProperties(Properties):
     @property
     def masses(self) -> np.ndarray:
         """Mass of each block, kg [N]."""
-        return np.array([one.block_mass for one in self.segments])[self.segment]
+        density = np.array([one.density for one in self.segments])[self.of_block]
+        return density * self.area * np.diff(self.contacts)
 
     @property
     def own_time_constant(self) -> np.ndarray | None:
@@ -98,7 +109,7 @@ class LayeredProperties(Properties):
     @property
     def regular(self) -> np.ndarray:
         """K'_n that the homogenised bar has at each joint, Pa/m [N - 1]."""
-        return 1 / _of_pairs(self.half)
+        return 1 / self.ordinary
 
     @property
     def resolved(self) -> np.ndarray:
@@ -116,46 +127,44 @@ class LayeredProperties(Properties):
 
     @property
     def _regular_time_constant(self) -> np.ndarray:
-        return _weighted(self.half, _constants(self.segments)[self.segment])
+        return self.ordinary_constants
 
 
 def calibrate_layered(scene: Scene) -> LayeredProperties:
     """Return the properties of a scene with segments."""
     parts = tuple(calibrate(alone(scene, one)) for one in regions(scene))
     segment = np.repeat(np.arange(len(parts)), [one.block_count for one in parts])
-    half, half_rock = (
-        np.array([one.spacing / (2 * modulus) for one, modulus in zip(parts, of, strict=True)])
-        for of in ([one.modulus for one in parts], [one.intact_modulus or inf for one in parts])
-    )
-    joints = _joints(scene, parts, segment, half[segment], half_rock[segment])
+    intact = np.array([one.intact_modulus or inf for one in parts])[segment]
+    half_rock = np.diff(contacts(scene)) / (2 * intact)
     return LayeredProperties(
         segments=parts,
         of_block=segment,
         contacts=contacts(scene),
-        half=half[segment],
-        half_rock=half_rock[segment],
-        **joints,
+        half_rock=half_rock,
+        **_joints(scene, parts, segment, half_rock),
         **_as_one(scene, parts),
     )
 
 
 def _joints(
-    scene: Scene,
-    parts: tuple[Properties, ...],
-    segment: np.ndarray,
-    half: np.ndarray,
-    half_rock: np.ndarray,
+    scene: Scene, parts: tuple[Properties, ...], segment: np.ndarray, half_rock: np.ndarray
 ) -> dict[str, Any]:
-    """Return what `Properties` has of each joint; half, half_rock : of each block, m/Pa."""
+    """Return what the properties have of each joint; half_rock : of each block, m/Pa."""
     inner, weld, eta = contacts(scene)[1:-1], welds(scene), _constants(parts)[segment]
-    spacing = _of_pairs(np.diff(contacts(scene)) / 2)
-    own, compliance = _of_pairs(half - half_rock), _of_pairs(half)
-    own_eta, joint_eta = _weighted(half - half_rock, eta), _weighted(half, eta)
-    areal = _of_pairs(np.array([one.block_mass / one.area for one in parts])[segment] / 2)
+    half = _half_joints(parts)[segment]
+    own, rock = _of_pairs(half) * _scattered(scene, segment), _of_pairs(half_rock)
+    compliance = own + rock
+    own_eta = _weighted(half, eta)
+    joint_eta = _joined(own, own_eta, rock, _weighted(half_rock, eta))
+    ordinary = {"ordinary": compliance.copy(), "ordinary_constants": joint_eta.copy()}
+    spacing, areal = (
+        _of_pairs(np.array(of)[segment] / 2)
+        for of in ([one.spacing for one in parts], [one.block_mass / one.area for one in parts])
+    )
     soft = np.array([np.abs(inner - one.y).argmin() for one in scene.layers], dtype=np.int64)
     for j, given, layer in zip(soft, scene.soft_layers, scene.layers, strict=True):
         if k := given.own_stiffness(spacing[j]):
-            own[j], compliance[j] = 1 / k, 1 / k + _of_pairs(half_rock)[j]
+            own[j], compliance[j] = 1 / k, 1 / k + rock[j]
             weld[j] = False
         if scene.damping.rayleigh is not None:
             own_eta[j] = joint_eta[j] = scene.damping.rayleigh.coefficients[1]
@@ -173,6 +182,7 @@ def _joints(
         "joint_y": inner,
         "soft": soft,
         "weld": weld,
+        **ordinary,
         "tension": tension,
         "stiffness": 1 / compliance,
         "own_stiffness": own_stiffness if known else None,
@@ -181,6 +191,29 @@ def _joints(
         **shears,
         **vars(strength_of(laws, which)),
     }
+
+
+def _half_joints(parts: tuple[Properties, ...]) -> np.ndarray:
+    """Return half of the compliance of each segment's joints, m/Pa: (4)."""
+    whole = [one.spacing * (1 / one.modulus - 1 / (one.intact_modulus or inf)) for one in parts]
+    return np.array(whole) / 2
+
+
+def _scattered(scene: Scene, segment: np.ndarray) -> np.ndarray:
+    """Return the compliance of each joint over its mean [N - 1]: those of a segment, with the one
+    behind it, are a stream of random numbers."""
+    if scene.scatter is None or not scene.scatter.compliance:
+        return np.ones(len(segment) - 1)
+    counts = np.bincount(segment)
+    every = [drawn(scene, i, 1, int(count)) for i, count in enumerate(counts)]
+    return 1 + scene.scatter.compliance * np.concatenate(every)[:-1]
+
+
+def _joined(one: np.ndarray, eta: np.ndarray, other: np.ndarray, beta: np.ndarray) -> np.ndarray:
+    """Return the time constant of two compliances in series, each with its own, s."""
+    whole = one + other
+    viscous = one * eta + other * beta
+    return np.divide(viscous, whole, out=np.zeros_like(whole), where=whole > 0)
 
 
 def _shear(parts: tuple[Properties, ...], segment: np.ndarray, known: bool) -> dict[str, Any]:
@@ -237,7 +270,5 @@ def _of_pairs(half: np.ndarray) -> np.ndarray:
 
 
 def _weighted(compliance: np.ndarray, eta: np.ndarray) -> np.ndarray:
-    """Return the time constant of two halves in series, 0 where both are rigid [N - 1], s."""
-    whole = _of_pairs(compliance)
-    viscous = _of_pairs(compliance * eta)
-    return np.divide(viscous, whole, out=np.zeros_like(whole), where=whole > 0)
+    """Return the time constant of each pair of neighbours in series, 0 of rigid ones [N - 1], s."""
+    return _joined(compliance[:-1], eta[:-1], compliance[1:], eta[1:])

@@ -26,6 +26,7 @@ from cases.schema.tables import (
     Prestress,
     Record,
     Rock,
+    Scatter,
     Time,
 )
 from cases.schema.values import Pair, Positive, Table, Words
@@ -46,6 +47,7 @@ __all__ = [
     "Rayleigh",
     "Record",
     "Rock",
+    "Scatter",
     "Scene",
     "Segment",
     "SoftLayer",
@@ -64,6 +66,7 @@ class Scene(Table):
     joints: Joints = Joints()
     soft_layers: list[SoftLayer] = []
     segments: list[Segment] = []
+    scatter: Scatter | None = None
     load: Load = NO_LOAD
     ends: Ends = Ends()
     damping: Damping = Damping()
@@ -102,6 +105,11 @@ class Scene(Table):
     def block_count(self) -> int:
         """Number of blocks N."""
         return sum(one.blocks for one in regions(self))
+
+    @property
+    def is_uniform(self) -> bool:
+        """Whether all blocks are alike, and all joints but for the soft layers."""
+        return not self.segments and self.scatter is None
 
     @property
     def interval(self) -> float:

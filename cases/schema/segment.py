@@ -127,6 +127,7 @@ def _region(
 def alone(scene: Scene, region: Region) -> Scene:
     """Return a region as a scene of one rock without soft layers; it is not validated."""
     update = {"pillar": region.pillar(scene.pillar.side), "segments": [], "soft_layers": []}
+    update |= {"scatter": None}
     if region.segment is None:
         return scene.model_copy(update=update)
     one = scene.segments[region.segment]

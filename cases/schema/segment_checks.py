@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 def check_segments(scene: Scene) -> None:
     """Raise the first contradiction of the segments."""
-    if not scene.segments:
+    if scene.is_uniform:
         return
     if sum(one.blocks for one in regions(scene)) < 2:
         raise contradiction("segments", None, "must leave at least 2 blocks")
@@ -44,14 +44,19 @@ def _beside(scene: Scene) -> Iterator[tuple[str, object, str]]:
     from cases.effects import off_axis
 
     numerics, why = scene.numerics, off_axis(scene)
-    yield "segments", why and len(scene.segments), f"are for motion along the axis: {why}"
+    table, gives = ("segments", len(scene.segments)) if scene.segments else ("scatter", "given")
+    yield table, why and gives, f"is for motion along the axis: {why}"
     gravity = None if scene.gravity is None else scene.gravity.acceleration
-    yield "gravity.acceleration", gravity, "acts on pillars without segments alone"
-    yield "numerics.continuum.mesh", numerics.continuum.mesh, "has no segments"
+    yield "gravity.acceleration", gravity, "acts on pillars without segments and scatter"
+    yield "numerics.continuum.mesh", numerics.continuum.mesh, "has no segments and no scatter"
     rotation = "none" if scene.motion.rotation == "none" else None
-    yield "motion.rotation", rotation, "keeps rock from widening: not in a pillar with segments"
+    yield "motion.rotation", rotation, "keeps rock from widening: not with segments or scatter"
     scheme = None if numerics.dem.scheme == "leapfrog" else numerics.dem.scheme
-    yield "numerics.dem.scheme", scheme, "steps blocks of one mass: with segments give 'leapfrog'"
+    yield (
+        "numerics.dem.scheme",
+        scheme,
+        "steps blocks of one mass: with segments or scatter give 'leapfrog'",
+    )
 
 
 def _of_layers(scene: Scene) -> Iterator[tuple[str, object, str]]:
@@ -61,7 +66,11 @@ def _of_layers(scene: Scene) -> Iterator[tuple[str, object, str]]:
     inner, no_joint = contacts(scene)[1:-1], welds(scene)
     for i, layer in enumerate(scene.soft_layers):
         table = f"soft_layers[{i}]"
-        yield f"{table}.thickness", layer.thickness, "is a segment of its own beside segments"
+        yield (
+            f"{table}.thickness",
+            layer.thickness,
+            "is a segment of its own beside segments and scatter",
+        )
         welded = no_joint[abs(inner - layer.y) <= CLOSE * scene.pillar.block].any()
         given = layer.normal_stiffness or layer.spacing_stiffness
         why = "needs a normal_stiffness: between intact segments there is no joint"

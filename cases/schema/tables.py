@@ -89,6 +89,22 @@ def wrong_speeds(table: Any) -> str | None:
     return None
 
 
+class Scatter(Table):
+    """Joints at random: uniformly distributed about their means, without any for an intact part."""
+
+    #: standard deviation of the block thickness over its mean; lengths of segments stay
+    spacing: Annotated[float, Field(ge=0, le=0.5)] = 0.0
+    #: standard deviation of the joints' compliance 1/K_n over its mean, which stays
+    compliance: Annotated[float, Field(ge=0, le=0.5)] = 0.0
+    seed: Annotated[int, Field(ge=0, lt=2**63)]  #: the same seed gives the same joints everywhere
+
+    @model_validator(mode="after")
+    def _scatters(self) -> "Scatter":
+        if not self.spacing and not self.compliance:
+            raise contradiction("scatter", None, "give scatter.spacing, compliance or both")
+        return self
+
+
 class Motion(Table):
     """How blocks may move where the scene calls for motion across the axis."""
 

@@ -63,6 +63,18 @@ SweepOption = Annotated[
         autocompletion=completion.settings,
     ),
 ]
+EnsembleOption = Annotated[
+    int,
+    typer.Option(
+        "--ensemble",
+        metavar="N",
+        min=0,
+        max=10_000,
+        help="N members, with the seed of their joints and the next ones: mean and percentiles of "
+        "every number, ensemble.csv, and waveform, NAME-ensemble.nc.",
+        show_default=False,
+    ),
+]
 VariantOption = Annotated[
     str | None,
     typer.Option(

@@ -21,6 +21,7 @@ def beyond(scene: Scene, *held: str) -> str | None:
         "reversed load": (scene.load.direction[1] < 0, "the load acts against the axis"),
         "softening": (p.tensile_strength is not None, "a joint has a tensile strength"),
         "segments": (len(p.each) > 1, "the pillar has segments of other rock"),
+        "scatter": (scene.scatter is not None, "the joints are at random"),
         "closure": (p.maximum_closure is not None, "a joint stiffens as it closes"),
         "weakening": (p.weakening_distance is not None, "slip weakens a joint"),
         "gravity": (scene.gravity is not None, "gravity acts"),

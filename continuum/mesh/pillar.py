@@ -59,7 +59,7 @@ def pillar_mesh(
     _refuse_impossible(p, interfaces, layers)
     parts = []
     for first, last, starts in _pieces(p, np.unique(interfaces), np.array([*layers])):
-        if len(p.each) > 1:
+        if not p.is_uniform:
             column = _segmented(p, first, last, each)
         else:
             column = _column(p, first, last, layers, each[0], elements_per_layer)
@@ -90,8 +90,10 @@ def _pieces(
     """
     ends = np.r_[0, cuts + 1, p.block_count].astype(np.int64)
     like = np.diff(ends)
-    if len(p.each) > 1:
-        rows = [p.segment[a:b].tobytes() for a, b in pairwise(ends)]
+    if not p.is_uniform:
+        thickness = np.rint(np.diff(p.contact_y) / (PLACE * p.spacing)).astype(np.int64)
+        blocks = np.stack([p.segment, thickness], axis=1)
+        rows = [blocks[a:b].tobytes() for a, b in pairwise(ends)]
         like = np.unique(np.array(rows, dtype=object), return_inverse=True)[1].astype(np.int64)
     layered = np.unique(np.searchsorted(ends, layers + 1) - 1).astype(np.int64)
     like[layered] = -1 - np.arange(layered.size)

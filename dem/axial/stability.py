@@ -17,7 +17,7 @@ from joints.stability import critical_step, critical_step_of_modes
 
 def critical_chain_step(p: Properties, start: str, end: str) -> float:
     """Return the critical step (s) of a chain whose ends are held as `start` and `end` say."""
-    alike = len(p.each) == 1 and (p.stiffness == p.stiffness[0]).all() and not p.damps_alone.any()
+    alike = p.is_uniform and (p.stiffness == p.stiffness[0]).all() and not p.damps_alone.any()
     pushed = 1 + (p.local_damping or 0.0)
     if alike and {start, end} <= {"free", "quiet"}:
         rigid = 2 * sqrt(p.stiffness[0] * p.area / p.block_mass)

@@ -13,6 +13,7 @@ CALLS = {
     "dashpots": {"joints.damping_ratio": 0.02},
     "closure": {"joints.maximum_closure": 1e-3},
     "segments": {"segments": [{"y": [10.0, 20.0], "density": 2600.0}]},
+    "scatter": {"scatter": {"spacing": 0.2, "seed": 1}},
     "no tension": {"joints.tension": False},
     "joints that differ": {"soft_layers": [{"y": 20.0, "spacing_stiffness": 4e8}]},
     "quiet ends": {"ends.end": "quiet"},

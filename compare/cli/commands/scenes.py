@@ -16,6 +16,7 @@ from compare.cli.options import (
     DryOption,
     Engine,
     EngineOption,
+    EnsembleOption,
     JsonOption,
     ModelOption,
     OutOption,
@@ -52,6 +53,7 @@ def run(
     changes: SetOption = [],  # noqa: B006
     variant: VariantOption = None,
     swept: SweepOption = [],  # noqa: B006
+    members: EnsembleOption = 0,
     out: OutOption = Path("results"),
     vtx: Annotated[
         bool, typer.Option("--vtx", help="Also write the snapshots of record.fields as VTX (.bp).")
@@ -79,7 +81,8 @@ def run(
     had not been; results that are whole already are kept. Ctrl-C keeps what is there.
 
     --sweep runs every value of a key, DIR/KEY=VALUE/... each, in several processes; points that are
-    done are not run again, those that fail are listed.
+    done are not run again, those that fail are listed. --ensemble does so with every member of a
+    scene whose joints are at random.
     """
     from compare.cli import terminal, views
     from compare.runs import jobs
@@ -87,12 +90,12 @@ def run(
     from compare.runs.checkpoint.resume import Keeping
 
     wanted = jobs.wanted([e.value for e in engine], model or [])
-    if swept:
+    if swept or members:
         from compare.experiments.sweep.case import Running
         from compare.experiments.sweep.command import sweep
         from compare.experiments.sweep.runner import sweep_of
 
-        asked_for = sweep_of(scene, changes, variant, swept, out)
+        asked_for = sweep_of(scene, changes, variant, swept, out, members)
         sweep(asked_for, Running(wanted, vtx), workers, dry, as_json, strict)
         return
     scenes = load(scene, changes, variant, strict)

@@ -11,6 +11,7 @@ from compare.cli.options import (
     CORES,
     DryOption,
     EngineOption,
+    EnsembleOption,
     JsonOption,
     ModelOption,
     SceneArgument,
@@ -42,6 +43,7 @@ def compare(
         bool, typer.Option("--align", help="Move the clock of each --with by cross-correlation.")
     ] = False,
     swept: SweepOption = [],  # noqa: B006
+    members: EnsembleOption = 0,
     workers: WorkersOption = CORES,
     dry: DryOption = False,
     strict: StrictOption = False,
@@ -74,20 +76,21 @@ def compare(
     whichever has fewer samples there, the other interpolated linearly; amplitudes are never scaled,
     and clocks never moved without --align.
 
-    --sweep compares every value of a key, in several processes, and gives one table of all.
+    --sweep compares every value of a key, in several processes, and gives one table of all;
+    --ensemble every member of a scene whose joints are at random, and statistics of all.
     """
     from compare.cli import comparison_view, terminal
     from compare.misfit import pairs
     from compare.misfit.ranking import deciding
 
-    if swept:
+    if swept or members:
         from compare.experiments.sweep.case import Comparing
         from compare.experiments.sweep.command import sweep
         from compare.experiments.sweep.runner import sweep_of
 
-        asked = sweep_of(scene, changes, variant, swept, out)
+        asked = sweep_of(scene, changes, variant, swept, out, members)
         curves = _read_curves(given, asked.scenes, align)
-        work = Comparing(spectral, curves, align, out is not None)
+        work = Comparing(spectral, curves, align, out is not None, bool(members))
         sweep(asked, work, workers, dry, as_json, strict)
         return
     scenes = load(scene, changes, variant, strict)

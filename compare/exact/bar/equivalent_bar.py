@@ -16,7 +16,7 @@ from compare.exact.bar.laplace import Bar, end_of, rocks, solved
 from compare.exact.conditions import DAMPED, holds
 from compare.solvers.record import BAR, Answer, Kind, Rock, Solver, Words, thin
 
-HELD = ("prestress", "soft layers", "segments", *DAMPED)
+HELD = ("prestress", "soft layers", "segments", "scatter", *DAMPED)
 
 
 def applies(scene: Scene) -> Answer:

@@ -18,7 +18,7 @@ from compare.exact.bar.laplace import Bar, End, end_of, rocks, solved
 from compare.exact.conditions import DAMPED, holds
 from compare.solvers.record import JOINTED, Answer, Kind, Rock, Solver, Words, thin
 
-HELD = ("prestress", "soft layers", "stiff layers", "segments", *DAMPED)
+HELD = ("prestress", "soft layers", "stiff layers", "segments", "scatter", *DAMPED)
 
 
 def applies(scene: Scene) -> Answer:

@@ -33,6 +33,7 @@ MOST_BLOCKS = 2000
 HELD = (
     "reversed load",
     "segments",
+    "scatter",
     "gravity",
     "prestress",
     "mass damping",

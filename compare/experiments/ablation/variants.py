@@ -91,6 +91,7 @@ WITHOUT: dict[str, Change] = {
     "no tension": _joints(tension=None),
     "closure": _joints(maximum_closure=None),
     "joints that differ": lambda scene: scene.model_copy(update={"soft_layers": []}),
+    "scatter": lambda scene: scene.model_copy(update={"scatter": None}),
     "segments": lambda scene: scene.model_copy(update={"segments": []}),
     **{f"{kind} ends": _free("ends", kind) for kind in ("quiet", "matched", "fixed")},
     **{f"{kind} sides": _free("boundaries", kind) for kind in SIDES},

@@ -9,14 +9,15 @@ from cases.errors import SceneError
 from cases.files import parse_toml
 
 MOST = 10_000  # points
+MEMBER = "member"  # the key of an ensemble
 DIGITS = 12  # of values between two ends: 0.3, not 0.30000000000000004
 FORMS = "must be KEY=FROM:TO:COUNT, KEY=log:FROM:TO:COUNT or KEY=A,B,C"
 RANGE = re.compile(r"""(log:)?([^:,"'\[{]+):([^:,"'\[{]+):([^:,"'\[{]+)""")
 
 
-def axes(given: list[str], fixed: list[str]) -> dict[str, list[Any]]:
+def axes(given: list[str], fixed: list[str], members: int = 0) -> dict[str, list[Any]]:
     """Return the values of every key that `--sweep` names, no two of a key alike; `fixed` are the
-    keys that `--set` gives.
+    keys that `--set` gives. members : of an ensemble, numbered from 1, the last key.
 
     Raises SceneError, in one line.
     """
@@ -26,6 +27,8 @@ def axes(given: list[str], fixed: list[str]) -> dict[str, list[Any]]:
         if key in found or key in fixed:
             raise SceneError("--sweep", text, None, f"{key} is given already")
         found[key] = values
+    if members:
+        found[MEMBER] = list(range(1, members + 1))
     count = prod(map(len, found.values()))
     if count > MOST:
         raise SceneError("--sweep", "", None, f"gives {count:,} points; at most {MOST:,}")

@@ -76,12 +76,14 @@ class Running(NamedTuple):
 
 
 class Comparing(NamedTuple):
-    """Compare a case as `jointwave compare` does. writes : also figure, curves and distances."""
+    """Compare a case as `jointwave compare` does. writes : also figure, curves and distances.
+    keeps : the results as well, where it writes."""
 
     spectral: bool
     curves: list[Curves]
     align: bool
     writes: bool
+    keeps: bool = False
 
     @property
     def about(self) -> list[Any]:
@@ -92,7 +94,7 @@ class Comparing(NamedTuple):
             for curve in self.curves
             for values in (curve.time, *curve.waveforms.values())
         ]
-        return [self.spectral, self.align, self.writes, named, samples]
+        return [self.spectral, self.align, self.writes, self.keeps, named, samples]
 
     def solvers(self, scene: AnyScene) -> list[str]:
         """Return the names of what would solve a scene."""
@@ -112,8 +114,21 @@ class Comparing(NamedTuple):
         if not found.rows:
             allowed = "has nothing to compare: no two solutions of a pair apply"
             raise SceneError(scene.where, "", None, allowed)
+        files = self._kept(found.results, folder / scene.name)
         rows = [row.facts | {"faint": str(row.faint).lower()} for row in found.rows]
+        rows = [row | _files(row, files) for row in rows]
         return [{k: v if isinstance(v, str) else _real(v) for k, v in row.items()} for row in rows]
+
+    def _kept(self, results: dict[str, xr.Dataset], folder: Path) -> dict[str, str]:
+        """Write results where they are kept; return their files by name."""
+        if not (self.keeps and self.writes):
+            return {}
+        from compare.runs.output import fields_of, write_fields
+
+        return {
+            name: str(write_fields(folder / f"{name}.nc", fields_of(result)))
+            for name, result in results.items()
+        }
 
 
 Work = Running | Comparing
@@ -135,6 +150,12 @@ def key(case: SweepCase, work: Work) -> str:
     """Return what tells cases apart: everything that decides a row."""
     scene = case.message if case.scene is None else scene_hash(case.scene)
     return store.key(str(case.folder), case.variant, scene, type(work).__name__, work.about)
+
+
+def _files(row: dict[str, Any], files: dict[str, str]) -> dict[str, str]:
+    """Return the files of both results of a pair, of those that are kept."""
+    both = {"file": files.get(row["one"]), "other_file": files.get(row["other"])}
+    return {key: file for key, file in both.items() if file is not None}
 
 
 def _of_run(done: Any) -> Rows:

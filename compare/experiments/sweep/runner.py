@@ -12,6 +12,7 @@ from compare.experiments.pool import Pool
 from compare.experiments.store import Store
 from compare.experiments.sweep.axis import axes
 from compare.experiments.sweep.case import SweepCase, SweepOutcome, Work, key, outcome
+from compare.experiments.sweep.ensemble import MEMBER, member
 from compare.scenes import find, load, load_variant
 
 POINTS = "points"  # the folder of what is done
@@ -40,16 +41,24 @@ class Sweep(NamedTuple):
 
 
 def sweep_of(
-    scene: str, changes: list[str], variant: str | None, given: list[str], out: Path | None
+    scene: str,
+    changes: list[str],
+    variant: str | None,
+    given: list[str],
+    out: Path | None,
+    members: int = 0,
 ) -> Sweep:
-    """Return what `--set`, `--variant` and `--sweep` ask for; raises SceneError in one line, also
-    where there is no scene at any point."""
+    """Return what `--set`, `--variant`, `--sweep` and `--ensemble` ask for; raises SceneError in
+    one line, also where there is no scene at any point."""
     fixed = dict(map(parse_override, changes))
-    values = axes(given, list(fixed))
+    values = axes(given, list(fixed), members)
     path, found, errors = find(scene), [], []
     for i, setting in enumerate(combinations(values)):
         folder, overrides = (out or Path()) / _folder(setting, i), {**fixed, **setting}
         try:
+            if members:
+                number = overrides.pop(MEMBER)
+                overrides |= member(load_variant(path, variant or "", overrides), number)
             scenes = (
                 load(path, overrides)
                 if variant is None

@@ -10,7 +10,15 @@ import xarray as xr
 
 from cases.errors import SceneError
 from compare.experiments.summary import Summary
+from compare.experiments.sweep.axis import MEMBER
 from compare.experiments.sweep.case import SweepOutcome
+from compare.experiments.sweep.ensemble import (
+    ENSEMBLE,
+    STATISTICS,
+    members_of,
+    statistics,
+    waveforms,
+)
 from compare.experiments.sweep.runner import Sweep
 from compare.experiments.tables import cell, grouped, number, write_tables
 from compare.misfit.metrics import Distance
@@ -72,7 +80,7 @@ def summarise(asked: Sweep, found: list[SweepOutcome]) -> Summary:
         return [_point(row, axes), *([_place(row)] * len(where)), *numbers]
 
     groups = grouped((_heading(row, not where), cells(row)) for row in shown.to_dict("records"))
-    return Summary(
+    summary = Summary(
         NAME,
         asked.scene,
         Table([", ".join(axes), *where, *(head for _, head, _ in columns)], groups),
@@ -81,6 +89,39 @@ def summarise(asked: Sweep, found: list[SweepOutcome]) -> Summary:
         files,
         {"rows": json.loads(rows.to_json(orient="records")), "files": list(map(str, files))},
         legend=legend,
+    )
+    return with_statistics(summary, asked, found, done) if MEMBER in axes else summary
+
+
+def with_statistics(
+    summary: Summary, asked: Sweep, found: list[SweepOutcome], done: pd.DataFrame
+) -> Summary:
+    """Return the summary of an ensemble: of each number its mean and percentiles over the members;
+    write ensemble.csv and the waveforms' statistics."""
+    numbers, shows = (OF_PAIRS, "misfit") if "one" in done else (OF_RECEIVERS, "peak")
+    rows = statistics(done, list(asked.axes), list(numbers))
+    files = list(summary.files)
+    if asked.out is not None:
+        files += write_tables(asked.out, ENSEMBLE, rows)
+        files += [waveforms(one) for one in members_of(asked.cases, found, asked.out)]
+    rest, form = [key for key in asked.axes if key != MEMBER], ".3%" if "one" in done else ".4g"
+
+    def cells(row: dict[str, Any]) -> list[str]:
+        every = [number(float(row[name]), form, "-") for name in STATISTICS]
+        return [*([_point(row, rest)] if rest else []), *every, f"{row['members']}"]
+
+    shown = rows[rows.number == shows].to_dict("records")
+    header = [*([", ".join(rest)] if rest else []), *STATISTICS, "members"]
+    return summary._replace(
+        name=ENSEMBLE,
+        table=Table(header, grouped((_heading(row, True), cells(row)) for row in shown)),
+        facts=summary.facts
+        | {
+            "statistics": json.loads(rows.to_json(orient="records")),
+            "files": list(map(str, files)),
+        },
+        files=files,
+        legend=f"{shows}: mean and percentiles over the members; all numbers are in ensemble.csv.",
     )
 
 

@@ -37,7 +37,7 @@ def along_pillar(scene: AnyScene) -> dict[str, xr.Dataset]:
 def sections(scene: Scene) -> list[float]:
     """Return y of the start, every k-th joint and the end, m."""
     places = _contacts(scene)
-    if scene.segments:
+    if not scene.is_uniform:
         return calibrate(scene).contact_y[places].tolist()
     return [scene.pillar.block * i for i in places]
 
@@ -61,7 +61,7 @@ def recorded_along(scene: AnyScene) -> AnyScene:
     points = places if scene.load.arm is not None else []
     if scene.record.velocity and not scene.record.stress:
         points = [y + scene.pillar.block / 2 for y in places[:-1]]
-        if scene.segments:
+        if not scene.is_uniform:
             points = calibrate(scene).centre_y[_contacts(scene)[:-1]].tolist()
         places = []
     record = scene.record.model_copy(update={"stress": places, "velocity": points, "fields": None})

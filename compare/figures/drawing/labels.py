@@ -123,5 +123,6 @@ def draw_scale(ax: Axes, scene: Scene, place: Placement) -> None:
     drawn = f"; drawn {times:.2g} times as thick" if times > 1.01 else ""
     blocks = f"{scene.block_count:,} blocks"
     blocks += f" in {len(regions(scene))} segments" if scene.segments else f" of {pillar.block:g} m"
+    blocks += " on average" if scene.scatter else ""
     words = f"y (m): {blocks}, {pillar.side:g} m × {pillar.side:g} m across{drawn}"
     note(ax, place.start, level - 0.24, words, "left", "top", color=SOFT)

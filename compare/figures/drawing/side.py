@@ -47,7 +47,7 @@ def draw_strip(ax: Axes, scene: Scene) -> None:
 def block_edges(scene: Scene) -> list[float]:
     """Return y of the edges of the blocks that are drawn, m: all, or one for a pillar of many; of
     segments without joints, and of many blocks, one a segment."""
-    if scene.segments:
+    if not scene.is_uniform:
         every = contacts(scene)
         edges = every[np.r_[True, ~welds(scene), True]]
         starts = [one.start for one in regions(scene)]

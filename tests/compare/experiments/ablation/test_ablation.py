@@ -21,6 +21,7 @@ CALLS = {
     "no tension": {"joints__tension": False, "soft_layers": LAYER},
     "closure": {"joints__maximum_closure": 1e-3},
     "segments": {"segments": [{"y": [10.0, 20.0], "density": 2600.0}]},
+    "scatter": {"scatter": {"spacing": 0.2, "seed": 1}},
     "joints that differ": {"soft_layers": LAYER},
     "quiet ends": {"ends__end": "quiet"},
     "matched ends": {"ends__start": "matched"},

@@ -1,0 +1,120 @@
+"""Ensembles: members of a scene that differ in the seed of their joints, and their statistics.
+
+Members 1, 2, ... have the scene's own seed, the next, ...; of a rock mass each joint set's. They
+are points of a sweep, whose key is `member`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from cases.errors import SceneError
+from compare.experiments.sweep.axis import MEMBER
+from compare.runs.output import fields_of, write_fields
+from results.netcdf import load_netcdf
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+    from compare.experiments.sweep.case import SweepCase, SweepOutcome
+
+PERCENTILES = (5, 25, 50, 75, 95)
+STATISTICS = ("mean", *(f"p{q}" for q in PERCENTILES))
+#: What tells rows of one statistic apart, beside the swept keys.
+OF_ROW = ("variant", "engine", "one", "other", "quantity", "x", "y")
+ENSEMBLE = "ensemble"
+
+
+def member(scene: AnyScene, number: int) -> dict[str, int]:
+    """Return the changes that make a scene its member `number`, from 1; raises SceneError where its
+    joints are not at random."""
+    scatter = getattr(scene, "scatter", None)
+    seeds = {} if scatter is None else {"scatter.seed": scatter.seed}
+    for i, one in enumerate(getattr(scene, "joint_sets", [])):
+        if one.seed is not None:
+            seeds[f"joint_sets.{i}.seed"] = one.seed
+    if not seeds:
+        allowed = "needs joints at random: [scatter], or joint_sets.*.scatter, with a seed"
+        raise SceneError(scene.where, "--ensemble", None, allowed)
+    return {key: seed + number - 1 for key, seed in seeds.items()}
+
+
+def statistics(rows: pd.DataFrame, axes: list[str], numbers: list[str]) -> pd.DataFrame:
+    """Return mean and percentiles over the members of each number of the rows that are done.
+
+    One row for each number: the swept keys, what it is of, `number`, STATISTICS, and `members`, how
+    many have it.
+    """
+    keys = [key for key in (*axes, *OF_ROW) if key in rows and key != MEMBER]
+    found = []
+    for point, group in rows.groupby(keys, sort=False, dropna=False):
+        for name in numbers:
+            values = group[name].to_numpy(dtype=float)
+            values = values[np.isfinite(values)]
+            if values.size:
+                of = dict(zip(keys, point, strict=True))
+                found.append(of | {"number": name, **_of(values), "members": values.size})
+    return pd.DataFrame(found)
+
+
+def _of(values: np.ndarray) -> dict[str, float]:
+    every = [values.mean(), *np.percentile(values, PERCENTILES)]
+    return dict(zip(STATISTICS, map(float, every), strict=True))
+
+
+class Members(NamedTuple):
+    """The results of all members of one scene by one solver: the file that their statistics go to,
+    and theirs."""
+
+    out: Path
+    files: list[Path]
+
+
+def members_of(
+    cases: list[SweepCase], outcomes: list[SweepOutcome], out: Path
+) -> Iterator[Members]:
+    """Yield the results of members that belong together, of those that are done."""
+    found: dict[Path, list[Path]] = {}
+    for case, one in zip(cases, outcomes, strict=True):
+        rest = ",".join(f"{k}={v}" for k, v in case.settings.items() if k != MEMBER)
+        named = (row.get(key) for row in one.rows for key in ("file", "other_file"))
+        for path in map(Path, dict.fromkeys(str(file) for file in named if file)):
+            within = path.relative_to(case.folder).with_name(f"{path.stem}-{ENSEMBLE}.nc")
+            found.setdefault(out / rest / within, []).append(path)
+    for place, files in found.items():
+        yield Members(place, files)
+
+
+def waveforms(members: Members) -> Path:
+    """Write mean and percentiles over the members of every waveform, at the same times and
+    receivers in all, with `statistic` as their first dimension; return the file."""
+    results = [load_netcdf(file) for file in members.files]
+    first = results[0]
+    shared = [name for name in map(str, first.data_vars) if _is_wave(results, name)]
+    found = {}
+    for name in shared:
+        every = np.stack([one[name].values for one in results])
+        values = np.concatenate(
+            [every.mean(axis=0)[None], np.percentile(every, PERCENTILES, axis=0)]
+        )
+        found[name] = (("statistic", *first[name].dims), values, first[name].attrs)
+    coords: dict[str, Any] = {
+        str(name): values.astype(str) if values.dtype == object else values
+        for name, values in first.coords.items()
+    }
+    coords["statistic"] = ("statistic", list(STATISTICS))
+    about = {key: first.attrs[key] for key in ("engine", "model") if key in first.attrs}
+    data = xr.Dataset(found, coords, {**about, "members": len(results)})
+    return write_fields(members.out, fields_of(data))
+
+
+def _is_wave(results: list[xr.Dataset], name: str) -> bool:
+    """Return whether all results have a variable over time, alike in shape."""
+    shape = results[0][name].shape
+    over_time = "time" in results[0][name].dims
+    return over_time and all(name in one and one[name].shape == shape for one in results)
