@@ -80,6 +80,11 @@ class Mesh(NamedTuple):
     sides: Mapping[str, Side]
 
     @property
+    def materials(self) -> int:
+        """Number of materials."""
+        return 1 + max(int(part.material.max()) for part in self.parts)
+
+    @property
     def start(self) -> Side:
         """The loaded end face of a pillar."""
         return self.sides["start"]

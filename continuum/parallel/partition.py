@@ -33,7 +33,7 @@ class Share(NamedTuple):
     """What one process holds of a mesh.
 
     parts : its own cells, and as ghosts those beyond its joints; copies that are whole stand
-        together, and of others only what is held. The material of ghosts is 1 + len(mesh.layers).
+        together, and of others only what is held. The material of ghosts is mesh.materials.
     cell : int array, for each cell of the parts its number in the whole mesh.
     ghost : bool array, whether it is a ghost.
     joints : its own.
@@ -125,7 +125,7 @@ def restrict(mesh: Mesh, rank_of: np.ndarray, rank: int, together: bool = False)
         for copy in np.flatnonzero(~is_whole & held[numbers].any(axis=1)):
             some = held[numbers[copy]]
             ghosts = ~own[numbers[copy][some]]
-            others.append(_some_cells(part, copy, some, ghosts, 1 + len(mesh.layers)))
+            others.append(_some_cells(part, copy, some, ghosts, mesh.materials))
             of_others.append(numbers[copy][some])
     if together and others:
         others = [_one_part(others)]

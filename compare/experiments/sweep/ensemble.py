@@ -106,6 +106,7 @@ def waveforms(members: Members) -> Path:
     coords: dict[str, Any] = {
         str(name): values.astype(str) if values.dtype == object else values
         for name, values in first.coords.items()
+        if values.size
     }
     coords["statistic"] = ("statistic", list(STATISTICS))
     about = {key: first.attrs[key] for key in ("engine", "model") if key in first.attrs}
@@ -114,7 +115,7 @@ def waveforms(members: Members) -> Path:
 
 
 def _is_wave(results: list[xr.Dataset], name: str) -> bool:
-    """Return whether all results have a variable over time, alike in shape."""
+    """Return whether all results have a variable over time that is recorded, alike in shape."""
     shape = results[0][name].shape
-    over_time = "time" in results[0][name].dims
-    return over_time and all(name in one and one[name].shape == shape for one in results)
+    recorded = "time" in results[0][name].dims and 0 not in shape
+    return recorded and all(name in one and one[name].shape == shape for one in results)

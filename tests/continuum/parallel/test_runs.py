@@ -48,6 +48,18 @@ SCENES = {
             "ends.end": "matched",
         },
     ),
+    "damped segments and an intact one between them": (
+        "jointed",
+        {
+            "joints.damping_ratio": 0.02,
+            "segments": [
+                {"y": [0.0, 0.5], "density": 5000.0, "block": 0.25},
+                {"y": [0.5, 1.5], "joints": False, "intact_modulus": 2e11, "block": 0.1},
+            ],
+            "load.direction": [0, 1, 0],
+            "ends.end": "matched",
+        },
+    ),
     "plane wave in two dimensions, shaken base": (
         "equivalent",
         {
@@ -96,6 +108,7 @@ CUT = "one piece of tetrahedra with dashpots"
 #: Terms of the ledger that a scene is there for.
 WHAT_HAPPENS = {
     "bar, no tension, dashpots, mass damping, shaken base": ["viscous", "boundary"],
+    "damped segments and an intact one between them": ["viscous", "boundary"],
     "plane wave in two dimensions, shaken base": ["friction", "boundary"],
     "blocks in space that slip and break": ["friction", "fracture", "boundary"],
     CUT: ["viscous", "boundary"],
