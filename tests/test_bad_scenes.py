@@ -80,6 +80,7 @@ WRONG_SEGMENTS = {
         "[[segments]]\ny = [29.5, 40.0]",
         ["segments[1].y = [29.5, 40.0]", "before 30 m", "another segment"],
     ),
+    "crumbs": ("block = 1e-9", ["segments[0].block = 1e-09", "at most 10,000,000 blocks"]),
     "blocks": ("block = 0.3", ["segments[0].block = 0.3", "10 to 30 m"]),
     "place": (
         "[[segments]]\ny = [30.0, 40.2]",

@@ -6,7 +6,16 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 from pydantic import Field, model_validator
 
-from cases.schema.tables import CONSTANTS, PAIRS, SPEEDS, Pillar, Rock, given_pairs, wrong_speeds
+from cases.schema.tables import (
+    CONSTANTS,
+    MOST_BLOCKS,
+    PAIRS,
+    SPEEDS,
+    Pillar,
+    Rock,
+    given_pairs,
+    wrong_speeds,
+)
 from cases.schema.values import (
     NonNegative,
     Poisson,
@@ -118,6 +127,10 @@ def _region(
     start: float, stop: float, block: float, segment: int | None, key: str, value: object
 ) -> Region:
     count = (stop - start) / block
+    if count > MOST_BLOCKS:
+        raise contradiction(
+            key, value, f"must give at most {MOST_BLOCKS:,} blocks, not {count:.3g}"
+        )
     if abs(count - round(count)) > CLOSE * max(count, 1) or round(count) < 1:
         allowed = f"blocks of {block:g} m must divide the pillar from {start:g} to {stop:g} m"
         raise contradiction(key, value, allowed)
