@@ -131,6 +131,9 @@ def _of_motion(scene: Scene, p: Properties) -> Iterator[Effect]:
     weakens = p.weakening_distance is not None
     why = "weakening_distance is given" if weakens else "no weakening_distance"
     yield Effect("weakening", weakens and cause is not None, why if cause else NO_SHEAR)
+    dilates = p.dilation is not None
+    why = "dilation_angle is given" if dilates else "no dilation_angle"
+    yield Effect("dilation", dilates and cause is not None, why if cause else NO_SHEAR)
     softens = p.tensile_strength is not None
     yield Effect(
         "softening", softens, "tensile_strength is given" if softens else "no tensile_strength"

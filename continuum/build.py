@@ -146,7 +146,7 @@ def operators(discrete: Discrete | PlaneDiscrete) -> tuple[csr_matrix, csr_matri
     if joints is None:
         return stiffness, viscosity
     law = joints.law
-    stiffness = stiffness + _of_joints(joints, joints.stiffest, law.shear_stiffness)
+    stiffness = stiffness + _of_joints(joints, *joints.stiffest)
     if law.normal_viscosity is not None:
         dashpots = _of_joints(joints, law.normal_viscosity, law.shear_viscosity)
         viscosity = dashpots if viscosity is None else viscosity + dashpots

@@ -12,6 +12,7 @@ from continuum.model import Interfaces
 from continuum.space.interface import Jumps
 from continuum.space.stencils import stencils
 from joints.closure import closure_stiffness
+from joints.dilation import riding_stiffness
 from joints.law import Law, parts_of, table_of
 from joints.uniform import law
 
@@ -99,12 +100,15 @@ def interfaces(
     jumps: Jumps, law: Law, prestress: np.ndarray | None, scene: Scene | RockMass
 ) -> Interfaces:
     """Return the joints of a model; prestress : [directions, q], Pa."""
-    jump, stiffest = csr_matrix(vstack(jumps.matrices)), law.normal_stiffness
+    jump = csr_matrix(vstack(jumps.matrices))
+    stiffest = law.normal_stiffness, law.shear_stiffness
     if law.maximum_closure is not None:
         from cases.material.closure import stress_in_reach
 
         law = law._replace(rock_compliance=0.0)
-        stiffest = closure_stiffness(law, stress_in_reach(scene))
+        stiffest = closure_stiffness(law, stress_in_reach(scene)), law.shear_stiffness
+    if law.dilation is not None:
+        stiffest = riding_stiffness(law.dilation, law.friction, *stiffest)
     return Interfaces(
         jump=jump,
         stencils=stencils(jump),

@@ -43,7 +43,8 @@ class Interfaces(NamedTuple):
         compiled code takes it.
     prestress : [directions, q], tractions (Pa) that every point and the rock between them carry at
         u = 0, where the gap is what the normal one makes of it; None without.
-    stiffest : K_n of joints that have closed as far as is in reach, Pa/m, one number or [q].
+    stiffest : K_n and K_s (None without shear) of joints that have closed as far as is in reach,
+        and slide where that lifts them, Pa/m, each one number or [q].
     """
 
     jump: csr_matrix

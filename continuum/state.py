@@ -37,7 +37,7 @@ class State(NamedTuple):
     opening : the largest of each point so far [q], m; None without softening.
     slide : what has slid [directions - 1, q], m: the elastic part of the slip is B u - slide; None
         where nothing slides. cohesion : of each point [q], Pa; None without residual cohesion.
-        path : slid so far [q], m; None where slip weakens nothing.
+        path : slid so far [q], m; None where slip changes nothing.
     jump, jump_rate, slip_rate : of displacement, rate and velocity [directions, q], m and m/s;
         None where nothing asks for them.
     closure : of the springs in front of dashpots [k], m; None without them.
@@ -162,7 +162,7 @@ def state_at_rest(model: Model, keep_ledger: bool) -> State:
         opening=array(parts.softening, q),
         slide=slide,
         cohesion=cohesion,
-        path=array(parts.weakening, q),
+        path=array(parts.path, q),
         jump=array(joints is not None, directions, q),
         jump_rate=array(parts.dashpots, directions, q),
         slip_rate=array(parts.limited, directions, q),

@@ -34,6 +34,17 @@ def friction_work(law, ex_old, ez_old, ex, ez, dx, dz):
 
 
 @formula
+def lift_work(law, parts, gap_old, gap, opening, up):
+    """Return what a lift by `up` (m) in a step puts into the springs and the rock, of the work that
+    sliding takes: the mean traction of the normal spring times the lift.
+
+    gap_old, gap : less the lift, m, before and after the step. opening : the largest so far, m.
+    """
+    old = spring_traction(law, parts, gap_old, opening)
+    return 0.5 * (old + spring_traction(law, parts, gap, opening)) * up
+
+
+@formula
 def fracture_energy_spent(law, opening):
     """Return what opening has spent: the area under the softening curve less what unloads.
 

@@ -12,9 +12,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from joints.dilation import lift
 from joints.formula import flags, formula
 from joints.normal import normal_traction
-from joints.shear import cohesion_left, path_after, shear_return, shear_strength
+from joints.shear import cohesion_left, shear_return, shear_strength
+from joints.slide import after_slide
 
 
 class Law(NamedTuple):
@@ -30,6 +32,8 @@ class Law(NamedTuple):
         And what rock has of the compliance 1/K, m/Pa; None where it has none.
     dynamic_friction, weakening_distance : what a path of slip leaves of tan(phi), and that path D,
         m; None where friction stays.
+    dilation, dilation_distance : tan(psi), and the path over which it falls to none, m; None where
+        slip lifts nothing.
 
     A joint without a strength that others have is given `joints.shear.UNLIMITED`.
     """
@@ -48,12 +52,15 @@ class Law(NamedTuple):
     rock_compliance: Any = None
     dynamic_friction: Any = None
     weakening_distance: Any = None
+    dilation: Any = None
+    dilation_distance: Any = None
 
 
 @flags
 class Parts(NamedTuple):
     """Which parts the law has: constants of a compiled kernel.
 
+    path : the joint remembers what it has slid, for slip changes it.
     varied : joints differ, and the table has a column for each; else one for all.
     limited : the shear traction has a limit: Coulomb's, or none is left where a joint is open.
     """
@@ -68,6 +75,8 @@ class Parts(NamedTuple):
     varied: bool
     closure: bool
     weakening: bool
+    dilation: bool
+    path: bool
 
 
 class History(NamedTuple):
@@ -89,6 +98,8 @@ def parts_of(law: Law) -> Parts:
     shear = law.shear_stiffness is not None
     slip = law.cohesion is not None or law.friction is not None
     no_tension, softening = law.carries_tension is not None, law.tensile_strength is not None
+    weakening = shear and law.weakening_distance is not None
+    dilation = shear and law.dilation is not None
     return Parts(
         dashpots=law.normal_viscosity is not None or law.shear_viscosity is not None,
         no_tension=no_tension,
@@ -99,7 +110,9 @@ def parts_of(law: Law) -> Parts:
         limited=shear and (slip or no_tension or softening),
         varied=any(np.ndim(value) for value in law if value is not None),
         closure=law.maximum_closure is not None,
-        weakening=shear and law.weakening_distance is not None,
+        weakening=weakening,
+        dilation=dilation,
+        path=weakening or dilation,
     )
 
 
@@ -121,7 +134,7 @@ def law_of(table, j):
     return Law(
         table[0, j], table[1, j], table[2, j], table[3, j], table[4, j],
         table[5, j], table[6, j], table[7, j], table[8, j], table[9, j], table[10, j], table[11, j],
-        table[12, j], table[13, j],
+        table[12, j], table[13, j], table[14, j], table[15, j],
     )  # fmt: skip
 
 
@@ -132,6 +145,8 @@ def traction(law, parts, gap, gap_rate, slip, slip_rate, dt, history):
     gap, gap_rate : m and m/s at the end of the step; slip : its increments (dx, dz) over the
     step, m; slip_rate : (x, z), m/s; dt : s; history : before the step.
     """
+    if parts.dilation:
+        gap = gap - lift(law, history.path)
     opening = max(history.opening, gap)
     t_n = normal_traction(law, parts, gap, gap_rate, opening)
     if not parts.shear:
@@ -139,7 +154,10 @@ def traction(law, parts, gap, gap_rate, slip, slip_rate, dt, history):
         return t_n, 0.0, 0.0, History(opening, h.ex, h.ez, h.cohesion, h.path)
     ex, ez, path = history.ex + slip[0], history.ez + slip[1], history.path
     tau = shear_strength(law, parts, t_n, gap, opening, history.cohesion, path)
-    tau, path = path_after(law, parts, t_n, path, tau, ex, ez, slip_rate[0], slip_rate[1], dt)
+    t_n, tau, path = after_slide(
+        law, parts, t_n, tau, gap, gap_rate, opening, history.cohesion, path,
+        ex, ez, slip_rate[0], slip_rate[1], dt,
+    )  # fmt: skip
     t_x, t_z, ex, ez, slipped = shear_return(
         law, parts, ex, ez, history.ex, history.ez, slip_rate[0], slip_rate[1], tau, dt
     )

@@ -1,9 +1,9 @@
 """Normal traction of a joint: spring, dashpot, softening, no tension."""
 
-from joints.closure import closure_traction, closure_under
+from joints.closure import closure_stiffness, closure_traction, closure_under
 from joints.formula import formula
 from joints.shear import UNLIMITED
-from joints.softening import stiffness_left, strength_left
+from joints.softening import stiffness_left, strength_left, strength_loss
 
 
 @formula
@@ -54,3 +54,26 @@ def _cut(law, parts, t, gap, opening):
     if parts.no_tension and not law.carries_tension:
         t = 0.0 if gap > 0.0 or t < 0.0 else t
     return t
+
+
+@formula
+def normal_tangent(law, parts, gap, gap_rate, before, r):
+    """Return d t_n / d gap (Pa/m) alone; before : the largest opening before this gap, m; the
+    others as in `tangent`."""
+    t, slope = spring_alone(law, parts, gap), -law.normal_stiffness
+    if parts.closure and gap < 0.0:
+        slope = -closure_stiffness(law, t)
+    if parts.dashpots:
+        t, slope = t - law.normal_viscosity * gap_rate, slope - law.normal_viscosity * r
+    if parts.softening:
+        opening = max(before, gap)
+        loss = strength_loss(law, gap, before)
+        share = stiffness_left(law, opening) if gap > 0.0 else 1.0
+        # Of s(k) / (K k), falling only where the strength does.
+        falling = (loss / law.normal_stiffness - share) / opening if loss < 0.0 else 0.0
+        # The spring alone reaches the strength left and never exceeds it, but for round-off.
+        cut = parts.dashpots and share * t < -strength_left(law, opening)
+        slope = -loss if cut else share * slope + falling * t
+    if parts.no_tension and not law.carries_tension:
+        slope = slope if gap <= 0.0 and t >= 0.0 else 0.0
+    return slope

@@ -10,7 +10,7 @@ from math import sqrt
 
 from joints.formula import formula
 from joints.softening import is_broken, strength_left
-from joints.weakening import friction_left, weakened
+from joints.weakening import friction_left
 
 # Pa; more than any joint carries, and still a number when squared.
 UNLIMITED = 1e100
@@ -52,19 +52,6 @@ def holds(law, parts, gap, opening):
         law, parts, opening
     )
     return gap <= 0.0 or pulls
-
-
-@formula
-def path_after(law, parts, t_n, path, tau, ex, ez, rate_x, rate_z, dt):
-    """Return the strength (Pa) and the path (m) at the end of a step, where slip weakens the joint.
-
-    path, tau : before it. ex, ez, rate_x, rate_z, dt : as for `shear_return`.
-    """
-    if not parts.weakening:
-        return tau, path
-    t_x, t_z = shear_traction(law, parts, ex, ez, rate_x, rate_z)
-    size, stiffness = sqrt(t_x * t_x + t_z * t_z), resistance(law, parts, dt)
-    return weakened(law, t_n, path, tau, size, stiffness)
 
 
 @formula

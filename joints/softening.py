@@ -35,3 +35,11 @@ def stiffness_left(law, opening):
 def is_broken(law, parts, opening):
     """Return whether a joint has no tensile strength left; never without softening."""
     return parts.softening and strength_left(law, opening) == 0.0
+
+
+@formula
+def strength_loss(law, gap, before):
+    """Return d s(k) / d gap (Pa/m), zero but where the joint opens further and softens."""
+    first = law.tensile_strength / law.normal_stiffness
+    softens = gap > before and first < gap < law.critical_opening
+    return -law.tensile_strength / (law.critical_opening - first) if softens else 0.0

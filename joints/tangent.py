@@ -3,8 +3,8 @@
 An implicit step of rate factor r has gap_rate = r gap + const and slip_rate = r slip + const
 (Newmark: r = gamma / (beta dt)), so a dashpot C counts as a spring r C. With them the derivatives
 of `joints.law.traction` make Newton's method quadratic (Simo & Hughes, Computational
-Inelasticity, 1998, section 3.3). Shear does not act back on the normal traction: t_n depends on
-the gap alone.
+Inelasticity, 1998, section 3.3). Shear acts back on the normal traction where slip lifts the
+faces, else t_n depends on the gap alone.
 
 At a kink the tangent is that of the side whose branch the traction takes: a joint of zero gap is
 closed, one at its largest opening unloads, shear on the strength has not slipped yet.
@@ -13,17 +13,19 @@ closed, one at its largest opening unloads, shear on the strength has not slippe
 from math import sqrt
 from typing import NamedTuple
 
-from joints.closure import closure_stiffness
+from joints.dilation import lift, lift_rate
 from joints.formula import formula
-from joints.normal import normal_traction, spring_alone
-from joints.shear import UNLIMITED, path_after, resistance, shear_strength, shear_traction
-from joints.softening import stiffness_left, strength_left
-from joints.weakening import friction_left, strength_fall
+from joints.normal import normal_tangent, normal_traction
+from joints.shear import UNLIMITED, resistance, shear_strength, shear_traction
+from joints.slide import after_slide, pressing, resistance_to_slide
+from joints.softening import strength_loss
+from joints.weakening import friction_left
 
 
 class Tangent(NamedTuple):
     """Derivatives of the traction, Pa/m: nn of t_n with the gap, xn and zn of t_x and t_z with it,
-    xx, xz, zz of t_x and t_z with the slips (xz = zx); the rest is zero. Without shear nn alone."""
+    xx, xz, zz of t_x and t_z with the slips (xz = zx), nx and nz of t_n with them. Without shear nn
+    alone."""
 
     nn: float
     xn: float = 0.0
@@ -31,6 +33,8 @@ class Tangent(NamedTuple):
     xx: float = 0.0
     xz: float = 0.0
     zz: float = 0.0
+    nx: float = 0.0
+    nz: float = 0.0
 
 
 @formula
@@ -40,71 +44,43 @@ def tangent(law, parts, gap, gap_rate, slip, slip_rate, dt, history, r):
     gap, gap_rate : m and m/s at the end of the step; slip : its increments (dx, dz) over the
     step, m; slip_rate : (x, z), m/s; dt : s; history : before the step; r : rate factor, 1/s.
     """
-    before = history.opening
+    before, path = history.opening, history.path
+    if parts.dilation:
+        gap = gap - lift(law, path)
     nn = normal_tangent(law, parts, gap, gap_rate, before, r)
     if not parts.shear:
-        return Tangent(nn, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return Tangent(nn, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     slope = -law.shear_stiffness
     if parts.dashpots:
         slope = slope - law.shear_viscosity * r
     if not parts.limited:
-        return Tangent(nn, 0.0, 0.0, slope, 0.0, slope)
+        return Tangent(nn, 0.0, 0.0, slope, 0.0, slope, 0.0, 0.0)
     opening = max(before, gap)
     t_n = normal_traction(law, parts, gap, gap_rate, opening)
-    ex, ez, path = history.ex + slip[0], history.ez + slip[1], history.path
+    ex, ez = history.ex + slip[0], history.ez + slip[1]
     tau = shear_strength(law, parts, t_n, gap, opening, history.cohesion, path)
-    tau, path = path_after(law, parts, t_n, path, tau, ex, ez, slip_rate[0], slip_rate[1], dt)
-    rise = _strength_rise(law, parts, nn, tau, gap, before, history.cohesion, t_n, path)
+    t_n, tau, path = after_slide(
+        law, parts, t_n, tau, gap, gap_rate, opening, history.cohesion, path,
+        ex, ez, slip_rate[0], slip_rate[1], dt,
+    )  # fmt: skip
     t_x, t_z = shear_traction(law, parts, ex, ez, slip_rate[0], slip_rate[1])
-    share = 1.0
-    if parts.weakening:
-        share = _share_of_trial(law, parts, t_n, path, tau, t_x, t_z, dt)
+    share, up, pressed = 1.0, 0.0, 0.0
+    if parts.dilation:
+        up = lift(law, path) - lift(law, history.path)
+        gap, gap_rate = gap - up, gap_rate - up / dt
+        nn = normal_tangent(law, parts, gap, gap_rate, before, r)
+    rise = _strength_rise(law, parts, nn, tau, gap, before, history.cohesion, t_n, path)
+    if parts.path and path > history.path:
+        # dl = (d|T*| - rise d gap) / b; d tau = d|T*| - a dl, d t_n = nn d gap + p w' dl.
+        b = resistance_to_slide(law, parts, t_n, gap, gap_rate, opening, path, dt)
+        share = resistance(law, parts, dt) / b if b > 0.0 else 1.0
+        if parts.dilation and b > 0.0:
+            press = pressing(law, parts, gap, gap_rate, opening, dt)
+            pressed = press * lift_rate(law, path) / b
+            nn = nn - pressed * rise
         rise = share * rise
-    xn, zn, xx, xz, zz = _returned(parts, tau, rise, t_x, t_z, slope, share)
-    return Tangent(nn, xn, zn, xx, xz, zz)
-
-
-@formula
-def _share_of_trial(law, parts, t_n, path, tau, t_x, t_z, dt):
-    """Return by how much a slide exceeds, for what changes it, that of a strength that stays.
-
-    Of tau = tau(S + l), l = (|T*| - tau) / a, with the strength's fall h at the end of the step:
-    d tau = share rise d gap + (1 - share) d|T*|, share = a / (a - h).
-    """
-    a, slips = resistance(law, parts, dt), t_x * t_x + t_z * t_z > tau * tau
-    left = a - strength_fall(law, t_n, path)
-    return a / left if slips and left > 0.0 else 1.0
-
-
-@formula
-def normal_tangent(law, parts, gap, gap_rate, before, r):
-    """Return d t_n / d gap (Pa/m) alone; before : the largest opening before this gap, m; the
-    others as in `tangent`."""
-    t, slope = spring_alone(law, parts, gap), -law.normal_stiffness
-    if parts.closure and gap < 0.0:
-        slope = -closure_stiffness(law, t)
-    if parts.dashpots:
-        t, slope = t - law.normal_viscosity * gap_rate, slope - law.normal_viscosity * r
-    if parts.softening:
-        opening = max(before, gap)
-        loss = _strength_loss(law, gap, before)
-        share = stiffness_left(law, opening) if gap > 0.0 else 1.0
-        # Of s(k) / (K k), falling only where the strength does.
-        falling = (loss / law.normal_stiffness - share) / opening if loss < 0.0 else 0.0
-        # The spring alone reaches the strength left and never exceeds it, but for round-off.
-        cut = parts.dashpots and share * t < -strength_left(law, opening)
-        slope = -loss if cut else share * slope + falling * t
-    if parts.no_tension and not law.carries_tension:
-        slope = slope if gap <= 0.0 and t >= 0.0 else 0.0
-    return slope
-
-
-@formula
-def _strength_loss(law, gap, before):
-    """Return d s(k) / d gap (Pa/m), zero but where the joint opens further and softens."""
-    first = law.tensile_strength / law.normal_stiffness
-    softens = gap > before and first < gap < law.critical_opening
-    return -law.tensile_strength / (law.critical_opening - first) if softens else 0.0
+    xn, zn, xx, xz, zz, nx, nz = _returned(parts, tau, rise, t_x, t_z, slope, share, pressed)
+    return Tangent(nn, xn, zn, xx, xz, zz, nx, nz)
 
 
 @formula
@@ -114,17 +90,17 @@ def _strength_rise(law, parts, nn, tau, gap, before, cohesion, t_n, path):
     if parts.softening:
         c = cohesion if parts.residual else law.cohesion
         rise += (
-            0.0 if c >= UNLIMITED else c / law.tensile_strength * _strength_loss(law, gap, before)
+            0.0 if c >= UNLIMITED else c / law.tensile_strength * strength_loss(law, gap, before)
         )
     return rise if 0.0 < tau < UNLIMITED else 0.0
 
 
 @formula
-def _returned(parts, tau, rise, t_x, t_z, slope, share):
-    """Return (xn, zn, xx, xz, zz) of a trial traction of this slope with slip.
+def _returned(parts, tau, rise, t_x, t_z, slope, share, pressed):
+    """Return (xn, zn, xx, xz, zz, nx, nz) of a trial traction of this slope with slip.
 
-    On the strength T = tau n, n = T* / |T*|: dT = n dtau + tau / |T*| (1 - n n^T) dT*; share : of
-    `_share_of_trial`.
+    On the strength T = tau n, n = T* / |T*|: dT = n dtau + tau / |T*| (1 - n n^T) dT*. Where slip
+    changes the joint d tau is rise d gap + (1 - share) d|T*|, and d t_n has pressed d|T*|.
     """
     size = sqrt(t_x * t_x + t_z * t_z)
     slips = size > tau
@@ -132,7 +108,7 @@ def _returned(parts, tau, rise, t_x, t_z, slope, share):
     # Without any strength left the traction is zero, whether there is a trial one or not.
     left = 0.0 if tau <= 0.0 else slope
     turn = left * tau / size if slips else left
-    if parts.weakening:
+    if parts.path:
         along = (1.0 - share) * left
         return (
             n_x * rise,
@@ -140,6 +116,8 @@ def _returned(parts, tau, rise, t_x, t_z, slope, share):
             turn + (along - turn) * n_x * n_x,
             (along - turn) * n_x * n_z,
             turn + (along - turn) * n_z * n_z,
+            pressed * slope * n_x,
+            pressed * slope * n_z,
         )
     return (
         n_x * rise,
@@ -147,4 +125,6 @@ def _returned(parts, tau, rise, t_x, t_z, slope, share):
         turn * (1.0 - n_x * n_x),
         -turn * n_x * n_z,
         turn * (1.0 - n_z * n_z),
+        0.0,
+        0.0,
     )

@@ -5,7 +5,7 @@ The friction of pressed faces falls linearly with the length S of the path that 
     mu(S) = mu_s - (mu_s - mu_d) S / D   for S < D,   mu_d beyond
 
 (Ida, J. Geophys. Res. 77, 1972; Andrews, J. Geophys. Res. 81, 1976). The path only grows, whatever
-the direction of the slip; what slides while the faces are not pressed together is no part of it.
+the direction of the slip.
 
 A step whose trial traction T* exceeds the strength tau(S) slides by l until spring and dashpot
 carry the strength that is left, a = K_s + C_s / dt, h = t_n (mu_s - mu_d) / D:
@@ -45,7 +45,7 @@ def weakened(law, t_n, path, tau, size, stiffness):
     """
     fall, left = strength_fall(law, t_n, path), law.weakening_distance - path
     left = left if left > 0.0 else 0.0
-    excess = size - tau if size > tau and t_n > 0.0 else 0.0
+    excess = size - tau if size > tau else 0.0
     lost = excess / (stiffness - fall) if stiffness > fall else left
     lost = lost if lost < left else left
     after = tau - fall * lost if excess > 0.0 else tau

@@ -377,6 +377,22 @@ MISTAKES = {
         "[joints]\nfriction_angle = 20.0\ndynamic_friction_angle = 30.0\nweakening_distance = 1e-3",
         ["joints.dynamic_friction_angle = 30.0", "at most friction_angle = 20"],
     ),
+    "dilation without friction": (
+        "[joints]",
+        "[joints]\ndilation_angle = 5.0\ndilation_distance = 1e-3",
+        ["joints.dilation_angle = 5", "needs a friction_angle"],
+    ),
+    "dilation above friction": (
+        "[joints]",
+        "[joints]\nfriction_angle = 20.0\ndilation_angle = 21.0\ndilation_distance = 1e-3",
+        ["joints.dilation_angle = 21", "at most friction_angle = 20"],
+    ),
+    "dilation above what friction falls to": (
+        "[joints]",
+        "[joints]\nfriction_angle = 30.0\ndilation_angle = 15.0\ndilation_distance = 1.0\n"
+        "dynamic_friction_angle = 10.0\nweakening_distance = 1e-3",
+        ["joints.dilation_angle = 15", "above dynamic_friction_angle = 10 where friction"],
+    ),
     "a vertical friction angle": (
         "[joints]",
         "[joints]\nfriction_angle = 90.0",

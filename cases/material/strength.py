@@ -17,9 +17,10 @@ if TYPE_CHECKING:
 #: of one that does not stiffen; its square is still a number.
 UNLIMITED = 1e100
 
-#: The keys of slip, of its weakening and of softening: without them no joint has that effect.
+#: The keys of slip, of what it changes and of softening: without them no joint has that effect.
 SLIP = ("friction_angle", "cohesion", "residual_cohesion")
 WEAKENING = ("dynamic_friction_angle", "weakening_distance")
+DILATION = ("dilation_angle", "dilation_distance")
 SOFTENING = ("tensile_strength", "fracture_energy")
 CLOSURE = "maximum_closure"
 
@@ -30,6 +31,8 @@ ALONG = (
     "residual_cohesion",
     "dynamic_friction",
     "weakening_distance",
+    "dilation",
+    "dilation_distance",
 )
 
 
@@ -42,6 +45,7 @@ class Strength:
     critical_opening : w_c = 2 G_c / sigma_t, at which softening has used up the strength, m.
     maximum_closure : d_m, m.
     dynamic_friction, weakening_distance : tan of the angle that is left, and the path of slip, m.
+    dilation, dilation_distance : tan of the angle at first, and the path that leaves none, m.
     """
 
     friction: np.ndarray | None = None
@@ -52,6 +56,8 @@ class Strength:
     maximum_closure: np.ndarray | None = None
     dynamic_friction: np.ndarray | None = None
     weakening_distance: np.ndarray | None = None
+    dilation: np.ndarray | None = None
+    dilation_distance: np.ndarray | None = None
 
     def strengths(
         self, shears: bool = True, joint: np.ndarray | slice = np.s_[:]
@@ -76,10 +82,10 @@ def strength_of(laws: Sequence[JointLaw], which: np.ndarray) -> Strength:
     limit; beside joints that break, one without tensile strength likewise, and beside joints that
     stiffen one that closes linearly; beside joints that slip weakens, one whose friction stays.
     """
-    keys = (*SLIP, *SOFTENING, CLOSURE, *WEAKENING)
+    keys = (*SLIP, *SOFTENING, CLOSURE, *WEAKENING, *DILATION)
     if all(getattr(law, key) is None for law in laws for key in keys):
         return Strength()
-    angle, cohesion, residual, limit, energy, closure, dynamic, distance = (
+    angle, cohesion, residual, limit, energy, closure, dynamic, distance, dilation, way = (
         np.array([_number(getattr(law, key)) for law in laws])[which] for key in keys
     )
     slips = ~(np.isnan(angle) & np.isnan(cohesion))
@@ -95,6 +101,8 @@ def strength_of(laws: Sequence[JointLaw], which: np.ndarray) -> Strength:
         maximum_closure=_where_given(closure, np.nan_to_num(closure, nan=UNLIMITED)),
         dynamic_friction=_where_given(dynamic, _tangent(weakens)),
         weakening_distance=_where_given(distance, np.nan_to_num(distance, nan=1.0)),
+        dilation=_where_given(dilation, _tangent(dilation)),
+        dilation_distance=_where_given(way, np.nan_to_num(way, nan=1.0)),
     )
 
 

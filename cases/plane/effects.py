@@ -41,6 +41,8 @@ def _of_joints(scene: RockMass) -> Iterator[Effect]:
     yield _of_sets("slip", slips, given, "neither friction_angle nor cohesion")
     weakens = [one for one in scene.joint_sets if one.weakening_distance is not None]
     yield _of_sets("weakening", weakens, "weakening_distance is given", "no weakening_distance")
+    dilates = [one for one in scene.joint_sets if one.dilation_angle is not None]
+    yield _of_sets("dilation", dilates, "dilation_angle is given", "no dilation_angle")
     softens = [one for one in scene.joint_sets if one.tensile_strength is not None]
     yield _of_sets("softening", softens, "tensile_strength is given", "no tensile_strength")
 

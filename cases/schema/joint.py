@@ -21,6 +21,9 @@ class JointLaw(Table):
     #: degrees, what slip over weakening_distance leaves of friction_angle, linearly in its tangent
     dynamic_friction_angle: Annotated[float, Field(ge=0, lt=90)] | None = None
     weakening_distance: Positive | None = None  #: m
+    #: degrees, at which slip lifts closed faces at first; falls to none over dilation_distance
+    dilation_angle: Annotated[float, Field(ge=0, lt=90)] | None = None
+    dilation_distance: Positive | None = None  #: m
     cohesion: NonNegative | None = None  #: Pa (3)
     residual_cohesion: NonNegative | None = None  #: Pa, what a point keeps after its first slip
     tensile_strength: Positive | None = None  #: Pa

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil, floor, log10
+from math import ceil, floor, log10, radians, tan
 from typing import TYPE_CHECKING
 
 from cases.schema.values import contradiction
@@ -17,6 +17,7 @@ MOST_SNAPSHOTS = 10_000
 PAIRS = (
     ("tensile_strength", "fracture_energy"),
     ("dynamic_friction_angle", "weakening_distance"),
+    ("dilation_angle", "dilation_distance"),
 )
 SNAP = 1 + 1e-6  # how far the fracture energy must stay from a vertical softening line
 
@@ -74,6 +75,27 @@ def check_strength(table: str, law: JointLaw) -> None:
             "needs a friction_angle" if static is None else f"at most friction_angle = {static:g}"
         )
         raise contradiction(f"{table}.dynamic_friction_angle", dynamic, allowed)
+    _check_dilation(table, law)
+
+
+def _check_dilation(table: str, law: JointLaw) -> None:
+    """What lifts the faces must not take more work than friction gives: both tangents are linear in
+    the path, so that the ends of the weakening decide."""
+    dilation, static = law.dilation_angle, law.friction_angle
+    if dilation is None or law.dilation_distance is None:
+        return
+    if static is None or dilation > static:
+        allowed = (
+            "needs a friction_angle" if static is None else f"at most friction_angle = {static:g}"
+        )
+        raise contradiction(f"{table}.dilation_angle", dilation, allowed)
+    dynamic, distance = law.dynamic_friction_angle, law.weakening_distance
+    if dynamic is None or distance is None:
+        return
+    share = max(1 - distance / law.dilation_distance, 0.0)
+    if share * tan(radians(dilation)) > tan(radians(dynamic)):
+        allowed = f"is above dynamic_friction_angle = {dynamic:g} where friction has fallen to it"
+        raise contradiction(f"{table}.dilation_angle", dilation, allowed)
 
 
 def rounded_up(x: float) -> float:

@@ -24,6 +24,7 @@ def beyond(scene: Scene, *held: str) -> str | None:
         "scatter": (scene.scatter is not None, "the joints are at random"),
         "closure": (p.maximum_closure is not None, "a joint stiffens as it closes"),
         "weakening": (p.weakening_distance is not None, "slip weakens a joint"),
+        "dilation": (p.dilation is not None, "slip lifts a joint"),
         "gravity": (scene.gravity is not None, "gravity acts"),
         "prestress": (scene.prestress is not None, "the joints are prestressed"),
         "mass damping": (bool(p.mass_damping), "the damping is proportional to mass"),

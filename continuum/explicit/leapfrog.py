@@ -158,7 +158,16 @@ def leapfrog_for(parts, directions, shared=False):
                     stored, spent = 0.0, 0.0
                     if area is not None:
                         stored, spent = joint_energy(
-                            parts, directions, table, area, prestress, jump, opening, slide, loads
+                            parts,
+                            directions,
+                            table,
+                            area,
+                            prestress,
+                            jump,
+                            opening,
+                            slide,
+                            path,
+                            loads,
                         )
                     balance = energy[:, n // stride]
                     balance[1], balance[2] = elastic + stored, spent

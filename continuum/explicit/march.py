@@ -63,6 +63,7 @@ def arguments(
     read, added = readings(model, state)
     if joints is not None:
         along = int(np.searchsorted(joints.stencils.first, joints.area.size))
+        along = 0 if joints.parts.dilation else along
         jumps = *joints.stencils, along, joints.table, joints.area, joints.prestress
     return (
         *(state.u, state.v, state.v_before, state.force, state.rate, state.drag),

@@ -169,9 +169,11 @@ def joint_energy_for(parts, directions):
     """Return the kernel of `continuum.space.tractions.joint_energy`."""
 
     @jitted
-    def energy(table, area, prestress, jump, opening, slide, loads):
+    def energy(table, area, prestress, jump, opening, slide, path, loads):
         """Return elastic energy and what opening has spent, J."""
-        return joint_energy(parts, directions, table, area, prestress, jump, opening, slide, loads)
+        return joint_energy(
+            parts, directions, table, area, prestress, jump, opening, slide, path, loads
+        )
 
     return energy
 
@@ -200,7 +202,7 @@ def record(
     if joints is not None:
         stored, spent = joint_energy_for(joints.parts, joints.directions)(
             joints.table, joints.area, joints.prestress,
-            state.jump, state.opening, state.slide, state.loads,
+            state.jump, state.opening, state.slide, state.path, state.loads,
         )  # fmt: skip
     samples.energy[:STATES, s] = (
         state.v @ (rock.mass @ state.v) / 2,

@@ -9,7 +9,7 @@ from scipy.sparse import csr_matrix
 from continuum.implicit.balance import Matrices
 from continuum.implicit.factors import Factors
 from continuum.model import Interfaces, Model
-from continuum.space.tractions import NN, XN, XX, XZ, ZN, ZZ
+from continuum.space.tractions import NN, NX, NZ, XN, XX, XZ, ZN, ZZ
 
 
 class Entries(NamedTuple):
@@ -24,8 +24,8 @@ class Pattern(NamedTuple):
     """The places that any of the matrices fills, CSR: start [n + 1], column [nnz].
 
     fixed : float array [matrices, nnz], each of the matrices on it.
-    joints : [nnz, 6 q], times the joints' stiffness of `System.tangents` [6 q] gives B^T D B on
-        it.
+    joints : [nnz, k q], times the joints' stiffness of `System.tangents` [k q] gives B^T D B on
+        it, k of `kinds`.
     diagonal : int array [n], which of the places are on the diagonal.
     """
 
@@ -54,7 +54,7 @@ def pattern(matrices: list[csr_matrix], interfaces: Interfaces | None, free: np.
         np.bincount(k, p.value, minlength=places.size) for k, p in zip(at, parts, strict=False)
     ]
     start = np.searchsorted(places, np.arange(free.size + 1) * free.size)
-    size = 0 if interfaces is None else 6 * interfaces.area.size
+    size = 0 if interfaces is None else kinds(interfaces) * interfaces.area.size
     return Pattern(
         start=start,
         column=places % free.size,
@@ -70,7 +70,7 @@ class System:
     Attributes
     ----------
     free : int array [n], these freedoms. pattern : of the matrices and of the joints among them.
-    tangents : how the joints resist displacement, [6, q], N/m, of the last trial.
+    tangents : how the joints resist displacement, [k, q], N/m, of the last trial.
     """
 
     def __init__(
@@ -107,8 +107,14 @@ class System:
 
 
 def empty_tangents(model: Model) -> np.ndarray:
-    """Return an array for how the joints resist displacement, [6, q], N/m."""
-    return np.zeros((6, 0 if model.interfaces is None else model.interfaces.area.size))
+    """Return an array for how the joints resist displacement, [k, q], N/m."""
+    joints = model.interfaces
+    return np.zeros((6, 0) if joints is None else (kinds(joints), joints.area.size))
+
+
+def kinds(interfaces: Interfaces) -> int:
+    """Return how many kinds of tangents a point has."""
+    return 8 if interfaces.parts.dilation else 6
 
 
 def _both(entries: Entries, number: np.ndarray) -> np.ndarray:
@@ -123,7 +129,7 @@ def _among(entries: Entries, number: np.ndarray) -> Entries:
 
 
 def _of_joints(interfaces: Interfaces | None) -> tuple[Entries, np.ndarray]:
-    """Return the entries of B^T D B for D of ones, and which entry of D [6, q] each belongs to."""
+    """Return the entries of B^T D B for D of ones, and which entry of D [k, q] each belongs to."""
     none = np.zeros(0, dtype=np.int64)
     found, sources = [Entries(none, none, np.zeros(0))], [none]
     if interfaces is not None:
@@ -132,8 +138,9 @@ def _of_joints(interfaces: Interfaces | None) -> tuple[Entries, np.ndarray]:
         y, x, z = (*of_direction, None, None)[:3]
         for kind, left, right in (
             (NN, y, y), (XN, x, y), (ZN, z, y), (XX, x, x), (XZ, x, z), (XZ, z, x), (ZZ, z, z),
+            (NX, y, x), (NZ, y, z),
         ):  # fmt: skip
-            if left is not None and right is not None:
+            if left is not None and right is not None and kind < kinds(interfaces):
                 entries, point = _products(left, right)
                 found.append(entries)
                 sources.append(kind * interfaces.area.size + point)

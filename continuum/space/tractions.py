@@ -6,22 +6,18 @@ and the traction t (compression positive, on the far side) the force on the free
 """
 
 from joints.closure import closure_energy
-from joints.energy import fracture_energy_spent, friction_work
+from joints.dilation import lift
+from joints.energy import fracture_energy_spent, friction_work, lift_work
 from joints.formula import formula
 from joints.law import History, law_of
 from joints.normal import gap_under, normal_traction, spring_traction
-from joints.shear import (
-    cohesion_left,
-    path_after,
-    shear_return,
-    shear_strength,
-    shear_traction,
-)
+from joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
+from joints.slide import after_slide
 from joints.tangent import tangent
 
 #: Rows of the tangents: t_n with the gap; t_x, t_z with it; t_x with x, either with the other, t_z
-#: with z.
-NN, XN, ZN, XX, XZ, ZZ = range(6)
+#: with z; and, where slip lifts the faces, t_n with x and with z.
+NN, XN, ZN, XX, XZ, ZZ, NX, NZ = range(8)
 
 
 @formula
@@ -48,6 +44,8 @@ def joint_loads(
             gap += gap_under(law, parts, prestress[0, q])
         if rate is not None:
             gap_rate = rate[0, q]
+        if path is not None:
+            gap -= lift(law, path[q]) if parts.dilation else 0.0
         widest = gap
         if opening is not None:
             widest = max(opening[q], gap)
@@ -71,15 +69,25 @@ def joint_loads(
             else:
                 x, z = x - slide[0, q], z - slide[1, q] if directions == 3 else 0.0
                 dx, dz = dt * slip_rate[1, q], dt * slip_rate[2, q] if directions == 3 else 0.0
-                left, slid = 0.0, 0.0
+                left, slid, up = 0.0, 0.0, 0.0
                 if cohesion is not None:
                     left = cohesion[q]
                 if path is not None:
                     slid = path[q]
                 tau = shear_strength(law, parts, t_n, gap, widest, left, slid)
                 if path is not None:
-                    tau, slid = path_after(law, parts, t_n, slid, tau, x, z, rate_x, rate_z, dt)
-                    path[q] = slid
+                    t_n, tau, path[q] = after_slide(
+                        law, parts, t_n, tau, gap, gap_rate, widest, left, slid,
+                        x, z, rate_x, rate_z, dt,
+                    )  # fmt: skip
+                    if parts.dilation:
+                        up = lift(law, path[q]) - lift(law, slid)
+                        spring = spring_traction(law, parts, gap - up, widest)
+                        loads[0, q] = area[q] * spring
+                        if drags is not None:
+                            drags[0, q] = area[q] * (t_n - spring)
+                        if prestress is not None:
+                            loads[0, q] -= area[q] * prestress[0, q]
                 t_x, t_z, ex, ez, slipped = shear_return(
                     law, parts, x, z, x - dx, z - dz, rate_x, rate_z, tau, dt
                 )
@@ -90,6 +98,9 @@ def joint_loads(
                     if cohesion is not None:
                         cohesion[q] = cohesion_left(law, parts, left, True)
                     sliding += area[q] * friction_work(law, x - dx, z - dz, ex, ez, dx, dz)
+                if parts.dilation:
+                    old = gap - dt * slip_rate[0, q]
+                    sliding -= area[q] * lift_work(law, parts, old, gap - up, widest, up)
                 x, z = ex, ez
             if drags is not None:
                 spring_x, spring_z = -law.shear_stiffness * x, -law.shear_stiffness * z
@@ -108,7 +119,7 @@ def joint_loads(
 
 
 @formula
-def joint_energy(parts, directions, table, area, prestress, jump, opening, slide, loads):
+def joint_energy(parts, directions, table, area, prestress, jump, opening, slide, path, loads):
     """Return the elastic energy of the joints, half of their forces times elastic displacements
     where they are linear, less what prestressed rock gives off as they open, and what opening them
     has spent, J."""
@@ -119,6 +130,8 @@ def joint_energy(parts, directions, table, area, prestress, jump, opening, slide
             stored += area[q] * prestress[0, q] * gap
             gap += gap_under(law, parts, prestress[0, q])
             push += area[q] * prestress[0, q]
+        if path is not None:
+            gap -= lift(law, path[q]) if parts.dilation else 0.0
         if parts.closure and gap < 0.0:
             stored += area[q] * closure_energy(law, push / area[q])
         else:
@@ -141,8 +154,8 @@ def joint_tangents(
     parts, directions, shears, table, area, prestress,
     jump, rate, opening, slide, cohesion, path, dt, r, stiffness,
 ):  # fmt: skip
-    """Set how the joints resist displacement, [6, q], N/m: the tangents at every point less than
-    zero, times its area.
+    """Set how the joints resist displacement, [6, q], or [8, q] where slip lifts the faces, N/m:
+    the tangents at every point less than zero, times its area.
 
     opening, slide, cohesion, path : history before the step; r : rate factor, 1/s
     (`joints.tangent`); the rest is as for `joint_loads`.
@@ -177,3 +190,5 @@ def joint_tangents(
             stiffness[XN, q], stiffness[ZN, q] = -area[q] * found.xn, -area[q] * found.zn
             stiffness[XX, q], stiffness[XZ, q] = -area[q] * found.xx, -area[q] * found.xz
             stiffness[ZZ, q] = -area[q] * found.zz
+        if parts.dilation:
+            stiffness[NX, q], stiffness[NZ, q] = -area[q] * found.nx, -area[q] * found.nz

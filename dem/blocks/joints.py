@@ -13,6 +13,7 @@ from cases.material.rigid_blocks import RigidJoints
 from cases.material.strength import strength_of
 from cases.schema.joint import JointLaw
 from joints.closure import closure_stiffness
+from joints.dilation import riding_stiffness
 from joints.law import Law
 from joints.uniform import law, uniform
 
@@ -24,7 +25,8 @@ if TYPE_CHECKING:
 class Columns(NamedTuple):
     """The law in its columns, and K_n and K_s of each [columns], Pa/m, as they are.
 
-    stiffest : K_n of joints that have closed as far as is in reach [columns], Pa/m.
+    stiffest : K_n and K_s of joints that have closed as far as is in reach, and slide where that
+    lifts them [2, columns], Pa/m.
     time_constants : viscosity over stiffness, normal and in shear [2, columns], s; None without
     dashpots. rules : places over length from the centre and weights of points [1, 2, points] or
     [columns, 2, points].
@@ -64,7 +66,10 @@ def columns(scene: RockMass, joints: RigidJoints, others: Stiffness) -> Columns:
         found = found._replace(**dict(zip(VISCOSITIES, viscosities, strict=True)))
     fails = not tension.all() or any(values is not None for values in strengths.values())
     rules = _rules(scene, len(normal))
-    stiffest = _stiffest(scene, found, len(normal)) if stiffens else normal
+    closed = _stiffest(scene, found, len(normal)) if stiffens else normal
+    stiffest = np.array([closed, shear])
+    if found.dilation is not None:
+        stiffest = np.array(riding_stiffness(found.dilation, found.friction, *stiffest))
     return Columns(found, normal, shear, stiffest, eta, rules, rules.shape[2] if fails else 0)
 
 

@@ -37,11 +37,13 @@ from dem.blocks.model import (
     PlaneModel,
     PlaneState,
 )
-from joints.energy import elastic_energy, fracture_energy_spent, friction_work
+from joints.dilation import lift
+from joints.energy import elastic_energy, fracture_energy_spent, friction_work, lift_work
 from joints.formula import formula
 from joints.law import law_of
 from joints.normal import normal_traction, spring_traction
-from joints.shear import cohesion_left, path_after, shear_return, shear_strength
+from joints.shear import cohesion_left, shear_return, shear_strength
+from joints.slide import after_slide
 from numerics.atomic import wait_for_all
 from numerics.borrowed import borrowed
 from numerics.denormals import flush_tiny, restore_tiny
@@ -137,7 +139,8 @@ def loop_for(form: PlaneForm) -> Callable:
     """Return the time loop of rock masses with these effects: what they lack is not compiled."""
     parts, points = form.parts, form.points
     dashpots, varied, softening = parts.dashpots, parts.varied, parts.softening
-    residual, weakening, held, ledger = parts.residual, parts.weakening, form.held, form.ledger
+    residual, worn, dilation = parts.residual, parts.path, parts.dilation
+    held, ledger = form.held, form.ledger
     ruled, stressed, shaken = form.ruled, form.stressed, form.shaken
     mass_damping, local_damping, gravity = form.mass_damping, form.local_damping, form.gravity
     damped, drags = form.mass_damping or form.local_damping, form.parts.dashpots and form.ledger
@@ -202,6 +205,7 @@ def loop_for(form: PlaneForm) -> Callable:
                 if dashpots or points > 0:
                     rate, slip_rate, spin = relative(v, i, j, k)
                     slide = dt * slip_rate
+                opening_rate, turning = rate, spin
                 if dashpots:
                     last_rate = rates[c]
                     if drags:
@@ -232,21 +236,33 @@ def loop_for(form: PlaneForm) -> Callable:
                         e, share, own = rule[0, p] * length, rule[1, p] * length, history[c, p]
                         here, here_rate = gap - e * turn, rate - e * spin
                         opening, cohesion, path = 0.0, 0.0, 0.0
+                        if worn:
+                            path = own[PATH]
+                        if dilation:
+                            here = here - lift(law, path)
                         if softening:
                             opening = max(own[OPENING], here)
                             own[OPENING] = opening
                         if residual:
                             cohesion = own[COHESION]
-                        if weakening:
-                            path = own[PATH]
                         t_n = normal_traction(law, parts, here, here_rate, opening)
                         tau = shear_strength(law, parts, t_n, here, opening, cohesion, path)
                         ex = slip - own[SLID]
                         old = ex - slide
-                        if weakening:
-                            tau, own[PATH] = path_after(
-                                law, parts, t_n, path, tau, ex, 0.0, slip_rate, 0.0, dt
-                            )
+                        if worn:
+                            t_n, tau, further = after_slide(
+                                law, parts, t_n, tau, here, here_rate, opening, cohesion, path,
+                                ex, 0.0, slip_rate, 0.0, dt,
+                            )  # fmt: skip
+                            own[PATH] = further
+                            if dilation:
+                                up = lift(law, further) - lift(law, path)
+                                if ledger:
+                                    moved = opening_rate - e * turning
+                                    friction -= share * lift_work(
+                                        law, parts, here - dt * moved, here - up, opening, up
+                                    )
+                                here = here - up
                         t_s, _, left, _, slipped = shear_return(
                             law, parts, ex, 0.0, old, 0.0, slip_rate, 0.0, tau, dt
                         )

@@ -137,7 +137,7 @@ class PlaneState(NamedTuple):
     their opening, slip and rotation one and a half steps before; None without dashpots.
     drag : float array [c, 3], N, N and N m, of their dashpots at the last step; None without a
     ledger of them. history : float array [c, points, 3], what has slid, m, the largest opening, m,
-    and the cohesion, Pa, of each point, with a fourth, the path, m, where that weakens it; None
+    and the cohesion, Pa, of each point, with a fourth, the path, m, where that changes it; None
     where joints always hold. sums : float array [4], J,
     running sums of the ledger: viscous, friction, boundary, work; None without.
     """
@@ -200,7 +200,7 @@ def state_at_rest(model: PlaneModel) -> PlaneState:
     count = len(model.blocks.inertia) + model.walls
     history = None
     if form.points:
-        history = zeros((contacts, form.points, 3 + form.parts.weakening))
+        history = zeros((contacts, form.points, 3 + form.parts.path))
         if form.parts.residual:
             row = Law._fields.index("cohesion")
             of = 0 if model.laws.shape[1] == 1 else model.contacts.law

@@ -2,12 +2,14 @@
 
 The bound of `cases.material.rigid_step`, block by block, on stiffness and damping together. Slip
 and opening only take stiffness away; joints that stiffen are as stiff as in the stiffest state in
-reach. Dashpots of quiet sides take the mean velocity of a step and change no bound, nor does
-mass-proportional damping; local damping alpha makes forces that turn a velocity round 1 + alpha
-times as large.
+reach, and joints that dilate as in `joints.dilation.riding_stiffness`. Dashpots of quiet sides take
+the mean velocity of a step and change no bound, nor does mass-proportional damping; local damping
+alpha makes forces that turn a velocity round 1 + alpha times as large.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -23,7 +25,7 @@ from joints.stability import critical_step
 def critical_plane_step(links: Links, columns: Columns, inertia: Inertia, local: float) -> float:
     """Return a lower bound of the critical step, s; local : Cundall's damping."""
     count, eta = len(inertia.mass), columns.time_constants
-    own = _stiffness(links, columns, (columns.stiffest, columns.shear), count)
+    own = _stiffness(links, columns, tuple(columns.stiffest), count)
     damping = None
     if eta is not None:
         damping = _stiffness(
@@ -40,7 +42,7 @@ def critical_plane_step(links: Links, columns: Columns, inertia: Inertia, local:
 
 
 def _stiffness(
-    links: Links, columns: Columns, values: tuple[np.ndarray, np.ndarray], count: int
+    links: Links, columns: Columns, values: Sequence[np.ndarray], count: int
 ) -> np.ndarray:
     """Return the matrix of each block against what it touches [count, 3, 3], of stiffness or
     viscosity per length in each column, normal and in shear."""

@@ -29,6 +29,7 @@ from dem.spatial.layout import (
 from dem.spatial.layout import LANES as L
 from dem.spatial.layout import STRIDE as R
 from dem.spatial.motion import FACE, INERTIA, WEIGHT
+from joints.dilation import lift
 from joints.energy import elastic_energy, fracture_energy_spent
 from joints.formula import formula
 
@@ -77,6 +78,7 @@ def stored_for(form: Form) -> Callable:
     parts, turns, finite, gravity = form.parts, form.turns, form.finite, form.gravity
     by_points, varied, softening = form.points, parts.varied, parts.softening
     first_point, point_rows = form.rate_rows * L, form.point_rows * L
+    dilation, paths = parts.dilation, (2 + softening + parts.residual) * L
 
     @formula
     def add_stored(b, law, table, points, m, h, q, ledger, n, joints):
@@ -103,6 +105,8 @@ def stored_for(form: Form) -> Callable:
                     area, opening = whole, 0.0
                     if finite:
                         area = area_in_contact(b, whole, x, z, gap, slip_x, slip_z)
+                    if dilation:
+                        gap = gap - lift(law, own[paths + i])
                     if softening:
                         opening = own[2 * L + i]
                         ledger[FRACTURE + i] += area * fracture_energy_spent(law, opening)

@@ -44,17 +44,13 @@ from dem.spatial.layout import (
 from dem.spatial.layout import LANES as L
 from dem.spatial.layout import STRIDE as R
 from dem.spatial.motion import FACE
-from joints.energy import friction_work
+from joints.dilation import lift
+from joints.energy import friction_work, lift_work
 from joints.formula import formula
 from joints.law import Law
 from joints.normal import normal_traction, spring_traction
-from joints.shear import (
-    cohesion_left,
-    path_after,
-    shear_return,
-    shear_strength,
-    shear_traction,
-)
+from joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
+from joints.slide import after_slide
 
 
 @formula
@@ -64,6 +60,7 @@ def law_at(table, i):
         table[i], table[L + i], table[2 * L + i], table[3 * L + i], table[4 * L + i],
         table[5 * L + i], table[6 * L + i], table[7 * L + i], table[8 * L + i], table[9 * L + i],
         table[10 * L + i], table[11 * L + i], table[12 * L + i], table[13 * L + i],
+        table[14 * L + i], table[15 * L + i],
     )  # fmt: skip
 
 
@@ -146,7 +143,7 @@ def joints_for(form: Form) -> Callable:
     softening, residual, drags = parts.softening, parts.residual, parts.dashpots and form.ledger
     velocity = rows = form.freedoms * R
     first_point, point_rows = form.rate_rows * L, form.point_rows * L
-    cohesions, weakening = (2 + softening) * L, parts.weakening
+    cohesions, worn, dilation = (2 + softening) * L, parts.path, parts.dilation
     paths = cohesions + residual * L
 
     @formula
@@ -242,24 +239,36 @@ def joints_for(form: Form) -> Callable:
                 rate, rate_x, rate_z, opening, cohesion, path = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
                 if dashpots:
                     rate, rate_x, rate_z = at_point(q, CENTRED + i, x, z, turns, finite)
+                here = gap
+                if worn:
+                    path = own[paths + i]
+                if dilation:
+                    here = gap - lift(law, path)
                 if softening:
-                    opening = max(own[2 * L + i], gap)
+                    opening = max(own[2 * L + i], here)
                     own[2 * L + i] = opening
                 if residual:
                     cohesion = own[cohesions + i]
-                if weakening:
-                    path = own[paths + i]
-                t_n = normal_traction(law, parts, gap, rate, opening)
-                tau = shear_strength(law, parts, t_n, gap, opening, cohesion, path)
+                t_n = normal_traction(law, parts, here, rate, opening)
+                tau = shear_strength(law, parts, t_n, here, opening, cohesion, path)
                 ex, ez = slip_x - own[i], slip_z - own[L + i]
                 if slides:
-                    _, dx, dz = at_point(q, RATE + i, x, z, turns, finite)
+                    moved, dx, dz = at_point(q, RATE + i, x, z, turns, finite)
                     dx, dz = b.dt * dx, b.dt * dz
                     old_x, old_z = ex - dx, ez - dz
-                    if weakening:
-                        tau, own[paths + i] = path_after(
-                            law, parts, t_n, path, tau, ex, ez, rate_x, rate_z, b.dt
-                        )
+                    if worn:
+                        t_n, tau, further = after_slide(
+                            law, parts, t_n, tau, here, rate, opening, cohesion, path,
+                            ex, ez, rate_x, rate_z, b.dt,
+                        )  # fmt: skip
+                        own[paths + i] = further
+                        if dilation:
+                            up = lift(law, further) - lift(law, path)
+                            if ledger:
+                                q[SLID + i] -= area * lift_work(
+                                    law, parts, here - b.dt * moved, here - up, opening, up
+                                )
+                            here = here - up
                     t_x, t_z, ex, ez, slipped = shear_return(
                         law, parts, ex, ez, old_x, old_z, rate_x, rate_z, tau, b.dt
                     )
@@ -277,7 +286,7 @@ def joints_for(form: Form) -> Callable:
                     b, q, i + 1, x, z, gap, slip_x, slip_z, area * t_x, area * t_n, area * t_z
                 )
                 if drags:  # what is not the springs'
-                    t_n = t_n - spring_traction(law, parts, gap, opening)
+                    t_n = t_n - spring_traction(law, parts, here, opening)
                     t_x, t_z = t_x + law.shear_stiffness * ex, t_z + law.shear_stiffness * ez
                     at = DRAG + i + 1
                     add_force(

@@ -9,7 +9,7 @@ rotations the vector part of the unit quaternion, its angular momentum, and the 
 A row ends with a copy of the first block of the next tile, whose joint with this tile's last block
 is computed here. Rows of history, per joint: the rates of its relative motion half a step before,
 where it has dashpots, and for each contact point its slides along x and z, its largest opening with
-softening, its cohesion where slip reduces it, and the path it has slid where that weakens it.
+softening, its cohesion where slip reduces it, and the path it has slid where that changes it.
 """
 
 from typing import NamedTuple
@@ -80,7 +80,7 @@ class Form(NamedTuple):
     def point_rows(self) -> int:
         """Rows of history for each contact point: slides, opening, cohesion, path."""
         p = self.parts
-        return 2 + p.softening + p.residual + p.weakening if self.points else 0
+        return 2 + p.softening + p.residual + p.path if self.points else 0
 
     @property
     def openings(self) -> slice:

@@ -9,6 +9,8 @@ damping alpha makes forces that turn a velocity round, at every step in the mode
 1 + alpha times as large.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from scipy import sparse
 from scipy.linalg import LinAlgError, cholesky_banded
@@ -20,6 +22,7 @@ from dem.axial.bound import shaking
 from dem.spatial.ends import Face, end_springs, face_stiffness, lever_matrix
 from dem.spatial.layout import STRIDE, unpacked
 from dem.spatial.model import RowModel, RowState
+from joints.dilation import riding_stiffness
 from joints.stability import critical_step
 from numerics.divergence import speed_that
 
@@ -28,7 +31,11 @@ CLOSE_ENOUGH = 1e-12  # relative, to the largest eigenvalue
 
 
 def critical_spatial_step(p: Properties, face: Face, ends: tuple[str, str], turns: bool) -> float:
-    """Return the critical step (s): from M^-1/2 (a K + b C) M^-1/2 with all dashpots."""
+    """Return the critical step (s): from M^-1/2 (a K + b C) M^-1/2 with all dashpots, joints that
+    dilate as stiff as in `joints.dilation.riding_stiffness`."""
+    if p.dilation is not None:
+        normal, shear = riding_stiffness(p.dilation, p.friction, p.stiffness, p.shear_stiffness)
+        p = replace(p, stiffness=normal, shear_stiffness=shear)
     alike = (p.stiffness == p.stiffness[0]).all() and (
         p.shear_stiffness == p.shear_stiffness[0]
     ).all()

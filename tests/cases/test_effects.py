@@ -29,12 +29,15 @@ CALLS = {
     "prestress": {"prestress": {"normal": 1e6}},
 }
 
+DILATES = {"dilation_angle": 5.0, "dilation_distance": 1e-2}
 WEAKENS = {"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3}
 MORE_CALLS = {
     ("spatial motion", "finite rotation"): ACROSS | {"motion.rotation": "finite"},
     ("spatial motion", "slip"): ACROSS | {"joints.friction_angle": 30.0},
     ("spatial motion", "slip", "weakening"): ACROSS
     | {"joints": {"friction_angle": 30.0, **WEAKENS}},
+    ("spatial motion", "slip", "dilation"): ACROSS
+    | {"joints": {"friction_angle": 30.0, **DILATES}},
     ("fixed ends", "shaken base"): {"ends.start": "fixed", "load.quantity": "velocity"},
     ("dashpots", "mass damping"): {"damping": {"rayleigh": RAYLEIGH}},
 }

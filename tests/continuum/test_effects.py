@@ -19,6 +19,7 @@ from continuum.state import state_at_rest
 SUDDEN = {"direction": [0.0, 1.0, 0.0], "static": False}
 SHAKEN = {"shape": "sine", "amplitude": 0.1, "period": 1e-3, "quantity": "velocity"}
 WEAKENS = {"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3}
+DILATES = {"dilation_angle": 5.0, "dilation_distance": 1e-2}
 NEVER = {"dynamic_friction_angle": 0.0, "weakening_distance": 1e-3}
 KEPT = ("opening", "slide", "cohesion", "path")
 BREAKS = {"tensile_strength": 5e6, "fracture_energy": 2000.0}
@@ -148,6 +149,7 @@ def test_alike_undamped_joints_are_one_number(short, ready):
             ("slide", "cohesion"),
         ),
         ({"friction_angle": 30.0, **WEAKENS}, ("slide", "path")),
+        ({"friction_angle": 30.0, **DILATES}, ("slide", "path")),
         (BREAKS, ("opening", "slide")),
     ],
 )

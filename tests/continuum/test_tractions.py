@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from continuum.space.tractions import joint_energy, joint_loads, joint_tangents
+from joints.dilation import lift
 from joints.energy import fracture_energy_spent
 from joints.law import History, Law, law_of, parts_of, table_of, traction
 
@@ -15,6 +16,7 @@ HELD = {"normal_stiffness": 1e9, "shear_stiffness": 4e8}
 DAMPED = {"normal_viscosity": 1e5, "shear_viscosity": 4e4}
 SLIPS = {"cohesion": 1e4, "friction": 0.4}
 WEAKENS = {"dynamic_friction": 0.1, "weakening_distance": 5e-5}
+DILATES = {"dilation": 0.1, "dilation_distance": 8e-5}
 BREAKS = {"tensile_strength": 3e4, "critical_opening": 2e-4}
 LAWS = {
     "elastic": HELD,
@@ -24,6 +26,8 @@ LAWS = {
     "no tension": HELD | {"carries_tension": False},
     "weakens": HELD | SLIPS | WEAKENS,
     "weakens, damped": HELD | DAMPED | SLIPS | WEAKENS,
+    "dilates": HELD | SLIPS | DILATES,
+    "dilates, weakens, damped": HELD | DAMPED | SLIPS | WEAKENS | DILATES,
     "softens, damped": HELD | DAMPED | SLIPS | BREAKS | {"residual_cohesion": 2e3},
 }
 laws = pytest.mark.parametrize("given", LAWS.values(), ids=LAWS)
@@ -39,6 +43,7 @@ class Points:
         if directions == 1:
             away = ("shear_stiffness", "shear_viscosity", "cohesion", "friction")
             away += ("residual_cohesion", "dynamic_friction", "weakening_distance")
+            away += ("dilation", "dilation_distance")
             given = {k: v for k, v in given.items() if k not in away}
         stiffness = given["normal_stiffness"] * random.uniform(1, 2, POINTS)
         self.law = Law(**given | {"normal_stiffness": stiffness})
@@ -62,7 +67,7 @@ class Points:
         self.slide = random.uniform(-5e-5, 5e-5, (directions - 1, POINTS)) if shear else None
         cohesion = shear and self.parts.residual
         self.cohesion = random.uniform(5e3, 1e4, POINTS) if cohesion else None
-        self.path = random.uniform(0, 6e-5, POINTS) if self.parts.weakening else None
+        self.path = random.uniform(0, 6e-5, POINTS) if self.parts.path else None
 
     @property
     def common(self):
@@ -144,12 +149,13 @@ def test_forces_are_those_of_the_law_at_every_point(given, directions, prestress
 def test_tangents_are_the_slopes_of_the_forces(given, directions, prestress):
     """Central differences of 1e-10 m, of forces of 1e4 N: round-off of some 1e-6 of a tangent, and
     the curvature of what slips about as little."""
-    points, found = Points(given, directions, prestress), np.zeros((6, POINTS))
+    points = Points(given, directions, prestress)
+    found = np.zeros((8 if points.parts.dilation else 6, POINTS))
     points.slip_rate[:] = 0.0  # what the step adds is in the jump
     rate = points.rate_at(points.jump)
     joint_tangents(*points.common, points.jump, rate, *points.history, DT, RATE, found)
-    nn, xn, zn, xx, xz, zz = found
-    whole = np.array([[nn, 0 * nn, 0 * nn], [xn, xx, xz], [zn, xz, zz]])[:directions, :directions]
+    nn, xn, zn, xx, xz, zz, nx, nz = (*found, 0 * found[0], 0 * found[0])[:8]
+    whole = np.array([[nn, nx, nz], [xn, xx, xz], [zn, xz, zz]])[:directions, :directions]
     for d in range(directions):
         forces = []
         for size in (1e-10, -1e-10):
@@ -168,10 +174,10 @@ def test_energy_is_what_springs_hold_and_cracks_have_spent(given, directions, pr
     """Half of what a joint carries in all times its elastic length, from where it carries nothing;
     and p u, what the prestress p of the rock around it gains where its faces move apart by u."""
     points = Points(given, directions, prestress)
-    loads, _, (opening, slide, *_), _ = points.loads(points.jump)
+    loads, _, (opening, slide, _, path), _ = points.loads(points.jump)
     stored, spent = joint_energy(
         points.parts, directions, points.table, points.area, points.prestress, points.jump,
-        opening, slide, loads,
+        opening, slide, path, loads,
     )  # fmt: skip
     expected, cracks = 0.0, 0.0
     for q in range(POINTS):
@@ -179,6 +185,8 @@ def test_energy_is_what_springs_hold_and_cracks_have_spent(given, directions, pr
         p, jump = points.carried(q), points.jump[:, q]
         length = jump.copy()
         length[0] -= p[0] / law.normal_stiffness
+        if points.parts.dilation:
+            length[0] -= lift(law, path[q])
         if slide is not None:
             length[1:] -= slide[:, q]
         expected += area * p @ jump - (loads[:, q] + area * p) @ length / 2

@@ -21,6 +21,9 @@ LAWS = {
     "all of shear": WHOLE._replace(tensile_strength=None, critical_opening=None),
     "closure": ELASTIC._replace(**CLOSES),
     "all of softening, closure": WHOLE._replace(carries_tension=None, **CLOSES),
+    "dilation": WHOLE._replace(
+        dynamic_friction=0.2, weakening_distance=2e-3, dilation=0.2, dilation_distance=2e-3
+    ),
     "weakening": WHOLE._replace(dynamic_friction=0.2, weakening_distance=2e-3),
     "all of softening": WHOLE._replace(carries_tension=None),
 }
@@ -44,7 +47,7 @@ def kernel_of(parts):
             for k in range(5):
                 memory[k, i] = after[k]
             found = tangent(law, parts, *step, rate, DT, before, r)
-            for k in range(6):
+            for k in range(8):
                 slope[k, i] = found[k]
 
     return load
@@ -67,7 +70,7 @@ def test_kernel_is_python_and_is_vectorised(one, varied):
     if varied:
         one = Law(*(None if part is None else np.full(N, part) for part in one))
     table, parts, (motion, memory) = table_of(one), parts_of(one), points()
-    force, slope, after = np.zeros((3, N)), np.zeros((6, N)), memory.copy()
+    force, slope, after = np.zeros((3, N)), np.zeros((8, N)), memory.copy()
     kernel = kernel_of(parts)
     kernel(table, motion, after, force, slope, 1e3)
     for i in range(N):

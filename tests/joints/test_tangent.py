@@ -9,6 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from joints.closure import closing, closure_stiffness
+from joints.dilation import lift
 from joints.law import History, Law, law_of, parts_of, table_of, traction
 from joints.normal import normal_traction, spring_alone
 from joints.shear import shear_strength, shear_traction
@@ -20,12 +21,15 @@ EPS = np.finfo(float).eps
 SHARE = 1e-5  # step of a central difference, of the length over which the law bends
 
 # What limits the shear traction, by letter: cohesion, friction, residual cohesion, dynamic friction
-# with its weakening distance. None: no shear.
-SHEARS = (None, "", "c", "f", "cf", "cfr", "fdw", "cfrdw")
+# with its weakening distance, dilation (i) with its distance (I). None: no shear.
+SHEARS = (None, "", "c", "f", "cf", "cfr", "fdw", "cfrdw", "fiI", "cfdwiI")
 COMBINATIONS = [
     *product(("", "dashpots"), ("ties", "no tension", "softening"), SHEARS),
     *product(("", "dashpots"), ("closes", "closes, no tension", "closes, softening"), (None, "cf")),
 ]
+
+
+FIELDS = {"iangle": "dilation", "Idistance": "dilation_distance"}
 
 
 def some(low, high):
@@ -55,7 +59,12 @@ def one_law(draw, dashpots, opens, shears):
         wanted = {"cohesion": cohesion, "friction": draw(some(0, 2)), "residual_cohesion": cohesion}
         wanted["dynamic_friction"] = wanted["friction"] * draw(some(0, 0.9))
         wanted["weakening_distance"] = 1e-4 * draw(some(0.1, 10))
-        parts.update((name, value) for name, value in wanted.items() if name[0] in shears)
+        least = wanted["dynamic_friction"] if "d" in shears else wanted["friction"]
+        wanted["iangle"] = least * draw(some(0, 1))
+        wanted["Idistance"] = 1e-4 * draw(some(0.1, 10))
+        parts.update(
+            (FIELDS.get(name, name), value) for name, value in wanted.items() if name[0] in shears
+        )
     law = Law(k, k * eta if dashpots else None, False if "no tension" in opens else None, **parts)
     slips = (0.0, 0.0) if shears is None else (1e-4 * draw(some(-1, 1)), 1e-4 * draw(some(-1, 1)))
     history = History(before, *slips, cohesion, 1e-4 * draw(some(0, 1)))
@@ -86,8 +95,8 @@ class Step:
     def tangent(self):
         """Return the tangent as a matrix [traction, displacement]."""
         nn, *shear = tangent(*self.arguments(self.at), DT, self.history, self.r)
-        xn, zn, xx, xz, zz = shear
-        return np.array([[nn, 0, 0], [xn, xx, xz], [zn, xz, zz]])
+        xn, zn, xx, xz, zz, nx, nz = shear
+        return np.array([[nn, nx, nz], [xn, xx, xz], [zn, xz, zz]])
 
     def trial(self, at):
         """Return the trial shear traction, Pa."""
@@ -98,6 +107,8 @@ class Step:
     def branch(self, at):
         """Return on which side of every kink of the law a state is."""
         law, parts, gap, gap_rate, *_ = self.arguments(at)
+        if parts.dilation:
+            gap = gap - lift(law, self.history.path)
         opening, left, share = max(self.history.opening, gap), np.inf, 1.0
         t_n = normal_traction(law, parts, gap, gap_rate, opening)
         if parts.softening:
@@ -112,8 +123,11 @@ class Step:
             h = self.history
             tau = shear_strength(law, parts, t_n, gap, opening, h.cohesion, h.path)
             signs += [tau > 0, hypot(*self.trial(at)) > tau]
+            after = self.after(at)
             if parts.weakening:
-                signs += [self.after(at)[3].path < law.weakening_distance]
+                signs += [after[3].path < law.weakening_distance]
+            if parts.dilation:
+                signs += [after[3].path < law.dilation_distance, after[3].path > h.path]
         return signs
 
 
@@ -165,6 +179,14 @@ def test_tangent_is_the_derivative(dashpots, opens, shears, data):
             bound += curved * np.array([1, law.friction or 0.0, law.friction or 0.0])
         else:
             bound[1:] += 1.5 * SHARE**2 * a
+        if law.dilation is not None:
+            # All tractions meet in each; a slide enlarges round-off as it does the tangent, and its
+            # own lengths, D_w and D, are some 1e5 steps.
+            lifted = law.dilation * law.dilation_distance + abs(gap)
+            lifted *= law.normal_stiffness + viscosity * max(r, 1 / DT)
+            steep = np.abs(found).max() / min(law.normal_stiffness, law.shear_stiffness) + 1
+            bound = bound + 32 * EPS * steep * (sums.sum() + lifted) / h
+            bound += 1e-6 * np.abs(found).max()
         assert (np.abs(difference - found[:, i]) <= bound).all()
 
 
@@ -220,7 +242,7 @@ def test_shear_turns_and_grows_with_the_pressure_once_it_slips():
     """At 3-4-5 on the surface: no stiffness along the slip, tau / |T*| of it across, and
     friction carries the normal stiffness over."""
     at = (1.2 * LIMIT, -1.6 * LIMIT)  # twice the limit, towards (0.6, -0.8)
-    nn, xn, zn, *shear = tangent(
+    nn, xn, zn, *shear, _, _ = tangent(
         *at_point(COULOMB), CLOSED, 0.0, at, (0.0, 0.0), DT, History(), 0.0
     )
     n = np.array([-0.6, 0.8])

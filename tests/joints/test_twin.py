@@ -125,17 +125,27 @@ def twin_shear_strength(law, t_n, gap, opening=None, cohesion=None, path=0.0):
     return max(c + t_n * twin_friction(law, t_n, path), 0.0)
 
 
-def twin_slide(law, t_n, size, strength, path, dt):
+def twin_lift(law, path):
+    """Return w (m): the area under the tangent of the dilation angle, which falls linearly."""
+    if law.dilation is None:
+        return 0.0
+    end = min(path, law.dilation_distance)
+    left = law.dilation * (1 - end / law.dilation_distance)
+    return (law.dilation + left) / 2 * end
+
+
+def twin_slide(law, wears, size, strength, path, dt):
     """Return the path (m) after a step of trial traction `size`, Pa: where spring and dashpot,
-    unloaded by the slide, carry the strength (a function of the path) that is left there."""
-    if law.weakening_distance is None or t_n <= 0 or size <= strength(path):
+    unloaded by the slide, carry the strength (a function of the path) that is there."""
+    if not wears or size <= strength(path):
         return path
     a = law.shear_stiffness + (law.shear_viscosity or 0.0) / dt
 
     def left(slide):
         return size - a * slide - strength(path + slide)
 
-    return path + brentq(left, 0.0, size / a, xtol=1e-300, rtol=4 * np.finfo(float).eps)
+    most = size / a * (1 + 1e-15)  # beyond the root by round-off at least
+    return path + brentq(left, 0.0, most, xtol=1e-300, rtol=4 * np.finfo(float).eps)
 
 
 def twin_shear_traction(law, slip_x, slip_z, rate_x, rate_z):
@@ -188,18 +198,26 @@ def twin_traction(
 
     The first slip of a point leaves no more than the residual cohesion.
     """
-    opening, cohesion = max(history.opening, gap), history.cohesion
-    t_n = twin_normal_traction(law, gap, gap_rate, opening)
+    before = twin_lift(law, history.path)
+    opening, cohesion = max(history.opening, gap - before), history.cohesion
+
+    def normal(path):
+        lift = twin_lift(law, path)
+        return twin_normal_traction(law, gap - lift, gap_rate - (lift - before) / dt, opening)
+
+    t_n = normal(history.path)
     if law.shear_stiffness is None:
         return t_n, 0.0, 0.0, history._replace(opening=opening)
     trial = history.ex + slip[0], history.ez + slip[1]
 
     def strength(path):
-        return twin_shear_strength(law, t_n, gap, opening, cohesion, path)
+        lifted = gap - twin_lift(law, path)
+        return twin_shear_strength(law, normal(path), lifted, opening, cohesion, path)
 
     size = hypot(*twin_shear_traction(law, *trial, *slip_rate))
-    path = twin_slide(law, t_n, size, strength, history.path, dt)
-    tau = strength(path)
+    wears = (law.weakening_distance or law.dilation_distance) and t_n > 0 and gap <= before
+    path = twin_slide(law, wears, size, strength, history.path, dt)
+    t_n, tau = normal(path), strength(path)
     t_x, t_z, ex, ez, slipped = twin_shear_return(
         law, *trial, history.ex, history.ez, *slip_rate, tau, dt
     )
@@ -260,13 +278,13 @@ def twin_fracture_energy_spent(law, opening):
 
 
 # What limits the shear traction, by letter: cohesion, friction, residual cohesion, dynamic friction
-# with its weakening distance. None: no shear.
-SHEARS = (None, "", "c", "f", "cf", "cr", "cfr", "fdw", "cfrdw")
+# with its weakening distance, dilation (i) with its distance (I). None: no shear.
+SHEARS = (None, "", "c", "f", "cf", "cr", "cfr", "fdw", "cfrdw", "fiI", "cfdwiI")
 OPENS = ("ties", "no tension", "softening")
 CLOSES = ("closes", "closes between rock")
 COMBINATIONS = [
     *product(("", "dashpots"), OPENS, SHEARS),
-    *product(("", "dashpots"), CLOSES, (None, "cfr", "cfdw")),
+    *product(("", "dashpots"), CLOSES, (None, "cfr", "cfdw", "fdwiI")),
     ("dashpots", "closes, no tension", "f"),
     ("dashpots", "closes, softening", "cf"),
 ]
@@ -294,6 +312,9 @@ def one_law(draw, dashpots, opens, shears):
         wanted["dynamic_friction"] = wanted["friction"] * some(0, 1)
         wanted["weakening_distance"] = 1e-4 * some(0.01, 10)
         parts.update((name, value) for name, value in wanted.items() if name[0] in shears)
+        if "i" in shears:
+            least = parts.get("dynamic_friction", wanted["friction"])
+            parts["dilation"], parts["dilation_distance"] = least * some(0, 1), 1e-4 * some(0.1, 10)
     eta = some(1e-9, 1e-3) if dashpots else None
     return law(stiffness, eta, np.array(["no tension" not in opens]), **parts)
 
@@ -350,12 +371,31 @@ def on_the_edge(one, t_n, step, h, opening, scale):
 
 def steepness(one, t_n):
     """Return by how much a step's own fall of the strength enlarges what round-off does to it."""
-    if one.weakening_distance is None:
-        return 1.0
-    a = one.shear_stiffness + (one.shear_viscosity or 0.0) / DT
-    fall = max(t_n, 0.0) * (one.friction - one.dynamic_friction) / one.weakening_distance
+    a, fall, press = one.shear_stiffness + (one.shear_viscosity or 0.0) / DT, 0.0, 0.0
+    if one.weakening_distance is not None:
+        fall = max(t_n, 0.0) * (one.friction - one.dynamic_friction) / one.weakening_distance
+    if one.dilation is not None:
+        # Where both act, a joint could carry what it does at more than one path.
+        press = one.dilation * (one.normal_stiffness + (one.normal_viscosity or 0.0) / DT)
+        assume(one.weakening_distance is None or fall < a)
     assume(abs(a - fall) > 1e-3 * a)
-    return a / abs(a - fall) + 1
+    return (1 + press * (1 + one.friction) / a) * (a / abs(a - fall) + 1)
+
+
+def worn(one, t_n, step, h, n, s):
+    """Return the scales n and s of a joint that slip changes: its normal traction has the error of
+    the lift, and all of them what the slide makes of it."""
+    if one.dilation is not None:
+        lift = one.dilation * one.dilation_distance
+        n += (one.normal_stiffness + (one.normal_viscosity or 0.0) / DT) * (lift + abs(step[0]))
+        if one.maximum_closure is not None:  # the hyperbola is as steep as where it is closed most
+            law = at_point(one)[0]
+            closed = closure_stiffness(law, max(t_n, 0.0))
+            n += closed * (abs(step[0]) + lift)
+            s *= 1 + closed * one.dilation / one.shear_stiffness
+        s += one.friction * n
+    steep = steepness(one, t_n)
+    return n * steep + s * steep * (one.dilation or 0.0), s * steep
 
 
 @pytest.mark.parametrize(("dashpots", "opens", "shears"), COMBINATIONS)
@@ -369,14 +409,14 @@ def test_law_equals_its_twin(dashpots, opens, shears, data):
         n, s = scales(one, *step, h)
         t_n, t_x, t_z, after = traction(*point, *step, DT, h)
         r_n, r_x, r_z, expected = twin_traction(one, *step, DT, h)
-        if one.weakening_distance is not None:
+        if at_point(one)[1].path:
             assume(not on_the_edge(one, r_n, step, h, expected.opening, s))
-            s *= steepness(one, r_n)
+            n, s = worn(one, r_n, step, h, n, s)
             near(after.path, expected.path, h.path + s / one.shear_stiffness)
         near(t_n, r_n, n)
         near(t_x, r_x, s)
         near(t_z, r_z, s)
-        assert after.opening == expected.opening
+        near(after.opening, expected.opening, abs(step[0]) + (one.dilation_distance or 0.0))
         if one.shear_stiffness is not None:
             near(after.ex, expected.ex, s / one.shear_stiffness)
             near(after.ez, expected.ez, s / one.shear_stiffness)
@@ -421,9 +461,10 @@ def test_unlike_joints_behave_as_if_alone(data):
         data.draw(one_law("dashpots", "closes between rock", "cf")),
         data.draw(one_law("dashpots", "softening", "cfr")),
         data.draw(one_law("dashpots", "softening", "cfdw")),
+        data.draw(one_law("dashpots", "softening", "cfiI")),
     ]
     without = {"friction": 0.0, "carries_tension": True, "rock_compliance": 0.0}
-    without |= {"dynamic_friction": 0.0}
+    without |= {"dynamic_friction": 0.0, "dilation": 0.0}
     parts = {
         name: np.array(
             [
@@ -441,9 +482,12 @@ def test_unlike_joints_behave_as_if_alone(data):
         for step in path:
             *t_alone, a = traction(*single, *step, DT, a)
             *t_mixed, b = traction(*among, *step, DT, b)
+            if single[1].dilation:  # by Newton's method: to its last step
+                assert (*t_mixed, *b) == pytest.approx((*t_alone, *a), rel=1e-9, abs=1e-9)
+                continue
             assert t_alone == t_mixed
             assert (a.ex, a.ez) == (b.ex, b.ez)
-            assert a.path == b.path or one.weakening_distance is None
+            assert a.path == b.path or not single[1].path
 
 
 def test_alike_joints_become_one_number_and_absent_parts_none():
@@ -462,8 +506,8 @@ def test_alike_joints_become_one_number_and_absent_parts_none():
     )
     assert mixed.normal_stiffness.tolist() == [1, 2]
     assert mixed.normal_viscosity.tolist() == [0.5, 1]
-    assert law_of(table_of(mixed), 1) == Law(2.0, 1.0, 0.0, 4.0, 2.0, 0.0, 0.5, *7 * [0.0])
-    assert table_of(mixed).shape == (14, 2) and table_of(Law(9e9)).shape == (14, 1)
+    assert law_of(table_of(mixed), 1) == Law(2.0, 1.0, 0.0, 4.0, 2.0, 0.0, 0.5, *9 * [0.0])
+    assert table_of(mixed).shape == (16, 2) and table_of(Law(9e9)).shape == (16, 1)
     assert parts_of(mixed).varied and not parts_of(Law(9e9)).varied
     assert uniform(np.array([3.0, 3.0])) == 3.0
     assert uniform(None) is None

@@ -42,6 +42,12 @@ IN_SPACE = {
         "joints.dynamic_friction_angle": 2.0,
         "joints.weakening_distance": 1e-3,
     },
+    "slip that lifts": {
+        "joints.friction_angle": 5.0,
+        "joints.cohesion": 1e3,
+        "joints.dilation_angle": 2.0,
+        "joints.dilation_distance": 1e-3,
+    },
     "no tension": {"joints.tension": False},
     "softening": {"joints.tensile_strength": 1e9, "joints.fracture_energy": 1e9},
     "closure": {"joints.maximum_closure": 1e-3},

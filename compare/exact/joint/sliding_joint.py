@@ -10,13 +10,12 @@ and a joint as stiff as the others is rigid before it slips: s = sigma_I, cut of
 Bull. Seism. Soc. Am. 68, 1978, for the harmonic wave). s leaves the linear solution only where it
 reaches tau while |sigma_I| > tau, once between two crossings of sigma_I with +-tau, and clings to
 tau up to the next; from crossing to crossing it is integrated exactly. Where slip weakens the
-joint, `compare.exact.joint.weakening_joint` integrates it.
+joint, `compare.exact.joint.worn_joint` integrates it.
 
 Holds for blocks that do not turn, a load across the axis, ends that absorb, one joint with cohesion
 or with friction under the prestress, and all else elastic and undamped.
 """
 
-from collections.abc import Callable
 from functools import cache
 from itertools import pairwise
 from math import asin, ceil, cos, exp, inf, isfinite, pi, sin, sqrt
@@ -39,7 +38,7 @@ from compare.exact.linear import bound
 from compare.solvers.record import ALONE, Answer, Kind, Rock, Solver, Words, no, thin
 from results.dataset import dataset
 
-HELD = ("spatial motion", "prestress", "fixed start", "weakening", *LAYERS)
+HELD = ("spatial motion", "prestress", "fixed start", "weakening", "dilation", *LAYERS)
 _gauss = cache(leggauss)
 ROUND_OFF = 1e-11  # of the largest waveform: the roots' tolerance
 TOLERANCES = 1e-11, 1e-9  # of the integration where slip weakens the joint, and of its twin
@@ -48,13 +47,21 @@ FORGOTTEN = 40.0  # time constants after which exp has lost all digits
 
 class SlipJoint(NamedTuple):
     """A joint: y (m), the compliance 1/K that it adds (m/Pa), its strength tau (Pa), and the path
-    of slip (m) that leaves the dynamic one (Pa)."""
+    of slip (m) that leaves the dynamic one (Pa).
+
+    friction, dynamic_friction : tan(phi) of both. dilation, dilation_distance : tan(psi) at first,
+    and the path (m) that leaves none.
+    """
 
     y: float
     compliance: float
     strength: float
     dynamic: float = 0.0
     distance: float = inf
+    friction: float = 0.0
+    dynamic_friction: float = 0.0
+    dilation: float = 0.0
+    dilation_distance: float = inf
 
     @property
     def fall(self) -> float:
@@ -64,6 +71,25 @@ class SlipJoint(NamedTuple):
     def left(self, path: Any) -> Any:
         """Return the strength (Pa) after a path of slip (m)."""
         return self.strength - self.fall * np.minimum(path, self.distance)
+
+    def friction_at(self, path: Any) -> Any:
+        """Return tan(phi) after a path of slip (m)."""
+        fall = (self.friction - self.dynamic_friction) / self.distance
+        return self.friction - fall * np.minimum(path, self.distance)
+
+    def lift(self, path: Any) -> Any:
+        """Return what a path of slip (m) opens the joint by, m."""
+        way = np.minimum(path, self.dilation_distance)
+        return self.dilation * way * (1 - way / self.dilation_distance / 2)
+
+    def lift_rate(self, path: Any) -> Any:
+        """Return the rate of that with the path."""
+        return self.dilation * np.maximum(1 - path / self.dilation_distance, 0.0)
+
+    def scaled(self, factor: float) -> "SlipJoint":
+        """Return the joint for stresses and slips less by this factor: both are homogeneous."""
+        names = ("strength", "dynamic", "distance", "dilation_distance")
+        return self._replace(**{name: getattr(self, name) / factor for name in names})
 
 
 def applies(scene: Scene) -> Answer:
@@ -81,6 +107,10 @@ def applies(scene: Scene) -> Answer:
         (bool(compliance[~slips].any()), "a joint that cannot slip differs in stiffness"),
         (bool((compliance < 0).any()), "the joint is stiffer than the others"),
         (_snaps(scene, p), "the joint is softer than its friction falls with slip"),
+        (
+            p.dilation is not None and bool(compliance.any() or p.excess_compliance.any()),
+            "the joint that dilates is softer than the others",
+        ),
     )
 
 
@@ -95,16 +125,13 @@ def solve(scene: Scene) -> xr.Dataset:
     """Return shear, velocity and displacement on both sides of the joint that slips."""
     p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
     joint, enters = the_joint(scene, p), ENTERS[scene.ends.start]
-    # Slip is positively homogeneous.
-    scaled = joint._replace(
-        strength=joint.strength / enters,
-        dynamic=joint.dynamic / enters,
-        distance=joint.distance / enters,
-    )
+    scaled = joint.scaled(enters)
+    is_worn = isfinite(joint.distance) or joint.dilation > 0
 
     def waveforms(parts: int) -> dict[str, np.ndarray]:
-        if isfinite(joint.distance):
-            passed = _weakened(scaled, p.shear_impedance, load, times[-1], TOLERANCES[parts - 1])
+        worn = None
+        if is_worn:
+            passed = worn = _worn(scaled, p, load, times[-1], TOLERANCES[parts - 1])
         else:
 
             def passed(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -118,22 +145,40 @@ def solve(scene: Scene) -> xr.Dataset:
         shear = (there + back)[..., None] * load_axis(scene)[[0, 2]]
         there, back = waves(scene.record.velocity)
         velocity, displacement = (there - back)[..., None] / p.shear_impedance * load_axis(scene)
-        return {"shear": shear, "velocity": velocity, "displacement": displacement}
+        own = {"shear": shear, "velocity": velocity, "displacement": displacement}
+        return own if worn is None else own | _lifted(scene, p, joint.y, worn, enters, own)
 
     found, twin = waveforms(1), waveforms(2)
     errors = {name: _bound(found[name], twin[name]) for name in found}
     normal = scene.prestress.normal if scene.prestress else 0.0
     stress = np.full((len(scene.record.stress), len(times)), normal)
+    stress = stress + found.pop("stress", 0.0)
     rotation = np.zeros_like(found["velocity"])
     return dataset(scene, SOLVER.name, times, stress, **found, rotation=rotation, errors=errors)
 
 
-def _weakened(
-    joint: SlipJoint, impedance: float, load: LoadHistory, end: float, tolerance: float
-) -> Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]:
-    from compare.exact.joint.weakening_joint import Passed
+def _lifted(
+    scene: Scene, p: Properties, joint_y: float, worn: Any, enters: float, waves: dict
+) -> dict[str, np.ndarray]:
+    """Return stress, velocity and displacement with the pressure that the joint sends off along the
+    axis on both sides as slip lifts it; waves : what it sends along itself."""
+    times = sample_times(scene)
 
-    return Passed(joint, impedance, load, end, tolerance)
+    def pressure(places: list[float]) -> np.ndarray:
+        late = np.abs(np.array(places)[:, None] - joint_y) / p.bar_speed
+        return enters * np.array(worn.pressure(times - joint_y / p.shear_speed - late))
+
+    found = {key: waves[key].copy() for key in ("velocity", "displacement")}
+    side = np.sign(np.array(scene.record.velocity) - joint_y)[:, None] / p.impedance
+    for key, sent in zip(found, pressure(scene.record.velocity), strict=True):
+        found[key][..., 1] += side * sent
+    return found | {"stress": pressure(scene.record.stress)[0]}
+
+
+def _worn(joint: SlipJoint, p: Properties, load: LoadHistory, end: float, tolerance: float) -> Any:
+    from compare.exact.joint.worn_joint import Passed
+
+    return Passed(joint, p.shear_impedance, load, end, tolerance, p.impedance)
 
 
 def _finer(times: np.ndarray, parts: int) -> np.ndarray:
@@ -143,10 +188,12 @@ def _finer(times: np.ndarray, parts: int) -> np.ndarray:
 
 
 def _bound(one: np.ndarray, twin: np.ndarray) -> np.ndarray:
-    """Return the bound of the error of waveforms [receiver, n, axis] whose twin has half as long
-    intervals, in which it integrates and seeks where the joint begins and ends to slip."""
+    """Return the bound of the error of waveforms [receiver, n, axis], or [receiver, n], whose twin
+    has half as long intervals, in which it integrates and seeks where the joint begins and ends to
+    slip."""
     peak = np.abs(one).max(initial=0.0)
-    return bound(one.swapaxes(1, 2), twin.swapaxes(1, 2)) + ROUND_OFF * peak
+    own, other = (np.moveaxis(x, 1, -1) for x in (one, twin))
+    return bound(own, other) + ROUND_OFF * peak
 
 
 def load_axis(scene: Scene) -> np.ndarray:
@@ -162,10 +209,17 @@ def the_joint(scene: Scene, p: Properties) -> SlipJoint:
     friction = 0.0 if p.friction is None else float(p.friction[j])
     strength = max(cohesion + friction * normal, 0.0)
     found = SlipJoint(float(p.joint_y[j]), float(_excess_compliance(p)[j]), strength)
-    if p.weakening_distance is None or p.dynamic_friction is None or normal <= 0:
+    found = found._replace(friction=friction, dynamic_friction=friction)
+    if normal <= 0:
         return found
-    dynamic = cohesion + float(p.dynamic_friction[j]) * normal
-    return found._replace(dynamic=dynamic, distance=float(p.weakening_distance[j]))
+    if p.dilation is not None and p.dilation_distance is not None:
+        dilation, distance = float(p.dilation[j]), float(p.dilation_distance[j])
+        found = found._replace(dynamic=strength, dilation=dilation, dilation_distance=distance)
+    if p.weakening_distance is None or p.dynamic_friction is None:
+        return found
+    left, distance = float(p.dynamic_friction[j]), float(p.weakening_distance[j])
+    dynamic = cohesion + left * normal
+    return found._replace(dynamic=dynamic, distance=distance, dynamic_friction=left)
 
 
 def _slips(p: Properties) -> np.ndarray:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from cases.effects import active_effects
 from cases.errors import SceneError
 from cases.kinds import Either, checked
-from cases.material.strength import SLIP, SOFTENING, WEAKENING
+from cases.material.strength import DILATION, SLIP, SOFTENING, WEAKENING
 from cases.plane.effects import SIDES
 from cases.schema.scene import Scene
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 #: Effects that are nothing without another one.
-NEEDS: dict[str | None, str] = {"weakening": "slip"}
+NEEDS: dict[str | None, str] = {"weakening": "slip", "dilation": "slip"}
 
 
 def left_out(scene: Either, name: str) -> Either:
@@ -98,8 +98,9 @@ WITHOUT: dict[str, Change] = {
     "energy ledger": _table("record", energy=False),
     "field output": _table("record", fields=None),
     "finite rotation": _table("motion", rotation="small"),
-    "slip": _joints(**dict.fromkeys((*SLIP, *WEAKENING))),
+    "slip": _joints(**dict.fromkeys((*SLIP, *WEAKENING, *DILATION))),
     "weakening": _joints(**dict.fromkeys(WEAKENING)),
+    "dilation": _joints(**dict.fromkeys(DILATION)),
     "softening": _joints(**dict.fromkeys(SOFTENING)),
     "mass damping": _table("damping", mass_proportional=None, rayleigh=None),
     "local damping": _table("damping", local=None),

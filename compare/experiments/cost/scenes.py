@@ -31,6 +31,8 @@ EVERYTHING = {
     "joints.residual_cohesion": 0.0,
     "joints.dynamic_friction_angle": 20.0,
     "joints.weakening_distance": 1e-3,
+    "joints.dilation_angle": 5.0,
+    "joints.dilation_distance": 1e-2,
     "joints.tensile_strength": 1e5,
     "joints.fracture_energy": 100.0,
     "joints.maximum_closure": 1e-3,
@@ -61,6 +63,7 @@ EVERYTHING_IN_PLANE: dict[str, Any] = {
 }
 FRICTION = {"damping_ratio": 0.02, "maximum_closure": 1e-3, "friction_angle": 30.0, "cohesion": 1e6}
 FRICTION |= {"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3}
+FRICTION |= {"dilation_angle": 5.0, "dilation_distance": 1e-2}
 #: The joints along y and along x of that.
 FAILING = (
     ELASTIC | FRICTION | {"residual_cohesion": 0.0, "tension": False},

@@ -53,6 +53,13 @@ def _breaking() -> list[HardCase]:
             HOMOGENEOUS,
             scene=ALL,
         ),
+        HardCase(
+            f"the ledger of {mixed}, lifted by slip",
+            contact.ledger,
+            {"joints.dilation_angle": 10.0, "joints.dilation_distance": 1e-3},
+            HOMOGENEOUS,
+            scene=ALL,
+        ),
         HardCase(f"the ledger of {mixed}", contact.ledger, {}, HOMOGENEOUS, scene=ALL),
     ]
 

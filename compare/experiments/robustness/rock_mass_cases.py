@@ -126,12 +126,17 @@ def _sliding() -> list[HardCase]:
     changes = _met(_bricks(0.5, friction_angle=15.0), 6.0, strong)
     changes |= {"prestress": {"xx": 8e6, "yy": 8e6}, "numerics.continuum.size": 1.0}
     less = {"dynamic_friction_angle": 5.0, "weakening_distance": 1e-4}
+    lifts = {"dilation_angle": 8.0, "dilation_distance": 1e-3}
+    lifted = changes | {"joint_sets": _bricks(0.5, friction_angle=15.0, **lifts)}
     weakens = changes | {"joint_sets": _bricks(0.5, friction_angle=15.0, **less)}
     name = "T-junctions of brickwork that slide"
     return [
         at_one_joint(name, rock_masses.within_friction, changes, EXPLICIT),
         at_one_joint(f"the ledger of {name}", rock_masses.balanced, changes, EXPLICIT),
         at_one_joint(f"{name}, less friction by slip", energies.passive, weakens, EXPLICIT),
+        at_one_joint(
+            f"the ledger of {name}, lifted by slip", rock_masses.balanced, lifted, EXPLICIT
+        ),
     ]
 
 

@@ -11,6 +11,7 @@ def law_words(law: JointLaw) -> str:
         f"closure at most {1e3 * law.maximum_closure:g} mm" if law.maximum_closure else "",
         f"friction {law.friction_angle:g}°" if law.friction_angle is not None else "",
         f"dynamic friction {law.dynamic_friction_angle:g}°" if law.weakening_distance else "",
+        f"dilation {law.dilation_angle:g}°" if law.dilation_angle else "",
         f"tensile strength {law.tensile_strength / 1e6:g} MPa" if law.tensile_strength else "",
     ]
     return ", ".join(part for part in parts if part)

@@ -38,6 +38,14 @@ def test_a_plain_scene_calls_for_its_sides_its_waves_and_its_ledger(mass):
             "weakening",
         ),
         (
+            {
+                "joint_sets__0__friction_angle": 30.0,
+                "joint_sets__0__dilation_angle": 5.0,
+                "joint_sets__0__dilation_distance": 1e-2,
+            },
+            "dilation",
+        ),
+        (
             {"joint_sets__0__tensile_strength": 1e5, "joint_sets__0__fracture_energy": 10.0},
             "softening",
         ),

@@ -29,6 +29,7 @@ STIFF_SLIPS = [{"y": 20.0, "cohesion": 1e5, "shear_stiffness": 1e12}]
 WEAKENS = {"friction_angle": 35.0, "dynamic_friction_angle": 15.0, "weakening_distance": 1e-3}
 SNAPS = {"y": 20.0, "shear_stiffness": 1e8} | WEAKENS
 PRESSED = SHEAR | {"prestress": {"normal": 1e6}}
+DILATES = {"y": 20.0, "friction_angle": 35.0, "dilation_angle": 5.0, "dilation_distance": 1e-3}
 SOFT_SHEAR = [*SLIPS, {"y": 30.0, "shear_stiffness": 1e8}]
 SLOPE = {
     "pillar": {"length": 1.0},
@@ -53,6 +54,7 @@ YES = [
     ("spatial-lattice", ACROSS | DAMPED | {"soft_layers": LAYER, "ends": {"end": "quiet"}}),
     ("slip-joint", SHEAR | {"soft_layers": SLIPS, "time": {"duration": 0.04}}),
     ("slip-joint", PRESSED | {"soft_layers": [{"y": 20.0} | WEAKENS], "time": {"duration": 0.04}}),
+    ("slip-joint", PRESSED | {"soft_layers": [DILATES], "time": {"duration": 0.04}}),
     ("sliding-block", SLOPE),
 ]
 NO = [
@@ -143,6 +145,11 @@ NO = [
         "slip-joint",
         PRESSED | {"soft_layers": [SNAPS]},
         "the joint is softer than its friction falls with slip",
+    ),
+    (
+        "slip-joint",
+        PRESSED | {"soft_layers": [DILATES | {"spacing_stiffness": 4.375e8}]},
+        "the joint that dilates is softer than the others",
     ),
     (
         "slip-joint",

@@ -10,7 +10,7 @@ from cases.material.calibrate import calibrate
 from compare.exact.bar import images
 from compare.exact.joint import one_joint, sliding_joint
 from compare.exact.joint.sliding_joint import SlipJoint, transmitted
-from compare.exact.joint.weakening_joint import Passed
+from compare.exact.joint.worn_joint import Passed
 
 Z = 2400.0 * 800.0
 OMEGA = 2 * np.pi / 0.01
@@ -144,6 +144,25 @@ def test_a_joint_that_weakens_keeps_the_balance_of_energy(compliance):
     spent = trapezoid((s**2 + (s - incident) ** 2) / Z, times) + mean @ slide
     whole = trapezoid(incident**2 / Z, times)
     assert abs(spent + compliance * s[-1] ** 2 / 2 - whole) < 2.5e-4 * whole
+
+
+def test_a_joint_that_is_lifted_keeps_the_balance_of_energy():
+    """int sigma_I^2/Z = int (sigma_T^2 + sigma_R^2)/Z + 2 int p^2/Z_n + int (|s| - (n + p) w') dS +
+    n w: what the pressure sends off on both sides, friction, the way against the prestress n."""
+    load, times, n, z_n = Sine(1e6, 0.01, 3), np.linspace(0.0, 0.05, 40_001), 1e6, 5.28e6
+    joint = SlipJoint(0.0, 0.0, 6e5, 3e5, 4e-3, 0.6, 0.3, 0.25, 3e-3)
+    one = Passed(joint, Z, load, times[-1], 1e-11, z_n)
+    (s, impulse), (p, sent) = one(times), one.pressure(times)
+    incident, slip = load.value(times), 2 * (load.impulse(times) - impulse) / Z
+    way, lifted = np.diff(slip), 2 * np.diff(sent) / z_n
+    middle = (s[1:] + s[:-1]) / 2, n + (p[1:] + p[:-1]) / 2
+    friction = middle[0] * way - middle[1] * lifted
+    assert (friction >= -1e-6 * np.abs(friction).max()).all()
+    spent = trapezoid((s**2 + (s - incident) ** 2) / Z + 2 * p**2 / z_n, times)
+    spent += friction.sum() + n * lifted.sum()
+    whole = trapezoid(incident**2 / Z, times)
+    assert abs(spent - whole) < 2.5e-4 * whole
+    assert sent[-1] == pytest.approx(z_n / 2 * 0.25 * 3e-3 / 2, rel=1e-9)  # all of the lift
 
 
 def test_a_joint_that_holds_lets_the_shear_wave_pass(scene, misfit):

@@ -108,6 +108,8 @@ def test_only_what_slides_or_softens_is_remembered(row, at_rest):
     assert kept(**slip, residual_cohesion=1e3, damping_ratio=0.1) == (6, 3)
     weakens = {"dynamic_friction_angle": 10.0, "weakening_distance": 1e-3}
     assert kept(**slip, **weakens, residual_cohesion=1e3) == (0, 4)
+    dilates = {"dilation_angle": 5.0, "dilation_distance": 1e-2}
+    assert kept(**slip, **dilates) == (0, 3) and kept(**slip, **weakens, **dilates) == (0, 3)
     assert kept(**slip, contact_points=3) == (0, 2)
 
 

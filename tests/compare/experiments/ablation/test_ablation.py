@@ -36,6 +36,12 @@ CALLS = {
         "joints__dynamic_friction_angle": 20.0,
         "joints__weakening_distance": 1e-3,
     },
+    "dilation": {
+        **ACROSS,
+        "joints__friction_angle": 30.0,
+        "joints__dilation_angle": 5.0,
+        "joints__dilation_distance": 1e-2,
+    },
     "softening": {"joints__tensile_strength": 1e5, "joints__fracture_energy": 10.0},
     "mass damping": {"damping__mass_proportional": 5.0},
     "local damping": {"damping": {"local": 0.5}},

@@ -1,4 +1,4 @@
-"""What a joint passes of a plane shear wave where slip weakens it, by Runge-Kutta of order 8.
+"""What a joint passes of a plane shear wave where slip changes it, by Runge-Kutta of order 8.
 
 With the path S of the slip and the strength tau(S), that falls by h per path, the joint carries s:
 
@@ -8,6 +8,11 @@ With the path S of the slip and the strength tau(S), that falls by h per path, t
 each phase from where the one before ends: at |s| = tau(S), at S' = 0, at the end of the weakening.
 Where 1/K = 0, s = sigma_I while it sticks. The slip u = s / K +- S gives the impulse of what
 passes: that of sigma_I less Z u / 2.
+
+A joint with 1/K = 0 that slip lifts by w(S) sends off a wave of pressure p = (Z_n / 2) w'(S) S' on
+both sides, Z_n along the normal, and carries mu(S) p more:
+
+    (Z / 2 + mu w' Z_n / 2) S' = |sigma_I| - tau(S);   the impulse of p is Z_n w / 2.
 """
 
 from collections.abc import Callable
@@ -41,13 +46,21 @@ class Phase(NamedTuple):
 class Passed:
     """sigma_T (Pa) and its impulse (Pa s) at any times up to `end` (s), by the incident `load`.
 
-    impedance : Z, Pa s/m. tolerance : of each step of the integration, relative.
+    impedance : Z, Pa s/m. tolerance : of each step of the integration, relative. normal_impedance :
+    Z_n, Pa s/m, of a joint that slip lifts.
     """
 
     def __init__(
-        self, joint: "SlipJoint", impedance: float, load: LoadHistory, end: float, tolerance: float
+        self,
+        joint: "SlipJoint",
+        impedance: float,
+        load: LoadHistory,
+        end: float,
+        tolerance: float,
+        normal_impedance: float = 0.0,
     ) -> None:
         self.joint, self.impedance, self.load, self.tolerance = joint, impedance, load, tolerance
+        self.normal_impedance = normal_impedance
         first = load.breaks[0]
         edges = [*(t for t in load.breaks if t < end), max(end, first + SHORTEST)]
         self.span = (edges[-1] - first) / SPANS
@@ -58,32 +71,56 @@ class Passed:
 
     def __call__(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return both at times (s)."""
-        stress, slide = np.zeros(np.shape(times)), np.zeros(np.shape(times))
-        for phase in self.phases:
-            own = (times > phase.start) & (times <= phase.end)
-            if own.any():
-                stress[own], slide[own] = self._within(phase, times[own])
-        if self.phases:
-            later = times > self.phases[-1].end
-            stress[later], slide[later] = self._within(self.phases[-1], self.phases[-1].end)
+        stress, slide, _, _ = self._at(times)
         slip = self.joint.compliance * stress + slide
         return stress, self.load.impulse(times) - self.impedance * slip / 2
 
-    def _within(self, phase: Phase, t: Any) -> tuple[Any, Any]:
-        """Return s and what has slid at times of a phase."""
-        if phase.way:
-            path = phase.state(t)[0]
-            return phase.way * self.joint.left(path), phase.slide + phase.way * (path - phase.path)
-        stress = self.load.value(np.asarray(t)) if phase.state is None else phase.state(t)[0]
-        return stress, phase.slide
+    def pressure(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return p (Pa) and its impulse (Pa s) at times (s)."""
+        _, _, path, pressure = self._at(times)
+        return pressure, self.normal_impedance * self.joint.lift(path) / 2
+
+    def _at(self, times: np.ndarray) -> np.ndarray:
+        """Return s, what has slid, S and p at times [4, n]."""
+        found = np.zeros((4, *np.shape(times)))
+        for phase in self.phases:
+            own = (times > phase.start) & (times <= phase.end)
+            if own.any():
+                found[:, own] = self._within(phase, times[own])
+        if self.phases:
+            last = np.array([self.phases[-1].end])
+            found[:, times > last[0]] = self._within(self.phases[-1], last)
+        return found
+
+    def _within(self, phase: Phase, t: np.ndarray) -> np.ndarray:
+        """Return s, what has slid, S and p at times of a phase [4, n]."""
+        none = np.zeros(np.shape(t))
+        if not phase.way:
+            stress = self.load.value(t) if phase.state is None else phase.state(t)[0]
+            return np.array([stress, none + phase.slide, none + phase.path, none])
+        path, pressure = phase.state(t)[0], none
+        if self.joint.dilation:
+            rate = self._rate(phase.way * self.load.value(t), path, 1.0)
+            pressure = self.normal_impedance / 2 * self.joint.lift_rate(path) * rate
+        stress = self.joint.left(path) + self.joint.friction_at(path) * pressure
+        slide = phase.slide + phase.way * (path - phase.path)
+        return np.array([phase.way * stress, slide, path, pressure])
+
+    def _rate(self, incident: Any, path: Any, share: float) -> Any:
+        """Return S' under sigma_I (Pa) along the slip; share : 1 - h / K."""
+        joint, path = self.joint, np.asarray(path)
+        resistance = self.impedance * share
+        if joint.dilation:
+            lifted = joint.friction_at(path) * joint.lift_rate(path)
+            resistance = resistance + lifted * self.normal_impedance
+        return 2 * (incident - joint.left(path)) / resistance
 
     def _next(self, start: float, stop: float) -> float:
         """Add the phase that begins at `start`, and return where it ends, by `stop`."""
         stress, path, slide = 0.0, 0.0, 0.0
         if self.phases:
             last = self.phases[-1]
-            stress, slide = (float(x) for x in self._within(last, last.end))
-            path = last.path + abs(slide - last.slide)
+            stress, slide, path, _ = self._within(last, np.array([last.end]))[:, 0].tolist()
         incident = self._incident(start + SHORTEST)
         if self.joint.compliance == 0:
             stress = incident
@@ -125,20 +162,20 @@ class Passed:
         return brentq(lambda t: abs(self._incident(t)) - limit, before, after, xtol=1e-16)
 
     def _slide(self, start: float, stop: float, way: int, path: float, slide: float) -> Phase:
-        joint, z = self.joint, self.impedance
+        joint = self.joint
         weakens = path < joint.distance * (1 - NEAR)
         share = 1 - joint.compliance * joint.fall if weakens else 1.0
 
         def rate(t: float, s: np.ndarray) -> np.ndarray:
-            return 2 * (way * self._incident(t) - joint.left(s)) / (z * share)
+            return self._rate(way * self._incident(t), s, share)
 
         def stops(t: float, s: np.ndarray) -> float:
             return float(rate(t, s)[0])
 
         def is_weak(t: float, s: np.ndarray) -> float:
-            return float(s[0]) - joint.distance if weakens else -1.0
+            return float(s[0]) - joint.distance if weakens and joint.fall else -1.0
 
-        scale = joint.distance if np.isfinite(joint.distance) else joint.strength / z * self.span
+        scale = min(joint.distance, joint.strength / self.impedance * SPANS * self.span)
         found = self._solved(rate, start, stop, path, scale, stops, is_weak)
         return Phase(start, found.t[-1], way, path, slide, found.sol)
 
@@ -152,6 +189,6 @@ class Passed:
             event.terminal = True  # type: ignore[attr-defined]
             event.direction = -1 if event.__name__ == "stops" else 1  # type: ignore[attr-defined]
         return solve_ivp(
-            rate, (start, stop), [now], "DOP853", events=ends, dense_output=True,
+            rate, (start, stop), np.array([now]), "DOP853", events=ends, dense_output=True,
             max_step=self.span, rtol=self.tolerance, atol=self.tolerance * scale,
         )  # fmt: skip

@@ -1,0 +1,84 @@
+"""What a step slides where slip changes the joint: its strength, and what presses it.
+
+A point of a joint whose trial traction T* exceeds the strength slides by l, which unloads spring
+and dashpot by a l, a = K_s + C_s / dt, until they carry the strength that is left there:
+
+    |T*| - a l = tau(t_n(l), S + l),
+
+t_n of the gap less the lift w(S + l). Faces that are open, or not pressed, wear nothing: what they
+slide is no part of the path S.
+"""
+
+from math import sqrt
+
+from joints.dilation import lift, lift_rate
+from joints.formula import formula
+from joints.normal import normal_tangent, normal_traction
+from joints.shear import resistance, shear_strength, shear_traction
+from joints.weakening import friction_left, strength_fall, weakened
+
+MOST = 60  # steps of Newton's method, kept within a bracket that is halved where it leaves it
+SETTLED = 1e-14  # of the longest slide that there can be: what the last of them would move
+
+
+@formula
+def after_slide(
+    law, parts, t_n, tau, gap, gap_rate, opening, cohesion, path, ex, ez, rate_x, rate_z, dt
+):
+    """Return normal traction and strength (Pa) and the path (m) at the end of a step.
+
+    t_n, tau, path : at its beginning, but for the gap, that is the gap (m) of its end less the
+    lift at its beginning. opening, cohesion : as for `shear_strength`; the rest for `shear_return`.
+    """
+    if not parts.path:
+        return t_n, tau, path
+    t_x, t_z = shear_traction(law, parts, ex, ez, rate_x, rate_z)
+    size, a = sqrt(t_x * t_x + t_z * t_z), resistance(law, parts, dt)
+    wears = t_n > 0.0 and gap <= 0.0 and size > tau
+    if not parts.dilation or law.dilation == 0.0:
+        after, further = tau, path + (size - tau) / a
+        if parts.weakening:
+            after, further = weakened(law, t_n, path, tau, size, a)
+        return t_n, after if wears else tau, further if wears else path
+    if not wears:
+        return t_n, tau, path
+    low, high, way, before = 0.0, size / a, 0.0, lift(law, path)
+    for _ in range(MOST):
+        up = lift(law, path + way) - before
+        t_n = normal_traction(law, parts, gap - up, gap_rate - up / dt, opening)
+        tau = shear_strength(law, parts, t_n, gap - up, opening, cohesion, path + way)
+        left = size - a * way - tau
+        if left > 0.0:
+            low = way
+        else:
+            high = way
+        slope = resistance_to_slide(
+            law, parts, t_n, gap - up, gap_rate - up / dt, opening, path + way, dt
+        )
+        further = left / slope if slope > 0.0 else high
+        if abs(further) <= SETTLED * size / a:
+            break
+        way = way + further if low < way + further < high else 0.5 * (low + high)
+    up = lift(law, path + way) - before
+    t_n = normal_traction(law, parts, gap - up, gap_rate - up / dt, opening)
+    tau = size - a * way
+    return t_n, tau if tau > 0.0 else 0.0, path + way
+
+
+@formula
+def resistance_to_slide(law, parts, t_n, gap, gap_rate, opening, path, dt):
+    """Return by how much a slide lowers |T*| less the strength, Pa/m: a, less the strength's fall,
+    more what the lift adds to it. gap : less the lift."""
+    slope = resistance(law, parts, dt)
+    if parts.weakening:
+        slope = slope - strength_fall(law, t_n, path)
+    if parts.dilation:
+        friction, up = friction_left(law, parts, t_n, path), lift_rate(law, path)
+        slope = slope + friction * up * pressing(law, parts, gap, gap_rate, opening, dt)
+    return slope
+
+
+@formula
+def pressing(law, parts, gap, gap_rate, opening, dt):
+    """Return what a lift within a step adds to the normal traction, Pa/m; gap : less the lift."""
+    return -normal_tangent(law, parts, gap, gap_rate, opening, 1.0 / dt)
