@@ -13,6 +13,8 @@ from joints.law import Law
 STIFF = {"normal_stiffness": 9e9, "shear_stiffness": 4e9}
 DASHPOTS = {"normal_viscosity": 9e5, "shear_viscosity": 4e5}
 SLIP = {"cohesion": 2e4, "friction": 0.5}
+WORN = {"dynamic_friction": 0.2, "weakening_distance": 2e-5}
+WORN |= {"dilation": 0.1, "dilation_distance": 4e-5}
 SOFTENING = {"tensile_strength": 5e4, "critical_opening": 3e-5}
 LAWS = {
     "elastic": (STIFF, 0),
@@ -25,6 +27,8 @@ LAWS = {
         STIFF | SLIP | DASHPOTS | {"residual_cohesion": 0.0},
         2,
     ),
+    "slip that weakens and lifts": (STIFF | SLIP | WORN, 2),
+    "slip that weakens and lifts, with dashpots": (STIFF | SLIP | WORN | DASHPOTS, 2),
     "softening": (STIFF | SLIP | SOFTENING | DASHPOTS, 2),
 }
 EACH = pytest.mark.parametrize("law", LAWS)
