@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 from scipy.linalg import eigh
 
@@ -12,6 +12,7 @@ from cases.material.contact_points import contact_points, points_of
 from cases.material.rigid_step import block_stiffness, critical_step, jump
 from cases.material.rock_mass import Stiffness, constrained_modulus, inertia, joint_stiffness
 from cases.partition.cut import cut
+from cases.partition.faults import PartitionError
 from cases.partition.periodic import periodic_contacts
 from cases.schema.domain import Domain
 from cases.schema.joint_set import JointSet
@@ -131,7 +132,10 @@ def partitions(draw):
 @settings(max_examples=25)
 def test_critical_step_is_bounded_on_both_sides(sets, ratio):
     """Against scipy's eigenvalues of the whole system: bound <= 2 / omega <= sqrt(2) bound."""
-    found = cut(Domain(size=[4.0, 3.0], least_width=1e-5, least_angle=0.0), sets)
+    try:
+        found = cut(Domain(size=[4.0, 3.0], least_width=1e-5, least_angle=0.0), sets)
+    except PartitionError:  # joints that end at others may all miss so small a domain
+        reject()
     stiffness, weight = uniform(found.contacts, shear=ratio * NORMAL), inertia(found, DENSITY)
     points = contact_points(found, found.contacts, sets)
     own = block_stiffness(found.count, found.contacts, points, stiffness)
