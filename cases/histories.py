@@ -219,7 +219,7 @@ class Recorded:
 
     def value(self, t: np.ndarray) -> np.ndarray:
         """Return the stress (Pa) at times t (s)."""
-        return np.interp(t, self.time, self.stress, left=0.0, right=0.0)
+        return np.interp(np.asarray(t, dtype=float), self.time, self.stress, left=0.0, right=0.0)
 
     def impulse(self, t: np.ndarray) -> np.ndarray:
         """Return the integral of the stress from minus infinity to t (Pa s)."""

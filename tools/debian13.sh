@@ -88,7 +88,7 @@ copy_sources() {  # into
 mount_kernel() {
     mount -t proc proc "$root/proc"
     mount --bind -o ro /sys "$root/sys"
-    mount --bind /dev "$root/dev"
+    mount --rbind /dev "$root/dev"  # with its terminals
     mkdir -p "$root/dev/shm"
     mount -t tmpfs tmpfs "$root/dev/shm"
 }

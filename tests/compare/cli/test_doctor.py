@@ -95,7 +95,9 @@ def test_rigid_blocks_alone_are_well(monkeypatch):
 
 
 def test_no_launcher_and_one_that_starts_nothing(tmp_path, monkeypatch):
+    """Neither on the PATH nor beside this Python, where pip's MPI has one."""
     monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
     assert doctor._mpiexec().state == "missing"
     launcher = tmp_path / "mpiexec"
     launcher.write_text("#!/bin/sh\necho no slots >&2\nexit 3\n")

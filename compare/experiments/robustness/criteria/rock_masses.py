@@ -167,14 +167,17 @@ def within_friction(trial: CaseTrial) -> Judgement:
     scene, result = trial.rock_mass, trial.result
     law = scene.joint_sets[0]
     normal, shear = np.moveaxis(result["traction"].values, -1, 0)
-    spent = float(result["energy"].sel(term="friction").values[-1])
-    if not (spent > 0 and normal.min() >= 0):
-        return Judgement(inf, 0.0, f"friction work {spent:.3g} J, least {normal.min():.3g} Pa")
+    share = _share(result)
+    if not (share > EPS and normal.min() >= 0):
+        said = f"friction takes {share:.2g} of the work, least {normal.min():.3g} Pa"
+        return Judgement(inf, 0.0, said)
     strength = (law.cohesion or 0.0) + normal * tan(radians(law.friction_angle or 0.0))
     above = float((np.abs(shear) - strength).max() / np.abs(normal).max())
-    return Judgement(max(above, 0.0), 10 * EPS, f"of the stress; friction takes {_share(result)}")
+    said = f"of the stress; friction takes {share:.2g} of the work"
+    return Judgement(max(above, 0.0), 10 * EPS, said)
 
 
-def _share(result: xr.Dataset) -> str:
+def _share(result: xr.Dataset) -> float:
+    """Return what friction takes of the work; round-off is below EPS of it."""
     last = result["energy"].isel(time=-1)
-    return f"{float(last.sel(term='friction') / last.sel(term='work')):.2g} of the work"
+    return float(last.sel(term="friction") / last.sel(term="work"))
