@@ -44,6 +44,18 @@ def test_fragments_share_the_whole_pillar_and_the_impulse_of_the_load():
     assert momentum(pieces) == pytest.approx(impulse(scene), rel=1e-12)
 
 
+def test_fragments_of_several_rocks_share_mass_and_impulse():
+    """Each piece has the mass of its own rock, and the velocity of its centre of mass."""
+    heavy = {"y": [10.0, 15.0], "density": 4000.0, "block": 0.5, "intact_modulus": 1e11}
+    bar = {"y": [0.0, 5.0], "joints": False, "density": 3000.0}
+    scene = spalled(segments=[bar, heavy])
+    pieces = json.loads(dem.simulate(scene).attrs["fragments"])
+    mass = 0.25 * (5 * 3000.0 + 5 * 4000.0 + 10 * 2400.0)
+    assert len(pieces) > 2 and min(p["from_y"] for p in pieces[1:]) > 5.0
+    assert sum(piece["mass"] for piece in pieces) == pytest.approx(mass, rel=1e-12)
+    assert momentum(pieces) == pytest.approx(impulse(scene), rel=1e-12)
+
+
 def test_pieces_do_not_meet_again():
     """Each flies off faster than the one before it, once all have parted."""
     speeds = [p["velocity"] for p in json.loads(dem.simulate(spalled()).attrs["fragments"])]

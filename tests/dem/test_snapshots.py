@@ -48,6 +48,18 @@ def row(pillar, request):
     return scene
 
 
+def test_blocks_of_unequal_thickness_are_drawn_as_they_are(pillar):
+    """Each from its contact to the next, across the whole section."""
+    thin = {"segments": [{"y": [2.0, 4.0], "block": 0.25, "density": 3000.0}]}
+    scene = pillar(**{**EVERYWHERE, **thin, "record": {"stress": [1.0], "fields": 5e-3}})
+    shown = dem.simulate(scene)
+    corners = shown.field_points.values[shown.field_cells.values]
+    edges = np.r_[np.arange(0.0, 2.0, 0.5), np.arange(2.0, 4.0, 0.25), np.arange(4.0, 8.1, 0.5)]
+    assert np.abs(corners[..., 1].min(axis=1) - edges[:-1]).max() < 1e-12
+    assert np.abs(corners[..., 1].max(axis=1) - edges[1:]).max() < 1e-12
+    assert np.abs(np.ptp(corners[..., [0, 2]], axis=1) - SIDE).max() < 1e-12
+
+
 def test_a_run_with_snapshots_is_the_same_to_the_last_bit(row):
     bare, filmed = dem.simulate(row(None)), dem.simulate(row(7e-4))
     assert {str(v) for v in filmed.data_vars} - {str(v) for v in bare.data_vars} == {
