@@ -14,6 +14,7 @@ Holds for linear joints and rock, along the axis or, where the load is across it
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import ceil, sqrt
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,7 @@ import numpy as np
 
 from cases.errors import SceneError
 from cases.material.calibrate import Properties, calibrate
+from compare.exact.bar import equivalent_bar, jointed_bar
 from compare.exact.bar.laplace import Bar, end_of, transfer
 from compare.exact.conditions import DAMPED, beyond
 
@@ -29,7 +31,10 @@ if TYPE_CHECKING:
 
     from cases.schema.scene import Scene
 
-HELD = ("spatial motion", "reversed load", "gravity", "prestress", "stiff layers", "soft layers")
+HELD = (
+    *("spatial motion", "reversed load", "gravity", "prestress", "stiff layers", "soft layers"),
+    *("segments", "scatter"),
+)
 
 
 def deconvolve(scene: Scene, surface: xr.DataArray, water_level: float = 1e-3) -> xr.DataArray:
@@ -53,7 +58,7 @@ def deconvolve(scene: Scene, surface: xr.DataArray, water_level: float = 1e-3) -
     bar, impedance = _column(scene)
     n, time = surface.sizes["time"], surface.time.values
     dt = (time[-1] - time[0]) / (n - 1)
-    lead = ceil(bar.length * sqrt(bar.density / bar.modulus) / dt)
+    lead = ceil(_crossing(bar) / dt)
     count = next_fast_len(2 * (n + 2 * lead))
     s = 2j * np.pi * np.fft.rfftfreq(count, dt)
     H = 2 * impedance * transfer(bar, s, np.array([bar.length]))[1][0]
@@ -79,6 +84,11 @@ def _column(scene: Scene) -> tuple[Bar, float]:
     found = beyond(scene, *HELD, *DAMPED) or next((why for there, why in reasons if there), None)
     if found:
         raise SceneError(scene.where, "", None, f"cannot be deconvolved: {found}")
+    if not scene.is_uniform:
+        known = p.own_stiffness is not None
+        rock = (jointed_bar if known else equivalent_bar).bar(scene)
+        impedance = p.at_start.impedance
+        return replace(rock, start=end_of("quiet", impedance), end=end_of("free", 0.0)), impedance
     modulus, compliance = _sheared(scene, p) if load.is_across else _stretched(p)
     etas, impedance = p.joint_time_constant, p.shear_impedance if load.is_across else p.impedance
     bar = Bar(
@@ -93,6 +103,15 @@ def _column(scene: Scene) -> tuple[Bar, float]:
         end=end_of("free", impedance),
     )
     return bar, impedance
+
+
+def _crossing(bar: Bar) -> float:
+    """Return how long a wave takes from end to end of the rock of a bar, s."""
+    if not bar.rocks:
+        return bar.length * sqrt(bar.density / bar.modulus)
+    lengths = np.diff([*(rock.y for rock in bar.every), bar.length])
+    slowness = [sqrt(rock.density / rock.modulus) for rock in bar.every]
+    return float(lengths @ slowness)
 
 
 def _stretched(p: Properties) -> tuple[float, np.ndarray]:

@@ -56,6 +56,23 @@ def test_the_exact_bar_gives_back_the_pulse(solver, tables):
     assert np.abs(found - pulse).max() < 3e-5 * PULSE.amplitude
 
 
+LAYERS = [
+    {"y": [0.0, 2.5], "density": 2700.0, "p_speed": 4000.0, "s_speed": 2000.0},
+    {"y": [6.0, 10.0], "density": 1900.0, "p_speed": 900.0, "s_speed": 400.0, "block": 0.2},
+]
+
+
+@pytest.mark.parametrize("more", [{}, {"scatter": {"spacing": 0.2, "compliance": 0.3, "seed": 3}}])
+@pytest.mark.parametrize("solver", ["equivalent-bar", "jointed-bar"])
+def test_layers_give_back_the_pulse(solver, more):
+    """Early by what a wave takes through each of them; the start's rock is that below it. The soft
+    layer still moves where the record ends."""
+    rock = JOINTED if solver == "jointed-bar" else {}
+    scene = column(rock=rock, motion={}, segments=LAYERS, **more)
+    found, pulse = recovered(scene, solver)
+    assert np.abs(found - pulse)[: len(found) // 2].max() < 3e-5 * PULSE.amplitude
+
+
 def test_uniform_rock_halves_the_record_and_moves_it():
     scene = column()
     dt = 10.0 / calibrate(scene).bar_speed / 40  # a wave takes 40 samples
