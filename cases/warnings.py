@@ -201,11 +201,12 @@ def _of_arrivals(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iter
     begin, end, speed = onset(scene.load), scene.time.duration, _fastest(scene, p)
     for key in ("stress", "velocity"):
         for y in getattr(scene.record, key):
-            reached = begin + (y / speed if p.is_uniform else p.travel_time(y))
+            way = y / speed if p.is_uniform else p.travel_time(y)
+            reached = begin + way
             if reached >= end:
                 yield (
                     f"record.{key} = {y:g} m is reached at {reached:.4g} s, at "
-                    f"{y / (reached - begin):.4g} m/s: after the end of the scene at "
+                    f"{y / way if way else speed:.4g} m/s: after the end of the scene at "
                     f"time.duration = {end:g} s"
                 )
 

@@ -67,4 +67,4 @@ def solve(scene: Scene, rtol: float = 1e-6, method: str = "DOP853") -> xr.Datase
 def _speed(scene: Scene, model) -> float:
     """Return a speed (m/s) of the size of what happens."""
     size = scene.load.amplitude / scene.load.scale
-    return abs(size * model.gain) / (1.0 if model.shaken else model.dashpot) or 1.0
+    return abs(size * model.gain) / (1.0 if model.shaken else model.end.dashpot) or 1.0
