@@ -30,7 +30,8 @@ from continuum.model import Model
 from continuum.state import State
 
 RESIDUAL = 1e-10  # what may be left, of the largest force that is summed up
-LAST_DIGITS = 8 * np.finfo(float).eps  # of a displacement: what they weigh cannot be balanced
+#: Of a displacement, and of the prestress that joints carry: what they weigh cannot be balanced.
+LAST_DIGITS = 8 * np.finfo(float).eps
 
 
 class Moment(NamedTuple):
@@ -79,6 +80,7 @@ class Stepper:
         self.free, self._pattern = self._system.free, self._system.pattern
         self._factored: tuple[Length, np.ndarray] | None = None
         self._weight = np.zeros(self.free.size)
+        self._carried = _prestress(model)
         self._lengths: dict[int, Length] = {}
         self.counts = np.zeros(2, dtype=np.int64)
 
@@ -100,8 +102,9 @@ class Stepper:
             inertia = self.mass @ a
             rest = (1 - alpha_f) * state.force + before - (1 - alpha_m) * inertia
             size = max(trial.size[0], now.size[0], np.abs(inertia).max())
-            digits = LAST_DIGITS * np.abs(self._weight * state.u[free]).max(initial=0.0)
-            return self.communicator.total(rest)[free], RESIDUAL * size + digits
+            moves = np.abs(self._weight * state.u[free]).max(initial=0.0)
+            left = RESIDUAL * size + LAST_DIGITS * (moves + self._carried)
+            return self.communicator.total(rest)[free], left
 
         def correction(rest: np.ndarray) -> np.ndarray:
             self._factorise(length)
@@ -163,3 +166,11 @@ class Stepper:
         diagonal[self.free] = (values - length.inertia)[self._pattern.diagonal]
         self._weight = np.abs(self.communicator.total(diagonal)[self.free])
         self._factored = length, self._system.tangents.copy()
+
+
+def _prestress(model: Model) -> float:
+    """Return the largest force (N) of prestress at a point of a joint."""
+    joints = model.interfaces
+    if joints is None or joints.prestress is None:
+        return 0.0
+    return float(np.abs(joints.area * joints.prestress).max(initial=0.0))

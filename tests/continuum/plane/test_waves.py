@@ -220,3 +220,26 @@ def test_a_run_goes_on_from_a_checkpoint(struck):
     assert 0 < keeper.done < 300
     again = simulate(scene, keeper=keeper)
     assert (again.velocity == whole.velocity).all() and (again.energy == whole.energy).all()
+
+
+def test_implicit_steps_balance_dashpots_beside_a_prestress(rock_mass):
+    """Before a wave comes, round-off of the prestress is all that is out of balance.
+    Held to explicit steps: a phase error of (omega dt)^2 / 12 a radian, 7e-4 after 8 of them at 200
+    steps a period, several times that at the highest frequencies of the pulse."""
+    joint = {"dip": 30.0, "through": [3.0, 3.0], "friction_angle": 35.0, "damping_ratio": 0.05}
+    pulse = {"shape": "ricker", "amplitude": 1e5, "period": 2e-3}
+    found = [
+        simulate(
+            rock_mass(
+                [joint],
+                continuum={"scheme": scheme},
+                prestress={"xx": 8e6, "yy": 1e7, "xy": 0.0},
+                waves=[{"kind": "S", "direction": [0.0, 1.0], "through": [3.0, -6.0], **pulse}],
+                boundaries=dict.fromkeys(("left", "right", "bottom", "top"), "quiet"),
+                time={"duration": 6e-3},
+            )
+        )
+        for scheme in ("implicit", "explicit")
+    ]
+    implicit, explicit = (one.velocity.values for one in found)
+    assert misfit(implicit, explicit).max() < 1e-2
