@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numba.core import event
 
+from joints.formula import KNOWN
 from joints.law import History, Law, law_of, parts_of, table_of, traction
 from joints.tangent import Tangent, tangent
 
@@ -129,6 +130,12 @@ def test_absent_parts_leave_no_instruction_in_the_tangent():
     assert found == Tangent(-9e9)
 
 
+flagged = pytest.mark.skipif(
+    numba.version_info.short not in KNOWN, reason="this numba leaves flags to its optimiser"
+)
+
+
+@flagged
 @pytest.mark.parametrize("closes", [False, True])
 def test_what_a_law_lacks_is_not_compiled(closes):
     """Not typed either, which takes most of a first run: of the formulas of closure, those of a
@@ -158,6 +165,7 @@ def test_what_a_law_lacks_is_not_compiled(closes):
     assert ("closure_traction" in compiled) == closes and "strength_left" not in compiled
 
 
+@flagged
 def test_parts_are_no_arguments_of_a_kernel():
     """numba would take two of them for one type, and the second call would have the first's law."""
     called = numba.njit(lambda parts: parts.dashpots)
