@@ -1,4 +1,4 @@
-"""When and where a run is recorded: sample times, the step that fits them, and interpolation."""
+"""Samples of a run: their times, the step that fits them, and interpolation."""
 
 from __future__ import annotations
 

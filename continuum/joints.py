@@ -13,8 +13,7 @@ from continuum.space.interface import Jumps
 from continuum.space.stencils import stencils
 from joints.closure import closure_stiffness
 from joints.dilation import riding_stiffness
-from joints.law import Law, parts_of, table_of
-from joints.uniform import law
+from joints.law import Law, law, parts_of, table_of
 
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass

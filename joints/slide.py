@@ -1,4 +1,4 @@
-"""What a step slides where slip changes the joint: its strength, and what presses it.
+"""The slide of a step where slip changes the joint: its strength, and what presses it.
 
 A point of a joint whose trial traction T* exceeds the strength slides by l, which unloads spring
 and dashpot by a l, a = K_s + C_s / dt, until they carry the strength that is left there:

@@ -391,7 +391,11 @@ MISTAKES = {
         "[joints]",
         "[joints]\nfriction_angle = 30.0\ndilation_angle = 15.0\ndilation_distance = 1.0\n"
         "dynamic_friction_angle = 10.0\nweakening_distance = 1e-3",
-        ["joints.dilation_angle = 15", "above dynamic_friction_angle = 10 where friction"],
+        [
+            "joints.dilation_angle = 15",
+            "must be at most 10.01",
+            "dynamic_friction_angle = 10 must not exceed",
+        ],
     ),
     "a vertical friction angle": (
         "[joints]",

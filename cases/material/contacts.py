@@ -1,4 +1,4 @@
-"""Where the blocks of a pillar meet, and which of these places are no joints."""
+"""Places of the contacts between the blocks of a pillar, and those that are no joints."""
 
 from __future__ import annotations
 

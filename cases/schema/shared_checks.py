@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil, floor, log10, radians, tan
+from math import atan, ceil, degrees, floor, log10, radians, tan
 from typing import TYPE_CHECKING
 
 from cases.schema.values import contradiction
@@ -69,32 +69,30 @@ def check_strength(table: str, law: JointLaw) -> None:
             "needs a cohesion" if cohesion is None else f"at most the cohesion {cohesion:g} Pa"
         )
         raise contradiction(f"{table}.residual_cohesion", residual, allowed)
-    dynamic, static = law.dynamic_friction_angle, law.friction_angle
-    if dynamic is not None and (static is None or dynamic > static):
-        allowed = (
-            "needs a friction_angle" if static is None else f"at most friction_angle = {static:g}"
-        )
-        raise contradiction(f"{table}.dynamic_friction_angle", dynamic, allowed)
+    for key in ("dynamic_friction_angle", "dilation_angle"):
+        angle, static = getattr(law, key), law.friction_angle
+        if angle is not None and static is None:
+            raise contradiction(f"{table}.{key}", angle, "needs a friction_angle")
+        if angle is not None and angle > static:
+            allowed = f"must be at most friction_angle = {static:g}"
+            raise contradiction(f"{table}.{key}", angle, allowed)
     _check_dilation(table, law)
 
 
 def _check_dilation(table: str, law: JointLaw) -> None:
     """What lifts the faces must not take more work than friction gives: both tangents are linear in
     the path, so that the ends of the weakening decide."""
-    dilation, static = law.dilation_angle, law.friction_angle
-    if dilation is None or law.dilation_distance is None:
-        return
-    if static is None or dilation > static:
-        allowed = (
-            "needs a friction_angle" if static is None else f"at most friction_angle = {static:g}"
-        )
-        raise contradiction(f"{table}.dilation_angle", dilation, allowed)
-    dynamic, distance = law.dynamic_friction_angle, law.weakening_distance
-    if dynamic is None or distance is None:
+    dilation, dynamic = law.dilation_angle, law.dynamic_friction_angle
+    distance = law.weakening_distance
+    if dilation is None or law.dilation_distance is None or dynamic is None or distance is None:
         return
     share = max(1 - distance / law.dilation_distance, 0.0)
     if share * tan(radians(dilation)) > tan(radians(dynamic)):
-        allowed = f"is above dynamic_friction_angle = {dynamic:g} where friction has fallen to it"
+        most = degrees(atan(tan(radians(dynamic)) / share))
+        allowed = (
+            f"must be at most {most:.4g}: what is left of it where friction has fallen to "
+            f"dynamic_friction_angle = {dynamic:g} must not exceed that"
+        )
         raise contradiction(f"{table}.dilation_angle", dilation, allowed)
 
 

@@ -1,4 +1,4 @@
-"""What engineers read off a result: functions of a Dataset that return arrays with units."""
+"""Engineering measures of a result: functions of a Dataset that return arrays with units."""
 
 from compare.readings.attenuation import quality_factor, transfer_function, wave_speed
 from compare.readings.dispersion import dispersion, dispersion_theory

@@ -1,4 +1,4 @@
-"""What a wave loses and takes from one receiver to another: transfer function, apparent Q, speed.
+"""Transfer function, apparent Q and speed of a wave between two receivers.
 
 Take records of one passage: `result.sel(time=slice(0, 0.02))` leaves out what is reflected later.
 """

@@ -1,4 +1,4 @@
-"""What engineers read off the velocities of every solution, as a table."""
+"""The table of engineering measures of every solution's velocities."""
 
 from collections.abc import Iterator
 from math import isfinite

@@ -158,17 +158,9 @@ def leapfrog_for(parts, directions, shared=False):
                     stored, spent = 0.0, 0.0
                     if area is not None:
                         stored, spent = joint_energy(
-                            parts,
-                            directions,
-                            table,
-                            area,
-                            prestress,
-                            jump,
-                            opening,
-                            slide,
-                            path,
-                            loads,
-                        )
+                            parts, directions, table, area, prestress,
+                            jump, opening, slide, path, loads,
+                        )  # fmt: skip
                     balance = energy[:, n // stride]
                     balance[1], balance[2] = elastic + stored, spent
                     add_energy(balance, mass, u, v_before, v, weight, ledger)

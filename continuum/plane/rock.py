@@ -26,8 +26,7 @@ from continuum.space.body import Body
 from continuum.space.elasticity import PlaneRock, Section
 from continuum.space.interface import Jumps
 from continuum.space.kinematics import Kinematics
-from joints.law import Law
-from joints.uniform import law
+from joints.law import Law, law
 
 if TYPE_CHECKING:
     from cases.partition.blocks import Partition

@@ -13,8 +13,7 @@ from dem.axial.stability import critical_chain_step
 from dem.axial.state import State, state_at_rest
 from dem.size import refuse_large
 from dem.static import stiffest
-from joints.law import Law, Parts, parts_of, table_of
-from joints.uniform import law
+from joints.law import Law, Parts, law, parts_of, table_of
 
 
 class Receivers(NamedTuple):

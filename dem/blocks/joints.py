@@ -14,8 +14,7 @@ from cases.material.strength import strength_of
 from cases.schema.joint import JointLaw
 from joints.closure import closure_stiffness
 from joints.dilation import riding_stiffness
-from joints.law import Law
-from joints.uniform import law, uniform
+from joints.law import Law, law, uniform
 
 if TYPE_CHECKING:
     from cases.material.rock_mass import Stiffness

@@ -11,8 +11,7 @@ from dem.spatial.energy import AFTER, LEDGER, PLACES
 from dem.spatial.layout import BUFFER, LANES, STRIDE, Form, packed, tile_count
 from dem.spatial.model import Buffers, Load, RowModel, RowReceivers, RowSamples, RowState
 from dem.spatial.motion import Block
-from joints.law import Law, parts_of, table_of
-from joints.uniform import law
+from joints.law import Law, law, parts_of, table_of
 from numerics.cache_lines import zeros
 from numerics.divergence import Guard
 from results.dataset import ALL_TERMS

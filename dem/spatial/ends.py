@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cases.face import face_points
 from cases.material.calibrate import Properties
+from cases.material.face import face_points
 from cases.schema.scene import Scene
 from dem.spatial.finite import angular_velocity
 from dem.spatial.layout import ABOUT_X, LEFT, Form, X, Y, Z

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from cases import SceneError
-from cases.face import face_points
 from cases.histories import Recorded, Ricker, Sine, Step
 from cases.loads import base_steps, load_history, step_means
 from cases.material.calibrate import calibrate
 from cases.material.elastic import modulus_from_speeds, speeds_from_modulus
+from cases.material.face import face_points
 from cases.sampling import clock, interpolation, sample_times
 from cases.schema.damping import Rayleigh
 from cases.schema.history import History

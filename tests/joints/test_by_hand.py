@@ -11,13 +11,12 @@ import pytest
 
 from joints.ends import half_spring
 from joints.energy import elastic_energy, fracture_energy_spent, friction_work
-from joints.law import History, Law, law_of, parts_of, table_of, traction
+from joints.law import History, Law, law, law_of, parts_of, table_of, traction, uniform
 from joints.normal import normal_traction, spring_traction
 from joints.shear import UNLIMITED, shear_return
 from joints.softening import is_broken, strength_left
 from joints.stability import critical_step, critical_step_of_modes
 from joints.tangent import tangent
-from joints.uniform import law, uniform
 
 K, K_S, DT = 1e9, 2e9, 1e-5
 VIRGIN = History()

@@ -16,10 +16,9 @@ from scipy.optimize import brentq
 
 from joints import energy, softening
 from joints.closure import closure_stiffness, closure_traction
-from joints.law import History, Law, law_of, parts_of, table_of, traction
+from joints.law import History, Law, law, law_of, parts_of, table_of, traction, uniform
 from joints.normal import spring_traction
 from joints.shear import UNLIMITED
-from joints.uniform import law, uniform
 
 DT = 1e-5
 

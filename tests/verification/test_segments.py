@@ -17,7 +17,7 @@ from cases.material.calibrate import calibrate
 from cases.sampling import sample_times
 from compare.engines import solve
 from compare.exact.bar import equivalent_bar, jointed_bar
-from compare.exact.bar.laplace import transfer
+from compare.exact.bar.transfer import transfer
 from compare.misfit.metrics import misfit
 
 #: Density (kg/m3) and Young's modulus (Pa) of steel, a stiff rock and a soft one.

@@ -1,4 +1,4 @@
-"""What comes up to the start of a column, from the motion of its free end (deconvolution).
+"""Deconvolution: the motion that comes up to the start of a column, from that of its free end.
 
 The motion of the free end over that of the wave that comes up is H = 2 Z v(L), Z the impedance of
 the rock behind the start and v(L) the end's velocity by an end stress of 1 (`laplace.transfer`). It
@@ -23,7 +23,7 @@ import numpy as np
 from cases.errors import SceneError
 from cases.material.calibrate import Properties, calibrate
 from compare.exact.bar import equivalent_bar, jointed_bar
-from compare.exact.bar.laplace import Bar, end_of, transfer
+from compare.exact.bar.transfer import Bar, end_of, transfer
 from compare.exact.conditions import DAMPED, beyond
 
 if TYPE_CHECKING:

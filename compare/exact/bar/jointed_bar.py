@@ -14,7 +14,8 @@ import xarray as xr
 
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
-from compare.exact.bar.laplace import Bar, End, end_of, rocks, solved
+from compare.exact.bar.laplace import solved
+from compare.exact.bar.transfer import Bar, End, end_of, rocks
 from compare.exact.conditions import DAMPED, holds
 from compare.solvers.record import JOINTED, Answer, Kind, Rock, Solver, Words, thin
 

@@ -1,24 +1,7 @@
-"""A bar with any joints, layers and ends, in the Laplace variable s = sigma + i omega: what
-`jointed_bar` and `equivalent_bar` share.
+"""The bars of `compare.exact.bar.transfer` over time, by inversion of their Laplace transforms.
 
-Rock of modulus E (1 + s eta) has impedance z = sqrt(rho E (1 + s eta)); an interface of
-compliance 1/K and time constant eta_j lets the velocity jump by s sigma / (K (1 + s eta_j)). The
-reflection coefficient of stress R = (Z - z)/(Z + z), Z the impedance seen towards the far end, is
-marched from there (the matrix that carries (v, sigma) from one end overflows):
-
-    segment of length h:  R_left = R_right e^{-2q},  q = s rho h / z,  wave a_right = a_left e^{-q}
-    interface:            R_left = (2R - x(1 + R)) / (2 + x(1 + R)),  x = s z / (K (1 + s eta_j)),
-                          a_right = 2 a_left / (2 + x(1 + R_right))
-    to rock of another Z: R_left = (Z(1 + R) - z(1 - R) - x Z(1 + R)) / D, a_right = 2 z a_left / D,
-                          D = Z(1 + R) + z(1 - R) + x Z(1 + R)
-    far end:              R = -1 free, (Z - z)/(Z + z) behind a dashpot Z, 1 fixed
-
-The end stress f enters as a = f / (z(1 + R) + Z_start(1 - R)); then sigma = z a (1 + R) and
-v = a (1 - R). These are the impedance recursions of Brekhovskikh (Waves in Layered Media, 1980)
-with the joint of Schoenberg (JASA 68, 1980).
-
-Inversion by FFT with an exponential window (Wilcox, Int. J. Elect. Eng. Educ. 15, 1978; Kausel &
-Roesset, JEM 118, 1992). Its errors, and what bounds them:
+By FFT with an exponential window (Wilcox, Int. J. Elect. Eng. Educ. 15, 1978; Kausel & Roesset,
+JEM 118, 1992). Its errors, and what bounds them:
 - A window of TAIL durations wraps what comes later, reduced to WRAPPED of itself, and multiplies
   round-off by as much as it lets the end of the record grow.
 - The load's transform is that of its exact means over the fine steps, over the transform of such a
@@ -32,9 +15,7 @@ The inversion by half of the frequencies, which is off by twice as much or more,
 twice the most that the two differ by within some fine steps of each sample.
 """
 
-from dataclasses import dataclass, replace
-from functools import lru_cache
-from itertools import groupby
+from dataclasses import replace
 from math import ceil, log
 from typing import NamedTuple
 
@@ -43,11 +24,11 @@ import xarray as xr
 
 from cases.histories import LoadHistory, Recorded, Step
 from cases.loads import load_history
-from cases.material.calibrate import Properties
 from cases.sampling import sample_times
 from cases.schema.scene import Scene
 from cases.size import require
 from compare.exact.bar.images import images
+from compare.exact.bar.transfer import Bar, End, nodes_of, transfer
 from compare.exact.conditions import static_stress
 from results.dataset import dataset
 
@@ -61,81 +42,6 @@ MOST_TRIPS = 5000  # of the part in front of the first joint, to and fro
 SAFETY = 2.0  # on the difference of the two inversions
 NEAR = 17  # fine steps in which it is sought
 FLOOR = 4e-9  # of a quantity's peak: the window's wrapping and the round-off that it raises
-
-
-@dataclass(frozen=True)
-class End:
-    """A dashpot (Pa s/m; 0 free, inf fixed) behind a spring of compliance C (m/Pa) and eta (s)."""
-
-    dashpot: float
-    compliance: float = 0.0
-    time_constant: float = 0.0
-
-    def impedance(self, s: np.ndarray) -> np.ndarray:
-        """Return Z / (1 + s Z C / (1 + s eta)) at the Laplace variables s, Pa s/m."""
-        if self.compliance == 0:
-            return np.full_like(s, self.dashpot)
-        compliance = self.compliance / (1 + s * self.time_constant)
-        return self.dashpot / (1 + s * self.dashpot * compliance)
-
-
-def end_of(kind: str, impedance: float, compliance: float = 0.0, time_constant: float = 0.0) -> End:
-    """Return the end of this kind; only a matched one has a spring in front of its dashpot."""
-    if kind == "matched":
-        return End(impedance, compliance, time_constant)
-    return End({"free": 0.0, "fixed": np.inf, "quiet": impedance}[kind])
-
-
-class RockFrom(NamedTuple):
-    """The rock of a bar from y (m) on: density (kg/m3), modulus (Pa), Kelvin-Voigt eta (s)."""
-
-    y: float
-    density: float
-    modulus: float
-    time_constant: float
-
-    def impedance(self, s: np.ndarray) -> np.ndarray:
-        """Return sqrt(rho E (1 + s eta)) at the Laplace variables s, Pa s/m."""
-        return np.sqrt(self.density * self.modulus * (1 + s * self.time_constant))
-
-
-def rocks(p: Properties, moduli: list[float]) -> tuple[RockFrom, ...]:
-    """Return the rocks behind the first of a pillar whose segments have these moduli (Pa)."""
-    starts = np.cumsum([one.block_count * one.spacing for one in p.each])
-    return tuple(
-        RockFrom(float(y), one.density, modulus, one.time_constant or 0.0)
-        for y, one, modulus in zip(starts[:-1], p.each[1:], moduli[1:], strict=True)
-    )
-
-
-@dataclass(frozen=True)
-class Bar:
-    """A bar with interfaces.
-
-    Attributes
-    ----------
-    length, density, modulus : m, kg/m3, Pa.
-    time_constant : Kelvin-Voigt eta of the rock, s.
-    rocks : other rocks behind the first, in order.
-    joint_y, joint_compliance, joint_time_constant : float arrays [joints], sorted; m, m/Pa, s.
-    start, end : what holds each end; the start cannot be fixed.
-    """
-
-    length: float
-    density: float
-    modulus: float
-    time_constant: float
-    joint_y: np.ndarray
-    joint_compliance: np.ndarray
-    joint_time_constant: np.ndarray
-    start: End
-    end: End
-    rocks: tuple[RockFrom, ...] = ()
-
-    @property
-    def every(self) -> tuple[RockFrom, ...]:
-        """All its rocks, in order."""
-        return (RockFrom(0.0, self.density, self.modulus, self.time_constant), *self.rocks)
 
 
 def solved(scene: Scene, name: str, bar: Bar) -> xr.Dataset:
@@ -177,7 +83,7 @@ def bounded(
     from scipy.ndimage import maximum_filter1d
 
     places, front = np.array([*stress_y, *velocity_y]), _front(bar, times[-1])
-    dt, stride, count = _fine_step(times, period, len(_nodes(bar, places)[0]) + 4 * len(places))
+    dt, stride, count = _fine_step(times, period, len(nodes_of(bar, places)[0]) + 4 * len(places))
     require(8.0 * count * (10 + 6 * len(places)), f"{count:,} instants of the load")
     decay = -log(WRAPPED) / (count * dt)
     t = dt * np.arange(count)
@@ -329,120 +235,3 @@ def _fine_step(times: np.ndarray, period: float | None, nodes: int) -> tuple[flo
 def _rounding(fraction: np.ndarray) -> np.ndarray:
     """Return the filter at these fractions of the highest frequency (order 8, 1e-16 there)."""
     return np.exp(-36 * np.minimum(fraction, 1.5) ** 8)
-
-
-class Cell(NamedTuple):
-    """A part of a bar between two places: reflection from its near and its far side, and the
-    waves that pass to the far side, and back, arrays of Laplace variables."""
-
-    near: np.ndarray
-    far: np.ndarray
-    passed: np.ndarray
-    back: np.ndarray
-
-    def before(self, R: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the reflection with R behind it, and the wave that then reaches R."""
-        share = self.passed / (1 - self.far * R)
-        return self.near + self.back * share * R, share
-
-    def twice(self) -> "Cell":
-        """Return two such parts of one rock in a row."""
-        near, share = self.before(self.near)
-        passed = share * self.passed
-        return Cell(near, self.far + self.passed * share * self.far, passed, passed)
-
-
-def transfer(bar: Bar, s: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return stress and velocity [places, len(s)] at `places` (m) for an end stress of 1.
-
-    s : complex array of Laplace variables, 1/s, with positive real parts. Equal joints at equal
-    spacings with no place among them are passed by doubling.
-    """
-    every = bar.every
-    zs = [rock.impedance(s) for rock in every]
-    slowness = [s * rock.density / z for rock, z in zip(every, zs, strict=True)]
-    R = _end_reflection(bar.end, s, zs[-1])
-    stress, velocity = np.zeros((2, len(places), len(s)), dtype=complex)
-    passed = np.zeros(len(places), dtype=bool)
-    nodes, joint_of = _nodes(bar, places)
-
-    @lru_cache(16)  # of joints that all differ, some
-    def cell(kind: Kind, doublings: int) -> Cell:
-        if doublings:
-            return cell(kind, doublings - 1).twice()
-        z, q = zs[kind.rock], np.exp(-kind.h * slowness[kind.rock])
-        x = s * z * kind.compliance / (1 + s * kind.time_constant)
-        if kind.rock == kind.behind:
-            return Cell(-x / (2 + x) * q**2, -x / (2 + x), 2 / (2 + x) * q, 2 / (2 + x) * q)
-        Z = zs[kind.behind]
-        off, whole = Z - z, Z + z + x * Z
-        near, far = (off - x * Z) / whole, (-off - x * Z) / whole
-        return Cell(near * q**2, far, 2 * z / whole * q, 2 * Z / whole * q)
-
-    for members in _runs(bar, nodes, joint_of, places):
-        i, kind = members[0]
-        here = np.abs(places - nodes[i]) < 1e-9 * bar.length
-        if here.any():
-            stress[here], velocity[here] = zs[kind.behind] * (1 + R), 1 - R
-            if kind.compliance or kind.rock != kind.behind:
-                R, share = cell(kind._replace(h=0.0), 0).before(R)
-                stress[passed | here] *= share
-                velocity[passed | here] *= share
-                velocity[here] = (velocity[here] + 1 - R) / 2
-                kind = Kind(0.0, 0.0, kind.h, kind.rock, kind.rock)
-            passed |= here
-        for doublings in range(len(members).bit_length()):
-            if len(members) >> doublings & 1:
-                R, share = cell(kind, doublings).before(R)
-                stress[passed] *= share
-                velocity[passed] *= share
-    entering = 1 / (zs[0] * (1 + R) + bar.start.impedance(s) * (1 - R))
-    return stress * entering, velocity * entering
-
-
-class Kind(NamedTuple):
-    """A joint, or none, and the rock from it to the node before: m/Pa, s, m, and the number of
-    that rock and of the one behind."""
-
-    compliance: float
-    time_constant: float
-    h: float
-    rock: int
-    behind: int
-
-
-def _runs(bar: Bar, nodes: np.ndarray, joint_of: dict[int, int], places: np.ndarray) -> list[list]:
-    """Return the nodes with their kinds from the far end on, alike ones together; those with a
-    place are alone."""
-    held = (np.abs(places[:, None] - nodes) < 1e-9 * bar.length).any(axis=0)
-    h = np.append(0.0, np.diff(nodes)).round(12)
-    starts, close = [rock.y for rock in bar.rocks], 1e-9 * bar.length
-    before, behind = (np.searchsorted(starts, nodes + off) for off in (-close, close))
-    kinds = []
-    for i in range(len(nodes) - 1, -1, -1):
-        j = joint_of.get(i)
-        C, eta = (0.0, 0.0) if j is None else (bar.joint_compliance[j], bar.joint_time_constant[j])
-        rocks = int(before[i]), int(behind[i])
-        kinds.append((i, Kind(float(C), float(eta), float(h[i]), *rocks)))
-    runs = groupby(kinds, key=lambda one: (one[1], one[0] if held[one[0]] else -1))
-    return [list(members) for _, members in runs]
-
-
-def _end_reflection(end: End, s: np.ndarray, z: np.ndarray) -> np.ndarray:
-    if np.isinf(end.dashpot):
-        return np.ones_like(z)
-    Z = end.impedance(s)
-    return (Z - z) / (Z + z)
-
-
-def _nodes(bar: Bar, places: np.ndarray) -> tuple[np.ndarray, dict[int, int]]:
-    """Return the ends, interfaces and receivers in order, and which node holds which joint."""
-    joints = np.flatnonzero(bar.joint_compliance)
-    own = bar.joint_y[joints]
-    near = np.abs(places[:, None] - np.concatenate([own, [0.0, bar.length]])).min(axis=1)
-    apart = np.unique(places[near > 1e-9 * bar.length])
-    nodes = np.sort(np.concatenate([[0.0, bar.length], own, apart]))
-    for rock in bar.rocks:
-        if np.abs(nodes - rock.y).min() > 1e-9 * bar.length:
-            nodes = np.insert(nodes, np.searchsorted(nodes, rock.y), rock.y)
-    return nodes, dict(zip(np.searchsorted(nodes, own).tolist(), joints.tolist(), strict=True))

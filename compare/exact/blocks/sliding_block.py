@@ -17,8 +17,8 @@ from math import hypot
 import numpy as np
 import xarray as xr
 
-from cases.face import face_points
 from cases.material.calibrate import calibrate
+from cases.material.face import face_points
 from cases.sampling import interpolation, sample_times
 from cases.schema.scene import Scene
 from compare.exact.conditions import DAMPED, LAYERS, holds

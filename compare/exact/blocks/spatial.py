@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cases.face import face_points
 from cases.material.calibrate import Properties, calibrate
+from cases.material.face import face_points
 from cases.schema.scene import Scene
 
 #: Freedoms that move together, by the kinematics.

@@ -1,4 +1,4 @@
-"""What a joint passes of a plane shear wave where slip changes it, by Runge-Kutta of order 8.
+"""A plane shear wave at a joint that slip changes, by Runge-Kutta of order 8.
 
 With the path S of the slip and the strength tau(S), that falls by h per path, the joint carries s:
 

@@ -25,19 +25,9 @@ GAP, LOAD_WIDTH = 0.45, 1.75  # inches before and of the load over time
 HEADING = 0.22  # inches of a heading
 TITLE = "The scene"
 SEEN = (
-    *(
-        "pillar",
-        "soft_layers",
-        "segments",
-        "scatter",
-        "load",
-        "ends",
-        "gravity",
-        "prestress",
-        "record",
-    ),
-    "motion",
-)
+    "pillar", "soft_layers", "segments", "scatter", "load", "ends", "gravity", "prestress",
+    "record", "motion",
+)  # fmt: skip
 
 
 def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:

@@ -4,7 +4,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
 from cases.effects import is_spatial
-from cases.face import face_points
+from cases.material.face import face_points
 from cases.schema.scene import Scene
 from compare.figures.drawing import symbols
 from compare.figures.drawing.symbols import EDGE, INK, ROCK, SOFT

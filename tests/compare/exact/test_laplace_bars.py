@@ -9,9 +9,10 @@ from cases import Scene
 from cases.histories import Recorded, Sine, Step
 from cases.material.calibrate import calibrate
 from compare.exact.bar import equivalent_bar, images, jointed_bar, kelvin_voigt, laplace
+from compare.exact.bar.transfer import Bar, End, transfer
 
 NONE = np.zeros(0)
-ROCK = laplace.Bar(1000.0, 2400.0, 4e9, 0.0, NONE, NONE, NONE, laplace.End(0.0), laplace.End(0.0))
+ROCK = Bar(1000.0, 2400.0, 4e9, 0.0, NONE, NONE, NONE, End(0.0), End(0.0))
 Z = np.sqrt(2400.0 * 4e9)
 
 
@@ -33,10 +34,10 @@ def test_parallel_joints_transmit_as_tabulated(count, column, ratio):
         joint_y=y,
         joint_compliance=ones / (Z * omega),
         joint_time_constant=0 * ones,
-        start=laplace.End(Z),
-        end=laplace.End(Z),
+        start=End(Z),
+        end=End(Z),
     )
-    stress, _ = laplace.transfer(bar, np.array([1e-9 + 1j * omega]), np.array([900.0]))
+    stress, _ = transfer(bar, np.array([1e-9 + 1j * omega]), np.array([900.0]))
     assert abs(2 * stress[0, 0]) == pytest.approx(table[count][column], abs=5.1e-5)
 
 
@@ -44,7 +45,7 @@ def test_a_damped_wave_decays_and_disperses_as_its_wavenumber():
     """Between two receivers of a bar so long that nothing comes back: e^{-i k (y2 - y1)}."""
     omega, eta = np.array([200.0, 2000.0]), 1e-3
     bar = replace(ROCK, length=1e6, time_constant=eta)
-    stress, _ = laplace.transfer(bar, 1j * omega, np.array([3.0, 10.0]))
+    stress, _ = transfer(bar, 1j * omega, np.array([3.0, 10.0]))
     k = kelvin_voigt.wavenumber(omega, np.sqrt(4e9 / 2400), eta)
     assert np.allclose(stress[1] / stress[0], np.exp(-7j * k), rtol=1e-12)
 

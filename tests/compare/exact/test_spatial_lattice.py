@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from cases.face import face_points
 from cases.loads import load_history, step_means
 from cases.material.calibrate import calibrate
+from cases.material.face import face_points
 from cases.sampling import sample_times
 from compare.exact.blocks import lattice, spatial, spatial_lattice
 from compare.exact.drive import drive

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cases.face import face_points
 from cases.material.calibrate import calibrate
+from cases.material.face import face_points
 from compare.exact.blocks import cantilever, lattice, spatial, spatial_lattice
 from compare.exact.blocks.spatial_system import at_rest, system
 from compare.exact.schemes import leapfrog
