@@ -23,7 +23,8 @@ def build_model(scene: Scene, p: Properties, time: Clock) -> RowModel:
     """Return the constants of a scene for a given clock."""
     joints, points, load = build_law(p), contact_points(scene), build_load(scene, p, time)
     block, terms = build_block(scene, p, time.dt, points), energy_terms(scene, p)
-    start, end, ends = build_ends(scene, p, block)
+    ends, kinds = build_ends(scene, p, block), (scene.ends.start, scene.ends.end)
+    start, end = (k != "free" or e[STEADY].any() for k, e in zip(kinds, ends, strict=True))
     form = Form(
         parts=parts_of(joints),
         points=points_looked_after(scene, p) > 0,
@@ -33,9 +34,10 @@ def build_model(scene: Scene, p: Properties, time: Clock) -> RowModel:
         local_damping=p.local_damping is not None,
         gravity=scene.gravity is not None,
         base=load.base is not None,
-        start=start,
-        end=end,
+        start=bool(start),
+        end=bool(end),
         ledger=bool(terms),
+        relaxed=is_relaxed(scene),
     )
     return RowModel(
         form=form,
@@ -44,11 +46,16 @@ def build_model(scene: Scene, p: Properties, time: Clock) -> RowModel:
         table=packed(_columns(joints, p.block_count), LANES),
         points=points,
         load=load,
-        ends=ends,
+        ends=ends if start or end or terms else None,
         receivers=build_receivers(*receivers(scene, p)),
         stride=time.stride,
         places=np.array([PLACES[term] for term in terms]) if terms else None,
     )
+
+
+def is_relaxed(scene: Scene) -> bool:
+    """Return whether a scene starts from a static state, by dynamic relaxation."""
+    return scene.prestress is not None or (scene.gravity is not None and scene.gravity.static)
 
 
 def _columns(joints: Law, blocks: int) -> np.ndarray:
@@ -119,9 +126,9 @@ def build_law(p: Properties) -> Law:
     )
 
 
-def build_ends(scene: Scene, p: Properties, block: Block) -> tuple[bool, bool, np.ndarray | None]:
-    """Return whether anything acts on start and end, and the constants of both, with the prestress
-    that they carry where they give way; None where nothing does and no ledger asks for them."""
+def build_ends(scene: Scene, p: Properties, block: Block) -> np.ndarray:
+    """Return the constants of start and end, with the prestress that they carry where they give
+    way."""
     size = 3 if scene.motion.rotation == "none" else 6
     springs, base = end_springs(p, face_of(contact_points(scene)), size), np.zeros(size)
     base[:3] = scene.load.direction if scene.shakes_base else 0.0
@@ -131,8 +138,7 @@ def build_ends(scene: Scene, p: Properties, block: Block) -> tuple[bool, bool, n
         if scene.prestress is not None and kind != "fixed":
             steady[1] = side * scene.prestress.normal * p.area
         found.append(end_constants(kind, side, springs, block, steady, moved))
-    start, end = (k != "free" or e[STEADY].any() for k, e in zip(kinds, found, strict=True))
-    return start, end, np.array(found) if start or end or scene.record.energy else None
+    return np.array(found)
 
 
 def build_load(scene: Scene, p: Properties, time: Clock) -> Load:

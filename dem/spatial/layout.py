@@ -46,7 +46,9 @@ class Form(NamedTuple):
 
     parts : of the joint law. points : whether the law acts at every contact point, else over the
     face as a whole, where joints always hold. turns, finite : whether blocks turn, and by any
-    angle. start, end : whether anything acts on these ends.
+    angle. start, end : whether anything acts on these ends. relaxed : whether the same kernel
+    brings the blocks to rest first, for which it can damp their motion, without a place in the
+    ledger.
     """
 
     parts: Parts
@@ -60,6 +62,7 @@ class Form(NamedTuple):
     start: bool
     end: bool
     ledger: bool
+    relaxed: bool
 
     @property
     def freedoms(self) -> int:

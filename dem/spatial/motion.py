@@ -87,7 +87,8 @@ def constants_of(c):
 def motion_for(form: Form) -> Callable:
     """Return the formula that advances the blocks of a tile by one step."""
     velocity, turns, finite, ledger = form.freedoms * R, form.turns, form.finite, form.ledger
-    gravity, mass_damping, local_damping = form.gravity, form.mass_damping, form.local_damping
+    gravity, local_damping = form.gravity, form.local_damping
+    mass_damping = form.mass_damping or form.relaxed
 
     @formula
     def advanced(b, v, gain):

@@ -5,18 +5,29 @@ from dataclasses import replace
 import numpy as np
 
 from cases.material.calibrate import Properties
-from cases.sampling import Clock
+from cases.sampling import Interpolation
 from cases.schema.scene import Scene
-from dem.spatial.build import buffers_for, build_model, samples_for, state_at_rest
+from dem.spatial.build import (
+    buffers_for,
+    build_block,
+    build_ends,
+    build_receivers,
+    samples_for,
+    state_at_rest,
+)
 from dem.spatial.ends import CLOSURE, contact_points, face_of
 from dem.spatial.layout import LANES, STRIDE, packed, unpacked
 from dem.spatial.march import marcher
-from dem.spatial.model import RowModel, RowState
+from dem.spatial.model import Load, RowModel, RowState
 from dem.spatial.stability import critical_spatial_step
 from dem.static import Rest, prestressed, settle, stiffest
+from joints.law import Law
+from numerics.divergence import guard
 from results.arrays import copied, fill
 
 NEVER = 1 << 60  # steps between samples where none are taken
+NOWHERE = Interpolation(np.arange(0), np.arange(0), np.zeros(0))
+VISCOSITIES = [Law._fields.index(name) for name in ("normal_viscosity", "shear_viscosity")]
 STEP_FRACTION = 0.9  # of the critical step: only where it ends counts
 
 
@@ -25,11 +36,10 @@ def start(scene: Scene, p: Properties, model: RowModel, state: RowState) -> Rest
 
     Raises SceneError where there is none.
     """
-    gravity = scene.gravity
+    gravity, rest = scene.gravity, None
     static = gravity is not None and gravity.static
-    rest = None
-    if static or scene.prestress is not None:
-        relaxation = Relaxation(scene, p, static)
+    if model.form.relaxed:
+        relaxation = Relaxation(scene, p, model, static)
         rest = settle(scene, relaxation)
         relaxation.leave(model, state)
     if not static and gravity is not None:
@@ -43,30 +53,42 @@ def start(scene: Scene, p: Properties, model: RowModel, state: RowState) -> Rest
 class Relaxation:
     """The blocks under their static forces alone: `dem.static.System`.
 
-    Damping decides no static state and is left out, with what is behind quiet and matched ends.
+    Damping decides no static state: dashpots, those behind quiet and matched ends too, and local
+    damping are nought. The kernel is that of the motion, so that a first run compiles one.
     """
 
-    def __init__(self, scene: Scene, p: Properties, weighed: bool) -> None:
+    def __init__(self, scene: Scene, p: Properties, model: RowModel, weighed: bool) -> None:
         p = replace(
             p, time_constant=None, joint_time_constant=None, mass_damping=None, local_damping=None
         )
-        scene = _at_rest(scene, weighed)
+        scene, form = _at_rest(scene, weighed), model.form
         turns, face = scene.motion.rotation != "none", face_of(contact_points(scene))
         dt = STEP_FRACTION * critical_spatial_step(
             stiffest(scene, p), face, (scene.ends.start, scene.ends.end), turns
         )
         self.blocks = p.block_count
-        model = build_model(scene, p, Clock(dt, 1, 1))._replace(stride=NEVER)
-        self.model = model._replace(form=model.form._replace(mass_damping=True))
-        self.state = state_at_rest(self.model)
-        self.buffers, self.samples = buffers_for(self.model, 1), samples_for(self.model, 1)
-        inertia = model.block.inertia[: model.form.freedoms]
+        block = build_block(scene, p, dt, model.points)
+        table = model.table.reshape(len(model.table), -1, LANES).copy()
+        table[:, VISCOSITIES] = 0.0
+        base = np.zeros(0) if form.base else None
+        self.model = model._replace(
+            block=block,
+            table=table.reshape(model.table.shape),
+            load=Load(np.zeros(0), np.zeros(form.freedoms), base),
+            ends=None if model.ends is None else build_ends(scene, p, block),
+            receivers=build_receivers(NOWHERE, NOWHERE),
+            stride=NEVER,
+        )
+        self.state, self.samples = state_at_rest(self.model), samples_for(self.model, 1)
+        # A guard that finds nothing, as the run has one: the same kernel.
+        self.buffers = buffers_for(self.model, 1, guard([np.inf] * form.freedoms))
+        inertia = block.inertia[: form.freedoms]
         # With finite rotations: half the rotation, and the angular momentum.
         self.turned, self.moving = np.ones_like(inertia), inertia.copy()
-        if model.form.finite:
+        if form.finite:
             self.turned[3:], self.moving[3:] = 2.0, 1.0
         self.mass = np.repeat(inertia, p.block_count)
-        weight = np.abs(model.block.weight).max()
+        weight = np.abs(block.weight).max()
         self.prestress = scene.prestress.normal if scene.prestress else 0.0
         self.scale = max(float(weight) * p.block_count, abs(self.prestress) * p.area)
         self.most_steps = 10_000 + 20_000 * p.block_count
@@ -100,9 +122,10 @@ class Relaxation:
     def leave(self, model: RowModel, state: RowState) -> None:
         """Put the static state into the state of a run, whose joints may have rates besides."""
         state.motion[:] = self.state.motion
-        if self.state.history is not None:
-            state.history[:, -self.state.history.shape[1] :] = self.state.history
-        if self.state.ends is not None and state.ends is not None:
+        if state.history is not None:
+            own = model.form.rate_rows * LANES
+            state.history[:, own:] = self.state.history[:, own:]
+        if state.ends is not None:
             state.ends[:, CLOSURE] = self.state.ends[:, CLOSURE]
 
     def _damped(self, alpha: float) -> RowModel:
@@ -130,16 +153,11 @@ class Relaxation:
 
 
 def _at_rest(scene: Scene, weighed: bool) -> Scene:
-    """Return the scene without load, receivers and ledger, and ends that give way free."""
+    """Return the scene with ends that give way free, and without gravity unless it is weighed."""
     held = {k: v if v == "fixed" else "free" for k, v in scene.ends.model_dump().items()}
-    still = scene.load.model_copy(update={"amplitude": 0.0, "shape": "step", "quantity": "stress"})
     return scene.model_copy(
         update={
-            "load": still,
             "ends": scene.ends.model_copy(update=held),
             "gravity": scene.gravity if weighed else None,
-            "record": scene.record.model_copy(
-                update={"stress": [], "velocity": [], "energy": False}
-            ),
         }
     )

@@ -12,7 +12,7 @@ from numerics.cache_lines import CACHE_LINE
 
 FIELDS = ("stress", "shear", "velocity", "displacement", "rotation")
 ABSENT = ("points", "finite", "mass_damping", "local_damping", "gravity", "base", "start", "end")
-ABSENT += ("ledger",)
+ABSENT += ("ledger", "relaxed")
 VECTOR = r"fmul <\d+ x double>"
 SQRT = r"(?:tail )?call \S+ @llvm\.sqrt\S*"
 
