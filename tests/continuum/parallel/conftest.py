@@ -1,9 +1,31 @@
 """What the tests of several processes share: real ones, started by mpiexec."""
 
+import json
+import re
 import subprocess
 import sys
 
 import pytest
+
+#: Runs commands in turn in the same processes; after each, the first says how it has ended.
+IN_TURN = """
+import json, sys
+from mpi4py import MPI
+from compare.cli import program
+
+ours = sys.stdout, sys.stderr
+for arguments in json.loads(sys.argv[1]):
+    sys.stdout, sys.stderr = ours
+    sys.argv = ["jointwave", *arguments]
+    try:
+        program.main()
+    except SystemExit as end:
+        code = end.code
+    MPI.COMM_WORLD.Barrier()
+    if MPI.COMM_WORLD.rank == 0:
+        for stream in ours:
+            print("ended", code, file=stream, flush=True)
+"""
 
 
 @pytest.fixture(scope="session")
@@ -26,8 +48,20 @@ def under_mpi(mpiexec):
 
 
 @pytest.fixture(scope="session")
-def jointwave(under_mpi):
-    """Return a function that runs the command in `count` processes."""
-    return lambda count, *arguments, code=0: under_mpi(
-        count, "-m", "compare", *arguments, code=code
-    )
+def in_turn(under_mpi, without_warnings):
+    """Return a function that runs commands one after the other in the same `count` processes.
+
+    It gives for each its exit code, its output and the lines of its errors.
+    """
+
+    def run(count, *commands):
+        asked = json.dumps([[*map(str, arguments)] for arguments in commands])
+        done = under_mpi(count, "-c", IN_TURN, asked)
+        assert "Traceback" not in done.stderr
+        *out, rest = re.split(r"^ended (\d+)\n", done.stdout, flags=re.MULTILINE)
+        *said, _ = re.split(r"^ended \d+\n", done.stderr, flags=re.MULTILINE)
+        assert len(said) == len(commands) and rest == ""
+        lines = map(without_warnings, said)
+        return list(zip(map(int, out[1::2]), out[::2], lines, strict=True))
+
+    return run

@@ -50,25 +50,6 @@ MISTAKES = {
     "a folder that cannot be": (("run", *SCENE, *SHORT), 2, "Not a directory"),
 }
 
-#: Runs commands in turn in the same processes; after each, the first says how it has ended.
-IN_TURN = """
-import json, sys
-from mpi4py import MPI
-from compare.cli import program
-
-ours = sys.stdout, sys.stderr
-for arguments in json.loads(sys.argv[1]):
-    sys.stdout, sys.stderr = ours
-    sys.argv = ["jointwave", *arguments]
-    try:
-        program.main()
-    except SystemExit as end:
-        code = end.code
-    MPI.COMM_WORLD.Barrier()
-    if MPI.COMM_WORLD.rank == 0:
-        print("ended", code, file=ours[1], flush=True)
-"""
-
 
 @pytest.fixture
 def said(without_warnings):
@@ -83,7 +64,7 @@ def said(without_warnings):
 
 
 @pytest.fixture(scope="module")
-def told(under_mpi, without_warnings, tmp_path_factory):
+def told(in_turn, tmp_path_factory):
     """Return what three processes say of each mistake, its exit code and its folder, by name; and
     what a run of rigid blocks after all of them prints."""
     place = tmp_path_factory.mktemp("mistakes")
@@ -91,22 +72,17 @@ def told(under_mpi, without_warnings, tmp_path_factory):
     (place / "file").write_text("")
     folders["a folder that cannot be"] = place / "file" / "folder"
     commands = [
-        [*asked, *(("--out", str(folders[name])) if asked[0] != "explain" else ())]
+        [*asked, *(("--out", folders[name]) if asked[0] != "explain" else ())]
         for name, (asked, *_) in MISTAKES.items()
     ]
-    commands.append(["run", *SCENE, *BLOCKS, *SHORT, "--out", str(place / "blocks"), "--json"])
-    done = under_mpi(3, "-c", IN_TURN, json.dumps(commands))
-    assert "Traceback" not in done.stderr
-    found, lines = [], []
-    for line in without_warnings(done.stderr):
-        if line.startswith("ended "):
-            found.append((lines, int(line.split()[1])))
-            lines = []
-        elif line.startswith("jointwave: "):
-            lines.append(line)
-    assert len(found) == len(commands) and found.pop() == ([], 0)
-    by_name = {name: (*one, folders[name]) for name, one in zip(MISTAKES, found, strict=True)}
-    return by_name, (done.stdout, place / "blocks")
+    blocks = ["run", *SCENE, *BLOCKS, *SHORT, "--out", place / "blocks", "--json"]
+    *found, (code, out, said) = in_turn(3, *commands, blocks)
+    assert code == 0 and said == []
+    by_name = {
+        name: ([line for line in said if line.startswith("jointwave: ")], code, folders[name])
+        for name, (code, _, said) in zip(MISTAKES, found, strict=True)
+    }
+    return by_name, (out, place / "blocks")
 
 
 @pytest.mark.parametrize("name", MISTAKES)
@@ -162,9 +138,7 @@ def test_a_mistake_of_the_program_on_one_process_ends_all(under_mpi, said, tmp_p
     assert "a fault of the program, KeyError" in line and "'bug'" in line
 
 
-def test_an_mpiexec_of_another_mpi_is_refused(
-    said,
-):
+def test_an_mpiexec_of_another_mpi_is_refused(said):
     """Its processes would not know of each other, and all write the same file."""
     environment = {**os.environ, "MV2_COMM_WORLD_SIZE": "4"}
     command = [sys.executable, "-m", "compare", "run", *SCENE]
