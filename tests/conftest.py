@@ -1,5 +1,6 @@
 """What the tests share: the paper's pillar with any key changed, and a look at compiled code."""
 
+import ctypes
 import gc
 import os
 import re
@@ -21,6 +22,8 @@ settings.load_profile("jointwave")
 
 # Nor does a test how long it takes: no command that it runs speaks of its progress.
 os.environ["JOINTWAVE_PROGRESS"] = "0"
+
+MALLOC_TRIM = getattr(ctypes.CDLL(None), "malloc_trim", lambda keep: 0)
 
 PILLAR = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
 
@@ -52,6 +55,7 @@ def release_results(request):
             cached.cache_clear()
     gc.collect()
     gc.freeze()  # what is left are kernels and types, which stay: no need to look at them again
+    MALLOC_TRIM(0)  # glibc keeps the pages of arrays that were freed below others that were not
 
 
 @pytest.fixture
