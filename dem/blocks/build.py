@@ -72,7 +72,14 @@ def form_of(blocks: RigidBlocks, held: bool, shaken: bool) -> PlaneForm:
         ruled=len(own.rules) > 1,
         stressed=scene.prestress is not None,
         shaken=shaken,
+        relaxed=relaxed(scene),
     )
+
+
+def relaxed(scene: RockMass) -> bool:
+    """Return whether a scene starts from a static state, by dynamic relaxation."""
+    weighed = scene.gravity is not None and scene.gravity.static
+    return weighed or scene.prestress is not None
 
 
 def constants(scene: RockMass, blocks: RigidBlocks, dt: float) -> Blocks:

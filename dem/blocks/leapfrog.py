@@ -142,8 +142,9 @@ def loop_for(form: PlaneForm) -> Callable:
     residual, worn, dilation = parts.residual, parts.path, parts.dilation
     held, ledger = form.held, form.ledger
     ruled, stressed, shaken = form.ruled, form.stressed, form.shaken
-    mass_damping, local_damping, gravity = form.mass_damping, form.local_damping, form.gravity
+    mass_damping, local_damping = form.mass_damping or form.relaxed, form.local_damping
     damped, drags = form.mass_damping or form.local_damping, form.parts.dashpots and form.ledger
+    gravity = form.gravity
 
     @jitted_for(form)
     def loop(
@@ -164,6 +165,7 @@ def loop_for(form: PlaneForm) -> Callable:
         table, force, rates, drag, history = borrowed((table, force, rates, drag, history))
         row, keeps, moves, dashpot, drive = borrowed((row, keeps, moves, dashpot, drive))
         law, rule, second = law_of(laws, 0), rules[0], 0.0
+        push = 0.5 * dt * (1.0 + keep)  # dt without mass damping
         for p in range(rules.shape[2]):
             second += rule[1, p] * rule[0, p] * rule[0, p]
         pieces, met = (len(pair) + CHUNK - 1) // CHUNK, 0
@@ -334,7 +336,7 @@ def loop_for(form: PlaneForm) -> Callable:
                         f_x, f_y = f_x + own_drive[0], f_y + own_drive[1]
                         moment += own_drive[2]
                 v_x, v_y, spin = v[b, 0], v[b, 1], v[b, 2]
-                p_x, p_y, p_m = dt * f_x, dt * f_y, dt * moment
+                p_x, p_y, p_m = push * f_x, push * f_y, push * moment
                 if local_damping:
                     if v_x != 0.0:
                         p_x -= local * copysign(abs(p_x), v_x)
@@ -345,8 +347,6 @@ def loop_for(form: PlaneForm) -> Callable:
                 new_x, new_y, new_spin = v_x, v_y, spin
                 if mass_damping:
                     new_x, new_y, new_spin = keep * v_x, keep * v_y, keep * spin
-                    half = 0.5 * (1.0 + keep)
-                    p_x, p_y, p_m = half * p_x, half * p_y, half * p_m
                 new_x, new_y = new_x + p_x / mass, new_y + p_y / mass
                 new_spin += p_m / about
                 if held and h >= 0:

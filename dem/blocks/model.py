@@ -35,7 +35,8 @@ class PlaneForm(NamedTuple):
     need none. mass_damping, local_damping, gravity : of the blocks. held : whether some blocks have
     dashpots of their own, or forces. ledger : whether energies are kept. ruled : whether contacts
     differ in the rule of their points. stressed : whether contacts start under a traction. shaken :
-    whether walls move.
+    whether walls move. relaxed : whether the same kernel brings the blocks to rest first, for which
+    it can damp their motion, without a place in the ledger.
     """
 
     parts: Parts
@@ -48,6 +49,7 @@ class PlaneForm(NamedTuple):
     ruled: bool = False
     stressed: bool = False
     shaken: bool = False
+    relaxed: bool = False
 
 
 class Contacts(NamedTuple):
@@ -191,7 +193,8 @@ def held_by(dashpot: np.ndarray, index: np.ndarray, inertia: np.ndarray, dt: flo
     row[index] = np.arange(len(index))
     lost = 0.5 * dt * dashpot / inertia[index][:, [0, 0, 1], None]
     moves = np.linalg.inv(np.eye(3) + lost)
-    return Held(row, -moves @ lost, moves, dashpot)
+    # In one layout, whatever it comes from: another is another kernel.
+    return Held(row, -moves @ lost, moves, np.ascontiguousarray(dashpot))
 
 
 def state_at_rest(model: PlaneModel) -> PlaneState:

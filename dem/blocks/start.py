@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cases.material.prestress import refuse_beyond_strength
+from dem.blocks.joints import VISCOSITIES
 from dem.blocks.leapfrog import march, samples_for
 from dem.blocks.model import PlaneState, held_by, state_at_rest
 from dem.blocks.stability import critical_plane_step
 from dem.static import Rest, settle
-from joints.law import parts_of, table_of
+from joints.law import Law
 from results.arrays import copied, fill
 
 if TYPE_CHECKING:
@@ -48,35 +49,26 @@ def start(system: PlaneSystem, state: PlaneState) -> Rest | None:
 class PlaneRelaxation:
     """The blocks under their static forces alone: `dem.static.System`.
 
-    Damping decides no static state and is left out, with the dashpots of quiet sides.
+    Damping decides no static state: dashpots, those of quiet sides too, and local damping are
+    nought. The kernel is that of the motion, so that a first run compiles one.
     """
 
     def __init__(self, system: PlaneSystem, weighed: bool) -> None:
         blocks, model, sources = system.blocks, system.model, system.sources
-        law = blocks.columns.law._replace(normal_viscosity=None, shear_viscosity=None)
-        columns = blocks.columns._replace(law=law, time_constants=None)
+        columns = blocks.columns._replace(time_constants=None)
         dt = STEP_FRACTION * critical_plane_step(blocks.links, columns, blocks.inertia, 0.0)
-        form = model.form._replace(
-            parts=parts_of(law),
-            mass_damping=True,
-            local_damping=False,
-            gravity=weighed,
-            ledger=False,
-            shaken=False,
-        )
+        own, laws = model.blocks._replace(dt=dt, local=0.0), model.laws.copy()
+        if not weighed:
+            own = own._replace(gravity_x=0.0, gravity_y=0.0)
+        laws[[Law._fields.index(name) for name in VISCOSITIES]] = 0.0
         nothing = np.zeros((len(sources.rows), 3, 3))
-        inertia = model.blocks.inertia
-        self.model = model._replace(
-            form=form,
-            blocks=model.blocks._replace(dt=dt, keep=1.0, local=0.0),
-            laws=table_of(law),
-            held=held_by(nothing, sources.rows, inertia, dt) if form.held else None,
-        )
+        held = held_by(nothing, sources.rows, own.inertia, dt) if model.form.held else None
+        self.model = model._replace(blocks=own, laws=laws, held=held)
         self.state, self.samples = state_at_rest(self.model), samples_for(self.model, 0)
-        self.steady, self.count = sources.steady, len(inertia)
+        self.steady, self.count = sources.steady, len(own.inertia)
         self.threads = system.threads
         self.mass = blocks.masses.ravel()
-        g = np.hypot(model.blocks.gravity_x, model.blocks.gravity_y) if weighed else 0.0
+        g = np.hypot(own.gravity_x, own.gravity_y)
         edges, stress = blocks.partition.boundary, blocks.scene.prestress
         pressed = 0.0 if stress is None else max(map(abs, (stress.xx, stress.yy, stress.xy)))
         self.scale = float(g * blocks.inertia.mass.sum() + pressed * edges.length.sum())
@@ -89,7 +81,8 @@ class PlaneRelaxation:
         drive = np.broadcast_to(self.steady, (steps, *self.steady.shape)).copy()
         # From step 1: only step 0 would be a sample.
         model = self.model._replace(blocks=blocks)
-        march(model, self.state, self.samples, NEVER, (1, 1 + steps), drive, None, self.threads)
+        shake = np.zeros((steps, model.walls, 2)) if model.form.shaken else None
+        march(model, self.state, self.samples, NEVER, (1, 1 + steps), drive, shake, self.threads)
 
     def unbalanced(self) -> np.ndarray:
         """Return the net force and moment on every freedom, from the step that they would cause."""
