@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from importlib.util import module_from_spec, spec_from_file_location
 from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -44,7 +45,7 @@ def _sizes(path: Path) -> dict[str, float]:
         is_classic = file.read(3) == b"CDF"
     if is_classic:
         require(path.stat().st_size, "the file")
-    with (_classic if is_classic else _hdf5)(path) as file:
+    with (netcdf3 if is_classic else _hdf5)(path) as file:
         return {
             name: _item(variable) * prod(map(float, variable.shape))
             for name, variable in file.variables.items()
@@ -57,10 +58,16 @@ def _item(variable: Any) -> float:
     return float(variable.itemsize() if kind is None else getattr(kind, "itemsize", 8))
 
 
-def _classic(path: Path) -> Any:
-    from scipy.io import netcdf_file
+def netcdf3(path: Path, mode: str = "r") -> Any:
+    """Return a NetCDF 3 file opened by scipy: by its one module, since all of scipy.io takes as
+    long to import as a short run to step."""
+    import scipy
 
-    return netcdf_file(str(path), mmap=True)
+    spec = spec_from_file_location("scipy_netcdf", Path(scipy.__file__).parent / "io/_netcdf.py")
+    assert spec and spec.loader
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.netcdf_file(str(path), mode, mmap=mode == "r", version=2)
 
 
 def _hdf5(path: Path) -> Any:

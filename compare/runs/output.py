@@ -17,6 +17,7 @@ from cases.errors import SceneError, printable
 from cases.files import is_number, read_json
 from results.dataset import Fields
 from results.labels import RECEIVERS
+from results.netcdf import netcdf3
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -196,12 +197,10 @@ def fields_of(result: xr.Dataset) -> Fields:
 
 def write_fields(path: Path, fields: Fields) -> Path:
     """Write a result as NetCDF 3 by scipy, just as xarray would but without importing it."""
-    from scipy.io import netcdf_file
-
     refuse_foreign(path)
 
     def save(temporary: Path) -> None:
-        with netcdf_file(str(temporary), "w", version=2) as file:
+        with netcdf3(temporary, "w") as file:
             _write_attributes(file, fields.attributes)
             for name, (dimensions, values, attributes) in {
                 **fields.coords,

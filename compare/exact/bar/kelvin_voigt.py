@@ -25,7 +25,7 @@ from cases.loads import load_history
 from cases.material.calibrate import calibrate
 from cases.sampling import sample_times
 from cases.schema.scene import Scene
-from compare.exact.bar.series import rigid
+from compare.exact.bar.series import exponentials, rigid
 from compare.exact.conditions import DAMPED, holds, is_free, static_stress
 from compare.solvers.record import BAR, Answer, Kind, Rock, Solver, Words, thin
 from results.dataset import dataset
@@ -54,24 +54,27 @@ def solve(scene: Scene, n_terms: int = 500) -> xr.Dataset:
     length, record, eta = scene.pillar.length, scene.record, p.time_constant
     sections, points = np.array(record.stress), np.array(record.velocity)
     f, x = load.value(times), points / length
-    w = _convolution(-1 / eta, load, times).real / eta
+    w = _convolutions(np.ones((1, 1)), np.array([-1 / eta]), load, times)[0] / eta
     w_rate = (f - w) / eta
-    stress = np.outer(1 - sections / length, f)
     static = (length / p.bar_speed) ** 2 * (1 / 3 - x + x**2 / 2)
     rigid_velocity, rigid_displacement = rigid(load, times)
-    velocity = rigid_velocity + np.outer(static, w_rate)
-    displacement = rigid_displacement + np.outer(static, w)
-    found = {"stress": stress, "velocity": velocity, "displacement": displacement}
-    half = {}
-    for n in range(1, n_terms + 1):
-        mode, shape = n * pi * p.bar_speed / length, 2 * np.cos(n * pi * x)
-        q, rate = response(mode, eta, load, times)
-        excess = 2 * p.bar_speed / length * (mode * (q + eta * rate) - f / mode)
-        found["stress"] += np.outer(np.sin(n * pi * sections / length), excess)
-        found["velocity"] += np.outer(shape, rate - w_rate / mode**2)
-        found["displacement"] += np.outer(shape, q - w / mode**2)
-        if n == n_terms // 2:
-            half = {name: waves.copy() for name, waves in found.items()}
+    found = {
+        "stress": np.outer(1 - sections / length, f),
+        "velocity": rigid_velocity + np.outer(static, w_rate),
+        "displacement": rigid_displacement + np.outer(static, w),
+    }
+    half: dict[str, np.ndarray] = {}
+    for n in np.split(np.arange(1, n_terms + 1), [n_terms // 2]):
+        half = {name: waves.copy() for name, waves in found.items()}
+        wave = n * pi / length
+        mode, shape = p.bar_speed * wave, 2 * np.cos(np.outer(points, wave))
+        of_stress = 2 * p.bar_speed / length * np.sin(np.outer(sections, wave))
+        q, rate = sums(of_stress * mode, mode, eta, load, times)
+        found["stress"] += q + eta * rate - np.outer((of_stress / mode).sum(axis=1), f)
+        q, rate = sums(shape, mode, eta, load, times)
+        tail = (shape / mode**2).sum(axis=1)
+        found["velocity"] += rate - np.outer(tail, w_rate)
+        found["displacement"] += q - np.outer(tail, w)
     errors = {}
     for name, waves in found.items():
         if name != "stress":
@@ -94,33 +97,34 @@ def _left_out(waves: np.ndarray, half: np.ndarray) -> np.ndarray:
     return SAFETY * np.sqrt(np.mean(last**2, axis=1)) + ROUND_OFF * peak
 
 
-def response(
-    mode: float, eta: float, load: Sine, times: np.ndarray
+def sums(
+    weights: np.ndarray, mode: np.ndarray, eta: float, load: Sine, times: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return q_n (Pa s2) and its rate (Pa s) for a mode (rad/s) and a time constant (s)."""
+    """Return sums [m, times] of weights [m, n] times q_n (Pa s2), and times its rate (Pa s), at
+    equally spaced times for modes [n] (rad/s) and a time constant (s)."""
     ratio = eta * mode / 2
-    if ratio**2 <= 1 - SPLIT**2:  # two roots that are conjugate, and so are their convolutions
-        root = mode * complex(-ratio, np.sqrt(1 - ratio**2))
-        a = _convolution(root, load, times)
-        return a.imag / root.imag, (root * a).imag / root.imag
-    split = np.sqrt(complex(ratio**2 - 1))
-    if abs(split) < SPLIT:
-        split = complex(SPLIT)
+    apart = np.sqrt(np.asarray(ratio**2 - 1, dtype=complex))
+    split = np.where(np.abs(apart) < SPLIT, SPLIT, apart)
     fast = -mode * (ratio + split)
-    slow = mode**2 / fast if abs(ratio**2 - 1) >= SPLIT**2 else -mode * (ratio - split)
-    a, b = _convolution(slow, load, times), _convolution(fast, load, times)
-    q, rate = (a - b) / (slow - fast), (slow * a - fast * b) / (slow - fast)
-    return q.real, rate.real
+    slow = np.where(split == apart, mode**2 / fast, -mode * (ratio - split))
+    share, roots = weights / (slow - fast), np.concatenate([slow, fast])
+    shares = np.concatenate([share, -share], axis=1)
+    q, rate = (_convolutions(one, roots, load, times) for one in (shares, shares * roots))
+    return q, rate
 
 
-def _convolution(root: complex, load: Sine, times: np.ndarray) -> np.ndarray:
-    """Return C(r) = int_0^t f(s) e^{r (t - s)} ds at `times`."""
-    omega, t, end = 2 * pi / load.period, np.maximum(times, 0.0), load.end
-    on = t < end
-    found = omega * np.exp(root * np.where(on, t, t - end))
-    found[on] -= omega * np.cos(omega * t[on]) + root * np.sin(omega * t[on])
-    found[~on] *= np.expm1(root * end)
-    return load.amplitude / (root**2 + omega**2) * found
+def _convolutions(
+    weights: np.ndarray, roots: np.ndarray, load: Sine, times: np.ndarray
+) -> np.ndarray:
+    """Return sums [m, times] of weights [m, n] times C(r) = int_0^t f(s) e^{r (t - s)} ds, of roots
+    that are real or conjugate."""
+    omega, on = 2 * pi / load.period, np.searchsorted(times, load.end)
+    k, t = weights * load.amplitude / (roots**2 + omega**2), omega * times[:on]
+    during = omega * exponentials(k, roots, times[:on])
+    during -= np.outer(omega * k.sum(axis=1), np.cos(t)) + np.outer(k @ roots, np.sin(t))
+    k = omega * np.expm1(roots * load.end) * k
+    after = exponentials(k, roots, times[on:] - load.end)
+    return np.concatenate([during.real, after.real], axis=1)
 
 
 def wavenumber(omega: np.ndarray | float, speed: float, eta: float) -> np.ndarray:
