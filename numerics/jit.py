@@ -1,13 +1,16 @@
 """Compilation of kernels: one set of options, one cache that follows the sources."""
 
 import fcntl
+import hashlib
 from collections.abc import Callable
+from contextlib import ExitStack, suppress
 from functools import wraps
 from pathlib import Path
 from typing import Any
 
 import llvmlite.binding
 import numba
+from numba.core.compiler_lock import global_compiler_lock
 from numba.core.runtime import rtsys
 
 from numerics.cache import cache_directory, make, mark_used
@@ -48,7 +51,7 @@ def jitted_for(*effects: Any) -> Callable:
     """
 
     def compiled(function: Callable) -> Callable:
-        kernel: Any = _compiled(function)
+        kernel: Any = _compiled(function, effects)
         kernel._cache._index_key = lambda sig, codegen: (sig, codegen.magic_tuple(), repr(effects))
         return kernel
 
@@ -72,7 +75,7 @@ def inlined(function: Callable) -> Callable:
     return _compiled(function, no_cpython_wrapper=True)
 
 
-def _compiled(function: Callable, **options: bool) -> Callable:
+def _compiled(function: Callable, effects: tuple = (), **options: bool) -> Callable:
     numba.config.CACHE_DIR = str(DIRECTORY)
     common = {"forceinline": True, "nogil": True, "no_cfunc_wrapper": True}
     kernel = numba.njit(cache=True, fastmath=False, error_model="numpy", **(common | options))(
@@ -80,7 +83,28 @@ def _compiled(function: Callable, **options: bool) -> Callable:
     )
     kernel._cache.save_overload = _one_at_a_time(kernel._cache.save_overload)
     kernel._cache.load_overload = _without_registries(kernel._cache)
+    lines = function.__module__, function.__qualname__, function.__code__.co_firstlineno
+    name = hashlib.sha256(repr((lines, effects)).encode()).hexdigest()[:16]
+    kernel.compile = _in_one_process(kernel.compile, f"{name}.lock")
     return kernel
+
+
+def _in_one_process(compiling: Callable, lock: str) -> Callable:
+    """Let one process at a time compile a kernel: others that want it, such as those of a run that
+    MPI shares, wait and load it.
+
+    No other thread may compile meanwhile: it could wait for this kernel, and this one for it.
+    """
+
+    def alone(signature: Any) -> Any:
+        with global_compiler_lock, ExitStack() as held:
+            with suppress(OSError):  # a cache that cannot be written
+                make(DIRECTORY)
+                file = held.enter_context((DIRECTORY / lock).open("w"))
+                fcntl.flock(file, fcntl.LOCK_EX)
+            return compiling(signature)
+
+    return alone
 
 
 def _without_registries(cache: Any) -> Callable:

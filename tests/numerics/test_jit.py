@@ -78,6 +78,29 @@ def test_one_process_at_a_time_enters_the_cache(tmp_path, monkeypatch):
     assert {path.suffix for path in tmp_path.rglob("*.nb?")} == {".nbi", ".nbc"}
 
 
+def test_one_process_at_a_time_compiles_a_kernel(tmp_path, monkeypatch):
+    """While another compiles it a kernel waits; then it loads what the other has saved."""
+    monkeypatch.setattr(jit, "DIRECTORY", tmp_path / "cache")
+
+    def increased(x):
+        return x + 1.0
+
+    assert jitted(increased)(1.0) == 2.0
+    (lock,) = (tmp_path / "cache").glob("*.lock")
+    (index,) = (tmp_path / "cache").rglob("*.nbi")
+    kept = index.rename(tmp_path / "kept")
+    kernel = jitted(increased)
+    worker = threading.Thread(target=kernel, args=(1.0,))
+    with lock.open("w") as other:
+        fcntl.flock(other, fcntl.LOCK_EX)
+        worker.start()
+        worker.join(timeout=1)
+        assert worker.is_alive()
+        kept.rename(index)
+    worker.join()
+    assert kernel.stats.cache_hits and not kernel.stats.cache_misses
+
+
 SUM = """
 import sys
 import numpy
