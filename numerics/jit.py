@@ -1,6 +1,7 @@
 """Compilation of kernels: one set of options, one cache that follows the sources."""
 
 import fcntl
+import gc
 import hashlib
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
@@ -93,11 +94,15 @@ def _in_one_process(compiling: Callable, lock: str) -> Callable:
     """Let one process at a time compile a kernel: others that want it, such as those of a run that
     MPI shares, wait and load it.
 
-    No other thread may compile meanwhile: it could wait for this kernel, and this one for it.
+    No other thread may compile meanwhile: it could wait for this kernel, and this one for it. Nor
+    is garbage looked for, which takes a sixth of the time: nearly all of what lives is in use.
     """
 
     def alone(signature: Any) -> Any:
         with global_compiler_lock, ExitStack() as held:
+            if gc.isenabled():
+                held.callback(gc.enable)
+                gc.disable()
             with suppress(OSError):  # a cache that cannot be written
                 make(DIRECTORY)
                 file = held.enter_context((DIRECTORY / lock).open("w"))

@@ -44,6 +44,12 @@ OPEN_MPI = {
 }
 
 
+def pytest_collection_finish():
+    """Take what has been imported and collected from the garbage that is looked through."""
+    gc.collect()
+    gc.freeze()
+
+
 @pytest.fixture(scope="module", autouse=True)
 def release_results(request):
     """Release after each file what it has cached, and the garbage in cycles: results of whole
