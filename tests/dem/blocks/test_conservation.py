@@ -83,7 +83,7 @@ def test_the_ledger_closes(law, lattice):
     """What is stored and dissipated is what was there, to round-off; nothing is ever given back."""
     fields, _ = LAWS[law]
     energy, total = ledger_of(law, lattice, 0.25, 2000)
-    assert np.abs(total - total[0]).max() < 1e-11 * total[0]
+    assert np.abs(total - total[0]).max() < 1e-12 * total[0]
     for name in ("viscous", "friction"):
         assert (np.diff(energy[name]) > -1e-12 * total[0]).all()
     assert (energy["viscous"][-1] > 0.1 * total[0]) == ("normal_viscosity" in fields)
@@ -118,7 +118,7 @@ def test_the_ledger_closes_with_gravity_damping_and_what_acts_on_held_blocks(see
     march(model, state, samples, 10, (0, 501), drive)
     energy = dict(zip(TERMS, samples.energy, strict=True))
     total = samples.energy.sum(axis=0) - 2 * energy["work"]
-    assert np.abs(total - total[0]).max() < 1e-11 * np.abs(samples.energy).max()
+    assert np.abs(total - total[0]).max() < 1e-12 * np.abs(samples.energy).max()
     for name in ("viscous", "boundary", "work"):
         assert np.abs(energy[name]).max() > 1e-3 * np.abs(samples.energy).max()
 
@@ -126,19 +126,19 @@ def test_the_ledger_closes_with_gravity_damping_and_what_acts_on_held_blocks(see
 @EACH
 @pytest.mark.parametrize("turned", [0.3, np.pi / 2, 2.0])
 def test_a_rock_mass_that_is_turned_and_shifted_moves_alike(law, turned, lattice):
-    """Vectors turn with it, to the round-off of sines, cosines and 200 steps; which point slides
-    first, or opens, is decided alike."""
+    """Vectors turn with it; which point slides first, or opens, is decided alike. Arms of 0.25 m
+    between places 20 m away are known to 1e-14, which the 100 rad of 200 steps make 1e-12."""
     fields, points = LAWS[law]
     one, _, _ = lattice(Law(**fields), points, ledger=True)
     other, _, turn = lattice(
-        Law(**fields), points, ledger=True, turned=turned, shifted=(300.0, -20.0)
+        Law(**fields), points, ledger=True, turned=turned, shifted=(20.0, -5.0)
     )
     states = kicked(one), kicked(other, turn)
     for model, state in zip((one, other), states, strict=True):
         march(model, state, samples_for(model, 0), 1 << 40, (1, 201))
     u, twin = states[0].u.copy(), states[1].u.copy()
     twin[:, :2] = twin[:, :2] @ turn
-    assert np.abs(u - twin).max() < 1e-11 * np.abs(u).max()
+    assert np.abs(u - twin).max() < 1e-12 * np.abs(u).max()
 
 
 @EACH
