@@ -15,8 +15,10 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
+from cases.errors import SceneError
 from cases.loads import history_of
 from cases.material.rock import elastic_rock
+from cases.partition.regions import region_at, rocks_of
 
 if TYPE_CHECKING:
     from cases.histories import LoadHistory
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from cases.schema.sources import Wave
 
 BEYOND = 20  # samples on either side of the times that are asked for
+WITHIN = 1e-6  # of a domain: from its corner to a place in the rock there
 GRAZING = 1e-9  #: cosine up to which a wave that leaves through a side still runs along it
 
 
@@ -95,23 +98,31 @@ class FreeField:
 
 
 def free_field(scene: RockMass) -> FreeField:
-    """Return the field of all waves of a scene in rock without joints; whole where it has none."""
+    """Return the field of all waves of a scene in rock without joints; whole where it has none.
+
+    Raises SceneError where waves meet several regions of rock, in which they do not stay plane.
+    """
+    if scene.waves and scene.regions:
+        allowed = "meet several rocks: give their field, compare.exact.rock_mass.field.field_of"
+        raise SceneError(scene.where, "waves", len(scene.waves), allowed)
     return FreeField(tuple(plane_wave(scene, one) for one in scene.waves), not scene.joint_sets)
 
 
 def plane_wave(scene: RockMass, wave: Wave) -> PlaneWave:
-    """Return a wave of a scene: its speed, where its pulse begins, and its particle velocity.
+    """Return a wave of a scene: its speed, where its pulse begins, and its particle velocity, in
+    the rock of the corner of the domain that it meets first.
 
     Of an S wave particles move to the left of its travel. Stress is that on the wave front, minus
     sigma_nn of P and sigma_ns of S: both are impedance times velocity.
     """
-    rock = elastic_rock(scene.rock)
-    n = np.array(wave.direction)
+    n, corners = np.array(wave.direction), np.array(scene.domain.corners)
+    first = corners[np.argmin(corners @ n)]
+    inside = first + WITHIN * (corners.mean(axis=0) - first)
+    rock = elastic_rock(rocks_of(scene)[region_at(scene.regions, inside[None])[0]])
     is_p = wave.kind == "P"
     speed = float(rock.p_speed if is_p else rock.s_speed)
     polarisation = n if is_p else np.array([-n[1], n[0]])
-    corners = np.array(scene.domain.corners)
-    through = corners[np.argmin(corners @ n)] if wave.through is None else np.array(wave.through)
+    through = first if wave.through is None else np.array(wave.through)
     over = float(rock.density) * speed if wave.quantity == "stress" else 1.0
     return PlaneWave(rock, n, polarisation, speed, through, history_of(wave, wave.amplitude / over))
 

@@ -77,8 +77,14 @@ def _at_rest(scene: AnyScene) -> float:
         extent = float(np.hypot(*np.ptp(np.array(scene.domain.corners), axis=0)))
     if scene.gravity is None:
         return stress
-    weight = scene.rock.density * scene.gravity.acceleration * extent
+    weight = _densest(scene) * scene.gravity.acceleration * extent
     return stress + (1 if scene.gravity.static else 2) * weight
+
+
+def _densest(scene: AnyScene) -> float:
+    """Return the largest density of [rock] and, of a rock mass, its regions, kg/m3."""
+    regions = () if isinstance(scene, Scene) else scene.regions
+    return max(scene.rock.density, *(one.density or 0.0 for one in regions), 0.0)
 
 
 def _principal(xx: float, yy: float, xy: float) -> float:
@@ -109,8 +115,9 @@ def _stress_of(pulse: Pulse, scene: AnyScene) -> float:
     if pulse.quantity == "force":
         return 1 / _least_spacing(scene)
     from cases.material.rock import elastic_rock
+    from cases.partition.regions import rocks_of
 
-    return float(elastic_rock(scene.rock).p_impedance)
+    return max(float(elastic_rock(one).p_impedance) for one in rocks_of(scene))
 
 
 def _least_spacing(scene: RockMass) -> float:

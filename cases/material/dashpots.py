@@ -55,10 +55,11 @@ def set_time_constants(scene: RockMass) -> np.ndarray | None:
     """Return eta of each joint set of a rock mass, normal and in shear, s [sets]; None without any
     dashpot.
 
-    The mass in c_n = 2 zeta sqrt(m k_n) is that of the rock from joint to joint: density times the
-    spacing, or half of the domain's extent across a joint that is alone.
+    The mass in c_n = 2 zeta sqrt(m k_n) is that of the rock from joint to joint: its density times
+    the spacing, or half of the domain's extent across a joint that is alone.
     """
     from cases.partition.joints import direction_of
+    from cases.partition.regions import rocks_beside
 
     sets = scene.joint_sets
     if scene.damping.rayleigh is not None:
@@ -66,13 +67,22 @@ def set_time_constants(scene: RockMass) -> np.ndarray | None:
         return np.full(len(sets), beta) if beta else None
     if not any(one.damping_ratio for one in sets):
         return None
-    density, corners = scene.rock.density, np.array(scene.domain.corners)
+    corners = np.array(scene.domain.corners)
 
-    def eta(ratio: float, dip: float, spacing: float | None, k: float) -> float:
+    def eta(ratio: float, dip: float, spacing: float | None, k: float, density: float) -> float:
         normal = direction_of(dip)[::-1] * [-1, 1]
         apart = spacing or float(np.ptp(corners @ normal)) / 2
         return 2 * ratio * sqrt(density * apart / k)
 
     return np.array(
-        [eta(s.damping_ratio or 0.0, s.dip, s.spacing, s.normal_stiffness or 0.0) for s in sets]
+        [
+            eta(
+                s.damping_ratio or 0.0,
+                s.dip,
+                s.spacing,
+                s.normal_stiffness or 0.0,
+                rocks_beside(scene, s)[0].density,
+            )
+            for s in sets
+        ]
     )

@@ -25,6 +25,7 @@ import numpy as np
 
 from cases.material.rock import ElasticRock, elastic_rock
 from cases.partition.joints import direction_of
+from cases.partition.regions import within
 
 if TYPE_CHECKING:
     from cases.schema import joint_set as schema
@@ -76,8 +77,11 @@ def slowest(scene: RockMass) -> float:
     spacing."""
     angle = np.linspace(0.0, np.pi, DIRECTIONS, endpoint=False)
     directions = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    medium = stiffness(elastic_rock(scene.rock), compliant(scene.joint_sets))
-    return float(speeds(medium, scene.rock.density, directions)[0].min())
+    media = (
+        (stiffness(elastic_rock(one.rock), compliant(one.joint_sets)), one.rock.density)
+        for one in within(scene, scene.joint_sets)
+    )
+    return min(float(speeds(medium, rho, directions)[0].min()) for medium, rho in media)
 
 
 def compliance(rock: ElasticRock, sets: list[JointSet], dimension: int = 2) -> np.ndarray:

@@ -1,7 +1,7 @@
 """Impedances of the dashpots of quiet sides: rho a and rho b of the waves along their normals.
 
-The speeds are those of the intact rock where `numerics.dem.block` cuts it, since a lattice has them
-at its sides, else those of the effective medium of the joint sets.
+The speeds are, region by region, those of the intact rock where `numerics.dem.block` cuts it, since
+a lattice has them at its sides, else those of the effective medium of the joint sets.
 """
 
 from __future__ import annotations
@@ -13,21 +13,32 @@ import numpy as np
 from cases.material.effective_medium import joint_set, speeds, stiffness
 from cases.material.rock import elastic_rock
 from cases.partition.joints import direction_of
+from cases.partition.regions import within
 
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
 
 
-def impedances(scene: RockMass, normals: np.ndarray) -> np.ndarray:
-    """Return rho a and rho b of the dashpots of sides of outward normals [m, 2]: [m, 2], Pa s/m;
-    as rigid blocks have them."""
+def impedances(scene: RockMass, normals: np.ndarray, region: np.ndarray) -> np.ndarray:
+    """Return rho a and rho b of the dashpots of sides of outward normals [m, 2], of rock in these
+    regions [m]: [m, 2], Pa s/m; as rigid blocks have them."""
     smeared = scene.numerics.dem.block is None
-    return medium_impedances(scene, normals, smeared)
+    return medium_impedances(scene, normals, region, smeared)
 
 
-def medium_impedances(scene: RockMass, normals: np.ndarray, smeared: bool = True) -> np.ndarray:
+def medium_impedances(
+    scene: RockMass, normals: np.ndarray, region: np.ndarray, smeared: bool = True
+) -> np.ndarray:
     """Return the same of the effective medium of all sets that have a spacing; smeared : whether
     there is one, else of the intact rock."""
+    found, scenes = np.zeros((len(normals), 2)), within(scene, scene.joint_sets)
+    for own in np.unique(region):
+        there = region == own
+        found[there] = _of_one_rock(scenes[own], normals[there], smeared)
+    return found
+
+
+def _of_one_rock(scene: RockMass, normals: np.ndarray, smeared: bool) -> np.ndarray:
     rock, density = elastic_rock(scene.rock), scene.rock.density
     spaced = [one for one in scene.joint_sets if one.spacing]
     if not smeared or not spaced or not len(normals):

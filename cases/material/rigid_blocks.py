@@ -6,7 +6,9 @@ together come nearest to the intact rock (`rigid_fit`), and a contact between bl
     1 / K' = 1 / K + Z0 h,
 
 h the distance of lines of its direction: never stiffer than the joint itself. A cut through intact
-rock has K = inf. Of one set it is equation (6) with the modulus of confined rock.
+rock has K = inf. Of one set it is equation (6) with the modulus of confined rock. Each region of
+rock has excess compliances of its own; a joint between two regions takes half of either's, and so
+does a welded boundary, which has no joint, with the thickness of the blocks beside it for h.
 """
 
 from __future__ import annotations
@@ -17,63 +19,158 @@ import numpy as np
 
 from cases.errors import SceneError
 from cases.material.effective_medium import intact
+from cases.material.elastic import shear_modulus
 from cases.material.rigid_fit import nearest_stiffness
 from cases.material.rock import elastic_rock
+from cases.material.rock_mass import Stiffness, constrained_modulus
 from cases.partition.joints import direction_of
 from cases.partition.lattice import by_direction
+from cases.partition.regions import within
 
 if TYPE_CHECKING:
     from cases.schema.joint_set import JointSet
+    from cases.schema.plane import IntactRock
     from cases.schema.rock_mass import RockMass
+
+#: Sine of the angle up to which a contact lies along joints.
+PARALLEL = 1e-9
 
 
 class RigidJoints(NamedTuple):
-    """Of each joint set and then of each set of cuts [sets]: K'_n and K'_s, Pa/m, and what of it is
-    the rock's own compliance, normal and in shear [2, sets], m/Pa.
+    """Of each column, a joint set or a set of cuts in one rock or between two: K'_n and K'_s, Pa/m,
+    and what of it is the rock's own compliance, normal and in shear [2, columns], m/Pa.
 
-    left_over : the part of the intact rock's stiffness that rigid blocks cannot have, over all.
+    kinds : set, and regions on both sides [columns, 3]. left_over : the part of the intact rock's
+    stiffness that rigid blocks cannot have, over all; the most of any region.
     """
 
     normal: np.ndarray
     shear: np.ndarray
     excess: np.ndarray
+    kinds: np.ndarray
     left_over: float
 
 
-def rigid_joints(scene: RockMass, further: list[JointSet]) -> RigidJoints:
+class RockShare(NamedTuple):
+    """What intact rock adds to the joints of one region: the normals of their directions [d, 2],
+    excess compliances Z0, normal and in shear [d, 2], 1/Pa, distances of lines [d], m, which
+    direction each set has, -1 for none [sets], and what is left over."""
+
+    normals: np.ndarray
+    compliance: np.ndarray
+    apart: np.ndarray
+    direction: np.ndarray
+    left_over: float
+
+    def of_set(self, index: int) -> np.ndarray:
+        """Return the excess of a set [2], m/Pa; none of joints that are alone."""
+        at = self.direction[index]
+        return self.compliance[at] * self.apart[at] if at >= 0 else np.zeros(2)
+
+    def parallel_to(self, normal: np.ndarray) -> int:
+        """Return which direction a unit normal [2] is that of, -1 for none."""
+        sines = np.abs(self.normals @ [-normal[1], normal[0]])
+        return int(sines.argmin()) if sines.min() < PARALLEL else -1
+
+    def beside(self, normal: np.ndarray) -> np.ndarray:
+        """Return the excess of joints of a normal [2] between this rock and another [2], m/Pa."""
+        at = self.parallel_to(normal)
+        return self.compliance[at] * self.apart[at] if at >= 0 else np.zeros(2)
+
+
+def rigid_joints(
+    scene: RockMass, further: list[JointSet], kinds: np.ndarray | None = None
+) -> RigidJoints:
     """Return the stiffness between rigid blocks; further : the cuts of `partition.lattice`.
 
-    A joint that is alone among sets adds its own compliance to theirs, and nothing else. Raises
-    SceneError where all joints are alone and no rock is cut.
+    kinds : of `RigidJoints`; absent: every set in the rock of no region. A joint that is alone
+    among sets adds its own compliance to theirs, and nothing else. Raises SceneError where all
+    joints are alone and no rock is cut.
     """
     sets = [*scene.joint_sets, *further]
-    spaced = [group for group in by_direction(sets) if any(one.spacing for one in group)]
-    if why := against(scene):
-        raise SceneError(scene.where, "numerics.dem.block", None, why)
-    normals = [direction_of(group[0].dip)[::-1] * [-1, 1] for group in spaced]
-    fit = nearest_stiffness(intact(elastic_rock(scene.rock), 2), np.array(normals))
-    excess, index = np.zeros((len(sets), 2)), {one.name: k for k, one in enumerate(sets)}
-    for group, one in zip(spaced, fit.sets, strict=True):
-        apart = _apart([index[member.name] for member in group], sets, len(scene.joint_sets))
-        for k, distance in apart.items():
-            excess[k] = np.array([one.normal_compliance, one.shear_compliance]) * distance
+    if kinds is None:
+        kinds = np.stack([np.arange(len(sets)), *np.full((2, len(sets)), -1)], axis=1)
+    shares = rock_shares(scene, further)
+    excess = np.zeros((len(kinds), 2))
+    for row, (k, *pair) in zip(excess, kinds, strict=True):
+        normal = direction_of(sets[k].dip)[::-1] * [-1, 1]
+        same = pair[0] == pair[1]
+        for one in pair:
+            row += (shares[one].of_set(k) if same else shares[one].beside(normal)) / 2
     real = [(one.normal_stiffness, one.shear_stiffness) for one in scene.joint_sets]
     own = np.array([*real, *([(np.inf, np.inf)] * len(further))], dtype=float)
     with np.errstate(divide="ignore"):
-        normal, shear = (1 / (1 / own + excess)).T
-    return RigidJoints(normal, shear, excess.T, fit.left_over)
+        normal, shear = (1 / (1 / own[kinds[:, 0]] + excess)).T
+    return RigidJoints(normal, shear, excess.T, kinds, max(one.left_over for one in shares))
+
+
+def rock_shares(scene: RockMass, further: list[JointSet]) -> list[RockShare]:
+    """Return what intact rock adds to joints in each region, and last in the rest."""
+    if why := against(scene):
+        raise SceneError(scene.where, "numerics.dem.block", None, why)
+    sets = [*scene.joint_sets, *further]
+    return [_share(one, sets, len(scene.joint_sets)) for one in within(scene, sets)]
+
+
+def _share(scene: RockMass, sets: list[JointSet], real: int) -> RockShare:
+    """Return the same of a scene of one rock, some of whose sets, the first ones, are real."""
+    spaced = [
+        group for group in by_direction(scene.joint_sets) if any(one.spacing for one in group)
+    ]
+    normals = np.array([direction_of(group[0].dip)[::-1] * [-1, 1] for group in spaced])
+    fit = nearest_stiffness(intact(elastic_rock(scene.rock), 2), normals)
+    index = {one.name: k for k, one in enumerate(sets)}
+    direction, apart = np.full(len(sets), -1), np.ones(len(spaced))
+    for k, group in enumerate(spaced):
+        distances = _apart([index[member.name] for member in group], sets, real)
+        direction[list(distances)] = k
+        apart[k] = next(iter(distances.values()))
+    compliance = np.array([[one.normal_compliance, one.shear_compliance] for one in fit.sets])
+    return RockShare(normals, compliance, apart, direction, fit.left_over)
+
+
+def welded(
+    shares: list[RockShare],
+    rocks: list[IntactRock],
+    regions: np.ndarray,
+    normal: np.ndarray,
+    reach: np.ndarray,
+    thickness: np.ndarray,
+) -> Stiffness:
+    """Return the stiffness of contacts [c] without a joint: the rock on both sides in series.
+
+    regions : on both sides [c, 2]. normal : [c, 2]. reach : of the centroids from the contact, and
+    thickness : of the blocks across it [c, 2], m. Beside another region's rock, half a block has
+    the compliance of its joints along the contact, if there are some.
+    """
+    found = np.zeros((len(normal), 2))
+    for c, (pair, n) in enumerate(zip(regions, normal, strict=True)):
+        for side, region in enumerate(pair):
+            share, rock = shares[region], rocks[region]
+            at = share.parallel_to(n) if pair[0] != pair[1] else -1
+            if at >= 0:
+                found[c] += share.compliance[at] * thickness[c, side] / 2
+            else:
+                shear = shear_modulus(rock.intact_modulus, rock.intact_poisson)
+                found[c] += reach[c, side] / np.array([constrained_modulus(rock), shear])
+    return Stiffness(*(1 / found).T)
 
 
 def against(scene: RockMass) -> str | None:
     """Return why a scene is none of rigid blocks, None where it is one."""
     if scene.domain.given is not None:
         return "cannot make rigid blocks of the cells of domain.mesh"
-    if scene.numerics.dem.block is not None or any(one.spacing for one in scene.joint_sets):
+    if scene.numerics.dem.block is not None:
         return None
-    has = "has only joints that are alone" if scene.joint_sets else "has no joints"
-    return (
-        f"is needed, m: rigid blocks carry waves by the joints between them, and this domain {has}"
-    )
+    names = [*(f"region {one.name!r}" for one in scene.regions), "this domain"]
+    for name, one in zip(names, within(scene, scene.joint_sets), strict=True):
+        if not any(joints.spacing for joints in one.joint_sets):
+            has = "has only joints that are alone" if one.joint_sets else "has no joints"
+            return (
+                "is needed, m: rigid blocks carry waves by the joints between them, and "
+                f"{name} {has}"
+            )
+    return None
 
 
 def _apart(group: list[int], sets: list[JointSet], real: int) -> dict[int, float]:

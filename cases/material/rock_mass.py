@@ -32,8 +32,8 @@ class Stiffness(NamedTuple):
     shear: np.ndarray
 
 
-def inertia(partition: Partition, density: float) -> Inertia:
-    """Return the inertia of blocks of a density (kg/m3)."""
+def inertia(partition: Partition, density: float | np.ndarray) -> Inertia:
+    """Return the inertia of blocks of a density (kg/m3), of all or of each [n]."""
     return Inertia(density * partition.area, density * partition.polar_moment)
 
 

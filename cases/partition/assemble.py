@@ -72,7 +72,8 @@ def ordered(sub: Subdivision, found: Rings) -> tuple[Subdivision, Rings]:
     first = np.append(0, np.cumsum(count))
     at = np.repeat(found.first[:-1][order] - first[:-1], count) + np.arange(first[-1])
     cells = number[sub.cells]
-    return replace(sub, cells=cells, count=len(order)), Rings(
+    region = sub.region[found.cell[order]]
+    return replace(sub, cells=cells, region=region, count=len(order)), Rings(
         np.arange(len(order)), found.corners[at], first
     )
 

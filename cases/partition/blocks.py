@@ -72,6 +72,7 @@ class Partition:
     first : int array [n + 1], the first corner of each block.
     area : float array [n], m2. centroid : float array [n, 2], m.
     second_moment : float array [n, 3], m4, integrals of x x, y y and x y about the centroid.
+    region : int array [n], index of the region of rock that holds a block, or -1.
     contacts : between blocks. boundary : edges on the boundary.
     sides : names of the sides: left, right, bottom, top, outline, "opening 0", ...
     joint_sets : names of the joint sets, in the order of the scene.
@@ -82,6 +83,7 @@ class Partition:
     area: np.ndarray
     centroid: np.ndarray
     second_moment: np.ndarray
+    region: np.ndarray
     contacts: Contacts
     boundary: BoundaryEdges
     sides: tuple[str, ...]

@@ -15,6 +15,7 @@ from cases.partition.joints import cut_by_sets
 from cases.partition.openings import check_convex, taken_out
 from cases.partition.outline import SIDES, Outline, outline_of
 from cases.partition.polygons import moments
+from cases.partition.regions import cut_into_regions
 from cases.partition.slivers import without_slivers
 from cases.partition.subdivision import Subdivision
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
     from cases.schema.domain import Domain
     from cases.schema.joint_set import JointSet
+    from cases.schema.region import Region
 
 #: Default least width of a block over the smallest spacing, or the size of the domain without one.
 THIN = 1e-2
@@ -32,7 +34,12 @@ THIN = 1e-2
 LATTICE = (0.03, THIN)
 
 
-def cut(domain: Domain, sets: Sequence[JointSet], further: Sequence[JointSet] = ()) -> Partition:
+def cut(
+    domain: Domain,
+    sets: Sequence[JointSet],
+    further: Sequence[JointSet] = (),
+    regions: Sequence[Region] = (),
+) -> Partition:
     """Return a domain in convex blocks; of a mesh, its cells.
 
     further : sets of cuts, of which some or all may be where joints are.
@@ -46,7 +53,8 @@ def cut(domain: Domain, sets: Sequence[JointSet], further: Sequence[JointSet] = 
         found = assemble.ordered(sub, assemble.rings(sub))
         return _partition(*found, outline, sets, len(domain.holes))
     whole = Subdivision.of_polygon(outline.hull)
-    sub = cut_by_sets(whole, [*sets, *further], outline.tolerance, len(sets))
+    whole = cut_into_regions(whole, regions, outline.tolerance)
+    sub = cut_by_sets(whole, [*sets, *further], outline.tolerance, len(sets), regions)
     sub = taken_out(sub, outline.taken, outline.tolerance)
     if domain.non_convex == "refuse":
         check_convex(sub, outline.taken)
@@ -96,6 +104,7 @@ def _partition(
         area=m.area,
         centroid=m.centroid,
         second_moment=m.second,
+        region=sub.region,
         contacts=assemble.contacts(sub),
         boundary=_named(assemble.boundary(sub), outline),
         sides=(*SIDES, *(f"opening {k}" for k in range(openings))),

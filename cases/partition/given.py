@@ -179,5 +179,6 @@ def subdivision_of(rock: GivenRock, names: list[str]) -> Subdivision:
         along=np.full(len(along), NO_SET),
         directions=along / np.hypot(*along.T)[:, None],
         joint_set=joint_set,
+        region=np.full(rock.number, -1),
         count=rock.number,
     )

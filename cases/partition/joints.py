@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import cos, inf, radians, sin
 from typing import TYPE_CHECKING
 
@@ -10,12 +11,14 @@ import numpy as np
 from cases.partition.faults import PartitionError
 from cases.partition.lines import Lines
 from cases.partition.split import split
-from cases.partition.subdivision import Subdivision
+from cases.partition.subdivision import OUTSIDE, Subdivision
+from cases.schema.region import REST
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from cases.schema.joint_set import JointSet
+    from cases.schema.region import Region
 
 #: Of the sets that one ends at, the signed number of the joint below each cell.
 Stops = dict[str, np.ndarray]
@@ -33,11 +36,16 @@ def direction_of(dip: float) -> np.ndarray:
 
 
 def cut_by_sets(
-    sub: Subdivision, sets: Sequence[JointSet], tolerance: float, needed: int | None = None
+    sub: Subdivision,
+    sets: Sequence[JointSet],
+    tolerance: float,
+    needed: int | None = None,
+    regions: Sequence[Region] = (),
 ) -> Subdivision:
     """Return a subdivision cut by all joint sets, those that others end at first.
 
-    needed : how many sets, the first ones, must cut something; all where it is absent.
+    needed : how many sets, the first ones, must cut something; all where it is absent. regions : of
+    the rock, whose cells `sub` tells apart.
 
     Raises PartitionError where one of them cuts nothing, or a joint lies outside.
     """
@@ -46,15 +54,29 @@ def cut_by_sets(
     index = {one.name: i for i, one in enumerate(sets)}
     for one in in_order(sets):
         i = index[one.name]
-        stops = _stops(one, sets)
-        lines = _lines_of(sub, sets, i, {name: numbers[name] for name in stops}, tolerance)
-        found = split(sub, lines, tolerance)
-        if found.subdivision.count == sub.count and i < needed:
+        inside = _inside(sub, one, regions)
+        stops = {name: numbers[name] for name in _stops(one, sets)}
+        found = split(sub, _lines_of(sub, sets, i, stops, inside, tolerance), tolerance)
+        if i < needed and not _has_joints(found.subdivision, i):
             raise PartitionError(None, "cuts nothing of the domain", f"joint_sets[{i}]")
         numbers = {name: array[found.parent] for name, array in numbers.items()}
         numbers[one.name] = found.number
         sub = found.subdivision
     return sub
+
+
+def _inside(sub: Subdivision, one: JointSet, regions: Sequence[Region]) -> np.ndarray:
+    """Return which cells are of the rock that a set cuts, bool array [cells]."""
+    if not one.regions:
+        return np.ones(sub.count, bool)
+    names = [*(region.name for region in regions), REST]
+    return np.isin(sub.region % len(names), [names.index(name) for name in one.regions])
+
+
+def _has_joints(sub: Subdivision, index: int) -> bool:
+    """Return whether a set is along any edge between cells."""
+    own = sub.joint_set[sub.line] == index
+    return bool((own & (sub.cells != OUTSIDE).all(axis=1)).any())
 
 
 def in_order(sets: Sequence[JointSet]) -> list[JointSet]:
@@ -88,11 +110,17 @@ def _stops(one: JointSet, sets: Sequence[JointSet]) -> list[str]:
 
 
 def _lines_of(
-    sub: Subdivision, sets: Sequence[JointSet], index: int, stops: Stops, tolerance: float
+    sub: Subdivision,
+    sets: Sequence[JointSet],
+    index: int,
+    stops: Stops,
+    inside: np.ndarray,
+    tolerance: float,
 ) -> Lines:
     """Return the lines of a set in every region between the joints that it ends at.
 
-    stops : of each set that it ends at, the signed number of the joint below each cell.
+    stops : of each set that it ends at, the signed number of the joint below each cell. inside :
+    which cells it may cut [cells].
     """
     one = sets[index]
     direction = direction_of(one.dip)
@@ -102,10 +130,11 @@ def _lines_of(
     family = family.reshape(-1)  # numpy 2.0 gave it another shape
     through = normal @ np.array(one.through if one.through is not None else [0.0, 0.0])
     if one.spacing is None:
-        return _single(sub, one, index, direction, through, family, tolerance)
+        return _single(sub, one, index, direction, through, family, inside, tolerance)
     low, high = _extents(sub, normal, family, len(regions))
     shifts = _shifts(one, normal, stops, regions, sets)
-    return _spaced(one, index, direction, family, regions, through + shifts, low, high)
+    found = _spaced(one, index, direction, family, regions, through + shifts, low, high)
+    return replace(found, family=np.where(inside, family, len(regions)))
 
 
 def _single(
@@ -115,6 +144,7 @@ def _single(
     direction: np.ndarray,
     place: float,
     family: np.ndarray,
+    inside: np.ndarray,
     tolerance: float,
 ) -> Lines:
     """Return one joint, in the region that holds its point."""
@@ -122,12 +152,14 @@ def _single(
     depth = np.full(sub.count, np.inf)
     inward = -((at - sub.points[half.start]) * half.outward).sum(axis=1)
     np.minimum.at(depth, half.cell, inward)
-    inside, key = int(np.argmax(depth)), f"joint_sets[{index}].through"
-    if depth[inside] < -tolerance:
-        raise PartitionError(at, "must lie in the domain", key)
+    depth[~inside] = -np.inf
+    cell, key = int(np.argmax(depth)), f"joint_sets[{index}].through"
+    if depth[cell] < -tolerance:
+        of = "its regions" if one.regions else "the domain"
+        raise PartitionError(at, f"must lie in {of}", key)
     if len(np.unique(family[depth > -tolerance])) > 1:
         raise PartitionError(at, f"must lie on no joint of {', '.join(one.ends_at)}", key)
-    here = np.where(family == family[inside], 0, 1)
+    here = np.where((family == family[cell]) & inside, 0, 1)
     first, base = np.array([0, 1, 1]), np.zeros(2, np.int64)
     return Lines(direction, here, np.array([place]), first, base, index)
 

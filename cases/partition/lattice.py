@@ -5,19 +5,22 @@ lines, at a whole part of the spacing, or at about the size beside joints that a
 have one direction, or there are none, lines across them are added: at 60 and 120 degrees, as far
 apart, which makes equilateral triangles, or at right angles. A side along which lines run is
 met in the middle of a block where it is quiet, since the motion of a block is that of the lattice
-in its middle, and at a line elsewhere.
+in its middle, and at a line elsewhere. Every region of rock has a lattice of its own, with a line
+along its boundary.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from cases.errors import SceneError
 from cases.partition.joints import direction_of
-from cases.partition.outline import SIDES, Outline, outline_of
+from cases.partition.outline import SIDES, Outline, corners_of, outline_of
+from cases.partition.regions import on_boundary, shapes, within
 from cases.schema.joint_set import JointSet
+from cases.schema.region import REST
 
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
@@ -42,26 +45,47 @@ def further_sets(scene: RockMass) -> list[JointSet]:
             allowed = f"cuts no rock between joints with {key}, which '{one.name}' has"
             raise SceneError(scene.where, "numerics.dem.block", block, allowed)
     outline, found = outline_of(scene.domain), []
+    names = [*(one.name for one in scene.regions), REST] if scene.regions else []
+    shaped = shapes(scene.regions, outline) if names else [None]
+    for k, (own, shape) in enumerate(zip(within(scene, scene.joint_sets), shaped, strict=True)):
+        place = Place(outline, outline.corners if shape is None else corners_of(shape), scene)
+        inside = {"regions": names[k : k + 1]}
+        found += [lines.model_copy(update=inside) for lines in _cuts(own, place, block)]
+    names = [f"cut {k}" for k in range(len(found))]
+    return [one.model_copy(update={"name": name}) for one, name in zip(found, names, strict=True)]
+
+
+class Place(NamedTuple):
+    """Where lines go: the domain, the corners of the part of it that they fill [n, 2], m, and the
+    scene with what holds its sides and bounds that part."""
+
+    outline: Outline
+    corners: np.ndarray
+    scene: RockMass
+
+
+def _cuts(scene: RockMass, place: Place, block: float) -> list[JointSet]:
+    """Return the sets of cuts of a scene of one rock."""
+    found = []
     groups = by_direction(scene.joint_sets)
     for group in groups:
         first = next((one for one in group if one.spacing is not None), group[0])
         if first.spacing is None:
-            found.append(_lines(scene, outline, first.dip, block, first.through, True))
+            found.append(_lines(place, first.dip, block, first.through, True))
         elif (parts := max(1, round(first.spacing / block))) > 1:
             found.append(_set(first.dip, first.spacing / parts, first.through))
     if len(groups) < 2:
         anchor = next((one.through for one in scene.joint_sets if one.through), None)
         if not groups:
-            found.append(_lines(scene, outline, 0.0, block, anchor, False))
+            found.append(_lines(place, 0.0, block, anchor, False))
         along = (found or groups[0])[0]
         if squared(scene):
             dip = _folded(along.dip + 90.0)
-            found.append(_lines(scene, outline, dip, block, anchor, False))
+            found.append(_lines(place, dip, block, anchor, False))
         else:
             dips = (_folded(along.dip + angle) for angle in (60.0, 120.0))
             found += [_set(dip, along.spacing or block, along.through) for dip in dips]
-    names = [f"cut {k}" for k in range(len(found))]
-    return [one.model_copy(update={"name": name}) for one, name in zip(found, names, strict=True)]
+    return found
 
 
 def squared(scene: RockMass) -> bool:
@@ -103,8 +127,7 @@ def _set(dip: float, spacing: float, through: list[float] | None) -> JointSet:
 
 
 def _lines(
-    scene: RockMass,
-    outline: Outline,
+    where: Place,
     dip: float,
     block: float,
     through: list[float] | None,
@@ -114,10 +137,14 @@ def _lines(
     that meet the sides along them as they should."""
     direction = direction_of(dip)
     normal = np.array([-direction[1], direction[0]])
-    s = outline.corners @ normal
+    s = where.corners @ normal
     low, high = float(s.min()), float(s.max())
-    rests = _rests(scene, outline, normal)
-    anchor = np.array(through if through is not None else outline.corners.mean(axis=0))
+    rests = _rests(where, normal)
+    centre = where.corners.mean(axis=0)
+    anchor = np.array(through if through is not None else centre)
+    off = where.outline.tolerance
+    if fixed and not low - off <= anchor @ normal <= high + off:  # in another region
+        anchor, fixed = centre, False
     place = float(anchor @ normal)
     if fixed:
         for rest, reach in zip(rests, (place - low, high - place), strict=True):
@@ -141,16 +168,19 @@ def _divided(reach: float, rest: float, block: float) -> float:
     return reach / (whole + rest) if whole + rest else reach
 
 
-def _rests(
-    scene: RockMass, outline: Outline, normal: np.ndarray
-) -> tuple[float | None, float | None]:
+def _rests(where: Place, normal: np.ndarray) -> tuple[float | None, float | None]:
     """Return the part of a block from the lowest and from the highest side along a normal to the
     line next to it; None where no side runs along the lines there."""
-    start, end = outline.corners, np.roll(outline.corners, -1, axis=0)
-    held, found = outline.sides_of(start, end), []
+    start, end = where.corners, np.roll(where.corners, -1, axis=0)
+    held = where.outline.sides_of(start, end)
+    found: list[float | None] = []
+    inner = on_boundary(where.scene.regions, (start + end) / 2, where.outline.tolerance)
     s = np.stack([start, end]) @ normal
     for extreme in (s.min(), s.max()):
-        along = np.flatnonzero((np.abs(s - extreme) <= outline.tolerance).all(axis=0))
-        kinds = [getattr(scene.boundaries, SIDES[held[k]]) for k in along]
-        found.append(AT_SIDE[kinds[0]] if kinds else None)
+        along = np.flatnonzero((np.abs(s - extreme) <= where.outline.tolerance).all(axis=0))
+        kinds = [getattr(where.scene.boundaries, SIDES[held[k]]) for k in along if not inner[k]]
+        if inner[along].any():
+            found.append(1.0)
+        else:
+            found.append(AT_SIDE[kinds[0]] if kinds else None)
     return found[0], found[1]

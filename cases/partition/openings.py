@@ -89,8 +89,10 @@ def _passed(
 
 
 def _through_rock(sub: Subdivision) -> np.ndarray:
-    """Return which edges are cuts through intact rock, bool array [e]."""
-    return (sub.joint_set[sub.line] == NO_SET) & (sub.cells != OUTSIDE).all(axis=1)
+    """Return which edges are cuts through rock of one region, bool array [e]."""
+    one, other = sub.region[sub.cells].T
+    inner = (sub.cells != OUTSIDE).all(axis=1)
+    return (sub.joint_set[sub.line] == NO_SET) & inner & (one == other)
 
 
 def _rejoined(sub: Subdivision, whole: np.ndarray, tolerance: float) -> Subdivision:

@@ -91,11 +91,11 @@ def outline_of(domain: Domain) -> Outline:
     bays = [] if hull.equals(whole) else _parts(hull.difference(whole))
     size = float(np.hypot(*np.ptp(shapely.get_coordinates(hull), axis=0)))
     return Outline(
-        corners=_corners(whole),
-        hull=_corners(hull),
+        corners=corners_of(whole),
+        hull=corners_of(hull),
         taken=[
-            *((_corners(bay), 0) for bay in bays),
-            *((_corners(opening), 1 + k) for k, opening in enumerate(openings)),
+            *((corners_of(bay), 0) for bay in bays),
+            *((corners_of(opening), 1 + k) for k, opening in enumerate(openings)),
         ],
         shape=whole.difference(shapely.union_all(openings)) if openings else whole,
         tolerance=TOLERANCE * size,
@@ -127,7 +127,7 @@ def _parts(shape: shapely.Geometry) -> list[shapely.Polygon]:
     return [part for part in parts if isinstance(part, shapely.Polygon) and part.area > 0]
 
 
-def _corners(polygon: shapely.Geometry) -> np.ndarray:
+def corners_of(polygon: shapely.Geometry) -> np.ndarray:
     """Return the corners of a polygon counter-clockwise, without those that turn nowhere."""
     points = shapely.get_coordinates(shapely.geometry.polygon.orient(polygon).exterior)[:-1]
     before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points

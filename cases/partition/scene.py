@@ -37,7 +37,7 @@ def partition_of(scene: RockMass, further: Sequence[JointSet] = ()) -> Partition
     """
     refuse_too_many(scene, further)
     try:
-        found = cut(scene.domain, scene.joint_sets, further)
+        found = cut(scene.domain, scene.joint_sets, further, scene.regions)
         for side in PAIRS:
             if getattr(scene.boundaries, side) == "periodic":
                 periodic_contacts(found, side)  # whether its sides fit each other

@@ -121,7 +121,8 @@ def _neighbours(sub: Subdivision, cells: np.ndarray, kept: int) -> dict[int, lis
     beside: dict[int, dict[int, float]] = {int(cell): {} for cell in cells}
     beyond: dict[int, set[int]] = {int(cell): set() for cell in cells}
     for cell, other, part, last in zip(half.cell, half.across, length, joint, strict=True):
-        if int(cell) in beside and other != OUTSIDE:
+        within = other != OUTSIDE and sub.region[cell] == sub.region[other]
+        if int(cell) in beside and within:
             shared = beside[int(cell)]
             shared[int(other)] = shared.get(int(other), 0.0) + part
             if last:

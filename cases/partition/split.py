@@ -43,11 +43,12 @@ def split(sub: Subdivision, lines: Lines, tolerance: float) -> Split:
         points=pieces.points,
         ends=np.concatenate([sub.ends[old], pieces.ends, ends]),
         cells=np.concatenate([sub.cells[old], slabs.of_pieces, cells]),
-        line=np.concatenate([sub.line[old], sub.line[edge], carrier]),
+        line=np.concatenate([sub.line[old], _lines(sub, lines, pieces), carrier]),
         side=np.concatenate([sub.side[old], sub.side[edge], np.zeros(len(ends), np.int64)]),
         along=np.concatenate([sub.along[old], _along(sub, lines, pieces), carrier * 0 + NO_SET]),
         directions=np.concatenate([sub.directions, lines.direction[None]]),
         joint_set=np.append(sub.joint_set, lines.joint_set),
+        region=sub.region[slabs.parent],
         count=len(slabs.parent),
     )
     number = lines.base[lines.family[slabs.parent]] + slabs.slab - 1
@@ -56,10 +57,21 @@ def split(sub: Subdivision, lines: Lines, tolerance: float) -> Split:
 
 def _along(sub: Subdivision, lines: Lines, pieces: Pieces) -> np.ndarray:
     """Return the joint set along each piece of the boundary [n], these lines' own included."""
+    outer = (pieces.cells == OUTSIDE).any(axis=1)
+    return np.where(_on_line(pieces) & outer, lines.joint_set, sub.along[pieces.edge])
+
+
+def _lines(sub: Subdivision, lines: Lines, pieces: Pieces) -> np.ndarray:
+    """Return the direction of each piece [n]: a joint along a cut through rock is what it is."""
+    line, inner = sub.line[pieces.edge], (pieces.cells != OUTSIDE).all(axis=1)
+    joint = inner & _on_line(pieces) & (sub.joint_set[line] == NO_SET)
+    return np.where(joint & (lines.joint_set != NO_SET), len(sub.directions), line)
+
+
+def _on_line(pieces: Pieces) -> np.ndarray:
+    """Return which pieces lie on a line of one of their cells, bool array [n]."""
     one, other = np.moveaxis(pieces.codes, 2, 0)
-    inside = pieces.cells != OUTSIDE
-    on_line = ((one % 2 == 1) & (one == other) & inside).any(axis=1) & ~inside.all(axis=1)
-    return np.where(on_line, lines.joint_set, sub.along[pieces.edge])
+    return ((one % 2 == 1) & (one == other) & (pieces.cells != OUTSIDE)).any(axis=1)
 
 
 class _Slabs(NamedTuple):

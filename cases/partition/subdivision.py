@@ -43,6 +43,7 @@ class Subdivision:
     side : int array [e], of an edge with OUTSIDE: 0 for the outer boundary, 1 + k for opening k.
     along : int array [e], the joint set whose joint lies along such an edge, or NO_SET.
     directions : float array [l, 2], unit vectors. joint_set : int array [l], or NO_SET.
+    region : int array [count], the region of rock that holds each cell, or -1.
     count : cells are 0 to count - 1; some may have been removed.
     """
 
@@ -54,6 +55,7 @@ class Subdivision:
     along: np.ndarray
     directions: np.ndarray
     joint_set: np.ndarray
+    region: np.ndarray
     count: int
 
     @classmethod
@@ -71,6 +73,7 @@ class Subdivision:
             along=np.full(n, NO_SET),
             directions=along / np.hypot(*along.T)[:, None],
             joint_set=np.full(n, NO_SET),
+            region=np.full(1, -1),
             count=1,
         )
 

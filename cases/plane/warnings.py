@@ -11,12 +11,15 @@ from cases.incident import GRAZING, plane_wave
 from cases.material.rock import elastic_rock
 from cases.partition.joints import direction_of
 from cases.partition.outline import outline_of
+from cases.partition.regions import rocks_of
 from cases.schema.plausible import implausible
 from cases.schema.rock_mass_checks import distance
 from cases.spectrum import highest_frequency
 from cases.warnings import LEAST_BLOCKS, of_local_damping, of_pulse, onset
 
 if TYPE_CHECKING:
+    from cases.schema.plane import IntactRock
+    from cases.schema.region import Region
     from cases.schema.rock_mass import RockMass
     from cases.schema.sources import PlaneLoad, Wave
 
@@ -37,9 +40,11 @@ def _sources(scene: RockMass) -> list[Source]:
 
 def _of_units(scene: RockMass) -> Iterator[str]:
     yield from implausible(scene)
-    poisson = scene.rock.intact_poisson
-    if poisson < 0:
-        yield f"rock.intact_poisson = {poisson:g} is negative: no rock is known to have such a one"
+    tables = ["rock", *(f"regions[{i}]" for i in range(len(scene.regions)))]
+    rocks: list[IntactRock | Region] = [scene.rock, *scene.regions]
+    for table, one in zip(tables, rocks, strict=True):
+        if (poisson := one.intact_poisson or 0.0) < 0:
+            yield f"{table}.intact_poisson = {poisson:g} is negative: no rock is known to have it"
 
 
 def _of_damping(scene: RockMass) -> Iterator[str]:
@@ -57,7 +62,7 @@ def _of_wavelength(scene: RockMass) -> Iterator[str]:
     frequency = highest_frequency(scene)
     if frequency is None:
         return
-    wave = float(elastic_rock(scene.rock).s_speed) / frequency
+    wave = min(float(elastic_rock(one).s_speed) for one in rocks_of(scene)) / frequency
     where = f"a wavelength of S at {frequency:.4g} Hz, below which 95 % of the energy lies"
     size, given = scene.numerics.continuum.size, scene.numerics.dem.block
     block = given or _block_size(scene)
@@ -111,7 +116,7 @@ def _arrival(scene: RockMass, pulse: Wave | PlaneLoad, place: np.ndarray) -> flo
         lateness = plane_wave(scene, cast("Wave", pulse)).lateness(place[None])[0]
     else:
         away = _nearest(scene, cast("PlaneLoad", pulse), place)
-        lateness = away / elastic_rock(scene.rock).p_speed
+        lateness = away / max(float(elastic_rock(one).p_speed) for one in rocks_of(scene))
     return onset(pulse) + float(lateness)
 
 

@@ -17,6 +17,8 @@ class JointSet(Joints):
     spacing: Positive | None = None  #: m, across the joints; absent: one joint, `through` a point
     through: Point | None = None  #: m, a point of one of the joints; absent: the origin
     ends_at: list[str] = Field(default_factory=list)  #: names of sets whose joints these end at
+    #: names of [[regions]] whose rock it cuts, "rock" for what no region holds; absent: all
+    regions: list[str] = Field(default_factory=list)
     #: of the spacing, along the joints that they end at, from each to the next; 0.5: brickwork
     offset: Annotated[float, Field(ge=0, lt=1)] = 0.0
     #: standard deviation of the spacing over its mean; uniformly distributed

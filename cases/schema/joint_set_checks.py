@@ -43,7 +43,7 @@ def _check_names(table: str, one: JointSet, index: int, sets: list[JointSet]) ->
 
 
 def _check_in_mesh(table: str, one: JointSet) -> None:
-    for key in ("through", "ends_at", "offset", "scatter", "seed"):
+    for key in ("through", "ends_at", "regions", "offset", "scatter", "seed"):
         if value := getattr(one, key):
             allowed = "has no meaning: joints are where domain.mesh has them"
             raise contradiction(f"{table}.{key}", value, allowed)

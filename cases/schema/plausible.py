@@ -52,8 +52,9 @@ def implausible(scene: AnyScene) -> Iterator[str]:
     for key in ("soft_layers", "joint_sets"):
         several = getattr(scene, key, [])
         tables |= {f"{key}[{i}]": (one, OF_JOINTS) for i, one in enumerate(several)}
-    for i, one in enumerate(getattr(scene, "segments", [])):
-        tables[f"segments[{i}]"] = (one, OF_ROCK | OF_JOINTS)
+    for key in ("segments", "regions"):
+        several = getattr(scene, key, [])
+        tables |= {f"{key}[{i}]": (one, OF_ROCK | OF_JOINTS) for i, one in enumerate(several)}
     for table, (holder, known) in tables.items():
         for key, usual in known.items():
             value = getattr(holder, key, None)

@@ -20,6 +20,7 @@ from cases.schema.plane import (
     StressInPlane,
 )
 from cases.schema.pulse import shortest_period
+from cases.schema.region import Region
 from cases.schema.rock_mass_checks import check
 from cases.schema.sources import PlaneLoad, Wave
 from cases.schema.tables import Time
@@ -33,6 +34,7 @@ class RockMass(Table):
     source: Words | None = None  #: where it is from
     domain: Domain
     rock: IntactRock
+    regions: list[Region] = []
     joint_sets: list[JointSet] = []
     waves: list[Wave] = []
     loads: list[PlaneLoad] = []

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cases.schema.joint_set_checks import check_sets
+from cases.schema.region import check_regions
 from cases.schema.shared_checks import check_fields, check_time
 from cases.schema.values import contradiction
 
@@ -25,6 +26,7 @@ def check(scene: RockMass) -> None:
     """Raise the first contradiction of a rock mass whose tables are each right."""
     check_sets(scene)
     outline = _outline(scene)
+    check_regions(scene, outline)
     (_check_cuts if scene.domain.given is None else _check_mesh)(scene, outline)
     _check_receivers(scene, outline)
     check_time(scene)  # type: ignore[arg-type]
@@ -67,15 +69,18 @@ def _check_cuts(scene: RockMass, outline: Outline) -> None:
     end at others are known when they are cut."""
     from cases.partition.faults import PartitionError
     from cases.partition.joints import cut_by_sets, direction_of, widest
+    from cases.partition.regions import cut_into_regions
     from cases.partition.subdivision import Subdivision
 
+    whole = Subdivision.of_polygon(outline.hull)
+    whole = cut_into_regions(whole, scene.regions, outline.tolerance)
     for i, one in enumerate(scene.joint_sets):
         x, y = direction_of(one.dip)
         extent = float(np.ptp(outline.hull @ np.array([-y, x])))
         if one.ends_at or widest(one) < extent:
             continue
         try:
-            cut_by_sets(Subdivision.of_polygon(outline.hull), [one], outline.tolerance)
+            cut_by_sets(whole, [one], outline.tolerance, regions=scene.regions)
         except PartitionError as error:
             key = error.key.replace("[0]", f"[{i}]")
             raise contradiction(key, None, str(error)) from None

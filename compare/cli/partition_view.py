@@ -32,6 +32,7 @@ def partition_facts(scene: RockMass) -> dict[str, Any]:
         "area": float(found.area.sum()),
         "smallest": _block(found, int(np.argmin(found.area))),
         "largest": _block(found, int(np.argmax(found.area))),
+        "regions": _regions(scene, found),
         "joint_sets": per_set,
         "cuts_through_rock": _of_set(found, -1),
         "boundary": {name: int(n) for name, n in zip(found.sides, sides, strict=True) if n},
@@ -39,6 +40,25 @@ def partition_facts(scene: RockMass) -> dict[str, Any]:
         "bytes_at_most": partition_bytes(scene),
         "rigid_blocks_lack": _lack(scene),
     }
+
+
+def _regions(scene: RockMass, found: Partition) -> dict[str, Any]:
+    """Return what each region is, with what is left as "rock"; empty where there is none."""
+    from cases.material.rock import elastic_rock
+    from cases.partition.regions import rocks_of
+    from cases.schema.region import REST
+
+    facts = {}
+    names = [*(one.name for one in scene.regions), REST]
+    for k, (name, rock) in enumerate(zip(names, rocks_of(scene), strict=True)):
+        own, elastic = found.region % len(names) == k, elastic_rock(rock)
+        facts[name] = {
+            "blocks": int(own.sum()),
+            "area": float(found.area[own].sum()),
+            "p_speed": float(elastic.p_speed),
+            "s_speed": float(elastic.s_speed),
+        }
+    return facts if scene.regions else {}
 
 
 def _lack(scene: RockMass) -> float | None:
@@ -62,6 +82,9 @@ def show_partition(facts: dict[str, Any]) -> None:
         one = facts[word]
         x, y = one["centroid"]
         say(f"{word} block: {one['area']:.4g} m2, at [{x:.4g}, {y:.4g}]")
+    for name, one in facts["regions"].items():
+        speeds = f"waves of {one['p_speed']:.4g} and {one['s_speed']:.4g} m/s"
+        say(f"region {name}: {one['blocks']:,} blocks, {one['area']:.6g} m2, {speeds}")
     rows = [[name, f"{one['contacts']:,}", f"{one['length']:.6g}"] for name, one in _rows(facts)]
     show_table(["joint set", "contacts", "length, m"], rows)
     show_table(["side", "edges"], [[name, f"{n:,}"] for name, n in facts["boundary"].items()])
@@ -84,9 +107,9 @@ def _why(lack: float) -> str:
 
 
 def _rows(facts: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
-    """Return the joint sets, and the cuts through intact rock where there are some."""
+    """Return the joint sets, and cuts and boundaries without a joint where there are some."""
     cuts = facts["cuts_through_rock"]
-    return [*facts["joint_sets"].items(), *([("(cuts in rock)", cuts)] if cuts["contacts"] else [])]
+    return [*facts["joint_sets"].items(), *([("(no joint)", cuts)] if cuts["contacts"] else [])]
 
 
 def _of_set(found: Partition, index: int) -> dict[str, Any]:

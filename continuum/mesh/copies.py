@@ -9,7 +9,7 @@ REPEATED = 6  # copies from which a part is worth lanes of its own
 
 
 def parts_of_pieces(
-    x: np.ndarray, cells: np.ndarray, piece: np.ndarray
+    x: np.ndarray, cells: np.ndarray, piece: np.ndarray, material: np.ndarray
 ) -> tuple[tuple[Part, ...], np.ndarray]:
     """Return the pieces of the rock as parts, and the new number of each cell.
 
@@ -20,7 +20,8 @@ def parts_of_pieces(
     for some in own:
         vertices, local = _in_order(cells[some])
         shape = np.rint((x[vertices] - x[vertices[0]]) / (ALIKE * np.ptp(x, axis=0).max()))
-        alike.setdefault(shape.tobytes() + local.tobytes(), []).append(some)
+        key = shape.tobytes() + local.tobytes() + material[some].tobytes()
+        alike.setdefault(key, []).append(some)
     groups = [some for some in alike.values() if len(some) >= REPEATED]
     alone = [one for some in alike.values() if len(some) < REPEATED for one in some]
     if alone:
@@ -32,7 +33,7 @@ def parts_of_pieces(
         vertices, local = _in_order(cells[group[0]])
         first = np.array([cells[one[0], 0] for one in group])
         shifts = x[first] - x[first[0]]
-        parts.append(Part(x[vertices], local, np.zeros(len(local), dtype=np.int64), shifts))
+        parts.append(Part(x[vertices], local, material[group[0]], shifts))
     return tuple(parts), number
 
 

@@ -13,7 +13,7 @@ class Part(NamedTuple):
     cells : int array [cells, corners], vertex numbers in basix's corner order (the tensor order for
         quadrilaterals and hexahedra), with positive Jacobians.
     material : int array [cells], 0 the rock, k the k-th of `Mesh.layers` counted from 1; of
-        a pillar of segments the segment.
+        a pillar of segments the segment, of a rock mass the k-th region, from 1.
     shifts : float array [copies, dim], m, added to x.
     """
 

@@ -63,7 +63,7 @@ def plane_mesh(
     cut[edges.cell[cuts], edges.facet[cuts]] = True
     whole, doubled = split(kind, x, cells, cut)
     piece = pieces(doubled)
-    parts, number = parts_of_pieces(whole, doubled, piece)
+    parts, number = parts_of_pieces(whole, doubled, piece, partition.region[block] + 1)
     edges = edges._replace(cell=number[edges.cell])
     sides = {
         name: Side(edges.cell[there], x[edges.vertex[there]])

@@ -120,7 +120,7 @@ class Entry:
         self.points = SidePoints(*(part[chosen] for part in points))
         self.freedom = body.freedom(self.points.node[:, None], np.arange(2)).T.ravel()
         self.field, self.duration = field, scene.time.duration
-        self.impedance = medium_impedances(scene, self.points.normal)
+        self.impedance = medium_impedances(scene, self.points.normal, self.points.region)
         self.sampled = None
         if not isinstance(field, FreeField):
             self.sampled = self._sampled(scene, body.communicator)

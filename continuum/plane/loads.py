@@ -33,7 +33,7 @@ def _base(body: Body, load: PlaneLoad, scene: RockMass) -> np.ndarray:
     """Return the share of every freedom in the force on a compliant base for each m/s."""
     assert load.side is not None and load.direction is not None
     points, share = points_on(body, [load.side]), np.zeros(body.mass.size)
-    impedance = medium_impedances(scene, points.normal)
+    impedance = medium_impedances(scene, points.normal, points.region)
     force = points.weight[:, None] * base_traction(points.normal, impedance, load.direction)
     np.add.at(share, body.freedom(points.node[:, None], np.arange(2)), force)
     return share

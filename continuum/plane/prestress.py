@@ -17,7 +17,7 @@ def prestressed(scene: RockMass, discrete: PlaneDiscrete, pushing: float) -> flo
     """Return the root of twice the energy (sqrt(J/m)) that a prestress keeps in rock and joints,
     and that rock gives off by pushing on both sides of joints that open, so long (s/sqrt(kg))."""
     stress, joints, of_all = stress_of(scene), discrete.joints, discrete.body.communicator
-    least = np.linalg.eigvalsh(discrete.materials[0].stiffness).min()
+    least = min(np.linalg.eigvalsh(one.stiffness).min() for one in discrete.materials)
     stored = float(stress @ stress) / least * float(discrete.partition.area.sum())
     size, softness = float(np.abs(stress).max()), 0.0
     if joints is not None:

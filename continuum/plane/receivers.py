@@ -37,13 +37,13 @@ def receivers(scene: RockMass, discrete: PlaneDiscrete) -> Receivers:
 
     Rows of stress: xx, yy, xy of all points, each together, then normal and shear tractions.
     """
-    body, material = discrete.body, discrete.materials[0]
+    body, materials = discrete.body, discrete.materials
     x = np.array(scene.record.points, dtype=float).reshape(-1, 2)
     which, cell = cells_at(body, x)
     at = places_in(body, cell, x[which])
     share = shares_of_pieces(which, body.piece[cell])
     motion = per_component(share[:, None] * at.basis, np.arange(2))
-    elastic = recovered_stress(body, material, discrete.vertex, x, which, cell)
+    elastic = recovered_stress(body, materials, discrete.vertex, x, which, cell)
     joints = _joints(scene, discrete)
     rows = 0 if joints is None else joints.traction.shape[0]
     whole = csr_matrix(vstack([elastic, csr_matrix((rows, body.mass.size))]))
@@ -53,7 +53,7 @@ def receivers(scene: RockMass, discrete: PlaneDiscrete) -> Receivers:
         point=matrix_of(body, which, cell, motion, len(x)),
         turn=None if joints is None else joints.jump,
         elastic=whole,
-        viscous=material.time_constant * whole if material.time_constant else None,
+        viscous=materials[0].time_constant * whole if materials[0].time_constant else None,
         inertia=csr_matrix(whole.shape),
         contact=None if joints is None else _below(joints.traction, elastic.shape[0]),
         constant=constant if constant.any() else None,

@@ -5,7 +5,8 @@ quadrilaterals, or at the points of the rule of degree 2 (p - 1) in triangles (B
 Numer. Meth. Eng. 10, 1976). A polynomial of order p + 1 through those of the elements around a
 point, by least squares with weights that fall with the distance, has this order everywhere
 (superconvergent patch recovery; Zienkiewicz & Zhu, Int. J. Numer. Meth. Eng. 33, 1992). Elements
-beyond a joint do not count. Where there are too few the stress is that of the element at the point.
+beyond a joint or of other rock do not count. Where there are too few the stress is that of the
+element at the point.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ FALL = 4.0
 
 def recovered_stress(
     body: Body,
-    material: PlaneRock,
+    materials: list[PlaneRock],
     vertex: np.ndarray,
     x: np.ndarray,
     which: np.ndarray,
@@ -45,28 +46,34 @@ def recovered_stress(
     which, cell : int arrays, every cell that each point is in or on; a point on a joint reads the
     mean of both sides.
     """
-    share = shares_of_pieces(which, body.piece[cell])
+    piece = _pieces(body)
+    share = shares_of_pieces(which, piece[cell])
     row, cells, at, weight = [], [], [], []
     rule = _points(body)
     for point in range(len(x)):
         own = which == point
-        for piece in np.unique(body.piece[cell[own]]):
-            here = own & (body.piece[cell] == piece)
+        for one in np.unique(piece[cell[own]]):
+            here = own & (piece[cell] == one)
             side = share[here].sum()
-            some, local, shares = _patch(body, vertex, x[point], cell[here], rule)
+            some, local, shares = _patch(body, piece, vertex, x[point], cell[here], rule)
             row.append(np.full(len(some), point))
             cells.append(some)
             at.append(local)
             weight.append(side * shares)
     none = np.zeros(0, dtype=np.int64)
     cells_, at_ = np.concatenate([none, *cells]), np.concatenate([np.zeros((0, 2)), *at])
-    moduli = elastic_moduli(material, 2, 2)
-    of_stress = np.array([moduli[i, j] for i, j in COMPONENTS])
+    moduli = np.array([elastic_moduli(material, 2, 2) for material in materials])
+    of_stress = np.array([moduli[:, i, j] for i, j in COMPONENTS])[:, body.material[cells_]]
     gradient = at_reference(body, cells_, at_).gradient
     weights = -np.einsum(
-        "dcj,nkj,n->dnkc", of_stress, gradient, np.concatenate([np.zeros(0), *weight])
+        "dncj,nkj,n->dnkc", of_stress, gradient, np.concatenate([np.zeros(0), *weight])
     )
     return matrix_of(body, np.concatenate([none, *row]), cells_, weights, len(x))
+
+
+def _pieces(body: Body) -> np.ndarray:
+    """Return which piece of one rock each cell is of, int array [cells]."""
+    return body.piece * (1 + body.material.max(initial=0)) + body.material
 
 
 def _points(body: Body) -> np.ndarray:
@@ -76,12 +83,17 @@ def _points(body: Body) -> np.ndarray:
 
 
 def _patch(
-    body: Body, vertex: np.ndarray, place: np.ndarray, own: np.ndarray, rule: np.ndarray
+    body: Body,
+    piece: np.ndarray,
+    vertex: np.ndarray,
+    place: np.ndarray,
+    own: np.ndarray,
+    rule: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return cells [n], places in them [n, 2] and weights [n] of the stresses that make the one at
     a place in or on the cells `own`, which are of one piece."""
     near = np.isin(vertex, vertex[own]).any(axis=1)
-    patch = np.flatnonzero(near & (body.piece == body.piece[own[0]]))
+    patch = np.flatnonzero(near & (piece == piece[own[0]]))
     cells, at = np.repeat(patch, len(rule)), np.tile(rule, (len(patch), 1))
     corners = body.corners[cells]
     x = np.einsum("nv,nvd->nd", compat.tabulate(body.mesh.cell, 1, at)[0], corners)

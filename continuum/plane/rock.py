@@ -15,6 +15,7 @@ from cases.material.dashpots import set_time_constants
 from cases.material.effective_medium import compliant, stiffness
 from cases.material.rock import elastic_rock
 from cases.material.strength import strength_of
+from cases.partition.regions import within
 from cases.partition.scene import partition_of
 from continuum.build import body_and_jumps
 from continuum.joints import interfaces
@@ -41,7 +42,7 @@ class PlaneDiscrete(NamedTuple):
 
     resolved : the scene with the joint sets that are resolved alone. partition : of it.
     across : contacts across periodic sides. block : int array [cells]; vertex : int array [cells,
-    corners], `PlaneMesh`. jumps, joints : None without any.
+    corners], `PlaneMesh`. materials : [rock] and the regions'. jumps, joints : None without any.
     """
 
     resolved: RockMass
@@ -73,17 +74,21 @@ def discretise(scene: RockMass, model: str, comm=None) -> PlaneDiscrete:
     partition = partition_of(resolved)
     sides = [side for side in ("left", "bottom") if getattr(scene.boundaries, side) == "periodic"]
     across = across_periodic(partition, sides)
-    rock = PlaneRock(
-        stiffness(elastic_rock(scene.rock), compliant(sets)),
-        scene.rock.density,
-        _rayleigh(scene),
+    *regions, rest = (
+        PlaneRock(
+            stiffness(elastic_rock(one.rock), compliant(one.joint_sets)),
+            one.rock.density,
+            _rayleigh(scene),
+        )
+        for one in within(scene, sets)
     )
+    rocks = [rest, *regions]
     meshed = _mesh(scene, partition, across)
     order = scene.numerics.continuum.order
-    body, between = body_and_jumps(comm, meshed.mesh, order, [rock], MOTION.section, paired=True)
+    body, between = body_and_jumps(comm, meshed.mesh, order, rocks, MOTION.section, paired=True)
     body = body._replace(piece=meshed.piece)
     places = meshed.block, meshed.vertex
-    found = PlaneDiscrete(resolved, partition, across, *places, [rock], body, None, None)
+    found = PlaneDiscrete(resolved, partition, across, *places, rocks, body, None, None)
     if between is None:
         return found
     own = contact_law(resolved, found, between.joint)

@@ -26,16 +26,17 @@ INSIDE = 1e-7  # of a cell: how far inside it a field is asked for, lest it is b
 
 
 class SidePoints(NamedTuple):
-    """Nodes on sides, once for each direction that a side has there.
+    """Nodes on sides, once for each direction that a side has there, and each region of rock.
 
     node : int array [n]. normal : out of the rock [n, 2]. weight : the length that each stands
-    for [n], m. x : just inside the rock [n, 2], m.
+    for [n], m. x : just inside the rock [n, 2], m. region : int array [n], -1 of none.
     """
 
     node: np.ndarray
     normal: np.ndarray
     weight: np.ndarray
     x: np.ndarray
+    region: np.ndarray
 
 
 def held(scene: RockMass, name: str) -> str:
@@ -70,15 +71,17 @@ def points_on(body: Body, names: list[str]) -> SidePoints:
         node = body.cells[cell, np.abs(basis).argmax(axis=1)]
         centre = body.corners[cell].mean(axis=1)
         x = points.x + INSIDE * (centre - points.x)
-        found.append((node, outward(body, side)[points.facet], points.weight, x))
+        region = body.material[cell] - 1
+        found.append((node, outward(body, side)[points.facet], points.weight, x, region))
     if not found:
         none = np.zeros(0, dtype=np.int64)
-        found = [(none, np.zeros((0, 2)), np.zeros(0), np.zeros((0, 2)))]
-    node, normal, weight, x = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    key = np.column_stack([node, np.rint(1e9 * normal)])
+        found = [(none, np.zeros((0, 2)), np.zeros(0), np.zeros((0, 2)), none)]
+    node, normal, weight, x, region = (np.concatenate(one) for one in zip(*found, strict=True))
+    key = np.column_stack([node, np.rint(1e9 * normal), region])
     _, first, group = np.unique(key, axis=0, return_index=True, return_inverse=True)
     weights = np.bincount(group.ravel(), weight)
-    return SidePoints(node[first], normal[first], weights, _mean(body, node, weight, x)[first])
+    places = _mean(body, node, weight, x)[first]
+    return SidePoints(node[first], normal[first], weights, places, region[first])
 
 
 def _mean(body: Body, node: np.ndarray, weight: np.ndarray, x: np.ndarray) -> np.ndarray:
@@ -103,7 +106,8 @@ def dashpots_on(
 
     mass : of all processes together [freedoms], kg.
     """
-    n, Z = points.normal, points.weight[:, None] * medium_impedances(scene, points.normal)
+    n, weight = points.normal, points.weight[:, None]
+    Z = weight * medium_impedances(scene, n, points.region)
     along = np.einsum("qi,qj->qij", n, n)
     of_point = Z[:, 0, None, None] * along + Z[:, 1, None, None] * (np.eye(2) - along)
     own, share = body.freedom(points.node[:, None], np.arange(2)), np.zeros((2, body.mass.size))

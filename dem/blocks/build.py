@@ -10,6 +10,7 @@ from cases.material.rigid_blocks import RigidJoints, rigid_joints
 from cases.material.rock_mass import Inertia, inertia
 from cases.partition.blocks import Partition
 from cases.partition.lattice import further_sets
+from cases.partition.regions import rocks_of
 from cases.partition.scene import partition_of
 from dem.blocks.joints import Columns, columns
 from dem.blocks.links import Links, links_of
@@ -50,11 +51,12 @@ class RigidBlocks(NamedTuple):
 def rigid_blocks(scene: RockMass) -> RigidBlocks:
     """Return the rigid blocks of a scene; raises SceneError where they cannot be made."""
     further = further_sets(scene)
-    joints = rigid_joints(scene, further)
     partition = partition_of(scene, further)
-    links = links_of(scene, partition, len(joints.normal))
+    links = links_of(scene, partition, further)
+    joints = rigid_joints(scene, further, links.kinds)
     found = columns(scene, joints, links.others)
-    own = inertia(partition, scene.rock.density)
+    density = np.array([one.density for one in rocks_of(scene)])
+    own = inertia(partition, density[partition.region])
     return RigidBlocks(scene, partition, links, found, own, joints)
 
 

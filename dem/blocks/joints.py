@@ -46,25 +46,24 @@ def columns(scene: RockMass, joints: RigidJoints, others: Stiffness) -> Columns:
 
     joints : of the sets. others : of further contacts, in columns of their own, which always hold.
     """
-    sets = scene.joint_sets
+    sets, made = scene.joint_sets, len(joints.normal)
     normal = np.concatenate([joints.normal, others.normal])
     shear = np.concatenate([joints.shear, others.shear])
     which = np.full(len(normal), len(sets))
-    which[: len(sets)] = np.arange(len(sets))
-    tension = np.ones(len(normal), dtype=bool)
-    tension[: len(sets)] = [one.tension is not False for one in sets]
+    which[:made] = np.minimum(joints.kinds[:, 0], len(sets))
+    tension = np.array([*(one.tension is not False for one in sets), True])[which]
     strengths = strength_of([*sets, JointLaw()], which).strengths()
     stiffens, rock = strengths["maximum_closure"] is not None, None
     if stiffens:  # rock's share of the compliance, at most all but a billionth of it
         rock = np.minimum(np.resize(joints.excess[0], len(normal)), (1 - 1e-9) / normal)
-        rock[len(sets) :] = 0.0
+        rock[which == len(sets)] = 0.0
     found = law(normal, None, tension, shear_stiffness=shear, rock_compliance=rock, **strengths)
-    eta = _time_constants(scene, normal, shear)
+    eta = _time_constants(scene, normal, shear, which)
     if eta is not None:
         viscosities = (uniform(values) for values in (eta[0] * normal, eta[1] * shear))
         found = found._replace(**dict(zip(VISCOSITIES, viscosities, strict=True)))
     fails = not tension.all() or any(values is not None for values in strengths.values())
-    rules = _rules(scene, len(normal))
+    rules = _rules(scene, which)
     closed = _stiffest(scene, found, len(normal)) if stiffens else normal
     stiffest = np.array([closed, shear])
     if found.dilation is not None:
@@ -81,7 +80,9 @@ def _stiffest(scene: RockMass, found: Law, count: int) -> np.ndarray:
 VISCOSITIES = ("normal_viscosity", "shear_viscosity")
 
 
-def _time_constants(scene: RockMass, normal: np.ndarray, shear: np.ndarray) -> np.ndarray | None:
+def _time_constants(
+    scene: RockMass, normal: np.ndarray, shear: np.ndarray, which: np.ndarray
+) -> np.ndarray | None:
     """Return viscosity over stiffness, normal and in shear [2, columns], s; None without any.
 
     A dashpot eta K of a joint within a contact of K' is one of eta K'^2 / K across the contact, to
@@ -97,18 +98,16 @@ def _time_constants(scene: RockMass, normal: np.ndarray, shear: np.ndarray) -> n
     for row, whole, key in zip(
         eta, (normal, shear), ("normal_stiffness", "shear_stiffness"), strict=True
     ):
-        stiffness = np.array([getattr(one, key) for one in sets], dtype=float)
-        row[: len(sets)] = own * whole[: len(sets)] / stiffness
+        stiffness = np.array([*(getattr(one, key) for one in sets), np.inf])
+        row[:] = np.append(own, 0.0)[which] * whole / stiffness[which]
     return eta
 
 
-def _rules(scene: RockMass, count: int) -> np.ndarray:
+def _rules(scene: RockMass, which: np.ndarray) -> np.ndarray:
     """Return the rules of all columns, one where they are the same; shorter ones are filled up by
     points of no weight."""
-    named: list[tuple[str, int]] = [
-        (one.point_rule, one.contact_points) for one in scene.joint_sets
-    ]
-    named += [CUT] * (count - len(named))
+    of_sets = [*((one.point_rule, one.contact_points) for one in scene.joint_sets), CUT]
+    named: list[tuple[str, int]] = [of_sets[k] for k in which]
     if len(set(named)) == 1:
         del named[1:]
     found = np.zeros((len(named), 2, max(number for _, number in named)))

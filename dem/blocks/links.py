@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from cases.material.elastic import shear_modulus
-from cases.material.rock_mass import Stiffness, centroid_distance, constrained_modulus
+from cases.material.rigid_blocks import rock_shares, welded
+from cases.material.rock_mass import Stiffness, constrained_modulus
 from cases.partition.blocks import Partition
 from cases.partition.periodic import PAIRS, periodic_contacts
+from cases.partition.regions import ROCK, rocks_of
 from cases.partition.subdivision import NO_SET
 
 if TYPE_CHECKING:
+    from cases.schema.joint_set import JointSet
     from cases.schema.rock_mass import RockMass
 
 
@@ -21,8 +24,9 @@ class Links(NamedTuple):
 
     blocks : i and j [c, 2]; a wall is a j beyond the last block. start, end : of the edge [c, 2],
     m. normal : from i to j [c, 2]. beside_i, beside_j : the centroids where they touch [c, 2], m.
-    column : of the law [c]. others : stiffness of the contacts that no set has, by column after
-    those of the sets. walls : names of the fixed sides.
+    column : of the law [c]. kinds : of the columns of sets, `RigidJoints` [columns, 3]. others :
+    stiffness of the contacts that no set has, by column after those. walls : names of the fixed
+    sides.
     """
 
     blocks: np.ndarray
@@ -32,12 +36,13 @@ class Links(NamedTuple):
     beside_i: np.ndarray
     beside_j: np.ndarray
     column: np.ndarray
+    kinds: np.ndarray
     others: Stiffness
     walls: tuple[str, ...]
 
 
-def links_of(scene: RockMass, partition: Partition, sets: int) -> Links:
-    """Return all contacts of a scene whose columns begin with so many sets.
+def links_of(scene: RockMass, partition: Partition, further: list[JointSet]) -> Links:
+    """Return all contacts of a scene, some by further sets of cuts.
 
     A fixed side is a wall behind the rock from each block's centroid to the side, as stiff as that
     rock is: half a block. So is intact rock between blocks where no set made the cut.
@@ -61,10 +66,11 @@ def links_of(scene: RockMass, partition: Partition, sets: int) -> Links:
     wall = partition.count + np.array([walls.index(n) for n in names if n in walls], dtype=int)
     centre = (edges.start[held] + edges.end[held]) / 2
     reach = ((centre - partition.centroid[block]) * edges.normal[held]).sum(axis=1)
-    cuts = joint_set == NO_SET
-    apart = np.concatenate([centroid_distance(partition)[cuts[: len(parts[0])]], reach])
-    column = np.concatenate([joint_set, np.full(len(block), NO_SET)])
-    column[column == NO_SET] = sets + np.arange(len(apart))
+    kinds, column = _columns(scene, partition, joint_set, pairs, len(further))
+    cuts = np.flatnonzero(joint_set == NO_SET)
+    column = np.concatenate([column, np.full(len(block), NO_SET)])
+    column[column == NO_SET] = len(kinds) + np.arange(len(cuts) + len(block))
+    others = [_welds(scene, partition, further, cuts), _of_walls(scene, partition, block, reach)]
     return Links(
         blocks=np.concatenate([pairs, np.stack([block, wall], axis=1)]),
         start=np.concatenate([start, edges.start[held]]),
@@ -73,7 +79,8 @@ def links_of(scene: RockMass, partition: Partition, sets: int) -> Links:
         beside_i=np.concatenate([partition.centroid[pairs[:, 0]], partition.centroid[block]]),
         beside_j=np.concatenate([partition.centroid[pairs[:, 1]] + shift, centre]),
         column=column,
-        others=_of_rock(scene, apart),
+        kinds=kinds,
+        others=Stiffness(*map(np.concatenate, zip(*others, strict=True))),
         walls=walls,
     )
 
@@ -95,8 +102,46 @@ def _extent(partition: Partition, far: str, near: str, axis: int) -> np.ndarray:
     return found
 
 
-def _of_rock(scene: RockMass, thickness: np.ndarray) -> Stiffness:
-    """Return the stiffness of intact rock of some thickness [n], m."""
-    rock = scene.rock
-    shear = shear_modulus(rock.intact_modulus, rock.intact_poisson)
-    return Stiffness(constrained_modulus(rock) / thickness, shear / thickness)
+def _columns(
+    scene: RockMass, partition: Partition, joint_set: np.ndarray, pairs: np.ndarray, further: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the kinds of joints, and which one each contact is [c], NO_SET of none."""
+    if not scene.regions:
+        sets = len(scene.joint_sets) + further
+        return np.stack([np.arange(sets), *np.full((2, sets), ROCK)], axis=1), joint_set
+    rows = np.column_stack([joint_set, np.sort(partition.region[pairs], axis=1)])
+    found = joint_set != NO_SET
+    column = np.full(len(rows), NO_SET)
+    kinds, own = np.unique(rows[found], axis=0, return_inverse=True)
+    column[found] = own.reshape(-1)  # numpy 2.0 gave it another shape
+    return kinds, column
+
+
+def _welds(
+    scene: RockMass, partition: Partition, further: list[JointSet], cuts: np.ndarray
+) -> Stiffness:
+    """Return the stiffness of contacts of the partition that no joint set made."""
+    if not len(cuts):
+        return Stiffness(np.zeros(0), np.zeros(0))
+    contacts, corners = partition.contacts, partition.corners
+    normal, (reach, thickness) = contacts.normal[cuts], np.zeros((2, len(cuts), 2))
+    for side in (0, 1):
+        block = contacts.blocks[cuts, side]
+        off = contacts.start[cuts] - partition.centroid[block]
+        reach[:, side] = np.abs((off * normal).sum(axis=1))
+        own = (corners[partition.first[b] : partition.first[b + 1]] for b in block)
+        thickness[:, side] = [np.ptp(c @ n) for c, n in zip(own, normal, strict=True)]
+    regions = partition.region[contacts.blocks[cuts]]
+    shares = rock_shares(scene, further)
+    return welded(shares, rocks_of(scene), regions, normal, reach, thickness)
+
+
+def _of_walls(
+    scene: RockMass, partition: Partition, block: np.ndarray, thickness: np.ndarray
+) -> Stiffness:
+    """Return the stiffness of the rock of some blocks, so thick [n], m."""
+    moduli = [
+        (constrained_modulus(one), shear_modulus(one.intact_modulus, one.intact_poisson))
+        for one in rocks_of(scene)
+    ]
+    return Stiffness(*(np.array(moduli)[partition.region[block]].T / thickness))

@@ -84,10 +84,11 @@ def receivers_of(scene: RockMass, partition: Partition, links: Links) -> BlockRe
 
 
 def _neighbours(partition: Partition) -> dict[int, list[int]]:
-    """Return the blocks beside each across cuts through intact rock."""
+    """Return the blocks beside each across cuts through intact rock of one region."""
     contacts = partition.contacts
     found: dict[int, list[int]] = {}
     through = ~contacts.of_joints(len(partition.joint_sets))
+    through &= np.diff(partition.region[contacts.blocks], axis=1)[:, 0] == 0
     for i, j in contacts.blocks[through].tolist():
         found.setdefault(i, []).append(j)
         found.setdefault(j, []).append(i)

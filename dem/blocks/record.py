@@ -46,7 +46,8 @@ def quantities(
         traction = _tractions(system.blocks.links, receivers, contact)
         found["traction"] = np.einsum("pw,wnk->pnk", joints, traction)
         for k, (name, row) in enumerate((("gap", GAP), ("slip", SLIP))):
-            softness = system.blocks.joints.excess[k, system.blocks.links.column[receivers.watched]]
+            column, excess = system.blocks.links.column, system.blocks.joints.excess[k]
+            softness = np.append(excess, 0.0)[np.minimum(column[receivers.watched], len(excess))]
             moved = contact[:, row] + softness[:, None] * traction[..., k]
             found[name] = joints @ (moved - moved[:, :1])
     return found

@@ -138,7 +138,8 @@ def load_pattern(scene: RockMass, partition: Partition, load: PlaneLoad) -> Patt
     points = points_on(partition, partition.boundary, chosen, part)
     if load.kind == "base":
         assert load.direction is not None
-        traction = base_traction(points.normal, impedances(scene, points.normal), load.direction)
+        impedance = impedances(scene, points.normal, partition.region[points.block])
+        traction = base_traction(points.normal, impedance, load.direction)
     else:
         traction = -points.normal
     return Pattern(points.block, points.arm, points.length[:, None] * traction, history)

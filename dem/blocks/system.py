@@ -113,7 +113,7 @@ def held_blocks(
         partition.boundary,
         on_sides(partition, [name for name, kind in held.items() if kind == "quiet"]),
     )
-    impedance = impedances(scene, quiet.normal)
+    impedance = impedances(scene, quiet.normal, partition.region[quiet.block])
     patterns = [load_pattern(scene, partition, x) for x in scene.pushes]
     if scene.prestress is not None:
         open_sides = [n for n in partition.sides if held.get(n, "free") in ("free", "quiet")]

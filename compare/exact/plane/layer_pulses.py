@@ -15,10 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cases.material.rock import ElasticRock
 from compare.exact.plane.inversion import STEPS, analytic_inverse
 from compare.exact.plane.pulse import Pulse, PulseStack, modes_of
-from compare.exact.plane.waves import is_evanescent, slownesses_across
 
 HALF = 4  # samples on either side
 MOST_NODES = 40  # depths of an evanescent wave in a layer, SPARE beyond what its decay asks for
@@ -47,7 +45,7 @@ class LayerWave:
 
 
 def motion(
-    rock: ElasticRock, pulse: Pulse, stack: PulseStack, points: np.ndarray, times: np.ndarray
+    pulse: Pulse, stack: PulseStack, points: np.ndarray, times: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return velocity [m, 2, n] (m/s) and stress [m, 3, n] (Pa, tension positive), as
     `pulse_fields` does.
@@ -57,15 +55,15 @@ def motion(
     if not callable(pulse.velocity):
         raise ValueError("the pulse must be a function of time")
     t, places = np.asarray(times, dtype=float), np.atleast_2d(points) @ stack.axes.rows.T
-    modes = modes_of(rock, stack.axes, slownesses_across(rock, stack.axes.slowness))
-    highest = _highest(pulse.velocity, t) if is_evanescent(rock, stack.axes.slowness) else 0.0
-    waves = list(_waves_of(rock, stack, places, highest))
-    fine, stride = _fine_times(rock, stack, waves, t)
+    modes = modes_of(stack)
+    highest = _highest(pulse.velocity, t) if stack.is_evanescent else 0.0
+    waves = list(_waves_of(stack, places, highest))
+    fine, stride = _fine_times(stack, waves, t)
     sharp = np.concatenate(stack.at_once, axis=-1)
-    found = np.zeros((len(places), modes.shape[1], len(t)))
-    amplitudes = _amplitudes(rock, pulse.velocity, stack, waves, fine)
+    found = np.zeros((len(places), modes.shape[2], len(t)))
+    amplitudes = _amplitudes(pulse.velocity, stack, waves, fine)
     for one, rows in zip(waves, amplitudes, strict=True):
-        mode, share = modes[one.wave][:, None], sharp[one.layer, one.wave]
+        mode, share = modes[one.layer, one.wave][:, None], sharp[one.layer, one.wave]
         for k, (place, late) in enumerate(zip(one.members, one.delays, strict=True)):
             offset = (t[0] - late - fine[0]) / (fine[1] - fine[0])
             if one.shares is None:
@@ -77,7 +75,7 @@ def motion(
                     near = one.shares[k : k + TOGETHER] @ rows
                 part = _read(near[k % TOGETHER], offset, stride, len(t))
                 found[place] += mode.real * part.real - mode.imag * part.imag
-    return found[:, :2], float(rock.p_impedance) * found[:, 2:]
+    return found[:, :2], float(stack.rocks[0].p_impedance) * found[:, 2:]
 
 
 def _highest(velocity: Callable, t: np.ndarray) -> float:
@@ -88,16 +86,13 @@ def _highest(velocity: Callable, t: np.ndarray) -> float:
     return 2 * np.pi * last / (STEPS * step)
 
 
-def _waves_of(
-    rock: ElasticRock, stack: PulseStack, places: np.ndarray, highest: float
-) -> Iterator[LayerWave]:
+def _waves_of(stack: PulseStack, places: np.ndarray, highest: float) -> Iterator[LayerWave]:
     """Yield the waves of all layers that hold places (t, n) [m, 2]."""
-    axes, depths = stack.axes, stack.depths
-    across, evanescent = slownesses_across(rock, axes.slowness), is_evanescent(rock, axes.slowness)
-    lead = (axes.incident @ across).real * depths[0]
+    axes, depths, evanescent = stack.axes, stack.depths, stack.is_evanescent
+    lead = stack.lead.real
     layers = np.searchsorted(depths, places[:, 1])
     for layer in np.unique(layers):
-        members = np.flatnonzero(layers == layer)
+        members, across = np.flatnonzero(layers == layer), stack.slownesses[layer]
         x, z = places[members].T
         there = z - depths[max(layer - 1, 0)], depths[min(layer, len(depths) - 1)] - z
         for wave in range(4):
@@ -128,12 +123,10 @@ def _depths(way: np.ndarray, decay: float) -> tuple[np.ndarray, np.ndarray]:
     return low + (high - low) * (nodes + 1) / 2, at @ to_values
 
 
-def _fine_times(
-    rock: ElasticRock, stack: PulseStack, waves: list[LayerWave], t: np.ndarray
-) -> tuple[np.ndarray, int]:
+def _fine_times(stack: PulseStack, waves: list[LayerWave], t: np.ndarray) -> tuple[np.ndarray, int]:
     """Return the times of amplitudes, s, and how many of their steps a step of `t` has."""
     late = np.concatenate([one.delays for one in waves])
-    causal = not is_evanescent(rock, stack.axes.slowness)
+    causal = not stack.is_evanescent
     start, dt = 0.0 if causal else min(0.0, t[0] - late.max()), t[1] - t[0]
     end = max(t[-1] - late.min(), dt)
     stride = int(np.ceil(STEPS * dt / (end - start)))
@@ -142,7 +135,6 @@ def _fine_times(
 
 
 def _amplitudes(
-    rock: ElasticRock,
     velocity: Callable,
     stack: PulseStack,
     waves: list[LayerWave],
@@ -150,9 +142,9 @@ def _amplitudes(
 ) -> Iterator[np.ndarray]:
     """Yield of each wave the amplitude beyond what follows at once, whose real part it is,
     [1, samples], or those of an evanescent wave at its depths [d, samples]."""
-    q = slownesses_across(rock, stack.axes.slowness)[0]
+    q = stack.slownesses[0, 0]  # of P where that is evanescent: of one rock
     sharp = np.concatenate(stack.at_once, axis=-1)
-    causal = not is_evanescent(rock, stack.axes.slowness)
+    causal = not stack.is_evanescent
     rows = [(one, d) for one in waves for d in (one.depths if one.depths is not None else [0.0])]
 
     def inverted(some: list[tuple[LayerWave, float]]) -> np.ndarray:

@@ -1,10 +1,11 @@
-"""P and SV waves at one linear-slip joint at any angle between equal half-spaces.
+"""P and SV waves at one linear-slip joint at any angle between two half-spaces.
 
 Traction is continuous, [u_n] = tau_n / K_n and [u_s] = tau_s / K_s (Schoenberg, JASA 68, 1980);
 dashpots take K to K - i omega eta. Axes, polarisations and signs are those of `waves`: waves come
-along +n, reflections leave along -n. The mirror symmetry about the joint splits the 4 x 4 system:
-with equal waves from both sides no shear stress acts and the joint opens (r), with opposite ones no
-normal stress acts and it slides (q), R = (r + q)/2, T = (r - q)/2. For P, with C = cos 2 phi,
+along +n, reflections leave along -n. Between equal half-spaces the mirror symmetry about the joint
+splits the 4 x 4 system: with equal waves from both sides no shear stress acts and the joint opens
+(r), with opposite ones no normal stress acts and it slides (q), R = (r + q)/2, T = (r - q)/2. For
+P, with C = cos 2 phi,
 S = sin 2 phi, X = 2 s c,
 
     opening:  X (1 - r_p) - C r_s = 0
@@ -14,8 +15,15 @@ S = sin 2 phi, X = 2 s c,
 
 and the same with the columns of SV. Amplitudes are those of particle velocity. Holds for every
 angle below 90 degrees and every K from 0 (free faces) to inf (none).
+
+Between unlike half-spaces the sum and the difference d +- u of the waves before the joint follow
+from those, t, behind it: continuity of normal stress and the jump of velocity along the joint give
+d + u = P t, that of shear stress and the jump across it d - u = M t, so that T = 2 (P + M)^-1 and
+R = (P - M) T / 2, for every K above 0. K = inf is a welded contact (Zoeppritz 1919; Aki & Richards,
+Quantitative Seismology, 2002, section 5.2.4).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -85,20 +93,64 @@ def picked(R: np.ndarray, T: np.ndarray, incidence: Kind) -> Coefficients:
 
 
 def scattering(
-    rock: ElasticRock, joint: Joint, slowness: Values, omega: Values
+    rock: ElasticRock,
+    joint: Joint,
+    slowness: Values,
+    omega: Values,
+    behind: ElasticRock | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the matrices R and T, complex arrays [..., out, in] in the order P, SV.
 
-    slowness : p along the joint, s/m, below 1/a for P to be a wave and below 1/b for SV.
+    slowness : p along the joint, s/m, below 1/a for P to be a wave and below 1/b for SV. behind :
+    the rock beyond the joint; absent: the same.
     """
     if not (np.real(np.asarray(omega)) >= 0).all():
         raise ValueError("omega has a negative real part; conjugate the result of -conj(omega)")
+    if behind is not None and behind != rock:
+        return _between(rock, behind, joint, slowness, omega)
     w = face(rock, slowness)
     normal, opening = _weighed(w.normal, w.normal_velocity, rock.p_impedance, omega, joint, 0)
     shear, sliding = _weighed(w.shear, w.shear_velocity, rock.s_impedance, omega, joint, 1)
     r = solve_pair((w.shear, normal - opening), (w.shear, -normal - opening))
     q = solve_pair((w.normal, shear - sliding), (-w.normal, shear + sliding))
     return (r + q) / 2, (r - q) / 2
+
+
+def _between(
+    rock: ElasticRock, behind: ElasticRock, joint: Joint, slowness: Values, omega: Values
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return R and T between two rocks."""
+    here, there = face(rock, slowness), face(behind, slowness)
+    x_n, x_s = _softness(joint, omega)
+    side = there.shear_velocity + x_s[..., None] * there.shear
+    P = _solved(here.normal, here.shear_velocity, there.normal, side)
+    side = there.normal_velocity + x_n[..., None] * there.normal
+    M = _solved(here.shear, here.normal_velocity, there.shear, side)
+    both = P + M
+    identity = np.broadcast_to(np.eye(2), both.shape)
+    T = 2 * _solved(both[..., 0, :], both[..., 1, :], identity[..., 0, :], identity[..., 1, :])
+    return (P - M) @ T / 2, T
+
+
+def _softness(joint: Joint, omega: Values) -> list[np.ndarray]:
+    """Return i omega / (K - i omega eta), m/s of jump by 1 Pa, normal and in shear."""
+    found = []
+    for K, eta in (
+        (joint.normal_stiffness, joint.normal_viscosity),
+        (joint.shear_stiffness, joint.shear_viscosity),
+    ):
+        rigid = np.isinf(K)
+        resists = np.where(rigid, 1.0, K) - 1j * np.multiply(omega, eta)
+        if (resists == 0).any():
+            raise ValueError("a joint between two rocks must have a stiffness or a viscosity")
+        found.append(np.where(rigid, 0.0, 1j * np.asarray(omega) / resists))
+    return found
+
+
+def _solved(one, two, left, right) -> np.ndarray:
+    """Return the matrices A of d = A t where rows one . d = left . t and two . d = right . t."""
+    rows = np.broadcast_arrays(one, two, left, right)
+    return solve_pair((rows[0], rows[1]), (rows[2], rows[3]))
 
 
 def _weighed(traction, velocity, impedance, omega, joint, axis) -> tuple[np.ndarray, np.ndarray]:
@@ -150,18 +202,24 @@ def fields(
         nothing = np.zeros_like(R)
         return Layers(np.stack([axes.incident + nothing, T]), np.stack([R, nothing]))
 
-    stack = PulseStack(axes, np.zeros(1), layers, layers_at_once(rock, joint, axes, 1))
-    return pulse_fields(rock, pulse, stack, np.subtract(points, point), times)
+    stack = PulseStack(
+        axes, np.zeros(1), layers, layers_at_once([rock] * 2, joint, axes), [rock] * 2
+    )
+    return pulse_fields(pulse, stack, np.subtract(points, point), times)
 
 
-def layers_at_once(rock: ElasticRock, first: Joint, axes: Axes, count: int) -> Layers:
-    """Return what the first of `count` joints returns and passes without delay: the limit of high
-    frequencies, in which springs do not act. Where P is evanescent only the incident wave is real.
+def layers_at_once(rocks: Sequence[ElasticRock], first: Joint, axes: Axes) -> Layers:
+    """Return what the first joint between layers of these rocks returns and passes without delay:
+    the limit of high frequencies, in which springs do not act. Where P is evanescent only the
+    incident wave is real.
     """
-    down, up = np.zeros((2, count + 1, 2))
+    down, up = np.zeros((2, len(rocks), 2))
     down[0] = axes.incident
-    if not is_evanescent(rock, axes.slowness):
-        R, T = scattering(rock, without_springs(first), axes.slowness, 1.0)
+    if not is_evanescent(rocks[0], axes.slowness):
+        bare = without_springs(first)
+        acts = bool(bare.normal_stiffness or bare.normal_viscosity)
+        behind = rocks[1] if acts else rocks[0]
+        R, T = scattering(rocks[0], bare, axes.slowness, 1.0, behind)
         up[0], down[1] = (R @ axes.incident).real, (T @ axes.incident).real
     return Layers(down, up)
 

@@ -1,16 +1,19 @@
 """P and SV waves through N parallel linear-slip joints at any angle, all reflections included.
 
-R and T are the matrices of one joint (`oblique_joint.scattering`), E_i = diag(e^{i omega d_i q}) of
-P and SV takes waves over the spacing d_i, with the slownesses q across the joints. Behind joint i
-lies a stack of reflection R_{i+1}; from the last joint backwards
+R and T are the matrices of one joint (`oblique_joint.scattering`), R' and T' those from its other
+side, which differ where the rocks on both sides do. E_i = diag(e^{i omega d_i q}) of P and SV takes
+waves over the spacing d_i, with the slownesses q across the joints of the rock there. Behind joint
+i lies a stack of reflection R_{i+1}; from the last joint backwards
 
-    Y_i = (I - R E_i R_{i+1} E_i)^-1 T,   R_i = R + T E_i R_{i+1} E_i Y_i
+    Y_i = (I - R' E_i R_{i+1} E_i)^-1 T,   R_i = R + T' E_i R_{i+1} E_i Y_i
 
 and forwards the waves behind each joint are D_i = Y_i E_{i-1} D_{i-1} (Kennett, Seismic Wave
 Propagation in Stratified Media, 1983; at normal incidence Cai & Zhao, IJRMMS 37, 2000).
 Nothing grows: evanescent waves only decay. Axes, signs and validity are those of `oblique_joint`;
-joints may differ from each other.
+joints and layers may differ from each other, as far as no wave of unlike layers is evanescent.
 """
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -48,35 +51,54 @@ def coefficients(
     """
     slowness = slowness_along(rock, incidence, angle)
     R, behind = march(rock, joints, spacings, slowness, omega)
-    E, T = _phases(rock, spacings, slowness, omega), behind[0]
+    E, T = _phases(_each(rock, len(joints)), spacings, slowness, omega), behind[0]
     for e, Y in zip(E, behind[1:], strict=True):
         T = Y @ (e[..., :, None] * T)
     return picked(R[0], T, incidence)
 
 
 def march(
-    rock: ElasticRock, joints: list[Joint], spacings: np.ndarray, slowness: Values, omega: Values
+    rock: ElasticRock | Sequence[ElasticRock],
+    joints: list[Joint],
+    spacings: np.ndarray,
+    slowness: Values,
+    omega: Values,
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Return R_i and Y_i of every joint, complex arrays [..., 2, 2]; slowness in s/m."""
+    """Return R_i and Y_i of every joint, complex arrays [..., 2, 2].
+
+    rock : of all, or of each layer, one more than joints. slowness : s/m.
+    """
     if not joints:
         raise ValueError("joints is empty, must hold at least one")
     if len(spacings) != len(joints) - 1 or not (np.asarray(spacings) > 0).all():
         raise ValueError(f"{len(joints)} joints need {len(joints) - 1} positive spacings")
-    R, T = scattering(rock, joints[-1], slowness, omega)
+    rocks = _each(rock, len(joints))
+    R, T = scattering(rocks[-2], joints[-1], slowness, omega, rocks[-1])
     reflected, behind = [R], [T]
-    E = _phases(rock, spacings, slowness, omega)
-    for joint, e in zip(joints[-2::-1], E[::-1], strict=True):
-        R, T = scattering(rock, joint, slowness, omega)
-        rest = e[..., :, None] * reflected[0] * e[..., None, :]
-        M = np.eye(2) - R @ rest
+    E = _phases(rocks, spacings, slowness, omega)
+    for k in range(len(joints) - 2, -1, -1):
+        R, T = scattering(rocks[k], joints[k], slowness, omega, rocks[k + 1])
+        back, returned = R, T
+        if rocks[k] is not rocks[k + 1]:
+            back, returned = scattering(rocks[k + 1], joints[k], slowness, omega, rocks[k])
+        rest = E[k][..., :, None] * reflected[0] * E[k][..., None, :]
+        M = np.eye(2) - back @ rest
         Y = solve_pair((M[..., 0, :], M[..., 1, :]), (T[..., 0, :], T[..., 1, :]))
-        reflected.insert(0, R + T @ rest @ Y)
+        reflected.insert(0, R + returned @ rest @ Y)
         behind.insert(0, Y)
     return reflected, behind
 
 
+def _each(rock: ElasticRock | Sequence[ElasticRock], joints: int) -> Sequence[ElasticRock]:
+    """Return the rocks of all layers."""
+    rocks = [rock] * (joints + 1) if isinstance(rock, ElasticRock) else rock
+    if len(rocks) != joints + 1:
+        raise ValueError(f"{joints} joints need {joints + 1} rocks, not {len(rocks)}")
+    return rocks
+
+
 def fields(
-    rock: ElasticRock,
+    rock: ElasticRock | Sequence[ElasticRock],
     joints: list[Joint],
     pulse: Pulse,
     point: np.ndarray,
@@ -89,6 +111,7 @@ def fields(
 
     Parameters
     ----------
+    rock : of all, or of each layer in the order of `offsets`, [N + 1].
     joints : in the order of `offsets`, [N].
     pulse : its velocity is that of the incident wave at `point`.
     point, dip : a place [2] (m), and the joints' angle from x, anticlockwise (rad).
@@ -97,22 +120,26 @@ def fields(
     times : equally spaced, s.
     """
     stack = stack_of(rock, joints, pulse, dip, offsets)
-    return pulse_fields(rock, pulse, stack, np.subtract(points, point), times)
+    return pulse_fields(pulse, stack, np.subtract(points, point), times)
 
 
 def stack_of(
-    rock: ElasticRock, joints: list[Joint], pulse: Pulse, dip: float, offsets: np.ndarray
+    rock: ElasticRock | Sequence[ElasticRock],
+    joints: list[Joint],
+    pulse: Pulse,
+    dip: float,
+    offsets: np.ndarray,
 ) -> PulseStack:
     """Return the joints as the pulse meets them, arguments as those of `fields`."""
-    axes = axes_of(rock, pulse, dip)
     depths, met = np.asarray(offsets, dtype=float), list(joints)
-    if axes.rows[1] @ (-np.sin(dip), np.cos(dip)) < 0:
-        depths, met = -depths[::-1], met[::-1]
-    spacings = np.diff(depths)
+    rocks = list(_each(rock, len(met)))
+    if np.asarray(pulse.direction) @ (-np.sin(dip), np.cos(dip)) < 0:
+        depths, met, rocks = -depths[::-1], met[::-1], rocks[::-1]
+    axes, spacings = axes_of(rocks[0], pulse, dip), np.diff(depths)
 
     def layers(omega: np.ndarray) -> Layers:
-        R, Y = march(rock, met, spacings, axes.slowness, omega)
-        E = _phases(rock, spacings, axes.slowness, omega)
+        R, Y = march(rocks, met, spacings, axes.slowness, omega)
+        E = _phases(rocks, spacings, axes.slowness, omega)
         down, up = [np.broadcast_to(axes.incident, Y[0].shape[:-1])], [R[0] @ axes.incident]
         meets = down[0]
         for i, y in enumerate(Y):
@@ -122,12 +149,15 @@ def stack_of(
                 up.append((R[i + 1] @ meets[..., None])[..., 0])
         return Layers(np.stack(down), np.stack([*up, np.zeros_like(up[0])]))
 
-    return PulseStack(axes, depths, layers, layers_at_once(rock, met[0], axes, len(met)))
+    return PulseStack(axes, depths, layers, layers_at_once(rocks, met[0], axes), rocks)
 
 
 def _phases(
-    rock: ElasticRock, spacings: np.ndarray, slowness: Values, omega: Values
+    rocks: Sequence[ElasticRock], spacings: np.ndarray, slowness: Values, omega: Values
 ) -> list[np.ndarray]:
-    """Return the diagonals of E_i, complex arrays [..., 2]."""
-    across = slownesses_across(rock, slowness)
-    return [np.exp(1j * np.asarray(omega)[..., None] * d * across) for d in spacings]
+    """Return the diagonals of E_i, complex arrays [..., 2]; rocks : of all layers."""
+    turned = 1j * np.asarray(omega)[..., None]
+    return [
+        np.exp(turned * d * slownesses_across(rock, slowness))
+        for d, rock in zip(spacings, rocks[1:-1], strict=True)
+    ]

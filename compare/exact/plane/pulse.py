@@ -6,7 +6,7 @@ every exponential of the sum decays. Points lie at (x, z) in the axes (t, n) of 
     v(t) = sum over waves of g A e^{i omega (p x +- q z)},   stress likewise (`waves.stress`).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -76,12 +76,29 @@ class PulseStack(NamedTuple):
     depths : along n, ascending, m. layers : of omega (rad/s), for a unit incident wave at the first
     joint. at_once : real amplitudes [layers, 2] that follow a pulse without delay; of one that is a
     function they are summed in time, with all its kinks, and the smoother rest is inverted.
+    rocks : of the layers; where they differ no wave may be evanescent.
     """
 
     axes: Axes
     depths: np.ndarray
     layers: Callable[[np.ndarray], Layers]
     at_once: Layers
+    rocks: Sequence[ElasticRock]
+
+    @property
+    def slownesses(self) -> np.ndarray:
+        """c/a and k/b of every layer, complex [layers, 2], s/m."""
+        return np.array([slownesses_across(one, self.axes.slowness) for one in self.rocks])
+
+    @property
+    def lead(self) -> complex:
+        """How late the pulse is at the first joint, s."""
+        return self.axes.incident @ self.slownesses[0] * self.depths[0]
+
+    @property
+    def is_evanescent(self) -> bool:
+        """Whether P waves decay away from the joints."""
+        return is_evanescent(self.rocks[0], self.axes.slowness)
 
 
 def axes_of(rock: ElasticRock, pulse: Pulse, dip: float) -> Axes:
@@ -101,54 +118,54 @@ def axes_of(rock: ElasticRock, pulse: Pulse, dip: float) -> Axes:
     return Axes(np.array([t, n]), float(slowness), np.eye(2)[KINDS.index(pulse.kind)])
 
 
-def pulse_fields(
-    rock: ElasticRock, pulse: Pulse, stack: PulseStack, points: np.ndarray, times: np.ndarray
-) -> Fields:
+def pulse_fields(pulse: Pulse, stack: PulseStack, points: np.ndarray, times: np.ndarray) -> Fields:
     """Return the fields of a pulse whose velocity is that at the origin.
 
     points : [m, 2], m. times : equally spaced, s.
     """
-    axes, depths, layers, at_once = stack
-    t, across = np.asarray(times, dtype=float), slownesses_across(rock, axes.slowness)
-    q = axes.incident @ across
-    places = np.atleast_2d(points) @ axes.rows.T
-    waves = [_waves(place, depths, axes.slowness, across, q * depths[0]) for place in places]
-    modes = modes_of(rock, axes, across)
-    sharp = np.concatenate(at_once, axis=-1) * callable(pulse.velocity)
+    axes, depths, q = stack.axes, stack.depths, stack.axes.incident @ stack.slownesses[0]
+    t, places = np.asarray(times, dtype=float), np.atleast_2d(points) @ axes.rows.T
+    waves = [_waves(place, stack) for place in places]
+    modes = modes_of(stack)[[layer for layer, _ in waves]]
+    sharp = np.concatenate(stack.at_once, axis=-1) * callable(pulse.velocity)
 
     def transfer(omega: np.ndarray) -> np.ndarray:
-        amplitudes = np.concatenate(layers(omega), axis=-1) - sharp[:, None]
+        amplitudes = np.concatenate(stack.layers(omega), axis=-1) - sharp[:, None]
         found = [_delayed(amplitudes[layer], omega, delays) for layer, delays in waves]
-        return np.einsum("mkw,wc->mck", np.array(found), modes)
+        return np.einsum("mkw,mwc->mck", np.array(found), modes)
 
     earliest = axes.slowness * places[:, 0] + q.real * np.minimum(places[:, 1], depths[0])
-    causal = not is_evanescent(rock, axes.slowness)
-    found, error = inverse(transfer, pulse.velocity, t, earliest.min(), causal)
+    found, error = inverse(transfer, pulse.velocity, t, earliest.min(), not stack.is_evanescent)
     if callable(pulse.velocity):
-        for each, (layer, delays) in zip(found, waves, strict=True):
-            each += modes.real.T @ _shifted(pulse.velocity, t, delays.real, sharp[layer])
-    unit = float(rock.p_impedance)
+        for each, mode, (layer, delays) in zip(found, modes, waves, strict=True):
+            each += mode.real.T @ _shifted(pulse.velocity, t, delays.real, sharp[layer])
+    unit = float(stack.rocks[0].p_impedance)
     return Fields(found[:, :2], unit * found[:, 2:], error[:, :2], unit * error[:, 2:])
 
 
-def modes_of(rock: ElasticRock, axes: Axes, across: np.ndarray) -> np.ndarray:
-    """Return velocity and stress over Z_p [P+, SV+, P-, SV-; (x, y, xx, yy, xy)] of unit waves."""
-    g = polarisations(rock, axes.slowness).reshape(4, 2)
-    along = np.full(4, axes.slowness)
-    s = np.stack([along, np.concatenate([across, -across])], axis=-1)
-    g, s = g @ axes.rows, s @ axes.rows
-    tensor = stress(rock, s, g) / rock.p_impedance
-    return np.concatenate([g, tensor[:, [0, 1, 0], [0, 1, 1]]], axis=1)
+def modes_of(stack: PulseStack) -> np.ndarray:
+    """Return velocity and stress over Z_p of the first rock [layers, (P+, SV+, P-, SV-),
+    (x, y, xx, yy, xy)] of unit waves."""
+    axes, found = stack.axes, []
+    for rock, across in zip(stack.rocks, stack.slownesses, strict=True):
+        g = polarisations(rock, axes.slowness).reshape(4, 2)
+        along = np.full(4, axes.slowness)
+        s = np.stack([along, np.concatenate([across, -across])], axis=-1)
+        g, s = g @ axes.rows, s @ axes.rows
+        tensor = stress(rock, s, g) / stack.rocks[0].p_impedance
+        found.append(np.concatenate([g, tensor[:, [0, 1, 0], [0, 1, 1]]], axis=1))
+    return np.array(found)
 
 
-def _waves(place, depths, slowness, across, lead) -> tuple[int, np.ndarray]:
+def _waves(place: np.ndarray, stack: PulseStack) -> tuple[int, np.ndarray]:
     """Return the layer of a place (t, n) and how late [P+, SV+, P-, SV-] come there from where
-    their amplitudes are given, complex, s; `lead` is that of the first joint."""
-    x, z = place
+    their amplitudes are given, complex, s."""
+    (x, z), depths = place, stack.depths
     layer = int(np.searchsorted(depths, z))
     first, last = depths[max(layer - 1, 0)], depths[min(layer, len(depths) - 1)]
+    across = stack.slownesses[layer]
     late = np.concatenate([across * (z - first), across * (last - z)])
-    return layer, late + slowness * x + lead
+    return layer, late + stack.axes.slowness * x + stack.lead
 
 
 def _delayed(amplitudes: np.ndarray, omega: np.ndarray, delays: np.ndarray) -> np.ndarray:

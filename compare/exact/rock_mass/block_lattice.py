@@ -59,6 +59,7 @@ def applies(scene: RockMass) -> Answer:
         (bool(scene.loads), "a load acts"),
         (gravity, "gravity acts"),
         (scene.prestress is not None, "the rock is prestressed"),
+        (bool(scene.regions), "regions differ in rock"),
         ("fixed" in held, "a side is fixed"),
         (scene.numerics.dem.block is not None, "intact rock is cut into blocks, too"),
         (not any(one.spacing for one in sets), "no joints with a spacing make blocks"),
@@ -78,7 +79,7 @@ def solve(scene: RockMass) -> xr.Dataset:
 
     partition, times = partition_of(scene), sample_times(scene)
     quiet = _quiet(scene, partition)
-    impedance = impedances(scene, quiet.normal)
+    impedance = impedances(scene, quiet.normal, partition.region[quiet.block])
     system = RigidSystem(
         masses(scene, partition),
         _stiffness(scene, partition),

@@ -64,9 +64,14 @@ def prestress_of(scene: RockMass) -> np.ndarray:
 
 
 def all_parallel(scene: RockMass) -> bool:
-    """Return whether all joints of a scene are parallel."""
-    directions = [direction_of(one.dip) for one in scene.joint_sets]
-    return all(along(*pair) for pair in pairwise(directions))
+    """Return whether all joints of a scene, and boundaries of its regions, are parallel."""
+    return all(along(*pair) for pair in pairwise(directions_of(scene)))
+
+
+def directions_of(scene: RockMass) -> list[np.ndarray]:
+    """Return unit vectors along the joint sets and the boundaries of regions."""
+    dips = [*(one.dip for one in scene.joint_sets), *(one.dip for one in scene.regions)]
+    return [direction_of(dip) for dip in dips]
 
 
 def along(one: np.ndarray, other: np.ndarray) -> bool:

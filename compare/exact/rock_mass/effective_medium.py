@@ -109,6 +109,7 @@ def applies(scene: RockMass) -> Answer:
         (gravity, "gravity acts"),
         (bool(scene.domain.holes), "the domain has openings"),
         (not scene.joint_sets, "there is no joint"),
+        (bool(scene.regions), "regions differ in rock"),
         (all_parallel(scene), "joints are parallel: see parallel-joints"),
         (any(one.spacing is None for one in scene.joint_sets), "a joint has no spacing"),
         (any(one.damping_ratio for one in scene.joint_sets), "the joints are damped"),

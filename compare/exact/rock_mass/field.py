@@ -2,7 +2,8 @@
 
 Where its joints are a stack it is the stack's, also of one joint that stiffens and is met straight
 on; where they cross and all have a spacing it is that of the waves in their effective medium, since
-no wave of intact rock would come from the rock beyond; else that of the waves in the intact rock.
+no wave of intact rock would come from the rock beyond; else that of the waves in the intact rock,
+with what the boundaries of its regions make of them.
 
 With the exact field of the stack on all quiet sides nothing is missing there, and what is wrong
 inside is an engine's own. 1000 points and 2000 times of one joint take about 0.5 s of a processor,
@@ -17,6 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cases.errors import SceneError
 from cases.incident import WaveMotion, free_field, plane_wave
 from compare.exact.plane import layer_pulses, parallel_joints
 from compare.exact.plane.pulse import Pulse
@@ -46,8 +48,8 @@ class StackField:
             kind: Kind = "P" if abs(wave.direction @ wave.polarisation) > 0.5 else "SV"
             pulse = Pulse(kind, wave.direction, wave.pulse.value)
             offsets = stack.offsets - wave.through @ stack.normal
-            met = parallel_joints.stack_of(stack.rock, stack.joints, pulse, stack.dip, offsets)
-            found = layer_pulses.motion(stack.rock, pulse, met, places - wave.through, times)
+            met = parallel_joints.stack_of(stack.rocks, stack.joints, pulse, stack.dip, offsets)
+            found = layer_pulses.motion(pulse, met, places - wave.through, times)
             for sum_, part in zip(total, found, strict=True):
                 sum_ += part
         return WaveMotion(*total)
@@ -63,6 +65,23 @@ def field_of(scene: RockMass) -> IncidentField:
         stack = stack_of(scene)
         if begun(scene, stack) is None:
             return StackField(stack, tuple(plane_wave(scene, one) for one in scene.waves))
+    if scene.regions:
+        return _layered_field(scene)
     if not all_parallel(scene) and all(one.spacing for one in scene.joint_sets):
         return medium_field(scene)
     return free_field(scene)
+
+
+def _layered_field(scene: RockMass) -> StackField:
+    """Return the field of the waves in the regions' intact rock.
+
+    Raises SceneError where that is not known.
+    """
+    intact = scene.model_copy(update={"joint_sets": []})
+    reason = scatters_otherwise(intact, leaves=False)
+    stack = stack_of(intact) if reason is None else None
+    reason = reason if stack is None else begun(scene, stack)
+    if stack is None or reason is not None:
+        allowed = f"enter regions of rock in which their field is not known: {reason}"
+        raise SceneError(scene.where, "waves", len(scene.waves), allowed)
+    return StackField(stack, tuple(plane_wave(scene, one) for one in scene.waves), whole=False)

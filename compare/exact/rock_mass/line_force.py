@@ -36,6 +36,7 @@ def applies(scene: RockMass) -> Answer:
     held, gravity = scene.boundaries.model_dump().values(), scene.gravity
     reasons = [
         (bool(scene.joint_sets), "there are joints"),
+        (bool(scene.regions), "regions differ in rock"),
         (bool(scene.waves), "a wave enters"),
         (not scene.loads, "no force acts"),
         (any(one.kind != "force" for one in scene.loads), "another load than a force acts"),

@@ -1,7 +1,8 @@
 """The parallel joints of a scene as a stack without end, and whether they are one.
 
-Holds for undamped rock with linear joints, all parallel and unbroken, in a convex domain whose
-sides waves leave through, from rest: at t = 0 no pulse may have met a joint there.
+Holds for undamped rock with linear joints and boundaries of regions, all parallel and unbroken, in
+a convex domain whose sides waves leave through, from rest: at t = 0 no pulse may have met a joint
+there.
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ import numpy as np
 from cases.incident import plane_wave
 from cases.material.dashpots import set_time_constants
 from cases.material.rock import elastic_rock
-from cases.partition.joints import direction_of
 from cases.partition.outline import TOLERANCE, outline_of
+from cases.partition.regions import rocks_of
 from cases.partition.scene import partition_of
 from cases.partition.subdivision import NO_SET
 from compare.exact.plane.oblique_joint import Joint
@@ -24,6 +25,7 @@ from compare.exact.rock_mass.conditions import (
     all_parallel,
     along,
     beyond_linear_rock,
+    directions_of,
     reflecting_side,
 )
 
@@ -32,19 +34,21 @@ if TYPE_CHECKING:
     from cases.material.rock import ElasticRock
     from cases.partition.blocks import Partition
     from cases.schema.rock_mass import RockMass
+    from cases.schema.sources import Wave
 
 BEGUN = 1e-9  #: of the duration, that a pulse may have met a joint for at t = 0
 
 
 @dataclass(frozen=True)
 class JointStack:
-    """Parallel joints in rock.
+    """Parallel joints in rock; welded boundaries of its regions are joints of infinite stiffness.
 
-    direction : unit vector along the joints [2]; their normal is its left. offsets : of the joints
-    along the normal from the origin, ascending, m, [N]. joints : [N]. partition : of the domain.
+    rocks : of the layers, along the normal [N + 1]. direction : unit vector along the joints [2];
+    their normal is its left. offsets : of the joints along the normal from the origin, ascending,
+    m, [N]. joints : [N]. partition : of the domain.
     """
 
-    rock: ElasticRock
+    rocks: list[ElasticRock]
     direction: np.ndarray
     offsets: np.ndarray
     joints: list[Joint]
@@ -63,20 +67,28 @@ class JointStack:
 
 def stack_of(scene: RockMass) -> JointStack:
     """Return the stack of a scene whose joints are parallel."""
-    partition, direction = partition_of(scene), direction_of(scene.joint_sets[0].dip)
+    partition, direction = partition_of(scene), directions_of(scene)[0]
     contacts, etas = partition.contacts, set_time_constants(scene)
     etas = np.zeros(len(scene.joint_sets)) if etas is None else etas
     laws = [
         Joint(K_n, K_s, K_n * eta, K_s * eta)
         for K_n, K_s, eta in zip(*stiffnesses(scene), etas, strict=True)
     ]
-    depths = contacts.start @ [-direction[1], direction[0]]
+    laws.append(Joint(np.inf, np.inf))  # NO_SET's
+    normal, region = np.array([-direction[1], direction[0]]), partition.region[contacts.blocks]
+    depths = contacts.start @ normal
     order = np.argsort(depths)
-    order = order[contacts.joint_set[order] != NO_SET]
+    met = (contacts.joint_set != NO_SET) | (region[:, 0] != region[:, 1])
+    order = order[met[order]]
     apart = np.diff(depths[order], prepend=-np.inf)  # an opening may cut a joint in parts
     order = order[apart > TOLERANCE * np.ptp(partition.corners, axis=0).max()]
     joints = [laws[k] for k in contacts.joint_set[order]]
-    return JointStack(elastic_rock(scene.rock), direction, depths[order], joints, partition)
+    below, above = region[order].T
+    swap = contacts.normal[order] @ normal < 0
+    below, above = np.where(swap, above, below), np.where(swap, below, above)
+    known = [elastic_rock(one) for one in rocks_of(scene)]
+    rocks = [known[k] for k in (*below[:1], *above)]
+    return JointStack(rocks, direction, depths[order], joints, partition)
 
 
 def stiffnesses(scene: RockMass) -> np.ndarray:
@@ -97,10 +109,10 @@ def against(scene: RockMass) -> str | None:
     return next((why for there, why in reasons if there), None) or scatters_otherwise(scene)
 
 
-def scatters_otherwise(scene: RockMass) -> str | None:
+def scatters_otherwise(scene: RockMass, leaves: bool = True) -> str | None:
     """Return why the waves that enter and the joints do not make the field of a stack, None where
-    they do; what else acts, and openings, add to it."""
-    directions = [direction_of(one.dip) for one in scene.joint_sets]
+    they do; what else acts, and openings, add to it. leaves : whether sides must let waves out."""
+    directions = directions_of(scene)
     reasons = [
         (not directions, "there is no joint"),
         (not all_parallel(scene), "joints are not parallel"),
@@ -108,11 +120,21 @@ def scatters_otherwise(scene: RockMass) -> str | None:
     for i, wave in enumerate(scene.waves):
         runs_along = any(along(np.array(wave.direction), one) for one in directions)
         reasons.append((runs_along, f"waves[{i}] travels along the joints"))
-    found = beyond_linear_rock(scene) or next((why for there, why in reasons if there), None)
-    found = found or reflecting_side(scene)
-    if found is None and len(outline_of(scene.domain).taken) > len(scene.domain.holes):
+        decays = bool(scene.regions and directions) and _decays(scene, wave)
+        reasons.append((decays, f"of waves[{i}] another is evanescent in a region"))
+    found = beyond_linear_rock(scene) if leaves else None
+    found = found or next((why for there, why in reasons if there), None)
+    found = found or (reflecting_side(scene) if leaves else None)
+    if found is None and leaves and len(outline_of(scene.domain).taken) > len(scene.domain.holes):
         found = "the domain is not convex"
     return found
+
+
+def _decays(scene: RockMass, wave: Wave) -> bool:
+    """Return whether some wave that a wave makes at parallel boundaries decays away from them."""
+    incident, along = plane_wave(scene, wave), directions_of(scene)[0]
+    slowness = abs(incident.direction @ along) / incident.speed
+    return any(slowness * elastic_rock(one).p_speed >= 1 for one in rocks_of(scene))
 
 
 def begun(scene: RockMass, stack: JointStack) -> str | None:
@@ -140,7 +162,7 @@ def first_scattered(stack: JointStack, wave: PlaneWave) -> float:
     n = stack.normal if wave.direction @ stack.normal > 0 else -stack.normal
     t = np.array([-n[1], n[0]])
     p, q = wave.direction @ t / wave.speed, wave.direction @ n / wave.speed
-    least = slownesses_across(stack.rock, p).real.min()
+    least = min(slownesses_across(one, p).real.min() for one in stack.rocks)
     places = stack.partition.corners - wave.through
     first = ((stack.offsets * (n @ stack.normal)) - wave.through @ n).min()
     return float((places @ t * p + q * first + least * np.abs(places @ n - first)).min())

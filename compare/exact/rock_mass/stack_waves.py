@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cases.incident import free_field, plane_wave
+from cases.incident import plane_wave
 from cases.partition.locate import block_at, contact_at
 from cases.partition.outline import TOLERANCE
 from cases.sampling import sample_times
@@ -70,7 +70,9 @@ def holds(scene: RockMass, one: bool) -> Answer:
         return no(reason)
     stack = stack_of(scene)
     count = len(stack.joints)
-    if (count == 1) != one:
+    if one and scene.regions:
+        return no("regions differ in rock: see parallel-joints")
+    if (count == 1 and not scene.regions) != one:
         return no(f"there are {count} joints: see parallel-joints" if one else "there is one joint")
     reason = begun(scene, stack)
     return no(reason) if reason else YES
@@ -127,7 +129,7 @@ def motion_at(
         offsets = stack.offsets - wave.through @ stack.normal
         by_value, by_integral = (
             parallel_joints.fields(
-                stack.rock,
+                stack.rocks,
                 stack.joints,
                 Pulse("P" if one.kind == "P" else "SV", wave.direction, signal),
                 wave.through,
@@ -142,7 +144,7 @@ def motion_at(
         velocity, stress, v_error, s_error = by_value
         moved = by_integral.velocity - begin[..., None]
         early = np.abs(moved[..., 0])
-        free = free_field(scene.model_copy(update={"waves": [one]}))(places, times[:1])
+        free = wave.motion(places, times[:1])
         v_early, s_early = (
             np.abs(x[..., 0] - y[..., 0])
             for x, y in ((velocity, free.velocity), (stress, free.stress))

@@ -11,6 +11,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from cases.partition.regions import rocks_of
 from cases.partition.scene import partition_of
 from compare.figures.blank import blank
 from compare.figures.drawing import symbols
@@ -21,6 +22,7 @@ from compare.figures.drawing.words import law_words
 
 if TYPE_CHECKING:
     from cases.partition.blocks import Partition
+    from cases.schema.plane import IntactRock
     from cases.schema.rock_mass import RockMass
 
 #: Of joint sets, one after the other; told apart under every colour blindness (Tol 2021, bright).
@@ -32,6 +34,8 @@ SIDES: dict[str, tuple[float, Any]] = {
     "fixed": (3.4, "-"),
     "periodic": (1.4, (0, (1.0, 1.5))),
 }
+#: Of the rock of regions, one after the other.
+REGIONS = ("#cfc8b8", "#b9c4cc", "#d9cfe0", "#c4d2bd")
 MANY = 3000  # contacts, beyond which they are an image in the drawing
 WIDTH, BESIDE, TALLEST = 6.2, 2.6, 6.0  # inches of the drawing, of what stands beside it
 MARGIN, HEADING, LEGEND_ROW = 0.62, 0.25, 0.19  # inches
@@ -53,7 +57,16 @@ def drawn(words: str, scene: RockMass) -> Drawn:
 
 def appearance(scene: RockMass) -> str:
     """Return what decides how a rock mass is drawn."""
-    seen = ("domain", "joint_sets", "waves", "loads", "boundaries", "gravity", "prestress")
+    seen = (
+        "domain",
+        "regions",
+        "joint_sets",
+        "waves",
+        "loads",
+        "boundaries",
+        "gravity",
+        "prestress",
+    )
     return str([getattr(scene, key) for key in (*seen, "record")])
 
 
@@ -111,7 +124,9 @@ def _draw_domain(ax: Axes, one: Drawn) -> None:
     blocks = np.split(partition.corners, partition.first[1:-1])
     many = len(partition.contacts) > MANY
     ax.add_collection(
-        PolyCollection(blocks, facecolors=ROCK, edgecolors="none", zorder=1, rasterized=many)
+        PolyCollection(
+            blocks, facecolors=_tones(partition), edgecolors="none", zorder=1, rasterized=many
+        )
     )
     for index in range(-1, len(partition.joint_sets)):
         lines = _joint_lines(partition, index)
@@ -149,6 +164,11 @@ def _joint_lines(partition: Partition, index: int) -> np.ndarray:
     return np.stack([of.start[own], of.end[own]], axis=1)
 
 
+def _tones(partition: Partition) -> list[str]:
+    """Return the colour of each block's rock."""
+    return [(ROCK, *REGIONS)[(k + 1) % (1 + len(REGIONS))] for k in partition.region]
+
+
 def _sides(partition: Partition) -> dict[str, np.ndarray]:
     """Return the edges of each side [n, 2, 2], m."""
     edges = partition.boundary
@@ -175,7 +195,10 @@ def _legend(one: Drawn) -> list[Line2D]:
     ]
     if len(_joint_lines(partition, -1)):
         line: dict[str, Any] = {"color": EDGE, "linewidth": 1.2, "linestyle": (0, (1.0, 2.0))}
-        entries.append(Line2D([], [], label="cut through rock", **line))
+        entries.append(Line2D([], [], label="no joint", **line))
+    for k, one_region in enumerate(scene.regions):
+        patch: dict[str, Any] = {"color": REGIONS[k % len(REGIONS)], "linewidth": 6.0}
+        entries.append(Line2D([], [], label=one_region.name, **patch))
     held = {_held(scene, side) for side in _sides(partition)}
     for kind in (name for name in SIDES if name in held):
         thick, dash = SIDES[kind]
@@ -197,13 +220,23 @@ def _legend(one: Drawn) -> list[Line2D]:
 
 def caption(scene: RockMass) -> str:
     """Return what is drawn, in words."""
-    rock = scene.rock
     sets = "; ".join(_set_words(one) for one in scene.joint_sets)
+    named = zip(scene.regions, rocks_of(scene), strict=False)  # the last is [rock]
+    regions = "; ".join(f"{one.name}: {_rock_words(own)}" for one, own in named)
+    parts = [
+        f"Drawn from the scene: rock of {_rock_words(scene.rock)}, in plane strain.",
+        f"Regions: {regions}." if regions else "",
+        f"Joints: {sets}." if sets else "No joints.",
+        "Circles: points whose motion is recorded; triangles: points of joints.",
+    ]
+    return " ".join(part for part in parts if part)
+
+
+def _rock_words(rock: IntactRock) -> str:
+    """Return rock in words."""
     return (
-        f"Drawn from the scene: rock of {rock.density:g} kg/m³ with a modulus of "
-        f"{rock.intact_modulus / 1e9:.3g} GPa and a Poisson's ratio of {rock.intact_poisson:g}, in "
-        f"plane strain. {f'Joints: {sets}.' if sets else 'No joints.'} Circles: points whose "
-        "motion is recorded; triangles: points of joints."
+        f"{rock.density:g} kg/m³ with a modulus of {rock.intact_modulus / 1e9:.3g} GPa and a "
+        f"Poisson's ratio of {rock.intact_poisson:g}"
     )
 
 

@@ -94,7 +94,25 @@ amplitude = 1.0e6
 PRESSURE = 'kind = "pressure"\nopening = 0'
 SHAPE = 'shape = "step"\namplitude = 1.0e5'
 
+BED = '[[joint_sets]]\nname = "bed'
+REGION = '[[regions]]\nname = "upper"\nthrough = [0.0, 25.0]\ndensity = 2300.0\n\n' + BED
+OVER = REGION.replace(
+    "[[joint_sets]]", '[[regions]]\nname = "over"\nthrough = [0.0, {}]\n\n[[joint_sets]]'
+)
+
 MISTAKES = {
+    "unknown key of a region": (BED, REGION.replace("density", "densty"), ["regions[0].densty"]),
+    "region named rock": (BED, REGION.replace("upper", "rock"), ["regions[0].name = 'rock'"]),
+    "region twice": (BED, OVER.format("30.0").replace("over", "upper"), ["regions[1].name"]),
+    "region outside": (BED, REGION.replace("25.0", "45.0"), ["regions[0].through", "misses"]),
+    "region covered": (BED, OVER.format("20.0"), ["regions[0].through", "regions after it"]),
+    "region everywhere": (BED, REGION.replace("25.0", "-1.0"), ["leave a part of the domain"]),
+    "set of no region": ("dip = -55.0", 'dip = -55.0\nregions = ["low"]', ["name regions: rock"]),
+    "damped in two rocks": (
+        BED,
+        REGION.replace('name = "bed', 'damping_ratio = 0.02\nname = "bed'),
+        ["joint_sets[0].damping_ratio = 0.02", "of one density"],
+    ),
     "unknown table": ("[time]", "[tme]\n[time]", ["tme", "unknown key", "did you mean time"]),
     "unknown key of the domain": ("size =", "sise = 1\nsize =", ["domain.sise = 1", "mean size"]),
     "unknown key of a set": ("dip = -55.0", "dip = -55.0\nspace = 3", ["joint_sets[1].space = 3"]),

@@ -22,7 +22,7 @@ WAVES = {"velocity", "displacement", "stress", "traction", "gap", "slip"}
 
 #: One joint that an S wave meets beyond the critical angle, of which the whole field is known; sets
 #: that slip, break and damp around a loaded opening, under in-situ stress; blocks at rest under
-#: their weight between periodic sides, whose base is shaken.
+#: their weight between periodic sides, of two rocks, whose base is shaken.
 SCENES = """
 title = "Rock that several processes share"
 
@@ -111,6 +111,12 @@ waves = []
 boundaries = { left = "periodic", right = "periodic", bottom = "fixed", top = "free" }
 gravity = { acceleration = 9.81 }
 numerics.continuum.scheme = "implicit"
+
+[[variants.regions]]
+name = "cover"
+through = [0.0, 7.0]
+density = 2200.0
+intact_modulus = 2.0e10
 
 [[variants.joint_sets]]
 name = "bed"

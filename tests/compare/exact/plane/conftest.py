@@ -12,16 +12,17 @@ from compare.exact.plane.oblique_joint import Joint
 class Referee(NamedTuple):
     """Rock and parallel joints as one linear system of boundary conditions, in plain numbers.
 
-    rock : density, speeds. joints : rows K_n, K_s, eta_n, eta_s. spacings : between them.
+    rock : density, speeds, of all layers or of each. joints : rows K_n, K_s, eta_n, eta_s.
+    spacings : between them.
     """
 
-    rock: tuple[float, float, float]
+    rock: tuple[float, float, float] | list[tuple[float, float, float]]
     joints: list[tuple[float, float, float, float]]
     spacings: list[float]
 
-    def wave(self, kind, slowness, way):
+    def wave(self, layer, kind, slowness, way):
         """Return slowness [2], polarisation [2] and the stresses sigma_nn, sigma_tn of 1 m/s."""
-        density, a, b = self.rock
+        density, a, b = self.rock[layer] if isinstance(self.rock, list) else self.rock
         lame, mu = density * (a**2 - 2 * b**2), density * b**2
         speed = a if kind == "P" else b
         s = np.array([slowness, way * np.sqrt(1 / speed**2 - slowness**2 + 0j)])
@@ -40,7 +41,7 @@ class Referee(NamedTuple):
         waves += [(count, kind, 1, z[-1]) for kind in ("P", "SV")]
         matrix = np.zeros((4 * count, 4 * count + 1), dtype=complex)
         for column, (layer, kind, way, start) in enumerate([*waves, (0, incidence, 1, z[0])]):
-            s, g, traction = self.wave(kind, slowness, way)
+            s, g, traction = self.wave(layer, kind, slowness, way)
             for j, (K_n, K_s, eta_n, eta_s) in enumerate(self.joints):
                 if layer not in (j, j + 1):
                     continue

@@ -14,7 +14,7 @@ TIMES = np.linspace(0, 0.05, 501)
 def both(rock, pulse, points, some=slice(None), times=TIMES):
     """Return the motion at all points and, at some of them, the fields and their bounds."""
     stack = parallel_joints.stack_of(rock, JOINTS, pulse, DIP, OFFSETS)
-    found = layer_pulses.motion(rock, pulse, stack, points, times)
+    found = layer_pulses.motion(pulse, stack, points, times)
     origin = np.zeros(2)
     return found, parallel_joints.fields(
         rock, JOINTS, pulse, origin, DIP, OFFSETS, points[some], times
@@ -49,8 +49,8 @@ def test_later_times_and_coarser_ones_give_the_same_motion(rock, ricker, directe
     points = np.random.default_rng(3).uniform(-15, 25, (5, 2))
     pulse = Pulse("P", directed(40), ricker)
     stack = parallel_joints.stack_of(rock, JOINTS, pulse, DIP, OFFSETS)
-    whole = layer_pulses.motion(rock, pulse, stack, points, TIMES)
-    part = layer_pulses.motion(rock, pulse, stack, points, TIMES[200:401:4])
+    whole = layer_pulses.motion(pulse, stack, points, TIMES)
+    part = layer_pulses.motion(pulse, stack, points, TIMES[200:401:4])
     for one, other, unit in zip(whole, part, (1.0, rock.p_impedance), strict=True):
         assert np.abs(one[..., 200:401:4] - other).max() < 1e-9 * unit
 
@@ -59,4 +59,4 @@ def test_samples_of_a_pulse_are_refused(rock, directed):
     pulse = Pulse("P", directed(0), np.zeros(501))
     stack = parallel_joints.stack_of(rock, JOINTS, pulse, DIP, OFFSETS)
     with pytest.raises(ValueError, match="must be a function"):
-        layer_pulses.motion(rock, pulse, stack, np.zeros((1, 2)), TIMES)
+        layer_pulses.motion(pulse, stack, np.zeros((1, 2)), TIMES)

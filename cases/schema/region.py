@@ -1,0 +1,85 @@
+"""Regions of a rock mass: rock beyond a line that differs from [rock]."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import Field
+
+from cases.schema.plane import IntactRock
+from cases.schema.values import Point, Poisson, Positive, Table, Words, contradiction
+
+if TYPE_CHECKING:
+    from cases.partition.outline import Outline
+    from cases.schema.rock_mass import RockMass
+
+#: What joint sets call the rock that no region holds.
+REST = "rock"
+
+
+class Region(Table):
+    """All rock above a line, as far as no region after it holds that; keys of the rock that are
+    absent are those of [rock]. Its boundary is welded but where a joint lies along it."""
+
+    name: Words  #: what the `regions` of joint sets, tables and figures call it
+    #: degrees from the horizontal, counter-clockwise, of the line; "above" is to its left
+    dip: Annotated[float, Field(ge=-180, le=180)] = 0.0
+    through: Point  #: m, a point of the line
+    density: Positive | None = None  #: kg/m3
+    intact_modulus: Positive | None = None  #: Pa, Young's modulus
+    intact_poisson: Poisson | None = None  #: of the rock between the joints
+
+    def rock(self, rest: IntactRock) -> IntactRock:
+        """Return the region's rock, given that of the rest."""
+        own = {key: getattr(self, key) for key in IntactRock.model_fields}
+        return rest.model_copy(update={k: v for k, v in own.items() if v is not None})
+
+
+def check_regions(scene: RockMass, outline: Outline) -> None:
+    """Raise the first contradiction of the regions, and of the joint sets that name them."""
+    from cases.partition.regions import shapes
+
+    names = [one.name for one in scene.regions]
+    for i, name in enumerate(names):
+        if name == REST or name in names[:i]:
+            allowed = f"must be unique, and not {REST!r}: what [rock] describes"
+            raise contradiction(f"regions[{i}].name", name, allowed)
+    for i, one in enumerate(scene.joint_sets):
+        for name in one.regions:
+            if name not in (REST, *names):
+                allowed = f"must name regions: {', '.join([REST, *names])}"
+                raise contradiction(f"joint_sets[{i}].regions", name, allowed)
+    _check_damping(scene)
+    if names and scene.domain.mesh is not None:
+        allowed = "are of a domain that joint sets cut: not with domain.mesh"
+        raise contradiction("regions", len(names), allowed)
+    least = outline.tolerance * outline.size
+    *held, rest = (one.area for one in shapes(scene.regions, outline))
+    for i, (region, area) in enumerate(zip(scene.regions, held, strict=True)):
+        if area <= least:
+            allowed = "leaves it no rock: it misses the domain, or regions after it hold all"
+            raise contradiction(f"regions[{i}].through", region.through, allowed)
+    if rest <= least:
+        raise contradiction("regions", len(names), "must leave a part of the domain to [rock]")
+    _check_periodic(scene)
+
+
+def _check_damping(scene: RockMass) -> None:
+    """Refuse dashpots by a damping ratio between blocks of no one density."""
+    from cases.partition.regions import rocks_beside
+
+    for i, one in enumerate(scene.joint_sets):
+        if one.damping_ratio and len({rock.density for rock in rocks_beside(scene, one)}) > 1:
+            key = f"joint_sets[{i}].damping_ratio"
+            allowed = f"is of joints in rock of one density: give joint_sets[{i}].regions"
+            raise contradiction(key, one.damping_ratio, allowed)
+
+
+def _check_periodic(scene: RockMass) -> None:
+    """Refuse boundaries that do not run from one periodic side to the other."""
+    for i, one in enumerate(scene.regions):
+        for side, along in (("left", 0.0), ("bottom", 90.0)):
+            held = getattr(scene.boundaries, side)
+            if held == "periodic" and (one.dip - along) % 180 != 0:
+                allowed = f"must be {along:g} or its opposite: boundaries.{side} is periodic"
+                raise contradiction(f"regions[{i}].dip", one.dip, allowed)

@@ -1,0 +1,77 @@
+"""Domains cut into regions of rock: whose each block is, and what lies along the boundaries."""
+
+import numpy as np
+import pytest
+
+from cases.partition.cut import cut
+from cases.partition.regions import ROCK, region_at
+from cases.partition.subdivision import NO_SET
+from cases.schema.region import Region
+
+
+def region(name, y, dip=0.0, x=0.0):
+    return Region(name=name, dip=dip, through=[x, y])
+
+
+def of_region(found, k):
+    """Return the area of a region's blocks."""
+    return found.area[found.region == k].sum()
+
+
+def between(found):
+    """Return which contacts lie between two regions."""
+    one, other = found.region[found.contacts.blocks].T
+    return one != other
+
+
+@pytest.mark.parametrize("dip", [0.0, 17.0, -30.0])
+def test_layers_share_the_domain_by_their_areas(rectangle, joints, dip):
+    """8 m by 10 m with lines through (4, 3) and (4, 6): by symmetry their areas do not depend on
+    the dip. What a joint crosses a boundary in is a corner of blocks of either side."""
+    layers = [region("one", 3.0, dip, 4.0), region("two", 6.0, dip, 4.0)]
+    found = cut(rectangle(8.0, 10.0), [joints("cross", 75.0, spacing=1.5)], (), layers)
+    assert [of_region(found, k) for k in (ROCK, 0, 1)] == pytest.approx([24, 24, 32], rel=1e-12)
+    welded = between(found)
+    assert (found.contacts.joint_set[welded] == NO_SET).all()
+    assert found.contacts.length[welded].sum() == pytest.approx(
+        2 * 8 / np.cos(np.radians(dip)), rel=1e-12
+    )
+    assert (found.region == region_at(layers, found.centroid)).all()
+
+
+def test_a_later_region_lies_over_one_that_dips(rectangle):
+    """An unconformity: 45 degrees below y = 6, cut off there; nothing of it is cut above."""
+    layers = [region("old", 0.0, 45.0), region("young", 6.0)]
+    found = cut(rectangle(10.0, 10.0), [], (), layers)
+    assert found.count == 3
+    assert [of_region(found, k) for k in (ROCK, 0, 1)] == pytest.approx([42, 18, 40], rel=1e-12)
+
+
+def test_sets_cut_the_regions_that_they_name_alone(rectangle, joints):
+    """Beds 1 m apart in the lower 4 m of 10 m by 5 m, and a cross set in the rest."""
+    beds = joints("bed", 0.0, spacing=1.0, regions=["rock"])
+    cross = joints("cross", 90.0, spacing=2.5, regions=["upper"])
+    found = cut(rectangle(10.0, 5.0), [beds, cross], (), [region("upper", 3.5)])
+    of_set = [found.contacts.length[found.contacts.joint_set == k].sum() for k in (0, 1)]
+    assert of_set == pytest.approx([30.0, 3 * 1.5], rel=1e-12)
+    assert found.count == 4 + 4
+    assert (found.region[found.contacts.blocks[found.contacts.joint_set == 0]] == ROCK).all()
+
+
+def test_a_joint_along_a_boundary_is_what_that_is(rectangle, joints):
+    """Alone, or one of a set that cuts one side alone."""
+    layers, alone = [region("upper", 2.0)], joints("fault", 0.0, through=[3.0, 2.0])
+    beds = joints("bed", 0.0, spacing=1.0, regions=["upper"])
+    for one, count in ((alone, 2), (beds, 4)):
+        found = cut(rectangle(6.0, 5.0), [one], (), layers)
+        assert found.count == count
+        assert (found.contacts.joint_set[between(found)] == 0).all()
+
+
+def test_slivers_are_joined_to_rock_of_their_own(rectangle, joints):
+    """A bed of a millimetre above the boundary becomes a part of the region's next one."""
+    found = cut(
+        rectangle(4.0, 6.0), [joints("bed", 0.0, spacing=2.0)], (), [region("upper", 1.999)]
+    )
+    assert of_region(found, 0) == pytest.approx(4 * 4.001, rel=1e-12)
+    assert found.area.min() > 7.9

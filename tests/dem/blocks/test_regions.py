@@ -1,0 +1,107 @@
+"""Rigid blocks of regions of unlike rock: layers against the exact waves in them."""
+
+import numpy as np
+import pytest
+
+from cases.errors import SceneError
+from cases.schema.plane import Boundaries
+from compare.engines import solve
+from compare.exact.rock_mass.field import field_of
+from compare.misfit.metrics import relative_l2
+from dem import simulate
+from dem.blocks.build import rigid_blocks
+
+SOFT = {"name": "soft", "through": [0.0, 8.0], "density": 2200.0, "intact_modulus": 2e10}
+HARD = {"name": "hard", "through": [0.0, 14.0], "density": 2900.0, "intact_modulus": 7e10}
+LAW = {"normal_stiffness": 1e10, "shear_stiffness": 5e9}
+BED = {"name": "bed", "dip": 0.0, "through": [0.0, 14.0]} | LAW
+
+
+def layers(rock_mass, wave, kind, block, **changes):
+    """Return 2 m by 20 m of three rocks without a Poisson effect: a joint along the second of their
+    boundaries, the first one welded. The sides along the travel are periodic, by joints there that
+    are as good as none."""
+    stiff = dict.fromkeys(LAW, 1e16)
+    seam = {"name": "seam", "dip": 90.0, "spacing": 1.0} | stiff
+    tables = {
+        "domain": {"size": [2.0, 20.0]},
+        "rock": {"intact_poisson": 0.0},
+        "regions": [SOFT, HARD],
+        "joint_sets": [BED, seam],
+        "waves": [wave(kind=kind)],
+        "boundaries": {"left": "periodic", "right": "periodic"},
+        "numerics": {"dem": {"block": block}},
+        "time": {"duration": 0.02},
+        "record": {"points": [[1.2, 3.0], [1.2, 11.0], [1.2, 18.0]], "joints": [[1.2, 14.0]]},
+    }
+    return rock_mass(**tables | changes)
+
+
+def misfits(scene):
+    """Return those of the velocity along the motion and of the joint's jump, and the ledger's."""
+    exact = solve("parallel-joints", alone(scene))
+    found = simulate(scene, incident=field_of(alone(scene)))
+    axis, jump = (1, "gap") if scene.waves[0].kind == "P" else (0, "slip")
+    energy = found.energy.values
+    lost = np.abs(energy[:-1].sum(axis=0) - energy[-1]).max() / np.abs(energy).max()
+    return (
+        relative_l2(found.velocity.values[..., axis], exact.velocity.values[..., axis]),
+        relative_l2(found[jump].values, exact[jump].values),
+        lost,
+    )
+
+
+def alone(scene):
+    """Return a scene without its seams, and quiet all around."""
+    quiet = Boundaries(**dict.fromkeys(("left", "right", "bottom", "top"), "quiet"))
+    return scene.model_copy(update={"joint_sets": scene.joint_sets[:1], "boundaries": quiet})
+
+
+@pytest.mark.parametrize("kind, least", [("P", 3.6), ("S", 3.0)])
+def test_waves_in_layers_are_the_exact_ones(rock_mass, wave, kind, least):
+    """Blocks of half the size leave a quarter, of S somewhat more, as in one rock, whose blocks
+    turn at a quiet side (3.4 there). The ledger closes at round-off."""
+    coarse, fine = (misfits(layers(rock_mass, wave, kind, block)) for block in (0.5, 0.25))
+    for one, other in zip(coarse[:2], fine[:2], strict=True):
+        assert least < one / other < 4.6
+        assert other < 0.02
+    assert fine[2] < 1e-11
+
+
+def test_contacts_are_both_rocks_in_series(rock_mass, wave):
+    """Half a square of either beside a welded boundary; with a joint along it, and that."""
+    blocks = rigid_blocks(layers(rock_mass, wave, "P", 1.0))
+    links, (lower, upper) = blocks.links, (5e10, 2e10)
+    across = np.abs(links.normal[:, 1]) > 0.5
+    at = {y: np.flatnonzero(across & (np.abs(links.start[:, 1] - y) < 1e-9)) for y in (8.0, 14.0)}
+    K = blocks.columns.normal[links.column]
+    assert at[8.0].size == at[14.0].size == 2
+    heights = np.array([8 / 7.5, 1.0, 6 / 6.5])  # half a block short of the quiet sides
+    halves = heights / [lower, upper, 7e10] / 2
+    assert K[at[8.0]] == pytest.approx(1 / halves[:2].sum(), rel=1e-6)
+    assert K[at[14.0]] == pytest.approx(1 / (1e-10 + halves[1:].sum()), rel=1e-6)
+    mass = blocks.inertia.mass / blocks.partition.area
+    assert set(mass.round(6)) == {2200.0, 2600.0, 2900.0}
+
+
+def test_waves_need_the_field_of_layers(rock_mass, wave):
+    """The engine alone knows waves of one rock; boundaries that are not parallel know none."""
+    scene = layers(rock_mass, wave, "P", 1.0)
+    with pytest.raises(SceneError, match="waves = 1: meet several rocks"):
+        simulate(scene)
+    dips = [SOFT, HARD | {"dip": 20.0}]
+    quiet = {"left": "quiet", "right": "quiet"}
+    with pytest.raises(SceneError, match="field is not known: joints are not parallel"):
+        field_of(layers(rock_mass, wave, "P", 1.0, regions=dips, boundaries=quiet))
+
+
+def test_periodic_sides_need_boundaries_from_one_to_the_other(rock_mass, wave):
+    with pytest.raises(SceneError, match=r"regions\[0\].dip = 10.0: must be 0 or its opposite"):
+        layers(rock_mass, wave, "P", 1.0, regions=[SOFT | {"dip": 10.0}])
+
+
+def test_every_region_needs_blocks(rock_mass, wave):
+    seam = {"name": "seam", "dip": 90.0, "spacing": 1.0, "regions": ["rock"]} | LAW
+    numerics = {"dem": {"block": None}}
+    with pytest.raises(SceneError, match="and region 'soft' has no joints"):
+        rigid_blocks(rock_mass(regions=[SOFT], joint_sets=[seam], numerics=numerics))
