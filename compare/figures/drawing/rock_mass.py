@@ -255,7 +255,7 @@ def table(one: Drawn) -> pd.DataFrame:
     """Return every line and receiver that is drawn, from place to place."""
     partition, scene = one.partition, one.scene
     rows: list[tuple[Any, ...]] = []
-    for index, name in [(-1, "cut through rock"), *enumerate(partition.joint_sets)]:
+    for index, name in [(-1, "no joint"), *enumerate(partition.joint_sets)]:
         rows += [("joint", *line.ravel(), name) for line in _joint_lines(partition, index)]
     for side, lines in _sides(partition).items():
         rows += [("side", *line.ravel(), f"{side}, {_held(scene, side)}") for line in lines]
