@@ -103,7 +103,9 @@ def with_statistics(
     files = list(summary.files)
     if asked.out is not None:
         files += write_tables(asked.out, ENSEMBLE, rows)
-        files += [waveforms(one) for one in members_of(asked.cases, found, asked.out)]
+        waves = [waveforms(one) for one in members_of(asked.cases, found, asked.out)]
+        rest = [key for key in asked.axes if key != MEMBER]
+        files += [*waves, *_drawn(waves, done, rest, asked.out)]
     rest, form = [key for key in asked.axes if key != MEMBER], ".3%" if "one" in done else ".4g"
 
     def cells(row: dict[str, Any]) -> list[str]:
@@ -123,6 +125,33 @@ def with_statistics(
         files=files,
         legend=f"{shows}: mean and percentiles over the members; all numbers are in ensemble.csv.",
     )
+
+
+def _drawn(waves: list[Path], done: pd.DataFrame, axes: list[str], out: Path) -> list[Path]:
+    """Draw an ensemble: bands of the waveforms in each folder, and of comparisons the misfits of
+    each variant at each point; return the files."""
+    from compare.experiments.sweep import diagram
+    from compare.figures.export import save
+    from results.netcdf import load_netcdf
+
+    folders: dict[Path, dict[str, Path]] = {}
+    for file in waves:
+        folders.setdefault(file.parent, {})[file.stem.removesuffix(f"-{ENSEMBLE}")] = file
+    found = []
+    for folder, files in folders.items():
+        results = {name: load_netcdf(file) for name, file in files.items()}
+        if diagram.shown_places(results):
+            title = "Waveforms of an ensemble: medians, and 5 to 95 % of its members"
+            figure, numbers = diagram.bands(results), diagram.band_table(results)
+            found.append(save(figure, folder, f"{ENSEMBLE}-waveforms", title, numbers))
+    for point, rows in done.groupby([*axes, "variant"], sort=False) if "one" in done else ():
+        worst = diagram.misfits_of(rows)
+        if len(worst):
+            rest = ",".join(f"{key}={value}" for key, value in zip(axes, point, strict=False))
+            title = "Misfits of an ensemble: the worst of each member"
+            figure, folder = diagram.distribution(worst), out / rest / str(point[-1])
+            found.append(save(figure, folder, f"{ENSEMBLE}-misfits", title, worst))
+    return [one.file(kind) for one in found for kind in ("csv", "svg", "pdf", "png")]
 
 
 def _shown(done: pd.DataFrame, axes: list[str]) -> tuple[pd.DataFrame, str, list[str]]:

@@ -91,6 +91,16 @@ def test_misfits_and_waveforms_of_a_comparison(command, tmp_path):
     exact = xr.load_dataset(tmp_path / "jointed-bar-ensemble.nc").stress.sel(statistic="p50")
     every = [xr.load_dataset(tmp_path / f"member={k}" / "jointed-bar.nc").stress for k in (1, 2, 3)]
     np.testing.assert_allclose(exact, np.median(every, axis=0), rtol=1e-12, atol=1e-9)
+    bands = pd.read_csv(tmp_path / "ensemble-waveforms.csv")
+    median = bands["jointed-bar p50 | stress at y = 5 m (Pa)"]
+    np.testing.assert_allclose(median, exact[0], rtol=1e-5, atol=1.0)  # six digits of 1e6 Pa
+    spread = pd.read_csv(tmp_path / "ensemble-misfits.csv").set_index("pair")
+    worst = of_pair.groupby("member").misfit.max().sort_values()
+    assert spread.loc["dem ~ lattice"].misfit.tolist() == pytest.approx(worst.tolist(), rel=1e-5)
+    assert spread.loc["dem ~ lattice"].share.tolist() == pytest.approx([1 / 3, 2 / 3, 1])
+    for name, curves in (("waveforms", "jointed-bar"), ("misfits", "dem ~ lattice")):
+        assert curves in (tmp_path / f"ensemble-{name}.svg").read_text()
+        assert (tmp_path / f"ensemble-{name}.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_a_rock_mass_shifts_the_seed_of_every_set():

@@ -1,0 +1,142 @@
+"""Figures of an ensemble: bands of its waveforms, and how its misfits are distributed.
+
+Bands hold what lies between the 5th and the 95th percentile at every time, with the median as a
+line; a distribution is the share of members whose misfit is at most that on the axis.
+"""
+
+from __future__ import annotations
+
+from itertools import cycle, product
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from compare.experiments.ablation.diagram import COLOURS
+from compare.figures.blank import blank
+from compare.figures.style import in_order, style
+from compare.figures.subplots import UNITS
+from compare.misfit.places import Place, places_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+SEEN = ("stress", "velocity", "traction", "gap", "slip")  # of a result; displacement shows little
+MOST, COLUMNS = 12, 2  # waveforms drawn, and side by side
+TALL = 1.9  # inches of each
+WIDE = 1.3  # points, of every curve
+DASHES = ("-", (0, (5, 2)), (0, (1.5, 1.5)))
+FAINT = 1e-6  # of the largest of its quantity: a waveform of round-off
+LOW, MIDDLE, HIGH = "p5", "p50", "p95"
+
+
+def bands(results: dict[str, xr.Dataset]) -> Figure:
+    """Return the bands of an ensemble; results : mean and percentiles of every waveform by the name
+    of what solved it, with `statistic` as their first dimension."""
+    places = shown_places(results)
+    columns = min(COLUMNS, len(places))
+    rows = -(-len(places) // columns)
+    with blank(0.5 + TALL * rows) as figure:
+        grid = figure.subplots(rows, columns, squeeze=False, sharex=True).ravel()
+        for ax, place in zip(grid, places, strict=False):
+            for name in in_order(set(results)):
+                _draw_band(ax, results[name], name, place)
+            ax.set_title(place.heading)
+            ax.set_ylabel(UNITS[place.quantity])
+        for ax in grid[len(places) :]:
+            ax.set_axis_off()
+        for ax in grid[len(places) - columns : len(places)]:
+            ax.set_xlabel("time (ms)")
+            ax.tick_params(labelbottom=True)
+        _legend(figure, in_order(set(results)))
+    return figure
+
+
+def shown_places(results: dict[str, xr.Dataset]) -> list[Place]:
+    """Return the waveforms that bands are drawn of: those that some solution has and that are no
+    round-off, at most MOST."""
+    found: dict[Place, None] = {}
+    for result in results.values():
+        middle = result.sel(statistic=MIDDLE)
+        for quantity in (name for name in SEEN if name in result):
+            at, components = places_of(middle, quantity)
+            every = [Place(quantity, part, one) for one in at for part in components]
+            sizes = [_size(middle, place) for place in every]
+            loud = zip(every, sizes, strict=True)
+            found |= {place: None for place, size in loud if size > FAINT * max(sizes)}
+    return list(found)[:MOST]
+
+
+def _size(result: xr.Dataset, place: Place) -> float:
+    wave = place.waveform(result)
+    return 0.0 if wave is None else float(np.nan_to_num(np.abs(wave)).max(initial=0.0))
+
+
+def _draw_band(ax: Axes, result: xr.Dataset, name: str, place: Place) -> None:
+    low, middle, high = (place.waveform(result.sel(statistic=q)) for q in (LOW, MIDDLE, HIGH))
+    if low is None or middle is None or high is None:
+        return
+    ms, look = 1e3 * result.time.values, style(name)
+    ax.fill_between(ms, low, high, color=look.colour, alpha=0.2, linewidth=0, zorder=1 + look.order)
+    ax.plot(ms, middle, **_line(name))
+
+
+def _line(name: str) -> dict[str, Any]:
+    """Return how a median is drawn: thin, lest it hides its band."""
+    return style(name).of_line() | {"linewidth": WIDE}
+
+
+def _legend(figure: Figure, names: list[str]) -> None:
+    from matplotlib.lines import Line2D
+
+    handles: list[Any] = [Line2D([], [], **_line(name)) for name in names]
+    figure.legend(handles, names, loc="outside upper left", ncols=len(names), frameon=False)
+
+
+def band_table(results: dict[str, xr.Dataset]) -> pd.DataFrame:
+    """Return what the bands show, SI: time first."""
+    columns: dict[str, np.ndarray] = {}
+    for name, result in results.items():
+        columns.setdefault("time (s)", result.time.values)
+        for place in shown_places(results):
+            for q in (LOW, MIDDLE, HIGH):
+                wave = place.waveform(result.sel(statistic=q))
+                if wave is not None and len(wave) == len(columns["time (s)"]):
+                    columns[f"{name} {q} | {place.heading} ({UNITS[place.quantity]})"] = wave
+    return pd.DataFrame(columns)
+
+
+def misfits_of(done: pd.DataFrame) -> pd.DataFrame:
+    """Return the worst misfit of every pair and member of the rows of comparisons, ascending, with
+    the share of members up to it."""
+    loud = done[done.faint == "false"]
+    found = []
+    for (one, other), rows in loud.groupby(["one", "other"], sort=False):
+        worst = np.sort(rows.groupby("member").misfit.max().to_numpy(dtype=float))
+        share = np.arange(1, len(worst) + 1) / len(worst)
+        pair = f"{one} ~ {other}"
+        found.append(pd.DataFrame({"pair": pair, "misfit": worst, "share": share}))
+    return pd.concat(found, ignore_index=True) if found else pd.DataFrame()
+
+
+def distribution(table: pd.DataFrame) -> Figure:
+    """Return the distribution of misfits of `misfits_of`, a step curve a pair."""
+    with blank(3.6) as figure:
+        ax = figure.subplots()
+        looks = cycle(product(DASHES, COLOURS))
+        for (pair, rows), (dashes, colour) in zip(
+            table.groupby("pair", sort=False), looks, strict=False
+        ):
+            line: dict[str, Any] = {"linestyle": dashes, "color": colour, "linewidth": WIDE}
+            percent = 100 * rows.misfit.to_numpy()
+            at = np.concatenate([percent[:1], percent])
+            ax.step(at, np.append(0.0, rows.share), where="post", label=pair, **line)
+        ax.set_xscale("log")
+        ax.set_ylim(0, 1.02)
+        ax.set_xlabel("worst misfit of a member, %")
+        ax.set_ylabel("share of members with at most this")
+        ax.grid(which="major", color="#e4e7ea", linewidth=0.6)
+        figure.legend(loc="outside right upper", frameon=False, fontsize=8)
+    return figure
