@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from cases.material.calibrate import Properties, calibrate
+from cases.schema.joint import PARTS
 from cases.schema.scene import Scene
 
 if TYPE_CHECKING:
@@ -69,9 +70,7 @@ def _of_joints(scene: Scene, p: Properties) -> Iterator[Effect]:
     damped, rayleigh = p.joint_time_constant is not None, scene.damping.rayleigh
     source = "damping.rayleigh" if rayleigh else "damping_ratio"
     yield Effect("dashpots", damped, f"{source} is given" if damped else "no damping_ratio")
-    stiffens = p.maximum_closure is not None
-    why = "maximum_closure is given" if stiffens else "no maximum_closure"
-    yield Effect("closure", stiffens, why)
+    yield from _of_law(scene, along=False)
     parts = len(p.each)
     words = f"{parts} of other rock" if parts > 1 else "no [[segments]]: one rock"
     yield Effect("segments", parts > 1, words)
@@ -128,16 +127,16 @@ def _of_motion(scene: Scene, p: Properties) -> Iterator[Effect]:
     )
     slips = p.friction is not None or p.cohesion is not None
     yield Effect("slip", slips and cause is not None, _why_slip(slips, cause))
-    weakens = p.weakening_distance is not None
-    why = "weakening_distance is given" if weakens else "no weakening_distance"
-    yield Effect("weakening", weakens and cause is not None, why if cause else NO_SHEAR)
-    dilates = p.dilation is not None
-    why = "dilation_angle is given" if dilates else "no dilation_angle"
-    yield Effect("dilation", dilates and cause is not None, why if cause else NO_SHEAR)
-    softens = p.tensile_strength is not None
-    yield Effect(
-        "softening", softens, "tensile_strength is given" if softens else "no tensile_strength"
-    )
+    yield from _of_law(scene, along=True)
+
+
+def _of_law(scene: Scene, along: bool) -> Iterator[Effect]:
+    """Yield the optional parts of the joints' law: those along them alone, or the others."""
+    still = along and off_axis(scene) is None
+    for part in PARTS:
+        if part.along == along:
+            has = any(part.of(law) for law in (scene.joints, *scene.layers))
+            yield Effect(part.name, has and not still, NO_SHEAR if still else part.why(has))
 
 
 def _why_slip(slips: bool, cause: str | None) -> str:

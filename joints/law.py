@@ -34,6 +34,9 @@ class Law(NamedTuple):
         m; None where friction stays.
     dilation, dilation_distance : tan(psi), and the path over which it falls to none, m; None where
         slip lifts nothing.
+    direct_effect, evolution_effect, critical_slip_distance, reference_rate, initial_state : a, b,
+        D_c, m, V_0, m/s, and theta_0, s, where friction depends on the rate and the state of slip;
+        None where it does not, and a = 0 of a joint beside ones where it does.
 
     A joint without a strength that others have is given `joints.shear.UNLIMITED`.
     """
@@ -54,13 +57,24 @@ class Law(NamedTuple):
     weakening_distance: Any = None
     dilation: Any = None
     dilation_distance: Any = None
+    direct_effect: Any = None
+    evolution_effect: Any = None
+    critical_slip_distance: Any = None
+    reference_rate: Any = None
+    initial_state: Any = None
+
+
+#: Rows of a table of what acts in motion alone: a static state is that without, under mu_0.
+IN_MOTION = [
+    Law._fields.index(name) for name in ("normal_viscosity", "shear_viscosity", "direct_effect")
+]
 
 
 @flags
 class Parts(NamedTuple):
     """Which parts the law has: constants of a compiled kernel.
 
-    path : the joint remembers what it has slid, for slip changes it.
+    path : the joint remembers what it has slid, or the state of its faces, for slip changes it.
     varied : joints differ, and the table has a column for each; else one for all.
     limited : the shear traction has a limit: Coulomb's, or none is left where a joint is open.
     """
@@ -76,6 +90,7 @@ class Parts(NamedTuple):
     closure: bool
     weakening: bool
     dilation: bool
+    rate_state: bool
     path: bool
 
 
@@ -83,7 +98,8 @@ class History(NamedTuple):
     """What one point of a joint remembers; 0 for what its law does not use.
 
     opening : the largest so far, m. ex, ez : elastic part of the slip, m. cohesion : of this
-    point, Pa, where slip changes it. path : slid so far, m, where the law asks for it.
+    point, Pa, where slip changes it. path : slid so far, m, where the law asks for it; where
+    friction depends on rate and state ln(theta / theta_0).
     """
 
     opening: float = 0.0
@@ -100,6 +116,7 @@ def parts_of(law: Law) -> Parts:
     no_tension, softening = law.carries_tension is not None, law.tensile_strength is not None
     weakening = shear and law.weakening_distance is not None
     dilation = shear and law.dilation is not None
+    rate_state = shear and law.direct_effect is not None
     return Parts(
         dashpots=law.normal_viscosity is not None or law.shear_viscosity is not None,
         no_tension=no_tension,
@@ -112,7 +129,8 @@ def parts_of(law: Law) -> Parts:
         closure=law.maximum_closure is not None,
         weakening=weakening,
         dilation=dilation,
-        path=weakening or dilation,
+        rate_state=rate_state,
+        path=weakening or dilation or rate_state,
     )
 
 
@@ -174,7 +192,8 @@ def law_of(table, j):
     return Law(
         table[0, j], table[1, j], table[2, j], table[3, j], table[4, j],
         table[5, j], table[6, j], table[7, j], table[8, j], table[9, j], table[10, j], table[11, j],
-        table[12, j], table[13, j], table[14, j], table[15, j],
+        table[12, j], table[13, j], table[14, j], table[15, j], table[16, j], table[17, j],
+        table[18, j], table[19, j], table[20, j],
     )  # fmt: skip
 
 

@@ -29,7 +29,8 @@ def shear_traction(law, parts, slip_x, slip_z, rate_x, rate_z):
 def shear_strength(law, parts, t_n, gap, opening, cohesion, path):
     """Return the limit of |T| (Pa); `UNLIMITED` where there is none.
 
-    c s(k) / s_t + t_n tan(phi), not below zero; zero where the joint does not hold.
+    c s(k) / s_t + t_n tan(phi), not below zero; zero where the joint does not hold; the cohesion
+    alone where friction depends on the rate of slip.
 
     t_n, gap : normal traction, Pa, and gap, m.
     opening : the largest so far, m. cohesion : of this point, Pa, where slip changes it.
@@ -41,7 +42,10 @@ def shear_strength(law, parts, t_n, gap, opening, cohesion, path):
         # A cohesion that stands for no limit has none where broken faces touch either.
         if parts.softening and c < UNLIMITED:
             c = c * (strength_left(law, opening) / law.tensile_strength)
-        tau = max(c + t_n * friction_left(law, parts, t_n, path), 0.0)
+        # Friction that depends on the rate comes with the slide.
+        if not parts.rate_state or law.direct_effect == 0.0:
+            c = max(c + t_n * friction_left(law, parts, t_n, path), 0.0)
+        tau = c
     return tau if holds(law, parts, gap, opening) else 0.0
 
 

@@ -5,8 +5,9 @@ and dashpot by a l, a = K_s + C_s / dt, until they carry the strength that is le
 
     |T*| - a l = tau(t_n(l), S + l),
 
-t_n of the gap less the lift w(S + l). Faces that are open, or not pressed, wear nothing: what they
-slide is no part of the path S.
+t_n of the gap less the lift w(S + l). Faces that are open, or not pressed, wear nothing, and do
+not age: what they slide is no part of the path S. `joints.rate_state` has the slide of friction
+that depends on its rate.
 """
 
 from math import sqrt
@@ -14,6 +15,7 @@ from math import sqrt
 from joints.dilation import lift, lift_rate
 from joints.formula import formula
 from joints.normal import normal_tangent, normal_traction
+from joints.rate_state import slide_at_rate
 from joints.shear import resistance, shear_strength, shear_traction
 from joints.weakening import friction_left, strength_fall, weakened
 
@@ -34,9 +36,15 @@ def after_slide(
         return t_n, tau, path
     t_x, t_z = shear_traction(law, parts, ex, ez, rate_x, rate_z)
     size, a = sqrt(t_x * t_x + t_z * t_z), resistance(law, parts, dt)
-    wears = t_n > 0.0 and gap <= 0.0 and size > tau
+    pressed = t_n > 0.0 and gap <= 0.0
+    if parts.rate_state and law.direct_effect > 0.0:
+        after, state = tau, path
+        if pressed:
+            after, state = slide_at_rate(law, t_n, tau, path, size, a, dt)
+        return t_n, after, state
+    wears = pressed and size > tau
     if not parts.dilation or law.dilation == 0.0:
-        after, further = tau, path + (size - tau) / a
+        after, further = tau, path
         if parts.weakening:
             after, further = weakened(law, t_n, path, tau, size, a)
         return t_n, after if wears else tau, further if wears else path

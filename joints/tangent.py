@@ -10,12 +10,13 @@ At a kink the tangent is that of the side whose branch the traction takes: a joi
 closed, one at its largest opening unloads, shear on the strength has not slipped yet.
 """
 
-from math import sqrt
+from math import inf, sqrt
 from typing import NamedTuple
 
 from joints.dilation import lift, lift_rate
 from joints.formula import formula
 from joints.normal import normal_tangent, normal_traction
+from joints.rate_state import resistance_to_sliding
 from joints.shear import UNLIMITED, resistance, shear_strength, shear_traction
 from joints.slide import after_slide, pressing, resistance_to_slide
 from joints.softening import strength_loss
@@ -58,7 +59,7 @@ def tangent(law, parts, gap, gap_rate, slip, slip_rate, dt, history, r):
     opening = max(before, gap)
     t_n = normal_traction(law, parts, gap, gap_rate, opening)
     ex, ez = history.ex + slip[0], history.ez + slip[1]
-    tau = shear_strength(law, parts, t_n, gap, opening, history.cohesion, path)
+    tau = still = shear_strength(law, parts, t_n, gap, opening, history.cohesion, path)
     t_n, tau, path = after_slide(
         law, parts, t_n, tau, gap, gap_rate, opening, history.cohesion, path,
         ex, ez, slip_rate[0], slip_rate[1], dt,
@@ -69,8 +70,19 @@ def tangent(law, parts, gap, gap_rate, slip, slip_rate, dt, history, r):
         up = lift(law, path) - lift(law, history.path)
         gap, gap_rate = gap - up, gap_rate - up / dt
         nn = normal_tangent(law, parts, gap, gap_rate, before, r)
-    rise = _strength_rise(law, parts, nn, tau, gap, before, history.cohesion, t_n, path)
-    if parts.path and path > history.path:
+    friction = friction_left(law, parts, t_n, path)
+    rated = parts.rate_state and law.direct_effect > 0.0
+    if rated:
+        friction = (tau - still) / t_n if t_n > 0.0 else 0.0
+    rise = _strength_rise(law, parts, friction * nn, tau, gap, before, history.cohesion)
+    if rated:
+        a, size = resistance(law, parts, dt), sqrt(t_x * t_x + t_z * t_z)
+        if friction > 0.0:
+            way = (size - tau) / a
+            b = a + resistance_to_sliding(law, t_n, history.path, way, dt) if way > 0.0 else inf
+            share = a / b if b > 0.0 else 1.0
+            rise = share * rise
+    elif parts.path and path > history.path:
         # dl = (d|T*| - rise d gap) / b; d tau = d|T*| - a dl, d t_n = nn d gap + p w' dl.
         b = resistance_to_slide(law, parts, t_n, gap, gap_rate, opening, path, dt)
         share = resistance(law, parts, dt) / b if b > 0.0 else 1.0
@@ -84,9 +96,11 @@ def tangent(law, parts, gap, gap_rate, slip, slip_rate, dt, history, r):
 
 
 @formula
-def _strength_rise(law, parts, nn, tau, gap, before, cohesion, t_n, path):
-    """Return d tau / d gap (Pa/m) of the shear strength tau, zero where nothing is left of it."""
-    rise = friction_left(law, parts, t_n, path) * nn
+def _strength_rise(law, parts, rise, tau, gap, before, cohesion):
+    """Return d tau / d gap (Pa/m) of the shear strength tau, zero where nothing is left of it.
+
+    rise : that of friction, Pa/m.
+    """
     if parts.softening:
         c = cohesion if parts.residual else law.cohesion
         rise += (

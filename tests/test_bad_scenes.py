@@ -63,6 +63,8 @@ SPEEDS = "p_speed = 2200.0\ns_speed = 800.0"
 SINE = 'shape = "sine"\namplitude = 1.0e6\nperiod = 0.01'
 TENSILE = "tensile_strength = 1e5\nfracture_energy = 1.0"
 RAYLEIGH = "rayleigh = { frequencies = [10.0, 20.0], ratios = [0.02, 0.02] }"
+RATED = "direct_effect = 0.01\nevolution_effect = 0.015\ncritical_slip_distance = 1e-4\n"
+RATED += "reference_rate = 1e-6"
 LAYER = "[[soft_layers]]\ny = 20.0\nspacing_stiffness = 4.375e8\n"
 
 SEGMENT = "[[segments]]\ny = [10.0, 30.0]\n"
@@ -377,6 +379,32 @@ MISTAKES = {
         "[joints]\nfriction_angle = 20.0\ndynamic_friction_angle = 30.0\nweakening_distance = 1e-3",
         ["joints.dynamic_friction_angle = 30.0", "at most friction_angle = 20"],
     ),
+    "a state of no rate": (
+        "[joints]",
+        "[joints]\nfriction_angle = 30.0\ninitial_state = 1.0",
+        ["joints.direct_effect", "is needed with joints.initial_state"],
+    ),
+    "a direct effect alone": (
+        "[joints]",
+        "[joints]\nfriction_angle = 30.0\ndirect_effect = 0.01",
+        ["joints.evolution_effect", "is needed with joints.direct_effect"],
+    ),
+    "rate and state without friction": (
+        "[joints]",
+        f"[joints]\n{RATED}",
+        ["joints.direct_effect = 0.01", "needs a friction_angle"],
+    ),
+    "rate and state that weakens": (
+        "[joints]",
+        f"[joints]\nfriction_angle = 30.0\n{RATED}\n"
+        "dynamic_friction_angle = 20.0\nweakening_distance = 1e-3",
+        ["joints.dynamic_friction_angle = 20", "by direct_effect: give one of them"],
+    ),
+    "rate and state that dilates": (
+        "[joints]",
+        f"[joints]\nfriction_angle = 30.0\n{RATED}\ndilation_angle = 5.0\ndilation_distance = 1e-2",
+        ["joints.dilation_angle = 5", "by direct_effect: give one of them"],
+    ),
     "dilation without friction": (
         "[joints]",
         "[joints]\ndilation_angle = 5.0\ndilation_distance = 1e-3",
@@ -622,7 +650,7 @@ def line_of(path: Path) -> str:
     assert end.value.code == 2 and silent.getvalue() == "" and not out.exists()
     assert len(message.splitlines()) == 1
     assert message.startswith(str(path))
-    assert len(message) < len(str(path)) + 400
+    assert len(message) < len(str(path)) + 500
     return message
 
 

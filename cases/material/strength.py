@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cases.schema.joint import PARTS
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -17,23 +19,21 @@ if TYPE_CHECKING:
 #: of one that does not stiffen; its square is still a number.
 UNLIMITED = 1e100
 
-#: The keys of slip, of what it changes and of softening: without them no joint has that effect.
+#: The keys of slip: without them no joint has that effect.
 SLIP = ("friction_angle", "cohesion", "residual_cohesion")
-WEAKENING = ("dynamic_friction_angle", "weakening_distance")
-DILATION = ("dilation_angle", "dilation_distance")
-SOFTENING = ("tensile_strength", "fracture_energy")
-CLOSURE = "maximum_closure"
-
-#: The parameters that act along a joint, which axial motion leaves out.
-ALONG = (
-    "friction",
-    "cohesion",
-    "residual_cohesion",
-    "dynamic_friction",
-    "weakening_distance",
-    "dilation",
-    "dilation_distance",
-)
+KEYS = (*SLIP, *(key for part in PARTS for key in part.all_keys))
+#: The parameters that do not act along a joint alone: axial motion leaves the others out.
+ACROSS = ("tensile_strength", "critical_opening", "maximum_closure")
+#: The parameters that are keys as they stand: what a joint without has beside joints with them.
+PLAIN = {
+    "maximum_closure": UNLIMITED,
+    "weakening_distance": 1.0,
+    "dilation_distance": 1.0,
+    "direct_effect": 0.0,
+    "evolution_effect": 0.0,
+    "critical_slip_distance": 1.0,
+    "reference_rate": 1.0,
+}
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,8 @@ class Strength:
     maximum_closure : d_m, m.
     dynamic_friction, weakening_distance : tan of the angle that is left, and the path of slip, m.
     dilation, dilation_distance : tan of the angle at first, and the path that leaves none, m.
+    direct_effect, evolution_effect, critical_slip_distance, reference_rate, initial_state : a, b,
+    D_c, m, V_0, m/s, and theta_0, s, of friction that depends on rate and state.
     """
 
     friction: np.ndarray | None = None
@@ -58,12 +60,17 @@ class Strength:
     weakening_distance: np.ndarray | None = None
     dilation: np.ndarray | None = None
     dilation_distance: np.ndarray | None = None
+    direct_effect: np.ndarray | None = None
+    evolution_effect: np.ndarray | None = None
+    critical_slip_distance: np.ndarray | None = None
+    reference_rate: np.ndarray | None = None
+    initial_state: np.ndarray | None = None
 
     def strengths(
         self, shears: bool = True, joint: np.ndarray | slice = np.s_[:]
     ) -> dict[str, np.ndarray | None]:
         """Return the parameters by name at some joints; shears : those along the joints, too."""
-        names = [one.name for one in fields(Strength) if shears or one.name not in ALONG]
+        names = [one.name for one in fields(Strength) if shears or one.name in ACROSS]
         values = {name: getattr(self, name) for name in names}
         return {name: None if x is None else x[joint] for name, x in values.items()}
 
@@ -82,12 +89,15 @@ def strength_of(laws: Sequence[JointLaw], which: np.ndarray) -> Strength:
     limit; beside joints that break, one without tensile strength likewise, and beside joints that
     stiffen one that closes linearly; beside joints that slip weakens, one whose friction stays.
     """
-    keys = (*SLIP, *SOFTENING, CLOSURE, *WEAKENING, *DILATION)
-    if all(getattr(law, key) is None for law in laws for key in keys):
+    if all(getattr(law, key) is None for law in laws for key in KEYS):
         return Strength()
-    angle, cohesion, residual, limit, energy, closure, dynamic, distance, dilation, way = (
-        np.array([_number(getattr(law, key)) for law in laws])[which] for key in keys
+    given = {key: np.array([_number(getattr(law, key)) for law in laws])[which] for key in KEYS}
+    angle, cohesion, residual = (given[key] for key in SLIP)
+    limit, dynamic, dilation = (
+        given[key] for key in ("tensile_strength", "dynamic_friction_angle", "dilation_angle")
     )
+    steady = given["critical_slip_distance"] / given["reference_rate"]
+    begun = np.where(np.isnan(given["initial_state"]), steady, given["initial_state"])
     slips = ~(np.isnan(angle) & np.isnan(cohesion))
     never = ~slips & slips.any()
     whole = np.where(never, UNLIMITED, np.nan_to_num(cohesion))
@@ -97,12 +107,16 @@ def strength_of(laws: Sequence[JointLaw], which: np.ndarray) -> Strength:
         cohesion=whole if never.any() or not np.isnan(cohesion).all() else None,
         residual_cohesion=_where_given(residual, np.where(np.isnan(residual), whole, residual)),
         tensile_strength=_where_given(limit, np.nan_to_num(limit, nan=UNLIMITED)),
-        critical_opening=_where_given(limit, np.nan_to_num(2 * energy / limit, nan=UNLIMITED)),
-        maximum_closure=_where_given(closure, np.nan_to_num(closure, nan=UNLIMITED)),
+        critical_opening=_where_given(
+            limit, np.nan_to_num(2 * given["fracture_energy"] / limit, nan=UNLIMITED)
+        ),
         dynamic_friction=_where_given(dynamic, _tangent(weakens)),
-        weakening_distance=_where_given(distance, np.nan_to_num(distance, nan=1.0)),
         dilation=_where_given(dilation, _tangent(dilation)),
-        dilation_distance=_where_given(way, np.nan_to_num(way, nan=1.0)),
+        initial_state=_where_given(begun, np.nan_to_num(begun, nan=1.0)),
+        **{
+            key: _where_given(given[key], np.nan_to_num(given[key], nan=without))
+            for key, without in PLAIN.items()
+        },
     )
 
 

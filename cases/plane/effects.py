@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from cases.effects import Effect, of_body_forces, of_fields, of_ledger
+from cases.schema.joint import PARTS
 
 if TYPE_CHECKING:
     from cases.schema.joint_set import JointSet
@@ -32,19 +33,14 @@ def _of_joints(scene: RockMass) -> Iterator[Effect]:
         yield Effect("dashpots", True, "damping.rayleigh is given")
     else:
         yield _of_sets("dashpots", damped, "damping_ratio is given", "no damping_ratio")
-    stiffens = [one for one in scene.joint_sets if one.maximum_closure is not None]
-    yield _of_sets("closure", stiffens, "maximum_closure is given", "no maximum_closure")
     barred = [one for one in scene.joint_sets if one.tension is False]
     yield _of_sets("no tension", barred, "tension = false", "every joint carries tension")
     slips = [s for s in scene.joint_sets if s.friction_angle is not None or s.cohesion is not None]
     given = "friction_angle or cohesion is given"
     yield _of_sets("slip", slips, given, "neither friction_angle nor cohesion")
-    weakens = [one for one in scene.joint_sets if one.weakening_distance is not None]
-    yield _of_sets("weakening", weakens, "weakening_distance is given", "no weakening_distance")
-    dilates = [one for one in scene.joint_sets if one.dilation_angle is not None]
-    yield _of_sets("dilation", dilates, "dilation_angle is given", "no dilation_angle")
-    softens = [one for one in scene.joint_sets if one.tensile_strength is not None]
-    yield _of_sets("softening", softens, "tensile_strength is given", "no tensile_strength")
+    for part in PARTS:
+        having = [one for one in scene.joint_sets if part.of(one)]
+        yield _of_sets(part.name, having, part.why(True), part.why(False))
 
 
 def _of_sets(name: str, found: list[JointSet], why: str, why_not: str) -> Effect:

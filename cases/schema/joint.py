@@ -1,12 +1,59 @@
 """Keys of the joint law: of all joints, and of single ones that differ."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import Field, model_validator
 
 from cases.schema.values import NonNegative, Positive, Table, contradiction
 
 OF_ALL_JOINTS = ("contact_points", "point_rule")
+
+
+class Part(NamedTuple):
+    """An optional part of the law, the one list of which is `PARTS`.
+
+    name : of the effect. keys : which need one another; the first says whether a joint has the
+    part. words : what a joint with it does. along : whether it acts along the joint alone.
+    others : keys that need not be given.
+    """
+
+    name: str
+    keys: tuple[str, ...]
+    words: str
+    along: bool = True
+    others: tuple[str, ...] = ()
+
+    def of(self, law: "JointLaw") -> bool:
+        """Return whether a law has it."""
+        return getattr(law, self.keys[0]) is not None
+
+    def why(self, has: bool) -> str:
+        """Return in words which key says whether joints have it."""
+        return f"{self.keys[0]} is given" if has else f"no {self.keys[0]}"
+
+    @property
+    def all_keys(self) -> tuple[str, ...]:
+        """Every key of it."""
+        return (*self.keys, *self.others)
+
+
+PARTS = (
+    Part("closure", ("maximum_closure",), "a joint stiffens as it closes", along=False),
+    Part("weakening", ("weakening_distance", "dynamic_friction_angle"), "slip weakens a joint"),
+    Part("dilation", ("dilation_angle", "dilation_distance"), "slip lifts a joint"),
+    Part(
+        "rate and state",
+        ("direct_effect", "evolution_effect", "critical_slip_distance", "reference_rate"),
+        "friction depends on the rate of slip",
+        others=("initial_state",),
+    ),
+    Part(
+        "softening",
+        ("tensile_strength", "fracture_energy"),
+        "a joint has a tensile strength",
+        along=False,
+    ),
+)
 
 
 class JointLaw(Table):
@@ -24,6 +71,12 @@ class JointLaw(Table):
     #: degrees, at which slip lifts closed faces at first; falls to none over dilation_distance
     dilation_angle: Annotated[float, Field(ge=0, lt=90)] | None = None
     dilation_distance: Positive | None = None  #: m
+    #: a of friction that depends on rate and state, where friction_angle is that of mu_0
+    direct_effect: Positive | None = None
+    evolution_effect: NonNegative | None = None  #: b
+    critical_slip_distance: Positive | None = None  #: m, D_c
+    reference_rate: Positive | None = None  #: m/s, V_0, of mu_0
+    initial_state: Positive | None = None  #: s, theta at first; absent: D_c / V_0
     cohesion: NonNegative | None = None  #: Pa (3)
     residual_cohesion: NonNegative | None = None  #: Pa, what a point keeps after its first slip
     tensile_strength: Positive | None = None  #: Pa

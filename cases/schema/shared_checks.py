@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import atan, ceil, degrees, floor, log10, radians, tan
 from typing import TYPE_CHECKING
 
+from cases.schema.joint import PARTS
 from cases.schema.values import contradiction
 
 if TYPE_CHECKING:
@@ -13,12 +14,6 @@ if TYPE_CHECKING:
 
 MOST_SAMPLES = 10_000_000  # 80 MB for each section, point and energy term
 MOST_SNAPSHOTS = 10_000
-#: Keys of a joint that need one another.
-PAIRS = (
-    ("tensile_strength", "fracture_energy"),
-    ("dynamic_friction_angle", "weakening_distance"),
-    ("dilation_angle", "dilation_distance"),
-)
 SNAP = 1 + 1e-6  # how far the fracture energy must stay from a vertical softening line
 
 
@@ -55,10 +50,11 @@ def check_fields(scene: AnyScene) -> None:
 
 def check_strength(table: str, law: JointLaw) -> None:
     """Raise a contradiction between the keys of strength in one table, given by its path."""
-    for pair in PAIRS:
-        for key, other in (pair, pair[::-1]):
-            if getattr(law, key) is None and getattr(law, other) is not None:
-                raise contradiction(f"{table}.{key}", None, f"is needed with {table}.{other}")
+    for part in PARTS:
+        given = [key for key in part.all_keys if getattr(law, key) is not None]
+        for key in part.keys if given else ():
+            if key not in given:
+                raise contradiction(f"{table}.{key}", None, f"is needed with {table}.{given[0]}")
     if law.tension is not None and law.tensile_strength is not None:
         raise contradiction(
             f"{table}.tension", law.tension, "tensile_strength says otherwise: give one of them"
@@ -77,6 +73,20 @@ def check_strength(table: str, law: JointLaw) -> None:
             allowed = f"must be at most friction_angle = {static:g}"
             raise contradiction(f"{table}.{key}", angle, allowed)
     _check_dilation(table, law)
+    _check_rate(table, law)
+
+
+def _check_rate(table: str, law: JointLaw) -> None:
+    """Friction that depends on the rate is the whole of it, and as small as slip is slow: nothing
+    could lift the faces."""
+    if law.direct_effect is None:
+        return
+    if not law.friction_angle:
+        raise contradiction(f"{table}.direct_effect", law.direct_effect, "needs a friction_angle")
+    for key in ("dynamic_friction_angle", "dilation_angle"):
+        if getattr(law, key) is not None:
+            allowed = "friction depends on the rate of slip by direct_effect: give one of them"
+            raise contradiction(f"{table}.{key}", getattr(law, key), allowed)
 
 
 def _check_dilation(table: str, law: JointLaw) -> None:

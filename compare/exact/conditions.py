@@ -2,6 +2,7 @@
 
 from cases.effects import is_spatial
 from cases.material.calibrate import Properties, calibrate
+from cases.schema.joint import PARTS
 from cases.schema.scene import Scene
 from compare.solvers.record import YES, Answer, no
 
@@ -15,16 +16,12 @@ def beyond(scene: Scene, *held: str) -> str | None:
 
     held : what the solution holds for, of the names below.
     """
-    p = calibrate(scene)
-    physics = {
+    p, laws = calibrate(scene), (scene.joints, *scene.layers)
+    physics = {part.name: (any(map(part.of, laws)), part.words) for part in PARTS} | {
         "spatial motion": (is_spatial(scene), "the motion is spatial"),
         "reversed load": (scene.load.direction[1] < 0, "the load acts against the axis"),
-        "softening": (p.tensile_strength is not None, "a joint has a tensile strength"),
         "segments": (len(p.each) > 1, "the pillar has segments of other rock"),
         "scatter": (scene.scatter is not None, "the joints are at random"),
-        "closure": (p.maximum_closure is not None, "a joint stiffens as it closes"),
-        "weakening": (p.weakening_distance is not None, "slip weakens a joint"),
-        "dilation": (p.dilation is not None, "slip lifts a joint"),
         "gravity": (scene.gravity is not None, "gravity acts"),
         "prestress": (scene.prestress is not None, "the joints are prestressed"),
         "mass damping": (bool(p.mass_damping), "the damping is proportional to mass"),

@@ -18,6 +18,7 @@ from continuum.model import Ends, Model
 from continuum.space.body import Body
 from continuum.space.tractions import NN, XX, ZZ
 from continuum.state import State
+from joints.law import IN_MOTION
 from results.arrays import copied, fill
 
 TOLERANCE = 1e-10  # what may be left of the largest force that is summed up
@@ -65,6 +66,10 @@ class _Static:
     def __init__(self, model: Model, state: State, body: Body) -> None:
         self.rock = implicit_matrices(body)
         self.model = model._replace(ends=Ends(None, None, model.ends.fixed))
+        if model.interfaces is not None and model.interfaces.parts.rate_state:
+            table = model.interfaces.table.copy()
+            table[IN_MOTION] = 0.0
+            self.model = self.model._replace(interfaces=model.interfaces._replace(table=table))
         self.state, self.trial, self.size = copied(state), copied(state), 0.0
         fixed = np.zeros(0, dtype=int) if model.ends.fixed is None else model.ends.fixed.freedom
         self.system = System(model, self.rock, fixed, [self.rock.stiffness])

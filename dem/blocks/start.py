@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cases.material.prestress import refuse_beyond_strength
-from dem.blocks.joints import VISCOSITIES
 from dem.blocks.leapfrog import march, samples_for
 from dem.blocks.model import PlaneState, held_by, state_at_rest
 from dem.blocks.stability import critical_plane_step
 from dem.static import Rest, settle
-from joints.law import Law
+from joints.law import IN_MOTION
 from results.arrays import copied, fill
 
 if TYPE_CHECKING:
@@ -49,8 +48,9 @@ def start(system: PlaneSystem, state: PlaneState) -> Rest | None:
 class PlaneRelaxation:
     """The blocks under their static forces alone: `dem.static.System`.
 
-    Damping decides no static state: dashpots, those of quiet sides too, and local damping are
-    nought. The kernel is that of the motion, so that a first run compiles one.
+    Neither damping nor rates decide a static state: dashpots, those of quiet sides too, and local
+    damping are nought, and friction has no rate. The kernel is that of the motion, so that a first
+    run compiles one.
     """
 
     def __init__(self, system: PlaneSystem, weighed: bool) -> None:
@@ -60,7 +60,7 @@ class PlaneRelaxation:
         own, laws = model.blocks._replace(dt=dt, local=0.0), model.laws.copy()
         if not weighed:
             own = own._replace(gravity_x=0.0, gravity_y=0.0)
-        laws[[Law._fields.index(name) for name in VISCOSITIES]] = 0.0
+        laws[IN_MOTION] = 0.0
         nothing = np.zeros((len(sources.rows), 3, 3))
         held = held_by(nothing, sources.rows, own.inertia, dt) if model.form.held else None
         self.model = model._replace(blocks=own, laws=laws, held=held)

@@ -60,7 +60,8 @@ def law_at(table, i):
         table[i], table[L + i], table[2 * L + i], table[3 * L + i], table[4 * L + i],
         table[5 * L + i], table[6 * L + i], table[7 * L + i], table[8 * L + i], table[9 * L + i],
         table[10 * L + i], table[11 * L + i], table[12 * L + i], table[13 * L + i],
-        table[14 * L + i], table[15 * L + i],
+        table[14 * L + i], table[15 * L + i], table[16 * L + i], table[17 * L + i],
+        table[18 * L + i], table[19 * L + i], table[20 * L + i],
     )  # fmt: skip
 
 
@@ -144,6 +145,7 @@ def joints_for(form: Form) -> Callable:
     velocity = rows = form.freedoms * R
     first_point, point_rows = form.rate_rows * L, form.point_rows * L
     cohesions, worn, dilation = (2 + softening) * L, parts.path, parts.dilation
+    rated = parts.rate_state
     paths = cohesions + residual * L
 
     @formula
@@ -310,6 +312,9 @@ def joints_for(form: Form) -> Callable:
             if ledger:
                 q[SLID : SLID + L] = 0.0
             beyond = sliding[0]
+            # Friction that depends on the rate ages where nothing slides.
+            if rated:
+                beyond = 1
             if beyond == 0:
                 beyond = point_forces(b, law, table, points, h, q, n, False)
             if beyond > 0:

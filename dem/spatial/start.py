@@ -21,13 +21,12 @@ from dem.spatial.march import marcher
 from dem.spatial.model import Load, RowModel, RowState
 from dem.spatial.stability import critical_spatial_step
 from dem.static import Rest, prestressed, settle, stiffest
-from joints.law import Law
+from joints.law import IN_MOTION
 from numerics.divergence import guard
 from results.arrays import copied, fill
 
 NEVER = 1 << 60  # steps between samples where none are taken
 NOWHERE = Interpolation(np.arange(0), np.arange(0), np.zeros(0))
-VISCOSITIES = [Law._fields.index(name) for name in ("normal_viscosity", "shear_viscosity")]
 STEP_FRACTION = 0.9  # of the critical step: only where it ends counts
 
 
@@ -53,8 +52,9 @@ def start(scene: Scene, p: Properties, model: RowModel, state: RowState) -> Rest
 class Relaxation:
     """The blocks under their static forces alone: `dem.static.System`.
 
-    Damping decides no static state: dashpots, those behind quiet and matched ends too, and local
-    damping are nought. The kernel is that of the motion, so that a first run compiles one.
+    Neither damping nor rates decide a static state: dashpots, those behind quiet and matched ends
+    too, and local damping are nought, and friction has no rate. The kernel is that of the motion,
+    so that a first run compiles one.
     """
 
     def __init__(self, scene: Scene, p: Properties, model: RowModel, weighed: bool) -> None:
@@ -69,7 +69,7 @@ class Relaxation:
         self.blocks = p.block_count
         block = build_block(scene, p, dt, model.points)
         table = model.table.reshape(len(model.table), -1, LANES).copy()
-        table[:, VISCOSITIES] = 0.0
+        table[:, IN_MOTION] = 0.0
         base = np.zeros(0) if form.base else None
         self.model = model._replace(
             block=block,

@@ -31,6 +31,8 @@ CALLS = {
 
 DILATES = {"dilation_angle": 5.0, "dilation_distance": 1e-2}
 WEAKENS = {"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3}
+RATED = {"direct_effect": 0.01, "evolution_effect": 0.015}
+RATED |= {"critical_slip_distance": 1e-4, "reference_rate": 1e-6}
 MORE_CALLS = {
     ("spatial motion", "finite rotation"): ACROSS | {"motion.rotation": "finite"},
     ("spatial motion", "slip"): ACROSS | {"joints.friction_angle": 30.0},
@@ -38,6 +40,8 @@ MORE_CALLS = {
     | {"joints": {"friction_angle": 30.0, **WEAKENS}},
     ("spatial motion", "slip", "dilation"): ACROSS
     | {"joints": {"friction_angle": 30.0, **DILATES}},
+    ("spatial motion", "slip", "rate and state"): ACROSS
+    | {"joints": {"friction_angle": 30.0, **RATED}},
     ("fixed ends", "shaken base"): {"ends.start": "fixed", "load.quantity": "velocity"},
     ("dashpots", "mass damping"): {"damping": {"rayleigh": RAYLEIGH}},
 }

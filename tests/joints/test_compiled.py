@@ -26,6 +26,13 @@ LAWS = {
         dynamic_friction=0.2, weakening_distance=2e-3, dilation=0.2, dilation_distance=2e-3
     ),
     "weakening": WHOLE._replace(dynamic_friction=0.2, weakening_distance=2e-3),
+    "rate and state": WHOLE._replace(
+        direct_effect=0.01,
+        evolution_effect=0.015,
+        critical_slip_distance=1e-3,
+        reference_rate=1e-6,
+        initial_state=1.0,
+    ),
     "all of softening": WHOLE._replace(carries_tension=None),
 }
 

@@ -22,7 +22,8 @@ SHARE = 1e-5  # step of a central difference, of the length over which the law b
 
 # What limits the shear traction, by letter: cohesion, friction, residual cohesion, dynamic friction
 # with its weakening distance, dilation (i) with its distance (I). None: no shear.
-SHEARS = (None, "", "c", "f", "cf", "cfr", "fdw", "cfrdw", "fiI", "cfdwiI")
+# R: friction that depends on rate and state.
+SHEARS = (None, "", "c", "f", "cf", "cfr", "fdw", "cfrdw", "fiI", "cfdwiI", "fR", "cfrR")
 COMBINATIONS = [
     *product(("", "dashpots"), ("ties", "no tension", "softening"), SHEARS),
     *product(("", "dashpots"), ("closes", "closes, no tension", "closes, softening"), (None, "cf")),
@@ -62,6 +63,8 @@ def one_law(draw, dashpots, opens, shears):
         least = wanted["dynamic_friction"] if "d" in shears else wanted["friction"]
         wanted["iangle"] = least * draw(some(0, 1))
         wanted["Idistance"] = 1e-4 * draw(some(0.1, 10))
+        if "R" in shears:
+            parts.update(draw(rated()))
         parts.update(
             (FIELDS.get(name, name), value) for name, value in wanted.items() if name[0] in shears
         )
@@ -69,6 +72,19 @@ def one_law(draw, dashpots, opens, shears):
     slips = (0.0, 0.0) if shears is None else (1e-4 * draw(some(-1, 1)), 1e-4 * draw(some(-1, 1)))
     history = History(before, *slips, cohesion, 1e-4 * draw(some(0, 1)))
     return law, history, draw(st.sampled_from([0.0, 1e2, 2e5]))
+
+
+@st.composite
+def rated(draw):
+    """Return the numbers of friction that depends on rate and state."""
+    effect = 0.01 * draw(some(0.1, 10))
+    return {
+        "direct_effect": effect,
+        "evolution_effect": effect * draw(some(0, 2)),
+        "critical_slip_distance": 1e-3 * draw(some(0.1, 10)),
+        "reference_rate": 1e-6,
+        "initial_state": 10 ** draw(some(-4, 4)),
+    }
 
 
 # gap and slips after the step over 0.1 mm, their rates over 1 m/s.
@@ -179,6 +195,12 @@ def test_tangent_is_the_derivative(dashpots, opens, shears, data):
             bound += curved * np.array([1, law.friction or 0.0, law.friction or 0.0])
         else:
             bound[1:] += 1.5 * SHARE**2 * a
+        if law.direct_effect is not None:
+            # The slide is known to 1e-12 of it; mu bends over a unit of ln V, of which a step is
+            # at most e a / (direct_effect t_n), and where the joint is softer than friction falls
+            # by 1 / slope of that.
+            steep = np.abs(found).max() / min(law.normal_stiffness, law.shear_stiffness) + 1
+            bound = bound + 1e-11 * steep * sums.sum() / h + 1e-5 * np.abs(found).max()
         if law.dilation is not None:
             # All tractions meet in each; a slide enlarges round-off as it does the tangent, and its
             # own lengths, D_w and D, are some 1e5 steps.

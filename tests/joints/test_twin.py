@@ -5,7 +5,7 @@ traction compression positive, gap positive when open, shear traction on the rig
 """
 
 from itertools import product
-from math import hypot, inf
+from math import exp, expm1, hypot, inf, log
 
 import numpy as np
 import pytest
@@ -184,6 +184,46 @@ def twin_shear_return(
     return t_x, t_z, ex, ez, True
 
 
+def twin_rate_and_state(law, t_n, cohesion, state, size, dt):
+    """Return the strength (Pa) and ln(theta / theta_0) after a step: where spring and dashpot carry
+    what friction does at the rate of the slide, in the state that follows from a constant rate.
+
+    Dieterich (1979), Ruina (1983); mu = a asinh(e^E), Rice & Ben-Zion (1996).
+    """
+    a, b, length, begun = (
+        law.direct_effect, law.evolution_effect, law.critical_slip_distance, law.initial_state
+    )  # fmt: skip
+    theta, stiffness = begun * exp(state), law.shear_stiffness + (law.shear_viscosity or 0.0) / dt
+
+    def aged(rate):
+        if rate * dt < 1e-30 * length:
+            return theta + dt
+        steady = length / rate
+        return theta + (theta - steady) * expm1(-rate * dt / length)
+
+    def friction(log_rate):
+        log_state = log(law.reference_rate * aged(exp(log_rate)) / length)
+        e = (law.friction + b * log_state) / a + log_rate - log(2 * law.reference_rate)
+        return a * np.logaddexp(e, np.logaddexp(0, 2 * e) / 2)
+
+    load = size - cohesion
+    if load <= 0:
+        return cohesion, log(aged(0.0) / begun)
+    most = log(load / (stiffness * dt))
+    rate = brentq(
+        lambda x: load - stiffness * dt * exp(x) - t_n * friction(x),
+        -1e5, most + 1e-9, xtol=1e-13, rtol=4 * np.finfo(float).eps,
+    )  # fmt: skip
+    # A slide below e^-40 of what would unload it, and of D_c, is none; with dashpots that matters.
+    least = rate - min(most, log(length / dt)) + 40
+    assume(abs(least) > 1e-6)
+    if least < 0:
+        return inf, log(aged(0.0) / begun)
+    unloaded = stiffness * dt * exp(rate)
+    strength = size - unloaded if unloaded < load / 2 else cohesion + t_n * friction(rate)
+    return strength, log(aged(exp(rate)) / begun)
+
+
 def twin_traction(
     law,
     gap,
@@ -215,8 +255,14 @@ def twin_traction(
 
     size = hypot(*twin_shear_traction(law, *trial, *slip_rate))
     wears = (law.weakening_distance or law.dilation_distance) and t_n > 0 and gap <= before
-    path = twin_slide(law, wears, size, strength, history.path, dt)
-    t_n, tau = normal(path), strength(path)
+    if law.direct_effect is None:
+        path = twin_slide(law, wears, size, strength, history.path, dt)
+        t_n, tau = normal(path), strength(path)
+    else:
+        path = history.path
+        tau = twin_shear_strength(law._replace(friction=0.0), t_n, gap, opening, cohesion)
+        if t_n > 0 and gap <= 0:
+            tau, path = twin_rate_and_state(law, t_n, tau, path, size, dt)
     t_x, t_z, ex, ez, slipped = twin_shear_return(
         law, *trial, history.ex, history.ez, *slip_rate, tau, dt
     )
@@ -424,6 +470,45 @@ def test_law_equals_its_twin(dashpots, opens, shears, data):
         h = after
 
 
+@st.composite
+def rated(draw, dashpots, opens, shears):
+    """Return a law whose friction depends on rate and state, with one root whatever it carries."""
+    one = draw(one_law(dashpots, opens, shears))
+    effect, size = 10 ** draw(st.floats(-3, -1.5)), 10 ** draw(st.floats(-4, 6))
+    return one._replace(
+        friction=0.1 + one.friction,
+        direct_effect=effect,
+        evolution_effect=effect * draw(st.floats(0, 3)),
+        critical_slip_distance=10 ** draw(st.floats(-5, -2)),
+        reference_rate=10 ** draw(st.floats(-9, -3)),
+        initial_state=size,
+    )
+
+
+@pytest.mark.parametrize("shears", ["f", "cfr"])
+@pytest.mark.parametrize("opens", [*OPENS, *CLOSES])
+@pytest.mark.parametrize("dashpots", ["", "dashpots"])
+@settings(max_examples=25)
+@given(data=st.data())
+def test_rate_and_state_equal_their_twin(dashpots, opens, shears, data):
+    """As the law does its twin, where there is one root: A D_c >= b t_n. The slide is known to
+    1e-12 of it, and what is left of the trial traction by as much."""
+    one = data.draw(rated(dashpots, opens, shears))
+    point, h = at_point(one), virgin(one)
+    for step in data.draw(paths(one)):
+        n, s = scales(one, *step, h)
+        t_n, t_x, t_z, after = traction(*point, *step, DT, h)
+        a = one.shear_stiffness + (one.shear_viscosity or 0.0) / DT
+        assume(a * one.critical_slip_distance >= 1.1 * one.evolution_effect * max(t_n, 0.0))
+        r_n, r_x, r_z, expected = twin_traction(one, *step, DT, h)
+        assert t_n == pytest.approx(r_n, abs=1e-12 * n)
+        assert (t_x, t_z) == pytest.approx((r_x, r_z), abs=1e-11 * s)
+        assert after.path == pytest.approx(expected.path, abs=1e-9)
+        elastic = pytest.approx((expected.ex, expected.ez), abs=1e-11 * s / one.shear_stiffness)
+        assert (after.ex, after.ez) == elastic
+        h = after
+
+
 @pytest.mark.parametrize("opens", [*OPENS, *CLOSES])
 @given(data=st.data())
 def test_energies_equal_their_twins(opens, data):
@@ -461,9 +546,10 @@ def test_unlike_joints_behave_as_if_alone(data):
         data.draw(one_law("dashpots", "softening", "cfr")),
         data.draw(one_law("dashpots", "softening", "cfdw")),
         data.draw(one_law("dashpots", "softening", "cfiI")),
+        data.draw(rated("dashpots", "softening", "cf")),
     ]
     without = {"friction": 0.0, "carries_tension": True, "rock_compliance": 0.0}
-    without |= {"dynamic_friction": 0.0, "dilation": 0.0}
+    without |= {"dynamic_friction": 0.0, "dilation": 0.0, "direct_effect": 0.0}
     parts = {
         name: np.array(
             [
@@ -505,8 +591,8 @@ def test_alike_joints_become_one_number_and_absent_parts_none():
     )
     assert mixed.normal_stiffness.tolist() == [1, 2]
     assert mixed.normal_viscosity.tolist() == [0.5, 1]
-    assert law_of(table_of(mixed), 1) == Law(2.0, 1.0, 0.0, 4.0, 2.0, 0.0, 0.5, *9 * [0.0])
-    assert table_of(mixed).shape == (16, 2) and table_of(Law(9e9)).shape == (16, 1)
+    assert law_of(table_of(mixed), 1) == Law(2.0, 1.0, 0.0, 4.0, 2.0, 0.0, 0.5, *14 * [0.0])
+    assert table_of(mixed).shape == (21, 2) and table_of(Law(9e9)).shape == (21, 1)
     assert parts_of(mixed).varied and not parts_of(Law(9e9)).varied
     assert uniform(np.array([3.0, 3.0])) == 3.0
     assert uniform(None) is None

@@ -10,12 +10,14 @@ and a joint as stiff as the others is rigid before it slips: s = sigma_I, cut of
 Bull. Seism. Soc. Am. 68, 1978, for the harmonic wave). s leaves the linear solution only where it
 reaches tau while |sigma_I| > tau, once between two crossings of sigma_I with +-tau, and clings to
 tau up to the next; from crossing to crossing it is integrated exactly. Where slip weakens the
-joint, `compare.exact.joint.worn_joint` integrates it.
+joint, `compare.exact.joint.worn_joint` integrates it, and `compare.exact.joint.rate_state_joint`
+where its friction depends on the rate of slip.
 
 Holds for blocks that do not turn, a load across the axis, ends that absorb, one joint with cohesion
 or with friction under the prestress, and all else elastic and undamped.
 """
 
+from collections.abc import Iterator
 from functools import cache
 from itertools import pairwise
 from math import asin, ceil, cos, exp, inf, isfinite, pi, sin, sqrt
@@ -32,13 +34,15 @@ from cases.material.strength import UNLIMITED
 from cases.sampling import sample_times
 from cases.schema.scene import Scene
 from compare.exact.bar.images import ENTERS
-from compare.exact.conditions import LAYERS, holds
+from compare.exact.conditions import LAYERS, holds, static_stress
+from compare.exact.joint import rate_state_joint
 from compare.exact.joint.one_joint import around
 from compare.exact.linear import bound
 from compare.solvers.record import ALONE, Answer, Kind, Rock, Solver, Words, no, thin
 from results.dataset import dataset
 
-HELD = ("spatial motion", "prestress", "fixed start", "weakening", "dilation", *LAYERS)
+WORN = ("weakening", "dilation", "rate and state")
+HELD = ("spatial motion", "prestress", "fixed start", *WORN, *LAYERS)
 _gauss = cache(leggauss)
 ROUND_OFF = 1e-11  # of the largest waveform: the roots' tolerance
 TOLERANCES = 1e-11, 1e-9  # of the integration where slip weakens the joint, and of its twin
@@ -104,6 +108,7 @@ def applies(scene: Scene) -> Answer:
         (not ends <= {"quiet", "matched"}, "an end reflects"),
         (np.count_nonzero(slips) != 1, "not exactly one joint can slip"),
         (p.residual_cohesion is not None, "slip weakens the joint"),
+        *_against_rate(scene, p),
         (bool(compliance[~slips].any()), "a joint that cannot slip differs in stiffness"),
         (bool((compliance < 0).any()), "the joint is stiffer than the others"),
         (_snaps(scene, p), "the joint is softer than its friction falls with slip"),
@@ -112,6 +117,16 @@ def applies(scene: Scene) -> Answer:
             "the joint that dilates is softer than the others",
         ),
     )
+
+
+def _against_rate(scene: Scene, p: Properties) -> Iterator[tuple[bool, str]]:
+    """Yield what is against the solution of a joint whose friction depends on the rate."""
+    if p.direct_effect is not None:
+        rated = p.direct_effect > 0
+        holds_still = p.cohesion is not None and bool(p.cohesion[rated].any())
+        yield holds_still, "the joint whose friction depends on the rate of slip has cohesion"
+        pressed = scene.prestress is not None and scene.prestress.normal > 0
+        yield not pressed, "nothing presses the joint whose friction depends on the rate of slip"
 
 
 def _snaps(scene: Scene, p: Properties) -> bool:
@@ -127,11 +142,20 @@ def solve(scene: Scene) -> xr.Dataset:
     joint, enters = the_joint(scene, p), ENTERS[scene.ends.start]
     scaled = joint.scaled(enters)
     is_worn = isfinite(joint.distance) or joint.dilation > 0
+    rated = None
+    if p.direct_effect is not None:
+        j, pressure = int(np.flatnonzero(_slips(p))[0]), static_stress(scene)
+        rated = rate_state_joint.rate_joint(p, j, pressure, joint.compliance).scaled(enters)
 
     def waveforms(parts: int) -> dict[str, np.ndarray]:
-        worn = None
-        if is_worn:
-            passed = worn = _worn(scaled, p, load, times[-1], TOLERANCES[parts - 1])
+        worn, tolerance = None, TOLERANCES[parts - 1]
+        if rated is not None:
+            rest = joint.y / p.shear_speed
+            passed: Any = rate_state_joint.Passed(
+                rated, p.shear_impedance, load, times[-1], tolerance, rest
+            )
+        elif is_worn:
+            passed = worn = _worn(scaled, p, load, times[-1], tolerance)
         else:
 
             def passed(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

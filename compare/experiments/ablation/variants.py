@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 from cases.effects import active_effects
 from cases.errors import SceneError
 from cases.kinds import Either, checked
-from cases.material.strength import DILATION, SLIP, SOFTENING, WEAKENING
+from cases.material.strength import SLIP
 from cases.plane.effects import SIDES
+from cases.schema.joint import PARTS
 from cases.schema.scene import Scene
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 
 #: Effects that are nothing without another one.
-NEEDS: dict[str | None, str] = {"weakening": "slip", "dilation": "slip"}
+NEEDS: dict[str | None, str] = {part.name: "slip" for part in PARTS if part.along}
 
 
 def left_out(scene: Either, name: str) -> Either:
@@ -89,7 +90,6 @@ def _undamped(scene: AnyScene) -> AnyScene:
 WITHOUT: dict[str, Change] = {
     "dashpots": _undamped,
     "no tension": _joints(tension=None),
-    "closure": _joints(maximum_closure=None),
     "joints that differ": lambda scene: scene.model_copy(update={"soft_layers": []}),
     "scatter": lambda scene: scene.model_copy(update={"scatter": None}),
     "segments": lambda scene: scene.model_copy(update={"segments": []}),
@@ -98,10 +98,10 @@ WITHOUT: dict[str, Change] = {
     "energy ledger": _table("record", energy=False),
     "field output": _table("record", fields=None),
     "finite rotation": _table("motion", rotation="small"),
-    "slip": _joints(**dict.fromkeys((*SLIP, *WEAKENING, *DILATION))),
-    "weakening": _joints(**dict.fromkeys(WEAKENING)),
-    "dilation": _joints(**dict.fromkeys(DILATION)),
-    "softening": _joints(**dict.fromkeys(SOFTENING)),
+    "slip": _joints(
+        **dict.fromkeys((*SLIP, *(key for part in PARTS if part.along for key in part.all_keys)))
+    ),
+    **{part.name: _joints(**dict.fromkeys(part.all_keys)) for part in PARTS},
     "mass damping": _table("damping", mass_proportional=None, rayleigh=None),
     "local damping": _table("damping", local=None),
     "gravity": lambda scene: scene.model_copy(update={"gravity": None}),

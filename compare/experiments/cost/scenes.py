@@ -62,12 +62,14 @@ EVERYTHING_IN_PLANE: dict[str, Any] = {
     "record": {"points": [[0.5, 0.5]]},
 }
 FRICTION = {"damping_ratio": 0.02, "maximum_closure": 1e-3, "friction_angle": 30.0, "cohesion": 1e6}
-FRICTION |= {"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3}
-FRICTION |= {"dilation_angle": 5.0, "dilation_distance": 1e-2}
+WEAKENING = {"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3}
+DILATION = {"dilation_angle": 5.0, "dilation_distance": 1e-2}
+RATE = {"direct_effect": 0.01, "evolution_effect": 0.015}
+RATE |= {"critical_slip_distance": 1e-4, "reference_rate": 1e-6}
 #: The joints along y and along x of that.
 FAILING = (
-    ELASTIC | FRICTION | {"residual_cohesion": 0.0, "tension": False},
-    ELASTIC | FRICTION | {"tensile_strength": 1e6, "fracture_energy": 1e3},
+    ELASTIC | FRICTION | WEAKENING | DILATION | {"residual_cohesion": 0.0, "tension": False},
+    ELASTIC | FRICTION | RATE | {"tensile_strength": 1e6, "fracture_energy": 1e3},
 )
 
 

@@ -54,6 +54,18 @@ def _breaking() -> list[HardCase]:
             scene=ALL,
         ),
         HardCase(
+            f"{mixed}, whose friction depends on rate and state",
+            energies.passive,
+            {
+                "joints.direct_effect": 0.01,
+                "joints.evolution_effect": 0.03,
+                "joints.critical_slip_distance": 1e-6,
+                "joints.reference_rate": 1e-6,
+            },
+            HOMOGENEOUS,
+            scene=ALL,
+        ),
+        HardCase(
             f"the ledger of {mixed}, lifted by slip",
             contact.ledger,
             {"joints.dilation_angle": 10.0, "joints.dilation_distance": 1e-3},

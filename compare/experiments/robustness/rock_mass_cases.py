@@ -129,11 +129,15 @@ def _sliding() -> list[HardCase]:
     lifts = {"dilation_angle": 8.0, "dilation_distance": 1e-3}
     lifted = changes | {"joint_sets": _bricks(0.5, friction_angle=15.0, **lifts)}
     weakens = changes | {"joint_sets": _bricks(0.5, friction_angle=15.0, **less)}
+    rate = {"direct_effect": 0.01, "evolution_effect": 0.03, "reference_rate": 1e-6}
+    rate |= {"critical_slip_distance": 1e-5}
+    rated = changes | {"joint_sets": _bricks(0.5, friction_angle=15.0, **rate)}
     name = "T-junctions of brickwork that slide"
     return [
         at_one_joint(name, rock_masses.within_friction, changes, EXPLICIT),
         at_one_joint(f"the ledger of {name}", rock_masses.balanced, changes, EXPLICIT),
         at_one_joint(f"{name}, less friction by slip", energies.passive, weakens, EXPLICIT),
+        at_one_joint(f"{name}, by rate and state", energies.passive, rated, EXPLICIT),
         at_one_joint(
             f"the ledger of {name}, lifted by slip", rock_masses.balanced, lifted, EXPLICIT
         ),

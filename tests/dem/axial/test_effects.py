@@ -210,6 +210,6 @@ def test_every_effect_is_a_flag(pillar):
     along = Parts(
         dashpots=True, no_tension=True, softening=False, varied=True,
         shear=False, slip=False, residual=False, limited=False, closure=False,
-        weakening=False, dilation=False, path=False,
+        weakening=False, dilation=False, rate_state=False, path=False,
     )  # fmt: skip
     assert effects == (along, False, True, True, True, True, True, True, False)

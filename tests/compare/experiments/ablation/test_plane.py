@@ -20,6 +20,8 @@ WAVE = {"kind": "P", "direction": [0.0, 1.0], "shape": "step", "amplitude": 1e6}
 ACTS = {"loads", "incident waves", "shaken base"}
 WEAKENS = {"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3}
 DILATES = {"dilation_angle": 5.0, "dilation_distance": 1e-2}
+RATED = {"direct_effect": 0.01, "evolution_effect": 0.015}
+RATED |= {"critical_slip_distance": 1e-4, "reference_rate": 1e-6}
 CALLS = {
     "dashpots": {"joint_sets": [ROWS | {"damping_ratio": 0.02}, COLUMNS]},
     "no tension": {"joint_sets": [ROWS | {"tension": False}, COLUMNS]},
@@ -27,6 +29,7 @@ CALLS = {
     "slip": {"joint_sets": [ROWS | {"friction_angle": 30.0, "cohesion": 1e4}, COLUMNS]},
     "weakening": {"joint_sets": [ROWS | {"friction_angle": 30.0} | WEAKENS, COLUMNS]},
     "dilation": {"joint_sets": [ROWS | {"friction_angle": 30.0} | DILATES, COLUMNS]},
+    "rate and state": {"joint_sets": [ROWS | {"friction_angle": 30.0} | RATED, COLUMNS]},
     "softening": {"joint_sets": [ROWS | {"tensile_strength": 1e5, "fracture_energy": 10.0}]},
     "quiet sides": {"boundaries": {"bottom": "quiet"}},
     "fixed sides": {"boundaries": {"bottom": "fixed"}},

@@ -1,0 +1,160 @@
+"""A plane shear wave at a joint under rate-and-state friction, by Runge-Kutta of order 8.
+
+Pressed by n, the joint carries s where its faces slide at V in the state theta (Dieterich 1979;
+Ruina 1983; Rice & Ben-Zion 1996):
+
+    V = 2 V_0 sinh(s / (a n)) e^(-psi / a),   psi = mu_0 + b ln(V_0 theta / D_c),
+    theta' = 1 - |V| theta / D_c.
+
+Between half-spaces of impedance Z under the incident stress sigma_I, with the compliance 1/K that
+the joint adds to the rock,
+
+    (Z / 2) (s' / K + V) = sigma_I - s.
+
+Where 1/K = 0 that is an equation for s at every time, monotone and convex for s > 0, which Newton's
+method solves from above. The slip u = s / K + S, S' = V, gives the impulse of what passes: that of
+sigma_I less Z u / 2.
+"""
+
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cases.histories import LoadHistory
+from cases.material.calibrate import Properties
+
+SPANS = 500  # of the whole time: no step is longer than one
+SHORTEST = 1e-12  # s, of a part of the time
+LARGE = 300.0  # ln of a rate that only a step too long meets
+MOST, SETTLED = 100, 1e-15  # corrections of Newton's method, and the last one, relative
+
+
+class RateJoint(NamedTuple):
+    """A joint under the pressure n, Pa: mu_0, a and b, D_c (m), V_0 (m/s), theta_0 (s), and the
+    compliance 1/K that it adds, m/Pa."""
+
+    pressure: float
+    friction: float
+    direct: float
+    evolution: float
+    distance: float
+    rate: float
+    state: float
+    compliance: float = 0.0
+
+    def scaled(self, factor: float) -> "RateJoint":
+        """Return the joint for stresses and slips less by this factor."""
+        names = ("pressure", "distance", "rate")
+        return self._replace(**{name: getattr(self, name) / factor for name in names})
+
+    def offset(self, log_state: Any) -> Any:
+        """Return ln V_0 - psi / a of ln theta."""
+        aged = np.log(self.rate / self.distance) + log_state
+        return np.log(self.rate) - (self.friction + self.evolution * aged) / self.direct
+
+    def slides(self, stress: Any, log_state: Any) -> Any:
+        """Return V (m/s) of s (Pa) and ln theta."""
+        x, offset = stress / (self.direct * self.pressure), self.offset(log_state)
+        return np.exp(np.minimum(offset + x, LARGE)) - np.exp(np.minimum(offset - x, LARGE))
+
+    def carries(self, incident: Any, log_state: Any, impedance: float) -> Any:
+        """Return s (Pa) of a joint with 1/K = 0 under sigma_I (Pa)."""
+        a, z, most = self.direct * self.pressure, impedance / 2, np.abs(incident)
+        offset = self.offset(log_state)
+        with np.errstate(divide="ignore"):
+            fast = np.log(most / (2 * z)) - offset  # asinh of e^fast
+        s = np.minimum(most, a * np.logaddexp(fast, np.logaddexp(0, 2 * fast) / 2))
+        for _ in range(MOST):
+            up, down = np.exp(offset + s / a), np.exp(offset - s / a)
+            less = (s + z * (up - down) - most) / (1 + z / a * (up + down))
+            s = np.maximum(s - less, 0.0)
+            if (np.abs(less) <= SETTLED * most).all():
+                break
+        return np.sign(incident) * s
+
+
+def rate_joint(p: Properties, j: int, pressure: float, compliance: float) -> RateJoint:
+    """Return joint j under a pressure (Pa), with the compliance (m/Pa) that it adds."""
+    names = (
+        "friction",
+        "direct_effect",
+        "evolution_effect",
+        "critical_slip_distance",
+        "reference_rate",
+        "initial_state",
+    )
+    friction, a, b, distance, rate, state = (float(getattr(p, name)[j]) for name in names)
+    return RateJoint(pressure, friction, a, b, distance, rate, state, compliance)
+
+
+class Passed:
+    """sigma_T (Pa) and its impulse (Pa s) at any times up to `end` (s), by the incident `load`.
+
+    impedance : Z, Pa s/m. tolerance : of each step of the integration, relative. rest : s, how
+    long the faces rest before t = 0.
+    """
+
+    def __init__(
+        self,
+        joint: RateJoint,
+        impedance: float,
+        load: LoadHistory,
+        end: float,
+        tolerance: float,
+        rest: float = 0.0,
+    ) -> None:
+        from scipy.integrate import solve_ivp
+
+        self.joint, self.impedance, self.load = joint, impedance, load
+        first = load.breaks[0]
+        edges = [*(t for t in load.breaks if t < end), max(end, first + SHORTEST)]
+        span = (edges[-1] - first) / SPANS
+        peak = np.abs(load.value(np.linspace(first, edges[-1], SPANS))).max()
+        slip = max(joint.distance, peak * span / impedance)
+        small = tolerance * np.array([slip, 1.0, peak])
+        self.parts: list[tuple[float, float, Any]] = []
+        now = np.array([0.0, np.log(joint.state + rest + first), 0.0])
+        for part in pairwise(edges):
+            with np.errstate(
+                over="ignore", invalid="ignore"
+            ):  # steps that are tried, and are too long
+                found = solve_ivp(
+                    self._rate, part, now, "DOP853", dense_output=True, max_step=span,
+                    rtol=tolerance, atol=small,
+                )  # fmt: skip
+            self.parts.append((*part, found.sol))
+            now = found.y[:, -1]
+
+    def _rate(self, t: float, now: np.ndarray) -> np.ndarray:
+        """Return the rates of S, ln theta and s (0 where 1/K = 0)."""
+        joint, incident = self.joint, self.load.value(np.array([t]))[0]
+        stress = now[2]
+        if joint.compliance == 0:
+            stress = joint.carries(incident, now[1], self.impedance)
+            # From the balance of stresses: no digits are lost where the joint carries little less.
+            slides = joint.slides(stress, now[1])
+            return np.array([slides, np.exp(-now[1]) - abs(slides) / joint.distance, 0.0])
+        slides = joint.slides(stress, now[1])
+        loaded = 2 * (incident - stress) / self.impedance
+        return np.array(
+            [
+                slides,
+                np.exp(-now[1]) - abs(slides) / joint.distance,
+                (loaded - slides) / joint.compliance,
+            ]
+        )
+
+    def __call__(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return both at times (s)."""
+        joint, found = self.joint, np.zeros((3, *np.shape(times)))
+        found[1] = np.log(joint.state)
+        for start, end, solution in self.parts:
+            own = (times > start) & (times <= end)
+            if own.any():
+                found[:, own] = solution(times[own])
+        slide, log_state, stress = found
+        if joint.compliance == 0:
+            stress = joint.carries(self.load.value(times), log_state, self.impedance)
+        slip = joint.compliance * stress + slide
+        return stress, self.load.impulse(times) - self.impedance * slip / 2
