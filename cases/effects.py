@@ -158,6 +158,8 @@ def of_body_forces(scene: AnyScene, alpha: float | None) -> Iterator[Effect]:
         local is not None,
         "no damping.local" if local is None else f"damping.local = {local:g}",
     )
+    quality = scene.rock.quality_factor
+    yield Effect("constant Q", quality is not None, _why_quality(scene))
     yield Effect("gravity", scene.gravity is not None, _why_gravity(scene))
 
 
@@ -171,6 +173,15 @@ def _of_forces(scene: Scene, p: Properties) -> Iterator[Effect]:
     )
     quantity = f"load.quantity = '{scene.load.quantity}'"
     yield Effect("shaken base", scene.shakes_base, quantity)
+
+
+def _why_quality(scene: AnyScene) -> str:
+    """Return how the rock relaxes, in words."""
+    quality = scene.rock.quality_factor
+    if quality is None:
+        return "no rock.quality_factor"
+    _, low, high = scene.rock.quality_frequencies(scene.pulses)
+    return f"rock.quality_factor = {quality:g} from {low:.4g} to {high:.4g} Hz"
 
 
 def _why_gravity(scene: AnyScene) -> str:

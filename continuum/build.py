@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags, identity, kron
 
 from cases.errors import SceneError
-from cases.material.calibrate import Properties, calibrate
+from cases.material.calibrate import Properties, calibrate, mechanisms_of
 from cases.sampling import Clock
 from cases.schema.pulse import shortest_period
 from cases.schema.scene import Scene
@@ -18,7 +18,7 @@ from continuum.explicit.critical import any_motion
 from continuum.joints import interfaces, joint_law, resolved_joints
 from continuum.mesh.description import Mesh
 from continuum.mesh.pillar import elements_in_block, pillar_mesh
-from continuum.model import Fixed, Interfaces, Model, Receivers, RockOperators
+from continuum.model import Fixed, Interfaces, Model, Receivers, RockOperators, memory_of
 from continuum.size import refuse_large_file, refuse_large_mesh
 from continuum.space.body import Body, build_body, rock_matrices
 from continuum.space.elasticity import Material
@@ -28,6 +28,7 @@ from continuum.space.receivers import points, sections
 from numerics.cache_lines import zeros
 
 if TYPE_CHECKING:
+    from cases.material.constant_q import Mechanisms
     from cases.schema.rock_mass import RockMass
     from continuum.plane.rock import PlaneDiscrete
 
@@ -165,7 +166,7 @@ def build_model(scene: Scene, discrete: Discrete, model: str, time: Clock) -> Mo
     p, body = discrete.properties, discrete.body
     mass = body.communicator.total(body.mass)
     return Model(
-        rock=rock_operators(body, mass, time.dt, p.mass_damping),
+        rock=rock_operators(body, mass, time.dt, p.mass_damping, mechanisms_of(scene, model)),
         interfaces=discrete.joints,
         ends=build_ends(scene, p, body, model, time, mass),
         weight=weight_of(scene, body),
@@ -174,14 +175,21 @@ def build_model(scene: Scene, discrete: Discrete, model: str, time: Clock) -> Mo
     )
 
 
-def rock_operators(body: Body, mass: np.ndarray, dt: float, damping: float | None) -> RockOperators:
+def rock_operators(
+    body: Body,
+    mass: np.ndarray,
+    dt: float,
+    damping: float | None,
+    mechanisms: Mechanisms | None,
+) -> RockOperators:
     """Return the rock of a body; mass : of all processes together [freedoms], kg; damping : of
-    mass-proportional damping, 1/s, None without."""
+    mass-proportional damping, 1/s, None without; mechanisms : of its relaxation, None without."""
     alpha, step = (damping or 0.0) * dt / 2, zeros(mass.size)
     # Nothing moves what has no mass: nodes of another process's cell beyond a joint.
     np.divide(dt / (1 + alpha), mass, out=step, where=mass > 0)
     decay = None if damping is None else (1 - alpha) / (1 + alpha)
-    return RockOperators(body.stiffness, body.viscosity, body.mass, step, decay)
+    memory = None if mechanisms is None else memory_of(mechanisms, dt)
+    return RockOperators(body.stiffness, body.viscosity, body.mass, step, decay, memory)
 
 
 def weight_of(scene: Scene | RockMass, body: Body) -> np.ndarray | None:

@@ -7,7 +7,9 @@ Where several processes share a run, each holds part of the rock and of the join
 mass, viscosity and weight is then its own share, and `total` and `beta` are of all together.
 """
 
-from typing import Any, NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -15,6 +17,61 @@ from scipy.sparse import csr_matrix
 from continuum.space.operator import Operator
 from continuum.space.stencils import Stencils
 from joints.law import Law, Parts
+
+if TYPE_CHECKING:
+    from cases.material.constant_q import Mechanisms
+
+
+class Memory(NamedTuple):
+    """What relaxation mechanisms make of displacements u (`cases.material.constant_q`).
+
+    Of each the spring that is in series with a dashpot has the elongation e_l, e_l' = v - omega_l
+    e_l, as a vector of freedoms. Over a step of constant velocity that is exactly decay e_l + gain
+    v, and the rock's force is K (relaxed u + sum_l share e_l), with K of the unrelaxed moduli.
+
+    relaxed : 1 less the sum of the shares. share, frequency (rad/s), decay, gain (s) : [l].
+    stored : what the energies of the springs count, [l], so that what dashpots take in a step,
+        omega_l dt share of the mean elongation's K, is never negative: 1 but for (omega_l dt)^2.
+    """
+
+    relaxed: float
+    share: np.ndarray
+    frequency: np.ndarray
+    decay: np.ndarray
+    gain: np.ndarray
+    stored: np.ndarray
+
+    def at_rest(self) -> Memory:
+        """Return it for slow motion, under which nothing but the relaxed spring resists."""
+        none = np.zeros_like(self.decay)
+        return self._replace(decay=none, gain=none)
+
+    def tangent(self, dt: float) -> float:
+        """Return the part of K that resists a displacement during a step (s)."""
+        return self.relaxed + float(self.share @ self.gain) / dt
+
+    def advanced(self, elongation: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Return the elongations [l, n] after a step of velocity v [n], m/s."""
+        return self.decay[:, None] * elongation + self.gain[:, None] * v
+
+    def strained(self, u: np.ndarray, elongation: np.ndarray) -> np.ndarray:
+        """Return what K is multiplied by: u [n] but for what has relaxed of it."""
+        return self.relaxed * u + self.share @ elongation
+
+    def energy(self, stiffness, u: np.ndarray, elongation: np.ndarray) -> float:
+        """Return the energy of all springs, J; stiffness : K [n, n], N/m."""
+        springs = self.share * self.stored
+        found = sum(k * (e @ (stiffness @ e)) for k, e in zip(springs, elongation, strict=True))
+        return float(self.relaxed * (u @ (stiffness @ u)) + found) / 2
+
+
+def memory_of(mechanisms: Mechanisms, dt: float) -> Memory:
+    """Return what mechanisms remember in steps dt (s)."""
+    omega = mechanisms.frequency
+    x = omega * dt
+    gain = -np.expm1(-x) / omega
+    stored = x / 2 / np.tanh(x / 2)
+    return Memory(mechanisms.relaxed, mechanisms.share, omega, np.exp(-x), gain, stored)
 
 
 class RockOperators(NamedTuple):
@@ -24,6 +81,7 @@ class RockOperators(NamedTuple):
     mass : float array [n], kg; step_over_mass : dt over the total mass, s/kg.
     decay : (1 - alpha dt / 2) / (1 + alpha dt / 2) of mass-proportional damping alpha, None
         without; step_over_mass is then divided by 1 + alpha dt / 2.
+    memory : `Memory` of rock with a quality factor, None without; stiffness is then the unrelaxed.
     """
 
     stiffness: Operator
@@ -31,6 +89,7 @@ class RockOperators(NamedTuple):
     mass: np.ndarray
     step_over_mass: np.ndarray
     decay: Any
+    memory: Any = None
 
 
 class Interfaces(NamedTuple):

@@ -113,10 +113,12 @@ def _prestressed(run: Run, pushing: float) -> float:
     that rock gives off by pushing on both sides of a joint that opens, so long (s/sqrt(kg))."""
     if run.scene.prestress is None:
         return 0.0
+    memory = run.model.rock.memory
+    relaxed = 1.0 if memory is None else memory.relaxed
     if run.scene.kind == "rock mass":
         from continuum.plane.prestress import prestressed
 
-        return prestressed(run.scene, run.discrete, pushing)
+        return prestressed(run.scene, run.discrete, pushing, relaxed)
     p, prestress = run.discrete.properties, abs(run.scene.prestress.normal)
-    softness = p.block_count * p.spacing / p.modulus + np.abs(p.excess_compliance).sum()
+    softness = p.block_count * p.spacing / p.modulus / relaxed + np.abs(p.excess_compliance).sum()
     return prestress * np.sqrt(p.area * softness) + pushing * 2 * prestress * p.area

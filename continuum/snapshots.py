@@ -59,7 +59,8 @@ class RockFilm(Film):
         state = self.state
         u = state.u - self.ahead * state.v
         v = (state.v + state.v_before) / 2
-        stress = self.stress @ u + self.prestress if self.axial else np.zeros(0)
+        strained = u if state.strained is None else state.strained
+        stress = self.stress @ strained + self.prestress if self.axial else np.zeros(0)
         return u[self.freedoms], v[self.freedoms], stress
 
     def developed(self, result: Fields) -> Fields:

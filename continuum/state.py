@@ -22,18 +22,23 @@ class Places(NamedTuple):
     rate: Any
     loads: Any
     drags: Any
+    strained: Any
     shape: Any
 
 
 class State(NamedTuple):
     """What changes.
 
-    fields : u, v, v_before, rate, loads and drags, one after the other; each is a property.
+    fields : u, v, v_before, rate, loads, drags and strained, one after the other; each is a
+        property.
         u : displacement at the step, m; v, v_before : velocity half a step and one and a half
         before; rate : velocity extrapolated to the step, m/s, None without dashpots.
         loads : forces of the joints at the step [directions, q], N, normal (compression positive,
         less the prestress), along x, z; drags : the dashpots' part of them, None without.
-    force : on each freedom, N; drag : viscous force on each freedom, N; None without dashpots.
+        strained : what the stiffness is multiplied by at the step, m; None where that is u.
+    force : on each freedom, N; drag : viscous force on each freedom, N; None without dashpots. Of
+        rock with a memory all of its force is in it.
+    elongation : of the springs of `continuum.model.Memory` [l, n], m; None without.
     opening : the largest of each point so far [q], m; None without softening.
     slide : what has slid [directions - 1, q], m: the elastic part of the slip is B u - slide; None
         where nothing slides. cohesion : of each point [q], Pa; None without residual cohesion.
@@ -51,6 +56,7 @@ class State(NamedTuple):
     at: Places
     force: np.ndarray
     drag: Any
+    elongation: Any
     opening: Any
     slide: Any
     cohesion: Any
@@ -83,6 +89,11 @@ class State(NamedTuple):
     def rate(self) -> Any:
         """Rate that dashpots see, m/s."""
         return None if self.at.rate is None else self.fields[self.at.rate]
+
+    @property
+    def strained(self) -> Any:
+        """What the stiffness is multiplied by where that is not u, m."""
+        return None if self.at.strained is None else self.fields[self.at.strained]
 
     @property
     def loads(self) -> Any:
@@ -153,12 +164,14 @@ def state_at_rest(model: Model, keep_ledger: bool) -> State:
         slide[:] = joints.prestress[1:] / joints.law.shear_stiffness
     ends = 0 if quiet is None else quiet.freedom.size
     shape = None if joints is None else (directions, q)
-    fields, at = _fields(n, viscous, shape, parts.dashpots)
+    memory = model.rock.memory
+    fields, at = _fields(n, viscous, shape, parts.dashpots, memory is not None)
     return State(
         fields=fields,
         at=at,
         force=zeros(n),
-        drag=array(viscous, n),
+        drag=array(viscous or memory is not None, n),
+        elongation=None if memory is None else zeros((memory.share.size, n)),
         opening=array(parts.softening, q),
         slide=slide,
         cohesion=cohesion,
@@ -175,12 +188,12 @@ def state_at_rest(model: Model, keep_ledger: bool) -> State:
 
 
 def _fields(
-    n: int, viscous: bool, shape: tuple[int, int] | None, damped: bool
+    n: int, viscous: bool, shape: tuple[int, int] | None, damped: bool, relaxes: bool
 ) -> tuple[np.ndarray, Places]:
     """Return the vectors that receivers read, each from a cache line on."""
     points = 0 if shape is None else shape[0] * shape[1]
     sizes = {"u": n, "v": n, "v_before": n, "rate": n * viscous}
-    sizes |= {"loads": points, "drags": points * damped}
+    sizes |= {"loads": points, "drags": points * damped, "strained": n * relaxes}
     places, begin = {}, 0
     for name, size in sizes.items():
         places[name] = slice(begin, begin + size) if size else None

@@ -28,7 +28,7 @@ def applies(scene: Scene | RockMass, model: str = "jointed", dim: int | None = N
     if model == "jointed":
         reason = "" if p.intact_modulus else "the jointed rock needs rock.intact_modulus"
     else:
-        reason = _beyond_the_homogenised(p, motion.shears)
+        reason = _beyond_the_homogenised(scene, p, motion.shears)
     if reason:
         return reason
     joints = resolved_joints(p, model, motion.shears)
@@ -46,14 +46,18 @@ def _beyond_shear(stiffness: np.ndarray) -> str:
 def _beyond(scene: Scene, p: Properties) -> str:
     if p.local_damping is not None:
         return "the continuum has no local damping"
+    if scene.rock.quality_factor is not None and any(one.thickness for one in scene.soft_layers):
+        return "a soft layer with a thickness has no quality_factor"
     if scene.ends.start == "fixed" and not scene.shakes_base and scene.load.amplitude:
         return "the load acts on a fixed face"
     return ""
 
 
-def _beyond_the_homogenised(p: Properties, shears: bool) -> str:
+def _beyond_the_homogenised(scene: Scene, p: Properties, shears: bool) -> str:
     from joints.shear import UNLIMITED
 
+    if scene.rock.quality_factor is not None and len(p.each) > 1:
+        return "homogenised segments have no common quality_factor"
     ordinary = np.setdiff1d(np.arange(p.block_count - 1), p.soft)
     if not p.tension[ordinary].all():
         return "a homogenised bar has no joints to open where tension is barred"

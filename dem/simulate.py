@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from cases.effects import is_spatial
-from cases.errors import StoppedError
+from cases.errors import SceneError, StoppedError
 from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 from numerics.checkpoint import Keeper
@@ -30,9 +30,9 @@ def simulate(
     `numerics.checkpoint`. incident : of a rock mass, the field that enters through quiet sides;
     absent: that of its waves in rock without joints.
 
-    Raises SceneError for a step that cannot be taken, a static state that does not exist and
-    rotations too large for their kinematics; StoppedError, an UnstableError with the result so far,
-    when the motion leaves its bounds.
+    Raises SceneError for a step that cannot be taken, a static state that does not exist,
+    rotations too large for their kinematics and rock with a quality factor; StoppedError, an
+    UnstableError with the result so far, when the motion leaves its bounds.
     """
     import xarray as xr
 
@@ -50,6 +50,10 @@ def simulate_fields(
     incident: IncidentField | None = None,
 ) -> Fields:
     """Simulate a scene as `simulate` does, and return the result as plain arrays."""
+    if (quality := scene.rock.quality_factor) is not None:
+        from cases.material.constant_q import NO_ROCK
+
+        raise SceneError(scene.where, "rock.quality_factor", quality, NO_ROCK)
     if isinstance(scene, RockMass):
         from dem.blocks.simulate import simulate_fields as in_plane
 

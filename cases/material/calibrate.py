@@ -14,6 +14,8 @@ from cases.material.stiffness import rock_mass, stiffness
 from cases.material.strength import Strength, strength
 
 if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+    from cases.material.constant_q import Mechanisms
     from cases.schema.scene import Scene
 
 
@@ -232,3 +234,13 @@ def calibrate(scene: Scene) -> Properties:
         **dashpots(scene, soft, mass.modulus / spacing, springs.stiffness)._asdict(),
         **vars(strength(scene, soft)),
     )
+
+
+def mechanisms_of(scene: AnyScene, model: str) -> Mechanisms | None:
+    """Return how the rock of a model relaxes, intact ("jointed") or homogenised ("equivalent");
+    None, and nothing imported, without a quality factor."""
+    if scene.rock.quality_factor is None:
+        return None
+    from cases.material.constant_q import mechanisms
+
+    return mechanisms(scene, model)

@@ -14,6 +14,7 @@ from cases.schema.segment_checks import check_segments
 from cases.schema.shared_checks import (
     SNAP,
     check_fields,
+    check_quality,
     check_strength,
     check_time,
     rounded_up,
@@ -30,6 +31,7 @@ def check(scene: Scene) -> None:
     _check_layers(scene)
     _check_receivers(scene)
     _check_rock(scene)
+    check_quality(scene)
     check_time(scene)
     check_fields(scene)
     _check_lever(scene)

@@ -1,11 +1,54 @@
-"""Damping of the motion itself, beside the damping ratio of the joints."""
+"""Damping of the motion itself and of the rock, beside the damping ratio of the joints."""
 
+from collections.abc import Iterable
 from math import pi
 from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from cases.schema.pulse import Pulse, shortest_period
 from cases.schema.values import NonNegative, Positive, Table, contradiction
+
+WIDEST = 1e4  # of a band: its ends, one over the other
+
+
+class Attenuating(Table):
+    """Rock by its quality factor: it damps apart from the joints, in a band of frequencies."""
+
+    #: Q of the rock between the joints, whose damping_ratio is then that of joints alone; absent:
+    #: rock is damped as the joints are
+    quality_factor: Annotated[float, Field(ge=5, le=1e5)] | None = None
+    #: Hz, where waves have the speeds that the moduli give; absent: one over the shortest period
+    reference_frequency: Positive | None = None
+    #: Hz, from where to where Q is constant, within 4 %; absent: a tenth to ten times the above
+    quality_band: Annotated[list[Positive], Field(min_length=2, max_length=2)] | None = None
+
+    @model_validator(mode="after")
+    def _is_a_band(self) -> "Attenuating":
+        for key in ("reference_frequency", "quality_band"):
+            if self.quality_factor is None and (value := getattr(self, key)) is not None:
+                raise contradiction(f"rock.{key}", value, "has no meaning without quality_factor")
+        low, high = self.quality_band or (1.0, 10.0)
+        if not 2 * low <= high <= WIDEST * low:
+            allowed = f"must be two frequencies, the second 2 to {WIDEST:,.0f} times the first"
+            raise contradiction("rock.quality_band", self.quality_band, allowed)
+        return self
+
+    def quality_frequencies(self, pulses: Iterable[Pulse]) -> tuple[float, float, float]:
+        """Return the reference frequency and the band under these pulses, Hz.
+
+        Raises a contradiction where none has a period, or the band leaves out the reference.
+        """
+        period = shortest_period(pulses)
+        at = self.reference_frequency or (1 / period if period else None)
+        if at is None:
+            allowed = "is needed with rock.quality_factor: nothing that acts has a period"
+            raise contradiction("rock.reference_frequency", None, allowed)
+        low, high = self.quality_band or (at / 10, at * 10)
+        if not low <= at <= high:
+            allowed = f"must hold the reference frequency, {at:.6g} Hz"
+            raise contradiction("rock.quality_band", self.quality_band, allowed)
+        return at, low, high
 
 
 class Rayleigh(Table):

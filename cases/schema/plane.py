@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from cases.schema.damping import Attenuating
 from cases.schema.values import (
     DirectionInPlane,
     NonNegative,
@@ -17,7 +18,7 @@ from cases.schema.values import (
 Held = Literal["quiet", "free", "fixed", "periodic"]
 
 
-class IntactRock(Table):
+class IntactRock(Attenuating):
     """The rock between the joints, in plane strain."""
 
     density: Positive  #: kg/m3

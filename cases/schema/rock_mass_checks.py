@@ -8,7 +8,7 @@ import numpy as np
 
 from cases.schema.joint_set_checks import check_sets
 from cases.schema.region import check_regions
-from cases.schema.shared_checks import check_fields, check_time
+from cases.schema.shared_checks import check_fields, check_quality, check_time
 from cases.schema.values import contradiction
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ def check(scene: RockMass) -> None:
     _check_receivers(scene, outline)
     check_time(scene)  # type: ignore[arg-type]
     check_fields(scene)
+    check_quality(scene)
     _check_boundaries(scene, outline)
     _check_waves(scene, outline)
     for i, load in enumerate(scene.loads):

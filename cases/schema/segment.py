@@ -73,7 +73,7 @@ class Segment(Table):
 
     def rock(self, rest: Rock) -> Rock:
         """Return the segment's rock, given that of the rest of the pillar."""
-        own = {k: v for k in Rock.model_fields if (v := getattr(self, k)) is not None}
+        own = {k: v for k in Rock.model_fields if (v := getattr(self, k, None)) is not None}
         if self.is_other_mass or not self.joints:
             own = dict.fromkeys((*SPEEDS, *CONSTANTS)) | own
         rock = rest.model_copy(update=own)

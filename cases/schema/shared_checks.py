@@ -48,6 +48,20 @@ def check_fields(scene: AnyScene) -> None:
         )
 
 
+def check_quality(scene: AnyScene) -> None:
+    """Raise a contradiction of a quality factor with what acts, or with other damping of rock."""
+    quality = scene.rock.quality_factor
+    if quality is None:
+        return
+    scene.rock.quality_frequencies(scene.pulses)
+    if scene.rock.intact_modulus is None:
+        allowed = "is of the rock between the joints: needs rock.intact_modulus"
+        raise contradiction("rock.quality_factor", quality, allowed)
+    if scene.damping.rayleigh is not None:
+        allowed = "damping.rayleigh damps the rock already: give one of them"
+        raise contradiction("rock.quality_factor", quality, allowed)
+
+
 def check_strength(table: str, law: JointLaw) -> None:
     """Raise a contradiction between the keys of strength in one table, given by its path."""
     for part in PARTS:

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
+from cases.schema.damping import Attenuating
 from cases.schema.values import (
     Direction,
     NonNegative,
@@ -56,7 +57,7 @@ class Pillar(Table):
         return self.side**2
 
 
-class Rock(Table):
+class Rock(Attenuating):
     """The rock mass by its two wave speeds or by its two elastic constants, and the intact rock."""
 
     density: Positive  #: kg/m3

@@ -30,6 +30,7 @@ def beyond(scene: Scene, *held: str) -> str | None:
         "no tension": (not p.tension.all(), "a joint bars tension"),
         "damped joints": (joints_are_damped(p), "the joints are damped"),
         "damped rock": (bool(p.time_constant), "the rock is damped"),
+        "quality factor": (scene.rock.quality_factor is not None, "the rock has a quality_factor"),
         "soft layers": (p.excess_compliance.any(), "a soft layer reflects within the bar"),
         "stiff layers": (
             (p.excess_compliance < 0).any(),

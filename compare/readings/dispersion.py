@@ -24,7 +24,7 @@ import numpy as np
 import xarray as xr
 
 from cases.errors import SceneError
-from cases.material.calibrate import Properties, calibrate
+from cases.material.calibrate import Properties, calibrate, mechanisms_of
 from cases.schema.scene import Scene
 from compare.readings.rows import sampling, waveforms
 
@@ -86,10 +86,12 @@ def dispersion_theory(scene: Scene, frequency: Sequence[float] | np.ndarray) -> 
         raise SceneError(scene.where, "segments", None, "give each rock as a scene of its own")
     p, omega = calibrate(scene), 2 * np.pi * np.asarray(frequency, dtype=float)
     loss = 1 + 1j * omega * (p.time_constant or 0.0)
-    slowness = omega / p.bar_speed / np.sqrt(loss)
+    rock, mass = (mechanisms_of(scene, model) for model in ("jointed", "equivalent"))
+    of_rock, of_mass = (loss if one is None else one.modulus(1j * omega) for one in (rock, mass))
+    slowness = omega / p.bar_speed / np.sqrt(of_mass)
     k = {"rigid blocks": 2 / p.spacing * np.arcsin(slowness * p.spacing / 2 + 0j), "bar": slowness}
     if p.intact_modulus is not None:
-        k["jointed rock"] = _jointed(p, omega, loss)
+        k["jointed rock"] = _jointed(p, omega, of_rock, loss)
     found = np.array(list(k.values()))
     speed, decay = omega / np.abs(found.real), np.abs(found.imag)
     with np.errstate(divide="ignore"):
@@ -109,11 +111,14 @@ def dispersion_theory(scene: Scene, frequency: Sequence[float] | np.ndarray) -> 
     )
 
 
-def _jointed(p: Properties, omega: np.ndarray, loss: np.ndarray) -> np.ndarray:
-    """Return the wavenumber of intact rock with a joint every d, 1/m."""
+def _jointed(
+    p: Properties, omega: np.ndarray, of_rock: np.ndarray, of_joints: np.ndarray
+) -> np.ndarray:
+    """Return the wavenumber of intact rock with a joint every d, 1/m; both by what makes their
+    stiffness complex."""
     assert p.intact_modulus is not None
-    q = omega / np.sqrt(p.intact_modulus * loss / p.density)
-    z, K = p.density * omega / q, p.regular_own_stiffness * loss
+    q = omega / np.sqrt(p.intact_modulus * of_rock / p.density)
+    z, K = p.density * omega / q, p.regular_own_stiffness * of_joints
     return (
         np.arccos(np.cos(q * p.spacing) - omega * z / (2 * K) * np.sin(q * p.spacing)) / p.spacing
     )

@@ -61,6 +61,10 @@ def applies(scene: Scene | RockMass) -> Answer:
     """Return whether a scene has blocks that can be rigid."""
     from cases.schema.scene import Scene
 
+    if scene.rock.quality_factor is not None:
+        from cases.material.constant_q import NO_ROCK
+
+        return no(NO_ROCK)
     if isinstance(scene, Scene):
         return YES
     from cases.material.rigid_blocks import against

@@ -39,6 +39,7 @@ def leapfrog_for(parts, directions, shared=False):
         u, v, v_before, force, rate, drag,
         tiles, pairs, k_start, k_column, k_value, c_start, c_column, c_value,
         step_over_mass, mass, decay, weight,
+        relaxed, shares, springs, decays, gains, strained, elongation,
         b_first, b_start, b_column, b_value, along,
         table, area, prestress, jump, jump_rate, slip_rate, opening, slide, cohesion, path,
         loads, drags, jumps, jump_rates, slip_rates, load_vector, drag_vector,
@@ -54,17 +55,35 @@ def leapfrog_for(parts, directions, shared=False):
         flushing, failed, elastic = flush_tiny(), 0, 0.0
         for n in range(first, last):
             # Forces from the displacements and rates of step n.
-            multiply(tiles, pairs, k_start, k_column, k_value, u, force, -1.0)
+            if elongation is None or (energy is not None and n % stride == 0):
+                multiply(tiles, pairs, k_start, k_column, k_value, u, force, -1.0)
             if energy is not None and n % stride == 0:
                 elastic = 0.0
                 for i in range(u.size):
                     elastic -= 0.5 * u[i] * force[i]
+                if elongation is not None:
+                    elastic *= relaxed
+                    for k in range(shares.size):
+                        e = elongation[k]
+                        multiply(tiles, pairs, k_start, k_column, k_value, e, force, -1.0)
+                        for i in range(u.size):
+                            elastic -= 0.5 * springs[k] * e[i] * force[i]
             if rate is not None:
                 for i in range(v.size):
                     rate[i] = 1.5 * v[i] - 0.5 * v_before[i]
                     drag[i] = 0.0
                 if c_start is not None:
                     multiply(tiles, pairs, c_start, c_column, c_value, rate, drag, -1.0)
+            if elongation is not None:
+                # All of the rock's force counts as viscous; its energies are told apart in samples.
+                for i in range(u.size):
+                    strained[i] = relaxed * u[i]
+                    force[i] = 0.0
+                for k in range(shares.size):
+                    e = elongation[k]
+                    for i in range(u.size):
+                        strained[i] += shares[k] * e[i]
+                multiply(tiles, pairs, k_start, k_column, k_value, strained, drag, -1.0)
             if area is not None:
                 multiply_stencils(b_first, b_start, b_column, b_value, u, jumps, 0)
                 if jump_rate is not None:
@@ -80,7 +99,7 @@ def leapfrog_for(parts, directions, shared=False):
                 add_transposed(b_first, b_start, b_column, b_value, load_vector, force)
                 if drags is not None:
                     add_transposed(b_first, b_start, b_column, b_value, drag_vector, drag)
-            if rate is not None:
+            if drag is not None:
                 for i in range(force.size):
                     force[i] += drag[i]
             if weight is not None:
@@ -164,6 +183,8 @@ def leapfrog_for(parts, directions, shared=False):
                     balance = energy[:, n // stride]
                     balance[1], balance[2] = elastic + stored, spent
                     add_energy(balance, mass, u, v_before, v, weight, ledger)
+                    if elongation is not None:
+                        balance[4] -= elastic
             if ledger is not None:
                 add_work(
                     ledger, 0.5 * dt, v, v_before, v, drag, mass, decay, dt,
@@ -172,6 +193,11 @@ def leapfrog_for(parts, directions, shared=False):
                 )  # fmt: skip
             for i in range(u.size):
                 u[i] += dt * v[i]
+            if elongation is not None:
+                for k in range(shares.size):
+                    e = elongation[k]
+                    for i in range(u.size):
+                        e[i] = decays[k] * e[i] + gains[k] * v[i]
             if closure is not None:
                 for k in range(closure.size):
                     closure[k] = closure_decay[k] * closure[k] + gain[k] * v[quiet[k]]

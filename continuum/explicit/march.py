@@ -7,7 +7,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from continuum.explicit.leapfrog import leapfrog_for
-from continuum.model import Model
+from continuum.model import Memory, Model
 from continuum.state import Samples, State
 from numerics.divergence import Guard
 
@@ -69,6 +69,7 @@ def arguments(
         *(state.u, state.v, state.v_before, state.force, state.rate, state.drag),
         *(*rock.stiffness, *viscosity),
         *(rock.step_over_mass, rock.mass, rock.decay, model.weight),
+        *_memory(rock.memory, state),
         *(*jumps, state.jump, state.jump_rate, state.slip_rate),
         *(state.opening, state.slide, state.cohesion, state.path),
         *(state.loads, state.drags, _flat(state.jump), _flat(state.jump_rate)),
@@ -90,6 +91,14 @@ def arguments(
     )
 
 
+def _memory(memory: Memory | None, state: State) -> tuple[Any, ...]:
+    if memory is None:
+        return 7 * (None,)
+    spring = memory.share * memory.stored
+    constants = memory.relaxed, memory.share, spring, memory.decay, memory.gain
+    return (*constants, state.strained, state.elongation)
+
+
 def _flat(points: np.ndarray | None) -> np.ndarray | None:
     return None if points is None else points.reshape(-1)
 
@@ -106,7 +115,7 @@ def readings(model: Model, state: State) -> tuple[csr_matrix, np.ndarray]:
     sections, points = r.elastic.shape[0], r.point.shape[0]
     added = np.zeros(sections) if r.constant is None else r.constant
     entries = [
-        (0, r.elastic, at.u),
+        (0, r.elastic, at.u if at.strained is None else at.strained),
         (0, r.viscous, at.rate),
         (0, (alpha / 2 + 1 / dt) * r.inertia, at.v),
         (0, (alpha / 2 - 1 / dt) * r.inertia, at.v_before),

@@ -61,11 +61,17 @@ def balance(
     fill(_history(trial), _history(now))
     if trial.ledger is not None:
         trial.ledger[:] = now.ledger
-    force = -(rock.stiffness @ trial.u)
+    memory = model.rock.memory
+    force = -(rock.stiffness @ trial.u) if memory is None else np.zeros_like(trial.u)
     parts = [force]
     if trial.rate is not None:
         trial.rate[:] = trial.v
         trial.drag[:] = 0.0 if rock.viscosity is None else -(rock.viscosity @ trial.v)
+        parts.append(trial.drag.copy())
+    if memory is not None:
+        trial.elongation[:] = memory.advanced(now.elongation, trial.v_before)
+        trial.strained[:] = memory.strained(trial.u, trial.elongation)
+        trial.drag[:] = -(rock.stiffness @ trial.strained)  # all of it counts as viscous
         parts.append(trial.drag.copy())
     if model.weight is not None:
         parts.append(model.weight)
@@ -77,7 +83,7 @@ def balance(
     trial.force[:] = force
     if model.interfaces is not None:
         _add_joint_forces(model, now, trial, r, tangents)
-    if trial.rate is not None:
+    if trial.drag is not None:
         trial.force[:] += trial.drag
     if model.weight is not None:
         trial.force[:] += model.weight
@@ -204,10 +210,21 @@ def record(
             joints.table, joints.area, joints.prestress,
             state.jump, state.opening, state.slide, state.path, state.loads,
         )  # fmt: skip
+    elastic = elastic_energy(model, rock, state)
     samples.energy[:STATES, s] = (
         state.v @ (rock.mass @ state.v) / 2,
-        state.u @ (rock.stiffness @ state.u) / 2 + stored,
+        elastic + stored,
         spent,
         0.0 if model.weight is None else -(model.weight @ state.u),
     )
     samples.energy[STATES:, s] = state.ledger
+    if model.rock.memory is not None:
+        samples.energy[STATES, s] -= elastic
+
+
+def elastic_energy(model: Model, rock: Matrices, state: State) -> float:
+    """Return what the rock's springs store, J."""
+    memory = model.rock.memory
+    if memory is None:
+        return float(state.u @ (rock.stiffness @ state.u)) / 2
+    return memory.energy(rock.stiffness, state.u, state.elongation)

@@ -10,7 +10,7 @@ import numpy as np
 
 from cases.errors import SceneError
 from cases.schema.scene import Scene
-from continuum.implicit.balance import balance, implicit_matrices
+from continuum.implicit.balance import balance, elastic_energy, implicit_matrices
 from continuum.implicit.newton import Outcome, newton
 from continuum.implicit.pattern import System
 from continuum.implicit.substeps import UNLOADED
@@ -43,6 +43,8 @@ def settle_static(scene: Scene, model: Model, state: State, body: Body) -> dict[
         else:
             _refuse(scene, done)
     fill(state, system.state)
+    if state.elongation is not None and state.ledger is not None:
+        state.ledger[0] += elastic_energy(system.model, system.rock, state)
     ratio = outcome.errors[-1] / body.communicator.largest(system.size)
     return {"static_steps": steps, "static_out_of_balance": ratio}
 
@@ -70,9 +72,13 @@ class _Static:
             table = model.interfaces.table.copy()
             table[IN_MOTION] = 0.0
             self.model = self.model._replace(interfaces=model.interfaces._replace(table=table))
+        stiffness, memory = self.rock.stiffness, model.rock.memory
+        if memory is not None:
+            self.model = self.model._replace(rock=model.rock._replace(memory=memory.at_rest()))
+            stiffness = memory.relaxed * stiffness
         self.state, self.trial, self.size = copied(state), copied(state), 0.0
         fixed = np.zeros(0, dtype=int) if model.ends.fixed is None else model.ends.fixed.freedom
-        self.system = System(model, self.rock, fixed, [self.rock.stiffness])
+        self.system = System(model, self.rock, fixed, [stiffness])
 
     def balance(self, share: float) -> Outcome:
         """Try to balance a share of the weight; what comes of it is kept where that succeeds."""

@@ -143,6 +143,8 @@ class Stepper:
         model = shortened(self.model, share)
         r = gamma / (beta * model.dt)
         mass, stiffness, viscosity = self._pattern.fixed
+        if model.rock.memory is not None:
+            stiffness = model.rock.memory.tangent(model.dt) * stiffness
         inertia = (1 - alpha_m) / (beta * model.dt**2) * mass
         forces = stiffness + r * (viscosity + self.mass_damping * mass)
         if model.ends.quiet is not None:

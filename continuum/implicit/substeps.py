@@ -81,12 +81,17 @@ def dashpot_matrix(dashpots: Dashpots, size: int) -> csr_matrix:
 
 
 def shortened(model: Model, share: float) -> Model:
-    """Return a model whose step is a share of what it was; only dt and half joints know it."""
+    """Return a model whose step is a share of what it was; what depends on it are dt, half joints
+    and what rock remembers, but for what the energies of its springs count."""
     quiet = model.ends.quiet
     if quiet is not None and quiet.springs is not None:
         springs = shorter_springs(quiet.springs, share)
         model = model._replace(ends=model.ends._replace(quiet=quiet._replace(springs=springs)))
-    return model._replace(dt=share * model.dt)
+    memory = model.rock.memory
+    if memory is not None:
+        decay = memory.decay**share
+        memory = memory._replace(decay=decay, gain=(1 - decay) / memory.frequency)
+    return model._replace(dt=share * model.dt, rock=model.rock._replace(memory=memory))
 
 
 def shorter_springs(springs: HalfJoints, share: float) -> HalfJoints:

@@ -13,11 +13,15 @@ if TYPE_CHECKING:
     from continuum.plane.rock import PlaneDiscrete
 
 
-def prestressed(scene: RockMass, discrete: PlaneDiscrete, pushing: float) -> float:
+def prestressed(scene: RockMass, discrete: PlaneDiscrete, pushing: float, relaxed: float) -> float:
     """Return the root of twice the energy (sqrt(J/m)) that a prestress keeps in rock and joints,
-    and that rock gives off by pushing on both sides of joints that open, so long (s/sqrt(kg))."""
+    and that rock gives off by pushing on both sides of joints that open, so long (s/sqrt(kg)).
+
+    relaxed : what the rock keeps of its stiffness in the end.
+    """
     stress, joints, of_all = stress_of(scene), discrete.joints, discrete.body.communicator
-    least = min(np.linalg.eigvalsh(one.stiffness).min() for one in discrete.materials)
+    softest = min(np.linalg.eigvalsh(one.stiffness).min() for one in discrete.materials)
+    least = relaxed * softest
     stored = float(stress @ stress) / least * float(discrete.partition.area.sum())
     size, softness = float(np.abs(stress).max()), 0.0
     if joints is not None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from cases.errors import SceneError
+from cases.material.calibrate import mechanisms_of
 from cases.material.dashpots import set_time_constants
 from cases.material.effective_medium import compliant, stiffness
 from cases.material.rock import elastic_rock
@@ -74,9 +75,11 @@ def discretise(scene: RockMass, model: str, comm=None) -> PlaneDiscrete:
     partition = partition_of(resolved)
     sides = [side for side in ("left", "bottom") if getattr(scene.boundaries, side) == "periodic"]
     across = across_periodic(partition, sides)
+    relaxes = mechanisms_of(scene, model)
+    unrelaxed = 1.0 if relaxes is None else relaxes.unrelaxed
     *regions, rest = (
         PlaneRock(
-            stiffness(elastic_rock(one.rock), compliant(one.joint_sets)),
+            unrelaxed * stiffness(elastic_rock(one.rock), compliant(one.joint_sets)),
             one.rock.density,
             _rayleigh(scene),
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from cases.incident import free_field
+from cases.material.calibrate import mechanisms_of
 from cases.material.prestress import refuse_beyond_strength
 from continuum.build import critical_step, rock_operators, weight_of
 from continuum.model import Ends, Model
@@ -47,11 +48,11 @@ def build_model(
     entry = Entry(scene, body, quiet, field) if scene.waves else None
     loads = pushes(scene, body)
     dashpots = dashpots_on(scene, body, quiet, fixed, time.dt, mass)
-    driven = None
+    driven, relaxes = None, mechanisms_of(scene, "jointed")
     if loads or entry is not None:
         driven = Drive(body, time.dt, loads, entry)
     return Model(
-        rock=rock_operators(body, mass, time.dt, scene.damping.alpha),
+        rock=rock_operators(body, mass, time.dt, scene.damping.alpha, relaxes),
         interfaces=discrete.joints,
         ends=Ends(None, None, fixed, dashpots, driven),
         weight=weight_of(scene, body),

@@ -21,9 +21,11 @@ NONLINEAR = (
 
 def applies(scene: RockMass, model: str = "jointed") -> str:
     """Return "" where this model can simulate the scene, else the reason why not."""
+    damped = scene.rock.quality_factor is not None
     reasons = [
         (scene.damping.local is not None, "the continuum has no local damping"),
         (len(scene.bases) > 1, "one base alone can be shaken"),
+        (damped and bool(scene.waves), "[[waves]] enter as those of rock without a quality_factor"),
     ]
     if model == "equivalent":
         reasons += _beyond_medium(scene)
@@ -35,6 +37,7 @@ def _beyond_medium(scene: RockMass) -> list[tuple[bool, str]]:
     sets = smeared(scene, "equivalent")
     found = [
         (not sets, "no joint set has a spacing: there is nothing to homogenise"),
+        (scene.rock.quality_factor is not None, "the effective medium has no quality_factor"),
         ("periodic" in scene.boundaries.model_dump().values(), "its sides are not periodic"),
     ]
     for one in sets:

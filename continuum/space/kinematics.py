@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from cases.effects import is_spatial
 from cases.errors import SceneError
-from cases.material.calibrate import Properties
+from cases.material.calibrate import Properties, mechanisms_of
 from cases.material.elastic import equivalent_modulus
 from cases.schema.scene import Scene
 from cases.schema.segment import alone, regions
@@ -81,14 +81,18 @@ def materials(scene: Scene, p: Properties, model: str, layers: tuple[int, ...]) 
 
     A layer of thickness h is rock of modulus K_n h that does not widen when it is compressed: held
     by the rock on both sides, a thin layer can not either, and K_n is its whole stiffness.
+    Rock with a quality factor has its unrelaxed modulus and no dashpots: those are of joints alone.
     """
-    found = []
+    found, relaxes = [], mechanisms_of(scene, model)
     for one, region in zip(p.each, regions(scene), strict=True):
         modulus, poisson = one.modulus, one.poisson
         if model == "jointed":
             assert one.intact_modulus is not None
             modulus, poisson = one.intact_modulus, alone(scene, region).rock.intact_poisson
-        found.append(Material(modulus, poisson, one.density, one.time_constant or 0.0))
+        eta = one.time_constant or 0.0
+        if relaxes is not None:
+            modulus, eta = modulus * relaxes.unrelaxed, 0.0
+        found.append(Material(modulus, poisson, one.density, eta))
     thickness = layer_thickness(scene, p)
     etas = p.joint_time_constant
     for joint in layers:

@@ -25,6 +25,7 @@ CALLS = {
     "softening": TENSILE,
     "mass damping": {"damping": {"mass_proportional": 5.0}},
     "local damping": {"damping": {"local": 0.8}},
+    "constant Q": {"rock.quality_factor": 20.0},
     "gravity": {"gravity": DOWN},
     "prestress": {"prestress": {"normal": 1e6}},
 }

@@ -10,21 +10,27 @@ Holds for any load; every joint carries tension and no layer is stiffer than the
 import numpy as np
 import xarray as xr
 
-from cases.material.calibrate import calibrate
+from cases.material.calibrate import calibrate, mechanisms_of
 from cases.schema.scene import Scene
 from compare.exact.bar.laplace import solved
-from compare.exact.bar.transfer import Bar, end_of, rocks
+from compare.exact.bar.transfer import Bar, end_of, rock_eta, rocks
 from compare.exact.conditions import DAMPED, holds
 from compare.solvers.record import BAR, Answer, Kind, Rock, Solver, Words, thin
 
-HELD = ("prestress", "soft layers", "segments", "scatter", *DAMPED)
+HELD = ("prestress", "soft layers", "segments", "scatter", "quality factor", *DAMPED)
 
 
 def applies(scene: Scene) -> Answer:
     """Return whether the scene's homogenised bar is linear and its layers add compliance."""
     alone = bool(calibrate(scene).damps_alone.any())
     reason = "a homogenised bar cannot damp one ordinary joint by itself"
-    return holds(scene, HELD, (alone, reason))
+    many = scene.rock.quality_factor is not None and len(calibrate(scene).each) > 1
+    return holds(
+        scene,
+        HELD,
+        (alone, reason),
+        (many, "homogenised segments have no common quality_factor"),
+    )
 
 
 def solve(scene: Scene) -> xr.Dataset:
@@ -35,18 +41,20 @@ def solve(scene: Scene) -> xr.Dataset:
 def bar(scene: Scene) -> Bar:
     """Return the scene's homogenised bar with its soft layers as interfaces."""
     p = calibrate(scene)
+    relaxation = mechanisms_of(scene, "equivalent")
     etas = p.joint_time_constant
     return Bar(
         length=scene.pillar.length,
         density=p.at_start.density,
         modulus=p.at_start.modulus,
-        time_constant=p.at_start.time_constant or 0.0,
+        time_constant=rock_eta(p.at_start, relaxation),
         joint_y=p.joint_y,
         joint_compliance=p.excess_compliance,
         joint_time_constant=np.zeros_like(p.joint_y) if etas is None else etas,
         start=end_of(scene.ends.start, p.at_start.impedance),
         end=end_of(scene.ends.end, p.at_end.impedance),
-        rocks=rocks(p, [one.modulus for one in p.each]),
+        rocks=rocks(p, [one.modulus for one in p.each], relaxation),
+        relaxation=relaxation,
     )
 
 

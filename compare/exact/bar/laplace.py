@@ -182,7 +182,7 @@ class Front(NamedTuple):
 
 def _front(bar: Bar, duration: float) -> Front | None:
     """Return the part of a bar that kinks of the load run to and fro in; None without one."""
-    if bar.time_constant:
+    if bar.time_constant or bar.relaxation is not None:
         return None
     z = np.sqrt(bar.density * bar.modulus)
     joints = np.flatnonzero(bar.joint_compliance)

@@ -1,7 +1,8 @@
 """The motion of a bar with any joints, layers and ends under an end stress of 1, in the Laplace
 variable s = sigma + i omega.
 
-Rock of modulus E (1 + s eta) has impedance z = sqrt(rho E (1 + s eta)); an interface of
+Rock of modulus E(s), E (1 + s eta) or what its relaxation mechanisms make of it
+(`cases.material.constant_q`), has impedance z = sqrt(rho E(s)); an interface of
 compliance 1/K and time constant eta_j lets the velocity jump by s sigma / (K (1 + s eta_j)). The
 reflection coefficient of stress R = (Z - z)/(Z + z), Z the impedance seen towards the far end, is
 marched from there (the matrix that carries (v, sigma) from one end overflows):
@@ -18,14 +19,19 @@ v = a (1 - R). These are the impedance recursions of Brekhovskikh (Waves in Laye
 with the joint of Schoenberg (JASA 68, 1980).
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import groupby
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from cases.material.calibrate import Properties
+
+if TYPE_CHECKING:
+    from cases.material.constant_q import Mechanisms
 
 
 @dataclass(frozen=True)
@@ -52,25 +58,37 @@ def end_of(kind: str, impedance: float, compliance: float = 0.0, time_constant: 
 
 
 class RockFrom(NamedTuple):
-    """The rock of a bar from y (m) on: density (kg/m3), modulus (Pa), Kelvin-Voigt eta (s)."""
+    """The rock of a bar from y (m) on: density (kg/m3), modulus (Pa), Kelvin-Voigt eta (s), and
+    what relaxes (`Bar.relaxation`)."""
 
     y: float
     density: float
     modulus: float
     time_constant: float
+    relaxation: Mechanisms | None = None
 
     def impedance(self, s: np.ndarray) -> np.ndarray:
-        """Return sqrt(rho E (1 + s eta)) at the Laplace variables s, Pa s/m."""
-        return np.sqrt(self.density * self.modulus * (1 + s * self.time_constant))
+        """Return sqrt(rho E(s)) at the Laplace variables s, Pa s/m."""
+        modulus = self.modulus * (1 + s * self.time_constant)
+        if self.relaxation is not None:
+            modulus = modulus * self.relaxation.modulus(s)
+        return np.sqrt(self.density * modulus)
 
 
-def rocks(p: Properties, moduli: list[float]) -> tuple[RockFrom, ...]:
+def rocks(
+    p: Properties, moduli: list[float], relaxation: Mechanisms | None
+) -> tuple[RockFrom, ...]:
     """Return the rocks behind the first of a pillar whose segments have these moduli (Pa)."""
     starts = np.cumsum([one.block_count * one.spacing for one in p.each])
     return tuple(
-        RockFrom(float(y), one.density, modulus, one.time_constant or 0.0)
+        RockFrom(float(y), one.density, modulus, rock_eta(one, relaxation), relaxation)
         for y, one, modulus in zip(starts[:-1], p.each[1:], moduli[1:], strict=True)
     )
+
+
+def rock_eta(p: Properties, relaxation: Mechanisms | None) -> float:
+    """Return the Kelvin-Voigt eta of rock, s; where rock relaxes, dashpots are of joints alone."""
+    return p.time_constant or 0.0 if relaxation is None else 0.0
 
 
 @dataclass(frozen=True)
@@ -82,6 +100,7 @@ class Bar:
     length, density, modulus : m, kg/m3, Pa.
     time_constant : Kelvin-Voigt eta of the rock, s.
     rocks : other rocks behind the first, in order.
+    relaxation : what makes of a modulus that of a Laplace variable, None of rock without.
     joint_y, joint_compliance, joint_time_constant : float arrays [joints], sorted; m, m/Pa, s.
     start, end : what holds each end; the start cannot be fixed.
     """
@@ -96,11 +115,13 @@ class Bar:
     start: End
     end: End
     rocks: tuple[RockFrom, ...] = ()
+    relaxation: Mechanisms | None = None
 
     @property
     def every(self) -> tuple[RockFrom, ...]:
         """All its rocks, in order."""
-        return (RockFrom(0.0, self.density, self.modulus, self.time_constant), *self.rocks)
+        first = self.density, self.modulus, self.time_constant, self.relaxation
+        return (RockFrom(0.0, *first), *self.rocks)
 
 
 class Cell(NamedTuple):
@@ -117,7 +138,7 @@ class Cell(NamedTuple):
         share = self.passed / (1 - self.far * R)
         return self.near + self.back * share * R, share
 
-    def twice(self) -> "Cell":
+    def twice(self) -> Cell:
         """Return two such parts of one rock in a row."""
         near, share = self.before(self.near)
         passed = share * self.passed

@@ -23,6 +23,7 @@ def beyond_linear_rock(scene: RockMass) -> str | None:
     reasons = [
         (bool(damping.alpha), "the damping is proportional to mass"),
         (bool(damping.rayleigh and damping.rayleigh.coefficients[1]), "the rock is damped"),
+        (scene.rock.quality_factor is not None, "the rock has a quality_factor"),
         (bool(damping.local), "the damping is local, which is not linear"),
     ]
     meshed = scene.domain.given is not None and bool(scene.joint_sets)

@@ -10,6 +10,7 @@ from cases.errors import SceneError
 from cases.kinds import Either, checked
 from cases.material.strength import SLIP
 from cases.plane.effects import SIDES
+from cases.schema.damping import Attenuating
 from cases.schema.joint import PARTS
 from cases.schema.scene import Scene
 
@@ -103,6 +104,7 @@ WITHOUT: dict[str, Change] = {
     ),
     **{part.name: _joints(**dict.fromkeys(part.all_keys)) for part in PARTS},
     "mass damping": _table("damping", mass_proportional=None, rayleigh=None),
+    "constant Q": _table("rock", **dict.fromkeys(Attenuating.model_fields)),
     "local damping": _table("damping", local=None),
     "gravity": lambda scene: scene.model_copy(update={"gravity": None}),
     "prestress": lambda scene: scene.model_copy(update={"prestress": None}),

@@ -87,6 +87,19 @@ def _damping() -> list[HardCase]:
     ]
 
 
+def _attenuation() -> list[HardCase]:
+    blocks = {"dem": "rigid blocks have no rock of their own"}
+    return [
+        HardCase(
+            f"rock of Q = {quality:g}",
+            accuracy.near_exact,
+            {"rock.quality_factor": quality, STEP: 0.9},
+            blocks,
+        )
+        for quality in (5.0, 1e5)
+    ]
+
+
 TINY = BLOW | {
     STEP: 0.9,
     "pillar.length": 2.0,
@@ -108,4 +121,4 @@ IMPLICIT_LONG = HardCase(
     slow=True,
 )
 
-LINEAR = [*_steps(), *_contrasts(), *_layers(), *_damping(), MILLION, IMPLICIT_LONG]
+LINEAR = [*_steps(), *_contrasts(), *_layers(), *_damping(), *_attenuation(), MILLION, IMPLICIT_LONG]

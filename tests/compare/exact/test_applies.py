@@ -12,6 +12,7 @@ BARRED, DAMPED = {"joints": {"tension": False}}, {"joints": {"damping_ratio": 0.
 LAYER = [{"y": 20.0, "spacing_stiffness": 4.375e8}]
 CLOSES = [LAYER[0] | {"maximum_closure": 2e-3}]
 STIFF = [{"y": 20.0, "spacing_stiffness": 4.375e10}]
+RELAXES = {"rock": {"quality_factor": 20.0}}
 QUIET = {"ends": {"start": "quiet", "end": "quiet"}}
 STEP = {
     "load": {"shape": "step", "period": None},
@@ -45,6 +46,8 @@ YES = [
     ("no-tension-chain", BARRED),
     ("jointed-bar", DAMPED | QUIET | {"soft_layers": LAYER}),
     ("equivalent-bar", DAMPED | QUIET | {"soft_layers": LAYER}),
+    ("jointed-bar", DAMPED | RELAXES),
+    ("equivalent-bar", DAMPED | RELAXES),
     ("images", STEP),
     ("images", QUIET),
     ("series", {}),
@@ -63,6 +66,8 @@ NO = [
     ("no-tension-chain", {}, "every joint carries tension: see lattice"),
     ("no-tension-chain", BARRED | LONG, "more than 2,000 blocks: too many events"),
     ("jointed-bar", {"rock": {"intact_modulus": None}}, "rock.intact_modulus is not given"),
+    ("lattice", RELAXES, "the rock has a quality_factor"),
+    ("images", RELAXES, "the rock has a quality_factor"),
     ("jointed-bar", BARRED, "a joint bars tension"),
     ("jointed-bar", SHAKEN, "the loaded end is fixed"),
     ("equivalent-bar", BARRED, "a joint bars tension"),

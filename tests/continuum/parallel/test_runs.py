@@ -74,6 +74,15 @@ SCENES = {
             "ends.end": "matched",
         },
     ),
+    "rock of a quality factor in the plane, cut through blocks": (
+        "jointed",
+        {
+            **INCLINED,
+            "rock.quality_factor": 10.0,
+            "numerics.continuum.dim": 2,
+            "ends.end": "quiet",
+        },
+    ),
     "plane wave in two dimensions, shaken base": (
         "equivalent",
         {
@@ -202,6 +211,7 @@ DEAR = {
 WHAT_HAPPENS = {
     "bar, no tension, dashpots, mass damping, shaken base": ["viscous", "boundary"],
     "damped segments and an intact one between them": ["viscous", "boundary"],
+    "rock of a quality factor in the plane, cut through blocks": ["viscous", "boundary"],
     "plane wave in two dimensions, shaken base": ["friction", "boundary"],
     "blocks in space that slip and break": ["friction", "fracture", "boundary"],
     CUT: ["viscous", "boundary"],

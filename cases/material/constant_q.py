@@ -1,0 +1,111 @@
+"""Rock of a constant quality factor Q by relaxation mechanisms: a generalised Zener body.
+
+Springs in parallel, all but one of them in series with a dashpot of its own, make the modulus
+
+    M(s) = M_u (1 - sum_l y_l omega_l / (s + omega_l))
+
+of relaxation frequencies omega_l and shares y_l > 0 (Emmerich & Korn, Geophysics 52, 1987; Blanch,
+Robertsson & Symes, Geophysics 60, 1995). 1/Q = Im M / Re M at s = i omega is the same for every
+omega of a band but for some per cent where the y_l, by non-negative least squares, solve
+
+    sum_l y_l (omega omega_l + omega_l^2 / Q) / (omega^2 + omega_l^2) = 1/Q .
+
+The modulus that the scene gives is that of the phase speed at the reference frequency,
+c = sqrt(M / rho): M_u is larger by Re(sqrt(M_u / M))^2.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import ceil, log10, pi
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from cases.material.calibrate import Properties, calibrate
+from cases.schema.scene import Scene
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
+
+SPACING = 0.85  # decades between relaxation frequencies, at most: Q is within 4 % from Q = 5 on
+BEYOND = 0.1  # decades that they go beyond the band
+POINTS = 50  # a decade, at which Q is fitted
+
+
+class Mechanisms(NamedTuple):
+    """Relaxation frequencies omega_l [L], rad/s; shares y_l [L] of the unrelaxed modulus, of which
+    the relaxed one has 1 - sum(y_l); the unrelaxed modulus over the one that is given."""
+
+    frequency: np.ndarray
+    share: np.ndarray
+    unrelaxed: float
+
+    @property
+    def relaxed(self) -> float:
+        """The relaxed modulus over the unrelaxed one."""
+        return 1 - float(self.share.sum())
+
+    def modulus(self, s: np.ndarray) -> np.ndarray:
+        """Return M at Laplace variables s (1/s) over the modulus that is given."""
+        parts = self.share * self.frequency / (np.asarray(s)[..., None] + self.frequency)
+        return self.unrelaxed * (1 - parts.sum(axis=-1))
+
+
+#: Why rigid blocks do not simulate a scene with a quality factor.
+NO_ROCK = "rigid blocks have no rock of their own that a quality_factor could be of"
+
+
+def mechanisms(scene: AnyScene, model: str) -> Mechanisms:
+    """Return the mechanisms of a scene's intact rock, or of a pillar's rock mass where `model` is
+    "equivalent"; the scene has a quality factor."""
+    rock = scene.rock
+    assert rock.quality_factor is not None
+    found = fitted(rock.quality_factor, *rock.quality_frequencies(scene.pulses))
+    if model == "equivalent" and isinstance(scene, Scene):
+        return of_rock_mass(found, calibrate(scene))
+    return found
+
+
+@lru_cache
+def fitted(quality: float, reference: float, low: float, high: float) -> Mechanisms:
+    """Return the mechanisms of a quality factor from `low` to `high` (Hz), the phase speed being
+    that of the given modulus at `reference` (Hz)."""
+    from scipy.optimize import nnls  # slow to import
+
+    first, last = log10(low) - BEYOND, log10(high) + BEYOND
+    frequency = 2 * pi * np.logspace(first, last, 1 + ceil((last - first) / SPACING))
+    omega = 2 * pi * np.logspace(log10(low), log10(high), ceil(POINTS * log10(high / low)))[:, None]
+    rows = (omega * frequency + frequency**2 / quality) / (omega**2 + frequency**2)
+    share, _ = nnls(quality * rows, np.ones(len(omega)))
+    found = Mechanisms(frequency[share > 0], share[share > 0], 1.0)
+    slowness = 1 / np.sqrt(found.modulus(2j * pi * np.array(reference)))
+    return found._replace(unrelaxed=float(slowness.real) ** 2)
+
+
+def of_rock_mass(rock: Mechanisms, p: Properties) -> Mechanisms:
+    """Return the mechanisms of intact rock in series with the joints of a pillar, as homogenised.
+
+    Under a strain e rock has the stress E_u (e - j - sum_l y_l z_l), z_l' = omega_l (e - j - z_l),
+    and the joints' strain j the same, k (j + eta j') with k = S K_n. In the variables z_l
+    sqrt(y_l / omega_l) and j sqrt(k eta / E_u) - where eta = 0, with j eliminated - these are
+    x' = -A x + B e of a symmetric A, with the stress E_u (d - B x): the eigenvalues of A are
+    relaxation frequencies.
+    """
+    assert p.intact_modulus is not None
+    frequency, share = rock.frequency, rock.share
+    modulus, eta = rock.unrelaxed * p.intact_modulus, p.time_constant or 0.0
+    ratio = modulus * (1 / p.modulus - 1 / p.intact_modulus)  # of the joints: E_u / k
+    own = np.sqrt(share * frequency)
+    if eta:
+        at_once, alone = 1.0, np.append(own, 0.0)
+        into = np.append(own, np.sqrt(ratio / eta))
+        matrix = np.diag(np.append(frequency, 1 / eta)) + np.outer(into, into)
+        matrix = matrix - np.outer(alone, alone)
+    else:
+        at_once = 1 / (1 + ratio)
+        into = at_once * own
+        matrix = np.diag(frequency) - ratio * at_once * np.outer(own, own)
+    relaxes, modes = np.linalg.eigh(matrix)
+    weight = (into @ modes) ** 2 / relaxes / at_once
+    return Mechanisms(relaxes, weight, at_once * modulus / p.modulus)
