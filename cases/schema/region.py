@@ -31,7 +31,7 @@ class Region(Table):
 
     def rock(self, rest: IntactRock) -> IntactRock:
         """Return the region's rock, given that of the rest."""
-        own = {key: getattr(self, key) for key in IntactRock.model_fields}
+        own = {key: getattr(self, key, None) for key in IntactRock.model_fields}
         return rest.model_copy(update={k: v for k, v in own.items() if v is not None})
 
 

@@ -121,4 +121,12 @@ IMPLICIT_LONG = HardCase(
     slow=True,
 )
 
-LINEAR = [*_steps(), *_contrasts(), *_layers(), *_damping(), *_attenuation(), MILLION, IMPLICIT_LONG]
+LINEAR = [
+    *_steps(),
+    *_contrasts(),
+    *_layers(),
+    *_damping(),
+    *_attenuation(),
+    MILLION,
+    IMPLICIT_LONG,
+]
