@@ -108,7 +108,10 @@ def solve(
     """
     from cases.size import refuse_beyond_memory, waveform_bytes
 
-    one = _that_applies(name, scene)
+    one = solver(name)
+    answer = applies(name, scene)
+    if not answer:
+        raise SceneError(scene.title, "", None, f"{name} does not apply: {answer.reason}")
     if one.is_engine:
         return one.run(scene, progress, comm, keeper)
     try:
@@ -128,11 +131,3 @@ def solve_fields(
     if one.fields is not None:
         return one.fields(scene, progress, comm, keeper)
     return fields_of(solve(name, scene, progress, comm, keeper))
-
-
-def _that_applies(name: str, scene: AnyScene) -> Solver:
-    one = solver(name)
-    answer = applies(name, scene)
-    if not answer:
-        raise SceneError(scene.title, "", None, f"{name} does not apply: {answer.reason}")
-    return one

@@ -131,7 +131,9 @@ def pairings(one: xr.Dataset, other: xr.Dataset) -> list[Pairing]:
 
 
 def _shared(one: xr.Dataset, other: xr.Dataset) -> list[Pairing]:
-    n = _known_samples(other)
+    until = other.attrs.get("known_until")
+    times = other["time"].values
+    n = len(times) if until is None else int(np.searchsorted(times, until, side="right"))
     return [
         Pairing(place, a[:n], b[:n], error_of(other, place), False)
         for (place, a), (_, b) in zip(waveforms(one, other), waveforms(other, one), strict=True)
@@ -214,13 +216,6 @@ def error_of(result: xr.Dataset, place: Place) -> float:
     places, components = places_of(result, place.quantity)
     error = np.atleast_1d(result[name].values[places.index(place.at)])
     return float(error[components.index(place.component) if place.component else 0])
-
-
-def _known_samples(reference: xr.Dataset) -> int:
-    """Return how many samples a reference knows: all, or those before it turns chaotic."""
-    until = reference.attrs.get("known_until")
-    times = reference["time"].values
-    return len(times) if until is None else int(np.searchsorted(times, until, side="right"))
 
 
 def _loudest(found: list[Pairing]) -> dict[str, float]:

@@ -44,7 +44,9 @@ class Steps:
         self.pillar, self.internal, self.n = pillar, internal, 0
         self.x = space.tabulate_dof_coordinates()
         self.block = block_of_nodes(pillar, space)
-        mass = nodal_mass(pillar, space)
+        along = ufl.as_vector([1.0, 0.0, 0.0])
+        work = pillar.density * ufl.inner(along, ufl.TestFunction(space)) * at_nodes(pillar)
+        mass = forms.vector(work)[::3]
         self.step_over_mass = pillar.dt / np.repeat(mass, 3)
         # Of an end node's mass, the share of the face: h / p (p + 1) is Lobatto's weight in y.
         depth = pillar.d / pillar.n / (pillar.p * (pillar.p + 1))
@@ -130,13 +132,6 @@ def at_nodes(pillar: Pillar) -> ufl.Measure:
     """Return the measure with Gauss-Lobatto-Legendre points."""
     rule = {"quadrature_rule": "GLL", "quadrature_degree": max(2 * pillar.p - 1, 1)}
     return ufl.dx(metadata=rule)
-
-
-def nodal_mass(pillar: Pillar, space) -> np.ndarray:
-    """Return the mass of every node, kg."""
-    along = ufl.as_vector([1.0, 0.0, 0.0])
-    work = pillar.density * ufl.inner(along, ufl.TestFunction(space)) * at_nodes(pillar)
-    return forms.vector(work)[::3]
 
 
 def block_of_nodes(pillar: Pillar, space) -> np.ndarray:

@@ -42,7 +42,9 @@ def read(path: Path) -> Results | None:
     for case in suite.iter("testcase"):
         place, name = _file(case.attrib["classname"]), case.attrib["name"]
         if place.endswith(".toml"):
-            pairs[place, name] = _measured(case)
+            values = {p.attrib["name"]: p.attrib["value"] for p in case.iter("property")}
+            found = float(values["misfit"]) if "misfit" in values else None
+            pairs[place, name] = Measured(found, _state(case) == "passed")
             continue
         key = place, re.sub(r"\[.*", "", name, flags=re.DOTALL)
         before = tests.get(key, Outcome(Counter(), 0.0))
@@ -62,9 +64,3 @@ def _state(case: ElementTree.Element) -> str:
     if case.find("failure") is not None or case.find("error") is not None:
         return "failed"
     return "skipped" if case.find("skipped") is not None else "passed"
-
-
-def _measured(case: ElementTree.Element) -> Measured:
-    values = {p.attrib["name"]: p.attrib["value"] for p in case.iter("property")}
-    found = float(values["misfit"]) if "misfit" in values else None
-    return Measured(found, _state(case) == "passed")

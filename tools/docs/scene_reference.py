@@ -26,11 +26,7 @@ def _section(table: TableOf, prefix: str) -> str:
     comments = field_comments(table.model)
     rows = [_row(table.dotted(name), name, f, comments[name], prefix) for name, f in table.fields]
     heading = f"### {shown} {{ #{_anchor(table.path, prefix)} }}"
-    return "\n".join([heading, "", _purpose(table.model), "", HEAD, *rows])
-
-
-def _purpose(model: type[BaseModel]) -> str:
-    return inspect.getdoc(model) or ""
+    return "\n".join([heading, "", inspect.getdoc(table.model) or "", "", HEAD, *rows])
 
 
 def _row(key: str, name: str, field: FieldInfo, comment: str, prefix: str) -> str:

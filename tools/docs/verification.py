@@ -27,7 +27,8 @@ def page(tests: Path, results: Path) -> str:
     found = read(results)
     parts = [_about(found, tests), "## Shipped scenes, held to their own bounds", _scenes(found)]
     for folder, title in FOLDERS.items():
-        parts += [f"## {title}", _folder(tests, folder, found)]
+        files = sorted((tests / folder).rglob("test_*.py"))
+        parts += [f"## {title}", "\n\n".join(_file(tests.parent, file, found) for file in files)]
     return "\n\n".join(parts)
 
 
@@ -78,11 +79,6 @@ def _misfit(one: Measured | None) -> str:
         return NOT_RUN
     value = "" if one.misfit is None else f"{one.misfit:.2g}"
     return value if one.holds else f"**{value} fails**"
-
-
-def _folder(tests: Path, folder: str, found: Results | None) -> str:
-    files = sorted((tests / folder).rglob("test_*.py"))
-    return "\n\n".join(_file(tests.parent, file, found) for file in files)
 
 
 def _file(root: Path, file: Path, found: Results | None) -> str:

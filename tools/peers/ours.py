@@ -94,9 +94,15 @@ def job(scene: Scene, twin: Twin, root: Path) -> Job:
     changes = _changes(twin.model, twin.elements)
     changes[_key(kind, "step_fraction")] = p.dt / critical * (1 + 1e-9)  # the step, not below it
     folder = folder_of(root, kind.curve, **settings)
+    order = kind.changes.get("numerics.continuum.order")
+    engine, _, model = kind.engine.partition("-")
+    options = ["--variant", "", "--engine", engine, "--out", str(folder)]
+    options += ["--model", model] if model else []
+    for key, value in changes.items():
+        options += ["--set", f"{key}={json.dumps(value)}"]
     return Job(
         curve=kind.curve,
-        method=_method(kind),
+        method=f"elements of order {order}, lumped mass, leapfrog" if order else "leapfrog",
         solves=kind.solves,
         own=kind.own,
         settings=settings,
@@ -105,7 +111,7 @@ def job(scene: Scene, twin: Twin, root: Path) -> Job:
         work=(p.blocks if kind.engine == "dem" else freedoms) * p.steps,
         samples=p.samples,
         folder=folder,
-        command=_command(kind, changes, folder),
+        command=[sys.executable, "-m", "compare", "run", str(PILLAR), *options],
         read=lambda place: read(place, kind.engine),
     )
 
@@ -114,20 +120,6 @@ def read(folder: Path, engine: str) -> Reading:
     """Read the result file of a run."""
     with xr.open_dataset(folder / f"{engine}.nc") as found:
         return Reading(found["stress"].values[0], float(found.attrs["seconds_stepping"]))
-
-
-def _method(kind: Kind) -> str:
-    order = kind.changes.get("numerics.continuum.order")
-    return f"elements of order {order}, lumped mass, leapfrog" if order else "leapfrog"
-
-
-def _command(kind: Kind, changes: dict, folder: Path) -> list[str]:
-    engine, _, model = kind.engine.partition("-")
-    options = ["--variant", "", "--engine", engine, "--out", str(folder)]
-    options += ["--model", model] if model else []
-    for key, value in changes.items():
-        options += ["--set", f"{key}={json.dumps(value)}"]
-    return [sys.executable, "-m", "compare", "run", str(PILLAR), *options]
 
 
 def _changes(model: str, elements: int) -> dict:

@@ -57,6 +57,10 @@ def pillar(scene: Scene, stride: int) -> Pillar:
     p, dt = calibrate(scene), scene.interval / stride
     steps = stride * (len(sample_times(scene)) - 1)
     means = step_means(load_history(scene), dt, steps + 1)
+    places = scene.record.stress
+    joint = round(places[0] / p.spacing) if places else 0
+    if len(places) != 1 or abs(joint * p.spacing - places[0]) > 1e-9:
+        raise SceneError(scene.where, "record.stress", places, "must be one joint")
     return Pillar(
         blocks=p.block_count,
         spacing=p.spacing,
@@ -68,7 +72,7 @@ def pillar(scene: Scene, stride: int) -> Pillar:
         poisson=p.poisson,
         normal=p.regular_stiffness * p.area,
         shear=p.regular_shear_stiffness * p.area,
-        joint=_recorded_joint(scene, p.spacing),
+        joint=joint,
         dt=dt,
         stride=stride,
         steps=steps,
@@ -86,11 +90,3 @@ def stride_for(scene: Scene, size: float, dim: int, fraction: float) -> int:
     nu = p.poisson if dim == 3 else 0.0
     confined = (1 - nu) / ((1 + nu) * (1 - 2 * nu))
     return ceil(scene.interval * p.bar_speed * sqrt(confined) / (fraction * size))
-
-
-def _recorded_joint(scene: Scene, spacing: float) -> int:
-    places = scene.record.stress
-    joint = round(places[0] / spacing) if places else 0
-    if len(places) != 1 or abs(joint * spacing - places[0]) > 1e-9:
-        raise SceneError(scene.where, "record.stress", places, "must be one joint")
-    return joint

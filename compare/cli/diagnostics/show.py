@@ -1,7 +1,6 @@
 """Output of `jointwave doctor`."""
 
 from math import isnan
-from typing import Any
 
 from compare.cli.diagnostics.accuracy import Check
 from compare.cli.diagnostics.doctor import Health
@@ -13,7 +12,9 @@ COLOURS = {"missing": "yellow", "broken": "bold red"}
 def show_health(found: Health, as_json: bool) -> None:
     """Print every part, and what the engines' checks came to."""
     if as_json:
-        print_json(_facts(found))
+        checks = [{**check._asdict(), "holds": check.holds} for check in found.checks]
+        parts = [part._asdict() for part in found.parts]
+        print_json({"parts": parts, "self_check": checks, "well": found.is_well})
         return
     rows = [[p.group, p.part, p.state, _said(p.found, p.hint)] for p in found.parts]
     show_table(["", "part", "state", ""], rows, [COLOURS.get(p.state, "") for p in found.parts])
@@ -35,9 +36,3 @@ def _sentence(check: Check) -> str:
         f"self-check {check.pair}: {verdict}, relative L2 misfit {check.misfit:.3g}, "
         f"at most {check.bound:g}, in {check.seconds:.1f} s"
     )
-
-
-def _facts(found: Health) -> dict[str, Any]:
-    checks = [{**check._asdict(), "holds": check.holds} for check in found.checks]
-    parts = [part._asdict() for part in found.parts]
-    return {"parts": parts, "self_check": checks, "well": found.is_well}

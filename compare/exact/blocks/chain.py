@@ -97,13 +97,14 @@ def chain(scene: Scene) -> Chain:
     p, gravity = calibrate(scene), scene.gravity
     masses, contacts = p.masses, p.contact_y
     prestress = scene.prestress.normal * p.area if scene.prestress else 0.0
+    etas = p.joint_time_constant
     return Chain(
         mass=p.block_mass if masses is None else masses,
         area=p.area,
         contact_y=contacts,
         centre_y=p.spacing * (np.arange(p.block_count) + 0.5) if masses is None else p.centre_y,
         stiffness=p.stiffness * p.area,
-        viscosity=_viscosity(p),
+        viscosity=np.zeros_like(p.stiffness) if etas is None else p.stiffness * p.area * etas,
         tension=p.tension,
         start=_end(scene.ends.start, p.at_start),
         end=_end(scene.ends.end, p.at_end),
@@ -118,11 +119,6 @@ def chain(scene: Scene) -> Chain:
 def _end(kind: str, p: Properties) -> EndOfChain:
     half = 2 * p.regular_stiffness * p.area
     return EndOfChain(kind, half, half * (p.time_constant or 0.0), p.impedance * p.area)
-
-
-def _viscosity(p: Properties) -> np.ndarray:
-    etas = p.joint_time_constant
-    return np.zeros_like(p.stiffness) if etas is None else p.stiffness * p.area * etas
 
 
 def rates(chain: Chain, state: np.ndarray, drive: float = 0.0) -> np.ndarray:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cases.material.calibrate import Properties, calibrate
+from cases.material.calibrate import calibrate
 from cases.material.face import face_points
 from cases.schema.scene import Scene
 
@@ -106,9 +106,10 @@ def row(scene: Scene) -> Row:
     etas = np.zeros(len(springs)) if p.joint_time_constant is None else p.joint_time_constant
     start, end = (_end(kind, half, dashpot, p.time_constant or 0.0) for kind in kinds)
     dashpots = [eta * spring for eta, spring in zip(etas, springs, strict=True)]
+    across, along = p.inertia_across, p.inertia_along
     return Row(
         spacing=p.spacing,
-        inertia=_inertia(p),
+        inertia=np.array([p.block_mass] * 3 + [across, along, across]),
         stiffness=np.array([start[0], *springs, end[0]]),
         viscosity=np.array([start[1], *dashpots, end[1]]),
         dashpot=dashpot,
@@ -176,8 +177,3 @@ def _end(kind: str, half: np.ndarray, dashpot: np.ndarray, eta: float) -> tuple:
     if kind == "free":
         return 0 * half, 0 * half
     return (0 * half, dashpot) if kind == "quiet" else (half, eta * half)
-
-
-def _inertia(p: Properties) -> np.ndarray:
-    across, along = p.inertia_across, p.inertia_along
-    return np.array([p.block_mass] * 3 + [across, along, across])

@@ -130,7 +130,8 @@ def _receivers(scene: Scene, parts: SpatialSystem, c: int, times: np.ndarray) ->
 def _rows(scene: Scene, parts: SpatialSystem, c: int) -> tuple[np.ndarray, tuple[int, int]]:
     """Return what the receivers read of a state, and how many rows are forces and displacements."""
     record = scene.record
-    points = _read(_centres(scene), record.velocity, c)
+    contacts = _contacts(scene)
+    points = _read((contacts[1:] + contacts[:-1]) / 2, record.velocity, c)
     sections = _read(_contacts(scene), record.stress, c) @ parts.forces
     rows = [sections, points @ parts.displacement, points @ parts.velocity]
     return np.concatenate(rows), (len(sections), len(points))
@@ -140,12 +141,6 @@ def _contacts(scene: Scene) -> np.ndarray:
     """Return where the N + 1 contacts lie, m."""
     count = scene.pillar.block_count
     return scene.pillar.length / count * np.arange(count + 1)
-
-
-def _centres(scene: Scene) -> np.ndarray:
-    """Return where the centroids of the N blocks lie, m."""
-    contacts = _contacts(scene)
-    return (contacts[1:] + contacts[:-1]) / 2
 
 
 def _read(nodes: np.ndarray, places: list[float], c: int) -> np.ndarray:

@@ -97,22 +97,17 @@ def _cells(e: EffectCost) -> list[str]:
     """Return an effect's numbers as text, under `COLUMNS`."""
     if e.reason:
         return [e.effect, *[""] * 6, e.reason]
+    misfit = "0" if e.misfit == 0 else percent(e.misfit) if isfinite(e.misfit) else ""
+    stirred = f"{e.stirred} stands still with it: not resolved" if e.stirred else ""
     return [
         e.effect,
-        _misfit(e),
+        "; ".join(filter(None, [misfit, stirred])),
         f"{100 * e.share:.2g}" if e.is_resolved("cost") else "not resolved",
         *(_ns(e, name) for name in ("cost", "alone")),
         f"{e.steps:.3g}",
         _ns(e, "rock"),
         "",
     ]
-
-
-def _misfit(e: EffectCost) -> str:
-    """Return the misfit without an effect, and what stands still with it but not without."""
-    misfit = "0" if e.misfit == 0 else percent(e.misfit) if isfinite(e.misfit) else ""
-    stirred = f"{e.stirred} stands still with it: not resolved" if e.stirred else ""
-    return "; ".join(filter(None, [misfit, stirred]))
 
 
 def _ns(e: EffectCost, name: str) -> str:

@@ -111,7 +111,10 @@ def _write_scene(found: Fit, given: AnyScene, path: Path) -> list[Path]:
     about.append("")
     written = [write_text(path, "\n".join(about) + scene_text(found.scene))]
     folder = Path(given.where.partition(" [")[0]).parent
-    for name in _files_of(found.scene):
+    scene = found.scene
+    mesh = scene.numerics.continuum.mesh if isinstance(scene, Scene) else None
+    names = dict.fromkeys([*(pulse.file for pulse in scene.pulses), mesh])
+    for name in [name for name in names if name is not None]:
         there = path.parent / name
         if (folder / name).resolve() != there.resolve():
             if there.exists() and not filecmp.cmp(folder / name, there, shallow=False):
@@ -120,10 +123,3 @@ def _write_scene(found: Fit, given: AnyScene, path: Path) -> list[Path]:
             written.append(write(there, partial(shutil.copyfile, folder / name)))
     cases.load(path)  # it runs
     return written
-
-
-def _files_of(scene: AnyScene) -> list[str]:
-    """Return the files that a scene names: histories of its pulses, and the mesh of a pillar."""
-    mesh = scene.numerics.continuum.mesh if isinstance(scene, Scene) else None
-    names = dict.fromkeys([*(pulse.file for pulse in scene.pulses), mesh])
-    return [name for name in names if name is not None]

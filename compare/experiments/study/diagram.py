@@ -103,18 +103,14 @@ def _draw_panel(
 def _draw_cancelling(ax: Axes, rows: list[PointRow], error: str, cost: str, name: str) -> None:
     """Cross what is measured where errors cancel: far below the sum that counts."""
     shown = "measured" if error == "total" else error
-    found = [r for r in measured(rows, shown, cost) if r.cancels and _is_crossed(r, error)]
+    found = [
+        r for r in measured(rows, shown, cost) if r.cancels and (error == "total" or isnan(r.total))
+    ]
     if found:
         x, y = ([getattr(r, name) for r in found] for name in (cost, shown))
         words = "errors cancel, or a finer point is worse: not counted"
         (line,) = ax.plot(x, y, "x", color="#c0392b", markersize=6, zorder=3, label=words)
         line.set_gid(f"{name}-cancels")
-
-
-def _is_crossed(row: PointRow, error: str) -> bool:
-    """Return whether a point that cancels is crossed: its numerical error if finer ones are worse
-    and nothing finer is known."""
-    return error == "total" or isnan(row.total)
 
 
 def _draw_digits_per_second(ax: Axes) -> None:

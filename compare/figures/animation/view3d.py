@@ -52,7 +52,10 @@ class View3D:
         self.plotter.enable_anti_aliasing("ssaa")
         self.grids, self.edges = {}, {}
         for i, (name, s) in enumerate(self.found.items()):
-            self.grids[name], self.edges[name] = grid_of(s), edges_of(s)
+            self.grids[name] = pyvista.UnstructuredGrid({CELLS[s.kind]: s.cells}, s.points.copy())
+            self.grids[name]["block"] = s.block
+            lines = np.insert(surface_of(s).edges, 0, 2, axis=1)
+            self.edges[name] = pyvista.PolyData(s.points.copy(), lines=lines.ravel())
             self._add(name, i * self.layout.apart)
         self._label_bar()
         self._place_camera()
@@ -199,17 +202,3 @@ def font_for(text: str) -> str:
     """Return the file of a font that has a text's letters: VTK takes one for all of them."""
     files = [fonts.file_of(family) for family in fonts.families()]
     return min(files, key=lambda file: len(fonts.missing(file, text)))
-
-
-def grid_of(s: Snapshots) -> pyvista.UnstructuredGrid:
-    """Return the cells of snapshots with the points of the unloaded pillar and `block` of cells."""
-    grid = pyvista.UnstructuredGrid({CELLS[s.kind]: s.cells}, s.points.copy())
-    grid["block"] = s.block
-    return grid
-
-
-def edges_of(s: Snapshots) -> pyvista.PolyData:
-    """Return the edges of the blocks."""
-    edges = surface_of(s).edges
-    lines = np.insert(edges, 0, 2, axis=1)
-    return pyvista.PolyData(s.points.copy(), lines=lines.ravel())

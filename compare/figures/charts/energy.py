@@ -25,7 +25,12 @@ def energy(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
         "J/m" if plane else "J",
         max(np.abs(x).max() for ledger in ledgers for x in ledger.terms.values()),
     )
-    title, chart = "Energy over time", _chart(ledgers, unit)
+    variants = list(dict.fromkeys(ledger.variant for ledger in ledgers))
+    entries = [Entry(term, term, _of_term("dem", term)) for term in drawn_terms(ledgers)]
+    engines = in_order({ledger.engine for ledger in ledgers})
+    entries += [Entry(engine, engine, _of_engine(engine)) for engine in engines]
+    cells = [_cell(v, [x for x in ledgers if x.variant == v], unit) for v in variants]
+    title, chart = "Energy over time", Chart([cells], "time (ms)", {"": entries})
     return [chart_figure(f"{name}-energy", title, _caption(ledgers), chart, table(ledgers))]
 
 
@@ -52,16 +57,6 @@ def _dashes(engine: str) -> Any:
 
 def _of_engine(engine: str) -> Style:
     return style(engine)._replace(width=1.6, dashes=_dashes(engine))
-
-
-def _chart(ledgers: list[Ledger], unit: Unit) -> Chart:
-    """Return the terms of each variant, and under them what is missing, variants side by side."""
-    variants = list(dict.fromkeys(ledger.variant for ledger in ledgers))
-    entries = [Entry(term, term, _of_term("dem", term)) for term in drawn_terms(ledgers)]
-    engines = in_order({ledger.engine for ledger in ledgers})
-    entries += [Entry(engine, engine, _of_engine(engine)) for engine in engines]
-    cells = [_cell(v, [x for x in ledgers if x.variant == v], unit) for v in variants]
-    return Chart([cells], "time (ms)", {"": entries})
 
 
 def _cell(variant: str, ledgers: list[Ledger], unit: Unit) -> list[Subplot]:

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import NullLocator
 
 from compare.figures.blank import blank
-from compare.figures.charts.chart import Chart, ChartLine, Entry, Mark, Subplot
+from compare.figures.charts.chart import Chart, Entry, Mark, Subplot
 from compare.figures.style import WIDTH, Style
 
 HEADING, ABSCISSA = 0.28, 0.48  # inches above each subplot, and below the lowest
@@ -104,16 +104,11 @@ def _draw(ax: Axes, subplot: Subplot, name: str, is_log: bool) -> None:
     for level in subplot.levels:
         ax.axhline(level, color="#bbbbbb", linewidth=0.6, zorder=1)
     for line in subplot.lines:
-        add_line(ax, line).set_gid(f"{name}-{line.part}" if line.part else None)
+        (drawn,) = ax.plot(line.x, line.y, **properties(line.style, line.marker))
+        drawn.set_gid(f"{name}-{line.part}" if line.part else None)
     for mark in subplot.marks:
         _add_mark(ax, mark)
     ax.margins(x=0)
-
-
-def add_line(ax: Axes, line: ChartLine) -> Line2D:
-    """Draw one curve."""
-    (drawn,) = ax.plot(line.x, line.y, **properties(line.style, line.marker))
-    return drawn
 
 
 def properties(style: Style, marker: str = "") -> dict[str, Any]:

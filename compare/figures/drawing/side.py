@@ -34,7 +34,12 @@ def draw_strip(ax: Axes, scene: Scene) -> None:
     ax.axis("off")
     place = placement(scene)
     _draw_rock(ax, scene, place)
-    _draw_layers(ax, scene, place)
+    for i, layer in enumerate(scene.soft_layers):
+        width = max(0.045, place.scale * (layer.thickness or 0.0))
+        left, right = place.x(layer.y) - width / 2, place.x(layer.y) + width / 2
+        low, high = place.bottom - 0.05, place.top + 0.05
+        across, up = [left, right, right, left], [low, low, high, high]
+        ax.fill(across, up, color=LAYER, zorder=5, gid=f"layer-{i}")
     for end, outward in ((scene.ends.start, -1), (scene.ends.end, 1)):
         _draw_end(ax, end, place, place.x(0 if outward < 0 else scene.pillar.length), outward)
         _name_end(ax, end, scene, place, outward)
@@ -81,15 +86,6 @@ def _draw_rock(ax: Axes, scene: Scene, place: Placement) -> None:
     outline = [(edges[0], place.bottom), (edges[-1], place.bottom), (edges[-1], place.top)]
     outline += [(edges[0], place.top), (edges[0], place.bottom)]
     ax.plot(*zip(*outline, strict=True), color=INK, linewidth=1.0, zorder=4)
-
-
-def _draw_layers(ax: Axes, scene: Scene, place: Placement) -> None:
-    for i, layer in enumerate(scene.soft_layers):
-        width = max(0.045, place.scale * (layer.thickness or 0.0))
-        left, right = place.x(layer.y) - width / 2, place.x(layer.y) + width / 2
-        low, high = place.bottom - 0.05, place.top + 0.05
-        across, up = [left, right, right, left], [low, low, high, high]
-        ax.fill(across, up, color=LAYER, zorder=5, gid=f"layer-{i}")
 
 
 def _draw_end(ax: Axes, end: str, place: Placement, x: float, outward: int) -> None:

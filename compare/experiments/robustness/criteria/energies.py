@@ -20,20 +20,15 @@ class Drift(NamedTuple):
 
 def drift(trial: CaseTrial, steps: int) -> Drift:
     """Return the energy of an undamped pillar over so many steps, from the end of its load on."""
-    result = trial.run(**_clock(trial, steps))
-    energy = result["energy"].sel(term=["kinetic", "elastic"]).sum("term").values
-    after = result["time"].values > 3 * trial.period
-    mean = energy[after].mean()
-    return Drift(result["time"].values[after] / float(result.attrs["dt"]), energy[after] / mean - 1)
-
-
-def _clock(trial: CaseTrial, steps: int) -> dict:
-    """Return the changes for so many steps at the fraction of the critical step, in samples."""
     dt, stride = trial.dt, steps // SAMPLES
     found = {"record__interval": stride * dt, "time__duration": steps * dt * (1 + 1e-9)}
     if trial.is_implicit:
         found["numerics__continuum__steps_per_period"] = trial.period / dt
-    return found
+    result = trial.run(**found)
+    energy = result["energy"].sel(term=["kinetic", "elastic"]).sum("term").values
+    after = result["time"].values > 3 * trial.period
+    mean = energy[after].mean()
+    return Drift(result["time"].values[after] / float(result.attrs["dt"]), energy[after] / mean - 1)
 
 
 def no_trend(steps: int) -> Criterion:

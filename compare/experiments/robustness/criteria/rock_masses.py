@@ -4,7 +4,6 @@ from math import hypot, inf, radians, tan
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from cases.loads import history_of, step_means
 from cases.material.contact_points import contact_points
@@ -167,7 +166,8 @@ def within_friction(trial: CaseTrial) -> Judgement:
     scene, result = trial.rock_mass, trial.result
     law = scene.joint_sets[0]
     normal, shear = np.moveaxis(result["traction"].values, -1, 0)
-    share = _share(result)
+    last = result["energy"].isel(time=-1)
+    share = float(last.sel(term="friction") / last.sel(term="work"))
     if not (share > EPS and normal.min() >= 0):
         said = f"friction takes {share:.2g} of the work, least {normal.min():.3g} Pa"
         return Judgement(inf, 0.0, said)
@@ -175,9 +175,3 @@ def within_friction(trial: CaseTrial) -> Judgement:
     above = float((np.abs(shear) - strength).max() / np.abs(normal).max())
     said = f"of the stress; friction takes {share:.2g} of the work"
     return Judgement(max(above, 0.0), 10 * EPS, said)
-
-
-def _share(result: xr.Dataset) -> float:
-    """Return what friction takes of the work; round-off is below EPS of it."""
-    last = result["energy"].isel(time=-1)
-    return float(last.sel(term="friction") / last.sel(term="work"))

@@ -118,7 +118,10 @@ def caught(trial: CaseTrial) -> Judgement:
     try:
         trial.run(**changes, **{ALLOW: True})
     except UnstableError as error:
-        return Judgement(_steps_until(trial, str(error)), 2 * steps, f"steps; {error}")
+        message = str(error)
+        found = re.search(r"t = ([-+.\de]+) s", message)
+        assert found is not None, message
+        return Judgement(round(float(found[1]) / trial.dt), 2 * steps, f"steps; {error}")
     return Judgement(inf, 2 * steps, "the run was not stopped")
 
 
@@ -129,13 +132,6 @@ def _growth(trial: CaseTrial, x: float) -> float:
     from dem.axial.fourth_order import half_trace, stability_limit
 
     return acosh(abs(half_trace()((x * stability_limit()) ** 2)))
-
-
-def _steps_until(trial: CaseTrial, message: str) -> float:
-    """Return the step at which a run was stopped, by the time that its message names."""
-    found = re.search(r"t = ([-+.\de]+) s", message)
-    assert found is not None, message
-    return round(float(found[1]) / trial.dt)
 
 
 @criterion("energy after the load, over that at its end")

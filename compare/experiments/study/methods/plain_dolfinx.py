@@ -76,7 +76,9 @@ def solve(scene: Scene) -> xr.Dataset:
     bar = _bar(scene)
     numerics = scene.numerics.continuum
     time = clock(scene, bar.critical, numerics.step_fraction, numerics.allow_unstable, "continuum")
-    slopes, values = _receivers(scene, bar)
+    record = scene.record
+    slopes = np.array([_row(bar, y, 1) for y in record.stress]).reshape(-1, len(bar.mass))
+    values = np.array([_row(bar, y, 0) for y in record.velocity]).reshape(-1, len(bar.mass))
     ready = perf_counter()
     u, v = _march(scene, bar, time)
     done = perf_counter()
@@ -161,15 +163,6 @@ def _critical(stiffness, mass: np.ndarray, eta: float) -> float:
     omega = sqrt(square)
     xi = eta * omega / 2
     return 2 / omega * (sqrt(1 + xi**2) - xi)
-
-
-def _receivers(scene: Scene, bar: PlainBar) -> tuple[np.ndarray, np.ndarray]:
-    """Return rows [receivers, freedoms] of the slope at the sections of the stress, the mean of
-    both sides between two elements, and of the value at the points of the velocity."""
-    record = scene.record
-    slopes = np.array([_row(bar, y, 1) for y in record.stress]).reshape(-1, len(bar.mass))
-    values = np.array([_row(bar, y, 0) for y in record.velocity]).reshape(-1, len(bar.mass))
-    return slopes, values
 
 
 def _row(bar: PlainBar, y: float, derivative: int) -> np.ndarray:
