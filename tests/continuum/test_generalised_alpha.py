@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compare.exact.schemes import generalised_alpha as theory
+from closed_forms import generalised_alpha as theory
 from continuum.implicit.generalised_alpha import scheme
 
 

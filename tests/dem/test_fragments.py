@@ -10,7 +10,7 @@ import cases
 import dem
 from cases.loads import load_history
 from cases.material.calibrate import calibrate
-from compare.exact.bar.spall import lattice_spall
+from closed_forms.spall import lattice_spall
 from compare.scenes import SHIPPED
 from dem.fragments import fragments
 

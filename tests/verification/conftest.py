@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from compare.exact.solid.manufactured import Manufactured
+from closed_forms.manufactured import Manufactured
 from continuum.mesh.cells import CORNERS, DIMENSION, oriented
 from continuum.mesh.description import Joints, Mesh, Part
 from continuum.mesh.facets import Facets, normals, outer_facets

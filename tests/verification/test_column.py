@@ -9,7 +9,7 @@ import pytest
 from scipy.sparse import diags
 from scipy.sparse.linalg import eigsh
 
-from compare.exact.solid import beam, column
+from closed_forms import beam, column
 from continuum.build import discretise, operators
 from continuum.ends import face_area
 

@@ -8,7 +8,7 @@ import pytest
 
 import continuum
 from cases.loads import load_history
-from compare.exact.joint import opening_joint
+from closed_forms import opening_joint
 
 SPEED, Z, PERIOD = 2000.0, 2400.0 * 2000.0, 0.01
 SIDES = 20.0 - 1e-6, 20.0 + 1e-6  # m, of the joint

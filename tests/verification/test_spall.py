@@ -8,8 +8,8 @@ import continuum
 from cases.loads import load_history
 from cases.material.calibrate import calibrate
 from cases.sampling import clock
-from compare.exact.bar.jointed_spall import jointed_spall
-from compare.exact.bar.spall import spall
+from closed_forms.jointed_spall import jointed_spall
+from closed_forms.spall import spall
 from compare.scenes import SHIPPED
 from continuum.build import build_model, critical_step_of, discretise
 from continuum.explicit.march import march

@@ -8,8 +8,6 @@ time on at which the two differ by PARTED of the motion nothing is known (`known
 
 Holds for any load or shaken base, soft layers, dashpots, mass-proportional damping, ends, gravity
 along the axis and prestress, if no joint that bars tension would be pulled at rest.
-
-One such joint between two half-spaces has a closed form, `compare.exact.joint.opening_joint`.
 """
 
 from dataclasses import replace

@@ -85,9 +85,9 @@ def band_edge(impedance: float, stiffness: float, crossing: float) -> float:
     """Return the frequency (Hz) where the first pass band of equal joints ends.
 
     impedance : of the rock, Pa s/m. stiffness : of a joint, Pa/m. crossing : of the rock between
-    two joints, s. There cos(phi) = cos(theta) - sin(theta) / (2 kappa) is -1, as in
-    `compare.exact.joint.parallel_joints`; divided by 2 cos(theta/2), which vanishes at the band's
-    other edge, this is cos(theta/2) = sin(theta/2) / (2 kappa).
+    two joints, s. There cos(phi) = cos(theta) - sin(theta) / (2 kappa) is -1 (Cai & Zhao, Int. J.
+    Rock Mech. Min. Sci. 37, 2000); divided by 2 cos(theta/2), which vanishes at the band's other
+    edge, this is cos(theta/2) = sin(theta/2) / (2 kappa).
     """
     from scipy.optimize import brentq
 

@@ -16,7 +16,7 @@ from cases.material.effective_medium import (
 )
 from cases.material.rigid_fit import rigid_fit
 from cases.material.rock import ElasticRock
-from compare.exact.plane.block_lattice import Lattice, modes
+from closed_forms.block_lattice import Lattice, modes
 from compare.exact.plane.oblique_joint import Joint, scattering
 from compare.exact.plane.waves import slownesses_across
 

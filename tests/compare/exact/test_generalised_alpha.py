@@ -7,7 +7,7 @@ them in tests/continuum.
 import numpy as np
 import pytest
 
-from compare.exact.schemes import generalised_alpha as theory
+from closed_forms import generalised_alpha as theory
 
 RADII = [0.0, 0.3, 0.5, 0.8, 0.9, 1.0]
 

@@ -9,9 +9,9 @@ from cases.histories import Recorded, Sine
 from cases.loads import load_history
 from cases.material.calibrate import calibrate
 from cases.sampling import sample_times
+from closed_forms import opening_joint
 from compare.exact.blocks import lattice, no_tension
 from compare.exact.blocks.chain import chain
-from compare.exact.joint import opening_joint
 
 FIELDS = ("stress", "velocity", "displacement")
 

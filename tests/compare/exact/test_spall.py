@@ -5,8 +5,8 @@ import pytest
 from scipy.optimize import fsolve
 
 from cases.histories import Recorded, Ricker, Sine, Step
+from closed_forms.spall import lattice_spall, spall
 from compare.exact.bar import images
-from compare.exact.bar.spall import lattice_spall, spall
 from compare.exact.blocks import lattice
 
 L, C = 50.0, 1350.0

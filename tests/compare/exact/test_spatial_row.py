@@ -5,7 +5,8 @@ import pytest
 
 from cases.material.calibrate import calibrate
 from cases.material.face import face_points
-from compare.exact.blocks import cantilever, lattice, spatial, spatial_lattice
+from closed_forms import cantilever
+from compare.exact.blocks import lattice, spatial, spatial_lattice
 from compare.exact.blocks.spatial_system import at_rest, system
 from compare.exact.schemes import leapfrog
 

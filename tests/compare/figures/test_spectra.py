@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from cases.material.calibrate import calibrate
-from compare.exact.joint.parallel_joints import transmission
+from closed_forms.parallel_joints import transmission
 from compare.figures.charts.frequencies import band_edge, marks_of
 from compare.figures.charts.interactive import BITS, unpacked
 from compare.figures.charts.spectra import spectra

@@ -5,8 +5,8 @@ import pytest
 from scipy.linalg import eigh
 
 from cases.material.calibrate import calibrate
+from closed_forms import generalised_alpha as theory
 from compare.exact.bar import images, jointed_bar
-from compare.exact.schemes import generalised_alpha as theory
 from continuum.build import critical_step_of, discretise, operators
 from continuum.explicit.march import run as run_explicit
 from continuum.implicit.balance import implicit_matrices

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cases.material.calibrate import calibrate
-from compare.exact.schemes import generalised_alpha as theory
+from closed_forms import generalised_alpha as theory
 from continuum.implicit.generalised_alpha import scheme
 from continuum.state import TERMS
 from results.dataset import imbalance

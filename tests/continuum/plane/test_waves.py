@@ -6,7 +6,7 @@ import pytest
 from cases.errors import UnstableError
 from cases.incident import FreeField, PlaneWave, plane_wave
 from cases.loads import history_of
-from compare.exact.plane.quiet_face import coefficients
+from closed_forms.quiet_face import coefficients
 from compare.exact.rock_mass.effective_medium import medium_field
 from compare.exact.rock_mass.field import field_of
 from compare.exact.rock_mass.line_force import SOLVER as LINE_FORCE

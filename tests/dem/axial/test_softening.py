@@ -5,7 +5,7 @@ import pytest
 
 import dem
 from cases.material.calibrate import calibrate
-from compare.exact.bar.spall import lattice_spall
+from closed_forms.spall import lattice_spall
 from dem.axial.leapfrog import march, run
 from dem.axial.model import build
 from dem.axial.samples import buffers, terms

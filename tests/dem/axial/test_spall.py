@@ -5,7 +5,7 @@ import pytest
 
 from cases.loads import load_history
 from cases.material.calibrate import calibrate
-from compare.exact.bar.spall import lattice_spall, spall
+from closed_forms.spall import lattice_spall, spall
 from dem.axial.leapfrog import march
 from dem.axial.model import build
 

@@ -5,7 +5,8 @@ import pytest
 
 import dem
 from cases.material.calibrate import calibrate
-from compare.exact.blocks import cantilever, spatial
+from closed_forms import cantilever
+from compare.exact.blocks import spatial
 from compare.exact.schemes import leapfrog
 from dem.spatial.ends import CLOSURE
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compare.exact.plane.bloch import Cell, brickwork, leapfrog, stiffness
-from compare.exact.plane.bloch import modes as bloch_modes
-from compare.exact.plane.block_lattice import Lattice, dynamic_matrix, modes
+from closed_forms.bloch import Cell, brickwork, leapfrog, stiffness
+from closed_forms.bloch import modes as bloch_modes
+from closed_forms.block_lattice import Lattice, dynamic_matrix, modes
 
 A, DENSITY, K_N, K_S = 0.5, 2400.0, 3e10, 1e10
 MASS = DENSITY * A**2

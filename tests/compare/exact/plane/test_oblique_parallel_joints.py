@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cases.material.rock import ElasticRock
-from compare.exact.joint import parallel_joints as normal_incidence
+from closed_forms import parallel_joints as normal_incidence
 from compare.exact.plane import oblique_joint
 from compare.exact.plane.oblique_joint import Joint, energy_flux
 from compare.exact.plane.parallel_joints import coefficients

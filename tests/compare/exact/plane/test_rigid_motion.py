@@ -10,8 +10,8 @@ from cases.partition.cut import cut
 from cases.partition.periodic import periodic_contacts
 from cases.schema.domain import Domain
 from cases.schema.joint_set import JointSet
+from closed_forms.block_lattice import Lattice, modes
 from compare.exact.linear import response
-from compare.exact.plane.block_lattice import Lattice, modes
 from compare.exact.plane.rigid_motion import (
     RigidSystem,
     forces_of,

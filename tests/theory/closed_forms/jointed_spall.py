@@ -11,9 +11,9 @@ from cases.loads import load_history
 from cases.material.calibrate import calibrate
 from cases.sampling import sample_times
 from cases.schema.scene import Scene
+from closed_forms.spall import Spall
 from compare.exact.bar.jointed_bar import bar
 from compare.exact.bar.laplace import response
-from compare.exact.bar.spall import Spall
 
 
 def jointed_spall(scene: Scene) -> Spall | None:

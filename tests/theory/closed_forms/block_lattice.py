@@ -22,7 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compare.exact.plane.bloch import natural
+from closed_forms.bloch import natural
 
 
 @dataclass(frozen=True)

@@ -1,1 +1,0 @@
-"""Elastic bodies in two or three dimensions: beam, column, manufactured motion."""
