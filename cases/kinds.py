@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from cases.errors import SceneError
 
@@ -10,8 +10,7 @@ if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
     from cases.schema.scene import Scene
 
-    AnyScene = Scene | RockMass
-
+AnyScene: TypeAlias = "Scene | RockMass"  # a text: to import it costs nothing
 Either = TypeVar("Either", bound="AnyScene")
 
 

@@ -3,20 +3,16 @@
 A file with [pillar] holds a `Scene`, one with [domain] a `RockMass`.
 """
 
-from __future__ import annotations
-
 import re
 from copy import deepcopy
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from cases.errors import SceneError, nearest
 from cases.files import parse_toml, read_toml
+from cases.kinds import AnyScene
 from cases.schema.values import CONTROL
 from cases.validate import validated
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 LARGEST_FILE = 10_000_000  # bytes; a scene is a page of text
 #: It names a folder, beside what the scene's own results are called.

@@ -1,16 +1,12 @@
 """Samples of a run: their times, the step that fits them, and interpolation."""
 
-from __future__ import annotations
-
 from math import ceil
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from cases.errors import SceneError
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
+from cases.kinds import AnyScene
 
 MOST_STEPS = 1e12  # some five hours for a hundred rigid blocks; beyond it a mistake
 

@@ -4,8 +4,6 @@ Each engine estimates what its arrays take, from the numbers of blocks, samples 
 the key of the scene that decides it. A run is refused where the sum is beyond `memory()`.
 """
 
-from __future__ import annotations
-
 import os
 import resource
 from collections.abc import Iterator, Mapping
@@ -14,12 +12,9 @@ from contextvars import ContextVar
 from functools import cache
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from cases.errors import SceneError
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
+from cases.kinds import AnyScene
 
 LIMIT = "JOINTWAVE_MEMORY"  # GB, in the environment: a bound of the user's own
 LARGEST_VARIABLE = 2**31 - 4  # bytes, of a NetCDF 3 file

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from cases.histories import LoadHistory, Recorded, periodic
+from cases.kinds import AnyScene
 from cases.loads import history_of
 from cases.material.calibrate import Properties
 from cases.schema.scene import Scene
 
 if TYPE_CHECKING:
-    from cases.kinds import AnyScene
     from cases.schema.pulse import Pulse
 
 #: Of a load's energy, the integral of its square over time: what lies below its highest frequency.

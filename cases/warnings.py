@@ -13,13 +13,13 @@ import numpy as np
 
 from cases.effects import is_spatial
 from cases.histories import Gabor, Ricker, Sine, periodic
+from cases.kinds import AnyScene
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.plausible import implausible
 from cases.schema.scene import Scene
 from cases.spectrum import ShortestWave, shortest_wave
 
 if TYPE_CHECKING:
-    from cases.kinds import AnyScene
     from cases.schema.pulse import Pulse
 
 LEAST_BLOCKS = 10.0  # and elements, a wavelength

@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from cases.errors import SceneError
+from cases.kinds import AnyScene
 from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
 from compare.solvers.dem import DEM
 from compare.solvers.record import Answer, Solver, no
@@ -15,7 +16,6 @@ from compare.solvers.record import Answer, Solver, no
 if TYPE_CHECKING:
     import xarray as xr
 
-    from cases.kinds import AnyScene
     from numerics.checkpoint import Keeper
     from results.dataset import Fields
 

@@ -1,16 +1,12 @@
 """Scenes by path, or by the name of a shipped one, with the solvers that they name checked."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import cases
 from cases.errors import SceneError, nearest
+from cases.kinds import AnyScene
 from compare import engines as registry
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 SHIPPED = Path(cases.__file__).parent
 MOST = 1000  # files of a folder that a name is looked for among

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from cases.effects import active_effects
+from cases.kinds import AnyScene
 from cases.schema.scene import Scene
 from cases.warnings import warnings
 from results.labels import label
@@ -17,7 +18,6 @@ from results.labels import label
 if TYPE_CHECKING:
     import xarray as xr
 
-    from cases.kinds import AnyScene
 
 #: Every term of an energy ledger, and those of the axial motion of joints that hold.
 ALL_TERMS = (

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from cases.errors import SceneError
+from cases.kinds import AnyScene
 from cases.size import LARGEST_VARIABLE
 from results.arrays import copied
 from results.dataset import Fields, Variable
@@ -16,7 +17,6 @@ from results.labels import label
 if TYPE_CHECKING:
     import xarray as xr
 
-    from cases.kinds import AnyScene
 
 AXES = {1: [1], 2: [0, 1], 3: [0, 1, 2]}  # which of x, y, z so many components are
 DIMENSIONS = {

@@ -1,11 +1,10 @@
 """A scene before any run: its effects, its critical steps, its exact solutions."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from cases.effects import Effect, effects
 from cases.errors import SceneError
+from cases.kinds import AnyScene
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
 from compare.cli.partition_view import partition_facts
@@ -14,9 +13,6 @@ from compare.experiments.cost import timings
 from compare.experiments.cost.step_cost import nanoseconds, remembered_whole, whole
 from compare.misfit.ranking import Reference, applicable, reference_of
 from compare.solvers.record import Answer, Prepared
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 
 class Explanation(NamedTuple):

@@ -5,19 +5,17 @@ import sys
 from collections.abc import Sequence
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from cases.errors import SceneError, printable
+from cases.kinds import AnyScene
 from compare import scenes
 from compare.cli import completion
 from compare.engines import selection
 from compare.runs.processes import started
 from compare.scenes import find
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 app = typer.Typer(
     epilog="Start with: jointwave list, jointwave compare guo-li-2002/fig-03, jointwave report",

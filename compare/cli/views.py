@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cases.kinds import AnyScene
 from cases.size import spoken
 from compare.cli.partition_view import show_partition
 from compare.cli.terminal import print_json, say, show_numbers, show_table
 
 if TYPE_CHECKING:
-    from cases.kinds import AnyScene
     from cases.material.calibrate import Properties
     from compare.cli.explain import Explanation
     from compare.report.report import Report

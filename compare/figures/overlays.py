@@ -2,14 +2,13 @@
 their own: by solution in one variant, or by variant of one engine.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 
+from cases.kinds import AnyScene
 from compare.engines import ENGINES
 from compare.figures.charts.chart import ChartLine, Subplot
 from compare.figures.style import Style, given_style, in_order, style
@@ -17,9 +16,6 @@ from compare.figures.subplots import UNITS as SI
 from compare.figures.subplots import Panel, panels
 from compare.figures.units import Unit, unit_for
 from compare.misfit.pairs import Comparison
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 #: Factor from SI to the unit that is drawn, and that unit.
 UNITS = {

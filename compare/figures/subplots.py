@@ -2,24 +2,20 @@
 state; and the table of every waveform in them, as it was recorded.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
+from cases.kinds import AnyScene
 from cases.schema.scene import Scene
 from compare.figures.style import in_order
 from compare.misfit.metrics import FAINT, motion
 from compare.misfit.pairs import Comparison
 from compare.misfit.places import Place, places_of, recorded
 from compare.misfit.ranking import finest
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 #: SI units of what panels show.
 UNITS = {

@@ -9,26 +9,21 @@ curves of a file, by the cross-correlation with the solution that then fits best
 scaled.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import nan
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from cases.errors import SceneError
+from cases.kinds import AnyScene
 from cases.sampling import sample_times
 from compare.misfit.external import Curves
 from compare.misfit.external_files import LEAST_SAMPLES
 from compare.misfit.metrics import Distance, delay, distance, relative_l2, static_state
 from compare.misfit.places import Place
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 MOST_SAMPLES = 4_000_000  # of a curve at a scene's interval, when its clock is moved
 INSTANT = 1e-12  # s; times are told apart from there on, in the tables too

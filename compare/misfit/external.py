@@ -10,18 +10,17 @@ is taken by COLUMN=LABEL, and one of a table of `jointwave compare --out` by its
 (`compare.misfit.external_columns`).
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from cases.errors import SceneError
+from cases.kinds import AnyScene
 from compare.engines import names
 from compare.misfit.external_columns import Asked, asked, base_of, exported, listed
 from compare.misfit.external_files import (
@@ -32,9 +31,6 @@ from compare.misfit.external_files import (
     split_unit,
 )
 from compare.misfit.places import Place, parsed, recorded, same
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 MICRO = ("u", "µ", "μ")  # as typed, the micro sign, and the Greek letter
 

@@ -1,16 +1,15 @@
 """A scene solved by all that applies to it, and how far apart the solutions are, pair by pair."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import xarray as xr
 
 from cases.errors import SceneError
+from cases.kinds import AnyScene
 from compare.engines import Progress, solve, solver, solvers
 from compare.experiments.cost import timings
 from compare.misfit.alignment import Beside, distances, lay_beside
@@ -19,9 +18,6 @@ from compare.misfit.metrics import Distance, distance, pairings
 from compare.misfit.places import Place, places_of
 from compare.misfit.ranking import applicable
 from compare.solvers.record import Answer
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 
 class Pair(NamedTuple):

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from cases.kinds import AnyScene
 from results.labels import RECEIVERS
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from cases.kinds import AnyScene
 
 #: Dimensions of components in results.
 COMPONENT_DIMENSIONS = ("axis", "across", "stress_component", "joint_axis")

@@ -5,19 +5,15 @@ exact one before a computed one. A solution that lacks an effect of the scene is
 What no solution at least as fine has checked independently is "not checked".
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from cases.kinds import AnyScene
 from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
 from compare.engines import ENGINES, applies, names, solver
 from compare.exact.conditions import has_thick_layer
 from compare.solvers.record import Answer, Rock
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 
 class Reference(NamedTuple):

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cases.kinds import AnyScene
 from cases.schema.scene import Scene
 from compare.engines import Progress
 from compare.experiments.cost import timings
@@ -24,7 +25,6 @@ from results.dataset import scene_hash
 if TYPE_CHECKING:
     import xarray as xr
 
-    from cases.kinds import AnyScene
 
 #: The shipped scenes of rock masses that the page shows beside the paper's figures.
 ROCK_MASSES = ("rock-mass/one-joint",)

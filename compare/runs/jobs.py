@@ -1,16 +1,12 @@
 """Jobs of `jointwave run`: one for each result, checked before any is run."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from cases.errors import SceneError
+from cases.kinds import AnyScene
 from compare.engines import ENGINES, applies, selection
 from compare.solvers.record import Solver
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 
 class Job(NamedTuple):

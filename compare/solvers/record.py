@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from cases.kinds import AnyScene
+
 if TYPE_CHECKING:
     import xarray as xr
 
-    from cases.kinds import AnyScene
     from results.dataset import Fields
 
 

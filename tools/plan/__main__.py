@@ -8,26 +8,21 @@ at half of the least that one has taken. The configurations that are compared ar
 Rows that are done are kept, and not run again.
 """
 
-from __future__ import annotations
-
 import argparse
 import hashlib
 import json
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 from held import rows_of
 from table import show, write
 
 import cases
+from cases.kinds import AnyScene
 from compare.runs.checkpoint.signature import program
 from compare.runs.output import write_text
 from compare.scenes import shipped
 from results.dataset import scene_hash
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 
 def kept(

@@ -4,21 +4,16 @@ A point meets a misfit by its numerical and modelling error together, and where 
 its family do.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from math import inf
-from typing import TYPE_CHECKING
 
 from cases.errors import SceneError
+from cases.kinds import AnyScene
 from compare.experiments.failures import FAILURES, reason_of
 from compare.experiments.planner.choices import Choice, furthest_off, measured, steps
 from compare.experiments.planner.families import Family, effort, families_of
 from compare.experiments.planner.reference import OwnModel, References
 from compare.experiments.planner.trials import FINEST, Trial, first_trial, is_hopeless, trial_at
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 #: A family ends where a run takes so many times the seconds of the cheapest that does, as finer
 #: steps cost more. It is not begun where it would even at half the seconds that a freedom-step has

@@ -1,22 +1,17 @@
 """One scene: what was planned, held against the cheapest of the full study, timed in turns."""
 
-from __future__ import annotations
-
 from math import inf, nan
 from statistics import median
-from typing import TYPE_CHECKING
 
 from full_study import Study
 
+from cases.kinds import AnyScene
 from compare.engines import solve
 from compare.experiments.failures import FAILURES, reason_of
 from compare.experiments.planner.choices import Choice
 from compare.experiments.planner.families import configured
 from compare.experiments.planner.planner import Plan, options_of, plan
 from compare.experiments.planner.reference import References
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 RIVALS = 4  # of the study: the cheapest by their own timing, which is noise for short runs
 SHORT = 0.05  # s: the longest run that takes part in all rounds; three are enough above

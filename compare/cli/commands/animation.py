@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from cases.errors import SceneError
+from cases.kinds import AnyScene
 from compare.cli.options import (
     JsonOption,
     SceneArgument,
@@ -16,7 +17,6 @@ from compare.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from cases.kinds import AnyScene
     from compare.figures.animation.frame import Frame
     from compare.figures.animation.plane import PlaneFrame
     from compare.figures.animation.snapshots import SceneSnapshots

@@ -2,11 +2,12 @@
 
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from cases.errors import SceneError
+from cases.kinds import AnyScene
 from compare.cli.options import (
     CORES,
     DryOption,
@@ -24,9 +25,6 @@ from compare.cli.options import (
     app,
     load,
 )
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 
 @app.command()

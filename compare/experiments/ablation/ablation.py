@@ -12,6 +12,7 @@ from math import nan
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cases.effects import active_effects
+from cases.kinds import AnyScene
 from compare.engines import applies, solve
 from compare.experiments.ablation.variants import left_out, only
 from compare.experiments.cost.scenes import everything_like
@@ -24,7 +25,6 @@ from compare.solvers.dem import DEM
 if TYPE_CHECKING:
     import xarray as xr
 
-    from cases.kinds import AnyScene
 
 ROCK = JOINTED_ROCK.name
 MISSING = StepCost(nan, nan)  # of what was not timed

@@ -1,12 +1,10 @@
 """The ablation of many scenes: solved and compiled on any executor, then timed one at a time."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import cases
-from cases.kinds import pillar_of
+from cases.kinds import AnyScene, pillar_of
 from cases.schema.scene import Scene
 from compare.engines import Progress
 from compare.experiments import store
@@ -16,9 +14,6 @@ from compare.experiments.pool import Pool, alone
 from compare.experiments.store import Store
 from compare.scenes import find, shipped
 from results.dataset import scene_hash
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 RATE = "effects of a variant"  # what the seconds of cases are remembered by
 PREPARING = 0.8  # of the time, where nothing is compiled yet

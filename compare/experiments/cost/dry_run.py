@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from cases.errors import SceneError
+from cases.kinds import AnyScene
 from cases.size import spoken
 from compare.cli.terminal import print_json, progress, say, show_table
 from compare.engines import applies, names, solver
 from compare.experiments.cost import timings
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 COLUMNS = ["", "variant", "engine", "scheme", "steps", "size", "time", "memory"]
 UNKNOWN = "no estimate"  # where nothing of the kind was ever timed here

@@ -7,12 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import cases
-from cases.kinds import pillar_of
+from cases.kinds import AnyScene, pillar_of
 from cases.schema.scene import Scene
 from cases.validate import validated
 
 if TYPE_CHECKING:
-    from cases.kinds import AnyScene
     from cases.schema.rock_mass import RockMass
 
 PILLAR = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"

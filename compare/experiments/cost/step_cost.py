@@ -9,6 +9,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, NamedTuple
 
 from cases.effects import is_spatial
+from cases.kinds import AnyScene
 from cases.sampling import Clock
 from cases.schema.scene import Scene
 from compare.engines import solve
@@ -17,7 +18,6 @@ from compare.experiments.cost.scenes import everything
 from compare.solvers.incident import incident
 
 if TYPE_CHECKING:
-    from cases.kinds import AnyScene
     from cases.schema.rock_mass import RockMass
 
 #: A function that takes some samples, and its number of block-steps.

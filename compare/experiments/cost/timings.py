@@ -3,26 +3,22 @@
 They are saved beside the kernels, so that those of another state of the program do not count.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from cases.effects import active_effects
 from cases.files import read_json
+from cases.kinds import AnyScene
 from cases.schema.scene import Scene
 from compare.engines import ENGINES
 from compare.runs.output import write_text
 from compare.solvers.dem import DEM
 from numerics import jit
 from results.dataset import scene_hash
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 LARGEST_FILE = 10_000_000  # bytes
 SHORTEST = 0.01  # s: what is over sooner tells too little to replace what is known

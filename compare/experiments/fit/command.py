@@ -2,11 +2,12 @@
 
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from cases.errors import SceneError
+from cases.kinds import AnyScene
 from compare.cli.options import (
     Engine,
     JsonOption,
@@ -19,9 +20,6 @@ from compare.cli.options import (
     app,
     load,
 )
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 
 @app.command()

@@ -1,18 +1,17 @@
 """The files of a fit: a table, the fitted scene, and the figure of waveforms and residuals."""
 
-from __future__ import annotations
-
 import filecmp
 import json
 import shutil
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pandas as pd
 
 import cases
 from cases.errors import SceneError
+from cases.kinds import AnyScene
 from cases.schema.scene import Scene
 from compare.experiments.fit.diagram import draw
 from compare.experiments.fit.keys import CLOCK
@@ -21,9 +20,6 @@ from compare.experiments.fit.scene_text import scene_text
 from compare.experiments.store import finite
 from compare.figures.export import save, write_csv
 from compare.runs.output import refuse_foreign, write, write_text
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 HEAD = "# Fitted by jointwave"
 

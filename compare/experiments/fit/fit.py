@@ -1,13 +1,11 @@
 """Fit keys of a scene to measured waveforms by nonlinear least squares."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from cases.errors import SceneError
+from cases.kinds import AnyScene
 from compare.engines import Progress
 from compare.experiments.fit.keys import CLOCK, Free, changed, free_keys
 from compare.experiments.fit.problem import clock_reach, problem_of, solver_of, started_clock
@@ -15,9 +13,6 @@ from compare.experiments.fit.result import Estimate, Fit, Fitted
 from compare.experiments.fit.search import FitSearch, misfits
 from compare.experiments.fit.statistics import known, not_told_apart
 from compare.misfit.external import Curves
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 NEAR = 1e-6  # of an unknown to its bound
 ROUND_OFF = 1e-6  # of a waveform: what is left then is no noise

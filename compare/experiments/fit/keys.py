@@ -1,24 +1,19 @@
 """The keys that a fit may change: where each begins, and between which bounds it stays."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from itertools import pairwise
 from math import exp, inf, isfinite, log, nan, nextafter
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from cases.errors import SceneError
-from cases.kinds import Either, checked
+from cases.kinds import AnyScene, Either, checked
 from cases.schema.allowed import model_in
 from cases.schema.field_docs import field_comments
 from cases.schema.pulse import Pulse
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 CLOCK = "clock"  # what is added to the times of the files, s
 DECADES = 3.0  # that a key on a logarithmic scale may change without bounds of its own

@@ -1,14 +1,13 @@
 """The problem of a fit: waveforms of a solution at the times of measured ones, key by key."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from cases.errors import SceneError, UnstableError
+from cases.kinds import AnyScene
 from cases.schema.pulse import shortest_period
 from cases.schema.scene import Scene
 from compare.engines import applies, solve, solver
@@ -20,9 +19,6 @@ from compare.misfit.alignment import INSTANT, static_level
 from compare.misfit.external import Curves, is_recorded
 from compare.misfit.places import Place
 from compare.solvers.dem import DEM
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 SHORT = 200  # blocks, up to which matrix exponentials cost little
 FINER = 4  # samples of the solution to one of the scene, where the clock is free

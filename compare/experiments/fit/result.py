@@ -1,16 +1,12 @@
 """The result of a fit: keys with their intervals, and waveforms as measured and as fitted."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from cases.kinds import AnyScene
 from compare.experiments.fit.keys import CLOCK
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 
 class Estimate(NamedTuple):

@@ -1,12 +1,9 @@
 """A scene as the text of a scene file."""
 
-from __future__ import annotations
-
 import json
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
+from cases.kinds import AnyScene
 
 
 def scene_text(scene: AnyScene) -> str:

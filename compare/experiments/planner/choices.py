@@ -1,17 +1,13 @@
 """Choices: configurations with what they give, measured by a trial or predicted from several."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from math import ceil, log2
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from cases.kinds import AnyScene
 from compare.experiments.planner.families import Family, settings
 from compare.experiments.planner.reference import OwnModel
 from compare.experiments.planner.trials import FINEST, Trial, forecast, largest
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 #: What is only predicted must be below this part of the misfit: two steps leave the next term of
 #: the error.

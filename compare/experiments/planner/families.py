@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from math import ceil, inf
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from cases.errors import SceneError
-from cases.kinds import checked
+from cases.kinds import AnyScene, checked
 from cases.sampling import sample_times
 from cases.schema.pulse import shortest_period
 from cases.schema.scene import Scene
 from compare.engines import ENGINES, applies, solver
 from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
 from compare.solvers.dem import DEM
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 COARSEST = 0.9  # of the critical step, explicit
 #: Explicit steps that an implicit one costs, at least.

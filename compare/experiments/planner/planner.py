@@ -9,13 +9,12 @@ on until finer steps can be predicted (see `trials`). What by its freedom-steps 
 than what is known to meet the misfit is not tried at all, nor what its modelling error bars.
 """
 
-from __future__ import annotations
-
 from math import inf
 from time import perf_counter
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from cases.errors import StoppedError
+from cases.kinds import AnyScene
 from compare.engines import Progress
 from compare.experiments.failures import FAILURES, reason_of
 from compare.experiments.planner.choices import MARGIN, Choice, cheapest, measured, predicted
@@ -39,9 +38,6 @@ from compare.experiments.planner.trials import (
 )
 from compare.experiments.references import ErrorReference
 from compare.misfit.metrics import misfit as misfit_of
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 #: A family is not tried where it would be too dear at this share of the least seconds that a
 #: freedom-step has taken so far.

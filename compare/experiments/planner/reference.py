@@ -3,23 +3,19 @@
 Either is an exact solution that knows itself well enough, or a run that has converged to itself.
 """
 
-from __future__ import annotations
-
 from math import inf
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import xarray as xr
 
 from cases.errors import SceneError
+from cases.kinds import AnyScene
 from compare.engines import ENGINES, solve, solver
 from compare.experiments.planner.families import Family, configured, plain, rock, settings
 from compare.experiments.references import ErrorReference
 from compare.misfit import ranking
 from compare.misfit.metrics import JUDGED, misfit, worst
 from compare.solvers.record import Prepared
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 SHARE = 1 / JUDGED  # of the misfit asked for, that a reference may be wrong itself
 LONGEST = {"pillar": 20.0, "rock mass": 60.0}  # s of stepping of the finest run

@@ -5,22 +5,18 @@ is w + c n^-q (Richardson): from two runs its misfit from the engine's own model
 n. From three, so is q: half the steps leave 2^q times the difference. Seconds are a + b n.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import inf
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from cases.kinds import AnyScene
 from compare.engines import solve
 from compare.experiments.planner.families import COARSEST, Family, configured, settings
 from compare.experiments.planner.reference import OwnModel
 from compare.misfit.metrics import Stack, stacked
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 SHORT = 0.05  # s: a shorter run is timed three times more, as it is noise alone
 SLOWEST = 0.5  # order at which errors fall, at least: they do at kinks that repeat

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import xarray as xr
 
 import cases
-from cases.kinds import pillar_of
+from cases.kinds import AnyScene, pillar_of
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.pulse import shortest_period
 from cases.schema.scene import Scene
@@ -18,7 +18,6 @@ from compare.scenes import find
 from compare.solvers.record import Solver
 
 if TYPE_CHECKING:
-    from cases.kinds import AnyScene
     from cases.schema.rock_mass import RockMass
 
 SHORT = "hard/short-pillar"  # the scene of most cases

@@ -1,26 +1,21 @@
 """One point of a study, measured: its errors, what was counted, and what it took."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from statistics import median
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import xarray as xr
 
 from cases.errors import SceneError
-from cases.kinds import pillar_of
+from cases.kinds import AnyScene, pillar_of
 from compare.engines import applies, solve, solver
 from compare.experiments.failures import FAILURES
 from compare.experiments.study.methods.catalogue import METHODS
 from compare.experiments.study.reference import UNKNOWN, error, finest_of, known, own_of
 from compare.experiments.study.study import StudyPoint
 from compare.solvers.record import Answer
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 LONG = 0.25  # s: a run that takes as long, its set-up included, is timed once more at most
 

@@ -1,13 +1,12 @@
 """References of errors: exact solutions, or fine runs whose own error is bounded."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from cases.kinds import AnyScene
 from compare.engines import ENGINES, applies, exact_names, solve, solver
 from compare.experiments.references import ErrorReference
 from compare.experiments.study.methods.catalogue import METHODS
@@ -15,9 +14,6 @@ from compare.experiments.study.study import FINEST, NONE, FineRun, Study, StudyP
 from compare.misfit.metrics import Pairing, pairings, relative_l2, worst
 from compare.misfit.ranking import applicable, finest, own_exact
 from results.dataset import scene_hash
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 
 class Error(NamedTuple):

@@ -4,19 +4,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import prod
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 import cases
 from cases.errors import SceneError, nearest
 from cases.files import read_toml
+from cases.kinds import AnyScene
 from compare.experiments.combinations import combinations
 from compare.experiments.study.check import ARGUMENTS, MOST_POINTS, plain, refuse_senseless
 from compare.scenes import find
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 LARGEST_FILE = 1_000_000  # bytes
 SHIPPED = Path(__file__).parent / "shipped"

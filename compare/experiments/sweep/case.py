@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from cases.errors import InterruptedRun, SceneError, UnstableError
+from cases.kinds import AnyScene
 from compare.experiments import store
 from compare.misfit.places import Place, places_of
 from results.dataset import scene_hash
@@ -17,7 +18,6 @@ from results.dataset import scene_hash
 if TYPE_CHECKING:
     import xarray as xr
 
-    from cases.kinds import AnyScene
     from compare.misfit.external import Curves
 
 Rows = list[dict[str, Any]]

@@ -15,12 +15,12 @@ import pandas as pd
 import xarray as xr
 
 from cases.errors import SceneError
+from cases.kinds import AnyScene
 from compare.experiments.sweep.axis import MEMBER
 from compare.runs.output import fields_of, write_fields
 from results.netcdf import load_netcdf
 
 if TYPE_CHECKING:
-    from cases.kinds import AnyScene
     from compare.experiments.sweep.case import SweepCase, SweepOutcome
 
 PERCENTILES = (5, 25, 50, 75, 95)

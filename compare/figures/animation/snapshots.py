@@ -6,7 +6,7 @@ from math import ceil
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cases.errors import SceneError
-from cases.kinds import checked
+from cases.kinds import AnyScene, checked
 from cases.schema.tables import Time
 from compare.engines import ENGINES, Progress, applies, solve
 from compare.figures.subplots import UNITS
@@ -16,8 +16,6 @@ from results.snapshots import Snapshots, snapshots_of
 if TYPE_CHECKING:
     import numpy as np
     import xarray as xr
-
-    from cases.kinds import AnyScene
 
 
 class SceneSnapshots(NamedTuple):

@@ -1,19 +1,15 @@
 """Settings of a view: its side, its exaggeration, and the meaning of its colours."""
 
-from __future__ import annotations
-
 from math import floor, log10
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from cases.effects import is_spatial
+from cases.kinds import AnyScene
 from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
 from results.snapshots import Snapshots
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 #: The largest that is drawn: of a block's thickness two neighbours may come closer; of the pillar's
 #: length a node may move along, and aside; of half a block's largest side a corner may turn away.

@@ -1,18 +1,12 @@
 """A scene solved at places all along the pillar, for space-time diagrams."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import xarray as xr
 
+from cases.kinds import AnyScene
 from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
 from compare.engines import ENGINES, applies, names, solve
 from compare.misfit.ranking import own_exact
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 SECTIONS, TIMES = 60, 240  # at most so many intervals between the sections and samples kept
 FEWEST = 8  # blocks; in fewer there is no wave to be seen

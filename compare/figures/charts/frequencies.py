@@ -1,16 +1,12 @@
 """Frequencies that a scene is known by: of its load, pillar, blocks and joints."""
 
-from __future__ import annotations
-
 from math import cos, isfinite, pi, sin
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from cases.kinds import AnyScene
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
 from compare.figures.subplots import Panel
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 
 class Mark(NamedTuple):

@@ -1,11 +1,10 @@
 """From scenes to a figure's file: solve what is asked for, and draw it."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from cases.errors import SceneError
+from cases.kinds import AnyScene
 from compare.engines import Progress, applies, names, solve
 from compare.figures.print.appearance import STYLES
 from compare.figures.print.draw import draw
@@ -13,9 +12,6 @@ from compare.figures.print.save import BEGINS, save
 from compare.misfit.alignment import lay_beside
 from compare.misfit.pairs import Comparison
 from compare.runs.jobs import names_of
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 
 class FigureRequest(NamedTuple):

@@ -1,11 +1,10 @@
 """State of a run before it starts: done already, or the sample at which it resumes."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from cases.kinds import AnyScene
 from compare.engines import ENGINES
 from compare.runs.checkpoint.files import Checkpoints
 from compare.runs.checkpoint.schedule import RunKeeper
@@ -14,9 +13,6 @@ from compare.runs.checkpoint.signature import Signature, signature
 from compare.runs.output import fields_of
 from compare.runs.processes import Processes
 from results.dataset import Fields
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 ATTRIBUTE = "signature"  # of a result: as JSON, what decided its bits
 

@@ -1,19 +1,15 @@
 """Checkpoints of `jointwave run` by the clock, and its end on request."""
 
-from __future__ import annotations
-
 import sys
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from cases.errors import InterruptedRun, printable
+from cases.kinds import AnyScene
 from cases.sampling import sample_times
 from compare.runs.checkpoint.files import Checkpoints
 from compare.runs.checkpoint.signals import Signals, exit_code, word
 from compare.runs.processes import Processes
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 
 class Interrupted(InterruptedRun):

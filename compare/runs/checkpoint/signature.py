@@ -1,21 +1,16 @@
 """Signature of a result: the scene, the program that computes it, its number of processes."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import cases
+from cases.kinds import AnyScene
 from cases.schema.scene import Scene
 from compare.engines import solver
 from results.dataset import scene_hash
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 Signature = dict[str, str]
 
