@@ -1,20 +1,14 @@
 """Points along contacts of blocks in the plane, where tractions act, with the length each stands
 for."""
 
-from __future__ import annotations
-
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from cases.partition.blocks import Contacts, Partition
 from cases.partition.subdivision import NO_SET
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from cases.schema.joint_set import JointSet
+from cases.schema.joint_set import JointSet
 
 #: Rule and number of points of a cut through intact rock.
 CUT = ("gauss", 2)

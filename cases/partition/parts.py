@@ -1,18 +1,12 @@
 """The part of the boundary that a pressure acts on."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from cases.partition.blocks import Partition
 from cases.partition.outline import outline_of
-
-if TYPE_CHECKING:
-    from cases.schema.domain import Domain
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.sources import PlaneLoad
+from cases.schema.domain import Domain
+from cases.schema.rock_mass import RockMass
+from cases.schema.sources import PlaneLoad
 
 #: Of the domain's size: how far an edge may be from the line that it lies on.
 BESIDE = 1e-6

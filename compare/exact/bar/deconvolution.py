@@ -12,24 +12,18 @@ Of uniform rock H = 2 exp(-i omega L / c): half of the record, L / c earlier.
 Holds for linear joints and rock, along the axis or, where the load is across it, in shear alone.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import ceil, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 
 from cases.errors import SceneError
 from cases.material.calibrate import Properties, calibrate
+from cases.schema.scene import Scene
 from compare.exact.bar import equivalent_bar, jointed_bar
 from compare.exact.bar.transfer import Bar, end_of, transfer
 from compare.exact.conditions import DAMPED, beyond
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from cases.schema.scene import Scene
 
 HELD = (
     *("spatial motion", "reversed load", "gravity", "prestress", "stiff layers", "soft layers"),

@@ -14,11 +14,8 @@ Holds for one such joint in the homogenised bar, as `one_joint` does, without da
 intact rock that a P wave crosses along a periodic strip.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
@@ -27,15 +24,13 @@ from cases.loads import LoadHistory, load_history
 from cases.material.calibrate import Properties, calibrate
 from cases.material.strength import UNLIMITED
 from cases.sampling import sample_times
+from cases.schema.scene import Scene
 from compare.exact.bar.images import ENTERS
 from compare.exact.conditions import holds, static_stress
 from compare.exact.joint.one_joint import around, back_in_time
 from compare.exact.linear import errors
 from compare.solvers.record import JOINTED, Answer, Kind, Rock, Solver, Words, no, thin
 from results.dataset import dataset
-
-if TYPE_CHECKING:
-    from cases.schema.scene import Scene
 
 HELD = ("closure", "prestress", "soft layers", "stiff layers")
 TOLERANCES = (1e-12, 1e-9)  # of the solution and of its twin, of the largest stress

@@ -17,14 +17,12 @@ both sides, Z_n along the normal, and carries mu(S) p more:
 
 from collections.abc import Callable
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from cases.histories import LoadHistory
-
-if TYPE_CHECKING:
-    from compare.exact.joint.sliding_joint import SlipJoint
+from compare.exact.joint.sliding_joint import SlipJoint
 
 SPANS = 2000  # of the whole time, in each of which at most one phase ends
 SHORTEST = 1e-12  # s, of a part of the time

@@ -10,21 +10,15 @@ below round-off off (Hairer, Norsett & Wanner, Solving Ordinary Differential Equ
 I.8). What is left is what cubics are off from F.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from scipy.sparse import csr_array
 
-from cases.material.contact_points import points_of
+from cases.material.contact_points import ContactPoints, points_of
 from cases.material.rigid_step import jump
-
-if TYPE_CHECKING:
-    from scipy.sparse import csr_array
-
-    from cases.material.contact_points import ContactPoints
-    from cases.material.rock_mass import Stiffness
-    from cases.partition.blocks import Contacts
+from cases.material.rock_mass import Stiffness
+from cases.partition.blocks import Contacts
 
 ORDER = 24
 STEP = 2.0

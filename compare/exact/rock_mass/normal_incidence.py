@@ -4,15 +4,13 @@ Holds for one such joint that does not slide, open or damp, in undamped rock who
 through. The stress along the front is nu / (1 - nu) of that across it.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
 
 from cases.incident import WaveMotion, plane_wave
 from cases.loads import history_of
 from cases.material.rock import elastic_rock
+from cases.schema.rock_mass import RockMass
 from compare.exact.joint.closing_joint import TOLERANCES, ClosingJoint, Passed
 from compare.exact.joint.one_joint import around
 from compare.exact.linear import bound
@@ -20,11 +18,6 @@ from compare.exact.rock_mass import stack_waves
 from compare.exact.rock_mass.conditions import along, prestress_of
 from compare.exact.rock_mass.stack import JointStack, stack_of
 from compare.solvers.record import JOINTED, Answer, Rock, Solver, Words, no, thin
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from cases.schema.rock_mass import RockMass
 
 
 def applies(scene: RockMass) -> Answer:

@@ -5,11 +5,11 @@ applies; the influence is the relative L2 misfit of the rigid blocks without the
 those of the scene as it stands.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import nan
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
+
+import xarray as xr
 
 from cases.effects import active_effects
 from cases.kinds import AnyScene
@@ -21,10 +21,6 @@ from compare.experiments.failures import FAILURES, reason_of
 from compare.misfit.metrics import ROUND_OFF, pairings, rms
 from compare.solvers.continuum import JOINTED_ROCK
 from compare.solvers.dem import DEM
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 ROCK = JOINTED_ROCK.name
 MISSING = StepCost(nan, nan)  # of what was not timed

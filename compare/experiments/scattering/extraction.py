@@ -11,17 +11,13 @@ are those of the intact rock. V is the trapezium rule's sum, exact for pulses th
 the record and have nothing above half its sampling frequency.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from cases.material.rock import ElasticRock
 from compare.exact.plane.pulse import Axes
 from compare.exact.plane.waves import polarisations, slownesses_across
-
-if TYPE_CHECKING:
-    from cases.material.rock import ElasticRock
 
 
 class Scattered(NamedTuple):

@@ -4,17 +4,17 @@ Joints lie level and the wave is turned, so that all angles have the same blocks
 joints' exact field enters through all sides; what is wrong is the solver's own.
 """
 
-from __future__ import annotations
-
 from math import nan
 from pathlib import Path
 from time import process_time
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import xarray as xr
 
-from cases.material.rock import elastic_rock
+from cases.material.rock import Values, elastic_rock
 from cases.read import load
+from cases.schema.rock_mass import RockMass
 from compare.engines import Progress, applies, solve
 from compare.exact.plane import parallel_joints
 from compare.exact.plane.oblique_joint import Coefficients, Joint
@@ -25,12 +25,6 @@ from compare.experiments.failures import FAILURES, reason_of
 from compare.experiments.pool import Pool, alone
 from compare.experiments.scattering.extraction import Scattered, scattered
 from compare.experiments.store import Store
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from cases.material.rock import Values
-    from cases.schema.rock_mass import RockMass
 
 SCENE = Path(__file__).parent / "joints.toml"
 ANGLES = (0.0, 15.0, 30.0, 45.0, 60.0, 75.0)  # degrees from the joints' normal

@@ -1,18 +1,14 @@
 """The layout of a view in three dimensions: what is drawn, and from where it is looked at."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from cases.schema.scene import Scene
+from compare.figures.animation.snapshots import SceneSnapshots
 from compare.figures.animation.surface import Y, solid
+from compare.figures.animation.view_settings import ViewSettings
 from results.snapshots import Snapshots
-
-if TYPE_CHECKING:
-    from compare.figures.animation.snapshots import SceneSnapshots
-    from compare.figures.animation.view_settings import ViewSettings
 
 APART = 3.0  # from one pillar's axis to the next, in thicknesses as drawn, at least
 BESIDE = 1.1  # from one rock mass to the next, in widths as drawn

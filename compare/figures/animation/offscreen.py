@@ -3,21 +3,16 @@
 VTK ends a process in which it finds no way to draw; this one is left with a message instead.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import sys
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from cases.errors import SceneError
+from compare.figures.animation.snapshots import SceneSnapshots
+from compare.figures.animation.view_settings import ViewSettings
 from compare.runs.workers import Workers
-
-if TYPE_CHECKING:
-    from compare.figures.animation.snapshots import SceneSnapshots
-    from compare.figures.animation.view_settings import ViewSettings
 
 #: On Linux, in order of preference: VTK's window, and the libraries that it works with.
 WINDOWS = {

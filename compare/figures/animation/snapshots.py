@@ -1,9 +1,10 @@
 """Both engines' snapshots of one scene, at the instants that a picture or an animation shows."""
 
-from __future__ import annotations
-
 from math import ceil
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
 
 from cases.errors import SceneError
 from cases.kinds import AnyScene, checked
@@ -12,10 +13,6 @@ from compare.engines import ENGINES, Progress, applies, solve
 from compare.figures.subplots import UNITS
 from compare.solvers.dem import DEM
 from results.snapshots import Snapshots, snapshots_of
-
-if TYPE_CHECKING:
-    import numpy as np
-    import xarray as xr
 
 
 class SceneSnapshots(NamedTuple):

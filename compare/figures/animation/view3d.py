@@ -1,23 +1,17 @@
 """A scene by both engines in three dimensions, by PyVista."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pyvista
 from matplotlib.ticker import MaxNLocator
 
 from compare.figures import fonts
 from compare.figures.animation.layout import layout_of
+from compare.figures.animation.snapshots import SceneSnapshots
 from compare.figures.animation.surface import surface_of
 from compare.figures.animation.view_settings import DISPLACEMENT, STRESS, ViewSettings, caption
 from compare.figures.print.layout import wrapped
 from compare.figures.style import FIELD, UNSIGNED, style
-
-if TYPE_CHECKING:
-    from compare.figures.animation.snapshots import SceneSnapshots
-    from results.snapshots import Snapshots
+from results.snapshots import Snapshots
 
 SIZE = 1280, 720  # pixels
 BAR = 0.5, 0.06, 0.45, 0.06  # left, bottom, width and height of the colours, of the picture

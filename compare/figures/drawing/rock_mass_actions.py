@@ -1,20 +1,14 @@
 """Actions on a rock mass in its drawing: waves, loads, gravity, prestress."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 from matplotlib.axes import Axes
 
 from cases.partition.outline import outline_of
+from cases.schema.rock_mass import RockMass
+from cases.schema.sources import PlaneLoad, Wave
 from compare.figures.drawing import symbols
 from compare.figures.drawing.actions import gravity_words
 from compare.figures.drawing.symbols import LOAD, SOFT
-
-if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.sources import PlaneLoad, Wave
 
 LENGTH, SHORT = 0.12, 0.05  # of the domain's size: arrows of waves, and of the rest
 MOST = 24  # arrows of one pressure
