@@ -8,7 +8,7 @@ import pytest
 
 import cases
 from compare.engines import solve
-from compare.experiments.study.orders import orders
+from compare.experiments.study.findings import orders
 from compare.experiments.study.runner import run
 from compare.experiments.study.study import load
 from compare.misfit.metrics import misfit

@@ -54,7 +54,7 @@ STEP = 'shape = "step", amplitude = 1.0'
 READS = {"read_bytes", "read_text", "load_dataset", "open_dataset", "read_csv", "loadtxt"}
 DOORS = {
     *("cases/files.py", "results/netcdf.py"),  # the doors
-    *("cases/size.py", "compare/experiments/cost/machine.py"),  # of the system
+    *("cases/size.py", "compare/experiments/cost/timings.py"),  # of the system
     *(
         "numerics/cache.py",
         "compare/runs/checkpoint/signature.py",

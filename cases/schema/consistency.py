@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from cases.schema.discretisation import check_discretisation
+from cases.schema.discretisation import check_discretisation, check_scheme
 from cases.schema.joint import JointLaw
 from cases.schema.plausible import INTACT, meant
-from cases.schema.scheme import check_scheme
 from cases.schema.segment import Segment
 from cases.schema.segment_checks import check_segments
 from cases.schema.shared_checks import (

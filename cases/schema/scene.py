@@ -12,8 +12,7 @@ from pydantic import PrivateAttr, model_validator
 from cases.schema.consistency import check
 from cases.schema.damping import Damping, Rayleigh
 from cases.schema.joint import JointLaw, Joints, SoftLayer
-from cases.schema.loading import NO_LOAD, Load
-from cases.schema.pulse import shortest_period
+from cases.schema.pulse import NO_LOAD, Load, shortest_period
 from cases.schema.segment import Segment, regions
 from cases.schema.tables import (
     ContinuumNumerics,

@@ -9,8 +9,8 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from compare.figures.animation.surface import Wave
 from compare.figures.animation.view_settings import STRESS, ViewSettings, round_down
-from compare.figures.animation.wave import Wave
 from compare.figures.style import FIELD, RC, WIDTH
 from results.snapshots import Snapshots
 

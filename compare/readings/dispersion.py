@@ -26,7 +26,7 @@ import xarray as xr
 from cases.errors import SceneError
 from cases.material.calibrate import Properties, calibrate, mechanisms_of
 from cases.schema.scene import Scene
-from compare.readings.rows import sampling, waveforms
+from compare.readings.attenuation import sampling, waveforms
 
 HEARD = 1e-3  # of the largest amplitude: frequencies that are looked at
 FINER = 64  # wavenumbers in the width of a peak

@@ -13,7 +13,7 @@ from pandas import DataFrame
 from compare.engines import Progress
 from compare.experiments.ablation import runner as ablation_runs
 from compare.experiments.ablation.summary import summarise as summarise_ablation
-from compare.experiments.cost.machine import measured_on
+from compare.experiments.cost.timings import measured_on
 from compare.experiments.pool import Lent, Pool, alone
 from compare.experiments.robustness.summary import make_study as make_hard_cases
 from compare.experiments.scattering import summary as scattering

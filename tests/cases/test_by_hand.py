@@ -19,7 +19,7 @@ from cases.material.face import face_points
 from cases.sampling import clock, interpolation, sample_times
 from cases.schema.damping import Rayleigh
 from cases.schema.history import History
-from cases.schema.loading import Load
+from cases.schema.pulse import Load
 from cases.schema.scene import Scene
 from results.subcells import linear_cells
 

@@ -7,7 +7,7 @@ import os
 import platform
 from pathlib import Path
 
-from compare.experiments.cost.machine import processor
+from compare.experiments.cost.timings import processor
 from compare.runs.output import write_text
 
 #: The columns that all studies share, then those of the peers.

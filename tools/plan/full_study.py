@@ -9,7 +9,7 @@ from math import inf
 
 from cases.errors import SceneError
 from cases.kinds import AnyScene
-from compare.experiments.failures import FAILURES, reason_of
+from compare.experiments.common import FAILURES, reason_of
 from compare.experiments.planner.choices import Choice, furthest_off, measured, steps
 from compare.experiments.planner.families import Family, effort, families_of
 from compare.experiments.planner.reference import OwnModel, References

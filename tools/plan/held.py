@@ -7,7 +7,7 @@ from full_study import Study
 
 from cases.kinds import AnyScene
 from compare.engines import solve
-from compare.experiments.failures import FAILURES, reason_of
+from compare.experiments.common import FAILURES, reason_of
 from compare.experiments.planner.choices import Choice
 from compare.experiments.planner.families import configured
 from compare.experiments.planner.planner import Plan, options_of, plan

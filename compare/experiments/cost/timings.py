@@ -4,11 +4,15 @@ They are saved beside the kernels, so that those of another state of the program
 """
 
 import json
+import os
+import platform
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from time import perf_counter
 from typing import Any
+
+import numpy as np
 
 from cases.effects import active_effects
 from cases.files import read_json
@@ -113,3 +117,33 @@ def _keep(key: str, value: float) -> None:
 
 def _file() -> Path:
     return jit.DIRECTORY / "rates.json"
+
+
+def machine() -> dict[str, str]:
+    """Return what seconds depend on."""
+    import numba
+
+    return {
+        "processor": processor(),
+        "cores": str(os.cpu_count()),
+        "system": platform.platform(),
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "numba": numba.__version__,
+    }
+
+
+def measured_on() -> str:
+    """Return the machine in words."""
+    about = machine()
+    return f"{about['processor']}, {about['cores']} cores, numba {about['numba']}"
+
+
+def processor() -> str:
+    """Return the processor's name."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor() or platform.machine()
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.machine()

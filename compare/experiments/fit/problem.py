@@ -12,7 +12,7 @@ from cases.schema.pulse import shortest_period
 from cases.schema.scene import Scene
 from compare.engines import applies, solve, solver
 from compare.exact.blocks import lattice
-from compare.experiments.failures import FAILURES
+from compare.experiments.common import FAILURES
 from compare.experiments.fit.keys import CLOCK, changed
 from compare.experiments.planner.families import COARSEST
 from compare.misfit.alignment import INSTANT, static_level

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from cases.errors import StoppedError
 from cases.kinds import AnyScene
 from compare.engines import Progress
-from compare.experiments.failures import FAILURES, reason_of
+from compare.experiments.common import FAILURES, ErrorReference, reason_of
 from compare.experiments.planner.choices import MARGIN, Choice, cheapest, measured, predicted
 from compare.experiments.planner.families import (
     Effort,
@@ -36,7 +36,6 @@ from compare.experiments.planner.trials import (
     timed,
     trial_at,
 )
-from compare.experiments.references import ErrorReference
 from compare.misfit.metrics import misfit as misfit_of
 
 #: A family is not tried where it would be too dear at this share of the least seconds that a

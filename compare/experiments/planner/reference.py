@@ -11,8 +11,8 @@ import xarray as xr
 from cases.errors import SceneError
 from cases.kinds import AnyScene
 from compare.engines import ENGINES, solve, solver
+from compare.experiments.common import ErrorReference
 from compare.experiments.planner.families import Family, configured, plain, rock, settings
-from compare.experiments.references import ErrorReference
 from compare.misfit import ranking
 from compare.misfit.metrics import JUDGED, misfit, worst
 from compare.solvers.record import Prepared

@@ -10,7 +10,7 @@ import numpy as np
 from cases.errors import SceneError
 from compare.engines import ENGINES, Progress
 from compare.experiments import store
-from compare.experiments.failures import FAILURES
+from compare.experiments.common import FAILURES
 from compare.experiments.pool import Pool
 from compare.experiments.robustness.case import (
     SCHEMES,

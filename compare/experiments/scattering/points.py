@@ -21,7 +21,7 @@ from compare.exact.plane.oblique_joint import Coefficients, Joint
 from compare.exact.plane.pulse import Pulse, axes_of
 from compare.exact.plane.waves import KINDS, Kind
 from compare.experiments import store
-from compare.experiments.failures import FAILURES, reason_of
+from compare.experiments.common import FAILURES, reason_of
 from compare.experiments.pool import Pool, alone
 from compare.experiments.scattering.extraction import Scattered, scattered
 from compare.experiments.store import Store

@@ -7,7 +7,7 @@ from math import isfinite
 from pathlib import Path
 
 from compare.engines import Progress, solver
-from compare.experiments.cost.machine import machine
+from compare.experiments.cost.timings import machine
 from compare.experiments.pool import Pool
 from compare.experiments.scattering.diagram import draw
 from compare.experiments.scattering.points import JointsRow, run

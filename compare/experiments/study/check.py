@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from cases.errors import SceneError
 from compare.engines import names, solvers
-from compare.experiments.study.methods.catalogue import METHODS
+from compare.experiments.study.methods import METHODS
 
 if TYPE_CHECKING:
     from compare.experiments.study.study import Curve, FineRun, Study

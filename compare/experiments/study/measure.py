@@ -11,8 +11,8 @@ import xarray as xr
 from cases.errors import SceneError
 from cases.kinds import AnyScene, pillar_of
 from compare.engines import applies, solve, solver
-from compare.experiments.failures import FAILURES
-from compare.experiments.study.methods.catalogue import METHODS
+from compare.experiments.common import FAILURES
+from compare.experiments.study.methods import METHODS
 from compare.experiments.study.reference import UNKNOWN, error, finest_of, known, own_of
 from compare.experiments.study.study import StudyPoint
 from compare.solvers.record import Answer

@@ -8,8 +8,8 @@ import xarray as xr
 
 from cases.kinds import AnyScene
 from compare.engines import ENGINES, applies, exact_names, solve, solver
-from compare.experiments.references import ErrorReference
-from compare.experiments.study.methods.catalogue import METHODS
+from compare.experiments.common import ErrorReference
+from compare.experiments.study.methods import METHODS
 from compare.experiments.study.study import FINEST, NONE, FineRun, Study, StudyPoint
 from compare.misfit.metrics import Pairing, pairings, relative_l2, worst
 from compare.misfit.ranking import applicable, finest, own_exact

@@ -12,7 +12,7 @@ import cases
 from cases.errors import SceneError, nearest
 from cases.files import read_toml
 from cases.kinds import AnyScene
-from compare.experiments.combinations import combinations
+from compare.experiments.common import combinations
 from compare.experiments.study.check import ARGUMENTS, MOST_POINTS, plain, refuse_senseless
 from compare.scenes import find
 
@@ -47,7 +47,7 @@ class Curve(StudyTable):
     """One way to solve the scene, with what of it is varied.
 
     method : an engine, an exact solution, or a method of
-    `compare.experiments.study.methods.catalogue`.
+    `compare.experiments.study.methods`.
     vary : dotted keys and their values, all combinations; `terms` is an exact series' own.
     each : dotted keys and their values: of every combination a curve of its own, whose label has
         the value in place of the key's last part in braces.

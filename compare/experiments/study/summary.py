@@ -3,12 +3,11 @@
 from pathlib import Path
 
 from compare.engines import Progress
-from compare.experiments.cost.machine import machine
+from compare.experiments.cost.timings import machine
 from compare.experiments.pool import Pool
 from compare.experiments.study.diagram import write_diagram
-from compare.experiments.study.findings import sentences
+from compare.experiments.study.findings import Order, orders, sentences
 from compare.experiments.study.measure import PointRow
-from compare.experiments.study.orders import Order, orders
 from compare.experiments.study.pareto import digits_per_second
 from compare.experiments.study.runner import run
 from compare.experiments.study.study import Study, load

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from cases.errors import SceneError
 from cases.read import parse_override
 from compare.engines import Progress
-from compare.experiments.combinations import combinations
+from compare.experiments.common import combinations
 from compare.experiments.pool import Pool
 from compare.experiments.store import Store
 from compare.experiments.sweep.axis import axes

@@ -19,8 +19,8 @@ from matplotlib.ticker import MaxNLocator
 
 from compare.figures import fonts
 from compare.figures.animation.snapshots import SceneSnapshots
+from compare.figures.animation.surface import Wave
 from compare.figures.animation.view_settings import ViewSettings, caption
-from compare.figures.animation.wave import Wave
 from compare.figures.print.layout import wrapped
 from compare.figures.style import FIELD, RC, style
 from compare.figures.subplots import UNITS, Panel, panels

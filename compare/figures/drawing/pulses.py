@@ -1,4 +1,4 @@
-"""Loads and waves over time, as they stand beside the drawing of a scene."""
+"""What stands beside the drawing of a scene: loads and waves over time, joint laws in words."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from cases.loads import history_of
+from cases.schema.joint import JointLaw
 from compare.figures.drawing.symbols import LOAD
 from compare.figures.units import unit_for
 
 if TYPE_CHECKING:
     from cases.schema.pulse import Pulse
+
 
 SAMPLES = 400
 UNITS = {"stress": "Pa", "force": "N/m", "velocity": "m/s", "acceleration": "m/s²"}
@@ -39,3 +41,20 @@ def pulse_curve(pulse: Pulse, duration: float) -> tuple[np.ndarray, np.ndarray]:
     end = min(duration, 1.25 * history.end or duration)
     time = np.linspace(0, end, SAMPLES)
     return time, scale * np.asarray(history.value(time))
+
+
+def law_words(law: JointLaw) -> str:
+    """Return what joints can do beside being elastic; nothing where that is all."""
+    parts = [
+        f"damping ratio {law.damping_ratio:g}" if law.damping_ratio else "",
+        "no tension" if law.tension is False else "",
+        f"closure at most {1e3 * law.maximum_closure:g} mm" if law.maximum_closure else "",
+        f"friction {law.friction_angle:g}°" if law.friction_angle is not None else "",
+        f"dynamic friction {law.dynamic_friction_angle:g}°" if law.weakening_distance else "",
+        f"dilation {law.dilation_angle:g}°" if law.dilation_angle else "",
+        f"rate and state, a = {law.direct_effect:g}, b = {law.evolution_effect:g}"
+        if law.direct_effect
+        else "",
+        f"tensile strength {law.tensile_strength / 1e6:g} MPa" if law.tensile_strength else "",
+    ]
+    return ", ".join(part for part in parts if part)

@@ -15,10 +15,9 @@ from cases.partition.regions import rocks_of
 from cases.partition.scene import partition_of
 from compare.figures.blank import blank
 from compare.figures.drawing import symbols
-from compare.figures.drawing.pulses import draw_pulse
+from compare.figures.drawing.pulses import draw_pulse, law_words
 from compare.figures.drawing.rock_mass_actions import draw_actions
 from compare.figures.drawing.symbols import EDGE, INK, RECEIVER, ROCK
-from compare.figures.drawing.words import law_words
 
 if TYPE_CHECKING:
     from cases.partition.blocks import Partition

@@ -14,8 +14,7 @@ from cases.schema.scene import Scene
 from compare.figures.blank import blank
 from compare.figures.drawing import section, side
 from compare.figures.drawing.placement import HEIGHT, WIDTH
-from compare.figures.drawing.pulses import draw_pulse
-from compare.figures.drawing.words import law_words
+from compare.figures.drawing.pulses import draw_pulse, law_words
 from compare.figures.figure import SceneFigure
 from compare.figures.subplots import variant_names
 from compare.misfit.pairs import Comparison

@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compare.figures.charts.energy import energy
+from compare.figures.charts.energy import energy, ledgers_of
 from compare.figures.charts.interactive import BITS, unpacked
-from compare.figures.charts.ledgers import ledgers_of
 from compare.figures.units import unit_for
 from results.dataset import energy_residual
 

@@ -10,9 +10,8 @@ from cases.errors import SceneError
 from cases.material.calibrate import calibrate
 from cases.read import load_tables
 from compare.engines import solve
-from compare.readings.attenuation import quality_factor, transfer_function, wave_speed
+from compare.readings.attenuation import quality_factor, transfer_function, wave_speed, waveforms
 from compare.readings.dispersion import dispersion, dispersion_theory
-from compare.readings.rows import waveforms
 
 PLACES = list(np.linspace(5.25, 20.25, 16))  # centres of blocks
 PASSED = 0.048  # s; nothing is back from the end at 60 m before

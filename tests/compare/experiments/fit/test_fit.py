@@ -15,7 +15,7 @@ from cases.schema.keys import keys
 from compare.engines import solve
 from compare.exact.blocks import lattice
 from compare.experiments.fit import search
-from compare.experiments.fit.diagram import draw
+from compare.experiments.fit.files import draw
 from compare.experiments.fit.keys import changed, free_keys
 from compare.experiments.fit.problem import problem_of
 from compare.experiments.fit.scene_text import scene_text

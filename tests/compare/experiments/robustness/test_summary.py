@@ -5,7 +5,7 @@ import csv
 import numpy as np
 import pytest
 
-from compare.experiments.robustness import diagram, summary
+from compare.experiments.robustness import summary
 from compare.experiments.robustness.criteria.energies import Drift
 from compare.experiments.robustness.map import make_map
 from compare.experiments.robustness.run import CASES, FAILED, places, row_at
@@ -41,7 +41,7 @@ def test_figure_has_maps_line_and_energies():
     """Each map with its line and its count of wrong cells; each energy as its own curve."""
     found = make_map("dem", cells=5)
     energy = Drift(np.array([0.0, 1e6]), np.array([0.0, 1e-13]))
-    figure = diagram.draw([found], {"dem leapfrog": energy})
+    figure = summary.draw([found], {"dem leapfrog": energy})
     gids = {artist.get_gid() for artist in figure.findobj()} - {None}
     assert gids == {"stability-map-0", "stability-line-0", "stability-energy-0"}
 
@@ -49,6 +49,6 @@ def test_figure_has_maps_line_and_energies():
 def test_the_map_covers_its_stable_cells():
     """In cells of unit size the drawn area is their number."""
     stable = np.array([[True, False, True], [False, False, False], [True, True, True]])
-    drawn = diagram.stretches(stable, np.arange(4.0), np.arange(4.0))
+    drawn = summary.stretches(stable, np.arange(4.0), np.arange(4.0))
     corners = sorted(tuple(map(int, (*one.min(axis=0), *one.max(axis=0)))) for one in drawn)
     assert corners == [(0, 0, 1, 1), (0, 2, 3, 3), (2, 0, 3, 1)]

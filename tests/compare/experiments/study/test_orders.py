@@ -5,8 +5,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from compare.engines import applies
+from compare.experiments.study.findings import orders
 from compare.experiments.study.measure import PointRow, method_applies
-from compare.experiments.study.orders import orders
 from compare.experiments.study.pareto import cheapest, digits_per_second, floor, front, judged
 from compare.experiments.study.reference import finest_of, own_of
 from compare.experiments.study.runner import run

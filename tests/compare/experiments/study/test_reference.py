@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from compare.engines import solve
-from compare.experiments.study.findings import sentences
+from compare.experiments.study.findings import orders, sentences
 from compare.experiments.study.measure import measure
-from compare.experiments.study.orders import orders
 from compare.experiments.study.reference import finest_of, own_of
 from compare.experiments.study.runner import run
 from compare.misfit.metrics import misfit, pairings

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cases.errors import SceneError
-from compare.experiments.combinations import combinations
+from compare.experiments.common import combinations
 from compare.experiments.sweep.axis import axes
 
 KEY = "joints.damping_ratio"

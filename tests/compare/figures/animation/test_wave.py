@@ -5,9 +5,8 @@ import pytest
 
 from cases.material.calibrate import calibrate
 from compare.figures.animation.snapshots import take
-from compare.figures.animation.surface import seen
+from compare.figures.animation.surface import Wave, seen
 from compare.figures.animation.view_settings import STRESS, VELOCITY, ViewSettings, settings_for
-from compare.figures.animation.wave import Wave
 
 X = np.array([1.0, 0.0, 0.0])
 EPS = np.finfo(float).eps

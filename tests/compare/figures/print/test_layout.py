@@ -13,7 +13,7 @@ from compare.figures import fonts
 from compare.figures.print.appearance import STYLES
 from compare.figures.print.draw import draw
 from compare.figures.print.layout import wrapped
-from compare.figures.print.save import save
+from compare.figures.print.make import save
 from compare.figures.print.text import WORDS
 
 FEW = ("dem", "continuum-jointed", "jointed-bar")

@@ -22,8 +22,7 @@ from compare.exact.blocks import lattice
 from compare.figures import fonts
 from compare.figures.print.appearance import MM, STYLES
 from compare.figures.print.draw import draw
-from compare.figures.print.make import FigureRequest, make
-from compare.figures.print.save import save
+from compare.figures.print.make import FigureRequest, make, save
 from compare.figures.print.text import CHINESE, WORDS
 from compare.figures.style import is_engine, style
 from compare.misfit.pairs import Comparison
