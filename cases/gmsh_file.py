@@ -129,7 +129,6 @@ def _rock(mesh, names: list[str]) -> tuple[str, np.ndarray]:
 
 
 def _of_type(mesh, names: list[str], cell: str) -> np.ndarray:
-    """Return the cells of one type in these groups, each once, int array [n, corners]."""
     found = [block.data[inside] for block, inside in _blocks(mesh, names) if block.type == cell]
     return _each_once(found) if found else np.empty((0, 1), dtype=np.int64)
 

@@ -72,7 +72,6 @@ def load_tables(
 def _one(
     whole: dict[str, Any], path: Path, name: str, overrides: dict[str, Any], given: frozenset[str]
 ) -> AnyScene:
-    """Return one variant of the tables of a whole file."""
     table, variants = _parts(whole, path, overrides)
     if not name:
         return validated(table, path, given)
@@ -123,7 +122,6 @@ def _read_toml(path: Path) -> dict[str, Any]:
 def _variant(
     base: dict[str, Any], changes: dict[str, Any], path: Path, index: int, overrides: dict[str, Any]
 ) -> dict[str, Any]:
-    """Return the table of a variant, changed."""
     name = changes.get("name")
     if not isinstance(name, str) or not VARIANT_NAME.fullmatch(name) or CONTROL.search(name):
         allowed = (

@@ -58,7 +58,6 @@ def validated(table: dict[str, Any], path: Path, given: frozenset[str]) -> Any:
 
 
 def _model_of(table: dict[str, Any], where: str) -> Any:
-    """Return the model of the kind of scene that a table holds."""
     if "domain" not in table:
         return Scene
     if "pillar" in table:

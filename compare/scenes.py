@@ -62,7 +62,6 @@ def names() -> list[str]:
 
 
 def _beside(path: Path) -> list[str]:
-    """Return the scene files in the folder of a path."""
     try:
         return [str(file) for file in sorted(path.parent.glob("*.toml"))][:MOST]
     except (OSError, ValueError):  # no folder, a NUL

@@ -63,7 +63,6 @@ def _readings(comparison: Comparison) -> dict[str, Any]:
 
 
 def _show_readings(found: list[Comparison]) -> None:
-    """Print peak velocities, Arias intensities, response spectra and speeds."""
     from compare.report.reading_table import reading_frame, reading_table
 
     header, groups = reading_table(reading_frame(found))

@@ -44,7 +44,6 @@ def write_new(name: str, source: str | None = None, template: Template = PILLAR)
 
 
 def _files(scene: Path) -> list[str]:
-    """Return the files that a scene and its variants name."""
     scenes = cases.load(scene)
     files = [pulse.file for one in scenes for pulse in one.pulses]
     files += [getattr(one.numerics.continuum, "mesh", None) for one in scenes]

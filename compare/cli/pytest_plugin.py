@@ -153,7 +153,6 @@ class PairItem(pytest.Item):
 
 
 def _reason(pair: str, scene) -> str:
-    """Return why a pair does not apply to a scene, or nothing."""
     from compare.engines import applies
 
     answers = {name: applies(name, scene) for name in pair.split(" ~ ")}

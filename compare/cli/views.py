@@ -74,7 +74,6 @@ def _run_facts(done: Done) -> dict[str, Any]:
 
 
 def _what_broke(fragments: list[dict[str, Any]]) -> str:
-    """Return in one line how many joints broke, and the pieces between them."""
     count = len(fragments) - 1
     if not count:
         return "no joint broke"
@@ -162,7 +161,6 @@ def _rock_words(p: Properties) -> str:
 
 
 def _cost_sentence(own: float | None, everything: float | None) -> str:
-    """Return what a step costs, as far as it is known."""
     if own is None:
         return "what a step of a rigid block takes here is known after a run, or by --measure"
     said = f"a step of a rigid block takes {own:.2g} ns here"

@@ -119,7 +119,6 @@ class Store(Generic[T]):
 def _results(
     points: Mapping[str, P], work: Callable[[P], T], pool: Pool | None, lost: T | None
 ) -> Iterator[tuple[str, T]]:
-    """Yield (key, result) of points as they are done."""
     if pool is None or not points:
         for name, point in points.items():
             yield name, work(point)

@@ -64,7 +64,6 @@ def save(
 
 
 def _write_drawings(figure: Figure, folder: Path, name: str, title: str, png: bool) -> str:
-    """Write the drawings; return the SVG's element."""
     buffer = io.StringIO()
     with matplotlib.rc_context(RC | {"svg.hashsalt": name}):
         _lay_out(figure)

@@ -72,7 +72,6 @@ def _strips(low: np.ndarray, high: np.ndarray, count: int) -> tuple[Figure, list
 
 
 def _add_colour_bar(figure: Figure, colour: ScalarMappable, scale: float) -> None:
-    """Put the colours and the exaggeration above the strips."""
     inch = 1 / figure.get_figheight()
     bar = figure.add_axes((LEFT / WIDTH, 1 - 0.32 * inch, 0.3, 0.14 * inch))
     figure.colorbar(colour, cax=bar, orientation="horizontal")

@@ -48,7 +48,6 @@ def _with_own_ids(svg: str, name: str) -> str:
 
 
 def _with_one_family(svg: str) -> str:
-    """Return an SVG that names its fonts once where all its texts have the same."""
     families = set(re.findall(r"font-family: ([^;\"]+)", svg))
     if len(families) != 1:
         return svg
@@ -105,7 +104,6 @@ def _without_bare_groups(svg: str) -> str:
 
 
 def _without_repeated_ids(svg: str) -> str:
-    """Return an SVG in which only the first of several equal ids is left."""
     seen: set[str] = set()
 
     def once(match: re.Match) -> str:

@@ -139,7 +139,6 @@ def _require_recorded(curves: Curves, scenes: list[AnyScene]) -> None:
 
 
 def _of_file(name: str, every: list[Asked]) -> list[Curves]:
-    """Return the curves that are asked for of one file, called by this name."""
     path = every[0].path
     times = [one for one in every if one.is_time]
     table = read_columns(path, times[0].column if times else "time")
@@ -170,7 +169,6 @@ def _of_file(name: str, every: list[Asked]) -> list[Curves]:
 def _curves(
     name: str, path: Path, seconds: np.ndarray, found: list[_Found], variant: str | None
 ) -> Curves:
-    """Return columns that have the same empty cells as curves in SI."""
     empty = found[0].column.empty
     there = np.ones(len(seconds), bool) if empty is None else ~empty
     if there.sum() < LEAST_SAMPLES:

@@ -117,7 +117,6 @@ def _read_csv(path: Path, time_name: str) -> Columns:
 
 
 def _where_time(path: Path, header: list[str], time_name: str) -> int:
-    """Return which column the times are."""
     names = [split_unit(text)[0].lower() for text in header]
     if names.count(time_name) != 1 or len(names) < 2:
         allowed = (

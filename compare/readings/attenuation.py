@@ -38,7 +38,6 @@ def waveforms(
 
 
 def _known(result: xr.Dataset) -> list[str]:
-    """Return the quantities that receivers record."""
     return [str(n) for n, x in result.items() if "time" in x.dims and set(x.dims) & set(RECEIVERS)]
 
 

@@ -54,7 +54,6 @@ def page(name: str, kept: Path = KEPT) -> str:
 
 
 def _outputs(name: str, kept: Path) -> list[list[dict[str, Any]]] | None:
-    """Return the outputs of each cell of code; None where this version has not been run."""
     try:
         notebook = json.loads((kept / f"{name}.ipynb").read_text(encoding="utf-8"))
     except OSError:

@@ -29,7 +29,6 @@ def _number(data: bytes, chance: random.Random) -> bytes:
 
 
 def _word(data: bytes, chance: random.Random) -> bytes:
-    """Put one word of the text in the place of another."""
     found = [*WORD.finditer(data)]
     if not found:
         return data
@@ -38,7 +37,6 @@ def _word(data: bytes, chance: random.Random) -> bytes:
 
 
 def _lines(data: bytes, chance: random.Random) -> bytes:
-    """Leave out, double or move a line."""
     lines = data.split(b"\n")
     i, j = chance.randrange(len(lines)), chance.randrange(len(lines))
     line = lines.pop(i) if chance.random() < 0.7 else lines[i]

@@ -61,7 +61,6 @@ def _difference(before: str, after: str) -> str:
 
 
 def _around(tree: ast.Module, node: ast.AST) -> ast.AST:
-    """Return the innermost function or class around a node, else the module."""
     found: ast.AST = tree
     for other in ast.walk(tree):
         is_scope = isinstance(other, ast.FunctionDef | ast.ClassDef)
@@ -123,8 +122,6 @@ def _removed(body: list, i: int, node: ast.AST) -> list:
 
 
 def _changed(parent: ast.AST, field: str, i: int, node: ast.AST, names: list[str]) -> Iterator:
-    """Yield what changes one node."""
-
     def put(new: ast.AST):
         value = getattr(parent, field)
         new = ast.copy_location(new, node)

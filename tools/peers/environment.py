@@ -105,7 +105,6 @@ def _unpack_yade(target: Path) -> str:
 
 
 def _unpack(package: Path, target: Path) -> str:
-    """Unpack one package; return why not, empty when done."""
     left_out = [f"--exclude=*/{name}" for name in LEFT_OUT]
     with subprocess.Popen(["dpkg-deb", "--fsys-tarfile", package], stdout=subprocess.PIPE) as tar:
         unpack = ["tar", "-x", "-C", str(target), "--no-same-owner", *left_out]

@@ -81,7 +81,6 @@ def _frame(simulated: "SceneSnapshots", scale: float | None, dots: int) -> "Fram
 
 
 def _taken(scene: "AnyScene", count: int) -> "SceneSnapshots":
-    """Return so many snapshots of both engines."""
     from compare.cli import terminal
     from compare.figures.animation.snapshots import take
 
@@ -92,7 +91,6 @@ def _taken(scene: "AnyScene", count: int) -> "SceneSnapshots":
 def _simulate(
     scene: "AnyScene", count: int, scale: float | None
 ) -> tuple["SceneSnapshots", "ViewSettings"]:
-    """Return so many snapshots of a scene by both engines, and how they are drawn."""
     from compare.figures.animation.view_settings import settings_for
 
     simulated = _taken(scene, count)

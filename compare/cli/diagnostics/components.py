@@ -24,8 +24,6 @@ class Missing(Exception):
 
 
 def _imported(module: str) -> Callable[[], str]:
-    """Return what imports a module and says its version."""
-
     def found() -> str:
         package = module.split(".")[0]
         if package not in sys.modules and find_spec(package) is None:

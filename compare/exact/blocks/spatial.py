@@ -173,7 +173,6 @@ def _diagonal(blocks: list[np.ndarray]) -> np.ndarray:
 
 
 def _end(kind: str, half: np.ndarray, dashpot: np.ndarray, eta: float) -> tuple:
-    """Return the stiffness and viscosity [6, 6] of an end's contact."""
     if kind == "free":
         return 0 * half, 0 * half
     return (0 * half, dashpot) if kind == "quiet" else (half, eta * half)

@@ -81,7 +81,6 @@ def _finish(ax: Axes) -> None:
 
 
 def _add_legend(figure: Figure, ax: Axes, found: list[Ablation]) -> None:
-    """Say what markers and numbers stand for."""
     handles, labels = ax.get_legend_handles_labels()
     nothing = Line2D([], [], linestyle="none")
     names = [f"{number}  {b.label}" for number, b in enumerate(found, start=1)]

@@ -94,7 +94,6 @@ def _dearest(e: EffectCost) -> tuple[bool, float]:
 
 
 def _cells(e: EffectCost) -> list[str]:
-    """Return an effect's numbers as text, under `COLUMNS`."""
     if e.reason:
         return [e.effect, *[""] * 6, e.reason]
     misfit = "0" if e.misfit == 0 else percent(e.misfit) if isfinite(e.misfit) else ""

@@ -192,7 +192,6 @@ def _run_cheapest(search: PlanSearch) -> tuple[Choice | None, Choice | None]:
 
 
 def _tried(search: PlanSearch, progress: Progress | None) -> dict[str, str]:
-    """Try all families; return the reasons of those that were not run."""
     skipped = {}
     families = families_of(search.scene)
     for i, family in enumerate(families):

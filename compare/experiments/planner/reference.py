@@ -125,7 +125,6 @@ def _converged(
 
 
 def _refined(scene: AnyScene, model: Family) -> list[Family]:
-    """Return a model with elements of half the size each; rigid blocks have none."""
     if ENGINES[model.name].has_rigid_blocks:
         return [model] * LEVELS
     return [rock(scene, model.name, 2, 2**level) for level in range(LEVELS)]

@@ -172,5 +172,4 @@ class CaseTrial:
 
 @cache
 def _kind(scene: str) -> str:
-    """Return the kind of a shipped scene."""
     return cases.load_variant(find(scene)).kind

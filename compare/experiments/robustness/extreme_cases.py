@@ -109,7 +109,6 @@ def _shapes() -> list[HardCase]:
 
 
 def _off_axis(ratio: float) -> HardCase:
-    """Return the case of blocks so many times as wide as thick."""
     side = 0.5 * ratio
     changes = {
         "pillar.side": side,

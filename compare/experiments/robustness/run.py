@@ -84,7 +84,6 @@ def row_of(case: HardCase, stepper: EngineScheme) -> CaseRow:
 
 
 def _judged(case: HardCase, stepper: EngineScheme) -> tuple[str, Judgement]:
-    """Return the state of a row and what was found."""
     reason = case.why_spared(stepper) or _why_not(case, stepper)
     if reason:
         return NONE, Judgement(nan, nan, reason)

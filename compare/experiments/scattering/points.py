@@ -155,7 +155,6 @@ def measure(point: JointsPoint) -> JointsRow:
 
 
 def _timed(name: str, scene: RockMass) -> tuple[xr.Dataset, float]:
-    """Return the result of a solver and the seconds of processors that it took."""
     began = process_time()
     result = solve(name, scene)
     return result, process_time() - began

@@ -57,7 +57,6 @@ def _refuse_unknown(
 
 
 def _refuse_arguments(path: Path, key: str, curve: Curve) -> None:
-    """Raise SceneError for arguments that a curve's method does not take."""
     given = [(name, [value]) for name, value in curve.changes.items()] + [*curve.vary.items()]
     for name, values in given:
         if name not in ARGUMENTS:
@@ -74,6 +73,5 @@ def _refuse_arguments(path: Path, key: str, curve: Curve) -> None:
 
 
 def _takers(argument: str) -> list[str]:
-    """Return the methods that take an argument."""
     found = [one.name for one in solvers() if argument in one.arguments]
     return found + [name for name, module in METHODS.items() if argument in module.ARGUMENTS]

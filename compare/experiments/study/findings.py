@@ -104,7 +104,6 @@ def _cheapest(target: Cheapest) -> str:
 
 
 def _errors(row: PointRow) -> str:
-    """Return the errors of a point, in words that add up."""
     parts = f"numerical {percent(row.numerical)} % + modelling {percent(row.modelling)} %"
     return f"{parts} = {percent(row.total)} %"
 
@@ -121,7 +120,6 @@ def _seconds(value: float) -> str:
 
 
 def _cancelling(rows: list[PointRow]) -> list[str]:
-    """Return that errors cancel at some points, and where they do so most."""
     near = [row for row in rows if row.measured > 0]
     if not near:
         return []

@@ -52,7 +52,6 @@ def ledgers_of(comparisons: list[Comparison]) -> list[Ledger]:
 
 
 def _ledger(variant: str, engine: str, result: xr.Dataset) -> Ledger:
-    """Return the ledger of an engine's result."""
     since = result["energy"].values - result["energy"].values[:, :1]
     names = [str(term) for term in result["term"].values]
     work = since[names.index("work")]

@@ -53,7 +53,6 @@ def _of_waves(scene: Scene, p: Properties, speed: float) -> list[Mark]:
 
 
 def _of_segments(p: Properties) -> list[Mark]:
-    """Return the least cut-off of the segments' chains."""
     least = min(one.bar_speed / (pi * one.spacing) for one in p.each)
     return [Mark("chain cut-off", least, "least cut-off of the chain of blocks")]
 

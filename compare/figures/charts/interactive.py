@@ -171,7 +171,6 @@ def _axis(label: str) -> dict[str, Any]:
 
 
 def _ordinate(subplot: Subplot) -> dict[str, Any]:
-    """Return the keys of a subplot's own ordinate."""
     found: dict[str, Any] = {"nticks": 4} if subplot.is_minor else {}
     if subplot.is_log:
         found |= {"type": "log", "exponentformat": "power"}

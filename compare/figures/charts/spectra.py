@@ -46,7 +46,6 @@ def _caption(found: list[Spectra]) -> str:
 
 
 def _table(found: list[Spectra]) -> pd.DataFrame:
-    """Return every drawn curve in SI: frequency first, one column a curve."""
     columns = {
         f"{name} | {s.panel.heading} | {s.panel.variant} ({UNITS[s.panel.quantity]}/Hz)": curve
         for s in found

@@ -76,7 +76,6 @@ def _depth(legend: dict[str, list[Entry]]) -> int:
 
 
 def _heights(chart: Chart) -> list[float]:
-    """Return the inches of every row of axes."""
     factor = SMALLER if len(chart.grid) > 2 else 1.0
     return [
         subplot.height * (1.0 if subplot.is_minor else factor)

@@ -92,7 +92,6 @@ def _of_variants(
 
 
 def _references(receivers: list[Panel]) -> str:
-    """Say what the reference of every variant is."""
     found: dict[str, list[str]] = {}
     for panel in receivers:
         found.setdefault(panel.reference, []).append(panel.variant)

@@ -121,12 +121,10 @@ def _draw_row(figure: Figure, scene: Scene, above: Scene | None, bottom: float) 
 
 
 def _history(scene: Scene) -> dict[str, object]:
-    """Return what decides the load over time."""
     return scene.load.model_dump(exclude={"direction", "at", "arm"})
 
 
 def _table(scene: Scene, variant: str) -> pd.DataFrame:
-    """Return every part that is drawn, from y to y."""
     pillar = scene.pillar
     edges = side.block_edges(scene)
     rows = [("block", a, b, "") for a, b in pairwise(edges)]

@@ -89,7 +89,6 @@ def _draw_rock(ax: Axes, scene: Scene, place: Placement) -> None:
 
 
 def _draw_end(ax: Axes, end: str, place: Placement, x: float, outward: int) -> None:
-    """Draw what holds an end."""
     far, middle = x + outward * ROOM, (x, place.middle)
     half = (x + outward * ROOM / 2, place.middle)
     if end == "fixed":

@@ -60,7 +60,6 @@ def ledger(trial: CaseTrial) -> Judgement:
 
 
 def _spent(result: xr.Dataset) -> str:
-    """Return what was spent on what, in words."""
     terms = {str(t): float(result["energy"].sel(term=t)[-1]) for t in result["term"].values}
     work = max(abs(float(x)) for x in result["energy"].sel(term="work").values) or 1.0
     parts = [f"{t} {terms[t] / work:.2g}" for t in SPENT if t in terms]
