@@ -188,7 +188,8 @@ def test_files_that_a_page_names_are_there(page):
     assert not [path for path in named if not (ROOT / path).exists()]
     if page.name == "exact.md":
         solutions = re.findall(r"`(\w+\.py)`", text)
-        there = {path.name for path in (ROOT / "compare/exact").rglob("*.py")}
+        folders = ROOT / "compare/exact", ROOT / "tests/theory"
+        there = {path.name for folder in folders for path in folder.rglob("*.py")}
         assert not [name for name in solutions if name not in there]
 
 
