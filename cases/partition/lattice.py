@@ -48,7 +48,8 @@ def further_sets(scene: RockMass) -> list[JointSet]:
     names = [*(one.name for one in scene.regions), REST] if scene.regions else []
     shaped = shapes(scene.regions, outline) if names else [None]
     for k, (own, shape) in enumerate(zip(within(scene, scene.joint_sets), shaped, strict=True)):
-        place = Place(outline, outline.corners if shape is None else corners_of(shape), scene)
+        corners = outline.corners if shape is None else corners_of(shape.convex_hull)
+        place = Place(outline, corners, scene)
         inside = {"regions": names[k : k + 1]}
         found += [lines.model_copy(update=inside) for lines in _cuts(own, place, block)]
     names = [f"cut {k}" for k in range(len(found))]

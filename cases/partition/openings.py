@@ -26,20 +26,27 @@ def taken_out(
         at = np.flatnonzero(near)
         inside[at] = shapely.contains_xy(shapely.Polygon(corners), sub.centres()[at])
         sub = removed(sub, inside, side)
-    return _rejoined(sub, whole, tolerance)
+    return _rejoined(sub, tolerance)
 
 
 def check_convex(sub: Subdivision, polygons: list[tuple[np.ndarray, int]]) -> None:
     """Raise NonConvex where a block had to be cut through intact rock beside what was taken out."""
     cuts = np.flatnonzero(_through_rock(sub))
     if len(cuts):
-        corners = np.concatenate([corners for corners, _ in polygons])
-        away = sub.points[sub.ends[cuts[0]]][:, None] - corners
         raise NonConvex(
-            corners[np.argmin(np.hypot(*np.moveaxis(away, 2, 0)).min(axis=0))],
-            "a block is not convex at an opening or a corner of the outline; "
+            _nearest(sub.points[sub.ends[cuts[0]]], polygons),
+            "a block is not convex at an opening, a region or a corner of the outline; "
             'let it be cut in convex parts by domain.non_convex = "cut"',
         )
+
+
+def _nearest(ends: np.ndarray, polygons: list[tuple[np.ndarray, int]]) -> np.ndarray:
+    """Return the corner of polygons that is nearest to the ends of a cut [2, 2], or its middle."""
+    if not polygons:
+        return ends.mean(axis=0)
+    corners = np.concatenate([corners for corners, _ in polygons])
+    away = ends[:, None] - corners
+    return corners[np.argmin(np.hypot(*np.moveaxis(away, 2, 0)).min(axis=0))]
 
 
 def _near(sub: Subdivision, corners: np.ndarray, tolerance: float) -> np.ndarray:
@@ -63,7 +70,7 @@ def _cut_along(
     near = _near(sub, corners, tolerance)
     for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
         half = sub.halves(np.append(near, False)[sub.cells].any(axis=1))
-        passed = near & _passed(sub, half, start, end, tolerance)
+        passed = near & passed_by(sub, half, start, end, tolerance)
         cut = near & np.isin(whole, whole[passed])  # all of the block, so that pieces can be chosen
         direction = (end - start) / np.hypot(*(end - start))
         found = split(sub, one_line(direction, start, cut), tolerance)
@@ -71,7 +78,7 @@ def _cut_along(
     return sub, whole
 
 
-def _passed(
+def passed_by(
     sub: Subdivision, half: Halves, start: np.ndarray, end: np.ndarray, tolerance: float
 ) -> np.ndarray:
     """Return which cells a segment passes through, deeper than the tolerance."""
@@ -95,8 +102,8 @@ def _through_rock(sub: Subdivision) -> np.ndarray:
     return (sub.joint_set[sub.line] == NO_SET) & inner & (one == other)
 
 
-def _rejoined(sub: Subdivision, whole: np.ndarray, tolerance: float) -> Subdivision:
-    """Return a subdivision with pieces of a block joined as far as they stay convex."""
+def _rejoined(sub: Subdivision, tolerance: float) -> Subdivision:
+    """Return a subdivision with pieces of a block of one rock joined as far as they stay convex."""
     cuts = np.flatnonzero(_through_rock(sub))
     if not len(cuts):
         return sub
@@ -109,6 +116,5 @@ def _rejoined(sub: Subdivision, whole: np.ndarray, tolerance: float) -> Subdivis
     pieces = ConvexPieces(dict(zip(map(int, cells), own, strict=True)), tolerance)
     length = np.hypot(*np.diff(sub.points[sub.ends[cuts]], axis=1)[:, 0].T)
     for (one, other), part in zip(sub.cells[cuts], length, strict=True):
-        if whole[one] == whole[other]:
-            pieces.connect(int(one), int(other), float(part))
+        pieces.connect(int(one), int(other), float(part))
     return joined(sub, pieces.merged(sub.count))

@@ -10,6 +10,7 @@ import shapely
 
 from cases.partition.joints import direction_of
 from cases.partition.lines import one_line
+from cases.partition.openings import passed_by
 from cases.partition.split import split
 from cases.partition.subdivision import Subdivision
 from cases.schema.region import REST
@@ -29,20 +30,32 @@ FAR = 4.0  #: sizes of a domain: beyond all of it
 
 def region_at(regions: Sequence[Region], places: np.ndarray) -> np.ndarray:
     """Return the region that holds each place (float array [n, 2], m), or ROCK: the last of those
-    whose line it lies above."""
+    whose line it lies above, or whose outline it lies in."""
     found = np.full(len(places), ROCK)
     for k, one in enumerate(regions):
-        x, y = direction_of(one.dip)
-        found[(places - one.through) @ [-y, x] > 0] = k
+        if one.outline is not None:
+            found[shapely.contains_xy(shapely.Polygon(one.outline), places)] = k
+        else:
+            found[_above(one, places) > 0] = k
     return found
 
 
+def _above(one: Region, places: np.ndarray) -> np.ndarray:
+    """Return how far places [n, 2] (m) are above the line of a region [n], m."""
+    assert one.through is not None
+    x, y = direction_of(one.dip)
+    return (places - np.array(one.through)) @ [-y, x]
+
+
 def on_boundary(regions: Sequence[Region], places: np.ndarray, tolerance: float) -> np.ndarray:
-    """Return which places [n, 2] (m) lie on the line of a region, bool array [n]."""
+    """Return which places [n, 2] (m) lie on the line or the outline of a region, bool [n]."""
     found = np.zeros(len(places), bool)
     for one in regions:
-        x, y = direction_of(one.dip)
-        found |= np.abs((places - one.through) @ [-y, x]) <= tolerance
+        if one.outline is not None:
+            ring = shapely.Polygon(one.outline).exterior
+            found |= shapely.dwithin(ring, shapely.points(places), tolerance)
+        else:
+            found |= np.abs(_above(one, places)) <= tolerance
     return found
 
 
@@ -74,28 +87,52 @@ def within(scene: RockMass, sets: Sequence[JointSet]) -> list[RockMass]:
     ]
 
 
+def strata(regions: Sequence[Region]) -> list[Region]:
+    """Return the regions that are bounded by a line."""
+    return [one for one in regions if one.outline is None]
+
+
 def cut_into_regions(sub: Subdivision, regions: Sequence[Region], tolerance: float) -> Subdivision:
-    """Return a subdivision cut along the boundaries of regions, each cell with its region."""
+    """Return a subdivision cut along the boundaries of regions, each cell with its region.
+
+    An outline is cut along the lines of its faces, so that cells stay convex; what they cut of the
+    rock around it is joined again by `openings.taken_out`.
+    """
     for k in reversed(range(len(regions))):
-        one, free = regions[k], sub.region == ROCK
-        line = one_line(direction_of(one.dip), np.array(one.through), free)
-        found = split(sub, line, tolerance)
-        sub = found.subdivision
-        above = (found.number == 0) & free[found.parent]
-        sub = replace(sub, region=np.where(above, k, sub.region))
+        one = regions[k]
+        if one.outline is not None:
+            corners = np.array(one.outline, dtype=float)
+            for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+                free = sub.region == ROCK
+                passed = free & passed_by(sub, sub.halves(), start, end, tolerance)
+                line = one_line((end - start) / np.hypot(*(end - start)), start, passed)
+                sub = split(sub, line, tolerance).subdivision
+            inside = shapely.contains_xy(shapely.Polygon(corners), sub.centres())
+        else:
+            assert one.through is not None
+            line = one_line(direction_of(one.dip), np.array(one.through), sub.region == ROCK)
+            sub = split(sub, line, tolerance).subdivision
+            inside = _above(one, sub.centres()) > 0
+        sub = replace(sub, region=np.where(inside & (sub.region == ROCK), k, sub.region))
     return sub
 
 
 def shapes(regions: Sequence[Region], outline: Outline) -> list[shapely.Geometry]:
     """Return what of a domain each region holds, and last what is left of it."""
-    left, found, reach = outline.shape, [], FAR * outline.size
+    left, found = outline.shape, []
     for one in reversed(regions):
-        along = reach * direction_of(one.dip)
-        up = np.array([-along[1], along[0]])
-        at = np.array(one.through)
-        foot = at + (outline.corners.mean(axis=0) - at) @ along / reach**2 * along
-        ends = [foot - along, foot + along, foot + along + up, foot - along + up]
-        above = shapely.Polygon(ends)
-        found.append(left.intersection(above))
-        left = left.difference(above)
+        whole = shapely.Polygon(_corners(one, outline))
+        found.append(left.intersection(whole))
+        left = left.difference(whole)
     return [*reversed(found), left]
+
+
+def _corners(one: Region, outline: Outline) -> list:
+    """Return the corners of a region without the others, far beyond the domain's where it is
+    bounded by a line."""
+    if one.outline is not None:
+        return one.outline
+    along = FAR * outline.size * direction_of(one.dip)
+    up, at = np.array([-along[1], along[0]]), np.array(one.through)
+    foot = at + (outline.corners.mean(axis=0) - at) @ along / (along @ along) * along
+    return [foot - along, foot + along, foot + along + up, foot - along + up]

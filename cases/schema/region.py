@@ -1,13 +1,21 @@
-"""Regions of a rock mass: rock beyond a line that differs from [rock]."""
+"""Regions of a rock mass: rock beyond a line or within an outline that differs from [rock]."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from cases.schema.plane import IntactRock
-from cases.schema.values import Point, Poisson, Positive, Table, Words, contradiction
+from cases.schema.values import (
+    Point,
+    Poisson,
+    Positive,
+    Table,
+    Words,
+    contradiction,
+    contradiction_here,
+)
 
 if TYPE_CHECKING:
     from cases.partition.outline import Outline
@@ -18,16 +26,26 @@ REST = "rock"
 
 
 class Region(Table):
-    """All rock above a line, as far as no region after it holds that; keys of the rock that are
-    absent are those of [rock]. Its boundary is welded but where a joint lies along it."""
+    """All rock above a line, or within an outline, as far as no region after it holds that; keys of
+    the rock that are absent are those of [rock]. Its boundary is welded but where a joint lies
+    along it."""
 
     name: Words  #: what the `regions` of joint sets, tables and figures call it
     #: degrees from the horizontal, counter-clockwise, of the line; "above" is to its left
     dip: Annotated[float, Field(ge=-180, le=180)] = 0.0
-    through: Point  #: m, a point of the line
+    through: Point | None = None  #: m, a point of the line
+    outline: list[Point] | None = None  #: m, corners of a polygon instead of a line
     density: Positive | None = None  #: kg/m3
     intact_modulus: Positive | None = None  #: Pa, Young's modulus
     intact_poisson: Poisson | None = None  #: of the rock between the joints
+
+    @model_validator(mode="after")
+    def _one_shape(self) -> Region:
+        if (self.through is None) == (self.outline is None):
+            raise contradiction_here("through", self.through, "give a line's, or an outline")
+        if self.outline is not None and self.dip:
+            raise contradiction_here("dip", self.dip, "has no meaning with an outline")
+        return self
 
     def rock(self, rest: IntactRock) -> IntactRock:
         """Return the region's rock, given that of the rest."""
@@ -53,15 +71,40 @@ def check_regions(scene: RockMass, outline: Outline) -> None:
     if names and scene.domain.mesh is not None:
         allowed = "are of a domain that joint sets cut: not with domain.mesh"
         raise contradiction("regions", len(names), allowed)
+    _check_outlines(scene, outline)
     least = outline.tolerance * outline.size
     *held, rest = (one.area for one in shapes(scene.regions, outline))
     for i, (region, area) in enumerate(zip(scene.regions, held, strict=True)):
         if area <= least:
+            key = "through" if region.outline is None else "outline"
             allowed = "leaves it no rock: it misses the domain, or regions after it hold all"
-            raise contradiction(f"regions[{i}].through", region.through, allowed)
+            raise contradiction(f"regions[{i}].{key}", getattr(region, key), allowed)
     if rest <= least:
         raise contradiction("regions", len(names), "must leave a part of the domain to [rock]")
     _check_periodic(scene)
+
+
+def _check_outlines(scene: RockMass, outline: Outline) -> None:
+    """Refuse outlines that are no polygons, and those on sides that waves enter through."""
+    import shapely
+
+    for i, one in enumerate(scene.regions):
+        if one.outline is None:
+            continue
+        shape = shapely.Polygon(one.outline) if len(one.outline) > 2 else shapely.Polygon()
+        if not (shape.is_valid and shape.area > 0):
+            allowed = "must be a polygon that does not cross itself"
+            raise contradiction(f"regions[{i}].outline", len(one.outline), allowed)
+        within = shapely.Polygon(outline.corners).exterior.distance(shape)
+        if within <= outline.tolerance and (scene.waves or _is_periodic(scene)):
+            allowed = (
+                "must lie inside of the domain, not on its sides, with waves or periodic sides"
+            )
+            raise contradiction(f"regions[{i}].outline", len(one.outline), allowed)
+
+
+def _is_periodic(scene: RockMass) -> bool:
+    return "periodic" in scene.boundaries.model_dump().values()
 
 
 def _check_damping(scene: RockMass) -> None:
@@ -80,6 +123,6 @@ def _check_periodic(scene: RockMass) -> None:
     for i, one in enumerate(scene.regions):
         for side, along in (("left", 0.0), ("bottom", 90.0)):
             held = getattr(scene.boundaries, side)
-            if held == "periodic" and (one.dip - along) % 180 != 0:
+            if one.outline is None and held == "periodic" and (one.dip - along) % 180 != 0:
                 allowed = f"must be {along:g} or its opposite: boundaries.{side} is periodic"
                 raise contradiction(f"regions[{i}].dip", one.dip, allowed)

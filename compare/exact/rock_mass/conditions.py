@@ -9,6 +9,7 @@ import numpy as np
 
 from cases.partition.joints import direction_of
 from cases.partition.outline import outline_of
+from cases.partition.regions import strata
 
 if TYPE_CHECKING:
     from cases.schema.joint_set import JointSet
@@ -71,7 +72,7 @@ def all_parallel(scene: RockMass) -> bool:
 
 def directions_of(scene: RockMass) -> list[np.ndarray]:
     """Return unit vectors along the joint sets and the boundaries of regions."""
-    dips = [*(one.dip for one in scene.joint_sets), *(one.dip for one in scene.regions)]
+    dips = [*(one.dip for one in scene.joint_sets), *(one.dip for one in strata(scene.regions))]
     return [direction_of(dip) for dip in dips]
 
 

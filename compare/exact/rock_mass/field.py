@@ -19,7 +19,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cases.errors import SceneError
-from cases.incident import WaveMotion, free_field, plane_wave
+from cases.incident import FreeField, WaveMotion, free_field, plane_wave
+from cases.partition.regions import strata
 from compare.exact.plane import layer_pulses, parallel_joints
 from compare.exact.plane.pulse import Pulse
 from compare.exact.plane.waves import Kind
@@ -72,16 +73,20 @@ def field_of(scene: RockMass) -> IncidentField:
     return free_field(scene)
 
 
-def _layered_field(scene: RockMass) -> StackField:
-    """Return the field of the waves in the regions' intact rock.
+def _layered_field(scene: RockMass) -> StackField | FreeField:
+    """Return the field of the waves in the regions' intact rock, but for those with an outline,
+    which no wave meets at a side.
 
     Raises SceneError where that is not known.
     """
-    intact = scene.model_copy(update={"joint_sets": []})
+    intact = scene.model_copy(update={"joint_sets": [], "regions": strata(scene.regions)})
+    waves = tuple(plane_wave(scene, one) for one in scene.waves)
+    if not intact.regions:
+        return FreeField(waves)
     reason = scatters_otherwise(intact, leaves=False)
     stack = stack_of(intact) if reason is None else None
     reason = reason if stack is None else begun(scene, stack)
     if stack is None or reason is not None:
         allowed = f"enter regions of rock in which their field is not known: {reason}"
         raise SceneError(scene.where, "waves", len(scene.waves), allowed)
-    return StackField(stack, tuple(plane_wave(scene, one) for one in scene.waves), whole=False)
+    return StackField(stack, waves, whole=False)

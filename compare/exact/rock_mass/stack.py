@@ -16,7 +16,7 @@ from cases.incident import plane_wave
 from cases.material.dashpots import set_time_constants
 from cases.material.rock import elastic_rock
 from cases.partition.outline import TOLERANCE, outline_of
-from cases.partition.regions import rocks_of
+from cases.partition.regions import rocks_of, strata
 from cases.partition.scene import partition_of
 from cases.partition.subdivision import NO_SET
 from compare.exact.plane.oblique_joint import Joint
@@ -113,7 +113,9 @@ def scatters_otherwise(scene: RockMass, leaves: bool = True) -> str | None:
     """Return why the waves that enter and the joints do not make the field of a stack, None where
     they do; what else acts, and openings, add to it. leaves : whether sides must let waves out."""
     directions = directions_of(scene)
+    outlined = len(strata(scene.regions)) < len(scene.regions)
     reasons = [
+        (outlined, "a region has an outline"),
         (not directions, "there is no joint"),
         (not all_parallel(scene), "joints are not parallel"),
     ]

@@ -20,7 +20,7 @@ DECADES = 3.0  # that a key on a logarithmic scale may change without bounds of 
 #: What says how a scene is cut, solved and recorded: no number that can change by a little.
 FIXED = (
     *("pillar.length", "pillar.block", "soft_layers.*.y", "time", "record", "numerics", "expect"),
-    *("domain", "segments.*.y", "segments.*.block"),
+    *("domain", "regions.*.dip", "segments.*.y", "segments.*.block"),
     *(f"joint_sets.*.{key}" for key in ("dip", "spacing", "offset", "scatter")),
 )
 FORMS = "must be KEY, KEY=START, KEY=LOW:HIGH or KEY=LOW:START:HIGH"

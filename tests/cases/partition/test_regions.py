@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from cases.partition.cut import cut
+from cases.partition.faults import PartitionError
 from cases.partition.regions import ROCK, region_at
 from cases.partition.subdivision import NO_SET
 from cases.schema.region import Region
@@ -75,3 +76,38 @@ def test_slivers_are_joined_to_rock_of_their_own(rectangle, joints):
     )
     assert of_region(found, 0) == pytest.approx(4 * 4.001, rel=1e-12)
     assert found.area.min() > 7.9
+
+
+LENS = [[2.0, 3.0], [5.0, 2.0], [8.0, 3.5], [6.0, 5.5], [3.0, 5.0]]
+DENT = [[2.0, 2.0], [5.0, 4.0], [8.0, 2.0], [6.0, 7.0], [3.0, 7.0]]  # not convex at its second
+
+
+@pytest.mark.parametrize("corners", [LENS, DENT])
+def test_an_outline_holds_its_own_area(rectangle, joints, corners):
+    """Among crossing joints and over a stratum: each block is of one rock, and the boundary is as
+    long as the outline."""
+    x, y = np.array(corners).T
+    area = abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
+    around = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T).sum()
+    sets = [joints("bed", 10.0, spacing=1.7), joints("cross", -70.0, spacing=2.3)]
+    both = [region("upper", 8.0), Region(name="lens", outline=corners)]
+    domain = rectangle(10.0, 10.0, non_convex="cut", least_width=1e-3)
+    found = cut(domain, sets, (), both)
+    assert [of_region(found, k) for k in (ROCK, 0, 1)] == pytest.approx(
+        [80 - area, 20, area], rel=1e-12
+    )
+    assert (found.region == region_at(both, found.centroid)).all()
+    welded = between(found) & (found.region[found.contacts.blocks] == 1).any(axis=1)
+    assert found.contacts.length[welded].sum() == pytest.approx(around, rel=1e-12)
+    plain = cut(domain, sets)
+    of_sets = [c.contacts.length[c.contacts.joint_set >= 0].sum() for c in (plain, found)]
+    assert of_sets[0] == pytest.approx(of_sets[1], rel=1e-12)
+
+
+def test_rock_around_an_outline_is_refused_or_cut_as_around_an_opening(rectangle):
+    """Rock around a lens is no convex block; cut along its five faces it makes five."""
+    lens = [Region(name="lens", outline=LENS)]
+    with pytest.raises(PartitionError, match="not convex at an opening, a region or a corner"):
+        cut(rectangle(10.0, 10.0), [], (), lens)
+    found = cut(rectangle(10.0, 10.0, non_convex="cut"), [], (), lens)
+    assert sorted(found.region) == [ROCK] * 5 + [0]

@@ -100,7 +100,26 @@ OVER = REGION.replace(
     "[[joint_sets]]", '[[regions]]\nname = "over"\nthrough = [0.0, {}]\n\n[[joint_sets]]'
 )
 
+OUTLINED = REGION.replace("through = [0.0, 25.0]", "outline = [[40.0, 10.0], [50.0, 10.0]]")
+THROUGH = "through = [0.0, 25.0]\noutline"
+
 MISTAKES = {
+    "region of no shape": (
+        BED,
+        REGION.replace("through = [0.0, 25.0]", ""),
+        ["regions[0].through"],
+    ),
+    "region of two shapes": (
+        BED,
+        OUTLINED.replace("outline", THROUGH),
+        ["a line's, or an outline"],
+    ),
+    "region of two corners": (BED, OUTLINED, ["regions[0].outline = 2", "must be a polygon"]),
+    "region on a side": (
+        BED,
+        OUTLINED.replace("10.0]]", "10.0], [50.0, 0.0]]"),
+        ["regions[0].outline = 3", "inside of the domain"],
+    ),
     "unknown key of a region": (BED, REGION.replace("density", "densty"), ["regions[0].densty"]),
     "region named rock": (BED, REGION.replace("upper", "rock"), ["regions[0].name = 'rock'"]),
     "region twice": (BED, OVER.format("30.0").replace("over", "upper"), ["regions[1].name"]),

@@ -48,3 +48,23 @@ def test_a_column_of_two_rocks_is_pressed_as_both_in_series(rock_mass, model):
     moved = -simulate(scene, model).displacement.values[:, -1, 1]
     assert moved[0] == pytest.approx(1e6 * 2 / 5e10, rel=1e-4)
     assert moved[1] == pytest.approx(1e6 * (4 / 5e10 + 2 / 2e10 + 4 / 2e10), rel=1e-4)
+
+
+def test_an_outline_of_the_same_rock_changes_nothing(struck):
+    """A pentagon in rock that a P wave passes: the waves of one rock, in another mesh."""
+    corners = [[6.0, 8.0], [12.0, 7.0], [15.0, 11.0], [11.0, 15.0], [7.0, 13.0]]
+    tables = {
+        "joints": [],
+        "domain": {"size": [20.0, 20.0], "non_convex": "cut"},
+        "record": {"points": [[10.0, 10.0], [10.0, 17.0]]},
+    }
+    plain = struck(**tables)
+    lens = struck(**tables, regions=[{"name": "lens", "outline": corners, "density": 2600.0}])
+    soft = struck(**tables, regions=[{"name": "lens", "outline": corners, "intact_modulus": 1e10}])
+    one, other, third = (simulate(x, incident=field_of(x)) for x in (plain, lens, soft))
+    exact = field_of(plain)(np.array(plain.record.points), one.time.values).velocity
+    for found in (one, other):
+        assert relative_l2(found.velocity.values.swapaxes(1, 2), exact) < 5e-3
+    assert relative_l2(third.velocity.values, one.velocity.values) > 0.3
+    energy = third.energy.values
+    assert np.abs(energy[:-1].sum(axis=0) - energy[-1]).max() < 1e-11 * np.abs(energy).max()
