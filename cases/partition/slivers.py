@@ -12,6 +12,9 @@ from cases.partition.polygons import least_angles, widths
 from cases.partition.split import split
 from cases.partition.subdivision import OUTSIDE, Subdivision, joined
 
+#: Cuts of a sliver, at most: parts that made slivers of neighbours could pass round for ever.
+PARTS = 4
+NO_FIT = ", and is convex with none of its neighbours"
 Limits = tuple[float, float]  # least width, m, and least angle, degrees
 
 
@@ -26,13 +29,15 @@ def without_slivers(
     refused. kept : joint sets, the first ones, that a sliver is joined across only where it fits no
     other neighbour. Raises Sliver.
     """
+    most = 0
     while True:
         found = rings(sub)
         thin = _slivers(found, limits)
         if not len(thin):
             return sub, found
-        if not joins:
-            raise _refusal(found, int(thin[0]), limits, "")
+        most = most or sub.count + PARTS * len(thin)
+        if not joins or sub.count > most:
+            raise _refusal(found, int(thin[0]), limits, NO_FIT if joins else "")
         sub = _joined_to_neighbours(sub, found, thin, limits, tolerance, kept)
 
 
@@ -63,11 +68,13 @@ def _joined_to_neighbours(
         used[near] = True
     if used.any():
         return joined(sub, root)
+    slivers = set(found.cell[thin].tolist())
     for one in stuck:
-        parted = _parted(sub, found, one, beside[int(found.cell[one])], tolerance)
+        near = [cell for cell in beside[int(found.cell[one])] if cell not in slivers]
+        parted = _parted(sub, found, one, near, tolerance)
         if parted is not None:
             return parted
-    raise _refusal(found, stuck[0], limits, ", and is convex with none of its neighbours")
+    raise _refusal(found, stuck[0], limits, NO_FIT)
 
 
 def _fitting(found: Rings, own: np.ndarray, near: list[int], tolerance: float) -> int | None:

@@ -146,6 +146,26 @@ def test_slivers_that_no_neighbour_takes(rectangle, joints):
         cut(domain, sets)
 
 
+FAN = [[4.1, 3.5], [4.1, 2.9], [4.5, 2.4], [4.9, 2.2], [5.2, 2.2], [5.8, 2.4]]
+WEDGE = [[6.3, 3.3], [6.1, 4.0], [4.6, 4.7], [5.4, 2.0], [6.1, 2.6], [6.3, 3.2]]
+
+
+@pytest.mark.parametrize(
+    ("opening", "dips", "least"),
+    [(FAN, {-25.0: 2.4}, 0.3), (WEDGE, {64.0: 2.6, -43.0: 1.2, 80.0: 2.2}, 0.1)],
+)
+def test_slivers_do_not_pass_parts_to_each_other_for_ever(opening, dips, least, rectangle, joints):
+    """Two beside an opening, each cut where the other's side ends."""
+    limits = {"least_width": least, "least_angle": 5.0}
+    domain = rectangle(10.0, 6.0, openings=[opening], non_convex="cut", **limits)
+    sets = [
+        joints(f"{dip:g}", dip, spacing=spacing, through=[5.0, 3.0])
+        for dip, spacing in dips.items()
+    ]
+    with pytest.raises(Sliver, match="is convex with none of its neighbours, near"):
+        cut(domain, sets)
+
+
 def test_a_corner_of_less_than_the_least_angle(rectangle, joints):
     """One joint that leaves a corner at 0.5 degrees: joined, and nothing is left of the joint."""
     one = joints("flat", 0.5, through=[0.0, 1.0])
