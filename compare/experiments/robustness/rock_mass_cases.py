@@ -164,4 +164,20 @@ def _long() -> list[HardCase]:
     ]
 
 
-ROCK_MASSES = [*_shapes(), *_contrast(), *_grazing(), *_sliding(), *_long()]
+def _regions() -> list[HardCase]:
+    """Return bricks crossed by the boundaries of rock a millionth as stiff and a hundredth as
+    heavy."""
+    soft = {"intact_modulus": 5e4, "density": 26.0}
+    stratum = {"name": "stratum", "dip": 3.0, "through": [3.0, 2.3]} | soft
+    lens = {"name": "lens", "outline": [[1.2, 0.7], [4.4, 0.9], [3.1, 2.6]]} | soft
+    cases = {
+        "bricks of rock and of a millionth of it": _struck(_bricks(0.5)) | {"regions": [stratum]},
+        "a soft wedge in bricks": _struck(_bricks(0.5), non_convex="cut") | {"regions": [lens]},
+    }
+    return [
+        at_one_joint(f"the ledger of {name}", rock_masses.balanced, changes, EXPLICIT)
+        for name, changes in cases.items()
+    ]
+
+
+ROCK_MASSES = [*_regions(), *_shapes(), *_contrast(), *_grazing(), *_sliding(), *_long()]
