@@ -28,6 +28,7 @@ def rated(**changes):
     return cases.load_variant(SCENE, "", {"expect": {}, "record.interval": 2e-4, **changes})
 
 
+@pytest.mark.slow
 def test_blocks_and_rock_tend_to_the_exact_joint():
     """Blocks of 1, 0.5 and 0.25 m: first order, as for a joint of one strength."""
     misfits = []
@@ -45,7 +46,9 @@ def test_blocks_and_rock_tend_to_the_exact_joint():
 
 
 @pytest.mark.parametrize("scheme", ["explicit", "implicit"])
-@pytest.mark.parametrize("variant", ["", "friction rises with the rate"])
+@pytest.mark.parametrize(
+    "variant", ["", "friction rises with the rate", "contacts a thousandth of a second old"]
+)
 def test_one_joint_in_homogenised_rock(scheme, variant):
     """1 % of the exact waveform, explicit and in steps of a thousandth of the period."""
     changes = {
@@ -62,8 +65,9 @@ def test_one_joint_in_homogenised_rock(scheme, variant):
 
 RATED = {key: JOINT[key] for key in ("name", "dip", "through", "normal_stiffness")}
 RATED |= {"shear_stiffness": 2e10, "friction_angle": float(np.degrees(np.arctan(0.4)))}
-RATED |= {"direct_effect": 0.01, "evolution_effect": 0.02, "critical_slip_distance": 1e-4}
-RATED |= {"reference_rate": 1e-6, "initial_state": 1e3}
+RATE = {"direct_effect": 0.01, "evolution_effect": 0.02, "critical_slip_distance": 1e-4}
+RATE |= {"reference_rate": 1e-6, "initial_state": 1e3}
+RATED |= RATE
 
 
 @pytest.mark.parametrize(
@@ -93,3 +97,42 @@ def test_one_joint_in_the_plane(engine, rock, bound):
     assert relative_l2(sign * carried, stress) < bound
     assert relative_l2(np.sign(slipped @ slip) * slipped, slip) < bound
     assert energy_residual(found) < 1e-6
+
+
+@pytest.mark.parametrize("simulate", [dem.simulate, bar], ids=["blocks", "rock"])
+def test_a_static_state_is_that_of_mu_0(simulate):
+    """A pillar that hangs sideways from its end, 0.53 MPa of shear at the joint: the state is that
+    of Coulomb's friction, to the last bit, and contacts 10,000 s old then hold it."""
+    changes = {
+        "pillar.block": 2.5,
+        "record.velocity": [36.25],
+        "ends": {"start": "free", "end": "fixed"},
+        "gravity": {"direction": [1, 0, 0], "acceleration": 8.8},
+        "load.amplitude": 0.0,
+        "time.duration": 0.01,
+    }
+    layer = {"y": 25.0, "friction_angle": 31.0}
+    ours, coulomb = simulate(rated(**changes)), simulate(rated(**changes, soft_layers=[layer]))
+    for name in ("displacement", "shear"):
+        found, expected = ours[name].values, coulomb[name].values
+        assert (found[:, 0] == expected[:, 0]).all() and np.abs(expected[:, 0]).max() > 0
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-6 * np.abs(expected).max())
+
+
+def test_blocks_rest_under_a_shear_stress():
+    """1.2 MPa of it, of 1.6 that mu_0 = 0.4 bears: contacts 1000 s old hold it, as Coulomb's do."""
+    still = {
+        "waves": [],
+        "time": {"duration": 1e-3},
+        "prestress": {"xx": 4e6, "yy": 4e6, "xy": 1.2e6},
+    }
+    numerics = {"dem": {"block": 0.8}}
+    plain = {key: RATED[key] for key in RATED if key not in RATE}
+    sides = SIDES | {"cohesion": 1e9}
+    found = []
+    for joint in (RATED, plain):
+        tables = FAULT | still | {"joint_sets": [joint, sides], "numerics": numerics}
+        found.append(dem.simulate(validated(tables, Path("fault.toml"), frozenset())))
+    ours, coulomb = (one["traction"].values[0] for one in found)
+    assert np.abs(coulomb[0, 1]) == pytest.approx(1.2e6, rel=1e-6)
+    np.testing.assert_allclose(ours, coulomb, rtol=0, atol=1e-6 * 4e6)
