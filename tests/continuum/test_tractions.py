@@ -17,6 +17,8 @@ DAMPED = {"normal_viscosity": 1e5, "shear_viscosity": 4e4}
 SLIPS = {"cohesion": 1e4, "friction": 0.4}
 WEAKENS = {"dynamic_friction": 0.1, "weakening_distance": 5e-5}
 DILATES = {"dilation": 0.1, "dilation_distance": 8e-5}
+RATED = {"direct_effect": 0.01, "evolution_effect": 0.015, "critical_slip_distance": 1e-3}
+RATED |= {"reference_rate": 1e-6, "initial_state": 10.0}
 BREAKS = {"tensile_strength": 3e4, "critical_opening": 2e-4}
 LAWS = {
     "elastic": HELD,
@@ -26,6 +28,8 @@ LAWS = {
     "no tension": HELD | {"carries_tension": False},
     "weakens": HELD | SLIPS | WEAKENS,
     "weakens, damped": HELD | DAMPED | SLIPS | WEAKENS,
+    "rate and state": HELD | SLIPS | RATED,
+    "rate and state, damped": HELD | DAMPED | SLIPS | RATED,
     "dilates": HELD | SLIPS | DILATES,
     "dilates, weakens, damped": HELD | DAMPED | SLIPS | WEAKENS | DILATES,
     "softens, damped": HELD | DAMPED | SLIPS | BREAKS | {"residual_cohesion": 2e3},
@@ -43,7 +47,7 @@ class Points:
         if directions == 1:
             away = ("shear_stiffness", "shear_viscosity", "cohesion", "friction")
             away += ("residual_cohesion", "dynamic_friction", "weakening_distance")
-            away += ("dilation", "dilation_distance")
+            away += ("dilation", "dilation_distance", *RATED)
             given = {k: v for k, v in given.items() if k not in away}
         stiffness = given["normal_stiffness"] * random.uniform(1, 2, POINTS)
         self.law = Law(**given | {"normal_stiffness": stiffness})

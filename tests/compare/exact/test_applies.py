@@ -30,6 +30,8 @@ STIFF_SLIPS = [{"y": 20.0, "cohesion": 1e5, "shear_stiffness": 1e12}]
 WEAKENS = {"friction_angle": 35.0, "dynamic_friction_angle": 15.0, "weakening_distance": 1e-3}
 SNAPS = {"y": 20.0, "shear_stiffness": 1e8} | WEAKENS
 PRESSED = SHEAR | {"prestress": {"normal": 1e6}}
+RATED = {"y": 20.0, "friction_angle": 30.0, "direct_effect": 0.01, "evolution_effect": 0.015}
+RATED |= {"critical_slip_distance": 1e-4, "reference_rate": 1e-6}
 DILATES = {"y": 20.0, "friction_angle": 35.0, "dilation_angle": 5.0, "dilation_distance": 1e-3}
 SOFT_SHEAR = [*SLIPS, {"y": 30.0, "shear_stiffness": 1e8}]
 SLOPE = {
@@ -146,6 +148,17 @@ NO = [
         SHEAR | {"soft_layers": [SLIPS[0] | {"residual_cohesion": 0.0}]},
         "slip weakens the joint",
     ),
+    (
+        "slip-joint",
+        PRESSED | {"soft_layers": [RATED | {"cohesion": 1e4}]},
+        "the joint whose friction depends on the rate of slip has cohesion",
+    ),
+    (
+        "slip-joint",
+        SHEAR | {"soft_layers": [RATED]},
+        "nothing presses the joint whose friction depends on the rate of slip",
+    ),
+    ("one-joint", PRESSED | {"soft_layers": [RATED]}, "friction depends on the rate of slip"),
     (
         "slip-joint",
         PRESSED | {"soft_layers": [SNAPS]},

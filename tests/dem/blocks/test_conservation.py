@@ -15,6 +15,8 @@ DASHPOTS = {"normal_viscosity": 9e5, "shear_viscosity": 4e5}
 SLIP = {"cohesion": 2e4, "friction": 0.5}
 WORN = {"dynamic_friction": 0.2, "weakening_distance": 2e-5}
 WORN |= {"dilation": 0.1, "dilation_distance": 4e-5}
+RATE = {"direct_effect": 0.01, "evolution_effect": 0.015, "critical_slip_distance": 1e-5}
+RATE |= {"reference_rate": 1e-6, "initial_state": 1.0}
 SOFTENING = {"tensile_strength": 5e4, "critical_opening": 3e-5}
 LAWS = {
     "elastic": (STIFF, 0),
@@ -29,6 +31,7 @@ LAWS = {
     ),
     "slip that weakens and lifts": (STIFF | SLIP | WORN, 2),
     "slip that weakens and lifts, with dashpots": (STIFF | SLIP | WORN | DASHPOTS, 2),
+    "rate and state": (STIFF | SLIP | RATE, 2),
     "softening": (STIFF | SLIP | SOFTENING | DASHPOTS, 2),
 }
 EACH = pytest.mark.parametrize("law", LAWS)
