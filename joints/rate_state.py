@@ -48,13 +48,8 @@ def exponent(law, state):
 
 
 @formula
-def friction_under(law, rate, state):
-    """Return mu of ln V (V in m/s) and s."""
-    return _friction(law, rate + exponent(law, state))
-
-
-@formula
-def _friction(law, x):
+def friction_at(law, x):
+    """Return mu = a asinh(e^x), x = ln V and the exponent."""
     return law.direct_effect * (x + LN_2 if x > LARGE else asinh(exp(x)))
 
 
@@ -118,7 +113,7 @@ def slide_at_rate(law, t_n, cohesion, state, size, stiffness, dt):
         slide = dt * exp(rate)
         grown, turn = ageing(slide / least, young)
         x = rate + begun + ratio * grown
-        carried = t_n * _friction(law, x)
+        carried = t_n * friction_at(law, x)
         left = load - stiffness * slide - carried
         if left > 0.0:
             low = rate

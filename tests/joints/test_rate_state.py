@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from joints.energy import elastic_energy, friction_work
 from joints.law import History, Law, law_of, parts_of, table_of, traction
-from joints.rate_state import friction_under, rate_under
+from joints.rate_state import exponent, friction_at, rate_under
 from joints.tangent import tangent
 
 PRESSURE, LENGTH, RATE = 1e6, 1e-4, 1e-6
@@ -32,6 +32,11 @@ PRESSED = -1e-3  # m: 1 MPa
 def at_point(one):
     """Return the law of one joint as kernels have it, every parameter a number, and its parts."""
     return law_of(table_of(one), 0), parts_of(one)
+
+
+def friction_under(law, rate, state):
+    """Return mu of ln V (V in m/s) and s."""
+    return friction_at(law, rate + exponent(law, state))
 
 
 def driven(one, rate, dt, steps, h):

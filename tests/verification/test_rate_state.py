@@ -136,3 +136,48 @@ def test_blocks_rest_under_a_shear_stress():
     ours, coulomb = (one["traction"].values[0] for one in found)
     assert np.abs(coulomb[0, 1]) == pytest.approx(1.2e6, rel=1e-6)
     np.testing.assert_allclose(ours, coulomb, rtol=0, atol=1e-6 * 4e6)
+
+
+def slider(share):
+    """Return two blocks between walls, one of which moves along the joint between them at V = 0.5
+    mm/s. Half a spring S, the joint's S and half a spring again: k = S / 2 unloads the joint,
+    `share` of its critical stiffness s (b - a) / D_c."""
+    distance = share * 0.01 * 1e6 / 1e9
+    joints = {"shear_stiffness": 2e9, "friction_angle": float(np.degrees(np.arctan(0.6)))}
+    joints |= {"direct_effect": 0.01, "evolution_effect": 0.02}
+    joints |= {"critical_slip_distance": distance, "reference_rate": 5e-4}
+    tables = {
+        "title": "a slider",
+        "pillar": {"length": 1.0, "side": 0.5, "block": 0.5},
+        "rock": {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0},
+        "motion": {"rotation": "none"},
+        "prestress": {"normal": 1e6},
+        "joints": joints,
+        "load": {
+            "shape": "step",
+            "quantity": "velocity",
+            "amplitude": 5e-4,
+            "direction": [1, 0, 0],
+        },
+        "ends": {"start": "fixed", "end": "fixed"},
+        "time": {"duration": 4.0},
+        "record": {"stress": [0.5], "velocity": [0.25], "interval": 1e-3},
+    }
+    return validated(tables, Path("slider.toml"), frozenset())
+
+
+def test_blocks_creep_above_the_critical_stiffness_and_stick_and_slip_below():
+    """1.2 s bring the traction to the 0.6 MPa of friction at V. Above k_c by a quarter it settles
+    there, at the rate of a p^2 + (a - b + k D_c / s) p + k D_c / s = 0 (Ruina 1983), Re p = 0.125
+    of V / D_c = 40 1/s: inertia, m V^2 / (s a D_c) = 0.002 of it, and steps change less than 2 % of
+    that. Below k_c it sticks and slips."""
+    stable, unstable = (dem.simulate(slider(share)) for share in (1.25, 0.8))
+    t, held, swings = (
+        stable["time"].values,
+        *(np.abs(one["shear"].values[0, :, 0]) for one in (stable, unstable)),
+    )
+    first, then = (np.ptp(held[(t > at) & (t < at + 0.5)]) for at in (2.0, 3.0))
+    assert np.log(first / then) == pytest.approx(5.0, rel=0.02)
+    np.testing.assert_allclose(held[t > 3.5], 0.6e6, rtol=1e-5)
+    assert np.ptp(swings[t > 3.0]) > 0.1e6
+    assert max(map(energy_residual, (stable, unstable))) < 1e-12
