@@ -1,17 +1,12 @@
 """Effects that a scene calls for; all others are left out of the computation."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from cases.kinds import AnyScene
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.joint import PARTS
 from cases.schema.scene import Scene
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 NO_SHEAR = "nothing shears the joints"
 

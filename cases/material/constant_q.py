@@ -14,19 +14,15 @@ The modulus that the scene gives is that of the phase speed at the reference fre
 c = sqrt(M / rho): M_u is larger by Re(sqrt(M_u / M))^2.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from math import ceil, log10, pi
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from cases.kinds import AnyScene
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 SPACING = 0.85  # decades between relaxation frequencies, at most: Q is within 4 % from Q = 5 on
 BEYOND = 0.1  # decades that they go beyond the band

@@ -1,9 +1,7 @@
 """A domain cut by joint sets: the steps from the scene's tables to the partition."""
 
-from __future__ import annotations
-
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,13 +16,9 @@ from cases.partition.polygons import moments
 from cases.partition.regions import cut_into_regions
 from cases.partition.slivers import without_slivers
 from cases.partition.subdivision import Subdivision
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from cases.schema.domain import Domain
-    from cases.schema.joint_set import JointSet
-    from cases.schema.region import Region
+from cases.schema.domain import Domain
+from cases.schema.joint_set import JointSet
+from cases.schema.region import Region
 
 #: Default least width of a block over the smallest spacing, or the size of the domain without one.
 THIN = 1e-2

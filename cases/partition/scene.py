@@ -1,9 +1,7 @@
 """The partition of a rock-mass scene, and what it takes, known before it is made."""
 
-from __future__ import annotations
-
+from collections.abc import Sequence
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,14 +11,10 @@ from cases.partition.cut import cut
 from cases.partition.faults import PartitionError
 from cases.partition.joints import direction_of
 from cases.partition.periodic import PAIRS, periodic_contacts
+from cases.schema.domain import Domain
+from cases.schema.joint_set import JointSet
+from cases.schema.rock_mass import RockMass
 from cases.size import LIMIT, memory, spoken
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from cases.schema.domain import Domain
-    from cases.schema.joint_set import JointSet
-    from cases.schema.rock_mass import RockMass
 
 #: Bytes of memory for each block while a domain is cut.
 OF_BLOCK = 2500

@@ -24,14 +24,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import groupby
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from cases.material.calibrate import Properties
-
-if TYPE_CHECKING:
-    from cases.material.constant_q import Mechanisms
+from cases.material.constant_q import Mechanisms
 
 
 @dataclass(frozen=True)
