@@ -66,7 +66,9 @@ def save(
 def _write_drawings(figure: Figure, folder: Path, name: str, title: str, png: bool) -> str:
     buffer = io.StringIO()
     with matplotlib.rc_context(RC | {"svg.hashsalt": name}):
-        _lay_out(figure)
+        if isinstance(engine := figure.get_layout_engine(), ConstrainedLayoutEngine):
+            engine.execute(figure)
+        figure.set_layout_engine(None)
         figure.savefig(buffer, format="svg", metadata={"Title": title, "Date": None})
         about = {"Title": title, "CreationDate": None}
         _write_bytes(folder / f"{name}.pdf", figure, metadata=about)
@@ -82,10 +84,3 @@ def _write_bytes(path: Path, figure: Figure, **options: Any) -> None:
     content = io.BytesIO()
     figure.savefig(content, format=path.suffix[1:], **options)
     write(path, lambda place: place.write_bytes(content.getbuffer()))
-
-
-def _lay_out(figure: Figure) -> None:
-    """Lay a figure out for good: its files need not do so again, each twice."""
-    if isinstance(engine := figure.get_layout_engine(), ConstrainedLayoutEngine):
-        engine.execute(figure)
-    figure.set_layout_engine(None)

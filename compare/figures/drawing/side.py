@@ -42,7 +42,12 @@ def draw_strip(ax: Axes, scene: Scene) -> None:
         ax.fill(across, up, color=LAYER, zorder=5, gid=f"layer-{i}")
     for end, outward in ((scene.ends.start, -1), (scene.ends.end, 1)):
         _draw_end(ax, end, place, place.x(0 if outward < 0 else scene.pillar.length), outward)
-        _name_end(ax, end, scene, place, outward)
+        y = 0.0 if outward < 0 else ticks(scene, place)[-1]
+        number = place.x(y) + outward * CHARACTER * (len(f"{y:g}") + 1) / 2
+        x = place.x(0.0 if outward < 0 else scene.pillar.length) + outward * 0.1
+        x = min(x, number) if outward < 0 else max(x, number)
+        words = f"{end} {'start' if outward < 0 else 'end'}"
+        symbols.note(ax, x, place.bottom - 0.21, words, "right" if outward < 0 else "left", "top")
     draw_load(ax, scene, place)
     draw_forces(ax, scene, place)
     draw_receivers(ax, scene, place)
@@ -100,13 +105,3 @@ def _draw_end(ax: Axes, end: str, place: Placement, x: float, outward: int) -> N
         symbols.dashpot(ax, half, (far, place.middle))
     if end in ("quiet", "matched"):
         symbols.wall(ax, far, place.middle, 0.3, outward)
-
-
-def _name_end(ax: Axes, end: str, scene: Scene, place: Placement, outward: int) -> None:
-    """Write what holds an end below it, beside the wall and the number of the scale there."""
-    y = 0.0 if outward < 0 else ticks(scene, place)[-1]
-    number = place.x(y) + outward * CHARACTER * (len(f"{y:g}") + 1) / 2
-    x = place.x(0.0 if outward < 0 else scene.pillar.length) + outward * 0.1
-    x = min(x, number) if outward < 0 else max(x, number)
-    words = f"{end} {'start' if outward < 0 else 'end'}"
-    symbols.note(ax, x, place.bottom - 0.21, words, "right" if outward < 0 else "left", "top")
