@@ -24,12 +24,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import groupby
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from cases.material.calibrate import Properties
-from cases.material.constant_q import Mechanisms
+
+if TYPE_CHECKING:
+    from cases.material.constant_q import Mechanisms
 
 
 @dataclass(frozen=True)
