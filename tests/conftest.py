@@ -1,8 +1,10 @@
 """What the tests share: the paper's pillar with any key changed, and a look at compiled code."""
 
 import ctypes
+import fcntl
 import gc
 import os
+import pickle
 import re
 import shutil
 import sys
@@ -62,6 +64,25 @@ def release_results(request):
     gc.collect()
     gc.freeze()  # what is left are kernels and types, which stay: no need to look at them again
     MALLOC_TRIM(0)  # glibc keeps the pages of arrays that were freed below others that were not
+
+
+@pytest.fixture(scope="session")
+def once(tmp_path_factory):
+    """Return a function of a name and of what makes a thing in a folder: the thing, made by the
+    first process that asks for it while all others wait."""
+    own = tmp_path_factory.getbasetemp()
+    shared = own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
+
+    def made(name, make):
+        with (shared / f"{name}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            file = shared / f"{name}.pickle"
+            if not file.is_file():
+                (folder := shared / name).mkdir()
+                file.write_bytes(pickle.dumps(make(folder)))
+            return pickle.loads(file.read_bytes())
+
+    return made
 
 
 @pytest.fixture

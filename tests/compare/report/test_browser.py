@@ -45,7 +45,7 @@ def show(browser, alone):
         page.goto(path.as_uri() if hasattr(path, "as_uri") else f"file://{path}")
         return page
 
-    opened.complaints = complaints
+    opened.complaints, opened.contexts = complaints, contexts
     yield opened
     for context in contexts:
         context.close()
@@ -53,9 +53,13 @@ def show(browser, alone):
 
 @pytest.fixture
 def opened(show):
-    """Return the same, for a page that the test may change."""
+    """Return the same, for pages that the test may change; each is a process of 200 MB until it is
+    closed."""
     show.complaints.clear()
-    return show
+    before = len(show.contexts)
+    yield show
+    while len(show.contexts) > before:
+        show.contexts.pop().close()
 
 
 @pytest.fixture(scope="module")
