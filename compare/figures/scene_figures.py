@@ -3,6 +3,7 @@
 import xarray as xr
 
 from compare.figures.charts.energy import energy
+from compare.figures.charts.propagation import propagation
 from compare.figures.charts.spacetime import space_time
 from compare.figures.charts.spacetime_data import diagrams_of
 from compare.figures.charts.spectra import spectra
@@ -26,6 +27,7 @@ def figures_of(
         *waveforms(name, comparisons),
         *_space_time(name, comparisons, fields),
         *spectra(name, comparisons),
+        *propagation(name, comparisons),
         *energy(name, comparisons),
     ]
 

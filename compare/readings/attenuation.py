@@ -110,10 +110,12 @@ def quality_factor(
         ratio * np.exp(1j * omega * late)
     )  # the rest is below half a turn
     loss = -np.log(np.abs(ratio))
+    with np.errstate(divide="ignore"):  # nothing is lost
+        quality = lag / (2 * loss)
     named = {
         "attenuation": (loss / way, "attenuation", "1/m"),
         "phase_speed": (omega * way / lag, "phase speed", "m/s"),
-        "quality": (lag / (2 * loss), "apparent quality factor", "1"),
+        "quality": (quality, "apparent quality factor", "1"),
     }
     return xr.Dataset(
         {
