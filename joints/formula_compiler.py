@@ -129,7 +129,7 @@ class Lowering(typed_passes.NativeLowering):
         return True
 
 
-PASSES = (
+BEFORE_LOWERING = (
     untyped_passes.TranslateByteCode,
     untyped_passes.FixupArgs,
     untyped_passes.IRProcessing,
@@ -142,18 +142,24 @@ PASSES = (
     typed_passes.NopythonTypeInference,
     typed_passes.PreLowerStripPhis,
     typed_passes.IRLegalization,
-    Lowering,
-    typed_passes.NoPythonBackend,
 )
 
 
 class FormulaCompiler(compiler.CompilerBase):
     """The passes over a formula."""
 
+    name, lowering = "formula", Lowering
+
     def define_pipelines(self):
         """Return its passes."""
-        manager = compiler_machinery.PassManager("formula")
-        for one in PASSES:
+        manager = compiler_machinery.PassManager(self.name)
+        for one in (*BEFORE_LOWERING, self.lowering, typed_passes.NoPythonBackend):
             manager.add_pass(one, one.__name__)
         manager.finalize()
         return [manager]
+
+
+class KernelCompiler(FormulaCompiler):
+    """The passes over a kernel: those over a formula, and machine code."""
+
+    name, lowering = "kernel", typed_passes.NativeLowering
