@@ -6,6 +6,7 @@ from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from threading import Lock
 from typing import NamedTuple
 
 from pandas import DataFrame
@@ -38,8 +39,8 @@ from compare.runs.output import write_csv, write_text
 from compare.runs.workers import Workers
 
 FREE_PILLAR = "fig-03"  # the scene that says what the paper's own comparison is made of
-#: What share of the paper's page each part takes, where kernels are compiled.
-PARTS = {"scenes": 0.3, "hard cases": 0.4, "studies": 0.1, "rock masses": 0.1, "effects": 0.1}
+#: How much of the paper's page each part takes, %, where kernels are compiled.
+PARTS = {"scenes": 30, "hard cases": 40, "studies": 10, "rock masses": 10, "effects": 10}
 PAPERS = (
     "Figures 2 to 10 of Guo & Li (2002), Chin. J. Rock Mech. Eng. 21(8), 1124–1129, by rigid "
     "blocks, by a deformable continuum and by exact solutions"
@@ -98,13 +99,14 @@ def build(
 
 def _parts(progress: Progress | None) -> Callable[[str], Progress]:
     """Return what gives each part of the paper's page its progress, of the whole the sum."""
-    done = dict.fromkeys(PARTS, 0.0)
+    done, lock = dict.fromkeys(PARTS, 0.0), Lock()
 
     def part(name: str) -> Progress:
         def tell(fraction: float) -> None:
-            done[name] = fraction
-            if progress is not None:
-                progress(sum(share * done[one] for one, share in PARTS.items()))
+            with lock:
+                done[name] = fraction
+                if progress is not None:
+                    progress(sum(share * done[one] for one, share in PARTS.items()) / 100)
 
         return tell
 
@@ -137,6 +139,7 @@ def _solved(
 def _untimed(out: Path, hard: bool, pool: Pool, part: Callable[[str], Progress]) -> _Untimed:
     """Return what is made beside the scenes: processors are busy, and no seconds are measured."""
     stability = make_hard_cases(out / "studies", pool, False, part("hard cases")) if hard else None
+    part("hard cases")(1.0)  # also where they are left out
     tell, joints = part("rock masses"), []
     for i, name in enumerate(scattering.TITLES, start=1):
         joints.append(scattering.make_study(name, out / "studies", brief=True, pool=pool))
