@@ -3,6 +3,7 @@
 import ctypes
 import fcntl
 import gc
+import json
 import os
 import pickle
 import re
@@ -96,7 +97,27 @@ def pillar():
     return scene
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
+def in_toml():
+    """Return a function that spells a value as TOML does: tables inline, a scene's own a line
+    each."""
+
+    def inline(value):
+        if isinstance(value, list):
+            return f"[{', '.join(map(inline, value))}]"
+        if isinstance(value, dict):
+            return f"{{{', '.join(f'{json.dumps(k)} = {inline(v)}' for k, v in value.items())}}}"
+        return json.dumps(value)
+
+    def text(value):
+        if isinstance(value, dict) and "title" in value:
+            return "".join(f"{key} = {inline(one)}\n" for key, one in value.items())
+        return inline(value)
+
+    return text
+
+
+@pytest.fixture(scope="session")
 def one_joint():
     """Return a function that gives the tables of rock with one joint at 30 degrees, which a P wave
     of 1 MPa and 200 Hz meets from below; quiet all around, tables replaced."""
