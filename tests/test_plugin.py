@@ -209,7 +209,7 @@ def test_a_run_without_scenes_imports_nothing_heavy(pytester):
         cwd=pytester.path,
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=600,
     )
     assert done.returncode == 0, done.stdout
 

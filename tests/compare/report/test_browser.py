@@ -89,7 +89,7 @@ def unfold(page):
 def draw(figure):
     """Let a chart come into view, wait until it is drawn, and return it."""
     figure.scroll_into_view_if_needed()
-    figure.locator(".chart .main-svg").first.wait_for(timeout=20_000)
+    figure.locator(".chart .main-svg").first.wait_for(timeout=60_000)
     return figure
 
 

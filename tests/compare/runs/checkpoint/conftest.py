@@ -15,7 +15,7 @@ AT = ("--set", "record.stress=[5.0]", "--set", "record.velocity=[4.75, 5.25]")
 ROCK = ("--engine", "continuum", "--model", "jointed", "--set", "numerics.continuum.scheme=")
 DAMPED = ("joints.damping_ratio=0.02",)
 SHOT = ("record.fields=2e-3",)  # s; a run is looked at wherever it keeps a snapshot
-PATIENCE = 120  # s, for what takes seconds: other tests run at the same time
+PATIENCE = 600  # s, for what takes seconds: other tests run at the same time
 
 
 def keys(*changes):
