@@ -57,7 +57,7 @@ def wave_speed(
     """Return the speed of a wave from one receiver to another, m/s: their distance over the delay
     at which their waveforms correlate best.
 
-    one, other : receivers by number. quantity, axis : of which waveforms, as `rows.waveforms` has
+    one, other : receivers by number. quantity, axis : of which waveforms, as `waveforms` has
     them. Negative where the other one is reached first.
     """
     row = waveforms(result, quantity, axis)
@@ -117,13 +117,17 @@ def quality_factor(
         "phase_speed": (omega * way / lag, "phase speed", "m/s"),
         "quality": (quality, "apparent quality factor", "1"),
     }
-    return xr.Dataset(
-        {
-            name: ("frequency", values, {"long_name": words, "units": unit})
-            for name, (values, words, unit) in named.items()
-        },
-        {"frequency": frequency[heard]},
-    )
+    return xr.Dataset(variables("frequency", named), {"frequency": frequency[heard]})
+
+
+def variables(
+    dims: str | tuple[str, ...], named: dict[str, tuple[np.ndarray, str, str]]
+) -> dict[str, xr.Variable]:
+    """Return variables by name, of values, what they are in words, and their unit."""
+    return {
+        name: xr.Variable(dims, values, {"long_name": words, "units": unit})
+        for name, (values, words, unit) in named.items()
+    }
 
 
 def _frequencies(row: xr.DataArray) -> xr.Variable:
