@@ -31,6 +31,8 @@ THIN = 1e-2
 #: thinnest block decides the step, but what is joined has no strain: with a third of the spacing a
 #: wave's error does not fall with the blocks, with 0.03 it does and steps are three times as many.
 LATTICE = (0.03, THIN)
+#: Bytes of memory for each block while a domain is cut.
+OF_BLOCK = 2500
 
 
 def cut(
@@ -117,10 +119,6 @@ def _named(edges: BoundaryEdges, outline: Outline) -> BoundaryEdges:
     outer = outline.sides_of(edges.start, edges.end)
     side = np.where(edges.side == 0, outer, len(SIDES) - 1 + edges.side)
     return replace(edges, side=side)
-
-
-#: Bytes of memory for each block while a domain is cut.
-OF_BLOCK = 2500
 
 
 def partition_of(scene: RockMass, further: Sequence[JointSet] = ()) -> Partition:

@@ -26,6 +26,13 @@ from compare.runs.output import write, write_csv, write_text
 
 DOTS = 160  # of the PNG, per inch
 DIGITS = 6  # of the numbers behind a figure
+#: Ids that matplotlib counts its parts by; those that a drawing gives to its own groups stay.
+COUNTED = re.compile(
+    r' id="(?:figure|axes|patch|line2d|text|legend|[xy]tick|matplotlib\.axis|[A-Z]\w+)_\d+"'
+)
+HASHED = re.compile(r"[A-Za-z]+[0-9a-f]{10}")
+USE = re.compile(r'(<use xlink:href="#([^"]+)"[^>]*?) style="([^"]*)"')
+PLACE = re.compile(r"([ML]) (-?[\d.]+(?:e-?\d+)?) (-?[\d.]+(?:e-?\d+)?) ?\n?")
 
 
 class Drawn(NamedTuple):
@@ -94,15 +101,6 @@ def _write_bytes(path: Path, figure: Figure, **options: Any) -> None:
     content = io.BytesIO()
     figure.savefig(content, format=path.suffix[1:], **options)
     write(path, lambda place: place.write_bytes(content.getbuffer()))
-
-
-#: Ids that matplotlib counts its parts by; those that a drawing gives to its own groups stay.
-COUNTED = re.compile(
-    r' id="(?:figure|axes|patch|line2d|text|legend|[xy]tick|matplotlib\.axis|[A-Z]\w+)_\d+"'
-)
-HASHED = re.compile(r"[A-Za-z]+[0-9a-f]{10}")
-USE = re.compile(r'(<use xlink:href="#([^"]+)"[^>]*?) style="([^"]*)"')
-PLACE = re.compile(r"([ML]) (-?[\d.]+(?:e-?\d+)?) (-?[\d.]+(?:e-?\d+)?) ?\n?")
 
 
 def compact(svg: str, name: str) -> str:

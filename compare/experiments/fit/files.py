@@ -27,6 +27,7 @@ from compare.runs.output import refuse_foreign, write, write_text
 
 WIDTH, PANEL, AROUND = 7.5, 2.6, 0.8  # inches: the figure, a waveform with its residual, the rest
 MOST_MARKS = 250  # samples that are drawn one by one
+HEAD = "# Fitted by jointwave"
 
 
 def draw(found: Fit) -> Figure:
@@ -68,9 +69,6 @@ def _draw_waveform(wave: Any, left: Any, one: Fitted, solver: str, i: int) -> No
     left.set_ylim(-1.15 * reach, 1.15 * reach)
     for ax in (wave, left):
         ax.margins(x=0)
-
-
-HEAD = "# Fitted by jointwave"
 
 
 def write_fit(found: Fit, given: AnyScene, folder: Path) -> list[Path]:

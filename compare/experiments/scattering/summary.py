@@ -30,6 +30,20 @@ AXES = {
     "parallel-joints": "number of joints",
 }
 WORDS = {"P": "P wave", "SV": "SV wave"}
+TITLES = {
+    "oblique-joint": "Reflection and transmission at one joint against the angle",
+    "parallel-joints": "Reflection and transmission of parallel joints at 30 degrees",
+}
+NOTE = (
+    "Moduli of particle velocity over the incident one, at the peak frequency of the pulse, where "
+    "K_n = Z_p omega and K_s = Z_s omega; P and S waves are 9.6 m and 5.5 m long, and several "
+    "joints a tenth of the former apart. The exact field of the joints enters through all sides."
+)
+LEGEND = (
+    "Off: the largest difference from the closed form. Residual: of the motion, what no plane "
+    "waves of the rock make up. CPU: of a run, its set-up included, without compiling."
+)
+COLUMNS = ["R_p", "R_s", "T_p", "T_s", "off", "residual, %", "freedoms", "CPU, s"]
 
 
 def draw(name: str, rows: list[JointsRow]) -> Figure:
@@ -109,22 +123,6 @@ def _draw_cost(ax: Axes, rows: list[JointsRow], solvers: list[str]) -> None:
     ax.xaxis.set_minor_formatter(NullFormatter())
     ax.set_ylabel("off from the closed form")
     ax.grid(color="#e4e7ea", linewidth=0.6)
-
-
-TITLES = {
-    "oblique-joint": "Reflection and transmission at one joint against the angle",
-    "parallel-joints": "Reflection and transmission of parallel joints at 30 degrees",
-}
-NOTE = (
-    "Moduli of particle velocity over the incident one, at the peak frequency of the pulse, where "
-    "K_n = Z_p omega and K_s = Z_s omega; P and S waves are 9.6 m and 5.5 m long, and several "
-    "joints a tenth of the former apart. The exact field of the joints enters through all sides."
-)
-LEGEND = (
-    "Off: the largest difference from the closed form. Residual: of the motion, what no plane "
-    "waves of the rock make up. CPU: of a run, its set-up included, without compiling."
-)
-COLUMNS = ["R_p", "R_s", "T_p", "T_s", "off", "residual, %", "freedoms", "CPU, s"]
 
 
 def make_study(

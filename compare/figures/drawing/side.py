@@ -24,6 +24,7 @@ from compare.figures.units import unit_for
 MOST = 400  # blocks that are drawn one by one
 SHADES = (ROCK, "#cfc7b5", "#dcdde0")  # of segments, in turn
 ROOM = 0.5  # inches of what stands beyond an end
+ABOVE = 0.33  # inches of the labels over the pillar
 
 
 def draw_strip(ax: Axes, scene: Scene) -> None:
@@ -107,9 +108,6 @@ def _draw_end(ax: Axes, end: str, place: Placement, x: float, outward: int) -> N
         symbols.dashpot(ax, half, (far, place.middle))
     if end in ("quiet", "matched"):
         symbols.wall(ax, far, place.middle, 0.3, outward)
-
-
-ABOVE = 0.33  # inches of the labels over the pillar
 
 
 class Label(NamedTuple):
