@@ -11,17 +11,20 @@ import base64
 import io
 import json
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from hashlib import sha256
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import matplotlib
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from pandas import DataFrame
 from PIL import Image
 
-from compare.figures.style import RC
+from compare.figures.style import RC, WIDTH
 from compare.runs.output import write, write_csv, write_text
 
 DOTS = 160  # of the PNG, per inch
@@ -33,6 +36,18 @@ COUNTED = re.compile(
 HASHED = re.compile(r"[A-Za-z]+[0-9a-f]{10}")
 USE = re.compile(r'(<use xlink:href="#([^"]+)"[^>]*?) style="([^"]*)"')
 PLACE = re.compile(r"([ML]) (-?[\d.]+(?:e-?\d+)?) (-?[\d.]+(?:e-?\d+)?) ?\n?")
+
+
+@contextmanager
+def blank(height: float, width: float = WIDTH, laid_out: bool = False) -> Iterator[Figure]:
+    """Give an empty figure to be drawn on, inches; constraints lay it out once that is done, unless
+    the drawing lays it out itself."""
+    with matplotlib.rc_context(RC):
+        figure = Figure(figsize=(width, height))
+        FigureCanvasAgg(figure)
+        yield figure
+        if not laid_out:
+            figure.set_layout_engine("constrained")
 
 
 class Drawn(NamedTuple):

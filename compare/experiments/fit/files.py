@@ -19,8 +19,7 @@ from compare.experiments.fit.keys import CLOCK
 from compare.experiments.fit.result import Fit, Fitted
 from compare.experiments.fit.scene_text import scene_text
 from compare.experiments.store import finite
-from compare.figures.blank import blank
-from compare.figures.export import save, write_csv
+from compare.figures.export import blank, save, write_csv
 from compare.figures.overlays import UNITS
 from compare.figures.style import GIVEN, style
 from compare.runs.output import refuse_foreign, write, write_text

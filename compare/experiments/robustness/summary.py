@@ -20,8 +20,7 @@ from compare.experiments.robustness.run import FAILED, HELD, NONE, CaseRow, run,
 from compare.experiments.store import Store
 from compare.experiments.summary import Summary
 from compare.experiments.tables import frame, grouped, number, write_tables
-from compare.figures.blank import blank
-from compare.figures.export import save
+from compare.figures.export import blank, save
 from compare.figures.style import style
 from compare.report.tables import Table
 

@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from compare.experiments.ablation.diagram import COLOURS
-from compare.figures.blank import blank
+from compare.figures.export import blank
 from compare.figures.style import in_order, style
 from compare.figures.subplots import UNITS
 from compare.misfit.places import Place, places_of

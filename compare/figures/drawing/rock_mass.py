@@ -14,11 +14,11 @@ from cases.partition.regions import rocks_of
 from cases.partition.scene import partition_of
 from cases.schema.plane import IntactRock
 from cases.schema.rock_mass import RockMass
-from compare.figures.blank import blank
 from compare.figures.drawing import symbols
 from compare.figures.drawing.pulses import draw_pulse, law_words
 from compare.figures.drawing.rock_mass_actions import draw_actions
 from compare.figures.drawing.symbols import EDGE, INK, RECEIVER, ROCK
+from compare.figures.export import blank
 
 #: Of joint sets, one after the other; told apart under every colour blindness (Tol 2021, bright).
 SETS = ("#4477aa", "#ee6677", "#228833", "#aa3377", "#ccbb44", "#66ccee")
