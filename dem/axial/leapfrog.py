@@ -101,13 +101,13 @@ def loop_for(effects):
                 if relaxes:
                     gap *= relaxed[j]
                     for k in range(relaxes):
-                        e = decays[j, k] * elongation[j, k] + gains[j, k] * rate
+                        e = decays[k, j] * elongation[k, j] + gains[k, j] * rate
                         if ledger:
-                            both = e + elongation[j, k]
-                            lost = losses[j, k] * elastic_energy(law, parts, both, 0.0, 0.0, 0.0)
+                            both = e + elongation[k, j]
+                            lost = losses[k, j] * elastic_energy(law, parts, both, 0.0, 0.0, 0.0)
                             viscous[j] += c.area * lost
-                        elongation[j, k] = e
-                        gap += shares[j, k] * e
+                        elongation[k, j] = e
+                        gap += shares[k, j] * e
                 if dashpots:
                     rate_now = 1.5 * rate - 0.5 * gap_rate[j]
                     gap_rate[j] = rate
@@ -184,8 +184,8 @@ def loop_for(effects):
                         if relaxes:
                             v_before[j] *= relaxed[j]
                             for k in range(relaxes):
-                                e = elastic_energy(law, parts, elongation[j, k], 0.0, 0.0, 0.0)
-                                v_before[j] += springs[j, k] * e
+                                e = elastic_energy(law, parts, elongation[k, j], 0.0, 0.0, 0.0)
+                                v_before[j] += springs[k, j] * e
                     v_before[count - 1] = 0.0
                     energy[1, s] = c.area * total_of(v_before)
                     if softening:

@@ -132,7 +132,7 @@ def unloaded(scene: Scene, p: Properties, dt: float, ends: tuple[str, str]) -> M
         end=end != "free",
         local_damping=p.local_damping is not None,
         gravity=gravity is not None,
-        relaxes=0 if relaxes is None else relaxes.share.shape[1],
+        relaxes=0 if relaxes is None else len(relaxes.share),
     )
     chain = Chain(
         dt=dt,

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Relaxation(NamedTuple):
-    """How the joints [j] relax in steps dt, by mechanisms [j, l], as `continuum.model.Memory` has
+    """How the joints [j] relax in steps dt, by mechanisms [l, j], as `continuum.model.Memory` has
     it for displacements: e_l <- decay e_l + gain times the gap's rate, and the traction that of the
     unrelaxed joint under the gap relaxed gap + sum_l share e_l.
 
@@ -48,14 +48,14 @@ def relaxation(scene: Scene, p: Properties, dt: float) -> Relaxation | None:
     found = _of_joints(scene, p)
     if found is None:
         return None
-    omega = np.ones((len(found), max(one.share.size for one in found)))
+    omega = np.ones((max(one.share.size for one in found), len(found)))
     share = np.zeros_like(omega)
-    for row, y, one in zip(omega, share, found, strict=True):
-        row[: one.share.size], y[: one.share.size] = one.frequency, one.share
+    for j, one in enumerate(found):
+        omega[: one.share.size, j], share[: one.share.size, j] = one.frequency, one.share
     x = omega * dt
     spring = share * x / 2 / np.tanh(x / 2)
     return Relaxation(
-        1 - share.sum(axis=1), share, np.exp(-x), -np.expm1(-x) / omega, spring, share * x / 2
+        1 - share.sum(axis=0), share, np.exp(-x), -np.expm1(-x) / omega, spring, share * x / 2
     )
 
 

@@ -28,7 +28,7 @@ class State(NamedTuple):
         None without damping.
     behind : of the damping of each block at the last step over the half step behind it; None
         without damping of blocks.
-    elongation : of the springs of `dem.axial.relaxation` at the last step [N - 1, l], m; None
+    elongation : of the springs of `dem.axial.relaxation` at the last step [l, N - 1], m; None
         where no joint relaxes.
     dashpot_force : each joint's dashpot force at the last step, N; None without dashpots.
     """
@@ -75,5 +75,5 @@ def state_at_rest(effects: Effects, block_count: int, ledger: bool) -> State:
         viscous=of_blocks(ledger and loses),
         behind=of_blocks(ledger and damps_blocks),
         dashpot_force=of_joints(ledger and damped),
-        elongation=zeros((block_count - 1, effects.relaxes)) if effects.relaxes else None,
+        elongation=zeros((effects.relaxes, block_count - 1)) if effects.relaxes else None,
     )
