@@ -3,6 +3,7 @@
 import xarray as xr
 
 from compare.figures.charts.energy import energy
+from compare.figures.charts.peak_velocities import peak_velocities
 from compare.figures.charts.propagation import propagation
 from compare.figures.charts.spacetime import space_time
 from compare.figures.charts.spacetime_data import diagrams_of
@@ -28,6 +29,7 @@ def figures_of(
         *_space_time(name, comparisons, fields),
         *spectra(name, comparisons),
         *propagation(name, comparisons),
+        *peak_velocities(name, comparisons),
         *energy(name, comparisons),
     ]
 
