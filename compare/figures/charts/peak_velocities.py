@@ -12,7 +12,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from cases.schema.rock_mass import RockMass
-from compare.figures.blank import blank
+from compare.figures.export import blank
 from compare.figures.figure import SceneFigure
 from compare.figures.style import UNSIGNED, in_order
 from compare.figures.subplots import variant_names
