@@ -17,6 +17,8 @@ import pytest
 from hypothesis import settings
 
 import cases
+from cases.errors import InterruptedRun
+from results.arrays import copied, fill
 
 # The first example compiles a kernel, which no deadline foresees. Every run has the same examples;
 # `make fuzz` looks for others.
@@ -134,6 +136,27 @@ def one_joint():
         "record": {"points": [[10.0, 5.0], [10.0, 25.0]], "joints": [[10.0, 15.0]]},
     }
     return lambda **changes: deepcopy(tables | changes)
+
+
+class Keeper:
+    """Keeps what a run was when some samples were done, and ends it there once."""
+
+    def __init__(self, at):
+        self.at, self.done, self.kept = at, 0, None
+
+    def restore(self, parts):
+        fill(parts, self.kept)
+
+    def look(self, samples, parts):
+        if self.kept is None and samples >= self.at:
+            self.kept, self.done = copied(parts), samples
+            raise InterruptedRun("enough")
+
+
+@pytest.fixture(scope="session")
+def keeper_at():
+    """Return a function of a count of samples: what ends a run there, and lets it go on."""
+    return Keeper
 
 
 @pytest.fixture
