@@ -1,7 +1,5 @@
 """The block that a point lies in, and the contact that is nearest to it."""
 
-from __future__ import annotations
-
 import numpy as np
 import shapely
 

@@ -3,8 +3,6 @@
 Each is called when a key is pressed: nothing heavy is imported, and what is wrong is no message.
 """
 
-from __future__ import annotations
-
 import os
 from contextlib import suppress
 from pathlib import Path

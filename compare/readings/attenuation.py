@@ -3,8 +3,6 @@
 Take records of one passage: `result.sel(time=slice(0, 0.02))` leaves out what is reflected later.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

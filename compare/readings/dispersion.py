@@ -16,8 +16,6 @@ In an endless pillar with a joint every d, with e^{i (omega t - k y)} and the jo
     bar            k = (omega / c) / sqrt(1 + i omega eta)
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The summary of what joints reflect and pass: diagram, table, findings, files."""
 
-from __future__ import annotations
-
 from itertools import groupby
 from math import isfinite
 from pathlib import Path

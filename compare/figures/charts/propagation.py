@@ -5,8 +5,6 @@ speed that of the f-k spectrum of all of them (`compare.readings`), beside the t
 pillar (`dispersion_theory`).
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A chart as a figure of matplotlib, for print."""
 
-from __future__ import annotations
-
 from string import ascii_lowercase
 from typing import Any
 
