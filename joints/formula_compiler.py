@@ -1,10 +1,10 @@
-"""The compilers of formulas and of kernels: a short pass list, and no machine code of formulas.
+"""The compiler of formulas: a short pass list, without machine code of their own.
 
 A formula is typed once and becomes part of the kernels that call it. So numba is kept from
 optimising it and from making machine code of it at every level of calls; the kernel as a whole is
-optimised once. Only those passes are taken that change anything. A first run of the chain takes
-2.4 instead of 3.3 s of processor time beyond that of a second one, of a row in space 11.4 instead
-of 14.3 s; a seventh less with the short list for kernels too, whose machine code stays the same.
+optimised once. Only those passes are taken that change anything in a formula. A first run of the
+chain takes 2.4 instead of 3.3 s of processor time beyond that of a second one, of a row in space
+11.4 instead of 14.3 s.
 
 A tuple of flags that is a constant of the kernel is a type of its own, so that a formula knows its
 flags before anything is typed: what stands behind an untrue one is not compiled at all.
@@ -112,7 +112,10 @@ class Part(JITCodeLibrary):
 
 @compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
 class Lowering(typed_passes.NativeLowering):
-    """Write the code of a formula, and tell its callers where it is."""
+    """Write the code of a formula, and tell its callers where it is.
+
+    Arrays of a type that is `distinct` do not overlap: loops over them need no check of that.
+    """
 
     _name = "lowering of a formula"
 
@@ -120,6 +123,7 @@ class Lowering(typed_passes.NativeLowering):
         """Return that the state has changed: by a library that has no machine code."""
         state.library = Part(state.targetctx.codegen(), state.func_id.func_qualname)
         state.flags.no_compile = True
+        state.flags.noalias = any(getattr(kind, "distinct", False) for kind in state.args)
         super().run_pass(state)
         code, described = state.cr, state.cr.fndesc
         nowhere = make_function(described.lookup_module(), described.qualname, "", 0, code.env, ())
@@ -129,7 +133,7 @@ class Lowering(typed_passes.NativeLowering):
         return True
 
 
-BEFORE_LOWERING = (
+PASSES = (
     untyped_passes.TranslateByteCode,
     untyped_passes.FixupArgs,
     untyped_passes.IRProcessing,
@@ -142,24 +146,18 @@ BEFORE_LOWERING = (
     typed_passes.NopythonTypeInference,
     typed_passes.PreLowerStripPhis,
     typed_passes.IRLegalization,
+    Lowering,
+    typed_passes.NoPythonBackend,
 )
 
 
 class FormulaCompiler(compiler.CompilerBase):
     """The passes over a formula."""
 
-    name, lowering = "formula", Lowering
-
     def define_pipelines(self):
         """Return its passes."""
-        manager = compiler_machinery.PassManager(self.name)
-        for one in (*BEFORE_LOWERING, self.lowering, typed_passes.NoPythonBackend):
+        manager = compiler_machinery.PassManager("formula")
+        for one in PASSES:
             manager.add_pass(one, one.__name__)
         manager.finalize()
         return [manager]
-
-
-class KernelCompiler(FormulaCompiler):
-    """The passes over a kernel: those over a formula, and machine code."""
-
-    name, lowering = "kernel", typed_passes.NativeLowering

@@ -14,7 +14,7 @@ import numba
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.runtime import rtsys
 
-from joints.formula import kernel_options
+from joints.formula import KNOWN
 from numerics.cache import cache_directory, make, mark_used
 
 
@@ -29,7 +29,17 @@ def widest_vectors() -> None:
         numba.config.CPU_FEATURES = f"{features.flatten()},-prefer-256-bit"
 
 
+def shorter_compiling() -> None:
+    """Spare kernels what LLVM spends a third of its time on, and what makes none of them faster:
+    copies of loops that are vectorised already, and other sums for addresses that x86 adds up by
+    itself. Other versions of LLVM, which may not know these options, would end the program."""
+    if numba.version_info.short in KNOWN:
+        llvmlite.binding.set_option("jointwave", "-unroll-runtime=false")
+        llvmlite.binding.set_option("jointwave", "-disable-lsr")
+
+
 widest_vectors()
+shorter_compiling()
 #: Where kernels are cached; numba forgets its own setting when one of its variables changes.
 DIRECTORY = cache_directory(Path(__file__).resolve().parent.parent)
 mark_used(DIRECTORY)
@@ -77,12 +87,12 @@ def inlined(function: Callable) -> Callable:
     return _compiled(function, no_cpython_wrapper=True)
 
 
-def _compiled(function: Callable, effects: tuple = (), **options: Any) -> Callable:
+def _compiled(function: Callable, effects: tuple = (), **options: bool) -> Callable:
     numba.config.CACHE_DIR = str(DIRECTORY)
     common = {"forceinline": True, "nogil": True, "no_cfunc_wrapper": True}
-    kernel = numba.njit(
-        cache=True, fastmath=False, error_model="numpy", **(common | kernel_options | options)
-    )(function)
+    kernel = numba.njit(cache=True, fastmath=False, error_model="numpy", **(common | options))(
+        function
+    )
     kernel._cache.save_overload = _one_at_a_time(kernel._cache.save_overload)
     kernel._cache.load_overload = _without_registries(kernel._cache)
     lines = function.__module__, function.__qualname__, function.__code__.co_firstlineno

@@ -3,15 +3,19 @@
 Plane strain: masses and forces are per metre of thickness.
 """
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from cases.material.elastic import shear_modulus
 from cases.partition.blocks import Partition
 from cases.partition.subdivision import NO_SET
-from cases.schema.plane import IntactRock
-from cases.schema.rock_mass import RockMass
+
+if TYPE_CHECKING:
+    from cases.schema.plane import IntactRock
+    from cases.schema.rock_mass import RockMass
 
 
 class Inertia(NamedTuple):

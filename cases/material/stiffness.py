@@ -1,7 +1,9 @@
 """The elastic constants of the rock mass and the stiffness of every joint, equations (4) to (7)."""
 
+from __future__ import annotations
+
 from math import inf
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -13,8 +15,10 @@ from cases.material.elastic import (
     rigid_block_stiffness,
     shear_modulus,
 )
-from cases.schema.scene import Scene
-from cases.schema.tables import Rock
+
+if TYPE_CHECKING:
+    from cases.schema.scene import Scene
+    from cases.schema.tables import Rock
 
 
 class RockMass(NamedTuple):

@@ -1,5 +1,7 @@
 """Faults of a partition: where, and why."""
 
+from __future__ import annotations
+
 import numpy as np
 
 

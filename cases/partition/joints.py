@@ -1,8 +1,10 @@
 """The joints of a set: parallel lines, all through the domain or from joint to joint of others."""
 
-from collections.abc import Sequence
+from __future__ import annotations
+
 from dataclasses import replace
 from math import cos, inf, radians, sin
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,8 +12,13 @@ from cases.partition.faults import PartitionError
 from cases.partition.lines import Lines
 from cases.partition.split import split
 from cases.partition.subdivision import OUTSIDE, Subdivision
-from cases.schema.joint_set import JointSet
-from cases.schema.region import REST, Region
+from cases.schema.region import REST
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from cases.schema.joint_set import JointSet
+    from cases.schema.region import Region
 
 #: Of the sets that one ends at, the signed number of the joint below each cell.
 Stops = dict[str, np.ndarray]

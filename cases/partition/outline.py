@@ -1,12 +1,17 @@
 """The domain's shape: its convex hull, and what is taken out of it."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
 from cases.partition.faults import PartitionError
-from cases.schema.domain import Domain
+
+if TYPE_CHECKING:
+    from cases.schema.domain import Domain
 
 SIDES = ("left", "right", "bottom", "top", "outline")
 

@@ -17,7 +17,6 @@ BEYOND = (
     "dashpots",
     "mass damping",
     "local damping",
-    "constant Q",
     "softening",
     "quiet ends",
     "matched ends",

@@ -1,9 +1,12 @@
 """Plausible constants of rock, and the unit that one far from them was likely meant in."""
 
-from collections.abc import Iterator
-from typing import Any, NamedTuple
+from __future__ import annotations
 
-from cases.kinds import AnyScene
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 #: Units that values are met in, other than those of a scene file, and what makes SI of them.
 Units = tuple[tuple[str, float], ...]

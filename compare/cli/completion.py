@@ -3,6 +3,8 @@
 Each is called when a key is pressed: nothing heavy is imported, and what is wrong is no message.
 """
 
+from __future__ import annotations
+
 import os
 from contextlib import suppress
 from pathlib import Path
@@ -11,7 +13,6 @@ from typing import Any, Literal, get_args, get_origin
 import typer
 
 from cases.files import read_toml
-from compare.experiments import IN_CODE
 from compare.scenes import find, names
 
 LARGEST_FILE = 1_000_000  # bytes: what takes longer to read than a key may take is not looked into
@@ -75,7 +76,10 @@ def studies(incomplete: str) -> list[str]:
     """Return shipped studies and the files of others."""
     shipped = Path(__file__).parents[1] / "experiments" / "study" / "shipped"
     known = sorted(path.stem for path in shipped.glob("*.toml"))
-    return [*_begun([*known, *IN_CODE], incomplete), *files(incomplete)]
+    return [
+        *_begun([*known, "stability", "oblique-joint", "parallel-joints"], incomplete),
+        *files(incomplete),
+    ]
 
 
 def _names(tables: Any) -> list[str]:

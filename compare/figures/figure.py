@@ -1,5 +1,7 @@
 """One picture: for print, for the screen, and as numbers."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial

@@ -1,5 +1,7 @@
 """Cost of each engine's run, timed alone."""
 
+from __future__ import annotations
+
 from time import perf_counter
 
 from compare.engines import ENGINES, solve

@@ -7,14 +7,22 @@ from cases.material.calibrate import Properties
 from cases.sampling import Clock, Interpolation, interpolation
 from cases.schema.scene import Scene
 from dem.spatial.ends import STEADY, contact_points, end_constants, end_springs, face_of
-from dem.spatial.energy import AFTER, LEDGER, PLACES
-from dem.spatial.layout import BUFFER, LANES, STRIDE, Form, packed, tile_count
-from dem.spatial.model import Buffers, Load, RowModel, RowReceivers, RowSamples, RowState
-from dem.spatial.motion import Block
+from dem.spatial.layout import (
+    AFTER,
+    BUFFER,
+    CARRY,
+    LANES,
+    LEDGER,
+    STRIDE,
+    TERMS,
+    Form,
+    packed,
+    tile_count,
+)
+from dem.spatial.model import Block, Buffers, Load, RowModel, RowReceivers, RowSamples, RowState
 from joints.law import Law, law, parts_of, table_of
 from numerics.cache_lines import zeros
 from numerics.divergence import Guard
-from results.dataset import ALL_TERMS
 
 DEPTH = 8  # steps a tile takes while it is in the cache
 
@@ -49,7 +57,6 @@ def build_model(scene: Scene, p: Properties, time: Clock) -> RowModel:
         ends=ends if start or end or terms else None,
         receivers=build_receivers(*receivers(scene, p)),
         stride=time.stride,
-        places=np.array([PLACES[term] for term in terms]) if terms else None,
     )
 
 
@@ -74,7 +81,7 @@ def energy_terms(scene: Scene, p: Properties) -> tuple[str, ...]:
         "fracture": p.tensile_strength is None,
         "gravity": scene.gravity is None,
     }
-    return tuple(term for term in ALL_TERMS if not absent.get(term, False))
+    return tuple(term for term in TERMS if not absent.get(term, False))
 
 
 def _is_nonlinear(p: Properties) -> bool:
@@ -198,7 +205,6 @@ def state_at_rest(model: RowModel) -> RowState:
     return RowState(
         motion,
         history,
-        np.zeros((tiles, 1), dtype=np.int64) if form.points else None,
         None if model.ends is None else np.zeros((2, 4, form.freedoms)),
         zeros(AFTER) if form.ledger else None,
     )
@@ -206,9 +212,8 @@ def state_at_rest(model: RowModel) -> RowState:
 
 def buffers_for(model: RowModel, threads: int, guard: Guard | None = None) -> Buffers:
     """Return the buffers that so many threads work in, a run ended by a guard."""
-    slots = threads * DEPTH
-    ledgers = zeros((slots, LEDGER)) if model.form.ledger else None
-    return Buffers(zeros((threads, BUFFER)), np.zeros((slots, 12)), ledgers, DEPTH, guard)
+    ledgers = zeros((threads * DEPTH, LEDGER)) if model.form.ledger else None
+    return Buffers(zeros((threads, BUFFER + CARRY * DEPTH)), ledgers, DEPTH, guard)
 
 
 def samples_for(model: RowModel, samples: int) -> RowSamples:
@@ -219,5 +224,5 @@ def samples_for(model: RowModel, samples: int) -> RowSamples:
         np.zeros((contacts, freedoms, samples)),
         np.zeros((centres, freedoms, samples)),
         np.zeros((centres, rows - freedoms, samples)),
-        None if model.places is None else np.zeros((len(model.places), samples)),
+        np.zeros((len(TERMS), samples)) if model.form.ledger else None,
     )

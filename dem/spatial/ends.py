@@ -10,7 +10,6 @@ p* is the velocity that all else would give and Y what a unit reaction adds to i
 R = -G (S w + C (p[n-1/2] + p*) / 2) with G = (1 + C Y / 2)^-1.
 """
 
-from collections.abc import Callable
 from math import inf
 from typing import NamedTuple
 
@@ -19,12 +18,8 @@ import numpy as np
 from cases.material.calibrate import Properties
 from cases.material.face import face_points
 from cases.schema.scene import Scene
-from dem.spatial.finite import angular_velocity
-from dem.spatial.layout import ABOUT_X, LEFT, Form, X, Y, Z
-from dem.spatial.layout import STRIDE as R
-from dem.spatial.motion import FALL, PUSH, Block
+from dem.spatial.model import Block
 from joints.ends import half_spring
-from joints.formula import formula
 
 # Rows of an end's constants, each for the freedoms x, y, z, about x, about y, about z.
 STIFFNESS, VISCOSITY = 0, 1  # S and C
@@ -129,85 +124,3 @@ def mobility(block: Block, side: float, size: int) -> np.ndarray:
     """Return Y [size, size]: what a unit reaction adds to the face's velocity in a step."""
     lever = lever_matrix(side * block.arm if size == 6 else None, size)
     return lever @ np.diag(block.push[:size]) @ lever.T
-
-
-def ends_for(form: Form) -> tuple[Callable, Callable, Callable]:
-    """Return the formulas that add a force at the outer face of an end's block, that add the end's
-    reaction, and that advance its closure."""
-    turns, finite, velocity = form.turns, form.finite, form.freedoms * R
-
-    @formula
-    def add_at_face(b, q, i, side, factor, f):
-        """Add factor times force and moment f at the face of block i; side : +1 at the start, -1 at
-        the end."""
-        lane = i if side > 0.0 else i + 1
-        for k in range(3 if finite else b.freedoms):
-            q[k * R + lane] += side * (factor * f[k])
-        if finite:  # about the centroid
-            lane += ABOUT_X if side > 0.0 else LEFT
-            q[lane + X] += factor * (f[3] - side * b.arm * f[2])
-            q[lane + Y] += factor * f[4]
-            q[lane + Z] += factor * (f[5] + side * b.arm * f[0])
-
-    @formula
-    def put_velocity(b, p, m, i):
-        """Put the velocity of block i, and its angular velocity, into p."""
-        for k in range(b.freedoms):
-            p[k] = m[velocity + k * R + i]
-        if finite:
-            p[3], p[4], p[5] = angular_velocity(b, m, i)
-
-    @formula
-    def at_face(b, p, side):
-        """Turn the velocity of a block into that of its face, in place."""
-        if turns:
-            p[0] += side * b.arm * p[5]
-            p[2] -= side * b.arm * p[3]
-
-    @formula
-    def put_net_force(b, p, q, i):
-        """Put the force of both joints on block i, and their moment about its centroid, into p."""
-        for k in range(b.freedoms):
-            p[k] = q[k * R + i] - q[k * R + i + 1]
-        if finite:
-            for k in range(3):
-                p[3 + k] = q[ABOUT_X + k * R + i] + q[LEFT + k * R + i + 1]
-        elif turns:
-            p[3] -= b.arm * (q[Z + i] + q[Z + i + 1])
-            p[5] += b.arm * (q[X + i] + q[X + i + 1])
-
-    @formula
-    def add_reaction(b, end, state, m, q, i, side, moved):
-        """Add the reaction of an end on block i to the buffer.
-
-        end, state : its constants and what changes at it. moved : the displacement of its base
-        over the step before and the one to come, m.
-        """
-        add_at_face(b, q, i, side, 1.0, end[STEADY])
-        w, r, before, mean = state[CLOSURE], state[REACTION], state[VELOCITY], state[MEAN]
-        put_velocity(b, before, m, i)
-        put_net_force(b, mean, q, i)
-        for k in range(b.freedoms):  # the velocity after the step without the end
-            gain = b.rows[PUSH, k] * mean[k] + b.rows[FALL, k]
-            mean[k] = b.keep * before[k] + gain
-        at_face(b, before, side)
-        at_face(b, mean, side)
-        for k in range(b.freedoms):
-            both = before[k] + mean[k] - moved * end[BASE, k] / b.dt
-            mean[k] = end[STIFFNESS, k] * w[k] + 0.5 * end[VISCOSITY, k] * both
-        for k in range(b.freedoms):
-            r[k] = 0.0
-            for j in range(b.freedoms):
-                r[k] -= end[MATRIX + k, j] * mean[j]
-        add_at_face(b, q, i, side, 1.0, r)
-
-    @formula
-    def advance_closure(b, end, state, m, i, side, moved):
-        """Advance the closure of an end by the step just taken and its base's displacement (m)."""
-        w, after = state[CLOSURE], state[MEAN]
-        put_velocity(b, after, m, i)
-        at_face(b, after, side)
-        for k in range(b.freedoms):
-            w[k] = end[DECAY, k] * w[k] + end[GAIN, k] * after[k] - moved * end[BASE, k]
-
-    return add_at_face, add_reaction, advance_closure

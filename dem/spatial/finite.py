@@ -14,7 +14,7 @@ A block of square section is a symmetric top, whose free motion is exact: it tur
 first) and the columns of R - 1 are tuples of numbers.
 """
 
-from dem.spatial.layout import ABOUT_X, ABOUT_Y, ABOUT_Z, LEFT, RELATIVE, STRIDE, X, Y, Z
+from dem.spatial.layout import ABOUT_X, ABOUT_Y, ABOUT_Z, LANES, LEFT, RELATIVE, STRIDE, X, Y, Z
 from joints.formula import formula
 
 VELOCITY, MOMENTUM, QUATERNION = 6 * STRIDE, 9 * STRIDE, 12 * STRIDE  # rows of motion
@@ -179,6 +179,15 @@ def put_rates(q, at, i, rate, w):
     put_three(q, i, rate)
     put_three(q, i + FIRST, cross((1.0 - x[0], -x[1], -x[2]), w))
     put_three(q, i + SECOND, cross((-z[0], -z[1], 1.0 - z[2]), w))
+
+
+@formula
+def centred(h, i, rate):
+    """Return three rates at the whole step, from half a step before it and, in h, one and a half;
+    remember them for the next step."""
+    x, y, z = h[i], h[LANES + i], h[2 * LANES + i]
+    h[i], h[LANES + i], h[2 * LANES + i] = rate
+    return 1.5 * rate[0] - 0.5 * x, 1.5 * rate[1] - 0.5 * y, 1.5 * rate[2] - 0.5 * z
 
 
 @formula

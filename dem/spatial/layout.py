@@ -25,6 +25,8 @@ STRIDE = 72  # lanes in a row of motion: the tile's own, the next one's first, w
 # Rows of a vector and a rotation: of motion, of velocity, of force and moment.
 X, Y, Z, ABOUT_X, ABOUT_Y, ABOUT_Z = range(0, 6 * STRIDE, STRIDE)
 
+SLIDING = LANES + 1  # where in a tile's motion the number of points that slid last is
+
 # Rows of the buffer of one tile's step, which the next tile does not need. Joint i has lane i, but
 # for its forces: those lie in lane i + 1, so that a block finds the force of its left joint in its
 # own lane and that of its right joint in the next.
@@ -32,13 +34,36 @@ FORCE = 0  # and moment about the face's centre; with finite rotations about the
 LEFT = 6 * STRIDE  # moment about the left block's centroid, for finite rotations
 DRAG = 9 * STRIDE  # the dashpots' share of all nine, for the ledger
 BEFORE = 18 * STRIDE  # velocity and angular velocity before the step, for the ledger
-MOMENTA = 24 * STRIDE  # angular momentum before the step, for the ledger
-SLID = 27 * STRIDE  # work done by sliding, for the ledger
-NET = 55 * STRIDE  # impulse on a block in the step, N s and N m s, for the ledger
-RELATIVE = 28 * STRIDE  # relative motion of a joint's faces: displacement and rotation, 6 or 9 rows
-RATE = 37 * STRIDE  # their rates half a step before
-CENTRED = 46 * STRIDE  # and at the whole step, for the dashpots
-BUFFER = 61 * STRIDE
+MOMENTA = 24 * STRIDE  # angular momentum before the step, for the ledger, with finite rotations
+SPIN = 27 * STRIDE  # and angular velocity after it
+RELATIVE = 30 * STRIDE  # relative motion of a joint's faces: displacement and rotation, 6 or 9 rows
+RATE = 39 * STRIDE  # their rates half a step before
+CENTRED = 48 * STRIDE  # and at the whole step, for the dashpots
+NET = 57 * STRIDE  # force and moment of both joints on a block
+BUFFER = 63 * STRIDE
+CARRY = (
+    12  # then, for each step under way, the force of a tile's last joint and its dashpots' share
+)
+
+# Rows of the ledger of one step, J in lanes. Running sums up to the step; AFTER further on what the
+# step adds behind it.
+VISCOUS, BOUNDARY, WORK, FRICTION, AFTER = range(0, 5 * STRIDE, STRIDE)
+# States, filled at samples only.
+KINETIC, ROTATION, ELASTIC, FRACTURE, GRAVITY = range(7 * STRIDE, 12 * STRIDE, STRIDE)
+LEDGER = 12 * STRIDE
+
+#: Where each term of the energy lies, in the order of its rows in results.
+TERMS = {
+    "kinetic": KINETIC,
+    "rotation": ROTATION,
+    "elastic": ELASTIC,
+    "viscous": VISCOUS,
+    "friction": FRICTION,
+    "fracture": FRACTURE,
+    "boundary": BOUNDARY,
+    "gravity": GRAVITY,
+    "work": WORK,
+}
 
 
 class Form(NamedTuple):

@@ -13,16 +13,16 @@ from functools import cache
 
 import numpy as np
 
-from dem.spatial.energy import close_ledger
-from dem.spatial.layout import Form
+from dem.spatial.layout import AFTER, BUFFER, CARRY, FRICTION, KINETIC, LANES, LEDGER, TERMS, Form
+from dem.spatial.leapfrog import step_for
 from dem.spatial.model import Buffers, RowModel, RowSamples, RowState
-from dem.spatial.step import step_for
 from numerics.atomic import give_way, peek, post
-from numerics.borrowed import borrowed
 from numerics.denormals import flush_tiny, restore_tiny
-from numerics.divergence import Guard, creates_energy
+from numerics.divergence import ENERGY, EVERY, gains_energy, note
 from numerics.jit import jitted_for
+from numerics.pointers import pointers
 
+PLACES = tuple(TERMS.values())
 RUN = 16  # diagonals of tiles between two checks of the others' progress
 
 
@@ -33,9 +33,9 @@ def march_for(form: Form) -> Callable:
     ledger = form.ledger
 
     def march(
-        constants, blocks, table, points, stress, direction, base, ends, contacts, centres, places,
-        stride, motion, history, sliding, end_states, sums, force, velocity, displacement, energy,
-        buffers, carry, ledgers, depth, limit, peak, found, progress, thread, first, last,
+        counts, constants, table, points, drive, ends, places, motion, history, end_states, sums,
+        force, speed, displacement, energy, tile, ledgers, limit, peak, found, progress,
+        thread, first, last,
     ):  # fmt: skip
         """Take this thread's share of the steps first .. last - 1, in turn with the others.
 
@@ -43,43 +43,65 @@ def march_for(form: Form) -> Callable:
         diagonals of tiles, tile k - j at step j of the band, when band B - 1 has left the next
         run: what it reads is finished then, and what it writes nobody reads any more.
 
+        counts : of blocks, tiles, steps from a sample to the next, contacts among the receivers,
+        receivers, points of a face, steps of the load, depth.
         progress : int64 [threads + 1], zero at first: B runs + r when r runs of band B are left
         behind, for each thread, and how many bands have closed their ledgers. The rest are the
         arrays of `dem.spatial.model`, None for what the form does not have.
         """
         tiny = flush_tiny()
-        model = borrowed((constants, table, points, stress, direction, base, ends))
-        state = borrowed((motion, history, sliding, end_states))
-        recorded = borrowed((contacts, centres, force, velocity, displacement))
-        tiles, threads = len(motion), progress.size - 1
+        given = (
+            counts, constants, table, points, drive, ends, places, motion, history, end_states,
+            sums, force, speed, displacement, tile, ledgers, limit, found,
+        )  # fmt: skip
+        (
+            counts, constants, table, points, drive, ends, places, motion, history, end_states,
+            sums, force, speed, displacement, tile, ledgers, limit, found,
+        ) = pointers(given)  # fmt: skip
+        tiles, stride, depth, threads = counts[1], counts[2], counts[7], progress.size - 1
+        buffer, own = tile[thread], None
         runs = (tiles + depth - 1 + RUN - 1) // RUN
         for band in range(thread, (last - first + depth - 1) // depth, threads):
             n = first + band * depth
-            steps, slot = min(depth, last - n), thread * depth
+            steps = depth if depth < last - n else last - n
             for run in range(runs):
                 if band > 0:
-                    finished = (band - 1) * runs + min(run + 2, runs)
-                    while peek(progress, (band - 1) % threads) < finished:
+                    ahead = run + 2 if run + 2 < runs else runs
+                    while peek(progress, (band - 1) % threads) < (band - 1) * runs + ahead:
                         give_way()
                 if found[0] < 0:
-                    for k in range(run * RUN, min((run + 1) * RUN, tiles + steps - 1)):
-                        for j in range(max(0, k - tiles + 1), min(steps, k + 1)):
-                            own = None
+                    most = tiles + steps - 1
+                    most = most if most < (run + 1) * RUN else (run + 1) * RUN
+                    for k in range(run * RUN, most):
+                        from_step = k - tiles + 1 if k >= tiles else 0
+                        for j in range(from_step, steps if steps < k + 1 else k + 1):
                             if ledger:
-                                own = ledgers[slot + j]
+                                own = ledgers[thread * depth + j]
                             step(
-                                model, state, recorded, buffers[thread], carry[slot + j], own,
-                                blocks, k - j, n + j, stride, limit, found,
+                                constants, counts, table, points, drive, ends, places, motion,
+                                history, end_states, force, speed, displacement, buffer,
+                                BUFFER + CARRY * j, own, k - j, n + j, limit, found,
                             )  # fmt: skip
                 post(progress, thread, band * runs + run + 1)
             while peek(progress, threads) < band:
                 give_way()
             if ledger:
                 for j in range(n, n + steps):
-                    sampled, sample = j % stride == 0, j // stride
-                    close_ledger(ledgers[slot + j - n], sums, energy, places, sampled, sample)
-                    if sampled and limit is not None:
-                        creates_energy(Guard(limit, peak, found), energy, sample, j)
+                    one, s = ledgers[thread * depth + j - n], j // stride
+                    for i in range(AFTER):
+                        sums[i] += one[i]
+                    if j % stride == 0:
+                        for k in range(len(PLACES)):
+                            total = 0.0
+                            for i in range(PLACES[k], PLACES[k] + LANES):  # always in this order
+                                total += one[i] if i >= KINETIC else sums[i]
+                            energy[k, s] = total
+                        if limit is not None and gains_energy(peak, energy, s):
+                            note(found, j, ENERGY, j - EVERY - 1)
+                    for i in range(FRICTION):
+                        sums[i] += one[AFTER + i]
+                    for i in range(LEDGER):
+                        one[i] = 0.0
             post(progress, threads, band + 1)
         restore_tiny(tiny)
 
@@ -111,9 +133,17 @@ def arguments(
     model: RowModel, state: RowState, buffers: Buffers, samples: RowSamples, progress: np.ndarray
 ) -> tuple:
     """Return what a kernel takes but for its thread and steps."""
-    guard = buffers.guard or (None, None, np.array([-1, 0, -1]))  # no limit, nothing found
+    (stress, direction, base), receivers = model.load, model.receivers
+    drive, places = stress if base is None else base, np.hstack(receivers)
+    counts = (
+        model.block_count, len(state.motion), model.stride, receivers.contacts.shape[1],
+        places.shape[1], model.points.shape[1], drive.size, buffers.depth,
+    )  # fmt: skip
+    limit, peak, found = None, np.zeros(1), np.array([-1, 0, -1])  # no limit, nothing found
+    if buffers.guard is not None:
+        limit, peak, found = buffers.guard
+        limit = limit.view(np.float64)
     return (
-        model.block.as_array(), model.block_count, model.table, model.points, *model.load,
-        model.ends, *model.receivers, model.places, model.stride, *state, *samples,
-        *buffers[:-1], *guard, progress,
+        np.array(counts), model.block.as_array(direction), model.table, model.points, drive,
+        model.ends, places, *state, *samples, *buffers[:2], limit, peak, found, progress,
     )  # fmt: skip

@@ -10,8 +10,14 @@ from cases.material.calibrate import Properties
 from cases.sampling import Clock, Interpolation
 from cases.schema.scene import Scene
 from dem.fragments import with_fragments
-from dem.spatial.build import buffers_for, build_receivers, receivers, samples_for
-from dem.spatial.layout import LANES, STRIDE, unpacked
+from dem.spatial.build import (
+    buffers_for,
+    build_receivers,
+    energy_terms,
+    receivers,
+    samples_for,
+)
+from dem.spatial.layout import LANES, STRIDE, TERMS, unpacked
 from dem.spatial.march import marcher
 from dem.spatial.model import RowModel, RowSamples, RowState
 from dem.static import since_prestress
@@ -40,6 +46,13 @@ def waveforms(scene: Scene, p: Properties, samples: RowSamples, time: Clock) -> 
     elif moved.shape[1] == 7:
         found["rotation"] = rotation_vectors(np.moveaxis(moved[:, 3:], 1, 2))
     return found
+
+
+def ledger_of(scene: Scene, p: Properties, samples: RowSamples) -> dict[str, Any]:
+    """Return the energies that the scene has, and which they are, as `fields` takes them."""
+    terms = energy_terms(scene, p)
+    rows = [list(TERMS).index(term) for term in terms]
+    return {"energy": samples.energy[rows] if terms else None, "terms": terms}
 
 
 def rotation_vectors(quaternions: np.ndarray) -> np.ndarray:

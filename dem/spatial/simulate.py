@@ -16,7 +16,6 @@ from dem.size import refuse_large
 from dem.spatial.build import (
     buffers_for,
     build_model,
-    energy_terms,
     points_looked_after,
     samples_for,
     state_at_rest,
@@ -25,7 +24,7 @@ from dem.spatial.ends import contact_points, face_of
 from dem.spatial.layout import LANES, STRIDE, unpacked
 from dem.spatial.march import marcher
 from dem.spatial.model import RowModel, RowState
-from dem.spatial.record import shooter, waveforms, with_breaks
+from dem.spatial.record import ledger_of, shooter, waveforms, with_breaks
 from dem.spatial.stability import critical_spatial_step, highest_speeds
 from dem.spatial.start import start
 from dem.static import stiffest
@@ -92,8 +91,7 @@ def simulate_fields(
             "dem",
             time.times[:count],
             **waveforms(scene, p, taken, time),
-            energy=taken.energy,
-            terms=energy_terms(scene, p),
+            **ledger_of(scene, p, taken),
             model="rigid blocks in space",
             scheme=scene.numerics.dem.scheme,
             dt=time.dt,

@@ -3,6 +3,8 @@
 Libraries are looked at in processes of their own: one that breaks is a line of the report.
 """
 
+from __future__ import annotations
+
 import json
 import os
 import platform

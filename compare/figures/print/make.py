@@ -1,5 +1,7 @@
 """From scenes to a figure that holds its own fonts: solve what is asked for, draw it, write it."""
 
+from __future__ import annotations
+
 import base64
 import io
 import logging

@@ -1,5 +1,7 @@
 """Texts of figures for papers, in English and in Chinese."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 from compare.engines import names, solver

@@ -10,7 +10,7 @@ from cases.material.calibrate import Properties
 from cases.sampling import Clock
 from dem.spatial.build import buffers_for, build_model, samples_for, state_at_rest
 from dem.spatial.ends import CLOSURE
-from dem.spatial.layout import LANES, STRIDE, packed, unpacked
+from dem.spatial.layout import LANES, STRIDE, TERMS, packed, unpacked
 from dem.spatial.march import marcher
 from dem.spatial.simulate import prepare
 
@@ -45,6 +45,10 @@ class Row(NamedTuple):
     def put(self, motion: np.ndarray) -> None:
         """Give the blocks this motion."""
         self.state.motion[:] = packed(motion, STRIDE)
+
+    def energy(self, terms: tuple[str, ...], samples: int) -> np.ndarray:
+        """Return the first samples of these terms of the ledger [terms, samples], J."""
+        return self.samples.energy[[list(TERMS).index(term) for term in terms], :samples]
 
     def gaps(self) -> np.ndarray:
         """Gap of every contact point of every joint, m [points, N - 1]."""

@@ -63,8 +63,8 @@ def test_absent_effects_leave_no_array(row, at_rest):
     """An elastic row of free ends holds its motion and the load, nothing else."""
     blocks = at_rest(row(record__energy=False))
     model, state, form = blocks.model, blocks.state, blocks.model.form
-    assert (state.history, state.sliding, state.ends, state.sums) == (None,) * 4
-    assert (model.ends, model.places, model.load.base) == (None,) * 3
+    assert (state.history, state.ends, state.sums) == (None,) * 3
+    assert (model.ends, model.load.base) == (None,) * 2
     assert buffers_for(model, 1).ledgers is None and blocks.samples.energy is None
     assert form == Form(parts=form.parts, turns=True, **dict.fromkeys(ABSENT, False))
     assert [name for name, there in form.parts._asdict().items() if there] == ["shear"]

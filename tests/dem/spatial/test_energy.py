@@ -103,8 +103,8 @@ def test_ledger_closes_but_for_the_corners_of_the_law(row, at_rest, joints):
         blocks.take(n, n + 1)
     terms = ["kinetic", "rotation", "elastic", "viscous", "friction"]
     terms += ["fracture"] * breaks + ["boundary", "work"]
-    energy = dict(zip(terms, blocks.samples.energy[:, :steps], strict=True))
-    lost = imbalance(blocks.samples.energy[:, :steps], terms) * energy["work"].max()
+    energy = dict(zip(terms, blocks.energy(terms, steps), strict=True))
+    lost = imbalance(blocks.energy(terms, steps), terms) * energy["work"].max()
     bound = corner_cost(blocks, np.array(gaps)) + 1e-10 * energy["work"].max()
     assert lost <= bound
     never_falls(energy["friction"])

@@ -33,7 +33,7 @@ class Row:
         model = build_model(scene, self.p, Clock(DT, 1, 1))
         still = model.load._replace(stress=np.zeros(0))
         form = model.form._replace(ledger=False)
-        self.model = model._replace(load=still, form=form, places=None, stride=1 << 40)
+        self.model = model._replace(load=still, form=form, stride=1 << 40)
         self.state = state_at_rest(self.model)
         self.rows = self.state.motion.reshape(len(self.state.motion), -1, STRIDE)[:, :, :LANES]
         self.march = marcher(

@@ -1,0 +1,149 @@
+"""Arrays as kernels compile them fastest: where they begin and how long their rows are.
+
+An item of an array takes numba some thirty instructions, which count its references, allow for
+negative indices and read its shape; each is typed, lowered, parsed and optimised away again. An
+item of a pointer takes two.
+"""
+
+import operator
+from typing import Any
+
+from numba import types
+from numba.core import cgutils
+from numba.core.typing.templates import AbstractTemplate, infer_global, signature
+from numba.extending import intrinsic, lower_builtin, models, register_model
+
+
+class Pointer(types.Type):
+    """The type of a pointer to a contiguous array of so many dimensions."""
+
+    distinct = True  # for `joints.formula`: formulas are never given one array twice
+
+    def __init__(self, dtype: Any, ndim: int):
+        self.dtype, self.ndim = dtype, ndim
+        super().__init__(f"pointer({dtype}, {ndim})")
+
+
+@register_model(Pointer)
+class PointerModel(models.StructModel):
+    """Where an array begins, and the lengths of its dimensions but for the first."""
+
+    def __init__(self, manager, kind):
+        lengths = [(f"length{k}", types.intp) for k in range(1, kind.ndim)]
+        super().__init__(manager, kind, [("data", types.CPointer(kind.dtype)), *lengths])
+
+
+def _pointer_type(kind: Any) -> Any:
+    if isinstance(kind, types.Array):
+        if kind.layout != "C":
+            raise TypeError("pointers are to contiguous arrays alone")
+        return Pointer(kind.dtype, kind.ndim)
+    return kind
+
+
+def _pointer(context, builder, kind, value):
+    if not isinstance(kind, types.Array):
+        return value
+    array = context.make_array(kind)(context, builder, value)
+    found = cgutils.create_struct_proxy(_pointer_type(kind))(context, builder)
+    found.data = array.data
+    for k, length in enumerate(cgutils.unpack_tuple(builder, array.shape)):
+        if k > 0:
+            setattr(found, f"length{k}", length)
+    return found._getvalue()
+
+
+@intrinsic
+def pointers(typing, values):
+    """Return a tuple with a pointer in place of each array: only for use while the kernel that was
+    given it runs, and with indices within it."""
+    given = values.types
+    result = types.Tuple([_pointer_type(kind) for kind in given])
+
+    def generate(context, builder, signature, arguments):
+        parts = [
+            _pointer(context, builder, kind, builder.extract_value(arguments[0], k))
+            for k, kind in enumerate(given)
+        ]
+        return context.make_tuple(builder, result, parts)
+
+    return result(values), generate
+
+
+def _index_types(kind: Pointer, index: Any) -> Any:
+    """Return the types that an index is taken as, and what it gives."""
+    if isinstance(index, types.Integer):
+        rest = kind.ndim - 1
+        return types.intp, Pointer(kind.dtype, rest) if rest else kind.dtype
+    if isinstance(index, types.BaseTuple) and len(index) == kind.ndim:
+        return types.UniTuple(types.intp, kind.ndim), kind.dtype
+    return None, None
+
+
+@infer_global(operator.getitem)
+class PointerItem(AbstractTemplate):
+    """An item is a number, or a pointer to a row."""
+
+    def generic(self, args, kws):
+        """Return its signature."""
+        if isinstance(args[0], Pointer):
+            index, item = _index_types(*args)
+            return None if index is None else signature(item, args[0], index)
+        return None
+
+
+@infer_global(operator.setitem)
+class PointerSetItem(AbstractTemplate):
+    """A number is set."""
+
+    def generic(self, args, kws):
+        """Return its signature."""
+        if isinstance(args[0], Pointer):
+            index, item = _index_types(*args[:2])
+            if item == args[0].dtype:
+                return signature(types.none, args[0], index, item)
+        return None
+
+
+def _place(builder, kind, pointer, index):
+    """Return where an item lies, for one index or all of them."""
+    at = index[0]
+    for k in range(1, kind.ndim):
+        at = builder.mul(at, builder.extract_value(pointer, k), flags=["nsw"])
+        if k < len(index):
+            at = builder.add(at, index[k], flags=["nsw"])
+    return builder.gep(builder.extract_value(pointer, 0), [at], inbounds=True)
+
+
+@lower_builtin(operator.getitem, Pointer, types.Integer)
+def get_one(context, builder, sig, args):
+    """Return a number, or a pointer to a row."""
+    kind = sig.args[0]
+    place = _place(builder, kind, args[0], [args[1]])
+    if kind.ndim == 1:
+        return builder.load(place)
+    row = cgutils.create_struct_proxy(sig.return_type)(context, builder)
+    row.data = place
+    for k in range(1, sig.return_type.ndim):
+        setattr(row, f"length{k}", builder.extract_value(args[0], k + 1))
+    return row._getvalue()
+
+
+@lower_builtin(operator.getitem, Pointer, types.BaseTuple)
+def get_item(context, builder, sig, args):
+    """Return a number."""
+    index = cgutils.unpack_tuple(builder, args[1])
+    return builder.load(_place(builder, sig.args[0], args[0], index))
+
+
+@lower_builtin(operator.setitem, Pointer, types.Integer, types.Any)
+def set_one(context, builder, sig, args):
+    """Set a number."""
+    builder.store(args[2], _place(builder, sig.args[0], args[0], [args[1]]))
+
+
+@lower_builtin(operator.setitem, Pointer, types.BaseTuple, types.Any)
+def set_item(context, builder, sig, args):
+    """Set a number."""
+    index = cgutils.unpack_tuple(builder, args[1])
+    builder.store(args[2], _place(builder, sig.args[0], args[0], index))
