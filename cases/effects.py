@@ -1,19 +1,16 @@
 """Effects that a scene calls for; all others are left out of the computation."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from cases.kinds import AnyScene
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.joint import PARTS
 from cases.schema.scene import Scene
 
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
-
 NO_SHEAR = "nothing shears the joints"
+SLIPS = "friction_angle or cohesion is given"
+STICKS = "neither friction_angle nor cohesion"
 
 
 @dataclass(frozen=True)
@@ -23,6 +20,11 @@ class Effect:
     name: str
     active: bool
     reason: str
+
+
+def called_for(name: str, why: object, why_not: str) -> Effect:
+    """Return an effect; why : the reason where the scene calls for it, untrue where it does not."""
+    return Effect(name, bool(why), str(why) if why else why_not)
 
 
 def is_spatial(scene: Scene) -> bool:
@@ -67,66 +69,48 @@ def off_axis(scene: Scene) -> str | None:
 
 
 def _of_joints(scene: Scene, p: Properties) -> Iterator[Effect]:
-    damped, rayleigh = p.joint_time_constant is not None, scene.damping.rayleigh
-    source = "damping.rayleigh" if rayleigh else "damping_ratio"
-    yield Effect("dashpots", damped, f"{source} is given" if damped else "no damping_ratio")
+    source = "damping.rayleigh" if scene.damping.rayleigh else "damping_ratio"
+    damped = p.joint_time_constant is not None and f"{source} is given"
+    yield called_for("dashpots", damped, "no damping_ratio")
     yield from _of_law(scene, along=False)
-    parts = len(p.each)
-    words = f"{parts} of other rock" if parts > 1 else "no [[segments]]: one rock"
-    yield Effect("segments", parts > 1, words)
-    random = scene.scatter
-    why = "no [scatter]" if random is None else f"seed {random.seed}"
-    yield Effect("scatter", random is not None, why)
+    parts, random = len(p.each), scene.scatter
+    other = parts > 1 and f"{parts} of other rock"
+    yield called_for("segments", other, "no [[segments]]: one rock")
+    yield called_for("scatter", random and f"seed {random.seed}", "no [scatter]")
+    barred, differ = int((~p.tension).sum()), len(p.soft)
+    whose = barred and f"{barred} of {len(p.tension)} joints"
+    yield called_for("no tension", whose, "every joint carries tension")
     alike = "all joints are alike: one number, no array" if p.is_uniform else "no soft layers"
-    joints, barred, differ = len(p.tension), int((~p.tension).sum()), len(p.soft)
-    yield Effect(
-        "no tension",
-        barred > 0,
-        f"{barred} of {joints} joints" if barred else "every joint carries tension",
-    )
-    yield Effect(
-        "joints that differ",
-        differ > 0,
-        f"{differ} soft layers" if differ else alike,
-    )
+    yield called_for("joints that differ", differ and f"{differ} soft layers", alike)
 
 
 def _of_ends(scene: Scene, kind: str) -> Effect:
-    places = [k for k in ("start", "end") if getattr(scene.ends, k) == kind]
-    reason = f"ends.{' and ends.'.join(places)}" if places else f"no end is {kind}"
-    return Effect(f"{kind} ends", bool(places), reason)
+    places = [f"ends.{k}" for k in ("start", "end") if getattr(scene.ends, k) == kind]
+    return called_for(f"{kind} ends", " and ".join(places), f"no end is {kind}")
 
 
 def of_ledger(scene: AnyScene) -> Effect:
     """Return whether a scene keeps its energy ledger."""
-    kept = scene.record.energy
-    return Effect("energy ledger", kept, "record.energy " + ("is on" if kept else "= false"))
+    kept = scene.record.energy and "record.energy is on"
+    return called_for("energy ledger", kept, "record.energy = false")
 
 
 def of_fields(scene: AnyScene) -> Effect:
     """Return whether a scene keeps snapshots of all of it."""
     every = scene.record.fields
-    reason = "no record.fields" if every is None else f"a snapshot every {every:g} s"
-    return Effect("field output", every is not None, reason)
+    return called_for("field output", every and f"a snapshot every {every:g} s", "no record.fields")
 
 
 def _of_motion(scene: Scene, p: Properties) -> Iterator[Effect]:
     cause, rotation = off_axis(scene), scene.motion.rotation
     freedoms = 3 if rotation == "none" else 6
-    yield Effect(
-        "spatial motion",
-        cause is not None,
-        f"{cause}: {freedoms} freedoms per block"
-        if cause
-        else "the load is axial and central: one freedom per block",
-    )
-    yield Effect(
-        "finite rotation",
-        cause is not None and rotation == "finite",
-        f"motion.rotation = '{rotation}'" if cause else "nothing turns the blocks",
-    )
+    axial = "the load is axial and central: one freedom per block"
+    yield called_for("spatial motion", cause and f"{cause}: {freedoms} freedoms per block", axial)
+    turns = f"motion.rotation = '{rotation}'" if cause else "nothing turns the blocks"
+    yield Effect("finite rotation", cause is not None and rotation == "finite", turns)
     slips = p.friction is not None or p.cohesion is not None
-    yield Effect("slip", slips and cause is not None, _why_slip(slips, cause))
+    given = cause and slips and SLIPS
+    yield called_for("slip", given, STICKS if cause else NO_SHEAR)
     yield from _of_law(scene, along=True)
 
 
@@ -139,53 +123,24 @@ def _of_law(scene: Scene, along: bool) -> Iterator[Effect]:
             yield Effect(part.name, has and not still, NO_SHEAR if still else part.why(has))
 
 
-def _why_slip(slips: bool, cause: str | None) -> str:
-    if cause is None:
-        return NO_SHEAR
-    return "friction_angle or cohesion is given" if slips else "neither friction_angle nor cohesion"
-
-
 def of_body_forces(scene: AnyScene, alpha: float | None) -> Iterator[Effect]:
     """Yield the effects on blocks themselves; alpha : of mass-proportional damping, 1/s."""
-    local = scene.damping.local or None
-    yield Effect(
-        "mass damping",
-        alpha is not None,
-        "no mass_proportional, no rayleigh" if alpha is None else f"alpha = {alpha:.4g} 1/s",
-    )
-    yield Effect(
-        "local damping",
-        local is not None,
-        "no damping.local" if local is None else f"damping.local = {local:g}",
-    )
-    quality = scene.rock.quality_factor
-    yield Effect("constant Q", quality is not None, _why_quality(scene))
-    yield Effect("gravity", scene.gravity is not None, _why_gravity(scene))
+    local, quality, gravity = scene.damping.local, scene.rock.quality_factor, scene.gravity
+    mass = alpha is not None and f"alpha = {alpha:.4g} 1/s"
+    yield called_for("mass damping", mass, "no mass_proportional, no rayleigh")
+    yield called_for("local damping", local and f"damping.local = {local:g}", "no damping.local")
+    yield called_for("constant Q", quality and _relaxes(scene), "no rock.quality_factor")
+    acts = gravity and ("static at the start" if gravity.static else "sudden at t = 0")
+    yield called_for("gravity", acts, "no [gravity]")
+
+
+def _relaxes(scene: AnyScene) -> str:
+    _, low, high = scene.rock.quality_frequencies(scene.pulses)
+    return f"rock.quality_factor = {scene.rock.quality_factor:g} from {low:.4g} to {high:.4g} Hz"
 
 
 def _of_forces(scene: Scene, p: Properties) -> Iterator[Effect]:
     yield from of_body_forces(scene, p.mass_damping)
-    prestress = scene.prestress
-    yield Effect(
-        "prestress",
-        prestress is not None,
-        "no [prestress]" if prestress is None else f"{prestress.normal:.4g} Pa",
-    )
-    quantity = f"load.quantity = '{scene.load.quantity}'"
-    yield Effect("shaken base", scene.shakes_base, quantity)
-
-
-def _why_quality(scene: AnyScene) -> str:
-    """Return how the rock relaxes, in words."""
-    quality = scene.rock.quality_factor
-    if quality is None:
-        return "no rock.quality_factor"
-    _, low, high = scene.rock.quality_frequencies(scene.pulses)
-    return f"rock.quality_factor = {quality:g} from {low:.4g} to {high:.4g} Hz"
-
-
-def _why_gravity(scene: AnyScene) -> str:
-    """Return how gravity acts, in words."""
-    if scene.gravity is None:
-        return "no [gravity]"
-    return "static at the start" if scene.gravity.static else "sudden at t = 0"
+    stress = scene.prestress
+    yield called_for("prestress", stress and f"{stress.normal:.4g} Pa", "no [prestress]")
+    yield Effect("shaken base", scene.shakes_base, f"load.quantity = '{scene.load.quantity}'")

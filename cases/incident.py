@@ -8,23 +8,18 @@ With the outward normal n, a side that the field (v, sigma) passes has the tract
 with v_rock is the dashpot of the side; the rest, `tractions`, is known before the run.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from cases.errors import SceneError
+from cases.histories import LoadHistory
 from cases.loads import history_of
-from cases.material.rock import elastic_rock
+from cases.material.rock import ElasticRock, elastic_rock
 from cases.partition.regions import region_at, rocks_of
-
-if TYPE_CHECKING:
-    from cases.histories import LoadHistory
-    from cases.material.rock import ElasticRock
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.sources import Wave
+from cases.schema.rock_mass import RockMass
+from cases.schema.sources import Wave
 
 BEYOND = 20  # samples on either side of the times that are asked for
 WITHIN = 1e-6  # of a domain: from its corner to a place in the rock there

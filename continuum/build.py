@@ -161,8 +161,11 @@ def _of_joints(joints: Interfaces, normal, shear) -> csr_matrix:
     return csr_matrix(joints.jump.T @ diags(weights) @ joints.jump)
 
 
-def build_model(scene: Scene, discrete: Discrete, model: str, time: Clock) -> Model:
-    """Return the constants of a scene in space, for a given clock."""
+def build_model(
+    scene: Scene, discrete: Discrete, model: str, time: Clock, read: Receivers | None = None
+) -> Model:
+    """Return the constants of a scene in space, for a given clock; read : its receivers, where they
+    are known, which take longer than all else."""
     p, body = discrete.properties, discrete.body
     mass = body.communicator.total(body.mass)
     return Model(
@@ -170,7 +173,7 @@ def build_model(scene: Scene, discrete: Discrete, model: str, time: Clock) -> Mo
         interfaces=discrete.joints,
         ends=build_ends(scene, p, body, model, time, mass),
         weight=weight_of(scene, body),
-        receivers=receivers(scene, discrete),
+        receivers=read or receivers(scene, discrete),
         dt=time.dt,
     )
 

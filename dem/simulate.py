@@ -31,7 +31,7 @@ def simulate(
     absent: that of its waves in rock without joints.
 
     Raises SceneError for a step that cannot be taken, a static state that does not exist,
-    rotations too large for their kinematics and rock with a quality factor; StoppedError, an
+    rotations too large for their kinematics and a quality factor beyond them; StoppedError, an
     UnstableError with the result so far, when the motion leaves its bounds.
     """
     import xarray as xr
@@ -51,9 +51,10 @@ def simulate_fields(
 ) -> Fields:
     """Simulate a scene as `simulate` does, and return the result as plain arrays."""
     if (quality := scene.rock.quality_factor) is not None:
-        from cases.material.constant_q import NO_ROCK
+        from cases.material.constant_q import beyond_blocks
 
-        raise SceneError(scene.where, "rock.quality_factor", quality, NO_ROCK)
+        if reason := beyond_blocks(scene):
+            raise SceneError(scene.where, "rock.quality_factor", quality, reason)
     if isinstance(scene, RockMass):
         from dem.blocks.simulate import simulate_fields as in_plane
 

@@ -24,7 +24,7 @@ of which the last factor is at least a - b x: so there is one root where A D_c >
 not as long as a step slides by less than D_c a / b.
 """
 
-from math import asinh, exp, expm1, log, log1p, sinh, sqrt
+from math import asinh, exp, expm1, log, log1p, sqrt
 
 from joints.formula import formula
 
@@ -33,7 +33,7 @@ SETTLED, ROUND_OFF = 1e-12, 1e-15  # of ln V, and of what has to be carried
 STILL = 40.0  # ln of how much less than the longest slide is none
 HELD = 1.0 + 1e-12  # of the traction of a joint that does not slide: what it could carry
 LN_2 = log(2.0)
-LARGE = 19.0  # from here on asinh(e^x) = x + ln 2, and ln sinh(x) = x - ln 2, to the last digit
+LARGE = 19.0  # from here on asinh(e^x) = x + ln 2 to the last digit
 SMALL = 1e-5  # x, below which a difference is a series: its terms cancel
 LEAST = 1e-300
 
@@ -56,8 +56,8 @@ def friction_at(law, x):
 @formula
 def rate_under(law, friction, state):
     """Return ln V (V in m/s) at which mu > 0 is this friction."""
-    x = friction / law.direct_effect
-    return (x - LN_2 if x > LARGE else log(sinh(x))) - exponent(law, state)
+    x = friction / law.direct_effect  # ln sinh(x), for any x
+    return x + log(-0.5 * expm1(-2.0 * x)) - exponent(law, state)
 
 
 @formula

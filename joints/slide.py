@@ -45,6 +45,8 @@ def after_slide(
     wears = pressed and size > tau
     if not parts.dilation or law.dilation == 0.0:
         after, further = tau, path
+        if parts.weakening or parts.dilation:
+            further = path + (size - tau) / a
         if parts.weakening:
             after, further = weakened(law, t_n, path, tau, size, a)
         return t_n, after if wears else tau, further if wears else path

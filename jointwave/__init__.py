@@ -16,12 +16,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cases.kinds import AnyScene
-
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from xarray import DataArray, Dataset
 
+    from cases.kinds import AnyScene
     from cases.material.calibrate import Properties
     from cases.material.closure import Closure
     from compare.experiments.fit.result import Fit

@@ -14,7 +14,7 @@ import numba
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.runtime import rtsys
 
-from joints.formula import KNOWN
+from joints.formula import KNOWN, kernel_options
 from numerics.cache import cache_directory, make, mark_used
 
 
@@ -87,12 +87,12 @@ def inlined(function: Callable) -> Callable:
     return _compiled(function, no_cpython_wrapper=True)
 
 
-def _compiled(function: Callable, effects: tuple = (), **options: bool) -> Callable:
+def _compiled(function: Callable, effects: tuple = (), **options: Any) -> Callable:
     numba.config.CACHE_DIR = str(DIRECTORY)
     common = {"forceinline": True, "nogil": True, "no_cfunc_wrapper": True}
-    kernel = numba.njit(cache=True, fastmath=False, error_model="numpy", **(common | options))(
-        function
-    )
+    kernel = numba.njit(
+        cache=True, fastmath=False, error_model="numpy", **(common | kernel_options | options)
+    )(function)
     kernel._cache.save_overload = _one_at_a_time(kernel._cache.save_overload)
     kernel._cache.load_overload = _without_registries(kernel._cache)
     lines = function.__module__, function.__qualname__, function.__code__.co_firstlineno

@@ -1,8 +1,11 @@
 """What the tests share: the paper's pillar with any key changed, and a look at compiled code."""
 
 import ctypes
+import fcntl
 import gc
+import json
 import os
+import pickle
 import re
 import shutil
 import sys
@@ -14,6 +17,8 @@ import pytest
 from hypothesis import settings
 
 import cases
+from cases.errors import InterruptedRun
+from results.arrays import copied, fill
 
 # The first example compiles a kernel, which no deadline foresees. Every run has the same examples;
 # `make fuzz` looks for others.
@@ -64,6 +69,25 @@ def release_results(request):
     MALLOC_TRIM(0)  # glibc keeps the pages of arrays that were freed below others that were not
 
 
+@pytest.fixture(scope="session")
+def once(tmp_path_factory):
+    """Return a function of a name and of what makes a thing in a folder: the thing, made by the
+    first process that asks for it while all others wait."""
+    own = tmp_path_factory.getbasetemp()
+    shared = own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
+
+    def made(name, make):
+        with (shared / f"{name}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            file = shared / f"{name}.pickle"
+            if not file.is_file():
+                (folder := shared / name).mkdir()
+                file.write_bytes(pickle.dumps(make(folder)))
+            return pickle.loads(file.read_bytes())
+
+    return made
+
+
 @pytest.fixture
 def pillar():
     """Return a function that gives the paper's free pillar with dotted keys changed."""
@@ -75,7 +99,27 @@ def pillar():
     return scene
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
+def in_toml():
+    """Return a function that spells a value as TOML does: tables inline, a scene's own a line
+    each."""
+
+    def inline(value):
+        if isinstance(value, list):
+            return f"[{', '.join(map(inline, value))}]"
+        if isinstance(value, dict):
+            return f"{{{', '.join(f'{json.dumps(k)} = {inline(v)}' for k, v in value.items())}}}"
+        return json.dumps(value)
+
+    def text(value):
+        if isinstance(value, dict) and "title" in value:
+            return "".join(f"{key} = {inline(one)}\n" for key, one in value.items())
+        return inline(value)
+
+    return text
+
+
+@pytest.fixture(scope="session")
 def one_joint():
     """Return a function that gives the tables of rock with one joint at 30 degrees, which a P wave
     of 1 MPa and 200 Hz meets from below; quiet all around, tables replaced."""
@@ -92,6 +136,27 @@ def one_joint():
         "record": {"points": [[10.0, 5.0], [10.0, 25.0]], "joints": [[10.0, 15.0]]},
     }
     return lambda **changes: deepcopy(tables | changes)
+
+
+class Keeper:
+    """Keeps what a run was when some samples were done, and ends it there once."""
+
+    def __init__(self, at):
+        self.at, self.done, self.kept = at, 0, None
+
+    def restore(self, parts):
+        fill(parts, self.kept)
+
+    def look(self, samples, parts):
+        if self.kept is None and samples >= self.at:
+            self.kept, self.done = copied(parts), samples
+            raise InterruptedRun("enough")
+
+
+@pytest.fixture(scope="session")
+def keeper_at():
+    """Return a function of a count of samples: what ends a run there, and lets it go on."""
+    return Keeper
 
 
 @pytest.fixture

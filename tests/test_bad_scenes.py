@@ -736,7 +736,7 @@ def test_mistake_on_the_command_line(tmp_path):
     """As a user meets it, in a process of its own."""
     scene, out = write(tmp_path / "scene.toml", mistaken("not TOML")), tmp_path / "out"
     command = [sys.executable, "-m", "compare", "run", str(scene), "--out", str(out)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
     assert done.returncode == 2 and done.stdout == "" and not out.exists()
     (line,) = done.stderr.splitlines()
     assert all(word in line for word in [str(scene), *MISTAKES["not TOML"][2]]), line

@@ -54,9 +54,19 @@ class Solved:
         return misfit(a, b) > 1e-6
 
 
-@pytest.fixture(
-    scope="module", params=shipped(), ids=lambda path: f"{path.parent.name}/{path.stem}"
-)
+#: Scenes of many seconds, which their own [expect] holds to the same exact solutions in every run;
+#: the ledgers of their joints close in tests/dem/blocks and tests/continuum/plane.
+LONG = {f"rock-mass/{name}" for name in ("closing-joint", "one-joint", "parallel-joints")}
+
+
+def files():
+    """Yield every shipped file."""
+    for path in shipped():
+        name = f"{path.parent.name}/{path.stem}"
+        yield pytest.param(path, id=name, marks=[pytest.mark.slow] if name in LONG else [])
+
+
+@pytest.fixture(scope="module", params=files())
 def solved(request):
     """Return a file's scenes; their results are released with it."""
     return Solved(request.param)

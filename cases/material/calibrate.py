@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cases.kinds import AnyScene
 from cases.material.dashpots import dashpots
 from cases.material.elastic import joint_stiffness
 from cases.material.stiffness import rock_mass, stiffness
 from cases.material.strength import Strength, strength
 
 if TYPE_CHECKING:
-    from cases.kinds import AnyScene
     from cases.material.constant_q import Mechanisms
     from cases.schema.scene import Scene
 

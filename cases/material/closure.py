@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from cases.kinds import AnyScene
 from cases.loads import velocity_of
 from cases.schema.scene import Scene
 
 if TYPE_CHECKING:
-    from cases.kinds import AnyScene
     from cases.schema.pulse import Pulse
     from cases.schema.rock_mass import RockMass
 

@@ -14,19 +14,16 @@ The modulus that the scene gives is that of the phase speed at the reference fre
 c = sqrt(M / rho): M_u is larger by Re(sqrt(M_u / M))^2.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from math import ceil, log10, pi
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from cases.material.calibrate import Properties, calibrate
+from cases.effects import is_spatial
+from cases.kinds import AnyScene
+from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
-
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
 
 SPACING = 0.85  # decades between relaxation frequencies, at most: Q is within 4 % from Q = 5 on
 BEYOND = 0.1  # decades that they go beyond the band
@@ -52,8 +49,21 @@ class Mechanisms(NamedTuple):
         return self.unrelaxed * (1 - parts.sum(axis=-1))
 
 
-#: Why rigid blocks do not simulate a scene with a quality factor.
-NO_ROCK = "rigid blocks have no rock of their own that a quality_factor could be of"
+def beyond_blocks(scene: AnyScene) -> str:
+    """Return why rigid blocks do not simulate a scene with a quality factor, "" where they do: rock
+    in series with a joint is one spring that relaxes where the joint is linear."""
+    if not isinstance(scene, Scene):
+        return "rigid blocks of a rock mass have no rock that a quality_factor could be of"
+    if is_spatial(scene):
+        return "rigid blocks have a quality_factor in motion along the axis alone"
+    p = calibrate(scene)
+    others = scene.gravity, scene.prestress, p.local_damping, p.tensile_strength, p.maximum_closure
+    if not p.tension.all() or any(one is not None for one in others):
+        return (
+            "rigid blocks have a quality_factor with linear joints alone, without gravity, "
+            "prestress and local damping"
+        )
+    return ""
 
 
 def mechanisms(scene: AnyScene, model: str) -> Mechanisms:
@@ -62,9 +72,11 @@ def mechanisms(scene: AnyScene, model: str) -> Mechanisms:
     rock = scene.rock
     assert rock.quality_factor is not None
     found = fitted(rock.quality_factor, *rock.quality_frequencies(scene.pulses))
-    if model == "equivalent" and isinstance(scene, Scene):
-        return of_rock_mass(found, calibrate(scene))
-    return found
+    if model == "jointed" or not isinstance(scene, Scene):
+        return found
+    p = calibrate(scene)
+    assert p.intact_modulus is not None
+    return in_series(found, p.intact_modulus / p.modulus - 1, p.time_constant or 0.0)
 
 
 @lru_cache
@@ -83,29 +95,28 @@ def fitted(quality: float, reference: float, low: float, high: float) -> Mechani
     return found._replace(unrelaxed=float(slowness.real) ** 2)
 
 
-def of_rock_mass(rock: Mechanisms, p: Properties) -> Mechanisms:
-    """Return the mechanisms of intact rock in series with the joints of a pillar, as homogenised.
+def in_series(rock: Mechanisms, ratio: float, eta: float) -> Mechanisms:
+    """Return the mechanisms of intact rock in series with joints, of the modulus of both together.
+
+    ratio : compliance of the joints over that of the rock, of the given moduli. eta : of their
+    dashpots, s.
 
     Under a strain e rock has the stress E_u (e - j - sum_l y_l z_l), z_l' = omega_l (e - j - z_l),
-    and the joints' strain j the same, k (j + eta j') with k = S K_n. In the variables z_l
-    sqrt(y_l / omega_l) and j sqrt(k eta / E_u) - where eta = 0, with j eliminated - these are
-    x' = -A x + B e of a symmetric A, with the stress E_u (d - B x): the eigenvalues of A are
-    relaxation frequencies.
+    and the joints' strain j the same, k (j + eta j'). In the variables z_l sqrt(y_l / omega_l) and
+    j sqrt(k eta / E_u) - where eta = 0, with j eliminated - these are x' = -A x + B e of a
+    symmetric A, with the stress E_u (d e - B x): the eigenvalues of A are relaxation frequencies.
     """
-    assert p.intact_modulus is not None
-    frequency, share = rock.frequency, rock.share
-    modulus, eta = rock.unrelaxed * p.intact_modulus, p.time_constant or 0.0
-    ratio = modulus * (1 / p.modulus - 1 / p.intact_modulus)  # of the joints: E_u / k
-    own = np.sqrt(share * frequency)
-    if eta:
+    frequency, own = rock.frequency, np.sqrt(rock.share * rock.frequency)
+    over = rock.unrelaxed * ratio  # E_u / k
+    if eta and ratio:
         at_once, alone = 1.0, np.append(own, 0.0)
-        into = np.append(own, np.sqrt(ratio / eta))
+        into = np.append(own, np.sqrt(over / eta))
         matrix = np.diag(np.append(frequency, 1 / eta)) + np.outer(into, into)
         matrix = matrix - np.outer(alone, alone)
     else:
-        at_once = 1 / (1 + ratio)
+        at_once = 1 / (1 + over)
         into = at_once * own
-        matrix = np.diag(frequency) - ratio * at_once * np.outer(own, own)
+        matrix = np.diag(frequency) - over * at_once * np.outer(own, own)
     relaxes, modes = np.linalg.eigh(matrix)
     weight = (into @ modes) ** 2 / relaxes / at_once
-    return Mechanisms(relaxes, weight, at_once * modulus / p.modulus)
+    return Mechanisms(relaxes, weight, at_once * rock.unrelaxed * (1 + ratio))

@@ -1,15 +1,9 @@
 """Places of the contacts between the blocks of a pillar, and those that are no joints."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from cases.schema.scene import Scene
 from cases.schema.segment import Region, regions
-
-if TYPE_CHECKING:
-    from cases.schema.scene import Scene
 
 SPREAD = 3**0.5  # half the width of a uniform distribution, in standard deviations
 

@@ -15,21 +15,16 @@ Voigt's form in the order 11, 22, 12 or 11, 22, 33, 23, 13, 12: C takes engineer
 gamma_12 = 2 e_12, to stresses.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from cases.material.rock import ElasticRock, elastic_rock
 from cases.partition.joints import direction_of
 from cases.partition.regions import within
-
-if TYPE_CHECKING:
-    from cases.schema import joint_set as schema
-    from cases.schema.rock_mass import RockMass
+from cases.schema import joint_set as schema
+from cases.schema.rock_mass import RockMass
 
 DIRECTIONS = 36  # in which speeds are looked at
 PAIRS = {2: ((0, 0), (1, 1), (0, 1)), 3: ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))}

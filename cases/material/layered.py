@@ -12,11 +12,9 @@ The pillar as a whole is known by its mean density and compliance: the uniform o
 long waves (Backus, J. Geophys. Res. 67, 1962). Only estimates and drawings use these.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import inf, sqrt
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -24,10 +22,8 @@ from cases.material.calibrate import Properties, calibrate
 from cases.material.contacts import contacts, drawn, welds
 from cases.material.strength import strength_of
 from cases.schema.joint import JointLaw
+from cases.schema.scene import Scene
 from cases.schema.segment import alone, regions
-
-if TYPE_CHECKING:
-    from cases.schema.scene import Scene
 
 
 @dataclass(frozen=True, kw_only=True)

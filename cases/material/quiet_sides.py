@@ -4,19 +4,13 @@ The speeds are, region by region, those of the intact rock where `numerics.dem.b
 a lattice has them at its sides, else those of the effective medium of the joint sets.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from cases.material.effective_medium import joint_set, speeds, stiffness
 from cases.material.rock import elastic_rock
 from cases.partition.joints import direction_of
 from cases.partition.regions import within
-
-if TYPE_CHECKING:
-    from cases.schema.rock_mass import RockMass
+from cases.schema.rock_mass import RockMass
 
 
 def impedances(scene: RockMass, normals: np.ndarray, region: np.ndarray) -> np.ndarray:

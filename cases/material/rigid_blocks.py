@@ -11,9 +11,7 @@ rock has excess compliances of its own; a joint between two regions takes half o
 does a welded boundary, which has no joint, with the thickness of the blocks beside it for h.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,11 +24,9 @@ from cases.material.rock_mass import Stiffness, constrained_modulus
 from cases.partition.joints import direction_of
 from cases.partition.lattice import by_direction
 from cases.partition.regions import within
-
-if TYPE_CHECKING:
-    from cases.schema.joint_set import JointSet
-    from cases.schema.plane import IntactRock
-    from cases.schema.rock_mass import RockMass
+from cases.schema.joint_set import JointSet
+from cases.schema.plane import IntactRock
+from cases.schema.rock_mass import RockMass
 
 #: Sine of the angle up to which a contact lies along joints.
 PARALLEL = 1e-9

@@ -11,8 +11,6 @@ never above the critical step and at most 30 % below it; in a square lattice whe
 fastest it is equal to it.
 """
 
-from __future__ import annotations
-
 from math import inf, sqrt
 
 import numpy as np

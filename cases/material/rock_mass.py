@@ -3,19 +3,15 @@
 Plane strain: masses and forces are per metre of thickness.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from cases.material.elastic import shear_modulus
 from cases.partition.blocks import Partition
 from cases.partition.subdivision import NO_SET
-
-if TYPE_CHECKING:
-    from cases.schema.plane import IntactRock
-    from cases.schema.rock_mass import RockMass
+from cases.schema.plane import IntactRock
+from cases.schema.rock_mass import RockMass
 
 
 class Inertia(NamedTuple):

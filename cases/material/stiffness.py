@@ -1,9 +1,7 @@
 """The elastic constants of the rock mass and the stiffness of every joint, equations (4) to (7)."""
 
-from __future__ import annotations
-
 from math import inf
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,10 +13,8 @@ from cases.material.elastic import (
     rigid_block_stiffness,
     shear_modulus,
 )
-
-if TYPE_CHECKING:
-    from cases.schema.scene import Scene
-    from cases.schema.tables import Rock
+from cases.schema.scene import Scene
+from cases.schema.tables import Rock
 
 
 class RockMass(NamedTuple):

@@ -1,19 +1,12 @@
 """The strength and the closure of every joint, from its own keys or those of [joints]."""
 
-from __future__ import annotations
-
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cases.schema.joint import PARTS
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from cases.schema.joint import JointLaw
-    from cases.schema.scene import Scene
+from cases.schema.joint import PARTS, JointLaw
+from cases.schema.scene import Scene
 
 #: Strength (Pa) and opening (m) of a joint that never fails beside joints that do, and closure (m)
 #: of one that does not stiffen; its square is still a number.

@@ -1,7 +1,5 @@
 """From a subdivision to blocks: outlines, order, and one edge for each pair that touches."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Blocks, contacts and boundary edges as plain arrays: what engines start from."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Convex polygons that make a convex one, and pieces that are joined as long as they do."""
 
-from __future__ import annotations
-
 import numpy as np
 import shapely
 

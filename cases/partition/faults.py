@@ -1,7 +1,5 @@
 """Faults of a partition: where, and why."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

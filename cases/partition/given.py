@@ -5,8 +5,6 @@ Physical groups whose names start with "rock" hold the cells, all triangles or a
 the rock. At a joint vertices may be there once or twice. Outline and openings are where cells end.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import NamedTuple
 

@@ -1,10 +1,8 @@
 """The joints of a set: parallel lines, all through the domain or from joint to joint of others."""
 
-from __future__ import annotations
-
+from collections.abc import Sequence
 from dataclasses import replace
 from math import cos, inf, radians, sin
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,13 +10,8 @@ from cases.partition.faults import PartitionError
 from cases.partition.lines import Lines
 from cases.partition.split import split
 from cases.partition.subdivision import OUTSIDE, Subdivision
-from cases.schema.region import REST
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from cases.schema.joint_set import JointSet
-    from cases.schema.region import Region
+from cases.schema.joint_set import JointSet
+from cases.schema.region import REST, Region
 
 #: Of the sets that one ends at, the signed number of the joint below each cell.
 Stops = dict[str, np.ndarray]

@@ -1,7 +1,5 @@
 """Parallel lines that cut the cells of a subdivision: one family for each group of cells."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The block that a point lies in, and the contact that is nearest to it."""
 
-from __future__ import annotations
-
 import numpy as np
 import shapely
 
@@ -22,19 +20,14 @@ def block_at(partition: Partition, points: np.ndarray) -> np.ndarray:
     return _first(which, block, len(points))
 
 
-def contact_at(
-    partition: Partition, points: np.ndarray, joint_set: int | None = None
-) -> np.ndarray:
-    """Return the contact nearest to each point (float array [m, 2], m), of one joint set or of any
-    of the scene's; of those as near, the first.
+def contact_at(partition: Partition, points: np.ndarray) -> np.ndarray:
+    """Return the contact of a joint set that is nearest to each point (float array [m, 2], m); of
+    those as near, the first.
 
     Raises ValueError where there is no such contact.
     """
     contacts = partition.contacts
-    of_set = contacts.joint_set == joint_set
-    if joint_set is None:
-        of_set = contacts.of_joints(len(partition.joint_sets))
-    chosen = np.flatnonzero(of_set)
+    chosen = np.flatnonzero(contacts.of_joints(len(partition.joint_sets)))
     if not len(chosen):
         raise ValueError("there is no contact")
     ends = np.stack([contacts.start[chosen], contacts.end[chosen]], axis=1)

@@ -1,8 +1,6 @@
 """Openings: cells are cut along the faces of an opening, those within it are taken out, and pieces
 of one block are joined again as far as they stay convex."""
 
-from __future__ import annotations
-
 import numpy as np
 import shapely
 

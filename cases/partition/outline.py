@@ -1,17 +1,12 @@
 """The domain's shape: its convex hull, and what is taken out of it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
 from cases.partition.faults import PartitionError
-
-if TYPE_CHECKING:
-    from cases.schema.domain import Domain
+from cases.schema.domain import Domain
 
 SIDES = ("left", "right", "bottom", "top", "outline")
 

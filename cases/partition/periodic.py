@@ -1,7 +1,5 @@
 """Contacts across a periodic boundary: of the blocks at one side with those at the other."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from cases.partition.blocks import BoundaryEdges, Contacts, Partition

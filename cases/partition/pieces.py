@@ -1,7 +1,5 @@
 """Edges cut by the lines of the cells on both of their sides."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

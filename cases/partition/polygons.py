@@ -4,8 +4,6 @@ Polygons are given by their corners, one after the other, counter-clockwise, and
 each one's first corner: float array [k, 2] and int array [n + 1].
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

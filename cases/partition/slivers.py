@@ -1,7 +1,5 @@
 """Slivers: blocks too thin or too pointed, joined to a neighbour or refused."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from cases.partition.assemble import Rings, rings

@@ -4,8 +4,6 @@ Each edge is cut once, by the lines of the cells on both of its sides, so that w
 end in one cell becomes a point of the other's edge. A cell becomes the slabs between its lines.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

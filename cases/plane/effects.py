@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from cases.effects import Effect, of_body_forces, of_fields, of_ledger
+from cases.effects import SLIPS, STICKS, Effect, called_for, of_body_forces, of_fields, of_ledger
 from cases.schema.joint import PARTS
 
 if TYPE_CHECKING:
@@ -36,8 +36,7 @@ def _of_joints(scene: RockMass) -> Iterator[Effect]:
     barred = [one for one in scene.joint_sets if one.tension is False]
     yield _of_sets("no tension", barred, "tension = false", "every joint carries tension")
     slips = [s for s in scene.joint_sets if s.friction_angle is not None or s.cohesion is not None]
-    given = "friction_angle or cohesion is given"
-    yield _of_sets("slip", slips, given, "neither friction_angle nor cohesion")
+    yield _of_sets("slip", slips, SLIPS, STICKS)
     for part in PARTS:
         having = [one for one in scene.joint_sets if part.of(one)]
         yield _of_sets(part.name, having, part.why(True), part.why(False))
@@ -46,25 +45,20 @@ def _of_joints(scene: RockMass) -> Iterator[Effect]:
 def _of_sets(name: str, found: list[JointSet], why: str, why_not: str) -> Effect:
     """Return an effect of joints, which those sets call for."""
     whose = ", ".join(one.name for one in found)
-    return Effect(name, bool(found), f"{why}: {whose}" if found else why_not)
+    return called_for(name, found and f"{why}: {whose}", why_not)
 
 
 def _of_sides(scene: RockMass, kind: str) -> Effect:
     sides = [f"boundaries.{side}" for side, held in scene.boundaries if held == kind]
-    return Effect(f"{kind} sides", bool(sides), " and ".join(sides) or f"no side is {kind}")
+    return called_for(f"{kind} sides", " and ".join(sides), f"no side is {kind}")
 
 
 def _of_forces(scene: RockMass) -> Iterator[Effect]:
     yield from of_body_forces(scene, scene.damping.alpha)
     stress = scene.prestress
-    yield Effect(
-        "prestress",
-        stress is not None,
-        "no [prestress]"
-        if stress is None
-        else f"xx {stress.xx:.4g}, yy {stress.yy:.4g}, xy {stress.xy:.4g} Pa",
-    )
-    waves, pushed, shaken = len(scene.waves), len(scene.pushes), bool(scene.bases)
-    yield Effect("incident waves", waves > 0, f"{waves} of [[waves]]" if waves else "no [[waves]]")
-    yield Effect("loads", pushed > 0, f"{pushed} of [[loads]]" if pushed else "no [[loads]]")
-    yield Effect("shaken base", shaken, "a load of kind 'base'" if shaken else "none is shaken")
+    words = stress and f"xx {stress.xx:.4g}, yy {stress.yy:.4g}, xy {stress.xy:.4g} Pa"
+    yield called_for("prestress", words, "no [prestress]")
+    waves, pushed = len(scene.waves), len(scene.pushes)
+    yield called_for("incident waves", waves and f"{waves} of [[waves]]", "no [[waves]]")
+    yield called_for("loads", pushed and f"{pushed} of [[loads]]", "no [[loads]]")
+    yield called_for("shaken base", scene.bases and "a load of kind 'base'", "none is shaken")

@@ -1,9 +1,7 @@
 """Warnings of likely mistakes in a rock mass, a line each, from the scene alone."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import numpy as np
 
@@ -12,16 +10,14 @@ from cases.material.rock import elastic_rock
 from cases.partition.joints import direction_of
 from cases.partition.outline import outline_of
 from cases.partition.regions import rocks_of
+from cases.schema.plane import IntactRock
 from cases.schema.plausible import implausible
+from cases.schema.region import Region
+from cases.schema.rock_mass import RockMass
 from cases.schema.rock_mass_checks import distance
+from cases.schema.sources import PlaneLoad, Wave
 from cases.spectrum import highest_frequency
 from cases.warnings import LEAST_BLOCKS, of_local_damping, of_pulse, onset
-
-if TYPE_CHECKING:
-    from cases.schema.plane import IntactRock
-    from cases.schema.region import Region
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.sources import PlaneLoad, Wave
 
 Source = tuple[str, "Wave | PlaneLoad"]  # its table in the scene and itself
 

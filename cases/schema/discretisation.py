@@ -17,6 +17,7 @@ BEYOND = (
     "dashpots",
     "mass damping",
     "local damping",
+    "constant Q",
     "softening",
     "quiet ends",
     "matched ends",

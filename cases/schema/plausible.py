@@ -1,12 +1,9 @@
 """Plausible constants of rock, and the unit that one far from them was likely meant in."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
-if TYPE_CHECKING:
-    from cases.kinds import AnyScene
+from cases.kinds import AnyScene
 
 #: Units that values are met in, other than those of a scene file, and what makes SI of them.
 Units = tuple[tuple[str, float], ...]

@@ -5,11 +5,11 @@ from __future__ import annotations
 from math import atan, ceil, degrees, floor, log10, radians, tan
 from typing import TYPE_CHECKING
 
+from cases.kinds import AnyScene
 from cases.schema.joint import PARTS
 from cases.schema.values import contradiction
 
 if TYPE_CHECKING:
-    from cases.kinds import AnyScene
     from cases.schema.joint import JointLaw
 
 MOST_SAMPLES = 10_000_000  # 80 MB for each section, point and energy term

@@ -3,8 +3,6 @@
 Each is called when a key is pressed: nothing heavy is imported, and what is wrong is no message.
 """
 
-from __future__ import annotations
-
 import os
 from contextlib import suppress
 from pathlib import Path
@@ -13,6 +11,7 @@ from typing import Any, Literal, get_args, get_origin
 import typer
 
 from cases.files import read_toml
+from compare.experiments import IN_CODE
 from compare.scenes import find, names
 
 LARGEST_FILE = 1_000_000  # bytes: what takes longer to read than a key may take is not looked into
@@ -76,10 +75,7 @@ def studies(incomplete: str) -> list[str]:
     """Return shipped studies and the files of others."""
     shipped = Path(__file__).parents[1] / "experiments" / "study" / "shipped"
     known = sorted(path.stem for path in shipped.glob("*.toml"))
-    return [
-        *_begun([*known, "stability", "oblique-joint", "parallel-joints"], incomplete),
-        *files(incomplete),
-    ]
+    return [*_begun([*known, *IN_CODE], incomplete), *files(incomplete)]
 
 
 def _names(tables: Any) -> list[str]:

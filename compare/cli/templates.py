@@ -1,7 +1,5 @@
 """The scenes that `jointwave new` writes: their values, and what stands around them."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from pydantic import BaseModel

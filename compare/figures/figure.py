@@ -1,7 +1,5 @@
 """One picture: for print, for the screen, and as numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial

@@ -4,8 +4,6 @@ matplotlib reads the first face of a font collection only; of those of Noto and 
 sans-serif face with all the characters of the labels.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 from matplotlib import font_manager

@@ -3,6 +3,8 @@
 import xarray as xr
 
 from compare.figures.charts.energy import energy
+from compare.figures.charts.peak_velocities import peak_velocities
+from compare.figures.charts.propagation import propagation
 from compare.figures.charts.spacetime import space_time
 from compare.figures.charts.spacetime_data import diagrams_of
 from compare.figures.charts.spectra import spectra
@@ -26,6 +28,8 @@ def figures_of(
         *waveforms(name, comparisons),
         *_space_time(name, comparisons, fields),
         *spectra(name, comparisons),
+        *propagation(name, comparisons),
+        *peak_velocities(name, comparisons),
         *energy(name, comparisons),
     ]
 

@@ -3,8 +3,6 @@
 Take records of one passage: `result.sel(time=slice(0, 0.02))` leaves out what is reflected later.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 
@@ -57,7 +55,7 @@ def wave_speed(
     """Return the speed of a wave from one receiver to another, m/s: their distance over the delay
     at which their waveforms correlate best.
 
-    one, other : receivers by number. quantity, axis : of which waveforms, as `rows.waveforms` has
+    one, other : receivers by number. quantity, axis : of which waveforms, as `waveforms` has
     them. Negative where the other one is reached first.
     """
     row = waveforms(result, quantity, axis)
@@ -110,18 +108,24 @@ def quality_factor(
         ratio * np.exp(1j * omega * late)
     )  # the rest is below half a turn
     loss = -np.log(np.abs(ratio))
+    with np.errstate(divide="ignore"):  # nothing is lost
+        quality = lag / (2 * loss)
     named = {
         "attenuation": (loss / way, "attenuation", "1/m"),
         "phase_speed": (omega * way / lag, "phase speed", "m/s"),
-        "quality": (lag / (2 * loss), "apparent quality factor", "1"),
+        "quality": (quality, "apparent quality factor", "1"),
     }
-    return xr.Dataset(
-        {
-            name: ("frequency", values, {"long_name": words, "units": unit})
-            for name, (values, words, unit) in named.items()
-        },
-        {"frequency": frequency[heard]},
-    )
+    return xr.Dataset(variables("frequency", named), {"frequency": frequency[heard]})
+
+
+def variables(
+    dims: str | tuple[str, ...], named: dict[str, tuple[np.ndarray, str, str]]
+) -> dict[str, xr.Variable]:
+    """Return variables by name, of values, what they are in words, and their unit."""
+    return {
+        name: xr.Variable(dims, values, {"long_name": words, "units": unit})
+        for name, (values, words, unit) in named.items()
+    }
 
 
 def _frequencies(row: xr.DataArray) -> xr.Variable:

@@ -16,8 +16,6 @@ In an endless pillar with a joint every d, with e^{i (omega t - k y)} and the jo
     bar            k = (omega / c) / sqrt(1 + i omega eta)
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -26,7 +24,7 @@ import xarray as xr
 from cases.errors import SceneError
 from cases.material.calibrate import Properties, calibrate, mechanisms_of
 from cases.schema.scene import Scene
-from compare.readings.attenuation import sampling, waveforms
+from compare.readings.attenuation import sampling, variables, waveforms
 
 HEARD = 1e-3  # of the largest amplitude: frequencies that are looked at
 FINER = 64  # wavenumbers in the width of a peak
@@ -53,14 +51,14 @@ def dispersion(
     power = (beams / (len(x) * size[heard] ** 2)).T
     peak, coherence = _peaks(k, power)
     named = {
-        "power": (("frequency", "wavenumber"), power, "share of the motion", "1"),
-        "phase_speed": (("frequency",), 2 * np.pi * frequency / peak, "phase speed", "m/s"),
-        "coherence": (("frequency",), coherence, "share of the motion in one wave", "1"),
+        "phase_speed": (2 * np.pi * frequency / peak, "phase speed", "m/s"),
+        "coherence": (coherence, "share of the motion in one wave", "1"),
     }
-    axes = {"frequency": ("frequency", frequency, "Hz"), "wavenumber": ("wavenumber", k, "1/m")}
+    beams_of = {"power": (power, "share of the motion", "1")}
     return xr.Dataset(
-        {n: (dims, x, {"long_name": w, "units": u}) for n, (dims, x, w, u) in named.items()},
-        {n: (n, x, {"long_name": w, "units": u}) for n, (w, x, u) in axes.items()},
+        variables(("frequency", "wavenumber"), beams_of) | variables("frequency", named),
+        variables("frequency", {"frequency": (frequency, "frequency", "Hz")})
+        | variables("wavenumber", {"wavenumber": (k, "wavenumber", "1/m")}),
     )
 
 
@@ -101,14 +99,8 @@ def dispersion_theory(scene: Scene, frequency: Sequence[float] | np.ndarray) -> 
         "attenuation": (decay, "attenuation", "1/m"),
         "quality": (quality, "quality factor", "1"),
     }
-    at = xr.Variable("frequency", frequency, {"long_name": "frequency", "units": "Hz"})
-    return xr.Dataset(
-        {
-            name: (("rock", "frequency"), values, {"long_name": words, "units": unit})
-            for name, (values, words, unit) in named.items()
-        },
-        {"rock": list(k), "frequency": at},
-    )
+    at = variables("frequency", {"frequency": (np.asarray(frequency), "frequency", "Hz")})
+    return xr.Dataset(variables(("rock", "frequency"), named), {"rock": list(k), **at})
 
 
 def _jointed(

@@ -3,8 +3,6 @@
 All take the recorded velocity as straight lines between its samples, for which they are exact.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import ceil, pi
 

@@ -1,7 +1,5 @@
 """Cost of each engine's run, timed alone."""
 
-from __future__ import annotations
-
 from time import perf_counter
 
 from compare.engines import ENGINES, solve

@@ -1,7 +1,5 @@
 """The first screen: how far apart the engines are on every scene, and what each costs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import isnan
 from typing import NamedTuple

@@ -4,8 +4,6 @@ cells and sentences.
 Every row is a run of a whole process on one core; ours are among them, taken in turns with theirs.
 """
 
-from __future__ import annotations
-
 import io
 import json
 from math import isfinite

@@ -10,7 +10,14 @@ import xarray as xr
 from compare.figures.subplots import variant_names
 from compare.misfit.pairs import Comparison
 from compare.misfit.places import Place
-from compare.readings import arias_intensity, peak_velocity, response_spectrum, wave_speed
+from compare.readings import (
+    arias_intensity,
+    peak_velocity,
+    quality_factor,
+    response_spectrum,
+    wave_speed,
+)
+from compare.readings.attenuation import sampling, waveforms
 from compare.report.tables import Table
 from results.labels import RECEIVERS
 
@@ -22,6 +29,7 @@ NUMBERS = (
     "spectral acceleration (m/s2)",
     "at period (s)",
     "speed (m/s)",
+    "apparent Q",
 )
 
 
@@ -29,8 +37,8 @@ def reading_frame(comparisons: list[Comparison]) -> pd.DataFrame:
     """Return a row for each receiver of velocity of each solution of each variant, SI.
 
     Peak particle velocity; Arias intensity and the largest pseudo-acceleration of oscillators with
-    5 % damping, of the direction in which they are largest; and the speed from the first receiver
-    by cross-correlation of the whole records.
+    5 % damping, of the direction in which they are largest; and from the first receiver, of whole
+    records, the speed by cross-correlation and the apparent Q where the first one is loudest.
     """
     return pd.DataFrame(
         {"variant": name, "solution": solution, **row}
@@ -50,11 +58,22 @@ def _rows(result: xr.Dataset) -> Iterator[dict[str, float | str]]:
     peaks, intensities = peak_velocity(result).values, arias_intensity(result).max("axis").values
     at = np.stack([result[name].values for name in RECEIVERS[receiver]], axis=1)
     for i, values in enumerate(acceleration.values):
-        speed = wave_speed(result, 0, i) if i and peaks[i] and peaks[0] else np.nan
+        apart = i and peaks[i] and peaks[0]
+        speed, Q = (wave_speed(result, 0, i), _quality(result, i)) if apart else (np.nan, np.nan)
         top = int(values.argmax())
         place = Place("velocity", "", tuple(at[i].tolist()))
-        found = peaks[i], intensities[i], values[top], periods[top], speed
+        found = peaks[i], intensities[i], values[top], periods[top], speed, Q
         yield {"at": place.receiver} | dict(zip(NUMBERS, map(float, found), strict=True))
+
+
+def _quality(result: xr.Dataset, i: int) -> float:
+    """Return the apparent Q from the first receiver to another at the frequency that is loudest;
+    nan where nothing is lost there."""
+    row = waveforms(result)
+    size = np.abs(np.fft.rfft(row[0].values))
+    loudest = np.fft.rfftfreq(row.sizes["time"], sampling(row))[1 + size[1:].argmax()]
+    Q = float(quality_factor(result, 0, i).quality.sel(frequency=loudest, method="nearest"))
+    return Q if 0 < Q < np.inf else np.nan
 
 
 def reading_table(frame: pd.DataFrame) -> Table:

@@ -1,7 +1,5 @@
 """The page's HTML: one file that holds its figures, their files and the script of its charts."""
 
-from __future__ import annotations
-
 import base64
 import gzip
 import json

@@ -1,11 +1,12 @@
 """The report: the figures of Guo & Li (2002), or scenes of one's own, as one page."""
 
 import shlex
-from collections.abc import Sequence
-from concurrent.futures import Executor, Future
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from threading import Lock
 from typing import NamedTuple
 
 from pandas import DataFrame
@@ -19,6 +20,7 @@ from compare.experiments.robustness.summary import make_study as make_hard_cases
 from compare.experiments.scattering import summary as scattering
 from compare.experiments.study.summary import REPORTED
 from compare.experiments.study.summary import reported as reported_studies
+from compare.experiments.summary import Summary
 from compare.figures.charts.static import draw
 from compare.figures.charts.waveforms import by_solutions
 from compare.figures.export import save
@@ -31,20 +33,14 @@ from compare.report.overview import Overview, RankedScene
 from compare.report.reading_table import reading_frame
 from compare.report.render import Page, RockMasses, render
 from compare.report.scenes import ROCK_MASSES, Solved, asked_for, solve
-from compare.report.snapshots import make_snapshots
+from compare.report.snapshots import SnapshotsSection, make_snapshots
 from compare.report.versions import versions
 from compare.runs.output import write_csv, write_text
 from compare.runs.workers import Workers
 
 FREE_PILLAR = "fig-03"  # the scene that says what the paper's own comparison is made of
-#: From which to which fraction of the paper's page each part takes, where kernels are compiled.
-PARTS = {
-    "scenes": (0.0, 0.6),
-    "hard cases": (0.6, 0.7),
-    "studies": (0.7, 0.88),
-    "rock masses": (0.88, 0.95),
-    "effects": (0.95, 1.0),
-}
+#: How much of the paper's page each part takes, %, where kernels are compiled.
+PARTS = {"scenes": 30, "hard cases": 40, "studies": 10, "rock masses": 10, "effects": 10}
 PAPERS = (
     "Figures 2 to 10 of Guo & Li (2002), Chin. J. Rock Mech. Eng. 21(8), 1124–1129, by rigid "
     "blocks, by a deformable continuum and by exact solutions"
@@ -56,6 +52,13 @@ class Report(NamedTuple):
 
     file: Path
     page: Page
+
+
+class _Untimed(NamedTuple):
+    """The hard cases, None where they are left out, and what joints reflect and pass."""
+
+    stability: Summary | None
+    joints: list[Summary]
 
 
 def build(
@@ -75,26 +78,39 @@ def build(
     `hard` : also put both engines to the hard cases, except those that take long.
     Raises SceneError and UnstableError, as `compare` does; the page is then not written.
     """
-    with Workers(workers) as executor:
+    with ThreadPoolExecutor(1) as beside, Workers(workers) as executor:
         pool = partial(Lent, executor)
         if scenes:
             page = _of_scenes(Path(out), scenes, progress, pool)
         else:
             others = peers.read(peers_table)
-            page = _of_paper(Path(out), _part(progress, "scenes"), pool)
-            page = _with_hard_cases(page, Path(out), pool, progress) if hard else page
-            page = _with_studies(page, Path(out), studies, others, pool, progress)
-            page = _with_joints(page, Path(out), pool, progress)
-            page = _with_effects(page, Path(out), pool, progress)
+            part = _parts(progress)
+            untimed: list[Future[_Untimed]] = []
+
+            def begin() -> None:
+                untimed.append(beside.submit(_untimed, Path(out), hard, pool, part))
+
+            solved = _solved(Path(out), part("scenes"), pool, begin)
+            page = _of_paper(*solved, untimed[0].result())
+            page = _with_studies(page, Path(out), studies, others, pool, part("studies"))
+            page = _with_effects(page, Path(out), pool, part("effects"))
     return Report(write_text(Path(out) / "index.html", render(page, Path(out))), page)
 
 
-def _part(progress: Progress | None, name: str) -> Progress | None:
-    """Return what is told the progress of one part of the paper's page."""
-    if progress is None:
-        return None
-    start, end = PARTS[name]
-    return lambda fraction: progress(start + (end - start) * fraction)
+def _parts(progress: Progress | None) -> Callable[[str], Progress]:
+    """Return what gives each part of the paper's page its progress, of the whole the sum."""
+    done, lock = dict.fromkeys(PARTS, 0.0), Lock()
+
+    def part(name: str) -> Progress:
+        def tell(fraction: float) -> None:
+            with lock:
+                done[name] = fraction
+                if progress is not None:
+                    progress(sum(share * done[one] for one, share in PARTS.items()) / 100)
+
+        return tell
+
+    return part
 
 
 def _of_scenes(out: Path, scenes: Sequence[str], progress: Progress | None, pool: Pool) -> Page:
@@ -105,8 +121,11 @@ def _of_scenes(out: Path, scenes: Sequence[str], progress: Progress | None, pool
     return _page(solved, about, shlex.join(["jointwave", "report", *scenes, "--out", "DIR"]))
 
 
-def _of_paper(out: Path, progress: Progress | None, pool: Pool) -> Page:
-    """Return the page of the paper's figures."""
+def _solved(
+    out: Path, progress: Progress, pool: Pool, begin: Callable[[], None]
+) -> tuple[Solved, SnapshotsSection]:
+    """Return the paper's scenes and those of rock masses, and the snapshots; `begin` is called when
+    all of theirs is on its way."""
     snapshots: list[Future] = []
 
     def besides(executor: Executor) -> list[Future]:
@@ -114,12 +133,30 @@ def _of_paper(out: Path, progress: Progress | None, pool: Pool) -> Page:
         return snapshots
 
     asked = [*asked_for(()), *asked_for(ROCK_MASSES)]
-    solved = solve(out / "figures", asked, progress, pool, besides)
+    return solve(out / "figures", asked, progress, pool, besides, begin), snapshots[0].result()
+
+
+def _untimed(out: Path, hard: bool, pool: Pool, part: Callable[[str], Progress]) -> _Untimed:
+    """Return what is made beside the scenes: processors are busy, and no seconds are measured."""
+    stability = make_hard_cases(out / "studies", pool, False, part("hard cases")) if hard else None
+    part("hard cases")(1.0)  # also where they are left out
+    tell, joints = part("rock masses"), []
+    for i, name in enumerate(scattering.TITLES, start=1):
+        joints.append(scattering.make_study(name, out / "studies", brief=True, pool=pool))
+        tell(i / len(scattering.TITLES))
+    return _Untimed(stability, joints)
+
+
+def _of_paper(solved: Solved, snapshots: SnapshotsSection, untimed: _Untimed) -> Page:
+    """Return the page of the paper's figures, of rock masses and of the hard cases."""
     paper, others = solved.split(lambda section: section.request.number is not None)
-    page = _page(paper, PAPERS, "jointwave report --out DIR")
-    rock_masses = RockMasses(Overview(_ranked(others)), others.sections, [])
-    about = mostly_dispersion(solved.comparisons[FREE_PILLAR][0])
-    return replace(page, about=about, snapshots=snapshots[0].result(), rock_masses=rock_masses)
+    return replace(
+        _page(paper, PAPERS, "jointwave report --out DIR"),
+        about=mostly_dispersion(solved.comparisons[FREE_PILLAR][0]),
+        snapshots=snapshots,
+        rock_masses=RockMasses(Overview(_ranked(others)), others.sections, untimed.joints),
+        stability=untimed.stability,
+    )
 
 
 def _page(solved: Solved, subtitle: str, command: str) -> Page:
@@ -145,23 +182,6 @@ def _ranked(solved: Solved) -> list[RankedScene]:
     ]
 
 
-def _with_hard_cases(page: Page, out: Path, pool: Pool, progress: Progress | None) -> Page:
-    part = _part(progress, "hard cases")
-    return replace(page, stability=make_hard_cases(out / "studies", pool, False, part))
-
-
-def _with_joints(page: Page, out: Path, pool: Pool, progress: Progress | None) -> Page:
-    """Return the page with what joints reflect and pass."""
-    part, names = _part(progress, "rock masses"), list(scattering.TITLES)
-    found = []
-    for i, name in enumerate(names):
-        found.append(scattering.make_study(name, out / "studies", brief=True, pool=pool))
-        if part:
-            part((i + 1) / len(names))
-    assert page.rock_masses
-    return replace(page, rock_masses=page.rock_masses._replace(studies=found))
-
-
 def _with_studies(
     page: Page,
     out: Path,
@@ -173,16 +193,14 @@ def _with_studies(
     """Return the page with what was measured: the seconds after everything else, and alone."""
     return replace(
         page,
-        studies=reported_studies(out, studies, _part(progress, "studies"), pool),
+        studies=reported_studies(out, studies, progress, pool),
         peers=None if others is None else peers.write_section(out / "studies", others),
         peers_file=str(peers.PLACE),
     )
 
 
 def _with_effects(page: Page, out: Path, pool: Pool, progress: Progress | None) -> Page:
-    effects = ablation_runs.run(
-        ablation_runs.reported(), out / "effects", pool, _part(progress, "effects")
-    )
+    effects = ablation_runs.run(ablation_runs.reported(), out / "effects", pool, progress)
     return replace(page, effects=summarise_ablation(out / "effects", effects))
 
 

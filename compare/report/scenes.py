@@ -71,11 +71,12 @@ def solve(
     progress: Progress | None,
     pool: Pool,
     besides: Submit = lambda executor: [],
+    begin_others: Callable[[], None] = lambda: None,
 ) -> Solved:
     """Solve and draw scenes by the processes of a pool; pictures and tables go to `folder`.
 
     Each variant is solved once, however many scenes share it. `besides` submits what else is to be
-    done at the same time.
+    done at the same time; `begin_others` is called once nothing is left to be submitted.
     """
     loaded = {one.name: load(one.file) for one in asked}
     unique = {_key(scene): scene for variants in loaded.values() for scene in variants}
@@ -95,6 +96,7 @@ def solve(
             for name, variants in loaded.items()
         }
         begun = begin(folder, _pictures(asked, comparisons, fields), executor)
+        begin_others()
         tell([files for some in begun.values() for _, files in some if files], DRAWN)
     sections = [make_section(folder, a, comparisons[a.name], finish(begun[a.name])) for a in asked]
     return Solved(comparisons, sections)

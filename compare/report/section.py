@@ -1,7 +1,5 @@
 """One scene of the page: what is drawn of it, its distances, and what it shows."""
 
-from __future__ import annotations
-
 import re
 import shlex
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """Verdict on an engine for a scene: its misfits, their cost, and one word."""
 
-from __future__ import annotations
-
 from math import isfinite, isnan, nan
 from typing import NamedTuple
 

@@ -46,7 +46,8 @@ def write(path: Path, save: Callable[[Path], object]) -> Path:
         try:
             save(temporary)
             temporary.chmod(0o644)
-            _to_disk(temporary)
+            with temporary.open("rb") as file:
+                os.fsync(file.fileno())  # a full disk may show only now
             temporary.replace(path)
         finally:
             temporary.unlink(missing_ok=True)
@@ -64,12 +65,6 @@ def create(path: Path, content: bytes) -> Path:
             raise SceneError(str(path), "", None, "is there already, and is not replaced") from None
 
     return write(path, save)
-
-
-def _to_disk(path: Path) -> None:
-    """Wait until a file has got through all buffers: a full disk may show only now."""
-    with path.open("rb") as file:
-        os.fsync(file.fileno())
 
 
 @contextmanager

@@ -4,8 +4,6 @@ They do the same with the same input. What is not shared out among them the firs
 what it prints is printed once.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Callable

@@ -10,7 +10,6 @@ from cases.errors import SceneError, StoppedError
 from compare.engines import Progress, solve_fields, solver
 from compare.experiments.cost import timings
 from compare.runs.checkpoint.resume import Keeping, Watch, result_of, watch
-from compare.runs.checkpoint.schedule import RunKeeper
 from compare.runs.jobs import Job
 from compare.runs.output import fields_of, write_fields
 from compare.runs.processes import ALONE, Processes
@@ -106,7 +105,7 @@ def _made(
 
 def _run(job: Job, watched: Watch, progress: Progress, processes: Processes) -> Fields:
     try:
-        return _solve(job, progress, processes.comm, watched.keeper)
+        return solve_fields(job.name, job.scene, progress, processes.comm, watched.keeper)
     except StoppedError as error:
         processes.by_first(partial(_keep, job, error))
         raise
@@ -188,7 +187,3 @@ def _residual(result: Fields) -> float | None:
         return None
     terms = {**result.variables, **result.coords}["term"][1]
     return imbalance(result.variables["energy"][1], terms.tolist())
-
-
-def _solve(job: Job, progress: Progress, comm, keeper: RunKeeper | None) -> Fields:
-    return solve_fields(job.name, job.scene, progress, comm, keeper)

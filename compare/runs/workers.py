@@ -1,7 +1,5 @@
 """Worker processes of this machine that end when, and only when, whoever started them does."""
 
-from __future__ import annotations
-
 import signal
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor

@@ -62,9 +62,10 @@ def applies(scene: Scene | RockMass) -> Answer:
     from cases.schema.scene import Scene
 
     if scene.rock.quality_factor is not None:
-        from cases.material.constant_q import NO_ROCK
+        from cases.material.constant_q import beyond_blocks
 
-        return no(NO_ROCK)
+        if beyond := beyond_blocks(scene):
+            return no(beyond)
     if isinstance(scene, Scene):
         return YES
     from cases.material.rigid_blocks import against

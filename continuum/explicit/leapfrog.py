@@ -55,19 +55,12 @@ def leapfrog_for(parts, directions, shared=False):
         flushing, failed, elastic = flush_tiny(), 0, 0.0
         for n in range(first, last):
             # Forces from the displacements and rates of step n.
-            if elongation is None or (energy is not None and n % stride == 0):
+            if elongation is None:
                 multiply(tiles, pairs, k_start, k_column, k_value, u, force, -1.0)
-            if energy is not None and n % stride == 0:
-                elastic = 0.0
-                for i in range(u.size):
-                    elastic -= 0.5 * u[i] * force[i]
-                if elongation is not None:
-                    elastic *= relaxed
-                    for k in range(shares.size):
-                        e = elongation[k]
-                        multiply(tiles, pairs, k_start, k_column, k_value, e, force, -1.0)
-                        for i in range(u.size):
-                            elastic -= 0.5 * springs[k] * e[i] * force[i]
+                if energy is not None and n % stride == 0:
+                    elastic = 0.0
+                    for i in range(u.size):
+                        elastic -= 0.5 * u[i] * force[i]
             if rate is not None:
                 for i in range(v.size):
                     rate[i] = 1.5 * v[i] - 0.5 * v_before[i]
@@ -75,15 +68,23 @@ def leapfrog_for(parts, directions, shared=False):
                 if c_start is not None:
                     multiply(tiles, pairs, c_start, c_column, c_value, rate, drag, -1.0)
             if elongation is not None:
-                # All of the rock's force counts as viscous; its energies are told apart in samples.
+                # All of the rock's force counts as viscous; samples tell its energies apart.
+                count, elastic = shares.size, 0.0
                 for i in range(u.size):
                     strained[i] = relaxed * u[i]
                     force[i] = 0.0
-                for k in range(shares.size):
+                for k in range(count):
                     e = elongation[k]
                     for i in range(u.size):
                         strained[i] += shares[k] * e[i]
-                multiply(tiles, pairs, k_start, k_column, k_value, strained, drag, -1.0)
+                skipped = 0 if energy is not None and n % stride == 0 else count + 1
+                for k in range(skipped, count + 2):
+                    e = elongation[k] if k < count else u if k == count else strained
+                    multiply(tiles, pairs, k_start, k_column, k_value, e, drag, -1.0)
+                    if k <= count:
+                        spring = springs[k] if k < count else relaxed
+                        for i in range(u.size):
+                            elastic -= 0.5 * spring * e[i] * drag[i]
             if area is not None:
                 multiply_stencils(b_first, b_start, b_column, b_value, u, jumps, 0)
                 if jump_rate is not None:

@@ -120,9 +120,9 @@ def _add_joint_forces(
     )  # fmt: skip
     if trial.ledger is not None:
         trial.ledger[1] += work
-    trial.force[:] += joints.jump.T @ trial.loads.ravel()
+    trial.force[:] += joints.spread @ trial.loads.ravel()
     if trial.drags is not None:
-        trial.drag[:] += joints.jump.T @ trial.drags.ravel()
+        trial.drag[:] += joints.spread @ trial.drags.ravel()
 
 
 def _add_ends(model: Model, now: State, trial: State) -> None:

@@ -9,6 +9,7 @@ from cases.material.calibrate import Properties, calibrate
 from cases.sampling import Clock, Interpolation, clock, interpolation
 from cases.schema.scene import Scene
 from dem.axial.ends import End, build_end
+from dem.axial.relaxation import Relaxation, relaxation, unrelaxed
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State, state_at_rest
 from dem.size import refuse_large
@@ -27,8 +28,8 @@ class Effects(NamedTuple):
     """What a chain has: the constants that its kernel is compiled for.
 
     joints : parts of their law. masses : whether blocks differ in mass. start, end : whether these
-    are held by a spring or a dashpot. base : whether the start is shaken. ledger : whether energies
-    are summed.
+    are held by a spring or a dashpot. base : whether the start is shaken. relaxes : by how many
+    mechanisms each joint does. ledger : whether energies are summed.
     """
 
     joints: Parts
@@ -39,6 +40,7 @@ class Effects(NamedTuple):
     mass_damping: bool = False
     local_damping: bool = False
     gravity: bool = False
+    relaxes: int = 0
     ledger: bool = False
 
 
@@ -83,12 +85,14 @@ class Model(NamedTuple):
     base: np.ndarray
     receivers: Receivers
     blocks: np.ndarray | None = None
+    relaxation: Relaxation | None = None
 
 
 def build(scene: Scene) -> tuple[Model, State, Clock, float]:
     """Return the model, the unloaded state at rest, the clock and the critical step (s)."""
     p = calibrate(scene)
-    critical = critical_chain_step(stiffest(scene, p), scene.ends.start, scene.ends.end)
+    stiff = unrelaxed(scene, stiffest(scene, p))
+    critical = critical_chain_step(stiff, scene.ends.start, scene.ends.end)
     numerics = scene.numerics.dem
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
     refuse_large(scene, time)
@@ -115,7 +119,8 @@ def build_model(scene: Scene, p: Properties, time: Clock) -> Model:
 def unloaded(scene: Scene, p: Properties, dt: float, ends: tuple[str, str]) -> Model:
     """Return the constants for steps dt (s) of blocks of these properties without a load, under
     gravity and prestress, with ends of these kinds."""
-    alpha, gravity, joints = p.mass_damping, scene.gravity, law_of_joints(p)
+    alpha, gravity, joints = p.mass_damping, scene.gravity, law_of_joints(unrelaxed(scene, p))
+    relaxes = relaxation(scene, p, dt)
     force = scene.prestress.normal * p.area if scene.prestress else 0.0
     start, end = ends
     masses = p.masses
@@ -127,6 +132,7 @@ def unloaded(scene: Scene, p: Properties, dt: float, ends: tuple[str, str]) -> M
         end=end != "free",
         local_damping=p.local_damping is not None,
         gravity=gravity is not None,
+        relaxes=0 if relaxes is None else len(relaxes.share),
     )
     chain = Chain(
         dt=dt,
@@ -142,7 +148,8 @@ def unloaded(scene: Scene, p: Properties, dt: float, ends: tuple[str, str]) -> M
     )
     none = np.zeros(0)
     blocks = None if masses is None else np.stack([masses, dt / masses], axis=1)
-    model = Model(effects, chain, table_of(joints), none, none, receivers(scene, p), blocks)
+    places = receivers(scene, p)
+    model = Model(effects, chain, table_of(joints), none, none, places, blocks, relaxes)
     return model if alpha is None else with_mass_damping(model, alpha)
 
 

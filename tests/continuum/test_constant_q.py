@@ -21,28 +21,10 @@ from continuum import simulate
 from continuum.build import operators
 from continuum.model import memory_of
 from results.dataset import energy_residual
+from tests.cases.material.test_constant_q import roots
 from tests.continuum.test_modes import STILL, free_mode
 
 Q = {"rock__quality_factor": 10.0}
-
-
-def roots(memory, x: float, dt: float) -> np.ndarray:
-    """Return z of the motions that go as z^n in leapfrog on a mode with (omega_u dt)^2 = x:
-
-    z - 2 + 1/z + x (relaxed + sum_l share_l gain_l (z - 1) / (dt (z - decay_l))) = 0,
-
-    as the eigenvalues of what a step makes of u, v dt and e_l.
-    """
-    size = memory.share.size
-    force = np.concatenate([[memory.relaxed, 0.0], memory.share])
-    step = np.zeros((size + 2, size + 2))
-    step[1] = -x * force
-    step[1, 1] += 1.0
-    step[0] = step[1]
-    step[0, 0] += 1.0
-    step[2:] = (memory.gain / dt)[:, None] * step[1]
-    step[2:, 2:] += np.diag(memory.decay)
-    return np.linalg.eigvals(step)
 
 
 @pytest.mark.parametrize(("dim", "number"), [(1, 1), (1, 5), (2, 4), (3, 6), (3, 20)])
@@ -272,11 +254,18 @@ def test_four_mechanisms_stand_for_a_constant_quality_factor(pillar, quality, bo
 
 def test_what_has_no_quality_factor_says_so(pillar, one_joint):
     scene = pillar(**Q)
-    assert "no rock of their own" in applies("dem", scene).reason
-    with pytest.raises(SceneError, match="no rock of their own"):
-        solve("dem", scene)
     holding = {name for name in names(scene.kind) if applies(name, scene)}
-    assert holding == {"jointed-bar", "equivalent-bar", "continuum-jointed", "continuum-equivalent"}
+    engines = {"dem", "continuum-jointed", "continuum-equivalent"}
+    assert holding == {"jointed-bar", "equivalent-bar", *engines}
+    for changes, reason in (
+        ({"joints__tension": False}, "linear joints alone"),
+        ({"prestress": {"normal": 1e5}}, "without gravity, prestress"),
+        ({"load__at": [0.1, 0.0]}, "along the axis alone"),
+    ):
+        beyond = pillar(**Q, **changes)
+        assert reason in applies("dem", beyond).reason
+        with pytest.raises(SceneError, match=reason):
+            solve("dem", beyond)
     layer = [{"y": 20.0, "spacing_stiffness": 4.375e8, "thickness": 0.05}]
     assert "thickness has no" in reason_against(pillar(**Q, soft_layers=layer), "jointed")
     parts = {"segments": [{"y": [4.0, 6.0], "density": 2600.0}]}
@@ -286,6 +275,13 @@ def test_what_has_no_quality_factor_says_so(pillar, one_joint):
     mass = RockMass(**one_joint(rock=rock))
     assert "[[waves]] enter" in reason_against(mass, "jointed")
     assert not any(applies(name, mass) for name in names(mass.kind))
+    sets = [{"name": "a", "dip": 0.0, "spacing": 5.0, "normal_stiffness": 1e10}]
+    sets[0]["shear_stiffness"] = 4e9
+    mass = RockMass(
+        **one_joint(rock=rock | {"reference_frequency": 100.0}, joint_sets=sets, waves=[])
+    )
+    assert reason_against(mass, "jointed") == ""
+    assert "effective medium has no" in reason_against(mass, "equivalent")
 
 
 def test_elastic_rock_remembers_nothing(short, ready):

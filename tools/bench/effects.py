@@ -13,6 +13,7 @@ ALONG = {
     "joints that differ": {"soft_layers": [{"y": 20.0, "spacing_stiffness": 4.375e8}]},
     "softening": {"joints.tensile_strength": 1e9, "joints.fracture_energy": 1e9},
     "closure": {"joints.maximum_closure": 1e-3},
+    "constant Q of the rock": {"rock.quality_factor": 20.0},
     "quiet end": {"ends.end": "quiet"},
     "matched end": {"ends.end": "matched"},
     "mass-proportional damping": {"damping.mass_proportional": 1.0},

@@ -94,7 +94,9 @@ def _examine(one: Scene | RockMass) -> None:
     answers = {name: applies(name, one) for name in names()}
     _refuse_large_rock(one, [n for n in answers if n.startswith("continuum") and answers[n]])
     steps = _steps(one)
-    if steps * one.pillar.block_count <= TINY and _is_plain(one):
+    if steps * one.pillar.block_count <= TINY and (
+        active_effects(one) == PLAIN and one.numerics.dem.scheme == "leapfrog" and one.record.energy
+    ):
         from dem import simulate_fields
 
         simulate_fields(one)
@@ -128,12 +130,6 @@ def _refuse_large_rock(one: Scene, models: list[str]) -> None:
     for name in models:
         elements = elements_for(one, p, name.removeprefix("continuum-"))
         refuse_large_mesh(one, kinematics(one), numerics.elements_per_block or elements)
-
-
-def _is_plain(one: Scene) -> bool:
-    return (
-        active_effects(one) == PLAIN and one.numerics.dem.scheme == "leapfrog" and one.record.energy
-    )
 
 
 def load(data: bytes, folder: Path) -> str:

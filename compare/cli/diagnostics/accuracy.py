@@ -4,8 +4,6 @@
 the shipped scene is held to by its [expect].
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from time import perf_counter

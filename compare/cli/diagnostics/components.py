@@ -5,8 +5,6 @@ found, or why it is not. A library that ends the process takes only its own line
 `compare.cli.diagnostics.doctor`.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

@@ -3,8 +3,6 @@
 Libraries are looked at in processes of their own: one that breaks is a line of the report.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import platform

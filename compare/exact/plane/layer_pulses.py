@@ -8,8 +8,6 @@ points between which it is interpolated in d (Trefethen, Approximation Theory an
 Practice, 2013). What follows a pulse without delay is summed in time, with all its kinks.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 

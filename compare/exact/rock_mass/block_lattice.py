@@ -8,24 +8,24 @@ Holds for linear joints without dashpots that cut all of the rock into blocks, w
 that are quiet, free or periodic, and up to MOST_BLOCKS blocks.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
 
 from cases.incident import enters, tractions
 from cases.material.contact_points import contact_points
 from cases.material.quiet_sides import impedances
 from cases.material.rigid_blocks import rigid_joints
 from cases.material.rock_mass import Stiffness, inertia
+from cases.partition.blocks import Partition
 from cases.partition.locate import block_at
 from cases.partition.periodic import PAIRS, periodic_contacts
 from cases.partition.scene import block_count, partition_of
 from cases.sampling import sample_times
 from cases.schema.pulse import shortest_period
+from cases.schema.rock_mass import RockMass
 from compare.exact.linear import bound
 from compare.exact.plane.rigid_motion import (
+    Points,
     RigidSystem,
     forces_of,
     motion,
@@ -37,13 +37,6 @@ from compare.exact.rock_mass.conditions import beyond_linear_rock
 from compare.exact.rock_mass.field import field_of
 from compare.solvers.record import BLOCKS, YES, Answer, Kind, Rock, Solver, Words, no, thin
 from results.plane import plane_fields
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from cases.partition.blocks import Partition
-    from cases.schema.rock_mass import RockMass
-    from compare.exact.plane.rigid_motion import Points
 
 MOST_BLOCKS = 1000
 IN_A_PERIOD = 400  #: samples of the field

@@ -11,18 +11,19 @@ Holds for any crossing sets of linear joints without dashpots, in undamped rock 
 leave through, from rest: at t = 0 no pulse may have begun within the domain.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 
+from cases.histories import LoadHistory
 from cases.incident import WaveMotion
 from cases.loads import history_of
 from cases.material.effective_medium import compliant, speeds, stiffness, tensor
 from cases.material.rock import elastic_rock
 from cases.sampling import sample_times
+from cases.schema.rock_mass import RockMass
+from cases.schema.sources import Wave
 from compare.exact.rock_mass.conditions import (
     all_parallel,
     beyond_linear_rock,
@@ -31,13 +32,6 @@ from compare.exact.rock_mass.conditions import (
 )
 from compare.solvers.record import BAR, YES, Answer, Form, Kind, Rock, Solver, Words, no, thin
 from results.plane import plane_fields
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from cases.histories import LoadHistory
-    from cases.schema.rock_mass import RockMass
-    from cases.schema.sources import Wave
 
 
 @dataclass(frozen=True)

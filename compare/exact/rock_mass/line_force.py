@@ -5,27 +5,21 @@ the sides: up to `known_until`, the first time at which a P wave may have been t
 a receiver, the rock is as if it had no end.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
-from cases.histories import Gabor, Recorded, Ricker, Sine, Step
+from cases.histories import Gabor, Recorded, Ricker, Shape, Sine, Step
 from cases.loads import history_of
 from cases.material.rock import elastic_rock
 from cases.partition.outline import outline_of
 from cases.sampling import sample_times
+from cases.schema.rock_mass import RockMass
 from compare.exact.plane.line_force import motion
 from compare.exact.rock_mass.conditions import beyond_linear_rock, prestress_of
 from compare.solvers.record import JOINTED, YES, Answer, Kind, Rock, Solver, Words, no, thin
 from results.plane import plane_fields
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from cases.histories import Shape
-    from cases.schema.rock_mass import RockMass
 
 #: Of a Ricker wavelet: each is smooth enough for the points of one integral.
 PARTS = 8

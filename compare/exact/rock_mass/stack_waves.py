@@ -6,28 +6,23 @@ cause: what there is of it at t = 0 is not in the scene, which begins at rest, a
 bound of the error.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from cases.incident import plane_wave
 from cases.partition.locate import block_at, contact_at
 from cases.partition.outline import TOLERANCE
 from cases.sampling import sample_times
+from cases.schema.rock_mass import RockMass
 from compare.exact.plane import parallel_joints
 from compare.exact.plane.pulse import Pulse
 from compare.exact.rock_mass.conditions import prestress_of
 from compare.exact.rock_mass.stack import JointStack, against, begun, stack_of
 from compare.solvers.record import YES, Answer, Kind, no
 from results.plane import plane_fields
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from cases.schema.rock_mass import RockMass
 
 #: What the engines' distances from these waves are made of.
 DISTANCES = {

@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from compare.experiments.ablation.ablation import Ablation, EffectCost
-from compare.figures.blank import blank
+from compare.figures.export import blank
 
 LEAST_SHARE = 0.5  # %, of a step: less does not stand out of the clock's noise
 LEAST_MISFIT = 0.01  # %: less is drawn here, as is none

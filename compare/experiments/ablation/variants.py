@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from cases.effects import active_effects
 from cases.errors import SceneError
-from cases.kinds import Either, checked
+from cases.kinds import AnyScene, Either, checked
 from cases.material.strength import SLIP
 from cases.plane.effects import SIDES
 from cases.schema.damping import Attenuating
@@ -15,8 +15,6 @@ from cases.schema.joint import PARTS
 from cases.schema.scene import Scene
 
 if TYPE_CHECKING:
-    from cases.kinds import AnyScene
-
     Change = Callable[[Any], Any]  # from a scene to one of its kind
 
 

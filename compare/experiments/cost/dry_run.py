@@ -1,7 +1,5 @@
 """`--dry-run`: the steps, size, seconds and memory of runs before they are made."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 

@@ -19,14 +19,14 @@ from compare.experiments.fit.keys import CLOCK
 from compare.experiments.fit.result import Fit, Fitted
 from compare.experiments.fit.scene_text import scene_text
 from compare.experiments.store import finite
-from compare.figures.blank import blank
-from compare.figures.export import save, write_csv
+from compare.figures.export import blank, save, write_csv
 from compare.figures.overlays import UNITS
 from compare.figures.style import GIVEN, style
 from compare.runs.output import refuse_foreign, write, write_text
 
 WIDTH, PANEL, AROUND = 7.5, 2.6, 0.8  # inches: the figure, a waveform with its residual, the rest
 MOST_MARKS = 250  # samples that are drawn one by one
+HEAD = "# Fitted by jointwave"
 
 
 def draw(found: Fit) -> Figure:
@@ -68,9 +68,6 @@ def _draw_waveform(wave: Any, left: Any, one: Fitted, solver: str, i: int) -> No
     left.set_ylim(-1.15 * reach, 1.15 * reach)
     for ax in (wave, left):
         ax.margins(x=0)
-
-
-HEAD = "# Fitted by jointwave"
 
 
 def write_fit(found: Fit, given: AnyScene, folder: Path) -> list[Path]:

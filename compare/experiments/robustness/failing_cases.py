@@ -1,5 +1,6 @@
 """Hard cases of joints that open, close, slide and break."""
 
+from functools import partial
 from typing import Any
 
 from compare.experiments.robustness.case import STEP, HardCase, rock_is_spared
@@ -10,6 +11,12 @@ BARRED: dict[str, Any] = {"joints.tension": False, "time.duration": 0.03}
 BRITTLE: dict[str, Any] = {"joints.tensile_strength": 5e5, "time.duration": 0.06}
 ALL = "hard/everything-fails"
 HOMOGENEOUS = {"continuum-equivalent": "a homogenised bar has no joints that open, slide or break"}
+RATE_STATE = {
+    "joints.direct_effect": 0.01,
+    "joints.evolution_effect": 0.03,
+    "joints.critical_slip_distance": 1e-6,
+    "joints.reference_rate": 1e-6,
+}
 STAGES = {
     "fourth-order": "it meets the joints four times a step, where their stress is not recorded"
 }
@@ -34,45 +41,29 @@ def _opening() -> list[HardCase]:
 
 def _breaking() -> list[HardCase]:
     tough, brittle = (BRITTLE | {"joints.fracture_energy": g} for g in (14.3, 14.2))
-    mixed = "joints that open, close, slip and break"
+    words = "joints that open, close, slip and break"
+    mixed = partial(HardCase, spared=HOMOGENEOUS, scene=ALL)
     return [
         HardCase("softening just short of a snap-back", contact.whole_joints, tough, HOMOGENEOUS),
         HardCase("softening that snaps back", extremes.refused, brittle, HOMOGENEOUS),
-        HardCase(mixed, energies.passive, {}, HOMOGENEOUS, scene=ALL),
-        HardCase(
-            f"{mixed}, closed to a hundredth of their compliance",
+        mixed(words, energies.passive, {}),
+        mixed(
+            f"{words}, closed to a hundredth of their compliance",
             energies.passive,
             {"joints.maximum_closure": 1e-6},
-            HOMOGENEOUS,
-            scene=ALL,
         ),
-        HardCase(
-            f"{mixed}, whose friction falls with slip",
+        mixed(
+            f"{words}, whose friction falls with slip",
             energies.passive,
             {"joints.dynamic_friction_angle": 5.0, "joints.weakening_distance": 1e-4},
-            HOMOGENEOUS,
-            scene=ALL,
         ),
-        HardCase(
-            f"{mixed}, whose friction depends on rate and state",
-            energies.passive,
-            {
-                "joints.direct_effect": 0.01,
-                "joints.evolution_effect": 0.03,
-                "joints.critical_slip_distance": 1e-6,
-                "joints.reference_rate": 1e-6,
-            },
-            HOMOGENEOUS,
-            scene=ALL,
-        ),
-        HardCase(
-            f"the ledger of {mixed}, lifted by slip",
+        mixed(f"{words}, whose friction depends on rate and state", energies.passive, RATE_STATE),
+        mixed(
+            f"the ledger of {words}, lifted by slip",
             contact.ledger,
             {"joints.dilation_angle": 10.0, "joints.dilation_distance": 1e-3},
-            HOMOGENEOUS,
-            scene=ALL,
         ),
-        HardCase(f"the ledger of {mixed}", contact.ledger, {}, HOMOGENEOUS, scene=ALL),
+        mixed(f"the ledger of {words}", contact.ledger, {}),
     ]
 
 

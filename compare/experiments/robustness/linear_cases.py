@@ -88,7 +88,7 @@ def _damping() -> list[HardCase]:
 
 
 def _attenuation() -> list[HardCase]:
-    blocks = {"dem": "rigid blocks have no rock of their own"}
+    blocks = {"dem": "its exact solution is of the chain without: see the tests of its modes"}
     return [
         HardCase(
             f"rock of Q = {quality:g}",

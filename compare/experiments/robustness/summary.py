@@ -20,12 +20,20 @@ from compare.experiments.robustness.run import FAILED, HELD, NONE, CaseRow, run,
 from compare.experiments.store import Store
 from compare.experiments.summary import Summary
 from compare.experiments.tables import frame, grouped, number, write_tables
-from compare.figures.blank import blank
-from compare.figures.export import save
+from compare.figures.export import blank, save
 from compare.figures.style import style
 from compare.report.tables import Table
 
 LIGHT = "#eceff2"  # of unstable cells
+LONG = {stepper.name: stepper for stepper in (LEAPFROG, JOINTED, EQUIVALENT)}
+NAME = "stability"
+TITLE = "Hard cases: what both engines are put to, and by what margin they hold"
+NOTE = (
+    "Above: stable and unstable cells as computed, under the line that theory draws. Below: "
+    "kinetic and elastic energy of undamped pillars over a million steps. The table has every hard "
+    "case on every engine and scheme; its margin is the bound over the value."
+)
+COLUMNS = ["engine and scheme", "value", "bound", "margin", ""]
 
 
 def draw(maps: list[StabilityMap], drifts: dict[str, Drift]) -> Figure:
@@ -96,17 +104,6 @@ def _draw_drifts(ax: Axes, drifts: dict[str, Drift]) -> None:
     ax.set_ylabel("energy over its mean, less one, 1e-13")
     ax.legend(frameon=False, ncols=len(drifts), loc="upper left")
     ax.grid(color="#e4e7ea", linewidth=0.6)
-
-
-LONG = {stepper.name: stepper for stepper in (LEAPFROG, JOINTED, EQUIVALENT)}
-NAME = "stability"
-TITLE = "Hard cases: what both engines are put to, and by what margin they hold"
-NOTE = (
-    "Above: stable and unstable cells as computed, under the line that theory draws. Below: "
-    "kinetic and elastic energy of undamped pillars over a million steps. The table has every hard "
-    "case on every engine and scheme; its margin is the bound over the value."
-)
-COLUMNS = ["engine and scheme", "value", "bound", "margin", ""]
 
 
 def make_study(

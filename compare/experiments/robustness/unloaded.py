@@ -57,15 +57,15 @@ def _blocks(scene: Scene) -> Unloaded:
 
 
 def _rock(scene: Scene, kind: str) -> Unloaded:
-    from continuum.build import build_model, discretise
+    from continuum.build import build_model, discretise, receivers
     from continuum.explicit.march import run
     from continuum.state import empty_samples, state_at_rest
 
     discrete, d = discretise(scene, kind), scene.pillar.block
-    body = discrete.body
+    body, read = discrete.body, receivers(scene, discrete)
 
     def begin(dt: float, v: np.ndarray) -> FreeMotion:
-        model = build_model(scene, discrete, kind, Clock(dt, 1, 2))
+        model = build_model(scene, discrete, kind, Clock(dt, 1, 2), read)
         state = state_at_rest(model, False)
         state.v[:] = state.v_before[:] = v
         samples = empty_samples(model, state, 2)

@@ -18,8 +18,7 @@ from compare.engines import names
 from compare.experiments.study.measure import PointRow
 from compare.experiments.study.pareto import floor, front, is_known, measured
 from compare.experiments.study.study import Study
-from compare.figures.blank import blank
-from compare.figures.export import Drawn, save
+from compare.figures.export import Drawn, blank, save
 from compare.figures.style import style
 
 ERRORS = {

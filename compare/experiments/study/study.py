@@ -12,6 +12,7 @@ import cases
 from cases.errors import SceneError, nearest
 from cases.files import read_toml
 from cases.kinds import AnyScene
+from compare.experiments import IN_CODE
 from compare.experiments.common import combinations
 from compare.experiments.study.check import ARGUMENTS, MOST_POINTS, plain, refuse_senseless
 from compare.scenes import find
@@ -168,7 +169,8 @@ def load(name: str) -> Study:
     """
     path = shipped().get(name, Path(name))
     if not path.is_file():
-        known = ", ".join(shipped()) + nearest(name, shipped())
+        names = [*shipped(), *IN_CODE]
+        known = ", ".join(names) + nearest(name, names)
         raise SceneError(name, "", None, f"is no file, nor one of {known}")
     try:
         table = read_toml(path, LARGEST_FILE)

@@ -5,20 +5,17 @@ from __future__ import annotations
 from hashlib import sha256
 from math import nan
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from cases.errors import InterruptedRun, SceneError, UnstableError
 from cases.kinds import AnyScene
 from compare.experiments import store
+from compare.misfit.external import Curves
 from compare.misfit.places import Place, places_of
 from results.dataset import scene_hash
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from compare.misfit.external import Curves
 
 Rows = list[dict[str, Any]]
 PEAKS = ("stress", "velocity", "traction")

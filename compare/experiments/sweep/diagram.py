@@ -4,24 +4,20 @@ Bands hold what lies between the 5th and the 95th percentile at every time, with
 line; a distribution is the share of members whose misfit is at most that on the axis.
 """
 
-from __future__ import annotations
-
 from itertools import cycle, product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from compare.experiments.ablation.diagram import COLOURS
-from compare.figures.blank import blank
+from compare.figures.export import blank
 from compare.figures.style import in_order, style
 from compare.figures.subplots import UNITS
 from compare.misfit.places import Place, places_of
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 SEEN = ("stress", "velocity", "traction", "gap", "slip")  # of a result; displacement shows little
 MOST, COLUMNS = 12, 2  # waveforms drawn, and side by side

@@ -4,11 +4,9 @@ Members 1, 2, ... have the scene's own seed, the next, ...; of a rock mass each 
 are points of a sweep, whose key is `member`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -17,11 +15,9 @@ import xarray as xr
 from cases.errors import SceneError
 from cases.kinds import AnyScene
 from compare.experiments.sweep.axis import MEMBER
+from compare.experiments.sweep.case import SweepCase, SweepOutcome
 from compare.runs.output import fields_of, write_fields
 from results.netcdf import load_netcdf
-
-if TYPE_CHECKING:
-    from compare.experiments.sweep.case import SweepCase, SweepOutcome
 
 PERCENTILES = (5, 25, 50, 75, 95)
 STATISTICS = ("mean", *(f"p{q}" for q in PERCENTILES))

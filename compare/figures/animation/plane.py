@@ -1,7 +1,5 @@
 """One picture of an animation of a rock mass: its blocks by each engine, and the clock."""
 
-from __future__ import annotations
-
 from textwrap import fill
 
 import matplotlib

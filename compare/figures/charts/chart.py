@@ -1,7 +1,5 @@
 """A chart as data: curves in subplots over one abscissa, for print and for the screen alike."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The energy ledger over time: the work of the load, what became of it, and what is missing."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

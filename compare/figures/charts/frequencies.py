@@ -3,7 +3,6 @@
 from math import cos, isfinite, pi, sin
 from typing import NamedTuple
 
-from cases.kinds import AnyScene
 from cases.material.calibrate import Properties, calibrate
 from cases.schema.scene import Scene
 from compare.figures.subplots import Panel
@@ -22,7 +21,8 @@ def marks_of(panel: Panel) -> list[Mark]:
     across it; in order of frequency. None but the load's for other motion, which disperses, and of
     a rock mass."""
     scene = panel.comparison.scene
-    found = _of_loads(scene)
+    periods = {one.period for one in scene.pulses if one.period}
+    found = [Mark("load", 1 / period, "1/T of the load") for period in periods]
     if not isinstance(scene, Scene):
         return sorted(found, key=lambda mark: mark.frequency)
     p = calibrate(scene)
@@ -33,11 +33,6 @@ def marks_of(panel: Panel) -> list[Mark]:
     elif scene.motion.rotation == "none" and panel.quantity != "rotation":
         found += _of_waves(scene, p, p.shear_speed)
     return sorted(found, key=lambda mark: mark.frequency)
-
-
-def _of_loads(scene: AnyScene) -> list[Mark]:
-    periods = {one.period for one in scene.pulses if one.period}
-    return [Mark("load", 1 / period, "1/T of the load") for period in periods]
 
 
 def _of_waves(scene: Scene, p: Properties, speed: float) -> list[Mark]:

@@ -2,8 +2,6 @@
 receiver's y stands its waveform; beside them, larger, the residuals from the reference.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from cases.schema.scene import Scene
-from compare.figures.blank import blank
 from compare.figures.charts import interactive
 from compare.figures.charts.chart import Subplot
 from compare.figures.charts.spacetime_data import Diagram, Diagrams
+from compare.figures.export import blank
 from compare.figures.figure import SceneFigure
 from compare.figures.style import WIDTH
 

@@ -1,7 +1,5 @@
 """Amplitude spectra of the waveforms, with the frequencies that the scene is known by."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 

@@ -1,7 +1,5 @@
 """A chart as a figure of matplotlib, for print."""
 
-from __future__ import annotations
-
 from string import ascii_lowercase
 from typing import Any
 
@@ -11,8 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import NullLocator
 
-from compare.figures.blank import blank
 from compare.figures.charts.chart import Chart, Entry, Mark, Subplot
+from compare.figures.export import blank
 from compare.figures.style import WIDTH, Style
 
 HEADING, ABSCISSA = 0.28, 0.48  # inches above each subplot, and below the lowest

@@ -1,7 +1,5 @@
 """Waveforms at every receiver over time: as the paper has them, and every solution of a variant."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from compare.figures.charts.chart import Chart, Entry, solutions_legend

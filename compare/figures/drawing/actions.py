@@ -47,7 +47,12 @@ def draw_load(ax: Axes, scene: Scene, place: Placement) -> None:
 def draw_forces(ax: Axes, scene: Scene, place: Placement) -> None:
     """Draw gravity beside the pillar, and a prestress above it and what is written there."""
     if scene.gravity is not None and scene.gravity.acceleration:
-        _draw_gravity(ax, scene.gravity, gravity_at(scene, place))
+        x = gravity_at(scene, place)
+        across, along, depth = scene.gravity.direction
+        level = LEVEL - GRAVITY / 2
+        tip = (x + GRAVITY / 2 * along, level + GRAVITY / 2 * across)
+        symbols.along_or_across(ax, tip, (along, across), -depth, GRAVITY)
+        symbols.note(ax, x - ASIDE, level, gravity_words(scene.gravity), "right")
     if scene.prestress is not None and scene.prestress.normal:
         _draw_prestress(ax, scene.prestress.normal, place.x(scene.pillar.length / 2), LEVEL)
 
@@ -55,14 +60,6 @@ def draw_forces(ax: Axes, scene: Scene, place: Placement) -> None:
 def gravity_at(scene: Scene, place: Placement) -> float:
     """Return where the arrow of gravity stands, inches."""
     return min(place.x(scene.pillar.length) + 1.5, WIDTH - 0.3)
-
-
-def _draw_gravity(ax: Axes, gravity: Gravity, x: float) -> None:
-    across, along, depth = gravity.direction
-    level = LEVEL - GRAVITY / 2
-    tip = (x + GRAVITY / 2 * along, level + GRAVITY / 2 * across)
-    symbols.along_or_across(ax, tip, (along, across), -depth, GRAVITY)
-    symbols.note(ax, x - ASIDE, level, gravity_words(gravity), "right")
 
 
 def gravity_words(gravity: Gravity | GravityInPlane) -> str:

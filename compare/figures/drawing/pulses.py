@@ -1,20 +1,13 @@
 """What stands beside the drawing of a scene: loads and waves over time, joint laws in words."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 from matplotlib.axes import Axes
 
 from cases.loads import history_of
 from cases.schema.joint import JointLaw
+from cases.schema.pulse import Pulse
 from compare.figures.drawing.symbols import LOAD
 from compare.figures.units import unit_for
-
-if TYPE_CHECKING:
-    from cases.schema.pulse import Pulse
-
 
 SAMPLES = 400
 UNITS = {"stress": "Pa", "force": "N/m", "velocity": "m/s", "acceleration": "m/s²"}

@@ -1,8 +1,6 @@
 """A rock mass as it is drawn: its joints, what holds its sides, what acts, what is recorded."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -11,18 +9,16 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from cases.partition.blocks import Partition
 from cases.partition.regions import rocks_of
 from cases.partition.scene import partition_of
-from compare.figures.blank import blank
+from cases.schema.plane import IntactRock
+from cases.schema.rock_mass import RockMass
 from compare.figures.drawing import symbols
 from compare.figures.drawing.pulses import draw_pulse, law_words
 from compare.figures.drawing.rock_mass_actions import draw_actions
 from compare.figures.drawing.symbols import EDGE, INK, RECEIVER, ROCK
-
-if TYPE_CHECKING:
-    from cases.partition.blocks import Partition
-    from cases.schema.plane import IntactRock
-    from cases.schema.rock_mass import RockMass
+from compare.figures.export import blank
 
 #: Of joint sets, one after the other; told apart under every colour blindness (Tol 2021, bright).
 SETS = ("#4477aa", "#ee6677", "#228833", "#aa3377", "#ccbb44", "#66ccee")

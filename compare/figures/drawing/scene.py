@@ -11,10 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cases.schema.scene import Scene
-from compare.figures.blank import blank
 from compare.figures.drawing import section, side
 from compare.figures.drawing.placement import HEIGHT, WIDTH
 from compare.figures.drawing.pulses import draw_pulse, law_words
+from compare.figures.export import blank
 from compare.figures.figure import SceneFigure
 from compare.figures.subplots import variant_names
 from compare.misfit.pairs import Comparison

@@ -31,7 +31,12 @@ def draw_section(ax: Axes, scene: Scene) -> None:
     left, bottom = MIDDLE[0] - SIZE / 2, MIDDLE[1] - SIZE / 2
     ax.add_patch(Rectangle((left, bottom), SIZE, SIZE, facecolor=ROCK, edgecolor=INK, linewidth=1))
     if is_spatial(scene):
-        _draw_contacts(ax, scene)
+        joints, side = scene.joints, scene.pillar.side
+        x, z, area = face_points(side, joints.contact_points, joints.point_rule)
+        places = [_at(scene, a, b) for a, b in zip(x.tolist(), z.tolist(), strict=True)]
+        across, up = zip(*places, strict=True)
+        points = ax.scatter(across, up, s=120 * area / side**2 + 4, color=EDGE, zorder=3)
+        points.set_gid("contacts")
     _draw_load(ax, scene)
     line = {"arrowstyle": "<->", "color": SOFT, "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}
     ax.annotate("", (left, bottom - 0.14), (left + SIZE, bottom - 0.14), arrowprops=line)
@@ -45,16 +50,6 @@ def draw_section(ax: Axes, scene: Scene) -> None:
 def _at(scene: Scene, x: float, z: float) -> tuple[float, float]:
     scale = SIZE / scene.pillar.side
     return MIDDLE[0] + scale * z, MIDDLE[1] + scale * x
-
-
-def _draw_contacts(ax: Axes, scene: Scene) -> None:
-    """Draw each contact point as large as its share of the face."""
-    joints, side = scene.joints, scene.pillar.side
-    x, z, area = face_points(side, joints.contact_points, joints.point_rule)
-    places = [_at(scene, a, b) for a, b in zip(x.tolist(), z.tolist(), strict=True)]
-    across, up = zip(*places, strict=True)
-    points = ax.scatter(across, up, s=120 * area / side**2 + 4, color=EDGE, zorder=3)
-    points.set_gid("contacts")
 
 
 def _draw_load(ax: Axes, scene: Scene) -> None:

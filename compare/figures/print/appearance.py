@@ -4,8 +4,6 @@ The widths are those of Elsevier's artwork (International Journal of Rock Mechan
 Sciences and others): 90 mm for one column, 190 mm for two, at most 240 mm high.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from compare.engines import names, solver

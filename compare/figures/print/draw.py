@@ -1,7 +1,5 @@
 """A figure for a paper, drawn from comparisons: one panel a variant and receiver."""
 
-from __future__ import annotations
-
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes

@@ -1,7 +1,5 @@
 """Layout of a figure for a paper: its panels, its titles, its legend."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Sequence
 from itertools import groupby

@@ -1,7 +1,5 @@
 """From scenes to a figure that holds its own fonts: solve what is asked for, draw it, write it."""
 
-from __future__ import annotations
-
 import base64
 import io
 import logging

@@ -1,7 +1,5 @@
 """Texts of figures for papers, in English and in Chinese."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from compare.engines import names, solver

@@ -6,8 +6,6 @@ whenever a run is killed, a complete one is left. Each file is numpy's .npz, wit
 followed by the SHA-256 of all before in hexadecimal.
 """
 
-from __future__ import annotations
-
 import hashlib
 import io
 import json

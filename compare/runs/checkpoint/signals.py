@@ -1,7 +1,5 @@
 """Signals by which the user or the system ends this program."""
 
-from __future__ import annotations
-
 import signal
 from functools import cache
 from types import FrameType

@@ -20,12 +20,13 @@ def signature(scene: AnyScene, name: str, processes: int) -> Signature:
 
     name : of what solves the scene.
     """
+    found = {package: version(package) for package in ("numpy", "numba")}
     return {
         "scene": _scene(scene),
         "engine": name,
         "number of processes": str(processes),
         "program": program(),
-        "version of numpy, numba or basix": _versions(name),
+        "version of numpy, numba or basix": json.dumps(found | solver(name).libraries()),
     }
 
 
@@ -53,8 +54,3 @@ def _scene(scene: AnyScene) -> str:
         return scene_hash(scene)
     with Path(mesh).open("rb") as file:
         return f"{scene_hash(scene)} {hashlib.file_digest(file, 'sha256').hexdigest()[:16]}"
-
-
-def _versions(name: str) -> str:
-    found = {package: version(package) for package in ("numpy", "numba")}
-    return json.dumps(found | solver(name).libraries())

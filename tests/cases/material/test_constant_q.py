@@ -26,6 +26,25 @@ def of_band(quality: float, decades: float):
     return fitted(quality, 100.0, f[0], f[-1])
 
 
+def roots(memory, x: float, dt: float) -> np.ndarray:
+    """Return z of the motions that go as z^n in leapfrog on a mode with (omega_u dt)^2 = x:
+
+    z - 2 + 1/z + x (relaxed + sum_l share_l gain_l (z - 1) / (dt (z - decay_l))) = 0,
+
+    as the eigenvalues of what a step makes of u, v dt and e_l.
+    """
+    size = memory.share.size
+    force = np.concatenate([[memory.relaxed, 0.0], memory.share])
+    step = np.zeros((size + 2, size + 2))
+    step[1] = -x * force
+    step[1, 1] += 1.0
+    step[0] = step[1]
+    step[0, 0] += 1.0
+    step[2:] = (memory.gain / dt)[:, None] * step[1]
+    step[2:, 2:] += np.diag(memory.decay)
+    return np.linalg.eigvals(step)
+
+
 @pytest.mark.parametrize("decades", [0.4, 1.0, 2.0, 3.0, 4.0])
 @pytest.mark.parametrize("quality", [5.0, 10.0, 20.0, 50.0, 100.0, 500.0, 1e4])
 def test_quality_factor_is_constant_in_the_band(quality, decades):

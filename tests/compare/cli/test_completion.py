@@ -9,33 +9,40 @@ from pathlib import Path
 import pytest
 
 from cases.schema.keys import keys
+from compare.cli.program import main
 from compare.scenes import SHIPPED, shipped
 
 SCENE = "guo-li-2002/fig-03"
 
 
-def complete(line, cwd=None):
-    """Return what bash is offered for the last word of a line, empty after a space."""
-    place = str(len(line.split(" ")) - 1)
-    asked = {"_JOINTWAVE_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": place}
-    code = "import sys; sys.argv = ['jointwave']; from compare.cli.start import main; main()"
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        capture_output=True,
-        text=True,
-        env={**os.environ, **asked},
-        cwd=cwd,
-    )
-    assert done.stderr == "" and done.returncode == 0
-    return [word for word in done.stdout.split("\n") if word]
+@pytest.fixture
+def complete(monkeypatch, capsys):
+    """Return a function that gives what bash is offered for the last word of a line, empty after a
+    space."""
+
+    def offered(line, cwd=None):
+        asked = {"COMP_WORDS": line, "COMP_CWORD": str(len(line.split(" ")) - 1)}
+        with monkeypatch.context() as here, pytest.raises(SystemExit) as end:
+            for name, value in {"_JOINTWAVE_COMPLETE": "complete_bash", **asked}.items():
+                here.setenv(name, value)
+            here.setattr(sys, "argv", ["jointwave"])
+            here.setattr(sys.modules["__main__"], "__package__", "")  # or its name were pytest's
+            if cwd is not None:
+                here.chdir(cwd)
+            main()
+        said = capsys.readouterr()
+        assert said.err == "" and not end.value.code
+        return [word for word in said.out.split("\n") if word]
+
+    return offered
 
 
-def test_commands_and_options():
+def test_commands_and_options(complete):
     assert complete("jointwave com") == ["compare"]
     assert {"--set", "--sweep", "--dry-run"} <= set(complete("jointwave run --"))
 
 
-def test_scenes_by_name_and_by_file(tmp_path):
+def test_scenes_by_name_and_by_file(tmp_path, complete):
     """Shipped ones, files of scenes, and the folders on the way to them."""
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "own scene.toml").write_text("")
@@ -49,20 +56,20 @@ def test_scenes_by_name_and_by_file(tmp_path):
     assert complete("jointwave new x --from nothing", cwd=tmp_path) == []
 
 
-def test_engines_models_and_studies():
+def test_engines_models_and_studies(complete):
     assert complete(f"jointwave run {SCENE} --engine ") == ["dem", "continuum", "exact"]
     assert complete(f"jointwave run {SCENE} --model joi") == ["jointed", "jointed-bar"]
     assert {"free-pillar", "stability"} <= set(complete("jointwave study "))
 
 
-def test_variants_of_the_scene_that_is_named():
+def test_variants_of_the_scene_that_is_named(complete):
     """A name of two words as bash takes it for one; of no scene, none."""
     assert complete(f"jointwave run {SCENE} --variant ")[0] == "zeta\\ 0.02"
     assert complete("jointwave run nothing.toml --variant ") == []
 
 
 @pytest.mark.parametrize("option", ["--set", "--sweep"])
-def test_keys_and_their_values(option):
+def test_keys_and_their_values(option, complete):
     """Every key of the models; values where there are few."""
     line = f"jointwave run {SCENE} {option} "
     wanted = [f"{key}=" for key, _ in keys() if not key.startswith(("soft_layers.", "segments."))]
@@ -80,7 +87,7 @@ BROKEN += ['variants = [1, { name = 2 }, { name = "\\u001b[2J" }]\n']
 
 
 @pytest.mark.parametrize("text", BROKEN)
-def test_a_broken_scene_is_no_message(tmp_path, text):
+def test_a_broken_scene_is_no_message(tmp_path, text, complete):
     """Nor does a name reach the terminal that moves its cursor."""
     (tmp_path / "broken.toml").write_text(text)
     assert complete("jointwave run broken.toml --variant ", cwd=tmp_path) == []

@@ -52,44 +52,19 @@ domain.openings = [[[3.0, 2.0], [6.0, 2.0], [6.0, 4.0], [3.0, 4.0]]]
 domain.non_convex = "cut"
 """
 
-ONE_JOINT = """\
-title = "one joint"
-[domain]
-size = [40.0, 40.0]
-[rock]
-density = 2600.0
-intact_modulus = 5.0e10
-[[joint_sets]]
-name = "joint"
-dip = 30.0
-through = [20.0, 20.0]
-normal_stiffness = 1.0e10
-shear_stiffness = 4.0e9
-[[waves]]
-kind = "P"
-direction = [0.0, 1.0]
-shape = "ricker"
-amplitude = 1e6
-period = 0.005
-[boundaries]
-left = "quiet"
-right = "quiet"
-bottom = "quiet"
-top = "quiet"
-[time]
-duration = 0.03
-[record]
-points = [[20.0, 10.0], [20.0, 30.0]]
-joints = [[20.0, 20.0]]
-interval = 1e-4
-"""
+ONE_JOINT = {
+    "domain": {"size": [40.0, 40.0]},
+    "record": {"points": [[20.0, 10.0], [20.0, 30.0]], "joints": [[20.0, 20.0]], "interval": 1e-4},
+}
 
 
 @pytest.fixture
-def jointwave_says(tmp_path, monkeypatch):
+def jointwave_says(tmp_path, monkeypatch, one_joint, in_toml):
     """Return a function that runs a command beside the scene: its exit code, output and errors."""
     (tmp_path / "mass.toml").write_text(SCENE)
-    (tmp_path / "joint.toml").write_text(ONE_JOINT)
+    scene = one_joint(**ONE_JOINT)
+    scene["joint_sets"][0]["through"] = [20.0, 20.0]
+    (tmp_path / "joint.toml").write_text(in_toml(scene))
     monkeypatch.chdir(tmp_path)
 
     def says(command):

@@ -45,7 +45,7 @@ def show(browser, alone):
         page.goto(path.as_uri() if hasattr(path, "as_uri") else f"file://{path}")
         return page
 
-    opened.complaints = complaints
+    opened.complaints, opened.contexts = complaints, contexts
     yield opened
     for context in contexts:
         context.close()
@@ -53,9 +53,13 @@ def show(browser, alone):
 
 @pytest.fixture
 def opened(show):
-    """Return the same, for a page that the test may change."""
+    """Return the same, for pages that the test may change; each is a process of 200 MB until it is
+    closed."""
     show.complaints.clear()
-    return show
+    before = len(show.contexts)
+    yield show
+    while len(show.contexts) > before:
+        show.contexts.pop().close()
 
 
 @pytest.fixture(scope="module")
@@ -85,7 +89,7 @@ def unfold(page):
 def draw(figure):
     """Let a chart come into view, wait until it is drawn, and return it."""
     figure.scroll_into_view_if_needed()
-    figure.locator(".chart .main-svg").first.wait_for(timeout=20_000)
+    figure.locator(".chart .main-svg").first.wait_for(timeout=60_000)
     return figure
 
 

@@ -6,54 +6,31 @@ import pytest
 
 from compare.report.report import build
 
-SCENE = """\
-title = "One joint in a small square"
-[domain]
-size = [12.0, 12.0]
-[rock]
-density = 2600.0
-intact_modulus = 5.0e10
-[[joint_sets]]
-name = "joint"
-dip = 20.0
-through = [6.0, 6.0]
-normal_stiffness = 2.0e10
-shear_stiffness = 1.0e10
-[[waves]]
-kind = "P"
-direction = [0.0, 1.0]
-shape = "ricker"
-amplitude = 1e6
-period = 0.005
-[boundaries]
-left = "quiet"
-right = "quiet"
-bottom = "quiet"
-top = "quiet"
-[time]
-duration = 0.02
-[numerics]
-dem.block = 1.2
-[record]
-points = [[6.0, 9.0]]
-joints = [[6.0, 6.0]]
-[expect]
-"continuum-jointed ~ oblique-joint" = 0.01
-"""
+SQUARE = {
+    "title": "One joint in a small square",
+    "domain": {"size": [12.0, 12.0]},
+    "time": {"duration": 0.02},
+    "numerics": {"dem": {"block": 1.2}},
+    "record": {"points": [[6.0, 9.0]], "joints": [[6.0, 6.0]]},
+    "expect": {"continuum-jointed ~ oblique-joint": 0.01},
+}
+JOINT = {"dip": 20.0, "through": [6.0, 6.0], "normal_stiffness": 2e10, "shear_stiffness": 1e10}
 
 
 @pytest.fixture(scope="module")
-def found(once):
+def found(once, one_joint, in_toml):
     """Return the page's text without what it holds and its styles, and its parts."""
+    scene = one_joint(**SQUARE)
+    scene["joint_sets"][0] |= JOINT
+
+    def build_page(folder):
+        file = folder / "square.toml"
+        file.write_text(in_toml(scene), encoding="utf-8")
+        return build(folder / "report", workers=1, scenes=[str(file)])
+
     report = once("rock-mass-page", build_page)
     text = report.file.read_text(encoding="utf-8")
     return re.sub(r"<(script|style)\b.*?</\1>", "", text, flags=re.DOTALL), report.page
-
-
-def build_page(folder):
-    file = folder / "square.toml"
-    file.write_text(SCENE, encoding="utf-8")
-    return build(folder / "report", workers=1, scenes=[str(file)])
 
 
 def test_it_has_every_picture_and_nothing_of_pillars(found):

@@ -226,13 +226,13 @@ WAVES = {"stress", "velocity", "displacement", "shear", "rotation", "energy"}
 
 
 @pytest.fixture(scope="module")
-def runs(in_turn, request, tmp_path_factory):
+def runs(in_turn, in_toml, request, tmp_path_factory):
     """Return a function that gives a scene's result by this process and by three, which run in turn
     all scenes whose tests are selected."""
     tests = [item for item in request.session.items if item.path == request.path]
     asked = {item.callspec.params["scene"] for item in tests if hasattr(item, "callspec")} | {CUT}
     folders = {scene: tmp_path_factory.mktemp("three") for scene in SCENES if scene in asked}
-    ends = in_turn(3, *(command(scene, out) for scene, out in folders.items()))
+    ends = in_turn(3, *(command(scene, out, in_toml) for scene, out in folders.items()))
     of_three = dict(zip(folders, ends, strict=True))
 
     @cache
@@ -248,21 +248,12 @@ def runs(in_turn, request, tmp_path_factory):
     return of
 
 
-def command(scene, out):
+def command(scene, out, in_toml):
     """Return the command that runs a scene."""
     model, changes = SCENES[scene]
     keys = [part for k, v in changes.items() for part in ("--set", f"{k}={in_toml(v)}")]
     engine = ("--engine", "continuum", "--model", model)
     return "run", FILE, "--variant", "", *engine, *keys, "--out", out, "--json"
-
-
-def in_toml(value):
-    """Return a value as TOML spells it; tables inline."""
-    if isinstance(value, list):
-        return f"[{', '.join(map(in_toml, value))}]"
-    if isinstance(value, dict):
-        return "{" + ", ".join(f"{k} = {in_toml(v)}" for k, v in value.items()) + "}"
-    return json.dumps(value)
 
 
 @pytest.mark.parametrize(

@@ -212,4 +212,4 @@ def test_every_effect_is_a_flag(pillar):
         shear=False, slip=False, residual=False, limited=False, closure=False,
         weakening=False, dilation=False, rate_state=False, path=False,
     )  # fmt: skip
-    assert effects == (along, False, True, True, True, True, True, True, False)
+    assert effects == (along, False, True, True, True, True, True, True, 0, False)

@@ -7,7 +7,6 @@ from cases.errors import InterruptedRun
 from dem import simulate
 from dem.blocks.build import rigid_blocks
 from joints.law import Law
-from results.arrays import copied, fill
 from results.snapshots import snapshots_of
 
 CROSSED = ({"dip": 10.0, "spacing": 2.5}, {"dip": 80.0, "spacing": 3.0, "name": "cross"})
@@ -49,26 +48,11 @@ def test_snapshots_are_the_motion_of_the_blocks_and_change_nothing(crossed):
     assert found.stress is None and np.abs(found.velocity).max() > 0.05
 
 
-class Keeper:
-    """Keeps what a run was when some samples were done, and ends it there once."""
-
-    def __init__(self, at):
-        self.at, self.done, self.kept = at, 0, None
-
-    def restore(self, parts):
-        fill(parts, self.kept)
-
-    def look(self, samples, parts):
-        if self.kept is None and samples >= self.at:
-            self.kept, self.done = copied(parts), samples
-            raise InterruptedRun("enough")
-
-
-def test_a_run_that_goes_on_is_the_same_to_the_last_bit(crossed, joint):
+def test_a_run_that_goes_on_is_the_same_to_the_last_bit(crossed, joint, keeper_at):
     """Waves, joints that slip with dashpots, the ledger and snapshots, from the middle on."""
     slips = [joint(through=None, friction_angle=15.0, damping_ratio=0.02, **one) for one in CROSSED]
     own = crossed(joint_sets=slips, record={"fields": 2e-3})
-    whole, keeper = simulate(own), Keeper(40)
+    whole, keeper = simulate(own), keeper_at(40)
     with pytest.raises(InterruptedRun):
         simulate(own, keeper=keeper)
     assert 40 <= keeper.done < 100

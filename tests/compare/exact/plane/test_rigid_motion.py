@@ -6,8 +6,8 @@ import pytest
 from cases.histories import Ricker
 from cases.material.contact_points import contact_points
 from cases.material.rock_mass import Stiffness
-from cases.partition.cut import cut
 from cases.partition.periodic import periodic_contacts
+from cases.partition.scene import cut
 from cases.schema.domain import Domain
 from cases.schema.joint_set import JointSet
 from closed_forms.block_lattice import Lattice, modes

@@ -53,6 +53,7 @@ CALLS = {
     "softening": {"joints__tensile_strength": 1e5, "joints__fracture_energy": 10.0},
     "mass damping": {"damping__mass_proportional": 5.0},
     "local damping": {"damping": {"local": 0.5}},
+    "constant Q": {"rock__quality_factor": 20.0},
     "gravity": {"gravity": FALL},
     "prestress": {"prestress": {"normal": 1e5}},
 }

@@ -38,6 +38,7 @@ CALLS = {
     "field output": {"record": {"points": [[6.0, 3.0]], "energy": False, "fields": 1e-3}},
     "mass damping": {"damping": {"mass_proportional": 5.0}},
     "local damping": {"damping": {"local": 0.5}},
+    "constant Q": {"rock": {"density": 2600.0, "intact_modulus": 5e10, "quality_factor": 20.0}},
     "gravity": {"gravity": {"static": False}},
     "prestress": {"prestress": {"xx": 1e6, "yy": 2e6}},
 }
@@ -88,9 +89,10 @@ def test_a_side_that_a_wave_enters_stays():
 
 
 def test_everything_has_every_effect_but_periodic_sides_and_snapshots():
+    """Nor a quality factor: rigid blocks have no rock for it."""
     scene = scenes.everything_in_plane(mass(), 1000)
     left = {one.name for one in effects(scene) if not one.active}
-    assert left == {"periodic sides", "field output"}
+    assert left == {"periodic sides", "field output", "constant Q"}
 
 
 @pytest.mark.parametrize(("most", "side"), [(1000, 5.0), (16, 4.0), (1, 2.0)])

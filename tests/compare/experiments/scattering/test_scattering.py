@@ -6,8 +6,8 @@ import pytest
 from compare.engines import solve
 from compare.experiments.cost.experiment_cost import parts_of_study
 from compare.experiments.scattering import points, summary
-from compare.experiments.scattering.diagram import WAVES, draw
 from compare.experiments.scattering.points import JointsPoint, JointsRow, measure, scene_of
+from compare.experiments.scattering.summary import WAVES, draw
 
 #: |R_p|, |R_s|, |T_p|, |T_s| of P at nu = 0.25, K_n = Z_p omega, K_s = Z_s omega, found by solving
 #: the four boundary conditions as they stand.

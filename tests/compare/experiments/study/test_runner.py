@@ -71,4 +71,4 @@ def test_two_timed_studies_do_not_run_at_once(study, tmp_path):
         waiting = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE)
         with pytest.raises(subprocess.TimeoutExpired):
             waiting.communicate(timeout=3)
-    assert waiting.communicate(timeout=60)[0] == b"in\n"
+    assert waiting.communicate(timeout=600)[0] == b"in\n"

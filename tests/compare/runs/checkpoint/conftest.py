@@ -15,7 +15,7 @@ AT = ("--set", "record.stress=[5.0]", "--set", "record.velocity=[4.75, 5.25]")
 ROCK = ("--engine", "continuum", "--model", "jointed", "--set", "numerics.continuum.scheme=")
 DAMPED = ("joints.damping_ratio=0.02",)
 SHOT = ("record.fields=2e-3",)  # s; a run is looked at wherever it keeps a snapshot
-PATIENCE = 120  # s, for what takes seconds: other tests run at the same time
+PATIENCE = 600  # s, for what takes seconds: other tests run at the same time
 
 
 def keys(*changes):
@@ -128,7 +128,7 @@ def until():
             if holds():
                 return True
             assert time.monotonic() < end, "nothing happens"
-            time.sleep(0.002)
+            time.sleep(0.005)
         return False
 
     return waited
@@ -148,6 +148,21 @@ def arguments():
 def runs():
     """Return the name of the result and the number of processes of every run of RUNS."""
     return {kind: (file, ranks) for kind, (_, file, ranks) in RUNS.items()}
+
+
+@pytest.fixture
+def whole(once, start, finish, arguments, runs):
+    """Return a function that gives the folder of a run of RUNS that nothing ended, made once."""
+
+    def of(kind):
+        def made(folder):
+            code, said = finish(start(*arguments(kind, folder), ranks=runs[kind][1]))
+            assert code == 0, said
+            return folder
+
+        return once(f"whole-{kind}", made)
+
+    return of
 
 
 @pytest.fixture

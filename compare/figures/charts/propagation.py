@@ -1,0 +1,142 @@
+"""Propagation along a row of receivers: transfer function, phase speed and loss over frequency.
+
+The transfer function and 1/Q are those from the first receiver of velocity to the last, the phase
+speed that of the f-k spectrum of all of them (`compare.readings`), beside the theory of an endless
+pillar (`dispersion_theory`).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from cases.schema.scene import Scene
+from compare.figures.charts.chart import Chart, ChartLine, Entry, Subplot, solutions_legend
+from compare.figures.figure import SceneFigure, chart_figure
+from compare.figures.style import in_order, style
+from compare.figures.subplots import variant_names
+from compare.misfit.pairs import Comparison
+from compare.readings import (
+    dispersion,
+    dispersion_theory,
+    quality_factor,
+    transfer_function,
+    wave_speed,
+)
+from compare.readings.attenuation import waveforms
+
+LEAST = 3  # receivers of a row
+HEARD = 0.03  # of the largest amplitude of the first receiver: frequencies that are drawn
+TOLD_APART = 0.95  # of the frequency at which two receivers are half a wave apart
+NAMES = ("transfer function", "phase speed (m/s)", "1/Q")
+#: The solution that has the model of each theory, whose line it takes.
+THEORY = {"rigid blocks": "lattice", "jointed rock": "jointed-bar", "bar": "equivalent-bar"}
+CAPTION = (
+    "Of the velocities of a row of receivers, from whole records, with all that is reflected in "
+    "them: the size of the spectrum at the last over that at the first, the phase speed of the "
+    "peak of the f-k spectrum, where receivers are less than half a wave apart, and 1/Q between "
+    "both."
+)
+
+
+class Row(NamedTuple):
+    """What a variant's solutions say: the variant, curves by solution or theory and by NAMES, over
+    frequency (Hz)."""
+
+    variant: str
+    curves: dict[str, dict[str, pd.Series]]
+
+
+def propagation(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
+    """Return the picture of all variants with a row of receivers; none where there is no row."""
+    named = zip(variant_names(comparisons), comparisons, strict=True)
+    rows = [row for variant, one in named if (row := row_of(variant, one)).curves]
+    if not rows:
+        return []
+    legend = solutions_legend(comparisons, given=False)
+    theory = dict.fromkeys(k for row in rows for k in row.curves if k.endswith("theory"))
+    if theory:
+        legend["Theory"] = [Entry(k, k, _style(k)) for k in theory]
+    chart = Chart(
+        [
+            [[_subplot(row, what, f"{i}-{j}")] for j, what in enumerate(NAMES)]
+            for i, row in enumerate(rows)
+        ],
+        "frequency (Hz)",
+        legend,
+        is_lettered=True,
+    )
+    title = "Transfer, dispersion and loss along the receivers"
+    found = chart_figure(f"{name}-propagation", title, CAPTION, chart, table(rows), folded=True)
+    return [found]
+
+
+def row_of(variant: str, comparison: Comparison) -> Row:
+    """Return the curves of one variant; none where fewer than LEAST receivers have a motion."""
+    found: dict[str, dict[str, pd.Series]] = {}
+    for solution in in_order(set(comparison.results)):
+        result = comparison.results[solution]
+        if "velocity" not in result or len(result["velocity"]) < LEAST:
+            continue
+        row = waveforms(result)
+        first = np.abs(np.fft.rfft(row[0].values))
+        if not (row != 0).any("time").all() or row["distance"].diff("receiver").min() <= 0:
+            continue
+        found[solution] = _measured(result, first > HEARD * first.max())
+    scene = comparison.scene
+    if found and isinstance(scene, Scene) and not scene.segments:
+        frequency = next(iter(found.values()))[NAMES[0]].index.values
+        theory = dispersion_theory(scene, frequency)
+        for rock in theory.rock.values:
+            of_rock = theory.sel(rock=rock)
+            found[f"{rock}, theory"] = {
+                NAMES[1]: pd.Series(of_rock.phase_speed.values, frequency),
+                NAMES[2]: pd.Series(1 / of_rock.quality.values, frequency),
+            }
+    return Row(variant, found)
+
+
+def _measured(result, heard: np.ndarray) -> dict[str, pd.Series]:
+    """Return what one result says at the frequencies that are heard, bool array."""
+    transfer, both = abs(transfer_function(result)), dispersion(result).phase_speed
+    loss = 1 / quality_factor(result).quality
+    nearest = float(waveforms(result)["distance"].diff("receiver").min())
+    both = both[both.frequency.values < TOLD_APART * abs(wave_speed(result)) / (2 * nearest)]
+    wanted = transfer.frequency.values[heard & (transfer.frequency.values > 0)]
+    series = (
+        pd.Series(one.values, one.frequency.values).reindex(wanted).dropna()
+        for one in (transfer, both, loss)
+    )
+    return dict(zip(NAMES, series, strict=True))
+
+
+def table(rows: list[Row]) -> pd.DataFrame:
+    """Return all curves, frequency first."""
+    columns = {
+        f"{name} | {what} | {row.variant}": curve
+        for row in rows
+        for name, curves in row.curves.items()
+        for what, curve in curves.items()
+    }
+    return pd.DataFrame(columns).rename_axis("frequency (Hz)").reset_index()
+
+
+def _style(name: str):
+    rock, _, theory = name.partition(", ")
+    return style(THEORY[rock] if theory else name)
+
+
+def _subplot(row: Row, what: str, place: str) -> Subplot:
+    lines = [
+        ChartLine(
+            name,
+            _style(name),
+            curves[what].index.values,
+            curves[what].values,
+            f"%{{y:.4g}} at %{{x:.4~g}} Hz<extra>{name}</extra>",
+            f"{place}-{name}",
+        )
+        for name, curves in row.curves.items()
+        if what in curves
+    ]
+    return Subplot(row.variant, what, lines)
