@@ -29,10 +29,10 @@ def critical_time_step(
     """Return the critical step (s) of leapfrog for the assembled operators.
 
     With dashpots that see the rate extrapolated to the centre of the step, it is critical when the
-    largest eigenvalue of M^-1 (dt^2 K + 4 dt C) is 4 (`joints.stability`). For the eigenvector x
-    of one step this is a quadratic equation for the next: Rayleigh's quotient is stationary, so
-    the steps converge quadratically. Quiet ends are centred implicitly and do not bound the step;
-    no tension only softens, and so does what slides or breaks.
+    largest eigenvalue of M^-1 (dt^2 K + 4 dt C) is 4 (`numerics.critical_step`). For the
+    eigenvector x of one step this is a quadratic equation for the next: Rayleigh's quotient is
+    stationary, so the steps converge quadratically. Quiet ends are centred implicitly and do not
+    bound the step; no tension only softens, and so does what slides or breaks.
 
     Parameters
     ----------

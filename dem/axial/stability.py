@@ -12,7 +12,7 @@ import numpy as np
 
 from cases.material.calibrate import Properties
 from dem.axial.ends import end_stiffness
-from joints.stability import critical_step, critical_step_of_modes
+from numerics.critical_step import critical_step, critical_step_of_modes
 
 
 def critical_chain_step(p: Properties, start: str, end: str) -> float:

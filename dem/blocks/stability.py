@@ -19,7 +19,7 @@ from cases.material.rock_mass import Inertia, Stiffness
 from cases.partition.blocks import Contacts
 from dem.blocks.joints import Columns
 from dem.blocks.links import Links
-from joints.stability import critical_step
+from numerics.critical_step import critical_step
 
 
 def critical_plane_step(links: Links, columns: Columns, inertia: Inertia, local: float) -> float:

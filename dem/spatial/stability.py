@@ -23,7 +23,7 @@ from dem.spatial.ends import Face, end_springs, face_stiffness, lever_matrix
 from dem.spatial.layout import STRIDE, unpacked
 from dem.spatial.model import RowModel, RowState
 from joints.dilation import riding_stiffness
-from joints.stability import critical_step
+from numerics.critical_step import critical_step
 from numerics.divergence import speed_that
 
 ENOUGH_BLOCKS = 2000  # of alike joints: no longer row has an eigenvalue larger by 1e-6

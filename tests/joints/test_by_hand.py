@@ -15,8 +15,8 @@ from joints.law import History, Law, law, law_of, parts_of, table_of, traction, 
 from joints.normal import normal_traction, spring_traction
 from joints.shear import UNLIMITED, shear_return
 from joints.softening import is_broken, strength_left
-from joints.stability import critical_step, critical_step_of_modes
 from joints.tangent import tangent
+from numerics.critical_step import critical_step, critical_step_of_modes
 
 K, K_S, DT = 1e9, 2e9, 1e-5
 VIRGIN = History()

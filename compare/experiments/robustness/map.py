@@ -2,7 +2,7 @@
 
 With all dashpots eta times their springs the mode of the largest frequency omega decides. Its
 damping ratio is zeta = eta omega / 2, and in x = omega dt / 2, the step over the undamped critical
-one, the critical step of `joints.stability` reads x = sqrt(1 + 4 zeta^2) - 2 zeta.
+one, the critical step of `numerics.critical_step` reads x = sqrt(1 + 4 zeta^2) - 2 zeta.
 """
 
 from math import pi

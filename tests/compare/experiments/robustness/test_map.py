@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from compare.experiments.robustness.map import ENGINES, boundary, make_map
-from joints.stability import critical_step_of_modes
+from numerics.critical_step import critical_step_of_modes
 
 
 @pytest.fixture(scope="module")
