@@ -84,7 +84,7 @@ def bounded(
 
     places, front = np.array([*stress_y, *velocity_y]), _front(bar, times[-1])
     dt, stride, count = _fine_step(times, period, len(nodes_of(bar, places)[0]) + 4 * len(places))
-    require(8.0 * count * (10 + 6 * len(places)), f"{count:,} instants of the load")
+    require(8.0 * count * (10 + 7 * len(places)), f"{count:,} instants of the load")
     decay = -log(WRAPPED) / (count * dt)
     t = dt * np.arange(count)
     s = decay + 2j * np.pi * np.fft.rfftfreq(count, dt)

@@ -156,7 +156,10 @@ def transfer(bar: Bar, s: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, n
     slowness = [s * rock.density / z for rock, z in zip(every, zs, strict=True)]
     R = _end_reflection(bar.end, s, zs[-1])
     stress, velocity = np.zeros((2, len(places), len(s)), dtype=complex)
-    passed = np.zeros(len(places), dtype=bool)
+    # Places from the far end on, each with what passes from it to those farther on, and what
+    # passes to the last of them.
+    reached: list[tuple[np.ndarray, np.ndarray]] = []
+    passing = np.ones_like(R)
     nodes, joint_of = nodes_of(bar, places)
 
     @lru_cache(16)  # of joints that all differ, some
@@ -179,18 +182,22 @@ def transfer(bar: Bar, s: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, n
             stress[here], velocity[here] = zs[kind.behind] * (1 + R), 1 - R
             if kind.compliance or kind.rock != kind.behind:
                 R, share = cell(kind._replace(h=0.0), 0).before(R)
-                stress[passed | here] *= share
-                velocity[passed | here] *= share
-                velocity[here] = (velocity[here] + 1 - R) / 2
+                passing = passing * share
+                stress[here] *= share
+                velocity[here] = (velocity[here] * share + 1 - R) / 2
                 kind = Kind(0.0, 0.0, kind.h, kind.rock, kind.rock)
-            passed |= here
+            reached.append((here, passing))
+            passing = np.ones_like(R)
         for doublings in range(len(members).bit_length()):
             if len(members) >> doublings & 1:
                 R, share = cell(kind, doublings).before(R)
-                stress[passed] *= share
-                velocity[passed] *= share
-    entering = 1 / (zs[0] * (1 + R) + bar.start.impedance(s) * (1 - R))
-    return stress * entering, velocity * entering
+                passing = passing * share
+    entering = passing / (zs[0] * (1 + R) + bar.start.impedance(s) * (1 - R))
+    for here, beyond in reversed(reached):
+        stress[here] *= entering
+        velocity[here] *= entering
+        entering = entering * beyond
+    return stress, velocity
 
 
 class Kind(NamedTuple):
