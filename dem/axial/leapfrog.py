@@ -24,6 +24,8 @@ from numerics.divergence import ENERGY, EVERY, SPEED, Guard, gains_energy, guard
 from numerics.jit import jitted
 from numerics.sums import total_of
 
+UNGUARDED = guard(0.0)  # what a loop without a monitor neither reads nor sets
+
 
 def run(
     model: Model,
@@ -53,7 +55,7 @@ def _take(model, state, samples, monitor, first, last, index, stride):
 
 def arguments(model: Model, state: State, samples: Samples, monitor: Guard | None) -> tuple:
     """Return what a time loop takes, but for its steps and samples."""
-    limits, every = (guard(0.0), 0) if monitor is None else (monitor, EVERY)
+    limits, every = (UNGUARDED, 0) if monitor is None else (monitor, EVERY)
     limit = limits.limit.view(np.float64)[0]
     return (
         model.chain, model.laws, model.blocks, model.load, model.base,
