@@ -63,10 +63,16 @@ def netcdf3(path: Path, mode: str = "r") -> Any:
     long to import as a short run to step."""
     import scipy
 
-    spec = spec_from_file_location("scipy_netcdf", Path(scipy.__file__).parent / "io/_netcdf.py")
-    assert spec and spec.loader
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
+    source = Path(scipy.__file__).parent / "io/_netcdf.py"
+    if source.exists():
+        spec = spec_from_file_location("scipy_netcdf", source)
+        assert spec and spec.loader
+        module = module_from_spec(spec)
+        spec.loader.exec_module(module)
+    else:  # a scipy that keeps it elsewhere
+        import scipy.io
+
+        module = scipy.io
     return module.netcdf_file(str(path), mode, mmap=mode == "r", version=2)
 
 
