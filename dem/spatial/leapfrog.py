@@ -273,21 +273,13 @@ def step_for(form: Form) -> Callable:
     at_point, contact_area = at_point_for(form)
 
     @formula
-    def relative(b, m, q, at, to, n):
-        """Leave small relative motion of n joints in the rows from `to` on of the buffer, from the
-        rows from `at` on of motion."""
-        for k in range(b.freedoms):
-            one = at + k * R
-            if turns and (k == 0 or k == 2):  # x and z: the faces are an arm off the centroids
-                arm, about = b.arm, at + ABOUT_Z
-                if k == 2:
-                    arm, about = -b.arm, at + ABOUT_X
-                for i in range(n):
-                    lever = arm * (m[about + i + 1] + m[about + i])
-                    q[to + k * R + i] = m[one + i + 1] - m[one + i] + lever
-            else:
-                for i in range(n):
-                    q[to + k * R + i] = m[one + i + 1] - m[one + i]
+    def relative(m, i, k, arm, about):
+        """Return small relative motion k of a joint, or its rate, from the rows that begin at its
+        block m[i]; arm : from the faces to the centroids, m, about : the rotation that it turns."""
+        g = m[k * R + i + 1] - m[k * R + i]
+        if turns and (k == 0 or k == 2):
+            g = g + arm * (m[about + i + 1] + m[about + i])
+        return g
 
     @formula
     def lever(b, at, k):
@@ -380,7 +372,8 @@ def step_for(form: Form) -> Callable:
             for k in range(rows):
                 m[k * R + L] = following[k * R]
 
-        # Relative motion of the joints' faces, and its rates: half a step before, and now.
+        # Relative motion of the joints' faces, and its rates, half a step before and now; forces of
+        # joints that always hold, of the face as a whole.
         if finite:
             for i in range(joints):
                 rate, spin = finite_relative(b, m, q, i)
@@ -389,17 +382,33 @@ def step_for(form: Form) -> Callable:
                     rate, spin = centred(h, i, rate), centred(h, 3 * L + i, spin)
                     put_rates(q, CENTRED, i, rate, spin)
         else:
-            relative(b, m, q, 0, RELATIVE, joints)
-            if dashpots or (by_points and rated):
-                relative(b, m, q, velocity, RATE, joints)
-            if dashpots:
-                for k in range(b.freedoms):
-                    for i in range(joints):
-                        rate, last = q[RATE + k * R + i], h[k * L + i]
-                        q[CENTRED + k * R + i] = 1.5 * rate - 0.5 * last
-                        h[k * L + i] = rate
+            for k in range(b.freedoms):
+                arm, about = (-b.arm, ABOUT_X) if k == 2 else (b.arm, ABOUT_Z)
+                at, share = NORMAL if k % 2 else SHEAR, b.rows[FACE, k]
+                for i in range(joints):
+                    g, rate = relative(m, i, k, arm, about), 0.0
+                    if by_points or ledger:
+                        q[RELATIVE + k * R + i] = g
+                    if dashpots or (by_points and rated):
+                        rate = relative(m, velocity + i, k, arm, about)
+                        if by_points:
+                            q[RATE + k * R + i] = rate
+                    if dashpots:
+                        last, h[k * L + i] = h[k * L + i], rate
+                        rate = 1.5 * rate - 0.5 * last
+                        if by_points:
+                            q[CENTRED + k * R + i] = rate
+                    if not by_points:
+                        j = at + i if varied else at
+                        f = -laws[j] * share * g
+                        if dashpots:
+                            d = -laws[j + DASHPOT] * share * rate
+                            f = f + d
+                            if ledger:
+                                q[DRAG + k * R + i + 1] = d
+                        q[k * R + i + 1] = f
 
-        # Forces of the joints.
+        # Forces of the joints at their contact points.
         law = law_at(laws, 0)
         if by_points:
             beyond = 0 if m[SLIDING] == 0.0 else 1
@@ -409,18 +418,6 @@ def step_for(form: Form) -> Callable:
                 beyond = contact_forces(b, law, laws, points, per_face, h, q, own, joints, False)
             if parts.rate_state or (limited and beyond > 0):
                 m[SLIDING] = contact_forces(b, law, laws, points, per_face, h, q, own, joints, True)
-        else:  # they always hold: the face as a whole
-            for k in range(b.freedoms):
-                at, share = NORMAL if k % 2 else SHEAR, b.rows[FACE, k]
-                for i in range(joints):
-                    j = at + i if varied else at
-                    f = -laws[j] * share * q[RELATIVE + k * R + i]
-                    if dashpots:
-                        d = -laws[j + DASHPOT] * share * q[CENTRED + k * R + i]
-                        f = f + d
-                        if ledger:
-                            q[DRAG + k * R + i + 1] = d
-                    q[k * R + i + 1] = f
         if finite:
             for i in range(joints):
                 to_centroids(b, m, q, FORCE, i)

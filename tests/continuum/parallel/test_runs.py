@@ -79,6 +79,7 @@ SCENES = {
         {
             **INCLINED,
             "rock.quality_factor": 10.0,
+            "numerics.continuum.scheme": "explicit",
             "numerics.continuum.dim": 2,
             "ends.end": "quiet",
         },
