@@ -30,7 +30,7 @@ from joints.formula import formula
 
 MOST = 80  # steps of Newton's method, kept within a bracket that is halved where it leaves it
 SETTLED, ROUND_OFF = 1e-12, 1e-15  # of ln V, and of what has to be carried
-STILL = 40.0  # ln of how much less than the longest slide is none
+STILL = 32.0  # ln of how much less than the longest slide is none
 HELD = 1.0 + 1e-12  # of the traction of a joint that does not slide: what it could carry
 LN_2 = log(2.0)
 LARGE = 19.0  # from here on asinh(e^x) = x + ln 2 to the last digit

@@ -214,8 +214,8 @@ def twin_rate_and_state(law, t_n, cohesion, state, size, dt):
         lambda x: load - stiffness * dt * exp(x) - t_n * friction(x),
         -1e5, most + 1e-9, xtol=1e-13, rtol=4 * np.finfo(float).eps,
     )  # fmt: skip
-    # A slide below e^-40 of what would unload it, and of D_c, is none; with dashpots that matters.
-    least = rate - min(most, log(length / dt)) + 40
+    # A slide below e^-32 of what would unload it, and of D_c, is none; with dashpots that matters.
+    least = rate - min(most, log(length / dt)) + 32
     assume(abs(least) > 1e-6)
     if least < 0:
         return inf, log(aged(0.0) / begun)

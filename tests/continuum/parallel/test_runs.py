@@ -77,9 +77,9 @@ SCENES = {
     "rock of a quality factor in the plane, cut through blocks": (
         "jointed",
         {
+            **SHORT,
             **INCLINED,
             "rock.quality_factor": 10.0,
-            "numerics.continuum.scheme": "explicit",
             "numerics.continuum.dim": 2,
             "ends.end": "quiet",
         },
