@@ -99,7 +99,7 @@ class KnownFlags(compiler_machinery.FunctionPass):
         return found
 
 
-class Part(JITCodeLibrary):
+class FormulaLibrary(JITCodeLibrary):
     """The code of a formula, as it will be linked to that of its callers."""
 
     def _optimize_final_module(self):
@@ -121,7 +121,7 @@ class Lowering(typed_passes.NativeLowering):
 
     def run_pass(self, state):
         """Return that the state has changed: by a library that has no machine code."""
-        state.library = Part(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library = FormulaLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
         state.flags.no_compile = True
         state.flags.noalias = any(getattr(kind, "distinct", False) for kind in state.args)
         super().run_pass(state)

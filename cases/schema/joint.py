@@ -9,7 +9,7 @@ from cases.schema.values import NonNegative, Positive, Table, contradiction
 OF_ALL_JOINTS = ("contact_points", "point_rule")
 
 
-class Part(NamedTuple):
+class LawPart(NamedTuple):
     """An optional part of the law, the one list of which is `PARTS`.
 
     name : of the effect. keys : which need one another; the first says whether a joint has the
@@ -38,16 +38,16 @@ class Part(NamedTuple):
 
 
 PARTS = (
-    Part("closure", ("maximum_closure",), "a joint stiffens as it closes", along=False),
-    Part("weakening", ("weakening_distance", "dynamic_friction_angle"), "slip weakens a joint"),
-    Part("dilation", ("dilation_angle", "dilation_distance"), "slip lifts a joint"),
-    Part(
+    LawPart("closure", ("maximum_closure",), "a joint stiffens as it closes", along=False),
+    LawPart("weakening", ("weakening_distance", "dynamic_friction_angle"), "slip weakens a joint"),
+    LawPart("dilation", ("dilation_angle", "dilation_distance"), "slip lifts a joint"),
+    LawPart(
         "rate and state",
         ("direct_effect", "evolution_effect", "critical_slip_distance", "reference_rate"),
         "friction depends on the rate of slip",
         others=("initial_state",),
     ),
-    Part(
+    LawPart(
         "softening",
         ("tensile_strength", "fracture_energy"),
         "a joint has a tensile strength",

@@ -1,4 +1,4 @@
-"""What experiments share: references of errors, combinations of varied keys, failures."""
+"""Shared by experiments: references of errors, combinations of varied keys, failures."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product

@@ -9,7 +9,7 @@ from cases.material.calibrate import Properties, calibrate
 from cases.sampling import Clock, Interpolation, clock, interpolation
 from cases.schema.scene import Scene
 from dem.axial.ends import End, build_end
-from dem.axial.relaxation import Relaxation, relaxation, unrelaxed
+from dem.axial.relaxation import RelaxingJoints, relaxation, unrelaxed
 from dem.axial.stability import critical_chain_step
 from dem.axial.state import State, state_at_rest
 from dem.size import refuse_large
@@ -85,7 +85,7 @@ class Model(NamedTuple):
     base: np.ndarray
     receivers: Receivers
     blocks: np.ndarray | None = None
-    relaxation: Relaxation | None = None
+    relaxation: RelaxingJoints | None = None
 
 
 def build(scene: Scene) -> tuple[Model, State, Clock, float]:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from cases.schema.scene import Scene
 
 
-class Relaxation(NamedTuple):
+class RelaxingJoints(NamedTuple):
     """How the joints [j] relax in steps dt, by mechanisms [l, j], as `continuum.model.Memory` has
     it for displacements: e_l <- decay e_l + gain times the gap's rate, and the traction that of the
     unrelaxed joint under the gap relaxed gap + sum_l share e_l.
@@ -43,7 +43,7 @@ def unrelaxed(scene: Scene, p: Properties) -> Properties:
     return replace(p, stiffness=stiffness, time_constant=None, joint_time_constant=None)
 
 
-def relaxation(scene: Scene, p: Properties, dt: float) -> Relaxation | None:
+def relaxation(scene: Scene, p: Properties, dt: float) -> RelaxingJoints | None:
     """Return how the joints relax in steps dt (s); None without a quality factor."""
     found = _of_joints(scene, p)
     if found is None:
@@ -54,7 +54,7 @@ def relaxation(scene: Scene, p: Properties, dt: float) -> Relaxation | None:
         omega[: one.share.size, j], share[: one.share.size, j] = one.frequency, one.share
     x = omega * dt
     spring = share * x / 2 / np.tanh(x / 2)
-    return Relaxation(
+    return RelaxingJoints(
         1 - share.sum(axis=0), share, np.exp(-x), -np.expm1(-x) / omega, spring, share * x / 2
     )
 

@@ -30,7 +30,7 @@ def start(scene: Scene, model: Model, state: State) -> Rest | None:
     static = gravity is not None and gravity.static
     rest = None
     if static or scene.prestress is not None:
-        system = Relaxation(scene, calibrate(scene), state, static)
+        system = ChainRelaxation(scene, calibrate(scene), state, static)
         system.place(system.chain.weight)
         if not system.is_at_rest(scene.numerics.dem.static_tolerance):
             system.place(0.0)
@@ -48,7 +48,7 @@ def forget_steps(state: State) -> None:
         state.broke[state.broke >= 0] = 0
 
 
-class Relaxation:
+class ChainRelaxation:
     """The pillar at its static forces alone: `dem.static.System` on the arrays of a state.
 
     Dashpots decide no static state and are left out, with those behind quiet and matched ends.

@@ -38,7 +38,7 @@ def start(scene: Scene, p: Properties, model: RowModel, state: RowState) -> Rest
     gravity, rest = scene.gravity, None
     static = gravity is not None and gravity.static
     if model.form.relaxed:
-        relaxation = Relaxation(scene, p, model, static)
+        relaxation = RowRelaxation(scene, p, model, static)
         rest = settle(scene, relaxation)
         relaxation.leave(model, state)
     if not static and gravity is not None:
@@ -49,7 +49,7 @@ def start(scene: Scene, p: Properties, model: RowModel, state: RowState) -> Rest
     return rest
 
 
-class Relaxation:
+class RowRelaxation:
     """The blocks under their static forces alone: `dem.static.System`.
 
     Neither damping nor rates decide a static state: dashpots, those behind quiet and matched ends

@@ -6,7 +6,7 @@ from scipy.linalg import eigvalsh_tridiagonal
 
 from cases.material.calibrate import calibrate
 from dem.axial.model import build
-from dem.axial.start import Relaxation
+from dem.axial.start import ChainRelaxation
 from dem.static import relax
 
 TOLERANCE = 1e-8
@@ -28,7 +28,7 @@ CHAINS = {
 def relaxation(scene):
     """Return the relaxation of a scene's pillar from its unloaded state."""
     _, state, _, _ = build(scene)
-    return Relaxation(scene, calibrate(scene), state, weighed=True)
+    return ChainRelaxation(scene, calibrate(scene), state, weighed=True)
 
 
 def slowest(system):

@@ -14,7 +14,7 @@ import dem
 from cases.histories import Ricker
 from cases.validate import validated
 from compare.exact.joint import sliding_joint
-from compare.exact.joint.rate_state_joint import Passed, RateJoint
+from compare.exact.joint.rate_state_joint import RateJoint, RateStateWave
 from compare.misfit.metrics import relative_l2
 from compare.scenes import SHIPPED
 from results.dataset import energy_residual
@@ -90,7 +90,7 @@ def test_one_joint_in_the_plane(engine, rock, bound):
     z, later = 2600.0 * speed, t - 24.0 / speed
     joint = RateJoint(4e6, 0.4, 0.01, 0.02, 1e-4, 1e-6, 1e3, 1 / 2e10)
     load = Ricker(2e6, 0.02)
-    stress, impulse = Passed(joint, z, load, t[-1], 1e-10, 24.0 / speed)(later)
+    stress, impulse = RateStateWave(joint, z, load, t[-1], 1e-10, 24.0 / speed)(later)
     slip = 2 * (load.impulse(later) - impulse) / z
     carried, slipped = found["traction"].values[0, :, 1], found["slip"].values[0]
     sign = np.sign(carried @ stress)

@@ -88,7 +88,7 @@ def rate_joint(p: Properties, j: int, pressure: float, compliance: float) -> Rat
     return RateJoint(pressure, friction, a, b, distance, rate, state, compliance)
 
 
-class Passed:
+class RateStateWave:
     """sigma_T (Pa) and its impulse (Pa s) at any times up to `end` (s), by the incident `load`.
 
     impedance : Z, Pa s/m. tolerance : of each step of the integration, relative. rest : s, how

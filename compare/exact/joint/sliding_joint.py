@@ -151,7 +151,7 @@ def solve(scene: Scene) -> xr.Dataset:
         worn, tolerance = None, TOLERANCES[parts - 1]
         if rated is not None:
             rest = joint.y / p.shear_speed
-            passed: Any = rate_state_joint.Passed(
+            passed: Any = rate_state_joint.RateStateWave(
                 rated, p.shear_impedance, load, times[-1], tolerance, rest
             )
         elif is_worn:

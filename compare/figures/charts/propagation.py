@@ -39,7 +39,7 @@ CAPTION = (
 )
 
 
-class Row(NamedTuple):
+class ReceiverRow(NamedTuple):
     """What a variant's solutions say: the variant, curves by solution or theory and by NAMES, over
     frequency (Hz)."""
 
@@ -71,7 +71,7 @@ def propagation(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     return [found]
 
 
-def row_of(variant: str, comparison: Comparison) -> Row:
+def row_of(variant: str, comparison: Comparison) -> ReceiverRow:
     """Return the curves of one variant; none where fewer than LEAST receivers have a motion."""
     found: dict[str, dict[str, pd.Series]] = {}
     for solution in in_order(set(comparison.results)):
@@ -93,7 +93,7 @@ def row_of(variant: str, comparison: Comparison) -> Row:
                 NAMES[1]: pd.Series(of_rock.phase_speed.values, frequency),
                 NAMES[2]: pd.Series(1 / of_rock.quality.values, frequency),
             }
-    return Row(variant, found)
+    return ReceiverRow(variant, found)
 
 
 def _measured(result, heard: np.ndarray) -> dict[str, pd.Series]:
@@ -110,7 +110,7 @@ def _measured(result, heard: np.ndarray) -> dict[str, pd.Series]:
     return dict(zip(NAMES, series, strict=True))
 
 
-def table(rows: list[Row]) -> pd.DataFrame:
+def table(rows: list[ReceiverRow]) -> pd.DataFrame:
     """Return all curves, frequency first."""
     columns = {
         f"{name} | {what} | {row.variant}": curve
@@ -126,7 +126,7 @@ def _style(name: str):
     return style(THEORY[rock] if theory else name)
 
 
-def _subplot(row: Row, what: str, place: str) -> Subplot:
+def _subplot(row: ReceiverRow, what: str, place: str) -> Subplot:
     lines = [
         ChartLine(
             name,

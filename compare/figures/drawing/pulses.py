@@ -1,4 +1,4 @@
-"""What stands beside the drawing of a scene: loads and waves over time, joint laws in words."""
+"""Loads and waves over time and joint laws in words, drawn beside a scene."""
 
 import numpy as np
 from matplotlib.axes import Axes

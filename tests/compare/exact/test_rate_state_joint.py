@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import brentq
 
 from cases.histories import Ricker, Step
-from compare.exact.joint.rate_state_joint import Passed, RateJoint
+from compare.exact.joint.rate_state_joint import RateJoint, RateStateWave
 
 Z = 2e6  # Pa s/m
 JOINT = RateJoint(1e6, 0.6, 0.01, 0.015, 1e-4, 1e-6, 100.0)
@@ -15,7 +15,7 @@ JOINT = RateJoint(1e6, 0.6, 0.01, 0.015, 1e-4, 1e-6, 100.0)
 def test_steady_slip_under_a_step(compliance):
     """2 (sigma_I - s) / Z is the rate in the end, s that of steady friction at it."""
     times, joint = np.linspace(0.0, 0.1, 1001), JOINT._replace(compliance=compliance)
-    stress, impulse = Passed(joint, Z, Step(1e6), 0.1, 1e-10)(times)
+    stress, impulse = RateStateWave(joint, Z, Step(1e6), 0.1, 1e-10)(times)
 
     def left(rate):
         return 1e6 - Z * rate / 2 - 1e6 * (0.6 - 0.005 * np.log(rate / 1e-6))
@@ -31,7 +31,7 @@ def test_the_impulse_is_that_of_the_stress():
     times = np.linspace(0.0, 0.03, 60_001)
     for compliance in (0.0, 1e-10):
         joint = JOINT._replace(compliance=compliance)
-        stress, impulse = Passed(joint, Z, Ricker(1e6, 0.01), 0.03, 1e-11)(times)
+        stress, impulse = RateStateWave(joint, Z, Ricker(1e6, 0.01), 0.03, 1e-11)(times)
         sums = np.append(0.0, np.cumsum((stress[1:] + stress[:-1]) / 2 * np.diff(times)))
         np.testing.assert_allclose(impulse, sums, rtol=0, atol=1e-6 * np.abs(impulse).max())
 
@@ -39,10 +39,10 @@ def test_the_impulse_is_that_of_the_stress():
 def test_a_stiff_joint_tends_to_a_rigid_one():
     """As fast as its compliance falls."""
     times, errors = np.linspace(0.0, 0.03, 301), []
-    rigid = Passed(JOINT, Z, Ricker(1e6, 0.01), 0.03, 1e-10)(times)[0]
+    rigid = RateStateWave(JOINT, Z, Ricker(1e6, 0.01), 0.03, 1e-10)(times)[0]
     for compliance in (4e-11, 2e-11):
         joint = JOINT._replace(compliance=compliance)
-        stress = Passed(joint, Z, Ricker(1e6, 0.01), 0.03, 1e-10)(times)[0]
+        stress = RateStateWave(joint, Z, Ricker(1e6, 0.01), 0.03, 1e-10)(times)[0]
         errors.append(np.abs(stress - rigid).mean())
     assert errors[1] < 0.52 * errors[0] and errors[1] < 0.01 * 1e6
 

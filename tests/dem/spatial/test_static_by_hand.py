@@ -9,7 +9,7 @@ import dem
 from cases.material.calibrate import calibrate
 from dem.spatial.layout import STRIDE, packed, unpacked
 from dem.spatial.simulate import prepare
-from dem.spatial.start import Relaxation
+from dem.spatial.start import RowRelaxation
 
 pytestmark = pytest.mark.usefixtures("plain")
 
@@ -106,7 +106,7 @@ def test_forces_out_of_balance_are_those_at_rest(row, rotation):
     scene = row(
         **PAIR, motion__rotation=rotation, ends__end="fixed", gravity={"direction": [0.6, 0.8, 0.0]}
     )
-    system = Relaxation(scene, calibrate(scene), prepare(scene).model, weighed=True)
+    system = RowRelaxation(scene, calibrate(scene), prepare(scene).model, weighed=True)
     rows = unpacked(system.state.motion, STRIDE, 2).copy()
     rows[6:12] = np.random.default_rng(1).uniform(-1, 1, (6, 2))
     system.state.motion[:] = packed(rows, STRIDE)
