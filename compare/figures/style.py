@@ -93,6 +93,7 @@ RC: dict[Any, Any] = {
     "font.size": 9.0,
     "axes.titlesize": 9.0,
     "axes.titlelocation": "left",
+    "axes.titley": 1.0,  # no numbers stand above: to look for them takes a tenth of a drawing
     "axes.linewidth": 0.7,
     "axes.spines.top": False,
     "axes.spines.right": False,

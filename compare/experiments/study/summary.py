@@ -59,14 +59,17 @@ def reported(
     progress: Progress | None = None,
     pool: Pool | None = None,
 ) -> list[Summary]:
-    """Run studies one after the other; write figures and tables into `out`."""
-    found, folder = [], out / "studies"
+    """Run studies one after the other, as they are timed, then draw them; write into `out`."""
+    measured, folder = [], out / "studies"
     for i, name in enumerate(names):
         study = load(name)
-        found.append(summarise(folder, name, study, run(study, folder / name, pool)))
+        measured.append((folder, name, study, run(study, folder / name, pool)))
         if progress:
             progress((i + 1) / len(names))
-    return found
+    if pool is None:
+        return [summarise(*one) for one in measured]
+    with pool() as executor:
+        return [one.result() for one in [executor.submit(summarise, *one) for one in measured]]
 
 
 def cells(row: PointRow) -> list[str]:
