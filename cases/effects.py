@@ -8,7 +8,7 @@ from cases.material.calibrate import Properties, calibrate
 from cases.schema.joint import PARTS
 from cases.schema.scene import Scene
 
-NO_SHEAR = "nothing shears the joints"
+NO_SHEAR = "the joints carry no shear"
 SLIPS = "friction_angle or cohesion is given"
 STICKS = "neither friction_angle nor cohesion"
 
@@ -74,13 +74,13 @@ def _of_joints(scene: Scene, p: Properties) -> Iterator[Effect]:
     yield called_for("dashpots", damped, "no damping_ratio")
     yield from _of_law(scene, along=False)
     parts, random = len(p.each), scene.scatter
-    other = parts > 1 and f"{parts} of other rock"
-    yield called_for("segments", other, "no [[segments]]: one rock")
+    other = parts > 1 and f"{parts} segments"
+    yield called_for("segments", other, "no [[segments]]")
     yield called_for("scatter", random and f"seed {random.seed}", "no [scatter]")
     barred, differ = int((~p.tension).sum()), len(p.soft)
     whose = barred and f"{barred} of {len(p.tension)} joints"
     yield called_for("no tension", whose, "every joint carries tension")
-    alike = "all joints are alike: one number, no array" if p.is_uniform else "no soft layers"
+    alike = "all joints are equal: scalars, no arrays" if p.is_uniform else "no soft layers"
     yield called_for("joints that differ", differ and f"{differ} soft layers", alike)
 
 
@@ -104,9 +104,9 @@ def of_fields(scene: AnyScene) -> Effect:
 def _of_motion(scene: Scene, p: Properties) -> Iterator[Effect]:
     cause, rotation = off_axis(scene), scene.motion.rotation
     freedoms = 3 if rotation == "none" else 6
-    axial = "the load is axial and central: one freedom per block"
-    yield called_for("spatial motion", cause and f"{cause}: {freedoms} freedoms per block", axial)
-    turns = f"motion.rotation = '{rotation}'" if cause else "nothing turns the blocks"
+    axial = "the load is axial and central: one degree of freedom per block"
+    yield called_for("spatial motion", cause and f"{cause}: {freedoms} degrees of freedom", axial)
+    turns = f"motion.rotation = '{rotation}'" if cause else "the blocks do not rotate"
     yield Effect("finite rotation", cause is not None and rotation == "finite", turns)
     slips = p.friction is not None or p.cohesion is not None
     given = cause and slips and SLIPS
@@ -130,7 +130,7 @@ def of_body_forces(scene: AnyScene, alpha: float | None) -> Iterator[Effect]:
     yield called_for("mass damping", mass, "no mass_proportional, no rayleigh")
     yield called_for("local damping", local and f"damping.local = {local:g}", "no damping.local")
     yield called_for("constant Q", quality and _relaxes(scene), "no rock.quality_factor")
-    acts = gravity and ("static at the start" if gravity.static else "sudden at t = 0")
+    acts = gravity and ("static at the start" if gravity.static else "applied at t = 0")
     yield called_for("gravity", acts, "no [gravity]")
 
 

@@ -86,12 +86,12 @@ def _opened(path: Path, largest: int, times: int) -> Iterator[BinaryIO]:
 
 
 def _too_large(largest: int) -> str:
-    return f"is too large, must hold at most {largest / 1e6:g} MB"
+    return f"is too large: at most {largest / 1e6:g} MB"
 
 
 def _refuse_beyond_memory(size: float) -> None:
     if size > max(memory(), SMALL):
-        raise ValueError(f"would take about {spoken(size)} of memory; here are {spoken(memory())}")
+        raise ValueError(f"would need about {spoken(size)} of memory; {spoken(memory())} available")
 
 
 def _numbers_at_most(file: BinaryIO, largest: int) -> int:
@@ -143,7 +143,7 @@ def beside(folder: str | Path, file: str, anywhere: bool = False) -> Path:
     except (OSError, RuntimeError, ValueError) as error:  # a loop of links, a NUL, too long
         raise ValueError(f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
     if not inside and not anywhere:
-        raise ValueError("leaves the folder of the scene, which only --set may do")
+        raise ValueError("is outside the scene's folder, which only --set may name")
     return path
 
 

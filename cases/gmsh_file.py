@@ -81,7 +81,7 @@ def read_tagged(path: str | Path) -> Tagged:
     }
     empty = [name for name, found in facets.items() if not len(found)]
     if empty:
-        raise MeshError(f"its group '{empty[0]}' holds no facets ({FACET_NAMES[kind]}s)")
+        raise MeshError(f"its group '{empty[0]}' has no facets ({FACET_NAMES[kind]}s)")
     return Tagged(mesh.points, kind, cells[:, FROM_GMSH[kind]], facets)
 
 
@@ -89,7 +89,7 @@ def _read(path: Path):
     import meshio
 
     if not path.is_file():
-        raise MeshError("is no file" if path.exists() else "does not exist")
+        raise MeshError("is not a file" if path.exists() else "does not exist")
     try:
         size = path.stat().st_size
         require(size, "it")
@@ -101,7 +101,7 @@ def _read(path: Path):
     except Exception as error:
         reason = str(error) or type(error).__name__
         if "gmsh:physical" in reason:
-            raise MeshError(f"holds cells of no group, {SAVE_GROUPS}") from None
+            raise MeshError(f"has cells in no group; {SAVE_GROUPS}") from None
         raise MeshError(f"cannot be read as a gmsh mesh, version 2.2 or 4.1: {reason}") from None
 
 
@@ -111,13 +111,13 @@ def _rock(mesh, names: list[str]) -> tuple[str, np.ndarray]:
         raise MeshError("has no group whose name starts with 'rock'")
     types = {block.type for block, inside in _blocks(mesh, names) if inside.any()}
     if not types:
-        raise MeshError(f"no cells are in its group '{names[0]}', {SAVE_GROUPS}")
+        raise MeshError(f"its group '{names[0]}' has no cells; {SAVE_GROUPS}")
     if len(types) > 1:
         found = " and ".join(sorted(types))
-        raise MeshError(f"its rock holds {found} cells, must be of one kind: {', '.join(KINDS)}")
+        raise MeshError(f"its rock has {found} cells, must be of one kind: {', '.join(KINDS)}")
     (name,) = types
     if name not in KINDS:
-        raise MeshError(f"its rock holds {name} cells, must be first-order {', '.join(KINDS)}")
+        raise MeshError(f"its rock has {name} cells, must be first-order {', '.join(KINDS)}")
     cells = _of_type(mesh, names, name)
     dim = next(block.dim for block in mesh.cells if block.type == name)
     everything = [block for block in mesh.cells if block.dim == dim]

@@ -98,7 +98,7 @@ def free_field(scene: RockMass) -> FreeField:
     Raises SceneError where waves meet several regions of rock, in which they do not stay plane.
     """
     if scene.waves and scene.regions:
-        allowed = "meet several rocks: give their field, compare.exact.rock_mass.field.field_of"
+        allowed = "cross several rocks: give their field (compare.exact.rock_mass.field.field_of)"
         raise SceneError(scene.where, "waves", len(scene.waves), allowed)
     return FreeField(tuple(plane_wave(scene, one) for one in scene.waves), not scene.joint_sets)
 

@@ -39,10 +39,10 @@ def checked(scene: Either) -> Either:
 def pillar_of(scene: AnyScene, what: str = "this") -> Scene:
     """Return a scene that is a pillar; raises SceneError of a rock mass.
 
-    what : takes pillars alone, in words.
+    what : accepts pillars only, in words.
     """
     from cases.schema.scene import Scene
 
     if isinstance(scene, Scene):
         return scene
-    raise SceneError(scene.where, "domain", None, f"is a rock mass; {what} takes pillars alone")
+    raise SceneError(scene.where, "domain", None, f"is a rock mass; {what} accepts pillars only")

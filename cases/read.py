@@ -91,12 +91,12 @@ def _parts(
     for key, value in overrides.items():
         _assign(table, key, value, str(path))
     if "name" in table:
-        raise SceneError(str(path), "name", table["name"], "only [[variants]] have a name")
+        raise SceneError(str(path), "name", table["name"], "only [[variants]] take a name")
     variants = table.pop("variants", [])
     if not isinstance(variants, list) or not all(isinstance(v, dict) for v in variants):
         raise SceneError(str(path), "variants", variants, "must be [[variants]] tables")
     if len(variants) > MOST_VARIANTS:
-        allowed = f"{len(variants):,} are given; at most {MOST_VARIANTS:,}"
+        allowed = f"{len(variants):,} variants given; at most {MOST_VARIANTS:,}"
         raise SceneError(str(path), "variants", None, allowed)
     return table, variants
 
@@ -125,8 +125,8 @@ def _variant(
     name = changes.get("name")
     if not isinstance(name, str) or not VARIANT_NAME.fullmatch(name) or CONTROL.search(name):
         allowed = (
-            "must be a text of up to 80 characters without '/' or control characters, not starting "
-            "with '.' or ' ', nor ending as results do: .nc, .pvd, .bp, -fields"
+            "must be a string of up to 80 characters without '/' or control characters, not "
+            "starting with '.' or ' ' nor ending in .nc, .pvd, .bp or -fields"
         )
         raise SceneError(str(path), f"variants[{index}].name", name, allowed)
     table = _merge(base, changes, f"variants[{index}]", str(path))
@@ -165,7 +165,7 @@ def _assign(table: dict[str, Any], key: str, value: Any, where: str) -> None:
         place = _place(at, parent, key, value, where)
         inner = at.setdefault(parent, {}) if isinstance(at, dict) else at[place]
         if not isinstance(inner, dict | list):
-            raise SceneError(where, key, value, f"is no key: {parent} is not a table")
+            raise SceneError(where, key, value, f"is not a key: {parent} is not a table")
         at[place] = at = inner.copy()  # a caller's own table stays as it is
     at[_place(at, last, key, value, where)] = value
 
@@ -175,5 +175,5 @@ def _place(at: Any, part: str, key: str, value: Any, where: str) -> Any:
     if isinstance(at, dict):
         return part
     if not part.isdecimal() or int(part) >= len(at):
-        raise SceneError(where, key, value, f"is no key: {part} is none of 0 to {len(at) - 1}")
+        raise SceneError(where, key, value, f"index {part} is outside 0 to {len(at) - 1}")
     return int(part)

@@ -54,7 +54,7 @@ def memory() -> float:
     except ValueError:
         limit = 0.0
     if not (limit > 0 and isfinite(limit)):
-        raise SceneError(LIMIT, "", None, f"is {asked!r}, must be a number of GB")
+        raise SceneError(LIMIT, "", None, f"is {asked!r}, must be a positive number (GB)")
     return 1e9 * limit
 
 
@@ -81,15 +81,15 @@ def refuse_beyond_memory(scene: AnyScene, parts: Mapping[str, float]) -> None:
         scene.where,
         key,
         value_of(scene, key),
-        f"the run would take about {spoken(total)} of memory, {spoken(parts[key])} of it by this; "
-        f"here are {spoken(limit)} (the environment's {LIMIT}, in GB, else the machine's)",
+        f"the run would need about {spoken(total)} of memory, {spoken(parts[key])} of it for this; "
+        f"{spoken(limit)} available (set {LIMIT} to change it, in GB)",
     )
 
 
 def require(size: float, what: str) -> None:
     """Raise MemoryError where so many bytes are more than a run may take."""
     if size > memory():
-        raise MemoryError(f"{what} would take about {spoken(size)}; here are {spoken(memory())}")
+        raise MemoryError(f"{what} would need about {spoken(size)}; {spoken(memory())} available")
 
 
 @contextmanager
@@ -156,8 +156,8 @@ def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:
             scene.where,
             key,
             value_of(scene, key),
-            f"with {samples:,.0f} samples gives a waveform of {spoken(largest)}; "
-            f"at most {spoken(LARGEST_VARIABLE)} fit a file",
+            f"with {samples:,.0f} samples gives waveforms of {spoken(largest)}; "
+            f"at most {spoken(LARGEST_VARIABLE)} fit in a file",
         )
     count = sum(places * each for places, _, each in rows.values())
     return COPIES * 8 * samples * (count + (LEDGER if record.energy else 0))

@@ -24,7 +24,7 @@ ALLOWED = {
     "list_type": "must be a list",
     "float_type": "must be a number",
     "int_type": "must be a whole number",
-    "string_type": "must be a text",
+    "string_type": "must be a string",
     "bool_type": "must be true or false",
     "finite_number": "must be a finite number",
     "literal_error": "must be {expected}",
@@ -32,9 +32,9 @@ ALLOWED = {
     "greater_than_equal": "must be at least {ge:g}",
     "less_than": "must be less than {lt:g}",
     "less_than_equal": "must be at most {le:g}",
-    "too_short": "must hold {min_length} numbers",
-    "too_long": "must hold {max_length} numbers",
-    "magnitude": "must lie between 1e-30 and 1e30 in size",
+    "too_short": "must have {min_length} numbers",
+    "too_long": "must have {max_length} numbers",
+    "magnitude": "must lie between 1e-30 and 1e30 in magnitude",
     "pair": "must be 'a ~ b', two solvers by name",
 }
 

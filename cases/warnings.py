@@ -53,8 +53,8 @@ def of_local_damping(scene: AnyScene, acts: bool) -> Iterator[str]:
     """Warn of local damping where a load or wave acts."""
     if scene.damping.local and acts:
         yield (
-            "damping.local distorts waves: it is meant for static states, not for a scene whose "
-            "load acts"
+            "damping.local distorts waves: it is meant for static states, not for a scene with a "
+            "load"
         )
 
 
@@ -72,7 +72,7 @@ def _of_poisson(scene: Scene, p: Properties, wave: ShortestWave | None) -> Itera
     for key in ("equivalent_poisson", "intact_poisson"):
         value = getattr(rock, key)
         if value is not None and value < 0:
-            yield f"rock.{key} = {value:g} is negative: no rock is known to have such a one"
+            yield f"rock.{key} = {value:g} is negative, which no known rock is"
 
 
 def _of_times(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
@@ -140,19 +140,19 @@ def _of_wavelength(scene: Scene, p: Properties, wave: ShortestWave | None) -> It
     where = f"at {wave.frequency:.4g} Hz, below which 95 % of the load's energy lies"
     if wave.frequency >= wave.cut_off:
         yield (
-            f"{block}: rigid blocks pass nothing above {wave.cut_off:.4g} "
+            f"{block}: rigid blocks transmit nothing above {wave.cut_off:.4g} "
             f"Hz; the load reaches {wave.frequency:.4g} Hz, below which 95 % of its energy lies"
         )
     else:
         yield (
-            f"{block} gives {wave.blocks:.3g} blocks a wavelength {where}; "
+            f"{block} gives {wave.blocks:.3g} blocks per wavelength {where}; "
             f"at least {LEAST_BLOCKS:g} resolve it"
         )
     count = scene.numerics.continuum.elements_per_block
     if count is not None and count * wave.blocks < LEAST_BLOCKS:
         yield (
             f"numerics.continuum.elements_per_block = {count} gives {count * wave.blocks:.3g} "
-            f"elements a wavelength {where}; at least {LEAST_BLOCKS:g} resolve it"
+            f"elements per wavelength {where}; at least {LEAST_BLOCKS:g} resolve it"
         )
 
 

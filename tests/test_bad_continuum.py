@@ -164,7 +164,7 @@ def test_mistake_is_one_line(name, tmp_path):
 def test_a_layer_beside_a_file_is_one_line(tmp_path):
     thick = GOOD.replace(STIFFNESS, STIFFNESS + "thickness = 0.1\n")
     message = line_of(write(tmp_path, thick.replace(ORDER, MESH)))
-    assert "soft_layers[0].thickness = 0.1: is not meshed with numerics.continuum.mesh" in message
+    assert "soft_layers[0].thickness = 0.1: cannot be meshed with numerics" in message
 
 
 def test_the_mesh_is_found_beside_the_scene(tmp_path, monkeypatch):

@@ -165,7 +165,7 @@ AWAY = ["../outside.csv", "away.csv", "out/outside.csv", "/dev/zero", "/proc/sel
 
 @pytest.mark.parametrize("file", [*AWAY, "below/../../outside.csv"])
 def test_a_load_outside_the_scenes_folder_is_refused(scene, file):
-    with pytest.raises(SceneError, match=r"load\.file.* leaves the folder of the scene"):
+    with pytest.raises(SceneError, match=r"load\.file.* is outside the scene's folder"):
         load(scene(file))
 
 

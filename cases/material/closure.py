@@ -50,7 +50,7 @@ def bandis_closure(roughness: float, wall_strength: float, rock_strength: float)
         ("the aperture, mm,", a, 0.1, 0.6),
     ):
         if not least * (1 - 1e-9) <= value <= most * (1 + 1e-9):
-            raise ValueError(f"{name} is {value:g}, measured were {least:g} to {most:g}")
+            raise ValueError(f"{name} is {value:g}, outside the measured {least:g} to {most:g}")
     stiffness = -7.15 + 1.75 * roughness + 0.02 * jcs / a
     closure = -0.1032 - 0.0074 * roughness + 1.135 * (jcs / a) ** -0.251
     return Closure(1e-3 * a, 1e9 * stiffness, 1e-3 * closure)

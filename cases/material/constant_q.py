@@ -53,15 +53,15 @@ def beyond_blocks(scene: AnyScene) -> str:
     """Return why rigid blocks do not simulate a scene with a quality factor, "" where they do: rock
     in series with a joint is one spring that relaxes where the joint is linear."""
     if not isinstance(scene, Scene):
-        return "rigid blocks of a rock mass have no rock that a quality_factor could be of"
+        return "rigid blocks of a rock mass have no intact rock for a quality_factor"
     if is_spatial(scene):
-        return "rigid blocks have a quality_factor in motion along the axis alone"
+        return "rigid blocks support a quality_factor in axial motion only"
     p = calibrate(scene)
     others = scene.gravity, scene.prestress, p.local_damping, p.tensile_strength, p.maximum_closure
     if not p.tension.all() or any(one is not None for one in others):
         return (
-            "rigid blocks have a quality_factor with linear joints alone, without gravity, "
-            "prestress and local damping"
+            "rigid blocks support a quality_factor with linear joints only, without gravity, "
+            "prestress or local damping"
         )
     return ""
 

@@ -25,7 +25,7 @@ def refuse_beyond_strength(scene: RockMass) -> None:
         return
     for one in scene.joint_sets:
         if what := beyond_strength(one, scene.prestress):
-            allowed = f"is more than joints carry: '{one.name}' {what} under it"
+            allowed = f"exceeds the strength of a joint: '{one.name}' {what} under it"
             raise SceneError(scene.where, "prestress", None, allowed)
 
 

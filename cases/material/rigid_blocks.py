@@ -155,15 +155,15 @@ def welded(
 def against(scene: RockMass) -> str | None:
     """Return why a scene is none of rigid blocks, None where it is one."""
     if scene.domain.given is not None:
-        return "cannot make rigid blocks of the cells of domain.mesh"
+        return "cannot make rigid blocks from the cells of domain.mesh"
     if scene.numerics.dem.block is not None:
         return None
     names = [*(f"region {one.name!r}" for one in scene.regions), "this domain"]
     for name, one in zip(names, within(scene, scene.joint_sets), strict=True):
         if not any(joints.spacing for joints in one.joint_sets):
-            has = "has only joints that are alone" if one.joint_sets else "has no joints"
+            has = "has only single joints" if one.joint_sets else "has no joints"
             return (
-                "is needed, m: rigid blocks carry waves by the joints between them, and "
+                "is required (m): waves pass rigid blocks only by the joints between them, and "
                 f"{name} {has}"
             )
     return None

@@ -44,7 +44,7 @@ def read_rock(path: Path) -> GivenRock:
     """Return the rock of a file; raises MeshError, in one phrase, where it is none."""
     tagged = read_tagged(path)
     if tagged.kind not in ("triangle", "quadrilateral"):
-        raise MeshError(f"its rock holds {tagged.kind} cells, must be of two dimensions")
+        raise MeshError(f"its rock has {tagged.kind} cells, must have two-dimensional ones")
     flat = tagged.x[:, :2]
     grid = SAME * np.ptp(flat[tagged.cells], axis=(0, 1)).max()
     _, first, number = np.unique(
@@ -91,7 +91,7 @@ def _edges(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     second = np.setdiff1d(np.arange(len(sides)), first)
     of_edge[edge[second], 1] = cell[second]
     if (sides[first[edge[second]], 0] == sides[second, 0]).any():
-        raise MeshError("some of its cells overlap: two lie on one side of an edge")
+        raise MeshError("some of its cells overlap: two lie on the same side of an edge")
     return sides[first], of_edge, edge.reshape(cells.shape)
 
 
@@ -122,12 +122,12 @@ def _check(x: np.ndarray, cells: np.ndarray, joints: dict, doubled: np.ndarray) 
     outside = on_joint & (cells[:, 1] == OUTSIDE)
     if outside.any():
         raise MeshError(
-            f"{outside.sum()} edges of its joints are on its outside{_near(x[outside][0])}"
+            f"{outside.sum()} edges of its joints are on its boundary{_near(x[outside][0])}"
         )
     loose = doubled & ~on_joint
     if loose.any():
         raise MeshError(
-            f"{loose.sum()} edges meet others at the same place and are in no group "
+            f"{loose.sum()} edges coincide with others and are in no group "
             f"'joint ...'{_near(x[loose][0])}"
         )
 
@@ -154,7 +154,7 @@ def _loops(points: np.ndarray, ends: np.ndarray, cells: np.ndarray) -> list[np.n
         x, y = points[ends[edges, 0]].T
         areas.append(float(x @ np.roll(y, -1) - y @ np.roll(x, -1)))
     if sum(area > 0 for area in areas) != 1:
-        raise MeshError("its rock is in pieces that do not touch")
+        raise MeshError("its rock is in separate pieces")
     leftmost = [points[ends[loop, 0]].min(axis=0).tolist() for loop in found]
     order = sorted(range(len(found)), key=lambda k: (areas[k] < 0, leftmost[k]))
     return [found[k] for k in order]

@@ -51,7 +51,7 @@ def cut_by_sets(
         stops = {name: numbers[name] for name in _stops(one, sets)}
         found = split(sub, _lines_of(sub, sets, i, stops, inside, tolerance), tolerance)
         if i < needed and not _has_joints(found.subdivision, i):
-            raise PartitionError(None, "cuts nothing of the domain", f"joint_sets[{i}]")
+            raise PartitionError(None, "does not cut the domain", f"joint_sets[{i}]")
         numbers = {name: array[found.parent] for name, array in numbers.items()}
         numbers[one.name] = found.number
         sub = found.subdivision
@@ -151,7 +151,7 @@ def _single(
         of = "its regions" if one.regions else "the domain"
         raise PartitionError(at, f"must lie in {of}", key)
     if len(np.unique(family[depth > -tolerance])) > 1:
-        raise PartitionError(at, f"must lie on no joint of {', '.join(one.ends_at)}", key)
+        raise PartitionError(at, f"must not lie on a joint of {', '.join(one.ends_at)}", key)
     here = np.where((family == family[cell]) & inside, 0, 1)
     first, base = np.array([0, 1, 1]), np.zeros(2, np.int64)
     return Lines(direction, here, np.array([place]), first, base, index)

@@ -42,7 +42,7 @@ def further_sets(scene: RockMass) -> list[JointSet]:
     for one in scene.joint_sets:
         if one.ends_at or one.scatter:
             key = "ends_at" if one.ends_at else "scatter"
-            allowed = f"cuts no rock between joints with {key}, which '{one.name}' has"
+            allowed = f"cannot cut the rock between joints with {key}, which '{one.name}' has"
             raise SceneError(scene.where, "numerics.dem.block", block, allowed)
     outline, found = outline_of(scene.domain), []
     names = [*(one.name for one in scene.regions), REST] if scene.regions else []

@@ -34,7 +34,7 @@ def check_convex(sub: Subdivision, polygons: list[tuple[np.ndarray, int]]) -> No
         raise NonConvex(
             _nearest(sub.points[sub.ends[cuts[0]]], polygons),
             "a block is not convex at an opening, a region or a corner of the outline; "
-            'let it be cut in convex parts by domain.non_convex = "cut"',
+            'set domain.non_convex = "cut" to cut it into convex parts',
         )
 
 

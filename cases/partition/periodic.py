@@ -24,7 +24,7 @@ def periodic_contacts(partition: Partition, side: str) -> Contacts:
     wrong = (sets == NO_SET) | (sets != there.joint_set[j])
     if wrong.any():
         at = here.start[i[np.argmax(wrong)]]
-        cause = "is periodic without a joint of one set along both sides"
+        cause = "is periodic, but no joint of one set runs along both sides"
         raise PartitionError(at, cause, f"boundaries.{side}")
     place = here.start[0, axis]
     start, end = (np.full((len(i), 2), place) for _ in range(2))

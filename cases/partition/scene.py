@@ -184,6 +184,6 @@ def refuse_too_many(scene: RockMass, further: Sequence[JointSet] = ()) -> None:
         scene.where,
         key,
         spacing,
-        f"gives about {blocks:,.0f} blocks, which would take about {spoken(size)} of memory; "
-        f"here are {spoken(limit)} (the environment's {LIMIT}, in GB, else the machine's)",
+        f"gives about {blocks:,.0f} blocks, which would need about {spoken(size)} of memory;  "
+        f"{spoken(limit)} available (set {LIMIT} to change it, in GB)",
     )

@@ -12,7 +12,7 @@ from cases.partition.subdivision import OUTSIDE, Subdivision, joined
 
 #: Cuts of a sliver, at most: parts that made slivers of neighbours could pass round for ever.
 PARTS = 4
-NO_FIT = ", and is convex with none of its neighbours"
+NO_FIT = ", and joining it to a neighbour leaves no convex block"
 Limits = tuple[float, float]  # least width, m, and least angle, degrees
 
 

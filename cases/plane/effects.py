@@ -61,4 +61,4 @@ def _of_forces(scene: RockMass) -> Iterator[Effect]:
     waves, pushed = len(scene.waves), len(scene.pushes)
     yield called_for("incident waves", waves and f"{waves} of [[waves]]", "no [[waves]]")
     yield called_for("loads", pushed and f"{pushed} of [[loads]]", "no [[loads]]")
-    yield called_for("shaken base", scene.bases and "a load of kind 'base'", "none is shaken")
+    yield called_for("shaken base", scene.bases and "a load of kind 'base'", "no base is shaken")

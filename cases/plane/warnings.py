@@ -40,7 +40,7 @@ def _of_units(scene: RockMass) -> Iterator[str]:
     rocks: list[IntactRock | Region] = [scene.rock, *scene.regions]
     for table, one in zip(tables, rocks, strict=True):
         if (poisson := one.intact_poisson or 0.0) < 0:
-            yield f"{table}.intact_poisson = {poisson:g} is negative: no rock is known to have it"
+            yield f"{table}.intact_poisson = {poisson:g} is negative, which no known rock is"
 
 
 def _of_damping(scene: RockMass) -> Iterator[str]:
@@ -59,13 +59,13 @@ def _of_wavelength(scene: RockMass) -> Iterator[str]:
     if frequency is None:
         return
     wave = min(float(elastic_rock(one).s_speed) for one in rocks_of(scene)) / frequency
-    where = f"a wavelength of S at {frequency:.4g} Hz, below which 95 % of the energy lies"
+    where = f"per wavelength of S at {frequency:.4g} Hz, below which 95 % of the energy lies"
     size, given = scene.numerics.continuum.size, scene.numerics.dem.block
     block = given or _block_size(scene)
     if block is not None and wave / block < LEAST_BLOCKS:
         yield (
             f"{f'numerics.dem.block = {given:g} m gives' if given else 'the joint sets give'} "
-            f"rigid blocks that are {wave / block:.3g} to {where}; at least {LEAST_BLOCKS:g} "
+            f"{wave / block:.3g} rigid blocks {where}; at least {LEAST_BLOCKS:g} "
             f"resolve it: numerics.dem.block = {wave / LEAST_BLOCKS:.2g} m"
         )
     if size is not None and wave / size < LEAST_BLOCKS:

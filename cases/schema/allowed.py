@@ -8,7 +8,7 @@ from pydantic.fields import FieldInfo
 
 #: Whose names [expect] pairs; cases do not know them.
 SOLVERS = "solvers"
-WORDS = {float: "number", int: "whole number", str: "text", bool: "`true` or `false`"}
+WORDS = {float: "number", int: "whole number", str: "string", bool: "`true` or `false`"}
 BOUNDS = {"gt": ">", "ge": "≥", "lt": "<", "le": "≤"}
 LENGTHS = {"min_length": "at least", "max_length": "at most"}
 #: What the functions that check a value ask for; some only refuse what no unit explains.

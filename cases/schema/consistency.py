@@ -78,7 +78,7 @@ def _check_receivers(scene: Scene) -> None:
                     f"record.{key}", y, f"must lie between 0 and {scene.pillar.length:g} m"
                 )
         if len(set(places)) < len(places):
-            raise contradiction(f"record.{key}", places, "must not name a place twice")
+            raise contradiction(f"record.{key}", places, "must not repeat a position")
 
 
 def _check_rock(scene: Scene) -> None:
@@ -100,7 +100,7 @@ def _check_lever(scene: Scene) -> None:
     if scene.motion.rotation == "none" and (load.is_eccentric or load.arm is not None):
         key, value = ("at", load.at) if load.arm is None else ("arm", load.arm)
         raise contradiction(
-            f"load.{key}", value, "turns the blocks, which motion.rotation = 'none' forbids"
+            f"load.{key}", value, "rotates the blocks, which motion.rotation = 'none' excludes"
         )
 
 
@@ -110,10 +110,10 @@ def _check_extreme(scene: Scene) -> None:
         return
     for key, value, wrong in _beyond_scaling(scene):
         if wrong:
-            allowed = "needs a load.amplitude between 1e-30 and 1e30 in size: it does not scale"
+            allowed = "does not scale: needs a load.amplitude of magnitude 1e-30 to 1e30"
             raise contradiction(key, value, allowed)
     if scene.record.energy and not 1e-150 <= abs(scene.load.amplitude) <= 1e150:
-        allowed = "must be false: energies of such a load.amplitude are no numbers"
+        allowed = "must be false: energies overflow with such a load.amplitude"
         raise contradiction("record.energy", True, allowed)
 
 
@@ -137,7 +137,7 @@ def _beyond_scaling(scene: Scene) -> Iterator[tuple[str, object, bool]]:
 def _check_ends(scene: Scene) -> None:
     load, ends, gravity = scene.load, scene.ends, scene.gravity
     if load.is_motion and ends.start not in ("fixed", "quiet"):
-        allowed = "moves the base of ends.start = 'fixed', or what comes up to 'quiet'"
+        allowed = "is the motion of a base: needs ends.start = 'fixed' or 'quiet'"
         raise contradiction("load.quantity", load.quantity, allowed)
     if load.is_motion and ends.start == "quiet" and load.is_across and load.direction[1]:
         allowed = "must be along or across the axis where ends.start = 'quiet'"
@@ -161,7 +161,7 @@ def _check_damping(scene: Scene) -> None:
             raise contradiction(
                 f"{table}.damping_ratio",
                 law.damping_ratio,
-                "damping.rayleigh defines the dashpots already: give one of them",
+                "damping.rayleigh already sets the dashpots: give one of them",
             )
 
 

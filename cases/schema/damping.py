@@ -42,11 +42,11 @@ class Attenuating(Table):
         period = shortest_period(pulses)
         at = self.reference_frequency or (1 / period if period else None)
         if at is None:
-            allowed = "is needed with rock.quality_factor: nothing that acts has a period"
+            allowed = "is required with rock.quality_factor: no load or wave has a period"
             raise contradiction("rock.reference_frequency", None, allowed)
         low, high = self.quality_band or (at / 10, at * 10)
         if not low <= at <= high:
-            allowed = f"must hold the reference frequency, {at:.6g} Hz"
+            allowed = f"must include the reference frequency, {at:.6g} Hz"
             raise contradiction("rock.quality_band", self.quality_band, allowed)
         return at, low, high
 
@@ -95,7 +95,7 @@ class Damping(Table):
             raise contradiction(
                 "damping.mass_proportional",
                 self.mass_proportional,
-                "damping.rayleigh defines it already: give one of them",
+                "damping.rayleigh already sets it: give one of them",
             )
         return self
 

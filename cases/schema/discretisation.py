@@ -37,7 +37,7 @@ def check_scheme(scene: Scene) -> None:
             raise contradiction(
                 "numerics.dem.scheme",
                 scene.numerics.dem.scheme,
-                f"has no {name}, which the scene calls for; 'leapfrog' has",
+                f"does not support {name}, which the scene needs; 'leapfrog' does",
             )
 
 
@@ -61,7 +61,7 @@ def _check_mesh(scene: Scene) -> None:
         return
     if numerics.dim == 1:
         raise contradiction(
-            "numerics.continuum.dim", 1, "is the bar, which has no numerics.continuum.mesh"
+            "numerics.continuum.dim", 1, "is a bar, which takes no numerics.continuum.mesh"
         )
     for key in ("cell", "elements_per_block", "elements_across"):
         if key in numerics.model_fields_set:
@@ -99,10 +99,12 @@ def _check_layer(table: str, layer: SoftLayer, scene: Scene) -> None:
     if layer.spacing_stiffness is None and layer.normal_stiffness is None:
         raise contradiction(key, layer.thickness, "needs a spacing_stiffness or normal_stiffness")
     if scene.numerics.continuum.mesh is not None:
-        raise contradiction(key, layer.thickness, "is not meshed with numerics.continuum.mesh")
+        raise contradiction(key, layer.thickness, "cannot be meshed with numerics.continuum.mesh")
     for other in STRENGTH:
         value = getattr(layer, other)
         if value is not None and value is not True:
             raise contradiction(
-                f"{table}.{other}", value, "is of a joint; with a thickness the layer is rock"
+                f"{table}.{other}",
+                value,
+                "applies to joints; a layer with thickness is rock",
             )

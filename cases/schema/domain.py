@@ -39,7 +39,7 @@ class Domain(Table):
             raise contradiction("domain", None, allowed)
         if self.mesh is not None:
             if self.openings:
-                raise contradiction("domain.openings", None, "are those of domain.mesh")
+                raise contradiction("domain.openings", None, "are part of domain.mesh")
             self._mesh_path = named_file(info, "domain.mesh", self.mesh)
             self._given = self._read()
         return self

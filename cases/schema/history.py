@@ -56,13 +56,13 @@ class History:
         except Exception:  # of a dozen kinds, for a file that is no such one
             raise ValueError(f"cannot be read as {form}") from None
         if len(traces) != 1:
-            raise ValueError(f"must hold one trace without gaps, holds {len(traces)}")
+            raise ValueError(f"must contain one trace without gaps, has {len(traces)}")
         trace = traces[0]
         stress = np.asarray(trace.data, dtype=float)
         if stress.size < 2:
-            raise ValueError("must hold at least two samples")
+            raise ValueError("must contain at least two samples")
         if not (np.abs(stress) <= LARGEST).all():
-            raise ValueError("must hold finite numbers up to 1e30")
+            raise ValueError("must contain finite numbers up to 1e30")
         return cls(trace.stats.delta * np.arange(stress.size), stress)
 
     @classmethod
@@ -70,14 +70,14 @@ class History:
         """Read two columns; text before the numbers is a header, # a comment."""
         numbers, rows = _rows(read_lines(path, LARGEST_FILE))
         if len(rows) < 2:
-            raise ValueError("must hold at least two rows of time and load")
+            raise ValueError("must contain at least two rows of time and load")
         wrong = ~(np.abs(rows) <= LARGEST).all(axis=1)
         if wrong.any():
             line = numbers[int(np.argmax(wrong))]
-            raise ValueError(f"must hold finite numbers up to 1e30 (line {line} does not)")
+            raise ValueError(f"must contain finite numbers up to 1e30 (line {line} does not)")
         time, stress = rows.T
         if time[0] < 0:
-            raise ValueError("must not start before t = 0, where every scene is at rest")
+            raise ValueError("must not start before t = 0")
         if (np.diff(time) <= 0).any():
             line = numbers[int(np.argmax(np.diff(time) <= 0)) + 1]
             raise ValueError(f"must have strictly increasing times (line {line} does not)")
@@ -92,7 +92,7 @@ def _rows(lines: Iterable[tuple[int, str]]) -> tuple[array, np.ndarray]:
             continue  # a header
         if len(cells) != 2 or not all(map(is_number, cells)):
             raise ValueError(
-                f"must hold two numbers a line, time and load (line {number} does not)"
+                f"must contain two numbers per line, time and load (line {number} does not)"
             )
         numbers.append(number)
         rows.extend(map(float, cells))

@@ -40,7 +40,7 @@ class LawPart(NamedTuple):
 PARTS = (
     LawPart("closure", ("maximum_closure",), "a joint stiffens as it closes", along=False),
     LawPart("weakening", ("weakening_distance", "dynamic_friction_angle"), "slip weakens a joint"),
-    LawPart("dilation", ("dilation_angle", "dilation_distance"), "slip lifts a joint"),
+    LawPart("dilation", ("dilation_angle", "dilation_distance"), "a joint dilates as it slips"),
     LawPart(
         "rate and state",
         ("direct_effect", "evolution_effect", "critical_slip_distance", "reference_rate"),
@@ -104,7 +104,7 @@ class SoftLayer(JointLaw):
         for key in OF_ALL_JOINTS:
             if isinstance(table, dict) and key in table:
                 raise contradiction(
-                    f"soft_layers.{key}", table[key], f"is for all joints: give joints.{key}"
+                    f"soft_layers.{key}", table[key], f"applies to all joints: set joints.{key}"
                 )
         return table
 

@@ -39,13 +39,13 @@ def _check_names(table: str, one: JointSet, index: int, sets: list[JointSet]) ->
                 f"{table}.ends_at", name, f"must name other sets: {known or 'none'}"
             )
     if len(set(one.ends_at)) < len(one.ends_at):
-        raise contradiction(f"{table}.ends_at", one.ends_at, "must not name a set twice")
+        raise contradiction(f"{table}.ends_at", one.ends_at, "must not repeat a set")
 
 
 def _check_in_mesh(table: str, one: JointSet) -> None:
     for key in ("through", "ends_at", "regions", "offset", "scatter", "seed"):
         if value := getattr(one, key):
-            allowed = "has no meaning: joints are where domain.mesh has them"
+            allowed = "has no effect: domain.mesh has the joints"
             raise contradiction(f"{table}.{key}", value, allowed)
 
 
@@ -61,7 +61,7 @@ def _check_places(table: str, one: JointSet) -> None:
         allowed = f"has no meaning without {table}.ends_at"
         raise contradiction(f"{table}.offset", one.offset, allowed)
     if one.scatter and one.seed is None:
-        raise contradiction(f"{table}.seed", None, f"is needed with {table}.scatter")
+        raise contradiction(f"{table}.seed", None, f"is required with {table}.scatter")
     if one.seed is not None and not one.scatter:
         raise contradiction(f"{table}.seed", one.seed, f"has no meaning without {table}.scatter")
 
@@ -72,7 +72,7 @@ def _check_law(table: str, one: JointSet, scene: RockMass) -> None:
             raise contradiction(f"{table}.{key}", None, "is required")
     check_strength(table, one)
     if one.damping_ratio is not None and scene.damping.rayleigh is not None:
-        allowed = "damping.rayleigh defines the dashpots already: give one of them"
+        allowed = "damping.rayleigh already sets the dashpots: give one of them"
         raise contradiction(f"{table}.damping_ratio", one.damping_ratio, allowed)
     strength, energy = one.tensile_strength, one.fracture_energy
     if strength is None or energy is None:

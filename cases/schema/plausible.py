@@ -58,7 +58,7 @@ def implausible(scene: AnyScene) -> Iterator[str]:
             if value is not None and not usual.least <= value <= usual.most:
                 side = "below" if value < usual.least else "above"
                 yield (
-                    f"{table}.{key} = {value:g} {usual.unit} is far {side} that of rock"
+                    f"{table}.{key} = {value:g} {usual.unit} is far {side} rock's"
                     f"{meant(value, usual)}"
                 )
 

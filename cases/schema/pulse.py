@@ -62,7 +62,7 @@ class Pulse(Table):
         for key in ("period", "cycles", "rise", "decay", "file"):
             value = getattr(self, key)
             if key in needed and value is None:
-                allowed = f"is needed for {{table}}.shape = '{self.shape}'"
+                allowed = f"is required for {{table}}.shape = '{self.shape}'"
                 raise contradiction_here(key, None, allowed)
             if value is not None and key not in needed | TAKES.get(self.shape, set()):
                 raise contradiction_here(key, value, f"has no meaning for shape '{self.shape}'")
@@ -115,7 +115,7 @@ class Load(Pulse):
     @model_validator(mode="after")
     def _one_lever(self) -> "Load":
         if self.arm is not None and self.is_eccentric:
-            raise contradiction("load.arm", self.arm, "makes a couple, which has no load.at")
+            raise contradiction("load.arm", self.arm, "is for a couple, which takes no load.at")
         if self.is_motion:
             for key, value in (("at", self.at if self.is_eccentric else None), ("arm", self.arm)):
                 if value is not None:

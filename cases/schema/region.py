@@ -42,7 +42,7 @@ class Region(Table):
     @model_validator(mode="after")
     def _one_shape(self) -> Region:
         if (self.through is None) == (self.outline is None):
-            raise contradiction_here("through", self.through, "give a line's, or an outline")
+            raise contradiction_here("through", self.through, "give through or outline, not both")
         if self.outline is not None and self.dip:
             raise contradiction_here("dip", self.dip, "has no meaning with an outline")
         return self
@@ -60,7 +60,7 @@ def check_regions(scene: RockMass, outline: Outline) -> None:
     names = [one.name for one in scene.regions]
     for i, name in enumerate(names):
         if name == REST or name in names[:i]:
-            allowed = f"must be unique, and not {REST!r}: what [rock] describes"
+            allowed = f"must be unique, and not {REST!r}, which is the name of [rock]"
             raise contradiction(f"regions[{i}].name", name, allowed)
     for i, one in enumerate(scene.joint_sets):
         for name in one.regions:
@@ -69,7 +69,7 @@ def check_regions(scene: RockMass, outline: Outline) -> None:
                 raise contradiction(f"joint_sets[{i}].regions", name, allowed)
     _check_damping(scene)
     if names and scene.domain.mesh is not None:
-        allowed = "are of a domain that joint sets cut: not with domain.mesh"
+        allowed = "cannot be combined with domain.mesh"
         raise contradiction("regions", len(names), allowed)
     _check_outlines(scene, outline)
     least = outline.tolerance * outline.size
@@ -77,10 +77,10 @@ def check_regions(scene: RockMass, outline: Outline) -> None:
     for i, (region, area) in enumerate(zip(scene.regions, held, strict=True)):
         if area <= least:
             key = "through" if region.outline is None else "outline"
-            allowed = "leaves it no rock: it misses the domain, or regions after it hold all"
+            allowed = "leaves the region empty: it is outside the domain, or later regions cover it"
             raise contradiction(f"regions[{i}].{key}", getattr(region, key), allowed)
     if rest <= least:
-        raise contradiction("regions", len(names), "must leave a part of the domain to [rock]")
+        raise contradiction("regions", len(names), "must leave part of the domain to [rock]")
     _check_periodic(scene)
 
 
@@ -97,9 +97,7 @@ def _check_outlines(scene: RockMass, outline: Outline) -> None:
             raise contradiction(f"regions[{i}].outline", len(one.outline), allowed)
         within = shapely.Polygon(outline.corners).exterior.distance(shape)
         if within <= outline.tolerance and (scene.waves or _is_periodic(scene)):
-            allowed = (
-                "must lie inside of the domain, not on its sides, with waves or periodic sides"
-            )
+            allowed = "must lie inside the domain, not on its sides, with waves or periodic sides"
             raise contradiction(f"regions[{i}].outline", len(one.outline), allowed)
 
 
@@ -114,7 +112,7 @@ def _check_damping(scene: RockMass) -> None:
     for i, one in enumerate(scene.joint_sets):
         if one.damping_ratio and len({rock.density for rock in rocks_beside(scene, one)}) > 1:
             key = f"joint_sets[{i}].damping_ratio"
-            allowed = f"is of joints in rock of one density: give joint_sets[{i}].regions"
+            allowed = f"needs rock of one density: restrict the set by joint_sets[{i}].regions"
             raise contradiction(key, one.damping_ratio, allowed)
 
 
@@ -124,5 +122,5 @@ def _check_periodic(scene: RockMass) -> None:
         for side, along in (("left", 0.0), ("bottom", 90.0)):
             held = getattr(scene.boundaries, side)
             if one.outline is None and held == "periodic" and (one.dip - along) % 180 != 0:
-                allowed = f"must be {along:g} or its opposite: boundaries.{side} is periodic"
+                allowed = f"must be {along:g} or opposite: boundaries.{side} is periodic"
                 raise contradiction(f"regions[{i}].dip", one.dip, allowed)

@@ -47,11 +47,11 @@ def _check_mesh(scene: RockMass, outline: Outline) -> None:
     names = [one.name.lower() for one in scene.joint_sets]
     lost = [name for name in rock.joints if name not in names]
     if lost:
-        allowed = f"has a group 'joint {lost[0]}', which no joint set is named after"
+        allowed = f"has a group 'joint {lost[0]}', but no joint set has this name"
         raise contradiction(key, scene.domain.mesh, allowed)
     for i, name in enumerate(names):
         if name not in rock.joints:
-            allowed = f"must have a group 'joint {name}', of joint_sets[{i}]"
+            allowed = f"must have a group 'joint {name}' for joint_sets[{i}]"
             raise contradiction(key, scene.domain.mesh, allowed)
 
 
@@ -98,12 +98,12 @@ def _check_receivers(scene: RockMass, outline: Outline) -> None:
         for i, place in enumerate(places):
             _check_in_rock(f"record.{key}[{i}]", place, outline)
             if place in places[:i]:
-                raise contradiction(f"record.{key}[{i}]", place, "must not name a place twice")
+                raise contradiction(f"record.{key}[{i}]", place, "must not repeat a position")
 
 
 def _check_in_rock(key: str, place: list[float], outline: Outline) -> None:
     if not outline.holds(place):
-        allowed = "must lie in the domain, and in none of its openings"
+        allowed = "must lie in the domain and outside its openings"
         raise contradiction(key, place, allowed)
 
 
@@ -113,7 +113,7 @@ def _check_boundaries(scene: RockMass, outline: Outline) -> None:
         key, held = f"boundaries.{side}", getattr(scene.boundaries, side)
         if side not in normals:
             known = ", ".join(normals)
-            raise contradiction(key, held, f"is no side of this domain, which has {known}")
+            raise contradiction(key, held, f"is not a side of this domain, which has {known}")
     for side, other in PARTNER.items():
         held, across = getattr(scene.boundaries, side), getattr(scene.boundaries, other)
         if held == "periodic" and across != "periodic":

@@ -57,7 +57,7 @@ class Segment(Table):
             raise contradiction_here("y", self.y, "must be two increasing numbers")
         for key in OF_JOINTED:
             if not self.joints and getattr(self, key) is not None:
-                allowed = "is of jointed rock: with {table}.joints = false give intact_modulus"
+                allowed = "applies to jointed rock: with {table}.joints = false give intact_modulus"
                 raise contradiction_here(key, getattr(self, key), allowed)
         if sorted(map(len, given := given_pairs(self))) not in ([0, 0], [0, 2]):
             key = (given[0] + given[1])[0]
@@ -110,7 +110,7 @@ def regions(scene: Scene) -> list[Region]:
     for i, one in sorted(enumerate(scene.segments), key=lambda item: item[1].y[0]):
         (start, stop), key = one.y, f"segments[{i}].y"
         if start < at - close:
-            raise contradiction(key, one.y, f"begins before {at:g} m, where another segment ends")
+            raise contradiction(key, one.y, f"overlaps the segment that ends at {at:g} m")
         if stop > pillar.length + close:
             raise contradiction(key, one.y, f"must end within pillar.length = {pillar.length:g}")
         if start > at + close:

@@ -45,17 +45,17 @@ def _beside(scene: Scene) -> Iterator[tuple[str, object, str]]:
 
     numerics, why = scene.numerics, off_axis(scene)
     table, gives = ("segments", len(scene.segments)) if scene.segments else ("scatter", "given")
-    yield table, why and gives, f"is for motion along the axis: {why}"
+    yield table, why and gives, f"supports axial motion only: {why}"
     gravity = None if scene.gravity is None else scene.gravity.acceleration
-    yield "gravity.acceleration", gravity, "acts on pillars without segments and scatter"
-    yield "numerics.continuum.mesh", numerics.continuum.mesh, "has no segments and no scatter"
+    yield "gravity.acceleration", gravity, "is not supported with segments or scatter"
+    yield "numerics.continuum.mesh", numerics.continuum.mesh, "has no segments or scatter"
     rotation = "none" if scene.motion.rotation == "none" else None
-    yield "motion.rotation", rotation, "keeps rock from widening: not with segments or scatter"
+    yield "motion.rotation", rotation, "suppresses lateral strain: not with segments or scatter"
     scheme = None if numerics.dem.scheme == "leapfrog" else numerics.dem.scheme
     yield (
         "numerics.dem.scheme",
         scheme,
-        "steps blocks of one mass: with segments or scatter give 'leapfrog'",
+        "needs blocks of equal mass: with segments or scatter give 'leapfrog'",
     )
 
 
@@ -69,9 +69,9 @@ def _of_layers(scene: Scene) -> Iterator[tuple[str, object, str]]:
         yield (
             f"{table}.thickness",
             layer.thickness,
-            "is a segment of its own beside segments and scatter",
+            "must be a segment when there are segments or scatter",
         )
         welded = no_joint[abs(inner - layer.y) <= CLOSE * scene.pillar.block].any()
         given = layer.normal_stiffness or layer.spacing_stiffness
-        why = "needs a normal_stiffness: between intact segments there is no joint"
+        why = "needs a normal_stiffness: intact segments meet without a joint"
         yield f"{table}.y", layer.y if welded and not given else None, why

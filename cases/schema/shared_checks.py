@@ -55,10 +55,10 @@ def check_quality(scene: AnyScene) -> None:
         return
     scene.rock.quality_frequencies(scene.pulses)
     if scene.rock.intact_modulus is None:
-        allowed = "is of the rock between the joints: needs rock.intact_modulus"
+        allowed = "applies to the rock between joints: needs rock.intact_modulus"
         raise contradiction("rock.quality_factor", quality, allowed)
     if scene.damping.rayleigh is not None:
-        allowed = "damping.rayleigh damps the rock already: give one of them"
+        allowed = "damping.rayleigh already damps the rock: give one of them"
         raise contradiction("rock.quality_factor", quality, allowed)
 
 
@@ -68,10 +68,10 @@ def check_strength(table: str, law: JointLaw) -> None:
         given = [key for key in part.all_keys if getattr(law, key) is not None]
         for key in part.keys if given else ():
             if key not in given:
-                raise contradiction(f"{table}.{key}", None, f"is needed with {table}.{given[0]}")
+                raise contradiction(f"{table}.{key}", None, f"is required with {table}.{given[0]}")
     if law.tension is not None and law.tensile_strength is not None:
         raise contradiction(
-            f"{table}.tension", law.tension, "tensile_strength says otherwise: give one of them"
+            f"{table}.tension", law.tension, "contradicts tensile_strength: give one of them"
         )
     residual, cohesion = law.residual_cohesion, law.cohesion
     if residual is not None and (cohesion is None or residual > cohesion):
@@ -99,7 +99,7 @@ def _check_rate(table: str, law: JointLaw) -> None:
         raise contradiction(f"{table}.direct_effect", law.direct_effect, "needs a friction_angle")
     for key in ("dynamic_friction_angle", "dilation_angle"):
         if getattr(law, key) is not None:
-            allowed = "friction depends on the rate of slip by direct_effect: give one of them"
+            allowed = "direct_effect already makes friction rate-dependent: give one of them"
             raise contradiction(f"{table}.{key}", getattr(law, key), allowed)
 
 
@@ -114,8 +114,8 @@ def _check_dilation(table: str, law: JointLaw) -> None:
     if share * tan(radians(dilation)) > tan(radians(dynamic)):
         most = degrees(atan(tan(radians(dynamic)) / share))
         allowed = (
-            f"must be at most {most:.4g}: what is left of it where friction has fallen to "
-            f"dynamic_friction_angle = {dynamic:g} must not exceed that"
+            f"must be at most {most:.4g}, so that dilation stays below friction at "
+            f"dynamic_friction_angle = {dynamic:g}"
         )
         raise contradiction(f"{table}.dilation_angle", dilation, allowed)
 

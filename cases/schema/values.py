@@ -20,7 +20,7 @@ CONTROL = re.compile(
 def _words(text: str) -> str:
     """Refuse a text that no terminal, page or drawing should be given."""
     if found := CONTROL.search(text):
-        allowed = f"must not hold the control character U+{ord(found[0]):04X}"
+        allowed = f"must not contain the control character U+{ord(found[0]):04X}"
         raise PydanticCustomError("words", "{allowed}", {"allowed": allowed})
     return text
 
@@ -28,14 +28,14 @@ def _words(text: str) -> str:
 def _magnitude(value: float) -> float:
     """Refuse what no unit system explains; the squares of such numbers overflow or vanish."""
     if value and not 1e-30 <= abs(value) <= 1e30:
-        raise PydanticCustomError("magnitude", "must lie between 1e-30 and 1e30 in size")
+        raise PydanticCustomError("magnitude", "must lie between 1e-30 and 1e30 in magnitude")
     return value
 
 
 def _amplitude(value: float) -> float:
     """Refuse what leaves no room between itself and the end of all numbers."""
     if value and not 1e-300 <= abs(value) <= 1e300:
-        raise PydanticCustomError("magnitude", "must lie between 1e-300 and 1e300 in size")
+        raise PydanticCustomError("magnitude", "must lie between 1e-300 and 1e300 in magnitude")
     return value
 
 

@@ -79,7 +79,7 @@ def test_what_takes_a_scene_off_its_axis(scene_with, reason):
     scene = scene_with(**SPATIAL[reason])
     assert is_spatial(scene)
     reasons = {effect.name: effect.reason for effect in effects(scene)}
-    assert reasons["spatial motion"] == f"{reason}: 6 freedoms per block"
+    assert reasons["spatial motion"] == f"{reason}: 6 degrees of freedom"
 
 
 def test_axial_gravity_and_a_load_against_the_axis_stay_axial(scene_with):
@@ -89,14 +89,14 @@ def test_axial_gravity_and_a_load_against_the_axis_stay_axial(scene_with):
 def test_blocks_that_do_not_turn_have_three_freedoms(scene_with):
     scene = scene_with(**ACROSS, **{"motion.rotation": "none"})
     reasons = {effect.name: effect.reason for effect in effects(scene)}
-    assert reasons["spatial motion"].endswith("3 freedoms per block")
+    assert reasons["spatial motion"].endswith("3 degrees of freedom")
 
 
 def test_nothing_shears_the_joints_of_an_axial_scene(scene_with):
     scene = scene_with(**{"joints.friction_angle": 30.0, "motion.rotation": "finite"})
     reasons = {effect.name: effect.reason for effect in effects(scene) if not effect.active}
-    assert reasons["slip"] == "nothing shears the joints"
-    assert reasons["finite rotation"] == "nothing turns the blocks"
+    assert reasons["slip"] == "the joints carry no shear"
+    assert reasons["finite rotation"] == "the blocks do not rotate"
 
 
 def test_a_layer_may_be_the_only_joint_with_a_dashpot(scene_with):

@@ -260,7 +260,7 @@ def test_what_has_no_quality_factor_says_so(pillar, one_joint):
     for changes, reason in (
         ({"joints__tension": False}, "linear joints alone"),
         ({"prestress": {"normal": 1e5}}, "without gravity, prestress"),
-        ({"load__at": [0.1, 0.0]}, "along the axis alone"),
+        ({"load__at": [0.1, 0.0]}, "axial motion only"),
     ):
         beyond = pillar(**Q, **changes)
         assert reason in applies("dem", beyond).reason

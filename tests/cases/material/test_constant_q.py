@@ -115,7 +115,11 @@ def test_homogenised_rock_is_intact_rock_in_series_with_its_joints(pillar, zeta)
         ({"reference_frequency": 50.0}, "reference_frequency", "no meaning without"),
         ({"quality_factor": 4.0}, "quality_factor", "at least 5"),
         ({"quality_factor": 20.0, "quality_band": [90.0, 110.0]}, "quality_band", "2 to 10,000"),
-        ({"quality_factor": 20.0, "quality_band": [1.0, 50.0]}, "quality_band", "hold the refer"),
+        (
+            {"quality_factor": 20.0, "quality_band": [1.0, 50.0]},
+            "quality_band",
+            "the refer",
+        ),
         (
             {"quality_factor": 20.0, "intact_modulus": None},
             "quality_factor",
@@ -131,14 +135,14 @@ def test_what_makes_no_rock_is_refused_in_one_line(pillar, changes, key, message
 
 def test_what_has_no_period_needs_a_reference_frequency(pillar):
     step = {"load": {"shape": "step", "amplitude": 1e5}, "rock__quality_factor": 20.0}
-    with pytest.raises(SceneError, match="nothing that acts has a period"):
+    with pytest.raises(SceneError, match="no load or wave has a period"):
         pillar(**step)
     scene = pillar(**step, rock__reference_frequency=100.0)
     assert scene.rock.quality_frequencies(scene.pulses) == (100.0, 10.0, 1000.0)
 
 
 def test_rock_is_not_damped_twice(pillar):
-    with pytest.raises(SceneError, match="damps the rock already"):
+    with pytest.raises(SceneError, match="already damps the rock"):
         pillar(
             rock__quality_factor=20.0,
             damping__rayleigh={"frequencies": [10.0, 100.0], "ratios": [0.01, 0.01]},

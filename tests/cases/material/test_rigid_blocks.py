@@ -104,8 +104,8 @@ def test_a_joint_alone_among_sets_is_as_it_is():
 
 @pytest.mark.parametrize(
     ("sets", "why"),
-    [([], "has no joints"), ([{"dip": 30.0, "through": [6.0, 5.0]}], "only joints that are alone")],
+    [([], "has no joints"), ([{"dip": 30.0, "through": [6.0, 5.0]}], "only single joints")],
 )
 def test_a_domain_that_carries_no_waves_is_refused_in_one_line(sets, why):
-    with pytest.raises(SceneError, match=rf"scene\.toml: numerics\.dem\.block: is needed.*{why}"):
+    with pytest.raises(SceneError, match=rf"scene\.toml: numerics\.dem\.block: is required.*{why}"):
         found(scene(*sets))

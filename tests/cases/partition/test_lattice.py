@@ -101,7 +101,7 @@ def test_periodic_sides_lie_on_lines():
 )
 def test_joints_without_a_lattice_are_refused_in_one_line(keys):
     sets = {"dip": 0.0, "spacing": 2.0, **keys}, {"dip": 90.0, "spacing": 2.0}
-    with pytest.raises(SceneError, match=r"numerics\.dem\.block = 1\.0: cuts no rock") as caught:
+    with pytest.raises(SceneError, match=r"numerics\.dem\.block = 1\.0: cannot cut") as caught:
         further_sets(scene(*sets))
     assert "\n" not in str(caught.value)
 

@@ -38,9 +38,9 @@ def test_counts_are_numbers(tmp_path):
 @pytest.mark.parametrize(
     "name, data, words",
     [
-        ("a.mseed", (SAMPLES, SAMPLES), "must hold one trace without gaps, holds 2"),
-        ("a.sac", ([1.0],), "must hold at least two samples"),
-        ("a.sac", ([0.0, np.nan],), "must hold finite numbers"),
+        ("a.mseed", (SAMPLES, SAMPLES), "must contain one trace without gaps, has 2"),
+        ("a.sac", ([1.0],), "must contain at least two samples"),
+        ("a.sac", ([0.0, np.nan],), "must contain finite numbers"),
     ],
 )
 def test_what_is_no_history_is_said_in_one_line(tmp_path, name, data, words):

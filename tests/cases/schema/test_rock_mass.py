@@ -112,20 +112,24 @@ MISTAKES = {
     "region of two shapes": (
         BED,
         OUTLINED.replace("outline", THROUGH),
-        ["a line's, or an outline"],
+        ["give through or outline"],
     ),
     "region of two corners": (BED, OUTLINED, ["regions[0].outline = 2", "must be a polygon"]),
     "region on a side": (
         BED,
         OUTLINED.replace("10.0]]", "10.0], [50.0, 0.0]]"),
-        ["regions[0].outline = 3", "inside of the domain"],
+        ["regions[0].outline = 3", "inside the domain"],
     ),
     "unknown key of a region": (BED, REGION.replace("density", "densty"), ["regions[0].densty"]),
     "region named rock": (BED, REGION.replace("upper", "rock"), ["regions[0].name = 'rock'"]),
     "region twice": (BED, OVER.format("30.0").replace("over", "upper"), ["regions[1].name"]),
-    "region outside": (BED, REGION.replace("25.0", "45.0"), ["regions[0].through", "misses"]),
-    "region covered": (BED, OVER.format("20.0"), ["regions[0].through", "regions after it"]),
-    "region everywhere": (BED, REGION.replace("25.0", "-1.0"), ["leave a part of the domain"]),
+    "region outside": (
+        BED,
+        REGION.replace("25.0", "45.0"),
+        ["regions[0].through", "region empty"],
+    ),
+    "region covered": (BED, OVER.format("20.0"), ["regions[0].through", "later regions"]),
+    "region everywhere": (BED, REGION.replace("25.0", "-1.0"), ["leave part of the domain"]),
     "set of no region": ("dip = -55.0", 'dip = -55.0\nregions = ["low"]', ["name regions: rock"]),
     "damped in two rocks": (
         BED,
@@ -143,7 +147,7 @@ MISTAKES = {
     "both kinds": ("[domain]", "[pillar]\n[domain]", ["pillar: give [pillar] or [domain]"]),
     "no shape": ("size = [60.0, 40.0]", "", ["domain: give exactly one of domain.size"]),
     "two shapes": ("size =", "outline = [[0.0, 0.0]]\nsize =", ["give exactly one of domain.size"]),
-    "size of one number": ("[60.0, 40.0]", "[60.0]", ["domain.size = [60.0]", "hold 2 numbers"]),
+    "size of one number": ("[60.0, 40.0]", "[60.0]", ["domain.size = [60.0]", "have 2 numbers"]),
     "negative size": (
         "[60.0, 40.0]",
         "[60.0, -40.0]",
@@ -191,7 +195,7 @@ MISTAKES = {
     "same name": ('name = "cross"', 'name = "bedding"', ["joint_sets[1].name", "must be unique"]),
     "ends at nothing": ('["bedding"]', '["fault"]', ["joint_sets[1].ends_at = 'fault'", "bedding"]),
     "ends at itself": ('["bedding"]', '["cross"]', ["joint_sets[1].ends_at = 'cross'", "bedding"]),
-    "ends twice": ('["bedding"]', '["bedding", "bedding"]', ["ends_at", "not name a set twice"]),
+    "ends twice": ('["bedding"]', '["bedding", "bedding"]', ["ends_at", "not repeat a set"]),
     "ends at each other": (
         "scatter = 0.2",
         'scatter = 0.2\nends_at = ["cross"]',
@@ -204,14 +208,14 @@ MISTAKES = {
     ),
     "neither spacing nor point": ("spacing = 3.0", "", ["joint_sets[1].spacing", "or through"]),
     "scatter of one joint": ("spacing = 2.0", "", ["joint_sets[0].scatter = 0.2", "no meaning"]),
-    "scatter without seed": ("seed = 1", "", ["joint_sets[0].seed", "is needed with"]),
+    "scatter without seed": ("seed = 1", "", ["joint_sets[0].seed", "is required with"]),
     "seed without scatter": ("scatter = 0.2", "", ["joint_sets[0].seed = 1", "no meaning without"]),
     "too much scatter": ("scatter = 0.2", "scatter = 0.6", ["scatter = 0.6", "at most 0.5"]),
     "no stiffness": ("shear_stiffness = 4.0e9", "", ["joint_sets[0].shear_stiffness", "required"]),
     "strength without energy": (
         "friction_angle = 30.0",
         "tensile_strength = 1e5",
-        ["joint_sets[1].fracture_energy", "is needed with"],
+        ["joint_sets[1].fracture_energy", "is required with"],
     ),
     "snap-back": (
         "friction_angle = 30.0",
@@ -227,13 +231,13 @@ MISTAKES = {
     "receiver in an opening": (
         "[[40.0, 30.0]]",
         "[[1.0, 1.0], [30.0, 20.0]]",
-        ["record.points[1] = [30.0, 20.0]", "in none of its openings"],
+        ["record.points[1] = [30.0, 20.0]", "outside its openings"],
     ),
     "joint receiver in an opening": ("[[31.0, 10.5]]", "[[31.0, 20.0]]", ["record.joints[0]"]),
     "receiver twice": (
         "[[40.0, 30.0]]",
         "[[40.0, 30.0], [40.0, 30.0]]",
-        ["record.points[1]", "must not name a place twice"],
+        ["record.points[1]", "must not repeat a position"],
     ),
     "three coordinates": ("[[40.0, 30.0]]", "[[4.0, 3.0, 1.0]]", ["record.points[0]", "2 numbers"]),
     "nothing recorded": (
@@ -285,7 +289,7 @@ MISTAKES = {
     "force in an opening": (
         f"{PRESSURE}\n{SHAPE}",
         'kind = "force"\nquantity = "force"\nat = [30.0, 20.0]\ndirection = [0.0, -1.0]\n' + SHAPE,
-        ["loads[0].at = [30.0, 20.0]", "in none of its openings"],
+        ["loads[0].at = [30.0, 20.0]", "outside its openings"],
     ),
     "force with a pressure's unit": (
         f"{PRESSURE}\n{SHAPE}",
@@ -306,7 +310,7 @@ MISTAKES = {
     "side that is none": (
         "[boundaries]",
         '[boundaries]\noutline = "fixed"',
-        ["boundaries.outline = 'fixed'", "is no side of this domain"],
+        ["boundaries.outline = 'fixed'", "is not a side of this domain"],
     ),
     "one periodic side": (
         'bottom = "quiet"\nleft = "quiet"',
@@ -360,7 +364,7 @@ def test_a_history_is_beside_the_scene_unless_it_is_asked_for(written, tmp_path)
     elsewhere = tmp_path / "far" / "pulse.csv"
     elsewhere.parent.mkdir()
     elsewhere.write_text("0.0, 0.0\n0.01, 2.0\n")
-    with pytest.raises(SceneError, match=r"waves\[0\].file = '../pulse.csv': leaves the folder"):
+    with pytest.raises(SceneError, match=r"waves\[0\].file = '../pulse.csv': is outside the"):
         load_variant(path, "S", {"waves.0.file": "../pulse.csv"}, asked=False)
     found = load_variant(path, "S", {"waves.0.file": str(elsewhere)})
     assert found.waves[0].history.stress.tolist() == [0.0, 2.0]
@@ -403,7 +407,7 @@ def test_both_kinds_are_read_and_told_apart(written, paper_folder):
     mass, pillar = load(path)[0], load_variant(paper_folder / "fig-03.toml")
     assert (mass.kind, pillar.kind) == ("rock mass", "pillar")
     assert pillar_of(pillar) is pillar
-    with pytest.raises(SceneError, match="is a rock mass; a fit takes pillars alone") as error:
+    with pytest.raises(SceneError, match="is a rock mass; a fit accepts pillars only") as error:
         pillar_of(mass, "a fit")
     assert str(error.value).startswith(f"{path}: domain: ")
 
@@ -433,5 +437,5 @@ def test_a_variant_changes_one_of_a_list_of_tables(written):
     assert [s.dip for s in steep.joint_sets] == [first.joint_sets[0].dip, 80.0]
     assert steep.joint_sets[1].model_dump() == {**first.joint_sets[1].model_dump(), "dip": 80.0}
     path = written(GOOD + '\n[[variants]]\nname = "none"\njoint_sets.7.dip = 80.0\n')
-    with pytest.raises(SceneError, match=r"variants\[1\].joint_sets = .*is none of 0 to 1"):
+    with pytest.raises(SceneError, match=r"variants\[1\].joint_sets = .*index 7 is outside 0 to 1"):
         load(path)

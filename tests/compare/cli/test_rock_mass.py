@@ -266,7 +266,7 @@ def test_the_python_interface_reads_and_solves_it(jointwave_says):
     found = jointwave.simulate(scene, "oblique-joint")
     assert jointwave.misfit(found, found) == 0
     assert [one.name for one in jointwave.load_variants("mass.toml")] == ["", "bonded", "shifted"]
-    with pytest.raises(jointwave.SceneError, match=r"jointwave\.properties takes pillars alone"):
+    with pytest.raises(jointwave.SceneError, match=r"jointwave\.properties accepts pillars only"):
         jointwave.properties(scene)
 
 

@@ -54,7 +54,7 @@ CONSISTENT = dict(numerics__continuum__mass="consistent", numerics__continuum__c
 MISTAKES = {
     "too short": (dict(length=1.4), ["spans y = 0 to 1.4 m, the pillar 0 to 1.5 m"]),
     "too wide": (dict(side=0.5), ["spans x = -0.25 to 0.25 m, the pillar -0.2 to 0.2 m"]),
-    "of second order": (dict(order=2), ["holds quad9 cells, must be first-order"]),
+    "of second order": (dict(order=2), ["has quad9 cells, must be first-order"]),
     "of a wrong dimension": (dict(dim=3), ["quadrilateral cells", "dim = 3"]),
     "consistent mass": (
         dict(
@@ -123,11 +123,11 @@ FILES = {
     ),
     "no rock": ('"rock"', '"stone"', "no group whose name starts with 'rock'"),
     "a rock of lines": ('2 1 "rock"', '1 2 "rock"', "line cells"),
-    "no cell in the rock": ('2 1 "rock"', '2 7 "rock"', "no cells are in its group"),
+    "no cell in the rock": ('2 1 "rock"', '2 7 "rock"', "has no cells"),
     "two kinds of cells": (
         "2 3 2 1 1 3 4 6 5",
         "2 2 2 1 1 3 4 6",
-        "holds quad and triangle cells, must be of one kind",
+        "has quad and triangle cells, must be of one kind",
     ),
     "cells outside the rock": ("2 3 2 1 1", "2 3 2 0 1", "1 of its cells are in no group"),
     "a joint without facets": ('1 2 "joint"', '1 5 "joint"', "group 'joint' holds no facets"),
@@ -174,6 +174,6 @@ def test_a_cell_that_the_file_repeats_for_another_group_counts_once(tmp_path, co
 
 
 def test_a_file_that_is_not_there(tmp_path, column):
-    for path, words in ((tmp_path / "gone.msh", "does not exist"), (tmp_path, "is no file")):
+    for path, words in ((tmp_path / "gone.msh", "does not exist"), (tmp_path, "is not a file")):
         with pytest.raises(SceneError, match=words):
             given_mesh(path, column(), calibrate(column()))

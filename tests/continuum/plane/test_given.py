@@ -193,7 +193,7 @@ def test_joints_of_a_mesh_may_bend_and_end_inside_the_rock(given):
 @pytest.mark.parametrize(
     "joints, text, words",
     [
-        (None, SCENE.replace("Fault", "other"), "'joint fault', which no joint set is named after"),
+        (None, SCENE.replace("Fault", "other"), "'joint fault', but no joint set has this name"),
         (None, CROSS, r"must have a group 'joint cross', of joint_sets\[1\]"),
         ({"joint fault": [(0.0, 0.0), (SIZE, 0.0)]}, SCENE, "are on its outside, the first near"),
         (None, SCENE.replace("dip = 30.0", "dip = 30.0\nthrough = [1.0, 1.0]"), "has no meaning"),

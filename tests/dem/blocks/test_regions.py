@@ -87,7 +87,7 @@ def test_contacts_are_both_rocks_in_series(rock_mass, wave):
 def test_waves_need_the_field_of_layers(rock_mass, wave):
     """The engine alone knows waves of one rock; boundaries that are not parallel know none."""
     scene = layers(rock_mass, wave, "P", 1.0)
-    with pytest.raises(SceneError, match="waves = 1: meet several rocks"):
+    with pytest.raises(SceneError, match="waves = 1: cross several rocks"):
         simulate(scene)
     dips = [SOFT, HARD | {"dip": 20.0}]
     quiet = {"left": "quiet", "right": "quiet"}
@@ -96,7 +96,7 @@ def test_waves_need_the_field_of_layers(rock_mass, wave):
 
 
 def test_periodic_sides_need_boundaries_from_one_to_the_other(rock_mass, wave):
-    with pytest.raises(SceneError, match=r"regions\[0\].dip = 10.0: must be 0 or its opposite"):
+    with pytest.raises(SceneError, match=r"regions\[0\].dip = 10.0: must be 0 or opposite"):
         layers(rock_mass, wave, "P", 1.0, regions=[SOFT | {"dip": 10.0}])
 
 

@@ -82,7 +82,7 @@ def test_what_the_scene_is_about_stays(pillar):
 def test_an_end_that_the_load_needs_stays(pillar):
     """The base that shakes cannot be free; the reason is the scene's own."""
     load = {"shape": "sine", "amplitude": 0.1, "period": 0.01, "quantity": "velocity"}
-    with pytest.raises(SceneError, match=r"load\.quantity .*moves the base of ends\.start"):
+    with pytest.raises(SceneError, match=r"load\.quantity .*needs ends\.start"):
         left_out(pillar(ends__start="fixed", load=load), "fixed ends")
 
 

@@ -67,7 +67,7 @@ def test_a_run_beyond_the_memory_is_refused_as_the_run_would_be(pillar, monkeypa
     scene = pillar(record__interval=1e-6, time__duration=1.0, load__period=0.01)
     monkeypatch.setenv(LIMIT, "0.1")
     for name in ("dem", "continuum-jointed"):
-        with pytest.raises(SceneError, match="would take about") as told:
+        with pytest.raises(SceneError, match="would need about") as told:
             forecast(scene, name)
         with pytest.raises(SceneError) as refused:
             solve(name, scene)
