@@ -101,7 +101,7 @@ def test_reference_follows_the_models(tools):
     """Default, constraint and comment of a key stand in its row as the model has them."""
     rows = tools("scene_reference").page().splitlines()
     row = next(r for r in rows if 'id="key-numerics.continuum.spectral_radius"' in r)
-    assert row.endswith("| number ≥ 0 and ≤ 1 | `0.9` | implicit, of infinite frequency |")
+    assert row.endswith("| number ≥ 0 and ≤ 1 | `0.9` | implicit: at infinite frequency |")
     law = field_comments(type(Scene.model_fields["joints"].default))
     assert "c_n = 2 zeta sqrt(m k_n)" in law["damping_ratio"]  # of the model that it extends
     motion = field_comments(Scene.model_fields["motion"].annotation)

@@ -6,12 +6,12 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-#: Whose names [expect] pairs; cases do not know them.
+#: What [expect] pairs; `cases` does not know their names.
 SOLVERS = "solvers"
 WORDS = {float: "number", int: "whole number", str: "string", bool: "`true` or `false`"}
 BOUNDS = {"gt": ">", "ge": "≥", "lt": "<", "le": "≤"}
 LENGTHS = {"min_length": "at least", "max_length": "at most"}
-#: What the functions that check a value ask for; some only refuse what no unit explains.
+#: Requirements of the functions that check a value; empty for bounds that only exclude nonsense.
 CHECKS = {"_magnitude": "", "_amplitude": "", "_unit": "of length 1", "_words": ""}
 
 

@@ -13,14 +13,14 @@ WIDEST = 1e4  # of a band: its ends, one over the other
 
 
 class Attenuating(Table):
-    """Rock by its quality factor: it damps apart from the joints, in a band of frequencies."""
+    """Quality factor of the rock between joints, constant in a band of frequencies."""
 
-    #: Q of the rock between the joints, whose damping_ratio is then that of joints alone; absent:
-    #: rock is damped as the joints are
+    #: Q of the rock between joints; damping_ratio then damps the joints only; absent: the rock is
+    #: damped like the joints
     quality_factor: Annotated[float, Field(ge=5, le=1e5)] | None = None
-    #: Hz, where waves have the speeds that the moduli give; absent: one over the shortest period
+    #: Hz, at which the moduli give the wave speeds; absent: 1 / shortest period
     reference_frequency: Positive | None = None
-    #: Hz, from where to where Q is constant, within 4 %; absent: a tenth to ten times the above
+    #: Hz, band of constant Q, within 4 %; absent: 0.1 to 10 times reference_frequency
     quality_band: Annotated[list[Positive], Field(min_length=2, max_length=2)] | None = None
 
     @model_validator(mode="after")
@@ -83,11 +83,11 @@ class Rayleigh(Table):
 
 
 class Damping(Table):
-    """Damping of the motion itself, beside the dashpots of the joints."""
+    """Damping in addition to the dashpots of the joints."""
 
     mass_proportional: NonNegative | None = None  #: alpha, 1/s: a force -alpha m v on every block
     rayleigh: Rayleigh | None = None  #: alpha as above, beta the time constant of rock and joints
-    local: Annotated[float, Field(ge=0, lt=1)] | None = None  #: Cundall's, for static states
+    local: Annotated[float, Field(ge=0, lt=1)] | None = None  #: Cundall's factor, for static states
 
     @model_validator(mode="after")
     def _one_alpha(self) -> "Damping":

@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from cases.schema.scene import Scene
 
 
-#: Forces that depend on velocity or history, which drifts backwards in time would get wrong, and
-#: motion that only leapfrog steps.
+#: Forces that depend on velocity or history, for which drifts backwards in time are wrong, and
+#: motion that only leapfrog supports.
 BEYOND = (
     "dashpots",
     "mass damping",
@@ -41,7 +41,7 @@ def check_scheme(scene: Scene) -> None:
             )
 
 
-#: What the law of a joint has and a layer of rock has not.
+#: Keys of joints that a layer meshed as rock does not take.
 STRENGTH = ("tension", "tensile_strength", "friction_angle", "cohesion", "maximum_closure")
 
 

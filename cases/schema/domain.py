@@ -12,19 +12,19 @@ if TYPE_CHECKING:
 
 
 class Domain(Table):
-    """The plane region that holds the rock mass, in plane strain: x to the right, y upwards."""
+    """The region of the rock mass, in plane strain: x to the right, y upwards."""
 
     #: m, width and height of a rectangle with its lower left corner at the origin
     size: Annotated[list[Positive], Field(min_length=2, max_length=2)] | None = None
-    outline: list[Point] | None = None  #: m, corners of a polygon instead
+    outline: list[Point] | None = None  #: m, corners of a polygon, instead of size
     #: a gmsh file (.msh) instead: groups "rock..." of triangles or quadrilaterals, and "joint NAME"
     #: of the edges of each joint set; its outline and openings are those of the rock
     mesh: str | None = None
-    #: m, corners of polygons that are taken out
+    #: m, corners of polygons to be excavated
     openings: list[list[Point]] = Field(default_factory=list)
-    #: blocks at openings that are not convex; cut: in convex parts, along the faces of the opening
+    #: for non-convex blocks at openings; cut: into convex parts along the opening's faces
     non_convex: Literal["refuse", "cut"] = "refuse"
-    #: blocks thinner or more pointed than below; merge: with a neighbour, where that is convex
+    #: for blocks below the next two limits; merge: with a neighbour, if the result is convex
     slivers: Literal["merge", "refuse"] = "merge"
     least_width: Positive | None = None  #: m, of a block; default a hundredth of the least spacing
     least_angle: Annotated[float, Field(ge=0, le=30)] = 1.0  #: degrees, in a block

@@ -10,10 +10,10 @@ OF_ALL_JOINTS = ("contact_points", "point_rule")
 
 
 class LawPart(NamedTuple):
-    """An optional part of the law, the one list of which is `PARTS`.
+    """An optional part of the joint law; `PARTS` lists all of them.
 
     name : of the effect. keys : which need one another; the first says whether a joint has the
-    part. words : what a joint with it does. along : whether it acts along the joint alone.
+    part. words : what a joint with it does. along : whether it acts in shear only.
     others : keys that need not be given.
     """
 
@@ -57,42 +57,42 @@ PARTS = (
 
 
 class JointLaw(Table):
-    """What one joint can do. Keys that are absent leave their effect out of the computation."""
+    """The law of one joint. Effects whose keys are absent are not computed."""
 
     normal_stiffness: Positive | None = None  #: Pa/m, the joint's own K_n; absent: from (4)
-    maximum_closure: Positive | None = None  #: m, d_m: a joint that closes stiffens, from K_n on
+    maximum_closure: Positive | None = None  #: m, d_m of hyperbolic closure, K_n initially
     shear_stiffness: Positive | None = None  #: Pa/m, the joint's own K_s; absent: from (7)
-    tension: bool | None = None  #: False: a joint that would be pulled apart carries nothing (10)
+    tension: bool | None = None  #: False: the joint carries no tension (10)
     damping_ratio: NonNegative | None = None  #: zeta; dashpot c_n = 2 zeta sqrt(m k_n)
     friction_angle: Annotated[float, Field(ge=0, lt=90)] | None = None  #: degrees (3)
-    #: degrees, what slip over weakening_distance leaves of friction_angle, linearly in its tangent
+    #: degrees, friction after slip of weakening_distance; its tangent falls linearly
     dynamic_friction_angle: Annotated[float, Field(ge=0, lt=90)] | None = None
     weakening_distance: Positive | None = None  #: m
-    #: degrees, at which slip lifts closed faces at first; falls to none over dilation_distance
+    #: degrees, initial dilation angle of closed faces; falls to 0 over dilation_distance
     dilation_angle: Annotated[float, Field(ge=0, lt=90)] | None = None
     dilation_distance: Positive | None = None  #: m
-    #: a of friction that depends on rate and state, where friction_angle is that of mu_0
+    #: a of rate-and-state friction; friction_angle then gives mu_0
     direct_effect: Positive | None = None
     evolution_effect: NonNegative | None = None  #: b
     critical_slip_distance: Positive | None = None  #: m, D_c
     reference_rate: Positive | None = None  #: m/s, V_0, of mu_0
-    initial_state: Positive | None = None  #: s, theta at first; absent: D_c / V_0
+    initial_state: Positive | None = None  #: s, initial theta; absent: D_c / V_0
     cohesion: NonNegative | None = None  #: Pa (3)
-    residual_cohesion: NonNegative | None = None  #: Pa, what a point keeps after its first slip
+    residual_cohesion: NonNegative | None = None  #: Pa, cohesion after the first slip
     tensile_strength: Positive | None = None  #: Pa
     fracture_energy: Positive | None = None  #: J/m2
 
 
 class Joints(JointLaw):
-    """The law of every joint, and how forces are spread over its face."""
+    """The law of every joint, and the contact points of its face."""
 
-    contact_points: Annotated[int, Field(ge=1, le=8)] = 2  #: n x n a face, written out
-    #: midpoint: centres of equal cells, 1 - 1/n^2 of the face's bending stiffness; gauss: all of it
+    contact_points: Annotated[int, Field(ge=1, le=8)] = 2  #: n x n per face
+    #: midpoint: cell centres, 1 - 1/n^2 of the face's bending stiffness; gauss: all of it
     point_rule: Literal["midpoint", "gauss"] = "midpoint"
 
 
 class SoftLayer(JointLaw):
-    """One joint under a law of its own; keys that are absent are those of [joints]."""
+    """One joint with a law of its own; absent keys are taken from [joints]."""
 
     y: Positive  #: m, on a joint
     spacing_stiffness: Positive | None = None  #: S K_n, Pa; absent: as stiff as the other joints

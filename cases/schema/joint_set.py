@@ -9,18 +9,18 @@ from cases.schema.values import Point, Positive, Words
 
 
 class JointSet(Joints):
-    """Parallel joints, or one joint, with the law of them all."""
+    """A set of parallel joints, or one joint, and its law."""
 
-    name: Words  #: what [[joint_sets]] that end here, tables and figures call it
+    name: Words  #: used in `ends_at`, tables and figures
     #: degrees from the horizontal, counter-clockwise; the joints run along (cos, sin) of it
     dip: Annotated[float, Field(ge=-180, le=180)]
     spacing: Positive | None = None  #: m, across the joints; absent: one joint, `through` a point
     through: Point | None = None  #: m, a point of one of the joints; absent: the origin
-    ends_at: list[str] = Field(default_factory=list)  #: names of sets whose joints these end at
-    #: names of [[regions]] whose rock it cuts, "rock" for what no region holds; absent: all
+    ends_at: list[str] = Field(default_factory=list)  #: names of sets at whose joints these end
+    #: names of [[regions]] that it cuts, "rock" for rock in no region; absent: all
     regions: list[str] = Field(default_factory=list)
-    #: of the spacing, along the joints that they end at, from each to the next; 0.5: brickwork
+    #: offset along the `ends_at` joints from row to row, over the spacing; 0.5: brickwork
     offset: Annotated[float, Field(ge=0, lt=1)] = 0.0
-    #: standard deviation of the spacing over its mean; uniformly distributed
+    #: coefficient of variation of the spacing; uniformly distributed
     scatter: Annotated[float, Field(ge=0, le=0.5)] = 0.0
     seed: Annotated[int, Field(ge=0, lt=2**63)] | None = None  #: of the scatter

@@ -27,13 +27,13 @@ class IntactRock(Attenuating):
 
 
 class Boundaries(Table):
-    """What holds the sides of the domain; those of openings are free."""
+    """Boundary conditions of the sides of the domain; openings are free."""
 
-    left: Held = "free"  #: where the domain is bounded by its least x
-    right: Held = "free"  #: by its largest x
-    bottom: Held = "free"  #: by its least y
-    top: Held = "free"  #: by its largest y
-    outline: Literal["quiet", "free", "fixed"] = "free"  #: everywhere else
+    left: Held = "free"  #: side of least x
+    right: Held = "free"  #: side of largest x
+    bottom: Held = "free"  #: side of least y
+    top: Held = "free"  #: side of largest y
+    outline: Literal["quiet", "free", "fixed"] = "free"  #: all other sides of an outline
 
 
 class GravityInPlane(Table):
@@ -45,52 +45,52 @@ class GravityInPlane(Table):
 
 
 class StressInPlane(Table):
-    """Stress that the rock mass carries before anything acts, the same everywhere."""
+    """Uniform initial stress of the rock mass."""
 
     xx: Number  #: Pa, compression positive
     yy: Number  #: Pa, compression positive
-    xy: Number = 0.0  #: Pa, with the sign that makes it part of the same tensor
+    xy: Number = 0.0  #: Pa, component of the same tensor
 
 
 class RecordInPlane(Table):
-    """What is kept of a run."""
+    """The results that are recorded."""
 
     points: list[Point] = Field(default_factory=list)  #: m, where the motion is recorded
-    #: m, points beside joints: tractions, gap and slip of the nearest one
+    #: m, points near joints: traction, gap and slip of the nearest joint
     joints: list[Point] = Field(default_factory=list)
-    interval: Positive | None = None  #: s; default a 200th of the period, or duration / 2000
+    interval: Positive | None = None  #: s; default: period / 200, or duration / 2000
     fields: Positive | None = None  #: s between snapshots of the whole domain; absent: none
-    energy: bool = True  #: keep the energy ledger
+    energy: bool = True  #: record the energy ledger
 
 
 class DemInPlane(Table):
-    """How rigid blocks are stepped, and whether intact rock between joints is cut, too."""
+    """Time stepping of rigid blocks, and their size where intact rock is subdivided."""
 
-    #: m: blocks of about this size between the joints, by further joints as stiff as the rock that
-    #: they stand for; absent: the joint sets alone make the blocks
+    #: m, approximate block size: rock between joints is subdivided by joints of its own stiffness;
+    #: absent: blocks are cut by the joint sets only
     block: Positive | None = None
     step_fraction: Positive = 0.2  #: of the critical step
-    allow_unstable: bool = False  #: go on with a step above the critical one
-    static_tolerance: Positive = 1e-8  #: out-of-balance force ratio that ends the static state
+    allow_unstable: bool = False  #: allow a step above the critical one
+    static_tolerance: Positive = 1e-8  #: out-of-balance force ratio of the static state
     threads: Annotated[int, Field(ge=1, le=1024)] | None = None  #: absent: by the number of blocks
 
 
 class ContinuumInPlane(Table):
-    """How the deformable rock is discretised and stepped."""
+    """Discretisation and time stepping of the deformable rock."""
 
     order: Annotated[int, Field(ge=1, le=4)] = 2  #: of the elements; at most 2 for triangles
     #: absent: quadrilaterals where every block has four corners
     cell: Literal["quadrilateral", "triangle"] | None = None
-    size: Positive | None = None  #: m, of the elements; absent: by the shortest wave
+    size: Positive | None = None  #: m, element size; absent: from the shortest wave
     scheme: Literal["auto", "explicit", "implicit"] = "auto"  #: auto: whichever costs less
-    step_fraction: Positive = 0.5  #: of the critical step, explicit
-    steps_per_period: Positive = 200  #: implicit; of the shortest pulse, or a tenth of the duration
-    spectral_radius: Annotated[float, Field(ge=0, le=1)] = 0.9  #: implicit, of infinite frequency
-    allow_unstable: bool = False  #: go on with an explicit step above the critical one
+    step_fraction: Positive = 0.5  #: explicit: of the critical step
+    steps_per_period: Positive = 200  #: implicit: of the shortest pulse, or a tenth of the duration
+    spectral_radius: Annotated[float, Field(ge=0, le=1)] = 0.9  #: implicit: at infinite frequency
+    allow_unstable: bool = False  #: allow an explicit step above the critical one
 
 
 class NumericsInPlane(Table):
-    """How, not what: every key has a default that is chosen for accuracy."""
+    """Numerical parameters; the defaults are chosen for accuracy."""
 
     dem: DemInPlane = DemInPlane()
     continuum: ContinuumInPlane = ContinuumInPlane()

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from cases.kinds import AnyScene
 
-#: Units that values are met in, other than those of a scene file, and what makes SI of them.
+#: Other units in which values are often given, and their factors to SI.
 Units = tuple[tuple[str, float], ...]
 OF_STRESS: Units = (("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3))
 OF_STIFFNESS: Units = (("GPa/m", 1e9), ("MPa/m", 1e6), ("kPa/m", 1e3))
@@ -14,7 +14,7 @@ OF_DENSITY: Units = (("g/cm3", 1e3), ("kN/m3", 1e3 / 9.81), ("g/m3", 1e-3))
 
 
 class Usual(NamedTuple):
-    """What a quantity is in rock: its unit, what it usually is, and what is far outside."""
+    """A quantity of rock: its unit, usual range, and the range beyond which a value is suspect."""
 
     unit: str
     low: float

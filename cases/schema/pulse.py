@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from cases.schema.history import History
 
 
-#: The keys that a shape needs, and those that it may have.
+#: Required and optional keys of each shape.
 NEEDS: dict[str, set[str]] = {
     "sine": {"period"},
     "half-sine": {"period"},
@@ -36,20 +36,20 @@ TAKES = {"sine": {"cycles"}}
 
 
 class Pulse(Table):
-    """A shape in time, and its size."""
+    """A time history and its amplitude."""
 
-    #: half-sine: half a period; ricker: its peak at 1.5 periods; gabor: a cosine in a Gaussian, its
-    #: peak at 1.6 `cycles`; triangle: a blast; table: straight lines between the samples of a file
+    #: half-sine: half a period; ricker: peak at 1.5 periods; gabor: a cosine in a Gaussian, peak at
+    #: 1.6 `cycles`; triangle: a blast; table: linear interpolation of the samples of a file
     shape: Literal["sine", "half-sine", "ricker", "gabor", "triangle", "step", "table"]
     amplitude: Amplitude  #: Pa, m/s or m/s2 by `quantity`; a factor on the history for "table"
-    #: velocity, acceleration: of the base that a fixed start stands on; where it is quiet, of the
-    #: wave that enters there, by the stress 2 rho c times its velocity
+    #: velocity, acceleration: of the base under a fixed start, or of the wave that enters a quiet
+    #: start, applied as the stress 2 rho c times its velocity
     quantity: Literal["stress", "velocity", "acceleration"] = "stress"
     period: Positive | None = None  #: s; for sine, half-sine, ricker and gabor
-    #: of the sine, default 1; of gabor those within two standard deviations of its envelope
+    #: sine: default 1; gabor: cycles within two standard deviations of the envelope
     cycles: Annotated[int, Field(ge=1, le=1_000_000)] | None = None
-    rise: NonNegative | None = None  #: s, from zero to the peak of a triangle
-    decay: Positive | None = None  #: s, from there to zero
+    rise: NonNegative | None = None  #: s, rise time of a triangle
+    decay: Positive | None = None  #: s, decay time of a triangle
     #: for "table": two-column CSV, s and Pa (or m/s, m/s2); or one trace, .sac or .mseed
     file: str | None = None
 
@@ -101,8 +101,8 @@ def shortest_period(pulses: Iterable[Pulse]) -> float | None:
 
 
 class Load(Pulse):
-    """What acts on the loaded end: the end stress F/A, the prescribed motion of a fixed start, or
-    the wave that comes up to a quiet start from the rock behind it.
+    """The load on the start: the end stress F/A, the prescribed motion of a fixed start, or a wave
+    that enters a quiet start from the rock behind it.
 
     The force acts along `direction` on the start face, `at` (x, z) from its centre; with `arm` it
     is a pure couple A p arm about `direction` instead.
@@ -149,5 +149,5 @@ class Load(Pulse):
         return bool(self.direction[0] or self.direction[2])
 
 
-#: What acts where a scene has no [load].
+#: The load of a scene without [load].
 NO_LOAD = Load(shape="step", amplitude=0.0)

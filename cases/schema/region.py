@@ -21,16 +21,15 @@ if TYPE_CHECKING:
     from cases.partition.outline import Outline
     from cases.schema.rock_mass import RockMass
 
-#: What joint sets call the rock that no region holds.
+#: Name, for joint sets, of rock outside all regions.
 REST = "rock"
 
 
 class Region(Table):
-    """All rock above a line, or within an outline, as far as no region after it holds that; keys of
-    the rock that are absent are those of [rock]. Its boundary is welded but where a joint lies
-    along it."""
+    """Rock above a line or within an outline, unless a later region covers it; absent keys are
+    taken from [rock]. Its boundary is welded except where a joint lies along it."""
 
-    name: Words  #: what the `regions` of joint sets, tables and figures call it
+    name: Words  #: used in joint_sets.regions, tables and figures
     #: degrees from the horizontal, counter-clockwise, of the line; "above" is to its left
     dip: Annotated[float, Field(ge=-180, le=180)] = 0.0
     through: Point | None = None  #: m, a point of the line

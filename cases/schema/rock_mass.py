@@ -28,10 +28,10 @@ from cases.schema.values import Pair, Positive, Table, Words
 
 
 class RockMass(Table):
-    """A rock mass in the plane: its domain, its joints, what acts on it, and what is recorded."""
+    """A rock mass in the plane: domain, rock, joints, waves, loads and receivers."""
 
-    title: Words  #: what tables and figures call it
-    source: Words | None = None  #: where it is from
+    title: Words  #: used in tables and figures
+    source: Words | None = None  #: reference of the scene
     domain: Domain
     rock: IntactRock
     regions: list[Region] = []
@@ -46,7 +46,7 @@ class RockMass(Table):
     numerics: NumericsInPlane = NumericsInPlane()
     record: RecordInPlane
     expect: dict[Pair, Positive] = {}  #: bounds on the relative L2 misfit of pairs
-    name: str = ""  #: of the variant; empty for the scene as it stands
+    name: str = ""  #: of the variant; empty for the base scene
 
     kind: ClassVar[str] = "rock mass"
     _where: str = PrivateAttr(default="")

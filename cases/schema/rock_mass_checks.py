@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 GRAZING = 1e-9  # cosine below which a wave travels along a side
 PARTNER = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
-#: How far points that are named may be from the boundary, over the size of the domain.
+#: Tolerance of points on the boundary, over the size of the domain.
 BESIDE = 1e-6
 
 

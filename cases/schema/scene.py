@@ -55,10 +55,10 @@ __all__ = [
 
 
 class Scene(Table):
-    """A whole scene: one pillar, its joints, its load, and what is recorded."""
+    """A pillar scene: rock, joints, load and receivers."""
 
-    title: Words  #: what tables and figures call it
-    source: Words | None = None  #: where it is from
+    title: Words  #: used in tables and figures
+    source: Words | None = None  #: reference of the scene
     pillar: Pillar
     rock: Rock
     motion: Motion = Motion()
@@ -75,7 +75,7 @@ class Scene(Table):
     numerics: Numerics = Numerics()
     record: Record
     expect: dict[Pair, Positive] = {}  #: bounds on the relative L2 misfit of pairs
-    name: str = ""  #: of the variant; empty for the scene as it stands
+    name: str = ""  #: of the variant; empty for the base scene
 
     kind: ClassVar[str] = "pillar"
     _where: str = PrivateAttr(default="")

@@ -30,16 +30,16 @@ if TYPE_CHECKING:
     from cases.schema.scene import Scene
 
 CLOSE = 1e-6  # of a block: what lengths are rounded to
-#: What an intact segment has not.
+#: Keys that an intact segment does not take.
 OF_JOINTED = (*SPEEDS, *CONSTANTS, "normal_stiffness", "damping_ratio")
 
 
 class Segment(Table):
-    """A length of the pillar; keys that are absent are those of [rock], [joints] and [pillar]."""
+    """A length of the pillar; absent keys are taken from [rock], [joints] and [pillar]."""
 
     y: Annotated[list[NonNegative], Field(min_length=2, max_length=2)]  #: m, its start and end
-    name: Words | None = None  #: what drawings and `explain` call it
-    joints: bool = True  #: False: an intact bar; its blocks are welded pieces of it
+    name: Words | None = None  #: used in drawings and `explain`
+    joints: bool = True  #: False: an intact bar, divided into welded blocks
     block: Positive | None = None  #: m, block thickness = joint spacing
     density: Positive | None = None  #: kg/m3
     p_speed: Positive | None = None  #: m/s, unbounded rock mass

@@ -9,7 +9,7 @@ from cases.schema.values import DirectionInPlane, Number, Point, contradiction_h
 
 Side = Literal["left", "right", "bottom", "top", "outline"]
 
-#: The keys that a kind of load needs, and those that it may have, beside its pulse.
+#: Required and optional keys of each kind of load, in addition to its pulse.
 KEYS = {
     "pressure": (set(), {"side", "opening", "between"}),
     "force": ({"at", "direction"}, set()),
@@ -19,35 +19,35 @@ QUANTITIES = {"pressure": {"stress"}, "force": {"force"}, "base": {"velocity", "
 
 
 class Wave(Pulse):
-    """A plane wave that enters through the quiet sides that it meets."""
+    """A plane incident wave, which enters through the quiet sides that it reaches."""
 
     file_key: ClassVar[str] = "waves.file"
 
     amplitude: Number  #: Pa or m/s by `quantity`; a factor on the history for "table"
-    #: stress: on the wave front, compression positive in P; velocity: of particles
+    #: stress: on the wave front, compression positive for P; velocity: of the particles
     quantity: Literal["stress", "velocity"] = "stress"  # type: ignore[assignment]
-    #: P: particles move along the direction; S: across it, to its left
+    #: P: particles move along the direction; S: normal to it, to its left
     kind: Literal["P", "S"]
-    direction: DirectionInPlane  #: x, y: of travel
-    #: m, where the pulse begins at t = 0; absent: the corner of the domain that is met first
+    direction: DirectionInPlane  #: x, y: of propagation
+    #: m, where the pulse begins at t = 0; absent: the first corner of the domain that it reaches
     through: Point | None = None
 
 
 class PlaneLoad(Pulse):
-    """A pressure on an opening or a side, a force at a point, the motion of a fixed side, or what
-    comes up to a quiet side from the rock behind it."""
+    """A pressure on an opening or a side, a force at a point, the motion of a fixed side, or
+    a wave that enters a quiet side from the rock behind it."""
 
     file_key: ClassVar[str] = "loads.file"
 
     amplitude: Number  #: Pa, N/m, m/s or m/s2 by `quantity`; a factor on the history for "table"
-    #: stress of a pressure, force of a force, velocity or acceleration of a base
+    #: pressure: stress; force: force; base: velocity or acceleration
     quantity: Literal["stress", "force", "velocity", "acceleration"] = "stress"  # type: ignore[assignment]
-    #: base: the motion of a side that is fixed; where it is quiet, that of the wave that enters, by
+    #: base: motion of a fixed side, or of the wave that enters a quiet side, applied as the stress
     #: 2 rho c times its velocity
     kind: Literal["pressure", "force", "base"]
-    side: Side | None = None  #: that a pressure acts on, or that is shaken
-    opening: Annotated[int, Field(ge=0)] | None = None  #: that a pressure acts in, from 0
-    #: m, two points of the boundary: the pressure acts on the part from one to the other alone
+    side: Side | None = None  #: loaded by a pressure, or moved as a base
+    opening: Annotated[int, Field(ge=0)] | None = None  #: loaded by a pressure, counted from 0
+    #: m, two points of the boundary: the pressure acts only between them
     between: Annotated[list[Point], Field(min_length=2, max_length=2)] | None = None
     at: Point | None = None  #: m, where a force acts
     direction: DirectionInPlane | None = None  #: x, y: of a force or of the motion of a base

@@ -65,7 +65,7 @@ class Rock(Attenuating):
     s_speed: Positive | None = None  #: m/s
     equivalent_modulus: Positive | None = None  #: Pa, E_eq of the rock mass
     equivalent_poisson: Poisson | None = None  #: of the rock mass
-    intact_modulus: Positive | None = None  #: Pa, E of the blocks; needed for the jointed continuum
+    intact_modulus: Positive | None = None  #: Pa, E of the blocks; for the jointed continuum
     intact_poisson: Poisson = 0.25  #: of the blocks
 
     @model_validator(mode="after")
@@ -91,13 +91,13 @@ def wrong_speeds(table: Any) -> str | None:
 
 
 class Scatter(Table):
-    """Joints at random: uniformly distributed about their means, without any for an intact part."""
+    """Random joints, uniformly distributed about their means; intact segments have none."""
 
-    #: standard deviation of the block thickness over its mean; lengths of segments stay
+    #: coefficient of variation of the block thickness; segments keep their lengths
     spacing: Annotated[float, Field(ge=0, le=0.5)] = 0.0
-    #: standard deviation of the joints' compliance 1/K_n over its mean, which stays
+    #: coefficient of variation of the joints' compliance 1/K_n, whose mean is unchanged
     compliance: Annotated[float, Field(ge=0, le=0.5)] = 0.0
-    seed: Annotated[int, Field(ge=0, lt=2**63)]  #: the same seed gives the same joints everywhere
+    seed: Annotated[int, Field(ge=0, lt=2**63)]  #: the same seed gives the same joints
 
     @model_validator(mode="after")
     def _scatters(self) -> "Scatter":
@@ -107,15 +107,15 @@ class Scatter(Table):
 
 
 class Motion(Table):
-    """How blocks may move where the scene calls for motion across the axis."""
+    """Rotation of the blocks in scenes with motion across the axis."""
 
-    #: none: they translate only, as in a plane wave through rock of large extent; small: rotation
+    #: none: translation only, as in a plane wave through rock of large extent; small: rotation
     #: vectors; finite: quaternions
     rotation: Literal["none", "small", "finite"] = "small"
 
 
 class Ends(Table):
-    """What holds the two ends: matched, a dashpot behind the end block's half-block spring,
+    """Boundary conditions of the ends: matched, a dashpot behind the end block's half-block spring,
     reflects least; quiet, (9), has the dashpot on the end block; fixed has the spring and a wall.
     """
 
@@ -132,55 +132,55 @@ class Gravity(Table):
 
 
 class Prestress(Table):
-    """Normal stress that the joints carry before the load; ends that give way carry it on."""
+    """Initial normal stress of the joints, also carried by ends that are not fixed."""
 
     normal: Number  #: Pa, compression positive
 
 
 class Time(Table):
-    """How long the scene lasts."""
+    """Duration of the scene."""
 
     duration: Positive  #: s
 
 
 class Record(Table):
-    """What is kept of a run."""
+    """The results that are recorded."""
 
     stress: list[NonNegative] = Field(default_factory=list)  #: m, sections
     velocity: list[NonNegative] = Field(default_factory=list)  #: m, points
-    interval: Positive | None = None  #: s; default a 200th of the period, or duration / 2000
+    interval: Positive | None = None  #: s; default: period / 200, or duration / 2000
     fields: Positive | None = None  #: s between snapshots of the whole pillar; absent: none
-    energy: bool = True  #: keep the energy ledger
+    energy: bool = True  #: record the energy ledger
 
 
 class DemNumerics(Table):
-    """How the rigid blocks are stepped; the default step is for accuracy, not only stability."""
+    """Time stepping of the rigid blocks; the default step is for accuracy, not only stability."""
 
     step_fraction: Positive = 0.05  #: of the scheme's own critical step
-    #: fourth-order: four forces a step (PEFRL), for axial motion without any damping
+    #: fourth-order (PEFRL): four force evaluations per step, for axial motion without damping
     scheme: Literal["leapfrog", "fourth-order"] = "leapfrog"
-    allow_unstable: bool = False  #: go on with a step above the critical one
-    static_tolerance: Positive = 1e-8  #: out-of-balance force ratio that ends the static state
+    allow_unstable: bool = False  #: allow a step above the critical one
+    static_tolerance: Positive = 1e-8  #: out-of-balance force ratio of the static state
     threads: Annotated[int, Field(ge=1, le=1024)] | None = None  #: absent: by the number of blocks
 
 
 class ContinuumNumerics(Table):
-    """How the deformable rock is discretised and stepped."""
+    """Discretisation and time stepping of the deformable rock."""
 
-    #: 1: the bar; 2: plane stress; 3: the square column; absent: the least that the scene needs
+    #: 1: bar; 2: plane stress; 3: square column; absent: the least that the scene needs
     dim: Annotated[int, Field(ge=1, le=3)] | None = None
     order: Annotated[int, Field(ge=1, le=4)] = 2  #: of the elements; at most 2 for simplices
     cell: Literal["hexahedron", "simplex"] = "hexahedron"  #: quadrilateral and triangle in dim 2
-    mass: Literal["lumped", "consistent"] = "lumped"  #: consistent: simplices, implicit steps
-    #: absent: as many as the load needs, see continuum.mesh.pillar.elements_in_block
+    mass: Literal["lumped", "consistent"] = "lumped"  #: consistent: implicit simplices only
+    #: absent: from the load, see continuum.mesh.pillar.elements_in_block
     elements_per_block: Annotated[int, Field(ge=1, le=1000)] | None = None
     elements_across: Annotated[int, Field(ge=1, le=100)] = 1  #: in each direction of the section
     mesh: str | None = None  #: a gmsh file (.msh) of the pillar, with its rock and joints tagged
     scheme: Literal["auto", "explicit", "implicit"] = "auto"  #: auto: whichever costs less
-    step_fraction: Positive = 0.2  #: of the critical step, explicit
-    steps_per_period: Positive = 200  #: implicit; of the load, or of a tenth of the duration
-    spectral_radius: Annotated[float, Field(ge=0, le=1)] = 0.9  #: implicit, of infinite frequency
-    allow_unstable: bool = False  #: go on with an explicit step above the critical one
+    step_fraction: Positive = 0.2  #: explicit: of the critical step
+    steps_per_period: Positive = 200  #: implicit: of the load, or a tenth of the duration
+    spectral_radius: Annotated[float, Field(ge=0, le=1)] = 0.9  #: implicit: at infinite frequency
+    allow_unstable: bool = False  #: allow an explicit step above the critical one
 
     _mesh_path: Path | None = PrivateAttr(default=None)
 
@@ -197,7 +197,7 @@ class ContinuumNumerics(Table):
 
 
 class Numerics(Table):
-    """How, not what: every key has a default that is chosen for accuracy."""
+    """Numerical parameters; the defaults are chosen for accuracy."""
 
     dem: DemNumerics = DemNumerics()
     continuum: ContinuumNumerics = ContinuumNumerics()

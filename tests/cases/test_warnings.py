@@ -284,6 +284,6 @@ def test_local_damping_under_a_load(scene_with):
 
 def test_a_scene_without_a_wave_is_not_warned_of_one():
     scene = cases.load_variant(
-        find("beyond/cantilever-gravity"), "let go", {"time.duration": 1e-3, "source": ""}
+        find("beyond/cantilever-gravity"), "sudden gravity", {"time.duration": 1e-3, "source": ""}
     )
     assert warnings(scene) == []

@@ -46,9 +46,7 @@ def test_blocks_and_rock_tend_to_the_exact_joint():
 
 
 @pytest.mark.parametrize("scheme", ["explicit", "implicit"])
-@pytest.mark.parametrize(
-    "variant", ["", "friction rises with the rate", "contacts a thousandth of a second old"]
-)
+@pytest.mark.parametrize("variant", ["", "rate strengthening", "contacts 1 ms old"])
 def test_one_joint_in_homogenised_rock(scheme, variant):
     """1 % of the exact waveform, explicit and in steps of a thousandth of the period."""
     changes = {
