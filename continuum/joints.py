@@ -11,9 +11,7 @@ from cases.material.calibrate import Properties
 from continuum.model import Interfaces
 from continuum.space.interface import Jumps
 from continuum.space.stencils import stencils
-from joints.closure import closure_stiffness
-from joints.dilation import riding_stiffness
-from joints.law import Law, law, parts_of, table_of
+from joints.law import Law, law, parts_of, stiffest, table_of
 
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
@@ -69,14 +67,11 @@ def _fails(p: Properties, shears: bool) -> np.ndarray:
     """Return which joints can open, slide, break or stiffen, bool array [N - 1]."""
     from joints.shear import UNLIMITED
 
-    found = ~p.tension
+    found = ~p.tension | p.across()
     if shears and p.cohesion is not None:
         found = found | (p.cohesion < UNLIMITED)
     elif shears and p.friction is not None:
         found = np.ones_like(found)
-    for limit in (p.tensile_strength, p.maximum_closure):
-        if limit is not None:
-            found = found | (limit < UNLIMITED)
     return found
 
 
@@ -100,14 +95,8 @@ def interfaces(
 ) -> Interfaces:
     """Return the joints of a model; prestress : [directions, q], Pa."""
     jump = csr_matrix(vstack(jumps.matrices))
-    stiffest = law.normal_stiffness, law.shear_stiffness
     if law.maximum_closure is not None:
-        from cases.material.closure import stress_in_reach
-
         law = law._replace(rock_compliance=0.0)
-        stiffest = closure_stiffness(law, stress_in_reach(scene)), law.shear_stiffness
-    if law.dilation is not None:
-        stiffest = riding_stiffness(law.dilation, law.friction, *stiffest)
     return Interfaces(
         jump=jump,
         stencils=stencils(jump),
@@ -118,5 +107,5 @@ def interfaces(
         table=table_of(law),
         parts=parts_of(law),
         prestress=prestress,
-        stiffest=stiffest,
+        stiffest=stiffest(law, scene),
     )

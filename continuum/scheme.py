@@ -109,14 +109,8 @@ def _bends(discrete: Discrete | PlaneDiscrete) -> bool:
     """Return whether joints open, slide, break or stiffen."""
     law = None if discrete.joints is None else discrete.joints.law
     return law is not None and any(
-        part is not None
-        for part in (
-            law.carries_tension,
-            law.tensile_strength,
-            law.cohesion,
-            law.friction,
-            law.maximum_closure,
-        )
+        value is not None and not name.endswith(("stiffness", "viscosity"))
+        for name, value in law._asdict().items()
     )
 
 

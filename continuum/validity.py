@@ -69,9 +69,9 @@ def _beyond_the_homogenised(scene: Scene, p: Properties, shears: bool) -> str:
         return "a joint stiffer than the others cannot be added to the homogenised bar"
     if p.damps_alone.any():
         return "a homogenised bar cannot damp one ordinary joint by itself"
-    for strength in (p.cohesion if shears else None, p.tensile_strength):
-        if strength is not None and (strength[ordinary] < UNLIMITED).any():
-            return "a homogenised bar has no joints that slide or break"
+    slides = shears and p.cohesion is not None and p.cohesion < UNLIMITED
+    if (slides | p.across() | np.zeros_like(p.tension))[ordinary].any():
+        return "a homogenised bar has no joints that slide or break"
     if shears and p.cohesion is None and p.friction is not None:
         return "a homogenised bar has no joints that slide"
     return ""

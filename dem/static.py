@@ -21,8 +21,8 @@ from cases.material.calibrate import Properties
 from cases.sampling import Interpolation
 from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
-from joints.closure import closure_stiffness
 from joints.law import Law, parts_of
+from joints.law import stiffest as stiffest_springs
 from joints.normal import gap_under
 
 STEPS_BETWEEN_LOOKS = 10
@@ -93,11 +93,9 @@ def gaps_under(p: Properties, stress: float | np.ndarray) -> np.ndarray:
 def stiffest(scene: Scene, p: Properties) -> Properties:
     """Return the numbers of a scene with its joints as stiff as they become within reach, dashpots
     as they are; p itself where none stiffens."""
-    if p.maximum_closure is None:
+    (stiffness, _), eta = stiffest_springs(_springs(p), scene), p.joint_time_constant
+    if stiffness is p.stiffness:
         return p
-    from cases.material.closure import stress_in_reach
-
-    stiffness, eta = closure_stiffness(_springs(p), stress_in_reach(scene)), p.joint_time_constant
     if eta is None:
         return replace(p, stiffness=stiffness)
     eta = eta * p.stiffness / stiffness
@@ -105,7 +103,8 @@ def stiffest(scene: Scene, p: Properties) -> Properties:
 
 
 def _springs(p: Properties) -> Law:
-    return Law(p.stiffness, maximum_closure=p.maximum_closure, rock_compliance=p.rock_compliance)
+    rock = p.rock_compliance
+    return Law(p.stiffness, rock_compliance=rock, **p.strengths(shears=False))
 
 
 def since_prestress(

@@ -8,15 +8,19 @@ Per unit area: traction in Pa, compression positive; gap in m, positive when ope
 penetration is negative. The shear traction acts on the right block.
 """
 
-from typing import Any, NamedTuple, overload
+from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 import numpy as np
 
-from joints.dilation import lift
+from joints.closure import closure_stiffness
+from joints.dilation import lift, riding_stiffness
 from joints.formula import flags, formula
 from joints.normal import normal_traction
 from joints.shear import cohesion_left, shear_return, shear_strength
 from joints.slide import after_slide
+
+if TYPE_CHECKING:
+    from cases.kinds import AnyScene
 
 
 class Law(NamedTuple):
@@ -174,6 +178,19 @@ def law(
     )
 
 
+def stiffest(law: Law, scene: "AnyScene") -> tuple[Any, Any]:
+    """Return K_n and K_s (Pa/m; None without shear) that the critical step of a scene is for: of
+    joints closed as far as is in reach, and slid where that lifts them."""
+    normal, shear = law.normal_stiffness, law.shear_stiffness
+    if law.maximum_closure is not None:
+        from cases.material.closure import stress_in_reach
+
+        normal = closure_stiffness(law, stress_in_reach(scene))
+    if law.dilation is not None:
+        normal, shear = riding_stiffness(law.dilation, law.friction, normal, shear)
+    return normal, shear
+
+
 def table_of(law: Law) -> np.ndarray:
     """Return the parameters as kernels take them: [field, 1], or [field, joint] where some vary.
 
@@ -186,15 +203,20 @@ def table_of(law: Law) -> np.ndarray:
     return table
 
 
-@formula
-def law_of(table, j):
-    """Return the law of joint j, of column 0 where all are alike: every parameter a number."""
-    return Law(
-        table[0, j], table[1, j], table[2, j], table[3, j], table[4, j],
-        table[5, j], table[6, j], table[7, j], table[8, j], table[9, j], table[10, j], table[11, j],
-        table[12, j], table[13, j], table[14, j], table[15, j], table[16, j], table[17, j],
-        table[18, j], table[19, j], table[20, j],
-    )  # fmt: skip
+def law_reader(row: str) -> Any:
+    """Return the formula of (table, j) that returns a law, every parameter a number.
+
+    row : expression of where the number of a row {} is in the table. It is written out for every
+    row: numba makes no tuple of fields from a loop.
+    """
+    rows = ", ".join(f"table[{row.format(i)}]" for i in range(len(Law._fields)))
+    scope = {"Law": Law, "__name__": __name__}
+    exec(f"def law_of(table, j):\n    return Law({rows})", scope)
+    return formula(scope["law_of"])
+
+
+#: The law of joint j, of column 0 where all are alike.
+law_of = law_reader("{}, j")
 
 
 @formula

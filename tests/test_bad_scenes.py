@@ -398,12 +398,12 @@ MISTAKES = {
         "[joints]",
         f"[joints]\nfriction_angle = 30.0\n{RATED}\n"
         "dynamic_friction_angle = 20.0\nweakening_distance = 1e-3",
-        ["joints.dynamic_friction_angle = 20", "direct_effect already makes"],
+        ["joints.dynamic_friction_angle = 20", "contradicts direct_effect"],
     ),
     "rate and state that dilates": (
         "[joints]",
         f"[joints]\nfriction_angle = 30.0\n{RATED}\ndilation_angle = 5.0\ndilation_distance = 1e-2",
-        ["joints.dilation_angle = 5", "direct_effect already makes"],
+        ["joints.dilation_angle = 5", "contradicts direct_effect"],
     ),
     "dilation without friction": (
         "[joints]",

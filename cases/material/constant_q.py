@@ -57,8 +57,9 @@ def beyond_blocks(scene: AnyScene) -> str:
     if is_spatial(scene):
         return "rigid blocks support a quality_factor in axial motion only"
     p = calibrate(scene)
-    others = scene.gravity, scene.prestress, p.local_damping, p.tensile_strength, p.maximum_closure
-    if not p.tension.all() or any(one is not None for one in others):
+    others = scene.gravity, scene.prestress, p.local_damping
+    bends = not p.tension.all() or bool(p.strengths(shears=False))
+    if bends or any(one is not None for one in others):
         return (
             "rigid blocks support a quality_factor with linear joints only, without gravity, "
             "prestress or local damping"

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from cases.schema.discretisation import check_discretisation, check_scheme
-from cases.schema.joint import JointLaw
+from cases.schema.joint import ACROSS, JointLaw
 from cases.schema.plausible import INTACT, meant
 from cases.schema.segment import Segment
 from cases.schema.segment_checks import check_segments
@@ -130,7 +130,7 @@ def _beyond_scaling(scene: Scene) -> Iterator[tuple[str, object, bool]]:
     laws: dict[str, JointLaw] = {"joints": scene.joints}
     laws |= {f"soft_layers[{i}]": layer for i, layer in enumerate(scene.soft_layers)}
     for table, law in laws.items():
-        for key in ("tensile_strength", "cohesion", "maximum_closure"):
+        for key in ("cohesion", *ACROSS):
             yield f"{table}.{key}", getattr(law, key), getattr(law, key) is not None
 
 

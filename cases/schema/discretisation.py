@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from cases.schema.joint import PARTS
 from cases.schema.values import contradiction
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ def check_scheme(scene: Scene) -> None:
 
 
 #: Keys of joints that a layer meshed as rock does not take.
-STRENGTH = ("tension", "tensile_strength", "friction_angle", "cohesion", "maximum_closure")
+STRENGTH = ("tension", "friction_angle", "cohesion", *(part.keys[0] for part in PARTS))
 
 
 def check_discretisation(scene: Scene) -> None:

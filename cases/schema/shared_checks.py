@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan, ceil, degrees, floor, log10, radians, tan
+from math import ceil, floor, log10
 from typing import TYPE_CHECKING
 
 from cases.kinds import AnyScene
@@ -69,55 +69,20 @@ def check_strength(table: str, law: JointLaw) -> None:
         for key in part.keys if given else ():
             if key not in given:
                 raise contradiction(f"{table}.{key}", None, f"is required with {table}.{given[0]}")
-    if law.tension is not None and law.tensile_strength is not None:
-        raise contradiction(
-            f"{table}.tension", law.tension, "contradicts tensile_strength: give one of them"
-        )
+        if not given:
+            continue
+        for key in part.instead_of:
+            if (value := getattr(law, key)) is not None:
+                allowed = f"contradicts {part.keys[0]}: give one of them"
+                raise contradiction(f"{table}.{key}", value, allowed)
+        if found := part.wrong(law):
+            raise contradiction(f"{table}.{found[0]}", getattr(law, found[0]), found[1])
     residual, cohesion = law.residual_cohesion, law.cohesion
     if residual is not None and (cohesion is None or residual > cohesion):
         allowed = (
             "needs a cohesion" if cohesion is None else f"at most the cohesion {cohesion:g} Pa"
         )
         raise contradiction(f"{table}.residual_cohesion", residual, allowed)
-    for key in ("dynamic_friction_angle", "dilation_angle"):
-        angle, static = getattr(law, key), law.friction_angle
-        if angle is not None and static is None:
-            raise contradiction(f"{table}.{key}", angle, "needs a friction_angle")
-        if angle is not None and angle > static:
-            allowed = f"must be at most friction_angle = {static:g}"
-            raise contradiction(f"{table}.{key}", angle, allowed)
-    _check_dilation(table, law)
-    _check_rate(table, law)
-
-
-def _check_rate(table: str, law: JointLaw) -> None:
-    """Friction that depends on the rate is the whole of it, and as small as slip is slow: nothing
-    could lift the faces."""
-    if law.direct_effect is None:
-        return
-    if not law.friction_angle:
-        raise contradiction(f"{table}.direct_effect", law.direct_effect, "needs a friction_angle")
-    for key in ("dynamic_friction_angle", "dilation_angle"):
-        if getattr(law, key) is not None:
-            allowed = "direct_effect already makes friction rate-dependent: give one of them"
-            raise contradiction(f"{table}.{key}", getattr(law, key), allowed)
-
-
-def _check_dilation(table: str, law: JointLaw) -> None:
-    """What lifts the faces must not take more work than friction gives: both tangents are linear in
-    the path, so that the ends of the weakening decide."""
-    dilation, dynamic = law.dilation_angle, law.dynamic_friction_angle
-    distance = law.weakening_distance
-    if dilation is None or law.dilation_distance is None or dynamic is None or distance is None:
-        return
-    share = max(1 - distance / law.dilation_distance, 0.0)
-    if share * tan(radians(dilation)) > tan(radians(dynamic)):
-        most = degrees(atan(tan(radians(dynamic)) / share))
-        allowed = (
-            f"must be at most {most:.4g}, so that dilation stays below friction at "
-            f"dynamic_friction_angle = {dynamic:g}"
-        )
-        raise contradiction(f"{table}.dilation_angle", dilation, allowed)
 
 
 def rounded_up(x: float) -> float:

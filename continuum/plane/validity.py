@@ -4,19 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from cases.schema.joint import PARTS
 from continuum.plane.rock import smeared
 
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
 
 #: Keys of a joint set that the effective medium has no room for.
-NONLINEAR = (
-    "friction_angle",
-    "cohesion",
-    "tensile_strength",
-    "maximum_closure",
-    "damping_ratio",
-)
+NONLINEAR = ("friction_angle", "cohesion", "damping_ratio", *(part.keys[0] for part in PARTS))
 
 
 def applies(scene: RockMass, model: str = "jointed") -> str:

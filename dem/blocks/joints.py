@@ -12,9 +12,7 @@ from cases.material.dashpots import set_time_constants
 from cases.material.rigid_blocks import RigidJoints
 from cases.material.strength import strength_of
 from cases.schema.joint import JointLaw
-from joints.closure import closure_stiffness
-from joints.dilation import riding_stiffness
-from joints.law import Law, law, uniform
+from joints.law import Law, law, stiffest, uniform
 
 if TYPE_CHECKING:
     from cases.material.rock_mass import Stiffness
@@ -53,7 +51,7 @@ def columns(scene: RockMass, joints: RigidJoints, others: Stiffness) -> Columns:
     which[:made] = np.minimum(joints.kinds[:, 0], len(sets))
     tension = np.array([*(one.tension is not False for one in sets), True])[which]
     strengths = strength_of([*sets, JointLaw()], which).strengths()
-    stiffens, rock = strengths["maximum_closure"] is not None, None
+    stiffens, rock = "maximum_closure" in strengths, None
     if stiffens:  # rock's share of the compliance, at most all but a billionth of it
         rock = np.minimum(np.resize(joints.excess[0], len(normal)), (1 - 1e-9) / normal)
         rock[which == len(sets)] = 0.0
@@ -62,19 +60,10 @@ def columns(scene: RockMass, joints: RigidJoints, others: Stiffness) -> Columns:
     if eta is not None:
         viscosities = (uniform(values) for values in (eta[0] * normal, eta[1] * shear))
         found = found._replace(**dict(zip(VISCOSITIES, viscosities, strict=True)))
-    fails = not tension.all() or any(values is not None for values in strengths.values())
+    fails = not tension.all() or bool(strengths)
     rules = _rules(scene, which)
-    closed = _stiffest(scene, found, len(normal)) if stiffens else normal
-    stiffest = np.array([closed, shear])
-    if found.dilation is not None:
-        stiffest = np.array(riding_stiffness(found.dilation, found.friction, *stiffest))
-    return Columns(found, normal, shear, stiffest, eta, rules, rules.shape[2] if fails else 0)
-
-
-def _stiffest(scene: RockMass, found: Law, count: int) -> np.ndarray:
-    from cases.material.closure import stress_in_reach
-
-    return np.broadcast_to(closure_stiffness(found, stress_in_reach(scene)), count)
+    most = np.array([np.resize(one, len(normal)) for one in stiffest(found, scene)])
+    return Columns(found, normal, shear, most, eta, rules, rules.shape[2] if fails else 0)
 
 
 VISCOSITIES = ("normal_viscosity", "shear_viscosity")

@@ -85,8 +85,7 @@ def energy_terms(scene: Scene, p: Properties) -> tuple[str, ...]:
 
 
 def _is_nonlinear(p: Properties) -> bool:
-    limits = (p.friction, p.cohesion, p.tensile_strength, p.maximum_closure)
-    return not p.tension.all() or any(limit is not None for limit in limits)
+    return not p.tension.all() or bool(p.given)
 
 
 def points_looked_after(scene: Scene, p: Properties) -> int:

@@ -90,7 +90,7 @@ from dem.spatial.model import DIRECTION, FACE, FALL, INERTIA, PUSH, WEIGHT, cons
 from joints.dilation import lift
 from joints.energy import elastic_energy, fracture_energy_spent, friction_work, lift_work
 from joints.formula import formula
-from joints.law import Law
+from joints.law import Law, law_reader
 from joints.normal import normal_traction, spring_traction
 from joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
 from joints.slide import after_slide
@@ -102,16 +102,8 @@ NORMAL, SHEAR = L * Law._fields.index("normal_stiffness"), L * Law._fields.index
 DASHPOT = L * Law._fields.index("normal_viscosity") - NORMAL
 
 
-@formula
-def law_at(table, i):
-    """Return the law of the joint in lane i of a tile's table; of all joints for i = 0."""
-    return Law(
-        table[i], table[L + i], table[2 * L + i], table[3 * L + i], table[4 * L + i],
-        table[5 * L + i], table[6 * L + i], table[7 * L + i], table[8 * L + i], table[9 * L + i],
-        table[10 * L + i], table[11 * L + i], table[12 * L + i], table[13 * L + i],
-        table[14 * L + i], table[15 * L + i], table[16 * L + i], table[17 * L + i],
-        table[18 * L + i], table[19 * L + i], table[20 * L + i],
-    )  # fmt: skip
+#: The law of the joint in lane i of a tile's table; of all joints for i = 0.
+law_at = law_reader(f"{{}} * {L} + j")
 
 
 def contacts_for(form: Form) -> Callable:

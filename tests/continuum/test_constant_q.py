@@ -213,25 +213,29 @@ INTACT = {
 }
 
 
-@pytest.mark.parametrize(("solver", "quality"), [("jointed-bar", 10.0), ("jointed-bar", 50.0)])
-def test_receivers_see_the_quality_factor_in_the_whole_band(pillar, solver, quality):
-    """Within 5 % over the two decades of the band, between receivers on a bar without joints, by a
-    pulse with all of these frequencies. Waves lose exp(-omega x / (2 Q c)) of their amplitude."""
+@pytest.mark.parametrize("quality", [10.0, 20.0, 50.0, 100.0])
+def test_receivers_see_the_quality_factor_in_the_whole_band(pillar, quality):
+    """Within 3 % over the two decades of the band, between receivers on a bar without joints, by a
+    pulse with all of these frequencies: 2.5 % are the four mechanisms', 0.2 % the records'. These
+    hold the wave's tail, two periods of 10 Hz, and forty samples a period of 1000 Hz: a tail cut
+    off at 0.08 s is 5 % at 12 Hz, aliasing at ten samples 10 % at 1000 Hz and Q = 100.
+    Waves lose exp(-omega x / (2 Q c)) of their amplitude."""
     scene = pillar(
-        **INTACT,
-        pillar__length=60.0,
+        rock__intact_modulus=INTACT["rock__intact_modulus"],
+        pillar__length=150.0,
+        segments=[INTACT["segments"][0] | {"y": [0.0, 150.0]}],
         rock__quality_factor=quality,
         rock__reference_frequency=100.0,
         load={"shape": "triangle", "amplitude": 1e6, "rise": 2e-4, "decay": 2e-4},
         ends__end="quiet",
-        record={"stress": [2.0, 10.0], "velocity": [2.25, 10.25], "interval": 1e-4},
-        time__duration=0.08,
+        record={"stress": [2.0, 10.0], "velocity": [2.25, 10.25], "interval": 2.5e-5},
+        time__duration=0.2,
         soft_layers=[],
     )
-    result = solve(solver, scene)
+    result = solve("jointed-bar", scene)
     band = quality_factor(result, quantity="stress").sel(frequency=slice(10.0, 1000.0))
-    assert len(band.frequency) > 70
-    assert float(np.abs(band.quality / quality - 1).max()) < 0.05
+    assert len(band.frequency) > 190
+    assert float(np.abs(band.quality / quality - 1).max()) < 0.03
     theory = ConstantQ(quality, 100.0).attenuation(band.frequency, calibrate(scene).bar_speed)
     assert np.allclose(band.attenuation, theory, rtol=0.06)
 

@@ -22,8 +22,8 @@ import xarray as xr
 
 from cases.loads import LoadHistory, load_history
 from cases.material.calibrate import Properties, calibrate
-from cases.material.strength import UNLIMITED
 from cases.sampling import sample_times
+from cases.schema.joint import UNLIMITED
 from cases.schema.scene import Scene
 from compare.exact.bar.images import ENTERS
 from compare.exact.conditions import holds, static_stress

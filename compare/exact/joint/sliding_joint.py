@@ -30,8 +30,8 @@ from numpy.polynomial.legendre import leggauss
 from cases.histories import LoadHistory
 from cases.loads import load_history
 from cases.material.calibrate import Properties, calibrate
-from cases.material.strength import UNLIMITED
 from cases.sampling import sample_times
+from cases.schema.joint import UNLIMITED
 from cases.schema.scene import Scene
 from compare.exact.bar.images import ENTERS
 from compare.exact.conditions import LAYERS, holds, static_stress

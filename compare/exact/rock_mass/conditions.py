@@ -10,6 +10,7 @@ import numpy as np
 from cases.partition.joints import direction_of
 from cases.partition.outline import outline_of
 from cases.partition.regions import strata
+from cases.schema.joint import PARTS
 
 if TYPE_CHECKING:
     from cases.schema.joint_set import JointSet
@@ -37,10 +38,9 @@ def beyond_linear_law(one: JointSet) -> str | None:
     """Return why the law of a joint set is not linear, None where it is."""
     if one.tension is False:
         return f"joint set {one.name!r} bars tension"
-    if one.tensile_strength is not None:
-        return f"joint set {one.name!r} has a tensile strength"
-    if one.maximum_closure is not None:
-        return f"joint set {one.name!r} stiffens as it closes"
+    for part in PARTS:
+        if part.of(one):
+            return f"joint set {one.name!r}: {part.words}"
     if one.friction_angle is not None or one.cohesion is not None:
         return f"joint set {one.name!r} can slip"
     return None

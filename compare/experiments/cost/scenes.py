@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import cases
 from cases.kinds import AnyScene, pillar_of
+from cases.schema.joint import PARTS, JointLaw
 from cases.schema.scene import Scene
 from cases.validate import validated
 
@@ -20,6 +21,11 @@ BLOCKS = 1000  # of the pillar that effects are compared on
 #: A blow that moves blocks in all their freedoms.
 ACROSS = {"load.direction": [0.6, 0.8, 0.0], "load.at": [0.1, 0.05]}
 
+#: The parts of the joints' law but for those that leave no place for others of them, and these.
+OTHERS = [part for part in PARTS if JointLaw.model_fields.keys() & {*part.instead_of} - {"tension"}]
+TOGETHER = {k: v for part in PARTS if part not in OTHERS for k, v in part.sample.items()}
+BY_ITSELF = {k: v for part in OTHERS for k, v in part.sample.items()}
+
 #: Every effect at once: the line against which a scene's own cost is held.
 EVERYTHING = {
     **ACROSS,
@@ -28,13 +34,7 @@ EVERYTHING = {
     "joints.friction_angle": 30.0,
     "joints.cohesion": 1e5,
     "joints.residual_cohesion": 0.0,
-    "joints.dynamic_friction_angle": 20.0,
-    "joints.weakening_distance": 1e-3,
-    "joints.dilation_angle": 5.0,
-    "joints.dilation_distance": 1e-2,
-    "joints.tensile_strength": 1e5,
-    "joints.fracture_energy": 100.0,
-    "joints.maximum_closure": 1e-3,
+    **{f"joints.{key}": value for key, value in TOGETHER.items()},
     "soft_layers": [{"y": 0.5, "spacing_stiffness": 4.375e8}],
     "record.stress": [0.5],
     "damping.mass_proportional": 1.0,
@@ -60,15 +60,11 @@ EVERYTHING_IN_PLANE: dict[str, Any] = {
     "prestress": {"xx": 1e5, "yy": 1e5},
     "record": {"points": [[0.5, 0.5]]},
 }
-FRICTION = {"damping_ratio": 0.02, "maximum_closure": 1e-3, "friction_angle": 30.0, "cohesion": 1e6}
-WEAKENING = {"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3}
-DILATION = {"dilation_angle": 5.0, "dilation_distance": 1e-2}
-RATE = {"direct_effect": 0.01, "evolution_effect": 0.015}
-RATE |= {"critical_slip_distance": 1e-4, "reference_rate": 1e-6}
+FRICTION = {"damping_ratio": 0.02, "friction_angle": 30.0, "cohesion": 1e6}
 #: The joints along y and along x of that.
 FAILING = (
-    ELASTIC | FRICTION | WEAKENING | DILATION | {"residual_cohesion": 0.0, "tension": False},
-    ELASTIC | FRICTION | RATE | {"tensile_strength": 1e6, "fracture_energy": 1e3},
+    ELASTIC | FRICTION | TOGETHER | {"residual_cohesion": 0.0},
+    ELASTIC | FRICTION | BY_ITSELF | {"tension": False},
 )
 
 

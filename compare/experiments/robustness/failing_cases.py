@@ -3,6 +3,7 @@
 from functools import partial
 from typing import Any
 
+from cases.schema.joint import PARTS
 from compare.experiments.robustness.case import STEP, HardCase, rock_is_spared
 from compare.experiments.robustness.criteria import chatter, contact, energies, extremes, layers
 
@@ -11,12 +12,6 @@ BARRED: dict[str, Any] = {"joints.tension": False, "time.duration": 0.03}
 BRITTLE: dict[str, Any] = {"joints.tensile_strength": 5e5, "time.duration": 0.06}
 ALL = "hard/everything-fails"
 HOMOGENEOUS = {"continuum-equivalent": "a homogenised bar has no joints that open, slide or break"}
-RATE_STATE = {
-    "joints.direct_effect": 0.01,
-    "joints.evolution_effect": 0.03,
-    "joints.critical_slip_distance": 1e-6,
-    "joints.reference_rate": 1e-6,
-}
 STAGES = {
     "fourth-order": "it meets the joints four times a step, where their stress is not recorded"
 }
@@ -47,23 +42,16 @@ def _breaking() -> list[HardCase]:
         HardCase("softening just short of a snap-back", contact.whole_joints, tough, HOMOGENEOUS),
         HardCase("softening that snaps back", extremes.refused, brittle, HOMOGENEOUS),
         mixed(words, energies.passive, {}),
-        mixed(
-            f"{words}, closed to a hundredth of their compliance",
-            energies.passive,
-            {"joints.maximum_closure": 1e-6},
-        ),
-        mixed(
-            f"{words}, whose friction falls with slip",
-            energies.passive,
-            {"joints.dynamic_friction_angle": 5.0, "joints.weakening_distance": 1e-4},
-        ),
-        mixed(f"{words}, whose friction depends on rate and state", energies.passive, RATE_STATE),
-        mixed(
-            f"the ledger of {words}, lifted by slip",
-            contact.ledger,
-            {"joints.dilation_angle": 10.0, "joints.dilation_distance": 1e-3},
-        ),
         mixed(f"the ledger of {words}", contact.ledger, {}),
+        *(
+            mixed(
+                f"{words}; {part.words}",
+                energies.passive,
+                {f"joints.{key}": value for key, value in part.hard.items()},
+            )
+            for part in PARTS
+            if part.hard
+        ),
     ]
 
 

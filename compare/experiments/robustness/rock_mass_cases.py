@@ -4,6 +4,7 @@ from functools import partial
 from math import cos, radians, sin
 from typing import Any
 
+from cases.schema.joint import PARTS
 from compare.experiments.robustness.case import STEP, HardCase, rock_is_spared
 from compare.experiments.robustness.criteria import energies, rock_masses
 
@@ -125,19 +126,22 @@ def _sliding() -> list[HardCase]:
     strong[0]["amplitude"] = 4e6
     changes = _met(_bricks(0.5, friction_angle=15.0), 6.0, strong)
     changes |= {"prestress": {"xx": 8e6, "yy": 8e6}, "numerics.continuum.size": 1.0}
-    less = {"dynamic_friction_angle": 5.0, "weakening_distance": 1e-4}
     lifts = {"dilation_angle": 8.0, "dilation_distance": 1e-3}
     lifted = changes | {"joint_sets": _bricks(0.5, friction_angle=15.0, **lifts)}
-    weakens = changes | {"joint_sets": _bricks(0.5, friction_angle=15.0, **less)}
-    rate = {"direct_effect": 0.01, "evolution_effect": 0.03, "reference_rate": 1e-6}
-    rate |= {"critical_slip_distance": 1e-5}
-    rated = changes | {"joint_sets": _bricks(0.5, friction_angle=15.0, **rate)}
     name = "T-junctions of brickwork that slide"
     return [
         at_one_joint(name, rock_masses.within_friction, changes, EXPLICIT),
         at_one_joint(f"the ledger of {name}", rock_masses.balanced, changes, EXPLICIT),
-        at_one_joint(f"{name}, less friction by slip", energies.passive, weakens, EXPLICIT),
-        at_one_joint(f"{name}, by rate and state", energies.passive, rated, EXPLICIT),
+        *(
+            at_one_joint(
+                f"{name}; {part.words}",
+                energies.passive,
+                changes | {"joint_sets": _bricks(0.5, friction_angle=15.0, **part.hard)},
+                EXPLICIT,
+            )
+            for part in PARTS
+            if part.hard
+        ),
         at_one_joint(
             f"the ledger of {name}, lifted by slip", rock_masses.balanced, lifted, EXPLICIT
         ),

@@ -1,4 +1,4 @@
-"""Maps of the peak particle velocity of a rock mass, of every engine that kept its whole field."""
+"""Maps of the peak particle velocity, of every engine that kept its whole field."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from cases.schema.rock_mass import RockMass
+from cases.schema.scene import Scene
 from compare.figures.export import blank
 from compare.figures.figure import SceneFigure
 from compare.figures.style import UNSIGNED, in_order
@@ -26,59 +27,81 @@ CAPTION = (
     "The largest particle velocity of each cell, the mean of its nodes', over all snapshots "
     "(record.fields): a peak between two of them is not seen."
 )
+PILLAR = (
+    " A pillar is seen along z, not to scale; of cells behind one another the largest peak shows."
+)
+AXES = {True: ("x (m)", "y (m)"), False: ("y (m)", "x (m)")}  # of a rock mass, of a pillar
 
 
 def peak_velocities(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
-    """Return the maps of every variant, a picture each; none of pillars, and without fields."""
+    """Return the maps of every variant, a picture each; none without fields."""
     found = []
     named = zip(variant_names(comparisons), comparisons, strict=True)
     for k, (variant, comparison) in enumerate(named):
         cells = cells_of(comparison)
         if cells:
-            title, rows = f"Peak particle velocity, {variant}", table(cells)
-            drawing = partial(draw, cells)
-            stem = f"{name}-peak-velocity-{k}"
-            found.append(SceneFigure(stem, title, CAPTION, drawing, rows, folded=True))
+            is_plane = isinstance(comparison.scene, RockMass)
+            title, rows = f"Peak particle velocity, {variant}", table(cells, AXES[is_plane])
+            drawing, stem = partial(draw, cells, is_plane), f"{name}-peak-velocity-{k}"
+            caption = CAPTION if is_plane else CAPTION + PILLAR
+            found.append(SceneFigure(stem, title, caption, drawing, rows, folded=True))
     return found
 
 
 def cells_of(comparison: Comparison) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Return the corners [cells, n, 2] (m) and the peak velocity [cells] (m/s) of every engine that
-    has snapshots of a rock mass."""
+    """Return the corners [cells, n, 2] (m) as they are drawn and the peak velocity [cells] (m/s) of
+    every engine that has snapshots."""
     found: dict[str, tuple[np.ndarray, np.ndarray]] = {}
     for engine in in_order(set(comparison.results)):
         result = comparison.results[engine]
-        shots = snapshots_of(result) if isinstance(comparison.scene, RockMass) else None
+        shots = snapshots_of(result)
         if shots is not None:
-            peaks = peak_velocity_map(result).values
-            found[engine] = shots.points[shots.cells, :2], peaks[shots.cells].mean(axis=1)
+            peaks = peak_velocity_map(result).values[shots.cells].mean(axis=1)
+            corners = shots.points[shots.cells, :2]
+            if isinstance(comparison.scene, Scene):
+                order = np.argsort(peaks, kind="stable")
+                corners, peaks = _from_aside(corners[order], comparison.scene), peaks[order]
+            found[engine] = corners, peaks
     return found
 
 
-def table(cells: dict[str, tuple[np.ndarray, np.ndarray]]) -> pd.DataFrame:
+def _from_aside(corners: np.ndarray, scene: Scene) -> np.ndarray:
+    """Return the rectangles [cells, 4, 2] (y, x) that cells of a pillar fill, seen along z; those
+    on its axis alone fill the section."""
+    low, high = corners[:, :, ::-1].min(axis=1), corners[:, :, ::-1].max(axis=1)
+    flat = low[:, 1] == high[:, 1]
+    low[flat, 1], high[flat, 1] = -scene.pillar.side / 2, scene.pillar.side / 2
+    turn = [(low, low), (high, low), (high, high), (low, high)]
+    return np.stack([np.stack([a[:, 0], b[:, 1]], axis=1) for a, b in turn], axis=1)
+
+
+def table(cells: dict[str, tuple[np.ndarray, np.ndarray]], axes: tuple[str, str]) -> pd.DataFrame:
     """Return the middle of every cell with its peak velocity, SI."""
     parts = [
-        pd.DataFrame({"engine": engine, "x (m)": x, "y (m)": y, "peak velocity (m/s)": peaks})
+        pd.DataFrame({"engine": engine, axes[0]: x, axes[1]: y, "peak velocity (m/s)": peaks})
         for engine, (corners, peaks) in cells.items()
         for x, y in [corners.mean(axis=1).T]
     ]
     return pd.concat(parts, ignore_index=True)
 
 
-def draw(cells: dict[str, tuple[np.ndarray, np.ndarray]]) -> Figure:
-    """Return the maps side by side, on one scale of colours."""
+def draw(cells: dict[str, tuple[np.ndarray, np.ndarray]], is_plane: bool) -> Figure:
+    """Return the maps of rock masses side by side, of pillars below one another, on one scale of
+    colours."""
     highest = max(float(peaks.max(initial=0.0)) for _, peaks in cells.values()) or 1.0
     colour = ScalarMappable(Normalize(0.0, highest), UNSIGNED)
     with blank(HEIGHT) as figure:
-        axes = figure.subplots(1, len(cells), sharex=True, sharey=True, squeeze=False)[0]
+        form = (1, len(cells)) if is_plane else (len(cells), 1)
+        axes = figure.subplots(*form, sharex=True, sharey=True, squeeze=False).ravel()
         for ax, (engine, (corners, peaks)) in zip(axes, cells.items(), strict=True):
             drawn = PolyCollection(list(corners), rasterized=len(corners) > MANY)
             drawn.set(facecolors=colour.to_rgba(peaks), edgecolors="face", linewidths=0.2)
             ax.add_collection(drawn)
-            ax.set_aspect("equal")
+            ax.set_aspect("equal" if is_plane else "auto")
             ax.autoscale_view()
             ax.set_title(engine)
-            ax.set_xlabel("x (m)")
-        axes[0].set_ylabel("y (m)")
+        for ax in axes if is_plane else axes[-1:]:
+            ax.set_xlabel(AXES[is_plane][0])
+        axes[0].set_ylabel(AXES[is_plane][1])
         figure.colorbar(colour, ax=list(axes), label="peak particle velocity (m/s)")
     return figure

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from cases.loads import history_of
-from cases.schema.joint import JointLaw
+from cases.schema.joint import PARTS, JointLaw
 from cases.schema.pulse import Pulse
 from compare.figures.drawing.symbols import LOAD
 from compare.figures.units import unit_for
@@ -41,13 +41,7 @@ def law_words(law: JointLaw) -> str:
     parts = [
         f"damping ratio {law.damping_ratio:g}" if law.damping_ratio else "",
         "no tension" if law.tension is False else "",
-        f"closure at most {1e3 * law.maximum_closure:g} mm" if law.maximum_closure else "",
         f"friction {law.friction_angle:g}°" if law.friction_angle is not None else "",
-        f"dynamic friction {law.dynamic_friction_angle:g}°" if law.weakening_distance else "",
-        f"dilation {law.dilation_angle:g}°" if law.dilation_angle else "",
-        f"rate and state, a = {law.direct_effect:g}, b = {law.evolution_effect:g}"
-        if law.direct_effect
-        else "",
-        f"tensile strength {law.tensile_strength / 1e6:g} MPa" if law.tensile_strength else "",
+        *(part.drawn.format_map(vars(law)) for part in PARTS if part.of(law)),
     ]
     return ", ".join(part for part in parts if part)

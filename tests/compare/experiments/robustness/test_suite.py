@@ -29,8 +29,8 @@ LONG = {
     "joints that open and close by 1e-40 m": IMPLICIT,
     "a million blocks": "fourth-order",
     "one set 1e8 as stiff as the other": IMPLICIT,
-    "joints that open, close, slip and break, closed to a hundredth of their compliance": "",
-    "joints that open, close, slip and break, whose friction falls with slip": "",
+    "joints that open, close, slip and break; a joint stiffens as it closes": "",
+    "joints that open, close, slip and break; slip weakens a joint": "",
     "the ledger of blocks a thousandth as thin as their neighbours": JOINTED,
     "the ledger of blocks that end in a point of one degree": JOINTED,
 }
@@ -38,7 +38,9 @@ LONG = {
 #: tests/dem/blocks/test_conservation.py: "slip that weakens and lifts".
 LONG |= dict.fromkeys(
     (
-        "T-junctions of brickwork that slide, less friction by slip",
+        "T-junctions of brickwork that slide; a joint stiffens as it closes",
+        "T-junctions of brickwork that slide; slip weakens a joint",
+        "T-junctions of brickwork that slide; a joint dilates as it slips",
         "the ledger of T-junctions of brickwork that slide, lifted by slip",
     ),
     "",
