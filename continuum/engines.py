@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+import numpy as np
+
+from continuum.build import weight_of
 from continuum.model import Model
 from continuum.monitor import Monitor
 from continuum.run import Run
@@ -36,7 +39,9 @@ def explicit_engine(run: Run, monitor: Monitor) -> Engine:
     """Return leapfrog."""
     gravity, time, communicator = run.scene.gravity, run.choice.time, run.communicator
     if gravity is not None and not gravity.static:
-        let_go(run.model, run.state, run.discrete.body)
+        weight = weight_of(run.scene, run.discrete.body)
+        assert weight is not None
+        let_go(run.model, run.state, run.discrete.body, weight)
     of_run = run.model, run.state, run.samples
     march = communicator.leapfrog(*of_run, time.stride, monitor.guard)
 
@@ -47,12 +52,12 @@ def explicit_engine(run: Run, monitor: Monitor) -> Engine:
     return Engine(compile, march, time.dt, dict)
 
 
-def let_go(model: Model, state: State, body: Body) -> None:
+def let_go(model: Model, state: State, body: Body, weight: np.ndarray) -> None:
     """Set the velocities before the first step of rock that gravity acts on from t = 0 on.
 
     At t = 0, in the middle of the first two, it is at rest.
     """
-    fall = 0.5 * model.rock.step_over_mass * body.communicator.total(model.weight)
+    fall = 0.5 * model.rock.step_over_mass * body.communicator.total(weight)
     if model.rock.decay is not None:
         fall *= 2 / (1 + model.rock.decay)  # step_over_mass is that of damped motion
     if model.ends.fixed is not None:

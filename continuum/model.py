@@ -206,7 +206,8 @@ class Receivers(NamedTuple):
 
 
 class Model(NamedTuple):
-    """The constants of a run; weight : float array [n], N, None without gravity; dt : s."""
+    """The constants of a run; weight : float array [n], N, steady forces: of gravity, and what
+    an excavation takes from the walls of openings; None without. dt : s."""
 
     rock: RockOperators
     interfaces: Any

@@ -14,6 +14,7 @@ from scipy.sparse import csr_matrix
 
 from cases.errors import SceneError, StoppedError
 from cases.schema.scene import Scene
+from continuum.build import weight_of
 from continuum.engines import explicit_engine, implicit_engine
 from continuum.model import Model
 from continuum.monitor import Monitor
@@ -150,12 +151,17 @@ def _bytes(model: Model, state: State) -> int:
 
 
 def _at_rest(run: Run) -> dict[str, Any]:
-    """Bring a scene's rock to rest under gravity, and return what a result says of that."""
-    if run.scene.gravity is None or not run.scene.gravity.static:
+    """Bring a scene's rock to rest under gravity and around what is excavated, and return what a
+    result says of that."""
+    gravity, model, body = run.scene.gravity, run.model, run.discrete.body
+    static = gravity is not None and gravity.static
+    if not (static or run.scene.excavated):
         return {}
     from continuum.implicit.static import settle_static
 
-    return settle_static(run.scene, run.model, run.state, run.discrete.body)
+    if gravity is not None and not static:  # it acts later
+        model = model._replace(weight=model.weight - weight_of(run.scene, body))
+    return settle_static(run.scene, model, run.state, body)
 
 
 def _film(run: Run, ahead: float) -> RockFilm | None:

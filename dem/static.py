@@ -127,7 +127,8 @@ def settle(scene: Scene | RockMass, system: System) -> Rest:
     tolerance = scene.numerics.dem.static_tolerance
     rest = relax(system, tolerance, system.most_steps)
     if not rest.ratio <= tolerance:
-        key, remedy = ("prestress", "the joints cannot carry it")
+        where = " around the openings" if scene.excavated else ""
+        key, remedy = ("prestress", f"the joints{where} cannot carry it")
         if scene.gravity is not None and scene.gravity.static:
             key = "gravity"
             remedy = "a joint slides or a block is unsupported: static = false starts without it"

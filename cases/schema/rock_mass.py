@@ -76,6 +76,12 @@ class RockMass(Table):
         """The loads that are forces on the rock, those of compliant bases among them."""
         return [one for one in self.loads if not self._shakes(one)]
 
+    @property
+    def excavated(self) -> bool:
+        """Whether openings have been excavated in rock under a prestress: the scene then starts
+        from the state that this leaves."""
+        return self.prestress is not None and bool(self.domain.holes)
+
     def _shakes(self, load: PlaneLoad) -> bool:
         return load.kind == "base" and getattr(self.boundaries, load.side or "") == "fixed"
 

@@ -78,6 +78,7 @@ class Scene(Table):
     name: str = ""  #: of the variant; empty for the base scene
 
     kind: ClassVar[str] = "pillar"
+    excavated: ClassVar[bool] = False  #: as of a `RockMass`
     _where: str = PrivateAttr(default="")
 
     @model_validator(mode="after")

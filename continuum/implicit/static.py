@@ -1,16 +1,22 @@
-"""Static states: rock and joints at rest under gravity, by Newton's method.
+"""Static states: rock and joints at rest under gravity and around openings, by Newton's method.
 
-The weight is put on in parts, and a part that does not converge in halves, because what slides,
-opens or breaks on the way depends on the way.
+The steady forces are put on in parts, and a part that does not converge in halves, because what
+slides, opens or breaks on the way depends on the way.
+
+Rock that no side holds is at rest wherever it is put. What is excavated from it leaves forces that
+cancel, with their moments; a mass matrix that is next to nothing beside the stiffness then makes
+Newton's matrix regular and leaves the motion without a mean of the mass, as dynamic relaxation
+does. The forces themselves know nothing of it.
 """
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from cases.errors import SceneError
-from cases.schema.scene import Scene
-from continuum.implicit.balance import balance, elastic_energy, implicit_matrices
+from continuum.implicit.balance import Matrices, balance, elastic_energy, implicit_matrices
 from continuum.implicit.newton import Outcome, newton
 from continuum.implicit.pattern import System
 from continuum.implicit.substeps import UNLOADED
@@ -21,12 +27,24 @@ from continuum.state import State
 from joints.law import IN_MOTION
 from results.arrays import copied, fill
 
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
+    from cases.schema.rock_mass import RockMass
+    from cases.schema.scene import Scene
+
 TOLERANCE = 1e-10  # what may be left of the largest force that is summed up
-LEAST_PART = 2.0**-10  # of the weight
+LEAST_PART = 2.0**-10  # of the steady forces
+#: Of the largest stiffness over mass: what holds loose rock. Far below its slowest mode, by 1e-3
+#: and less, and far above the round-off of the largest.
+LOOSE = 1e-10
 
 
-def settle_static(scene: Scene, model: Model, state: State, body: Body) -> dict[str, float]:
-    """Bring a state to rest under gravity; raises SceneError where there is no static state.
+def settle_static(
+    scene: Scene | RockMass, model: Model, state: State, body: Body
+) -> dict[str, float]:
+    """Bring a state to rest under the steady forces of its model; raises SceneError where there is
+    no static state.
 
     Returns what a result says of it: how many corrections were made, and the largest unbalanced
     force over the largest force at work.
@@ -45,18 +63,27 @@ def settle_static(scene: Scene, model: Model, state: State, body: Body) -> dict[
     fill(state, system.state)
     if state.elongation is not None and state.ledger is not None:
         state.ledger[0] += elastic_energy(system.model, system.rock, state)
-    ratio = outcome.errors[-1] / body.communicator.largest(system.size)
+    ratio = outcome.errors[-1] / (body.communicator.largest(system.size) or 1.0)
     return {"static_steps": steps, "static_out_of_balance": ratio}
 
 
-def _refuse(scene: Scene, done: float) -> None:
+def _refuse(scene: Scene | RockMass, done: float) -> None:
+    key, what, remedy = "gravity", "the weight", "static = false starts without it"
+    if scene.gravity is None or not scene.gravity.static:
+        key, what, remedy = "prestress", "the excavation", "the joints around it cannot carry it"
     raise SceneError(
         scene.where,
-        "gravity",
+        key,
         None,
-        f"no static state beyond {done:.3g} of the weight: a joint slides or opens, or a block is "
-        "unsupported: static = false starts without it",
+        f"no static state beyond {done:.3g} of {what}: a joint slides or opens, or a block is "
+        f"unsupported: {remedy}",
     )
+
+
+def _hold(stiffness: csr_matrix, rock: Matrices) -> csr_matrix:
+    """Return what holds loose rock, N/m."""
+    k, m = stiffness.diagonal()[rock.moves], rock.mass.diagonal()[rock.moves]
+    return LOOSE * rock.communicator.largest(float((k[m > 0] / m[m > 0]).max())) * rock.mass
 
 
 class _Static:
@@ -78,6 +105,8 @@ class _Static:
             stiffness = memory.relaxed * stiffness
         self.state, self.trial, self.size = copied(state), copied(state), 0.0
         fixed = np.zeros(0, dtype=int) if model.ends.fixed is None else model.ends.fixed.freedom
+        if model.ends.fixed is None:
+            stiffness = stiffness + _hold(stiffness, self.rock)
         self.system = System(model, self.rock, fixed, [stiffness])
 
     def balance(self, share: float) -> Outcome:

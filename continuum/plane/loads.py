@@ -1,4 +1,5 @@
-"""Loads of a rock mass as forces on nodes: pressures on sides and openings, point forces."""
+"""Loads of a rock mass as forces on nodes: pressures on sides and openings, point forces, and what
+an excavation takes from the walls of openings."""
 
 from __future__ import annotations
 
@@ -10,6 +11,7 @@ from cases.loads import velocity_of
 from cases.material.quiet_sides import base_traction, medium_impedances
 from cases.partition.parts import covered
 from continuum.plane.drive import Push
+from continuum.plane.rock import stress_of
 from continuum.plane.sides import outward, points_on
 from continuum.space import compat
 from continuum.space.evaluation import cells_at, on_freedoms, places_in
@@ -17,6 +19,7 @@ from continuum.space.evaluation import cells_at, on_freedoms, places_in
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
     from cases.schema.sources import PlaneLoad
+    from continuum.mesh.description import Side
     from continuum.space.body import Body
 
 
@@ -50,15 +53,34 @@ def _force(body: Body, load: PlaneLoad, scene: RockMass) -> np.ndarray:
 
 def _pressure(body: Body, load: PlaneLoad, scene: RockMass) -> np.ndarray:
     """Return the share of every freedom in a pressure of 1 Pa on a side or in an opening."""
-    name = load.side or f"opening {load.opening}"
-    side = body.mesh.sides[name]
-    low, high = covered(scene.domain, load, side.corners[:, 0], side.corners[:, 1]).T
+    side = body.mesh.sides[load.side or f"opening {load.opening}"]
+    part = covered(scene.domain, load, side.corners[:, 0], side.corners[:, 1])
+    return on_side(body, side, -outward(body, side), part)
+
+
+def released(scene: RockMass, body: Body) -> np.ndarray | None:
+    """Return the force (N/m) on every freedom by which the walls of openings lose the prestress
+    that what is excavated bore there; None where there is none."""
+    walls = [side for name, side in body.mesh.sides.items() if name.startswith("opening")]
+    if not scene.excavated:
+        return None
+    xx, yy, xy = stress_of(scene)
+    tensor = np.array([[xx, xy], [xy, yy]])
+    return sum((on_side(body, one, outward(body, one) @ tensor) for one in walls), body.mass * 0)
+
+
+def on_side(
+    body: Body, side: Side, traction: np.ndarray, part: np.ndarray | None = None
+) -> np.ndarray:
+    """Return the force (N/m) on every freedom of a traction [facets, 2] (Pa) on the facets of a
+    side; part : from where to where along each, of its length [facets, 2], None: all of it."""
+    low, high = (part if part is not None else np.tile([0.0, 1.0], (len(side.cell), 1))).T
     at, weight = compat.quadrature("interval", 2 * body.order)
     place = low[:, None] + (high - low)[:, None] * at[:, 0]
     along = side.corners[:, 1] - side.corners[:, 0]
     x = (side.corners[:, :1] + place[..., None] * along[:, None]).reshape(-1, 2)
     length = (np.linalg.norm(along, axis=1) * (high - low))[:, None] * weight
     cell = np.repeat(side.cell, len(at))
-    push = -np.repeat(outward(body, side), len(at), axis=0) * length.reshape(-1, 1)
+    push = np.repeat(traction, len(at), axis=0) * length.reshape(-1, 1)
     basis = places_in(body, cell, x).basis
     return on_freedoms(body, cell, np.einsum("qk,qc->qkc", basis, push)[None])[0]

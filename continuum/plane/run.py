@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from cases.incident import free_field
 from cases.material.calibrate import mechanisms_of
 from cases.material.prestress import refuse_beyond_strength
 from continuum.build import critical_step, rock_operators, weight_of
 from continuum.model import Ends, Model
 from continuum.plane.drive import Drive, Entry
-from continuum.plane.loads import pushes
+from continuum.plane.loads import pushes, released
 from continuum.plane.receivers import receivers
 from continuum.plane.rock import discretise
 from continuum.plane.sides import dashpots_on, fixed_sides, points_on, sides_that_are
@@ -48,6 +50,7 @@ def build_model(
     entry = Entry(scene, body, quiet, field) if scene.waves else None
     loads = pushes(scene, body)
     dashpots = dashpots_on(scene, body, quiet, fixed, time.dt, mass)
+    steady = [x for x in (weight_of(scene, body), released(scene, body)) if x is not None]
     driven, relaxes = None, mechanisms_of(scene, "jointed")
     if loads or entry is not None:
         driven = Drive(body, time.dt, loads, entry)
@@ -55,7 +58,7 @@ def build_model(
         rock=rock_operators(body, mass, time.dt, scene.damping.alpha, relaxes),
         interfaces=discrete.joints,
         ends=Ends(None, None, fixed, dashpots, driven),
-        weight=weight_of(scene, body),
+        weight=np.sum(steady, axis=0) if steady else None,
         receivers=receivers(scene, discrete),
         dt=time.dt,
     )

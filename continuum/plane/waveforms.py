@@ -41,5 +41,19 @@ def _components(waves: np.ndarray, count: int) -> np.ndarray:
 def recorded(run: Run, samples: Samples, times: np.ndarray, about: dict[str, Any]) -> Fields:
     """Return the result of a rock mass at these times, with attributes about its run."""
     terms, energy = energy_terms(run.model, samples.energy, run.communicator)
+    if run.scene.excavated and run.scene.gravity is None:
+        terms, energy = _given_off(terms, energy)
     name, found = f"continuum-{run.rock}", quantities(run, samples)
     return plane_fields(run.scene, name, times, found, energy, terms, **about)
+
+
+def _given_off(
+    terms: tuple[str, ...], energy: np.ndarray | None
+) -> tuple[tuple[str, ...], np.ndarray | None]:
+    """Return a ledger without a term of steady forces: what prestressed rock gives off where the
+    walls of openings give way counts with what it stores."""
+    steady, kept = terms.index("gravity"), [k for k, t in enumerate(terms) if t != "gravity"]
+    if energy is not None:
+        energy[terms.index("elastic")] += energy[steady]
+        energy = energy[kept]
+    return tuple(terms[k] for k in kept), energy

@@ -113,7 +113,7 @@ class Sources:
 
 
 def reactions(partition: Partition, sides: list[str], stress: StressInPlane) -> Pattern:
-    """Return the forces by which what lies beyond some sides holds a stress in equilibrium."""
+    """Return the forces by which the rock beyond some sides goes on to bear a stress."""
     edges = partition.boundary
     points = points_on(partition, edges, on_sides(partition, sides))
     tensor = np.array([[stress.xx, stress.xy], [stress.xy, stress.yy]])

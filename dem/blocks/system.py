@@ -116,7 +116,8 @@ def held_blocks(
     impedance = impedances(scene, quiet.normal, partition.region[quiet.block])
     patterns = [load_pattern(scene, partition, x) for x in scene.pushes]
     if scene.prestress is not None:
-        open_sides = [n for n in partition.sides if held.get(n, "free") in ("free", "quiet")]
+        # Openings have been excavated: nothing holds their walls.
+        open_sides = [n for n in held if held[n] in ("free", "quiet")]
         patterns.append(reactions(partition, open_sides, scene.prestress))
     rows = np.unique(np.concatenate([quiet.block, *(one.block for one in patterns)]))
     waves = incoming(scene, field, quiet, impedance, rows, time)

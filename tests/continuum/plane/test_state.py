@@ -82,6 +82,89 @@ def test_rock_at_rest_under_gravity_carries_what_is_above(rock_mass):
     assert traction[0] == pytest.approx([2600 * 10 * 3.0, 0.0], rel=1e-9, abs=1e-4)
 
 
+HOLE = [[2.0, 2.5], [4.0, 2.5], [4.0, 4.0], [2.0, 4.0]]
+EXCAVATED = {
+    "domain": {"size": [6.0, 6.0], "openings": [HOLE], "non_convex": "cut"},
+    "prestress": {"xx": 4e6, "yy": 6e6, "xy": 5e5},
+    "boundaries": dict.fromkeys(("left", "right", "bottom", "top"), "quiet"),
+    "record": {"points": [[0.7, 3.2], [3.3, 5.1]], "joints": [[1.0, 2.0]]},
+}
+
+
+def excavated(rock_mass, **changes):
+    """Return a tunnel under stress in two sets that slip."""
+    sets = [{"dip": 20.0, "spacing": 2.0, "through": [3.0, 2.0]}]
+    sets += [{"dip": -70.0, "spacing": 3.0, "through": [3.0, 3.0]}]
+    return rock_mass([one | {"friction_angle": 25.0} for one in sets], **(EXCAVATED | changes))
+
+
+@pytest.mark.parametrize("scheme", ["explicit", "implicit"])
+def test_nothing_moves_after_an_excavation(scheme, rock_mass):
+    """Forces that are left, 1e-10 of the largest, move a node by at most themselves over its mass
+    times the time; joints have slipped by then."""
+    scene = excavated(rock_mass, continuum={"scheme": scheme})
+    run = run_of(scene, "jointed")
+    body, weight = run.discrete.body, run.model.weight
+    force = weight[body.freedom(np.arange(len(body.x))[:, None], np.arange(2))]
+    assert np.abs(force.sum(axis=0)).max() < 1e-13 * np.abs(force).sum()
+    moment = body.x[:, 0] * force[:, 1] - body.x[:, 1] * force[:, 0]
+    assert abs(moment.sum()) < 1e-13 * np.abs(moment).sum()
+    result = simulate(scene)
+    least = run.model.rock.mass[run.model.rock.mass > 0].min()
+    assert np.abs(result.velocity).max() < 1e-10 * np.abs(weight).max() / least * 2e-3
+    stress = result.stress.values[:, 0]
+    assert np.abs(stress - [4e6, 6e6, 5e5]).max() > 1e5
+    assert "gravity" not in result.term
+
+
+def test_a_turned_excavation_is_the_same(rock_mass):
+    """To 1e-12, of gap, slip and tractions where joints slip around it."""
+    turn = np.array([[0.8, -0.6], [0.6, 0.8]])
+
+    def found(turn, sides):
+        def place(points):
+            return (np.array(points) @ turn.T).tolist()
+
+        dip = np.degrees(np.arctan2(turn[1, 0], turn[0, 0]))
+        tensor = turn @ np.diag([5e6, 5.6e6]) @ turn.T
+        law = {"spacing": 2.0, "through": [0.0, 0.0], "friction_angle": 21.0}
+        record = {key: place(at) for key, at in EXCAVATED["record"].items()}
+        corners = place([[0.0, 0.0], [6.0, 0.0], [6.0, 6.0], [0.0, 6.0]])
+        square = place([[2.0, 2.0], [4.0, 2.0], [4.0, 4.0], [2.0, 4.0]])
+        scene = rock_mass(
+            [law | {"dip": dip}, law | {"dip": dip + 90.0}],
+            domain={"outline": corners, "openings": [square]},
+            prestress={"xx": tensor[0, 0], "yy": tensor[1, 1], "xy": tensor[0, 1]},
+            boundaries=dict.fromkeys(sides, "quiet"),
+            record=record,
+        )
+        run = run_of(scene, "jointed")
+        settle_static(scene, run.model, run.state, run.discrete.body)
+        own = run.discrete.joints
+        assert (run.state.slide[0] != own.prestress[1] / own.law.shear_stiffness).any()
+        return run.model.receivers.turn @ run.state.u, read(run)[1]
+
+    one, other = found(np.eye(2), EXCAVATED["boundaries"]), found(turn, ["outline"])
+    for a, b in zip(one, other, strict=True):
+        assert np.abs(a - b).max() < 1e-12 * np.abs(a).max()
+
+
+def test_without_a_prestress_an_opening_costs_nothing(rock_mass):
+    scene = excavated(rock_mass, prestress=None)
+    assert run_of(scene, "jointed").model.weight is None
+    assert "static_steps" not in simulate(scene).attrs
+
+
+def test_gravity_that_acts_later_is_no_part_of_the_excavation(rock_mass):
+    """Rock that nothing holds falls freely from the state that the excavation leaves."""
+    free = dict.fromkeys(("left", "right", "bottom", "top"), "free")
+    scene = excavated(rock_mass, gravity={"static": False}, boundaries=free)
+    result = simulate(scene)
+    fall = -9.81 * result.time.values
+    assert np.abs(result.velocity.values[..., 1] - fall).max() < 1e-6 * np.abs(fall).max()
+    assert np.abs(result.stress - result.stress[:, :1]).max() < 1e-6 * 6e6
+
+
 def drive_of(scene):
     """Return the forces of the first step, as vectors at the nodes that they act on [n, 2], N/m,
     and the places of these."""

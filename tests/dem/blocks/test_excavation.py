@@ -1,0 +1,164 @@
+"""Rigid blocks around an opening that has been excavated from rock under stress."""
+
+import numpy as np
+import pytest
+
+from dem import simulate
+from dem.blocks.leapfrog import SLID, relative, samples_for
+from dem.blocks.model import F_X, F_Y, LENGTH, state_at_rest
+from dem.blocks.simulate import step
+from dem.blocks.start import start
+from dem.blocks.system import prepared
+
+STRESS = {"xx": 4e6, "yy": 5e6, "xy": 5e5}
+TENSOR = np.array([[4e6, 5e5], [5e5, 5e6]])
+TOLERANCE = 1e-13  # of the relaxation
+SLIPS = {"friction_angle": 30.0, "point_rule": "gauss"}
+TURN = np.array([[0.8, -0.6], [0.6, 0.8]])
+HOLE = [[4.0, 4.0], [7.0, 4.0], [7.0, 6.0], [4.0, 6.0]]
+
+
+@pytest.fixture
+def excavated(rock_mass, joint):
+    """Return 12 m by 10 m in blocks of 1 m by 1 m, stressed, with a hole of 3 m by 2 m; keyword
+    arguments of the joints, and tables changed."""
+
+    def scene(law=(), **tables):
+        sets = [
+            joint(name="bed", dip=0.0, spacing=1.0, through=[0.0, 0.0], **dict(law)),
+            joint(name="cross", dip=90.0, spacing=1.0, through=[0.0, 0.0], **dict(law)),
+        ]
+        table = {
+            "domain": {"size": [12.0, 10.0], "openings": [HOLE]},
+            "joint_sets": sets,
+            "prestress": STRESS,
+            "numerics": {"dem": {"block": None, "static_tolerance": TOLERANCE}},
+            "record": {"points": [[4.5, 6.5]], "joints": [[5.5, 7.0]]},
+        }
+        return rock_mass(**(table | tables))
+
+    return scene
+
+
+def at_rest(scene):
+    """Return a system and its state after excavation."""
+    system = prepared(scene)
+    state = state_at_rest(system.model)
+    start(system, state)
+    return system, state
+
+
+def stiffness(system):
+    """Return the matrix of all contacts [3 N, 3 N], from their work: a face between blocks that
+    move by (u, v, phi) opens by g, slips by s and turns by t, springs evenly along it."""
+    count, contacts = system.blocks.partition.count, system.model.contacts
+    K, own = np.zeros((3 * count, 3 * count)), system.blocks.columns
+    for (i, j), k, c in zip(
+        contacts.blocks, contacts.table, system.blocks.links.column, strict=True
+    ):
+        moves = np.eye(6).reshape(6, 2, 3)
+        g, s, t = np.transpose([relative(pair, 0, 1, k) for pair in moves])
+        L, k_n, k_s = k[LENGTH], own.normal[c], own.shear[c]
+        freedoms = np.concatenate([3 * i + np.arange(3), 3 * j + np.arange(3)])
+        of_face = L * (k_n * (np.outer(g, g) + L**2 / 12 * np.outer(t, t)) + k_s * np.outer(s, s))
+        K[np.ix_(freedoms, freedoms)] += of_face
+    return K
+
+
+def released(system):
+    """Return the forces [N, 3] that walls lose: of the tensor on every edge at the opening."""
+    part = system.blocks.partition
+    edges, force = part.boundary, np.zeros((part.count, 3))
+    for k in np.flatnonzero(edges.side == part.sides.index("opening 0")):
+        pull = edges.length[k] * TENSOR @ edges.normal[k]
+        arm = (edges.start[k] + edges.end[k]) / 2 - part.centroid[edges.block[k]]
+        force[edges.block[k]] += [*pull, arm[0] * pull[1] - arm[1] * pull[0]]
+    return force.ravel()
+
+
+def test_the_state_after_excavation_is_that_of_the_assembled_equations(excavated):
+    """K q = f of blocks that always hold, by least squares, which like dynamic relaxation leaves
+    out rigid motion; to the relaxation's tolerance, 1e-13 of 5 MPa on 54 m, over the stiffness of
+    the slowest mode, 3e-3 of the largest."""
+    system, state = at_rest(excavated({"point_rule": "gauss"}))
+    K, f, count = stiffness(system), released(system), system.blocks.partition.count
+    mass = np.sqrt(system.blocks.masses.ravel())
+    scaled, held = np.linalg.eigh(K / np.outer(mass, mass))
+    assert (scaled[:3] < 1e-9 * scaled[-1]).all() and scaled[3] > 1e-4 * scaled[-1]
+    q = held[:, 3:] @ ((held[:, 3:].T @ (f / mass)) / scaled[3:]) / mass
+    off = np.abs(state.u[:count].ravel() - q).max()
+    assert off < 1e-9 * np.abs(q).max()
+
+
+@pytest.mark.parametrize("law", [{}, SLIPS], ids=["elastic", "slips"])
+def test_the_rock_beside_an_opening_bears_what_was_in_it(law, excavated):
+    """No block has a resultant, and a cut through the opening carries what the whole width did,
+    12 m of the tensor; to the relaxation's tolerance of 1e-13 of 5 MPa on 54 m for each block."""
+    system, state = at_rest(excavated(law))
+    left, blocks = TOLERANCE * 5e6 * 54.0, system.blocks
+    step(system, state, samples_for(system.model, system.time.samples), 0, 1)
+    resultant = blocks.masses * state.v[: blocks.partition.count] / system.time.dt
+    assert np.abs(resultant).max() < left
+    assert not law or state.history[..., SLID].any()
+    contacts = blocks.partition.contacts
+    cut = (contacts.start[:, 1] == 5.0) & (contacts.end[:, 1] == 5.0)
+    assert cut.sum() == 9  # m, beside 3 m of opening
+    up = np.sign(contacts.normal[cut, 1])
+    force = up @ state.force[: len(cut)][cut][:, [F_X, F_Y]]
+    assert np.abs(force - 12.0 * TENSOR[1]).max() < blocks.partition.count * left
+
+
+def image(scene, matrix):
+    """Return tables of a scene whose places and vectors a rotation or a reflection maps."""
+    flips = np.linalg.det(matrix)
+    stress = matrix @ TENSOR @ matrix.T
+    angle = np.degrees(np.arctan(matrix[1, 0] / matrix[0, 0]))
+
+    def place(points):
+        return (np.array(points) @ matrix.T).tolist()
+
+    domain = {"size": None, "outline": place(scene.domain.corners), "openings": [place(HOLE)]}
+    return {
+        "domain": domain,
+        "joint_sets": [
+            one.model_dump(exclude_none=True)
+            | {"dip": flips * one.dip + angle, "through": place(one.through)}
+            for one in scene.joint_sets
+        ],
+        "waves": [
+            one.model_dump(exclude_none=True)
+            | {"direction": place(one.direction), "through": place(one.through)}
+            for one in scene.waves
+        ],
+        "prestress": {"xx": stress[0, 0], "yy": stress[1, 1], "xy": stress[0, 1]},
+        "boundaries": dict.fromkeys(("left", "right", "bottom", "top")) | {"outline": "quiet"},
+        "record": {"points": place(scene.record.points), "joints": place(scene.record.joints)},
+    }
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_scene_in_other_axes_records_the_same(mirrored, excavated, wave):
+    """To 1e-12 of the motion and of the stress, which the relaxation's tolerance is below."""
+    matrix = TURN @ np.diag([-1.0, 1.0]) if mirrored else TURN
+    own = excavated(SLIPS, waves=[wave(direction=[0.6, 0.8], through=[0.0, 0.0])])
+    one, other = simulate(own), simulate(excavated(SLIPS, **image(own, matrix)))
+    assert one.static_steps > 0 and np.abs(one.slip).max() > 1e-6
+    size = np.abs(one.velocity.values).max()
+    assert np.abs(one.velocity.values @ matrix.T - other.velocity.values).max() < 1e-12 * size
+    flips = np.array([1.0, np.linalg.det(matrix)])
+    assert np.abs(one.traction.values * flips - other.traction.values).max() < 1e-12 * 5e6
+
+
+def test_nothing_moves_after_an_excavation(excavated):
+    """But for what the relaxation leaves: forces F on 114 blocks of m add to sqrt(2 E), and so to
+    sqrt(m) v of any, at most sqrt(114 / m) F a second. 5 MPa make 0.4 m/s of a P wave."""
+    result = simulate(excavated(SLIPS))
+    left = TOLERANCE * 5e6 * 54.0
+    assert np.abs(result.velocity).max() < np.sqrt(114) * left / 2600.0 * 0.01
+    assert result.starts == "prestressed" and result.static_out_of_balance < TOLERANCE
+
+
+def test_without_a_prestress_an_opening_costs_nothing(excavated):
+    system, state = at_rest(excavated(prestress=None))
+    assert system.model.contacts.start is None and not state.u.any()
+    assert "static_steps" not in simulate(excavated(prestress=None)).attrs

@@ -1,0 +1,171 @@
+"""A circular tunnel in rock under stress against Kirsch's solution, and where a joint beside it
+begins to slip by Coulomb's criterion.
+
+Sides carry the in-situ stress, which a finite domain makes an error of (a/L)^2: here they carry
+what Kirsch's solution adds to it there, too.
+"""
+
+import numpy as np
+import pytest
+
+from cases.read import load
+from closed_forms.kirsch import Kirsch
+from continuum.explicit.march import readings
+from continuum.implicit.static import settle_static
+from continuum.mesh.session import gmsh_session
+from continuum.plane.sides import outward
+from continuum.run import run_of
+from continuum.space import compat
+from continuum.space.evaluation import on_freedoms, places_in
+
+HOLE = Kirsch(radius=1.0, stress=(10e6, 4e6), modulus=5e10, poisson=0.25)
+HALF = 4.0  # m, of the domain's width
+SIZE = 0.25  # m, of triangles
+SIDES = ("left", "right", "bottom", "top")
+SCENE = """
+title = "a tunnel"
+domain = { mesh = "rock.msh" }
+rock = { density = 2600.0, intact_modulus = 5e10, intact_poisson = 0.25 }
+prestress = { xx = 10e6, yy = 4e6 }
+boundaries = { left = "quiet", right = "quiet", bottom = "quiet", top = "quiet" }
+time = { duration = 1e-3 }
+record = { points = [[1.9, 0.2], [0.1, 1.4], [-1.2, 1.3]] }
+"""
+FAULT = """
+[[joint_sets]]
+name = "fault"
+dip = 30.0
+normal_stiffness = 1e13
+shear_stiffness = 1e13
+"""
+
+
+def rings(path, n):
+    """Let gmsh mesh a square with a hole by quadrilaterals, n along an eighth of the hole."""
+    with gmsh_session() as gmsh:
+        geo, angle = gmsh.model.geo, np.arange(8) * np.pi / 4
+        around = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        centre = geo.addPoint(0, 0, 0)
+        near = [geo.addPoint(*at, 0) for at in HOLE.radius * around]
+        far = [geo.addPoint(*at, 0) for at in HALF * around / np.abs(around).max(axis=1)[:, None]]
+        arcs = [geo.addCircleArc(near[k], centre, near[k - 7]) for k in range(8)]
+        edges = [geo.addLine(far[k], far[k - 7]) for k in range(8)]
+        rays = [geo.addLine(near[k], far[k]) for k in range(8)]
+        for k in range(8):
+            loop = geo.addCurveLoop([rays[k], edges[k], -rays[k - 7], -arcs[k]])
+            surface = geo.addPlaneSurface([loop])
+            geo.mesh.setTransfiniteSurface(surface)
+            geo.mesh.setRecombine(2, surface)
+        for line in (*arcs, *edges):
+            geo.mesh.setTransfiniteCurve(line, n + 1)
+        for line in rays:
+            growth = (HALF / HOLE.radius) ** (0.5 / n)
+            geo.mesh.setTransfiniteCurve(line, 2 * n + 1, "Progression", growth)
+        _written(gmsh, path)
+
+
+def crossed(path, dip, offset):
+    """Let gmsh mesh a square with a hole and a joint beside it by triangles."""
+    with gmsh_session() as gmsh:
+        gmsh.option.setNumber("Mesh.MeshSizeMax", SIZE)
+        occ, slope = gmsh.model.occ, np.tan(np.radians(dip))
+        square = [(2, occ.addRectangle(-HALF, -HALF, 0, 2 * HALF, 2 * HALF))]
+        square, _ = occ.cut(square, [(2, occ.addDisk(0, 0, 0, HOLE.radius, HOLE.radius))])
+        ends = [occ.addPoint(x, offset + slope * x, 0) for x in (-HALF, HALF)]
+        _, children = occ.fragment(square, [(1, occ.addLine(*ends))])
+        occ.synchronize()
+        line = gmsh.model.addPhysicalGroup(1, [tag for _, tag in children[-1]])
+        gmsh.model.setPhysicalName(1, line, "joint fault")
+        _written(gmsh, path)
+
+
+def _written(gmsh, path):
+    gmsh.model.geo.synchronize()
+    rock = gmsh.model.addPhysicalGroup(2, [tag for _, tag in gmsh.model.getEntities(2)])
+    gmsh.model.setPhysicalName(2, rock, "rock")
+    gmsh.model.mesh.generate(2)
+    gmsh.write(str(path))
+
+
+def beyond(body):
+    """Return the forces of what Kirsch's solution adds to the in-situ stress at the sides."""
+    found, (at, weight) = 0.0, compat.quadrature("interval", 8)
+    for side in (body.mesh.sides[name] for name in SIDES):
+        along = np.diff(side.corners, axis=1)
+        x = (side.corners[:, :1] + at * along).reshape(-1, 2)
+        cell = np.repeat(side.cell, len(at))
+        normal = np.repeat(outward(body, side), len(at), axis=0)
+        push = -np.einsum("nij,nj->ni", HOLE.stress_at(x) - np.diag(HOLE.stress), normal)
+        push *= (np.linalg.norm(along[:, 0], axis=1)[:, None] * weight).reshape(-1, 1)
+        basis = places_in(body, cell, x).basis
+        found += on_freedoms(body, cell, np.einsum("qk,qc->qkc", basis, push)[None])[0]
+    return found
+
+
+def excavated(folder, text):
+    """Return the run of a scene at rest around its hole."""
+    (folder / "scene.toml").write_text(text)
+    (scene,) = load(folder / "scene.toml")
+    run = run_of(scene, "jointed")
+    body = run.discrete.body
+    model = run.model._replace(weight=run.model.weight + beyond(body))
+    settle_static(scene, model, run.state, body)
+    return run
+
+
+def errors(run):
+    """Return how far displacement and stress are off, over the largest of the displacement and the
+    larger in-situ stress; displacement but for a rigid motion."""
+    body, x = run.discrete.body, run.discrete.body.x
+    freedoms = body.freedom(np.arange(len(x))[:, None], np.arange(2))
+    exact = HOLE.displacement_at(x)
+    one, none = np.ones(len(x)), np.zeros(len(x))
+    rigid = np.stack([[one, none], [none, one], [-x[:, 1], x[:, 0]]]).transpose(2, 1, 0)
+    rigid, off = rigid.reshape(-1, 3), (run.state.u[freedoms] - exact).ravel()
+    off -= rigid @ np.linalg.lstsq(rigid, off, rcond=None)[0]
+    matrix, added = readings(run.model, run.state)
+    places = np.array(run.scene.record.points)
+    rows = (matrix @ run.state.fields + added)[: 3 * len(places)].reshape(3, -1)
+    tensor = HOLE.stress_at(places)
+    aim = np.stack([tensor[:, 0, 0], tensor[:, 1, 1], tensor[:, 0, 1]])
+    return np.array([np.abs(off).max() / np.abs(exact).max(), np.abs(rows - aim).max() / 10e6])
+
+
+@pytest.mark.parametrize(("order", "coarse"), [(1, 16), (2, 8)])
+def test_displacement_and_stress_around_a_tunnel_are_those_of_kirsch(order, coarse, tmp_path):
+    """At order 2 in the size of the elements, whatever theirs: the hole is a polygon with a corner
+    at each of them, whose area is off by (h/a)^2 / 6, and stress at points takes displacements to
+    one order less, recovered."""
+    off = []
+    for n in (coarse, 2 * coarse):
+        rings(tmp_path / "rock.msh", n)
+        off.append(errors(excavated(tmp_path, SCENE + f"numerics.continuum.order = {order}\n")))
+    assert (np.log2(off[0] / off[1]) > 1.9).all()
+    assert off[1].max() < 2e-3
+
+
+def test_a_joint_beside_a_tunnel_slips_where_coulombs_criterion_says(tmp_path):
+    """A stiff joint carries what the rock would, so Kirsch's tractions say which friction holds it
+    everywhere, and where it gives way first: where |t_s| > tan(phi) t_n. With 4 % less friction
+    than the most that is called for, all points where it is called for slip, and hand on to one at
+    either end what they no longer bear; with 4 % more nothing slips."""
+    crossed(tmp_path / "rock.msh", 30.0, 1.6)
+    normal = np.array([-0.5, np.sqrt(0.75)])
+    x = np.linspace(-HALF, HALF, 4001)
+    line = np.stack([x, 1.6 + np.tan(np.pi / 6) * x], axis=1)
+
+    def called_for(places):
+        tractions = HOLE.stress_at(places) @ normal
+        return np.abs(tractions @ [normal[1], -normal[0]]) / (tractions @ normal)
+
+    most = called_for(line).max()
+    for share in (1.04, 0.96):
+        angle = np.degrees(np.arctan(share * most))
+        run = excavated(tmp_path, SCENE + FAULT + f"friction_angle = {angle}\n")
+        joints, places = run.discrete.joints, run.discrete.jumps.x
+        at_first = joints.prestress[1] / joints.law.shear_stiffness
+        slid, over = run.state.slide[0] != at_first, called_for(places) > share * most
+        assert slid[over].all() and over.any() == (share < 1)
+        assert slid.sum() <= over.sum() + 2
+        apart = np.hypot(*(places[slid][:, None] - places[over]).T)
+        assert (apart.min(axis=0, initial=np.inf) < SIZE).all()
