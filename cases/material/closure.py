@@ -11,7 +11,7 @@ MPa and mm, of the third cycle of loading, to which joints in the ground are nea
 
 from __future__ import annotations
 
-from math import sqrt
+from math import hypot, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -21,6 +21,7 @@ from cases.loads import velocity_of
 from cases.schema.scene import Scene
 
 if TYPE_CHECKING:
+    from cases.schema.plane import StressInPlane
     from cases.schema.pulse import Pulse
     from cases.schema.rock_mass import RockMass
 
@@ -73,7 +74,7 @@ def _at_rest(scene: AnyScene) -> float:
         extent = scene.pillar.length
     else:
         given = scene.prestress
-        stress = 0.0 if given is None else _principal(given.xx, given.yy, given.xy)
+        stress = 0.0 if given is None else _largest(given, scene.excavated)
         extent = float(np.hypot(*np.ptp(np.array(scene.domain.corners), axis=0)))
     if scene.gravity is None:
         return stress
@@ -87,9 +88,11 @@ def _densest(scene: AnyScene) -> float:
     return max(scene.rock.density, *(one.density or 0.0 for one in regions), 0.0)
 
 
-def _principal(xx: float, yy: float, xy: float) -> float:
-    """Return the largest principal stress of a state in the plane, not below zero."""
-    return max(0.0, (xx + yy) / 2 + sqrt(((xx - yy) / 2) ** 2 + xy**2))
+def _largest(stress: StressInPlane, excavated: bool) -> float:
+    """Return the largest stress in the plane, not below zero: s1, or 3 s1 - s2 at the wall of a
+    circular opening (Kirsch); at corners of others it is more in places."""
+    mean, half = (stress.xx + stress.yy) / 2, hypot((stress.xx - stress.yy) / 2, stress.xy)
+    return max(0.0, 2 * mean + 4 * half if excavated else mean + half)
 
 
 def _peak(pulse: Pulse, duration: float) -> float:

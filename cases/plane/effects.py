@@ -57,6 +57,7 @@ def _of_forces(scene: RockMass) -> Iterator[Effect]:
     yield from of_body_forces(scene, scene.damping.alpha)
     stress = scene.prestress
     words = stress and f"xx {stress.xx:.4g}, yy {stress.yy:.4g}, xy {stress.xy:.4g} Pa"
+    words = words and words + scene.excavated * ", openings excavated"
     yield called_for("prestress", words, "no [prestress]")
     waves, pushed = len(scene.waves), len(scene.pushes)
     yield called_for("incident waves", waves and f"{waves} of [[waves]]", "no [[waves]]")

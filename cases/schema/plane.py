@@ -45,7 +45,8 @@ class GravityInPlane(Table):
 
 
 class StressInPlane(Table):
-    """Uniform initial stress of the rock mass."""
+    """In-situ stress of the rock mass, uniform before openings are excavated: free and quiet sides
+    bear it, the walls of openings are free."""
 
     xx: Number  #: Pa, compression positive
     yy: Number  #: Pa, compression positive
