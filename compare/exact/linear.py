@@ -23,17 +23,6 @@ MORE_POINTS = 7  # of integration, for the twin
 SAFETY = 4.0  # on what a solution and its twin differ by
 
 
-def response(
-    matrix: np.ndarray,
-    vector: np.ndarray,
-    output: np.ndarray,
-    load: Signal,
-    times: np.ndarray,
-) -> np.ndarray:
-    """Return output @ x at `times` [n, outputs], exact to round-off; see `twins`."""
-    return twins(matrix, vector, output, load, times)[0]
-
-
 def twins(
     matrix: np.ndarray,
     vector: np.ndarray,
@@ -91,20 +80,6 @@ def errors(found: Sequence[np.ndarray], twin: Sequence[np.ndarray]) -> dict[str,
     """Return the bounds of stress, velocity and displacement [..., n] by their twins."""
     bounds = [bound(one, other) for one, other in zip(found, twin, strict=True)]
     return dict(zip(("stress", "velocity", "displacement"), bounds, strict=True))
-
-
-def advance(
-    matrix: np.ndarray, vector: np.ndarray, state: np.ndarray, load: Signal, start: float, h: float
-) -> np.ndarray:
-    """Return the state [m] that `state` at `start` (s) becomes a time h (s) later."""
-    from scipy.sparse import csr_array
-    from scipy.sparse.linalg import expm_multiply
-
-    A = csr_array(matrix)
-    nodes, weights = _gauss(h, 12 + ceil(h * np.abs(matrix).sum(axis=0).max()))
-    share = _load_on_nodes(load, np.array([start]), h, nodes, weights)[0]
-    G = np.stack([expm_multiply(A * (h - s), vector) for s in nodes], axis=1)
-    return expm_multiply(A * h, state) + G @ share
 
 
 def _gauss(h: float, count: int) -> tuple[np.ndarray, np.ndarray]:

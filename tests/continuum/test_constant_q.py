@@ -11,9 +11,9 @@ from cases.loads import load_history
 from cases.material.calibrate import calibrate
 from cases.material.constant_q import fitted
 from cases.schema.rock_mass import RockMass
+from closed_forms.constant_q import ConstantQ
 from compare.engines import applies, names, solve
 from compare.exact.bar import jointed_bar, laplace
-from compare.exact.bar.constant_q import ConstantQ
 from compare.misfit.metrics import misfit, relative_l2
 from compare.readings.attenuation import quality_factor
 from continuum import applies as reason_against
@@ -249,7 +249,7 @@ def test_four_mechanisms_stand_for_a_constant_quality_factor(pillar, quality, bo
 
     def stress(relaxation):
         asked = load_history(scene), times, [7.0], [5.25], 4e-3
-        return laplace.response(replace(bar, relaxation=relaxation), *asked)[0][0]
+        return laplace.bounded(replace(bar, relaxation=relaxation), *asked)[0][0][0]
 
     ideal = stress(ConstantQ(quality, 250.0))
     assert relative_l2(stress(bar.relaxation), ideal) < bound

@@ -11,8 +11,7 @@ import pytest
 
 import continuum
 from cases.loads import load_history
-from closed_forms import parallel_joints
-from compare.exact.joint import one_joint
+from closed_forms import one_joint, parallel_joints
 from compare.misfit.metrics import relative_l2
 
 RHO, E, NU = 2400.0, 9.6e9, 0.25

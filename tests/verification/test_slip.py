@@ -6,7 +6,7 @@ import pytest
 import cases
 import continuum
 from cases.loads import load_history
-from compare.exact.joint import sliding_joint
+from closed_forms.one_joint import slip_coefficients
 from compare.misfit.metrics import relative_l2
 from compare.scenes import SHIPPED
 
@@ -67,7 +67,7 @@ def test_harmonic_wave(holds, a):
     z, area = 2400.0 * 800.0, 0.25
     taken = friction[CYCLE.stop - 1] - friction[CYCLE.start - 1]
     A = np.sqrt(taken / (whole * PERIOD * area / z))
-    exact = sliding_joint.coefficients(a)
+    exact = slip_coefficients(a)
     assert exact == pytest.approx(SHARES[a], abs=1e-4)
     assert pytest.approx(exact, rel=2e-3) == (T, R, A)
     assert np.abs(shear).max() <= a * 1e5 * (1 + 1e-9)

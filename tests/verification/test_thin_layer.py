@@ -9,8 +9,7 @@ import pytest
 
 import continuum
 from cases.loads import load_history
-from closed_forms import thin_layer
-from compare.exact.joint import one_joint
+from closed_forms import one_joint, thin_layer
 
 RATIO, PHASE = 0.1, 0.3
 MODULUS, SPEED, PERIOD = 9.6e9, 2000.0, 0.01

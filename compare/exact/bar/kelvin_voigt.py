@@ -127,14 +127,6 @@ def _convolutions(
     return np.concatenate([during.real, after.real], axis=1)
 
 
-def wavenumber(omega: np.ndarray | float, speed: float, eta: float) -> np.ndarray:
-    """Return k (1/m) of e^{i(omega t - k y)}: k = omega / (c sqrt(1 + i omega eta)).
-
-    The phase speed is omega / Re k and the attenuation -Im k, about omega^2 eta / 2c.
-    """
-    return np.asarray(omega / (speed * np.sqrt(1 + 1j * np.asarray(omega) * eta)))
-
-
 SOLVER = Solver(
     name="kelvin-voigt",
     rock=Rock.HOMOGENISED,

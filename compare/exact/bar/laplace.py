@@ -54,23 +54,6 @@ def solved(scene: Scene, name: str, bar: Bar) -> xr.Dataset:
     return dataset(scene, name, times, *found, errors=errors)
 
 
-def response(
-    bar: Bar,
-    load: LoadHistory,
-    times: np.ndarray,
-    stress_y: list[float],
-    velocity_y: list[float],
-    period: float | None = None,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return stress (Pa), velocity (m/s) and displacement (m) [receivers, n] at `times`.
-
-    `times` are equally spaced from 0; `period` (s) is that of the load, if it has one. The
-    velocity on an interface is the mean of both sides.
-    """
-    (stress, velocity, displacement), _ = bounded(bar, load, times, stress_y, velocity_y, period)
-    return stress, velocity, displacement
-
-
 def bounded(
     bar: Bar,
     load: LoadHistory,
@@ -79,7 +62,12 @@ def bounded(
     velocity_y: list[float],
     period: float | None = None,
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Return what `response` does, and bounds of its root-mean-square errors [receivers]."""
+    """Return stress (Pa), velocity (m/s) and displacement (m) [receivers, n] at `times`, and bounds
+    of their root-mean-square errors [receivers].
+
+    `times` are equally spaced from 0; `period` (s) is that of the load, if it has one. The
+    velocity on an interface is the mean of both sides.
+    """
     from scipy.ndimage import maximum_filter1d
 
     places, front = np.array([*stress_y, *velocity_y]), _front(bar, times[-1])

@@ -71,7 +71,7 @@ def solve(scene: Scene) -> xr.Dataset:
 
     def waveforms(which: int) -> list[np.ndarray]:
         def passed(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            return _transmitted(joint, p.impedance, load, at, which)
+            return transmitted(joint, p.impedance, load, at, which)
 
         def waves(y: list[float]) -> np.ndarray:
             return enters * around(joint.y, p.bar_speed, passed, load, times, y)
@@ -123,30 +123,14 @@ def the_joint(p: Properties) -> Joint:
     return Joint(float(p.joint_y[j]), 1 / compliance[j], eta)
 
 
-def coefficients(
-    omega: np.ndarray | float, stiffness: float, impedance: float, viscosity: float = 0.0
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the complex T and R of stress at omega (rad/s).
-
-    stiffness K in Pa/m, impedance Z in Pa s/m, viscosity c_j = K eta in Pa s/m.
-    """
-    omega = np.asarray(omega)
-    transmitted = 1 / (1 + 1j * omega * impedance / (2 * (stiffness + 1j * omega * viscosity)))
-    return transmitted, transmitted - 1
-
-
 def transmitted(
-    joint: Joint, impedance: float, load: LoadHistory, times: np.ndarray
+    joint: Joint, impedance: float, load: LoadHistory, times: np.ndarray, which: int = 0
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return sigma_T (Pa) and its impulse (Pa s) at the joint for the incident stress `load`.
 
-    `times` are equally spaced and begin before the load does.
+    `times` are equally spaced and begin before the load does. which : 1 for the twin
+    (`linear.twins`).
     """
-    return _transmitted(joint, impedance, load, times, 0)
-
-
-def _transmitted(joint, impedance, load, times, which) -> tuple[np.ndarray, np.ndarray]:
-    """Return what `transmitted` does, or its twin (`linear.twins`) where `which` is 1."""
     tau = joint.time_constant + impedance / (2 * joint.stiffness)
     share = joint.time_constant / tau
     rate, one = np.array([[-1 / tau]]), np.ones(1)

@@ -20,7 +20,7 @@ or with friction under the prestress, and all else elastic and undamped.
 from collections.abc import Iterator
 from functools import cache
 from itertools import pairwise
-from math import asin, ceil, cos, exp, inf, isfinite, pi, sin, sqrt
+from math import ceil, exp, inf, isfinite
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -256,21 +256,6 @@ def _excess_compliance(p: Properties) -> np.ndarray:
     regular = p.regular_shear_stiffness
     same = np.isclose(p.shear_stiffness, regular, rtol=1e-9, atol=0)
     return np.where(same, 0.0, 1 / p.shear_stiffness - 1 / regular)
-
-
-def coefficients(a: float) -> tuple[float, float, float]:
-    """Return T, R and A of a harmonic wave at a joint rigid before slip, a = tau / (Z V) <= 1.
-
-    Root mean squares of the transmitted and reflected stress over that of the incident one, and
-    A^2 = 1 - T^2 - R^2, the share of the energy that goes into friction. With s = asin a
-
-        T^2 = (2/pi)(s - a sqrt(1 - a^2) + a^2 (pi - 2 s))
-        R^2 = (4/pi)((pi/2 - s)/2 + sin(2 s)/4 - 2 a cos s + a^2 (pi/2 - s))
-    """
-    s = asin(a)
-    T2 = 2 / pi * (s - a * sqrt(1 - a**2) + a**2 * (pi - 2 * s))
-    R2 = 4 / pi * ((pi / 2 - s) / 2 + sin(2 * s) / 4 - 2 * a * cos(s) + a**2 * (pi / 2 - s))
-    return sqrt(T2), sqrt(max(R2, 0.0)), sqrt(max(1 - T2 - R2, 0.0))
 
 
 def transmitted(

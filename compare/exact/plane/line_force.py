@@ -77,53 +77,12 @@ def motion(
     return LineForceMotion(*parts, *errors)
 
 
-def impulse(rock: ElasticRock, offsets: np.ndarray, times: np.ndarray) -> np.ndarray:
-    """Return G_ij, the displacement (m) by 1 N s/m, array [m, i, j, times]; infinite at arrivals.
-
-    offsets : [m, 2], m. times : s, after the impulse.
-    """
-    x, t = _places(offsets), np.asarray(times, dtype=float)
-    r = np.hypot(*x.T)[:, None]
-    a, b = rock.p_speed, rock.s_speed
-    s_a, s_b = (np.sqrt(np.maximum(t**2 - (r / c) ** 2, 0) * (t > 0)) for c in (a, b))
-    with np.errstate(divide="ignore"):
-        fast, slow = (np.where(t >= r / c, 1 / (c**2 * s), 0) for c, s in ((a, s_a), (b, s_b)))
-    return _tensor(
-        rock, x, fast - slow + 2 * _near(rock, r, s_a, s_b), slow - _near(rock, r, s_a, s_b)
-    )
-
-
-def step(rock: ElasticRock, offsets: np.ndarray, times: np.ndarray) -> np.ndarray:
-    """Return the displacement (m) by 1 N/m from 0 s on, array [m, i, j, times]."""
-    x, t = _places(offsets), np.asarray(times, dtype=float)
-    r = np.hypot(*x.T)[:, None]
-    a, b = rock.p_speed, rock.s_speed
-    s_a, s_b = (np.sqrt(np.maximum(t**2 - (r / c) ** 2, 0) * (t > 0)) for c in (a, b))
-    fast, slow = (np.arccosh(np.maximum(c * t / r, 1)) / c**2 for c in (a, b))
-    near = (t * _near(rock, r, s_a, s_b) - fast + slow) / 2
-    return _tensor(rock, x, fast - slow + 2 * near, slow - near)
-
-
 def _places(offsets: np.ndarray) -> np.ndarray:
     """Return offsets [m, 2] off the line."""
     x = np.atleast_2d(np.asarray(offsets, dtype=float))
     if not (np.hypot(*x.T) > 0).all():
         raise ValueError("a place lies on the line of the force, where the motion is infinite")
     return x
-
-
-def _near(rock: ElasticRock, r: np.ndarray, s_a: np.ndarray, s_b: np.ndarray) -> np.ndarray:
-    """Return (s_a - s_b) / r^2 without cancellation."""
-    spread = 1 / rock.s_speed**2 - 1 / rock.p_speed**2
-    both = np.where(s_b > 0, s_a + s_b, 1)
-    return np.where(s_b > 0, spread / both, s_a / r**2)
-
-
-def _tensor(rock: ElasticRock, x: np.ndarray, P: np.ndarray, Q: np.ndarray) -> np.ndarray:
-    """Return (P gamma gamma + Q I) / (2 pi rho), [m, i, j, times], of P and Q [m, times]."""
-    g = x / np.hypot(*x.T)[:, None]
-    along = np.einsum("mi,mj,mt->mijt", g, g, P)
-    return (along + np.einsum("ij,mt->mijt", np.eye(2), Q)) / (2 * np.pi * rock.density)
 
 
 def _motion(rock, d, force, rate, breaks, x, t, points) -> np.ndarray:

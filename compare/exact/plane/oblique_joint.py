@@ -32,20 +32,13 @@ import numpy as np
 from cases.material.rock import ElasticRock, Values
 from compare.exact.plane.pulse import (
     Axes,
-    Fields,
     Layers,
-    Pulse,
-    PulseStack,
-    axes_of,
-    pulse_fields,
 )
 from compare.exact.plane.waves import (
     KINDS,
     Kind,
-    cosines,
     face,
     is_evanescent,
-    slowness_along,
     solve_pair,
 )
 
@@ -72,18 +65,6 @@ class Coefficients(NamedTuple):
     R_s: np.ndarray
     T_p: np.ndarray
     T_s: np.ndarray
-
-
-def coefficients(
-    incidence: Kind, angle: Values, omega: Values, rock: ElasticRock, joint: Joint
-) -> Coefficients:
-    """Return R_p, R_s, T_p, T_s, all arguments broadcast together.
-
-    incidence : "P" or "SV". angle : of travel from the normal, rad. omega : rad/s, Re >= 0; with a
-    positive imaginary part it is a Laplace variable.
-    """
-    R, T = scattering(rock, joint, slowness_along(rock, incidence, angle), omega)
-    return picked(R, T, incidence)
 
 
 def picked(R: np.ndarray, T: np.ndarray, incidence: Kind) -> Coefficients:
@@ -164,48 +145,6 @@ def _weighed(traction, velocity, impedance, omega, joint, axis) -> tuple[np.ndar
         raise ValueError("omega and a stiffness are both 0: nothing determines the waves")
     soft = np.where(rigid, 0, inertia / (inertia + 2 * K))
     return (soft / impedance)[..., None] * traction, (1 - soft)[..., None] * velocity
-
-
-def energy_flux(
-    incidence: Kind, angle: Values, rock: ElasticRock, found: Coefficients
-) -> np.ndarray:
-    """Return the shares of the incident energy flux that R_p, R_s, T_p and T_s carry away from the
-    joint, array [4, ...]; evanescent waves carry none."""
-    c, k = (x.real for x in cosines(rock, slowness_along(rock, incidence, angle)))
-    carried = np.stack(np.broadcast_arrays(rock.p_impedance * c, rock.s_impedance * k))
-    shares = carried / carried[KINDS.index(incidence)]
-    return np.abs(np.stack(found)) ** 2 * np.concatenate([shares, shares])
-
-
-def fields(
-    rock: ElasticRock,
-    joint: Joint,
-    pulse: Pulse,
-    point: np.ndarray,
-    dip: float,
-    points: np.ndarray,
-    times: np.ndarray,
-) -> Fields:
-    """Return particle velocity and stress of a plane pulse that meets the joint.
-
-    Parameters
-    ----------
-    pulse : its velocity is that of the incident wave at `point`.
-    point, dip : a point of the joint [2] (m), and its angle from x, anticlockwise (rad).
-    points : [m, 2], m; one on the joint counts to the side that the pulse comes from.
-    times : equally spaced, s.
-    """
-    axes = axes_of(rock, pulse, dip)
-
-    def layers(omega: np.ndarray) -> Layers:
-        R, T = (x @ axes.incident for x in scattering(rock, joint, axes.slowness, omega))
-        nothing = np.zeros_like(R)
-        return Layers(np.stack([axes.incident + nothing, T]), np.stack([R, nothing]))
-
-    stack = PulseStack(
-        axes, np.zeros(1), layers, layers_at_once([rock] * 2, joint, axes), [rock] * 2
-    )
-    return pulse_fields(pulse, stack, np.subtract(points, point), times)
 
 
 def layers_at_once(rocks: Sequence[ElasticRock], first: Joint, axes: Axes) -> Layers:

@@ -46,7 +46,8 @@ def coefficients(
 ) -> Coefficients:
     """Return R_p, R_s at the first joint and T_p, T_s at the last one.
 
-    incidence, angle, omega, rock : as in `oblique_joint.coefficients`, broadcast together.
+    incidence : "P" or "SV". angle : of travel from the normal, rad. omega : rad/s, Re >= 0; with a
+    positive imaginary part it is a Laplace variable. These and rock are broadcast together.
     joints : as the wave meets them. spacings : between them, m, one less.
     """
     slowness = slowness_along(rock, incidence, angle)

@@ -15,9 +15,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compare.exact.blocks.lattice import frequencies
-from compare.exact.blocks.spatial import Plane
-
 RIGID = 1e-12  # of the highest frequency; singular values are known to some 1e-15 of it
 
 
@@ -28,32 +25,17 @@ class Modes(NamedTuple):
     shapes: np.ndarray
 
 
-def displacements(
-    force: np.ndarray, steps: np.ndarray, dt: float, stiffness: float, mass: float, block_count: int
-) -> np.ndarray:
-    """Return the displacement (m) of a uniform free-free chain [block_count, len(steps)].
-
-    Parameters
-    ----------
-    force : float array [n], force (N) on block 1 at steps 0, 1, ...; n at least max(steps).
-    steps : int array of step numbers.
-    dt : step, s, below the critical one, 2 / omega_max, where the highest mode would be double.
-    stiffness, mass : of every joint (N/m) and block (kg).
-    """
-    centres = np.arange(block_count) + 0.5
-    shapes = np.cos(np.outer(centres, np.arange(block_count)) * np.pi / block_count)
-    shapes /= np.sqrt(mass * (shapes**2).sum(axis=0))
-    chain = Modes(frequencies(stiffness, mass, block_count), shapes)
-    return of_modes(chain, np.eye(block_count)[0], force, steps, dt)
-
-
 def of_modes(
     modes: Modes, place: np.ndarray, force: np.ndarray, steps: np.ndarray, dt: float
 ) -> np.ndarray:
     """Return the motion of every freedom [freedoms, len(steps)] after these steps.
 
-    place : float array [freedoms], what a unit force pushes each freedom by; the rest as in
-        `displacements`.
+    Parameters
+    ----------
+    place : float array [freedoms], what a unit force pushes each freedom by.
+    force : float array [n], force (N) at steps 0, 1, ...; n at least max(steps).
+    steps : int array of step numbers.
+    dt : step, s, below the critical one, 2 / omega_max, where the highest mode would be double.
     """
     half = modes.omega * dt / 2
     if half.max() >= 1:
@@ -71,15 +53,6 @@ def modes(mass: np.ndarray, root: np.ndarray) -> Modes:
     omega = np.pad(omega, (0, max(0, len(mass) - len(omega))))
     omega[omega < RIGID * omega.max()] = 0
     return Modes(omega, shapes.T / np.sqrt(mass)[:, None])
-
-
-def plane_modes(plane: Plane) -> Modes:
-    """Return the modes of a plane of the spatial row, whose ends are free or fixed."""
-    stiffness = plane.stiffness.diagonal()
-    if plane.viscosity.any() or plane.mass_damping:
-        raise ValueError("the plane is damped")
-    relative = plane.relative[:, plane.blocks]
-    return modes(plane.mass, np.sqrt(stiffness)[:, None] * relative)
 
 
 def _rigid(force: np.ndarray, steps: np.ndarray) -> np.ndarray:

@@ -12,7 +12,7 @@ import pytest
 from cases.errors import SceneError
 from cases.material.calibrate import calibrate, mechanisms_of
 from cases.material.constant_q import fitted
-from compare.exact.bar.constant_q import ConstantQ
+from closed_forms.constant_q import ConstantQ
 
 
 def band(decades: float, points: int = 2000) -> np.ndarray:

@@ -12,14 +12,14 @@ import pytest
 from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
 from closed_forms import beam, column, parallel_joints, thin_layer
+from closed_forms.leapfrog import frequencies
+from closed_forms.spall import advance
 from compare.exact.bar import equivalent_bar, images, jointed_bar, series
 from compare.exact.blocks import lattice, sliding_block
 from compare.exact.blocks.chain import chain, contact_forces, rates
-from compare.exact.blocks.lattice import frequencies
 from compare.exact.conditions import joints_are_damped
 from compare.exact.drive import drive
 from compare.exact.joint import one_joint
-from compare.exact.linear import advance
 from compare.exact.schemes.leapfrog import modes
 
 PERIOD = 2 * pi / sqrt(5000.0)  # of the two blocks against each other, s

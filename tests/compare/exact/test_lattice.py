@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 from cases.loads import load_history
 from cases.material.calibrate import calibrate
 from cases.sampling import sample_times
+from closed_forms import leapfrog
 from compare.exact.bar import images, jointed_bar, kelvin_voigt
 from compare.exact.blocks import lattice
 from compare.exact.blocks.chain import chain
@@ -111,7 +112,7 @@ def test_the_state_matrix_has_the_closed_form_s_frequencies_and_decay(scene):
     model = chain(scene(joints={"damping_ratio": 0.02}))
     k, m = model.stiffness[0], model.mass
     eta = model.viscosity[0] / k
-    omega = lattice.frequencies(k, m, 100)
+    omega = leapfrog.frequencies(k, m, 100)
     roots = np.linalg.eigvals(lattice.state_space(model)[0])
     found = roots[roots.imag > 1e-3 * omega[1]]
     found = found[np.argsort(np.abs(found))]
@@ -127,7 +128,7 @@ def test_the_modes_under_a_sine_agree(scene, misfit, zeta):
         joints={"damping_ratio": zeta}, record={"velocity": [0.25 + 0.5 * j for j in (0, 39, 99)]}
     )
     p, load, times = calibrate(at), load_history(at), sample_times(at)
-    omega = lattice.frequencies(p.regular_stiffness * p.area, p.block_mass, 100)
+    omega = leapfrog.frequencies(p.regular_stiffness * p.area, p.block_mass, 100)
     shapes = np.cos(np.outer(np.arange(100) + 0.5, np.arange(100)) * np.pi / 100)
     q, _ = kelvin_voigt.sums(np.eye(99), omega[1:], p.time_constant, load, times)
     q = np.array([kelvin_voigt.rigid(load, times)[1], *q])

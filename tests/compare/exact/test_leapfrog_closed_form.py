@@ -5,9 +5,9 @@ import pytest
 
 from cases.loads import load_history, step_means
 from cases.material.calibrate import calibrate
+from closed_forms import leapfrog
 from compare.exact.bar import images
 from compare.exact.blocks import lattice
-from compare.exact.schemes import leapfrog
 
 
 def stepped(force, dt, k, m, count):
@@ -26,7 +26,7 @@ def test_ten_thousand_steps_agree_to_round_off(fraction):
     """Both gather round-off: a phase of 1e4 steps is known to 1e4 eps, about 2e-12. The last
     fraction of the critical step is c dt = d."""
     k, m, rng = 2.2e9, 300.0, np.random.default_rng(1)
-    dt = fraction * 2 / lattice.frequencies(k, m, 100).max()
+    dt = fraction * 2 / leapfrog.frequencies(k, m, 100).max()
     force = rng.standard_normal(10_000)
     steps = np.array([1, 2, 17, 5000, 10_000])
     found = leapfrog.displacements(force, steps, dt, k, m, 100)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from closed_forms.one_joint import coefficients
 from compare.exact.bar import equivalent_bar
 from compare.exact.joint import one_joint
 
@@ -15,7 +16,7 @@ RECORD = {"stress": [5.0, 20.0, 41.3], "velocity": [0.0, 19.75, 20.0, 33.3]}
 )
 def test_transmission_by_kappa(kappa, expected):
     """Schoenberg (1980) at five kappa, to the digits given; |T|^2 + |R|^2 = 1 without a dashpot."""
-    transmitted, reflected = one_joint.coefficients(100.0, kappa * 3e6 * 100.0, 3e6)
+    transmitted, reflected = coefficients(100.0, kappa * 3e6 * 100.0, 3e6)
     assert abs(transmitted) == pytest.approx(expected, abs=5e-5)
     assert abs(transmitted) == pytest.approx(2 * kappa / np.sqrt(4 * kappa**2 + 1), rel=1e-12)
     assert abs(reflected) == pytest.approx(1 / np.sqrt(4 * kappa**2 + 1), rel=1e-12)
@@ -23,7 +24,7 @@ def test_transmission_by_kappa(kappa, expected):
 
 def test_a_dashpot_passes_high_frequencies_and_takes_energy():
     omega = np.array([10.0, 1e3, 1e8])
-    transmitted, reflected = one_joint.coefficients(omega, 3e8, 3e6, viscosity=2e6)
+    transmitted, reflected = coefficients(omega, 3e8, 3e6, viscosity=2e6)
     assert (abs(transmitted) ** 2 + abs(reflected) ** 2 < 1).all()
     assert abs(transmitted[-1]) == pytest.approx(1 / (1 + 3e6 / (2 * 2e6)), rel=1e-6)
 

@@ -10,9 +10,9 @@ from cases.loads import load_history, step_means
 from cases.material.calibrate import calibrate
 from cases.material.face import face_points
 from cases.sampling import sample_times
+from closed_forms import leapfrog
 from compare.exact.blocks import lattice, spatial, spatial_lattice
 from compare.exact.drive import drive
-from compare.exact.schemes import leapfrog
 
 ACROSS = {"direction": [1.0, 0.0, 0.0]}
 OBLIQUE = [0.48, 0.6, -0.64]

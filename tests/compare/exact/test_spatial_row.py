@@ -5,10 +5,9 @@ import pytest
 
 from cases.material.calibrate import calibrate
 from cases.material.face import face_points
-from closed_forms import cantilever
-from compare.exact.blocks import lattice, spatial, spatial_lattice
+from closed_forms import cantilever, leapfrog
+from compare.exact.blocks import spatial, spatial_lattice
 from compare.exact.blocks.spatial_system import at_rest, system
-from compare.exact.schemes import leapfrog
 
 SHORT = {
     "pillar": {"length": 3.0, "side": 0.7, "block": 0.5},
@@ -85,7 +84,7 @@ def test_single_freedoms_are_lattices_of_their_own(scene, freedom):
     m = p.block_mass
     if freedom == 4:
         k, m = p.regular_shear_stiffness * 0.75 * 0.7**4 / 6, m * 0.7**2 / 6
-    found, expected = leapfrog.plane_modes(plane).omega, lattice.frequencies(k, m, 6)
+    found, expected = leapfrog.plane_modes(plane).omega, leapfrog.frequencies(k, m, 6)
     assert np.abs(np.sort(found) - expected).max() < 1e-13 * expected.max()
 
 

@@ -9,8 +9,8 @@ import xarray as xr
 import dem
 from cases.material.calibrate import calibrate
 from cases.sampling import Clock
+from closed_forms import leapfrog
 from compare.engines import solve
-from compare.exact.schemes import leapfrog
 from compare.figures.charts import along_axis
 from compare.figures.charts.along_axis import along_pillar, recorded_along, sections
 from compare.figures.charts.interactive import thinned, unpacked

@@ -5,7 +5,7 @@ import pytest
 
 import dem
 from cases.material.calibrate import calibrate
-from compare.exact.blocks.lattice import frequencies
+from closed_forms.leapfrog import frequencies
 
 
 def decay_rates(matrix, dt, omega):

@@ -7,8 +7,8 @@ import dem
 from cases.loads import load_history
 from cases.material.calibrate import calibrate
 from cases.sampling import Clock
+from closed_forms import leapfrog
 from compare.exact.bar import images
-from compare.exact.schemes import leapfrog
 from dem.axial.leapfrog import march
 from dem.axial.model import build_model
 from dem.axial.state import state_at_rest

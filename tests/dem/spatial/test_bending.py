@@ -5,9 +5,8 @@ import pytest
 
 import dem
 from cases.material.calibrate import calibrate
-from closed_forms import cantilever
+from closed_forms import cantilever, leapfrog
 from compare.exact.blocks import spatial
-from compare.exact.schemes import leapfrog
 from dem.spatial.ends import CLOSURE
 
 FACES = {

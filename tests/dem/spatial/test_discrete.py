@@ -6,9 +6,9 @@ import pytest
 import dem
 from cases.loads import load_history, step_means
 from cases.material.calibrate import calibrate
+from closed_forms import leapfrog
 from compare.exact.blocks import spatial
 from compare.exact.blocks.spatial_lattice import drive_vector
-from compare.exact.schemes import leapfrog
 
 TWO_TILES = {"pillar__length": 50.0, "time__duration": 0.05}
 BLOWS = {

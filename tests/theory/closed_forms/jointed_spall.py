@@ -13,7 +13,7 @@ from cases.sampling import sample_times
 from cases.schema.scene import Scene
 from closed_forms.spall import Spall
 from compare.exact.bar.jointed_bar import bar
-from compare.exact.bar.laplace import response
+from compare.exact.bar.laplace import bounded
 
 
 def jointed_spall(scene: Scene) -> Spall | None:
@@ -22,7 +22,7 @@ def jointed_spall(scene: Scene) -> Spall | None:
     if p.tensile_strength is None:
         raise ValueError("no joint has a tensile strength")
     load, period = load_history(scene), scene.load.time_scale
-    stress, _, _ = response(bar(scene), load, times, p.joint_y.tolist(), [], period)
+    (stress, _, _), _ = bounded(bar(scene), load, times, p.joint_y.tolist(), [], period)
     fails = stress <= -p.tensile_strength[:, None]
     if not fails.any():
         return None

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from cases.material.rock import ElasticRock
-from compare.exact.joint import one_joint
-from compare.exact.plane.oblique_joint import Joint, coefficients, energy_flux, scattering
+from closed_forms import one_joint
+from closed_forms.oblique_joint import coefficients, energy_flux
+from compare.exact.plane.oblique_joint import Joint, scattering
 from compare.exact.plane.waves import cosines, slowness_along
 
 OMEGA = 2 * np.pi * 100.0

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from cases.material.rock import ElasticRock
+from closed_forms import oblique_joint
 from closed_forms.quiet_face import coefficients, energy_flux
-from compare.exact.plane import oblique_joint
 from compare.exact.plane.oblique_joint import Joint
 from compare.exact.plane.waves import cosines, slowness_along
 

@@ -11,7 +11,7 @@ from cases.partition.scene import cut
 from cases.schema.domain import Domain
 from cases.schema.joint_set import JointSet
 from closed_forms.block_lattice import Lattice, modes
-from compare.exact.linear import response
+from compare.exact.linear import twins
 from compare.exact.plane.rigid_motion import (
     RigidSystem,
     forces_of,
@@ -95,7 +95,7 @@ def test_matrix_exponentials_agree():
     peak = int(np.abs(forces).sum(axis=1).argmax())
     b[n:] = forces[peak] / pulse.value(np.linspace(0, 0.02, 401))[peak] / system.masses
     output = np.diag(np.concatenate([np.full(n, 1 / scale), np.ones(n)]))
-    expected = response(A, b, output, pulse, np.linspace(0, 0.02, 101))
+    expected = twins(A, b, output, pulse, np.linspace(0, 0.02, 101))[0]
     off = []
     for samples in (401, 801):
         found = np.concatenate(
