@@ -42,7 +42,7 @@ check: setup  ## lint, formatting, types, and the direction of imports
 	@$(RUN) mypy
 	@$(RUN) lint-imports
 
-bench: setup  ## both engines: start-up, kernels against bare loops and other solvers, threads, MPI, memory, cost of each effect
+bench: setup  ## both engines: start-up, kernels against bare loops and other solvers, threads, MPI, memory
 	@$(RUN) python tools/bench
 
 bench-peers: setup  ## the same pillar in LAMMPS, Akantu and Yade, a lattice in LAMMPS, installed apart in .peers, beside ours

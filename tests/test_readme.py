@@ -9,8 +9,8 @@ import pytest
 import cases
 from compare.engines import solve
 from compare.experiments.study.findings import orders
-from compare.experiments.study.runner import run
 from compare.experiments.study.study import load
+from compare.experiments.study.summary import run
 from compare.misfit.metrics import misfit
 
 ROOT = Path(__file__).parent.parent

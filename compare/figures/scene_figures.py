@@ -1,7 +1,11 @@
-"""All pictures of one scene, in the order of the page."""
+"""All pictures of one scene, in the order of the page, and what is solved for them alone."""
 
 import xarray as xr
 
+from cases.kinds import AnyScene
+from cases.material.calibrate import calibrate
+from cases.schema.scene import Scene
+from compare.engines import ENGINES, applies, names, solve
 from compare.figures.charts.energy import energy
 from compare.figures.charts.peak_velocities import peak_velocities
 from compare.figures.charts.propagation import propagation
@@ -13,6 +17,7 @@ from compare.figures.drawing.scene import scene_figure
 from compare.figures.figure import SceneFigure
 from compare.figures.subplots import variant_names
 from compare.misfit.pairs import Comparison
+from compare.misfit.ranking import own_exact
 
 
 def figures_of(
@@ -45,3 +50,63 @@ def _space_time(
         for k, (comparison, variant, found) in enumerate(variants)
         for shown in diagrams_of(comparison.scene, found)
     ]
+
+
+SECTIONS, TIMES = 60, 240  # at most so many intervals between the sections and samples kept
+FEWEST = 8  # blocks; in fewer there is no wave to be seen
+
+
+def along_pillar(scene: AnyScene) -> dict[str, xr.Dataset]:
+    """Return results by name at joints or blocks all along the pillar, at some 240 times.
+
+    Those of the engines, each run as in the comparison, and of the exact solution of each one's own
+    model. Empty where the pillar has too few blocks for a wave to be seen, and of a rock mass.
+    Raises what `compare.engines.solve` does.
+    """
+    if not isinstance(scene, Scene) or scene.block_count < FEWEST:
+        return {}
+    wide = recorded_along(scene)
+    every = [name for name in names() if applies(name, wide)]
+    engines = [name for name in every if name in ENGINES]
+    exact = [own for name in engines if (own := own_exact(name, every, wide))]
+    return {name: _thinned(solve(name, wide)) for name in dict.fromkeys([*engines, *exact])}
+
+
+def sections(scene: Scene) -> list[float]:
+    """Return y of the start, every k-th joint and the end, m."""
+    places = _contacts(scene)
+    if not scene.is_uniform:
+        return calibrate(scene).contact_y[places].tolist()
+    return [scene.pillar.block * i for i in places]
+
+
+def _contacts(scene: Scene) -> list[int]:
+    """Return every k-th contact between blocks, from the start to the end."""
+    count = scene.block_count
+    return [*range(0, count, -(-count // SECTIONS)), count]
+
+
+def recorded_along(scene: AnyScene) -> AnyScene:
+    """Return the scene with receivers along the pillar; samples and steps stay as they are.
+
+    Of a scene that records velocities alone these are the centres of blocks, else sections. A rock
+    mass stays as it is.
+    """
+    if not isinstance(scene, Scene):
+        return scene
+    places = sections(scene)
+    # A couple about the axis strains no section; what it turns is recorded with the velocity.
+    points = places if scene.load.arm is not None else []
+    if scene.record.velocity and not scene.record.stress:
+        points = [y + scene.pillar.block / 2 for y in places[:-1]]
+        if not scene.is_uniform:
+            points = calibrate(scene).centre_y[_contacts(scene)[:-1]].tolist()
+        places = []
+    record = scene.record.model_copy(update={"stress": places, "velocity": points, "fields": None})
+    return scene.model_copy(update={"record": record})
+
+
+def _thinned(result: xr.Dataset) -> xr.Dataset:
+    """Return a result at every k-th sample, in memory of its own."""
+    step = max(1, -(-(result.sizes["time"] - 1) // TIMES))
+    return result.isel(time=slice(None, None, step)).copy(deep=True)

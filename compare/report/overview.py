@@ -1,10 +1,15 @@
-"""The first screen: how far apart the engines are on every scene, and what each costs."""
+"""The first screen: how far apart the engines are on every scene, what each costs; versions."""
 
-from collections.abc import Callable
+import json
+import platform
+from collections.abc import Callable, Iterable
+from importlib.metadata import PackageNotFoundError, version
 from math import isnan
+from time import perf_counter
 from typing import NamedTuple
 
-from compare.engines import ENGINES
+from compare.engines import ENGINES, solve
+from compare.misfit.pairs import Comparison
 from compare.report.verdict import NOT_CHECKED, Standing
 
 
@@ -90,3 +95,52 @@ def _short(x: float) -> str:
 def times(x: float) -> str:
     """Return a ratio as it is read, "15×"."""
     return f"{x:.0f}×" if x >= 9.95 else f"{x:.1f}×"
+
+
+PACKAGES = ("scipy", "xarray", "obspy", "matplotlib", "plotly")
+
+
+def versions(scenes: Iterable[list[Comparison]]) -> dict[str, str]:
+    """Return them by name."""
+    found = {"jointwave": _version("jointwave"), "Python": platform.python_version()}
+    for comparisons in scenes:
+        for result in comparisons[0].results.values():
+            found |= json.loads(result.attrs.get("versions", "{}"))
+    return found | {name: _version(name) for name in PACKAGES}
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:  # run from its folder, not installed
+        return "(not installed)"
+
+
+REPEATS = 5
+LONG = 0.5  # s: a run that has taken so long is not repeated
+ENOUGH = 0.2  # s: of repeats, their set-up included
+
+
+def seconds(comparison: Comparison) -> dict[str, float]:
+    """Return the seconds of stepping of each engine on a variant that it has solved.
+
+    The least of a few repeats, while no other process should be computing; of a run that has
+    taken long before, what it took then.
+    """
+    engines = [name for name in ENGINES if name in comparison.results]
+    return {name: _least(name, comparison) for name in engines}
+
+
+def _least(name: str, comparison: Comparison) -> float:
+    known = _stepping(comparison.results[name])
+    if known > LONG:
+        return known
+    found: list[float] = []
+    began = perf_counter()
+    while not found or (len(found) < REPEATS and perf_counter() - began < ENOUGH):
+        found.append(_stepping(solve(name, comparison.scene)))
+    return min(found)
+
+
+def _stepping(result) -> float:
+    return float(result.attrs["seconds_stepping"])

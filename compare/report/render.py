@@ -12,12 +12,12 @@ from jinja2 import Environment, PackageLoader
 from markupsafe import Markup, escape
 
 from compare.experiments.summary import Summary
+from compare.figures.snapshots import SnapshotsSection
 from compare.figures.style import style
 from compare.report.findings import Finding
 from compare.report.overview import Overview, in_seconds, times
 from compare.report.peers import PeersSection
 from compare.report.section import Section
-from compare.report.snapshots import SnapshotsSection
 from compare.report.tables import Table, percent
 
 

@@ -24,17 +24,15 @@ from compare.experiments.summary import Summary
 from compare.figures.charts.static import draw
 from compare.figures.charts.waveforms import by_solutions
 from compare.figures.export import save
+from compare.figures.snapshots import SnapshotsSection, make_snapshots
 from compare.figures.subplots import curve_table
 from compare.misfit.pairs import Comparison
 from compare.report import peers, tables
-from compare.report.cost import seconds
-from compare.report.findings.overview import mostly_dispersion
-from compare.report.overview import Overview, RankedScene
+from compare.report.findings.pillar import mostly_dispersion
+from compare.report.overview import Overview, RankedScene, seconds, versions
 from compare.report.reading_table import reading_frame
 from compare.report.render import Page, RockMasses, render
 from compare.report.scenes import ROCK_MASSES, Solved, asked_for, solve
-from compare.report.snapshots import SnapshotsSection, make_snapshots
-from compare.report.versions import versions
 from compare.runs.output import write_csv, write_text
 from compare.runs.workers import Workers
 

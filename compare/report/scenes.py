@@ -14,9 +14,8 @@ from cases.schema.scene import Scene
 from compare.engines import Progress
 from compare.experiments.cost import timings
 from compare.experiments.pool import Pool
-from compare.figures.charts.along_axis import along_pillar, recorded_along
 from compare.figures.figure import SceneFigure
-from compare.figures.scene_figures import figures_of
+from compare.figures.scene_figures import along_pillar, figures_of, recorded_along
 from compare.misfit.pairs import Comparison, compare
 from compare.report.section import PAPER, SceneRequest, Section, begin, finish, make_section
 from compare.scenes import find, load

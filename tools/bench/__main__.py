@@ -1,13 +1,12 @@
 """All benchmarks, as ratios and costs of one run on this machine.
 
 usage: python tools/bench [PART ...], of
-    startup, kernels, plane, guards, continuum, masses, memory, effects
+    startup, kernels, plane, guards, continuum, masses, memory
 """
 
 import sys
 
 import deformable
-import effects
 import guards
 import kernels
 import masses
@@ -23,7 +22,6 @@ PARTS = {
     "continuum": deformable.main,
     "masses": masses.main,
     "memory": memory.main,
-    "effects": effects.main,
 }
 
 if __name__ == "__main__":

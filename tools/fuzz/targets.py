@@ -32,8 +32,8 @@ from cases.schema.scene import Scene
 from cases.warnings import warnings
 from compare.cli import program
 from compare.engines import applies, names
-from compare.experiments.study.runner import key
 from compare.experiments.study.study import load as load_study
+from compare.experiments.study.summary import key
 from compare.misfit.external_files import read_columns
 from results.dataset import scene_hash
 
@@ -182,7 +182,7 @@ SOLVERS = (
     "compare.experiments.sweep.runner.run",
     "compare.experiments.ablation.runner.run",
     "compare.experiments.planner.planner.plan",
-    "compare.experiments.study.runner.run",
+    "compare.experiments.study.summary.run",
     "compare.experiments.robustness.summary.make_study",
     "compare.report.report.build",
     "compare.figures.print.make.make",

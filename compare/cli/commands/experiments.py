@@ -135,9 +135,8 @@ def study(
         def work(pool: Any, advance: Any) -> Any:
             return make_scattering(name, out, advance)
     else:
-        from compare.experiments.study.runner import run
         from compare.experiments.study.study import load
-        from compare.experiments.study.summary import summarise
+        from compare.experiments.study.summary import run, summarise
 
         asked = load(name)
         title = asked.title

@@ -7,8 +7,7 @@ import pandas as pd
 
 from compare.experiments.ablation.ablation import Ablation, EffectCost
 from compare.experiments.ablation.diagram import draw
-from compare.experiments.summary import Summary
-from compare.experiments.tables import number
+from compare.experiments.summary import Summary, number
 from compare.figures.export import save
 from compare.report.tables import Table, percent
 from compare.runs.output import write_csv

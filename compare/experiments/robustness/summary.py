@@ -18,8 +18,7 @@ from compare.experiments.robustness.linear_cases import MILLION
 from compare.experiments.robustness.map import StabilityMap, boundary
 from compare.experiments.robustness.run import FAILED, HELD, NONE, CaseRow, run, run_maps
 from compare.experiments.store import Store
-from compare.experiments.summary import Summary
-from compare.experiments.tables import frame, grouped, number, write_tables
+from compare.experiments.summary import Summary, frame, grouped, number, write_tables
 from compare.figures.export import blank, save
 from compare.figures.style import style
 from compare.report.tables import Table

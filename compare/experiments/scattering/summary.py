@@ -14,8 +14,7 @@ from compare.exact.plane.waves import KINDS
 from compare.experiments.cost.timings import machine
 from compare.experiments.pool import Pool
 from compare.experiments.scattering.points import AT, COUNTS, JointsRow, closed_form, run, scene_of
-from compare.experiments.summary import Summary
-from compare.experiments.tables import frame, grouped, number, write_tables
+from compare.experiments.summary import Summary, frame, grouped, number, write_tables
 from compare.figures.export import blank, save
 from compare.figures.style import style
 from compare.report.tables import Table, percent

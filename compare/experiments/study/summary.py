@@ -1,18 +1,19 @@
 """The summary of a study: its table, its orders of convergence, its findings, its files."""
 
+from contextlib import nullcontext
 from pathlib import Path
 
 from compare.engines import Progress
+from compare.experiments import store
 from compare.experiments.cost.timings import machine
-from compare.experiments.pool import Pool
+from compare.experiments.pool import Pool, alone
+from compare.experiments.store import Store
 from compare.experiments.study.diagram import write_diagram
 from compare.experiments.study.findings import Order, orders, sentences
-from compare.experiments.study.measure import PointRow
-from compare.experiments.study.pareto import digits_per_second
-from compare.experiments.study.runner import run
-from compare.experiments.study.study import Study, load
-from compare.experiments.summary import Summary
-from compare.experiments.tables import frame, grouped, number, write_tables
+from compare.experiments.study.measure import PointRow, measure
+from compare.experiments.study.pareto import digits_per_second, judged
+from compare.experiments.study.study import Study, StudyPoint, load
+from compare.experiments.summary import Summary, frame, grouped, number, write_tables
 from compare.report.tables import Table
 
 #: The studies of the report, in its order.
@@ -99,3 +100,28 @@ def _settings(row: PointRow) -> str:
 
 def _of_point(row: PointRow) -> str:
     return ", ".join(filter(None, [row.curve, _settings(row)]))
+
+
+def run(
+    study: Study, folder: Path, pool: Pool | None = None, progress: Progress | None = None
+) -> list[PointRow]:
+    """Return the rows of all points of a study, in its order; they are saved in `folder`.
+
+    Points of a timed study are run one at a time in this process, whatever `pool` is, and no two
+    timed studies of a machine at once.
+    """
+    rows: Store[PointRow] = Store(PointRow, folder)
+    with alone() if study.timed else nullcontext():
+        pool = None if study.timed else pool
+        return judged(rows.compute(study.points(), key, measure, pool, progress, rate(study)))
+
+
+def rate(study: Study) -> str:
+    """Return what the seconds of a study's points are remembered by."""
+    return f"point of {study.title}"
+
+
+def key(point: StudyPoint) -> str:
+    """Return what tells points apart: everything that decides a row."""
+    study = point.study.model_dump(mode="json", exclude={"title", "curves"})
+    return store.key(study, point.curve.model_dump(mode="json"), point.settings)

@@ -9,7 +9,7 @@ import pandas as pd
 import xarray as xr
 
 from cases.errors import SceneError
-from compare.experiments.summary import Summary
+from compare.experiments.summary import Summary, cell, grouped, number, write_tables
 from compare.experiments.sweep.axis import MEMBER
 from compare.experiments.sweep.case import SweepOutcome
 from compare.experiments.sweep.ensemble import (
@@ -20,7 +20,6 @@ from compare.experiments.sweep.ensemble import (
     waveforms,
 )
 from compare.experiments.sweep.runner import Sweep
-from compare.experiments.tables import cell, grouped, number, write_tables
 from compare.misfit.metrics import Distance
 from compare.misfit.places import Place
 from compare.report.tables import Table

@@ -7,10 +7,9 @@ import pytest
 from matplotlib.colors import to_hex
 
 from compare.engines import solve
-from compare.figures.charts.along_axis import recorded_along
 from compare.figures.charts.interactive import BITS, thinned, unpacked
 from compare.figures.charts.waveforms import waveforms
-from compare.figures.scene_figures import figures_of
+from compare.figures.scene_figures import figures_of, recorded_along
 from compare.figures.style import GIVEN
 from compare.misfit.alignment import lay_beside
 from compare.misfit.external import Curves

@@ -11,11 +11,11 @@ from cases.material.calibrate import calibrate
 from cases.sampling import Clock
 from closed_forms import leapfrog
 from compare.engines import solve
-from compare.figures.charts import along_axis
-from compare.figures.charts.along_axis import along_pillar, recorded_along, sections
+from compare.figures import scene_figures
 from compare.figures.charts.interactive import thinned, unpacked
 from compare.figures.charts.spacetime import BITS, FINER, TIMES, space_time
 from compare.figures.charts.spacetime_data import diagrams_of
+from compare.figures.scene_figures import along_pillar, recorded_along, sections
 from compare.report.render import held
 from dem.axial.model import build_model
 
@@ -109,7 +109,7 @@ def test_the_wave_is_drawn_not_the_prestress(pillar):
 
 def test_sections_are_the_waveforms_of_the_comparison(pillar, compared, monkeypatch):
     """Receivers all along change neither the step nor a digit of a run; samples are thinned."""
-    monkeypatch.setattr(along_axis, "ENGINES", ("dem",))
+    monkeypatch.setattr(scene_figures, "ENGINES", ("dem",))
     scene = pillar()
     fields = along_pillar(scene)
     assert set(fields) == {"dem", "lattice"}
@@ -123,7 +123,7 @@ def test_sections_are_joints_and_both_ends(pillar):
     assert sections(pillar()) == [float(y) for y in range(51)]
     odd = sections(pillar(pillar__length=48.5))  # 97 blocks: the last section is one block on
     assert odd[-2:] == [48.0, 48.5] and len(odd) == 50
-    assert len(sections(pillar(pillar__length=5000.0))) <= along_axis.SECTIONS + 2
+    assert len(sections(pillar(pillar__length=5000.0))) <= scene_figures.SECTIONS + 2
 
 
 def test_few_blocks_show_no_wave(pillar):

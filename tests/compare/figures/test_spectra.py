@@ -8,10 +8,16 @@ import pytest
 
 from cases.material.calibrate import calibrate
 from closed_forms.parallel_joints import transmission
-from compare.figures.charts.frequencies import band_edge, marks_of
 from compare.figures.charts.interactive import BITS, unpacked
 from compare.figures.charts.spectra import spectra
-from compare.figures.charts.spectrum import TAPERED, spectra_of, spectrum, tapered
+from compare.figures.charts.spectrum import (
+    TAPERED,
+    band_edge,
+    marks_of,
+    spectra_of,
+    spectrum,
+    tapered,
+)
 from compare.figures.subplots import panels
 
 ROUNDED = 2.0**-BITS  # of a number that is drawn on the screen

@@ -10,7 +10,7 @@ from compare.engines import solve
 from compare.exact.blocks import lattice, no_tension
 from compare.misfit.pairs import Comparison
 from compare.report.findings import FINDINGS, ends, joints, pillar, travel
-from compare.report.findings.overview import mostly_dispersion
+from compare.report.findings.pillar import mostly_dispersion
 from compare.report.section import PAPER as SCENES
 
 CLAIMS = [(figure, find) for figure, finds in FINDINGS.items() for find in finds]

@@ -16,7 +16,7 @@ import numpy as np
 
 from cases.errors import UnstableError
 from compare.experiments.robustness.case import CaseTrial, Judgement, criterion
-from compare.experiments.robustness.unloaded import unloaded
+from compare.experiments.robustness.map import unloaded
 
 IMPACTS = 10_000
 SAMPLES = 16  # of the speed, from one impact to the next

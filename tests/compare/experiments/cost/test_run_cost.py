@@ -177,8 +177,8 @@ def test_a_scene_that_cannot_run_is_one_line(dry):
 def test_what_is_done_of_a_study_is_known(tmp_path, monkeypatch):
     """Points that are kept are not to do, and take no time."""
     from compare.experiments.cost.experiment_cost import parts_of_study
-    from compare.experiments.study.runner import rate, run
     from compare.experiments.study.study import load
+    from compare.experiments.study.summary import rate, run
 
     file = tmp_path / "mine.toml"
     file.write_text(

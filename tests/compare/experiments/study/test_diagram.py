@@ -8,9 +8,8 @@ import pytest
 from compare.experiments.study.diagram import draw, line_style
 from compare.experiments.study.findings import sentences
 from compare.experiments.study.pareto import cheapest, judged, measured
-from compare.experiments.study.runner import run
 from compare.experiments.study.study import load
-from compare.experiments.study.summary import cells
+from compare.experiments.study.summary import cells, run
 
 
 def test_every_point_is_drawn_where_it_was_measured(study, tmp_path):

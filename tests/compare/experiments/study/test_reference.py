@@ -7,7 +7,7 @@ from compare.engines import solve
 from compare.experiments.study.findings import orders, sentences
 from compare.experiments.study.measure import measure
 from compare.experiments.study.reference import finest_of, own_of
-from compare.experiments.study.runner import run
+from compare.experiments.study.summary import run
 from compare.misfit.metrics import misfit, pairings
 
 STEP = "numerics.dem.step_fraction"

@@ -7,8 +7,8 @@ import sys
 import pytest
 
 from compare.experiments.pool import alone
-from compare.experiments.study import measure, runner
-from compare.experiments.study.runner import run
+from compare.experiments.study import measure, summary
+from compare.experiments.study.summary import run
 
 TIMED = ("seconds", "spread", "setup", "compile")
 
@@ -29,12 +29,14 @@ def test_an_interrupted_study_ends_with_the_same_table(study, tmp_path, monkeypa
         calls.append(point.settings)
         return measure.measure(point)
 
-    monkeypatch.setattr(runner, "measure", until_third)
+    monkeypatch.setattr(summary, "measure", until_third)
     with pytest.raises(KeyboardInterrupt):
         run(study(), tmp_path / "resumed")
     kept = {p.name: p.read_text() for p in (tmp_path / "resumed").iterdir()}
     assert len(kept) == 2
-    monkeypatch.setattr(runner, "measure", lambda p: calls.append(p.settings) or measure.measure(p))
+    monkeypatch.setattr(
+        summary, "measure", lambda p: calls.append(p.settings) or measure.measure(p)
+    )
     assert counted(run(study(), tmp_path / "resumed")) == counted(whole)
     assert len(calls) == len(whole) == 4
     assert all((tmp_path / "resumed" / name).read_text() == text for name, text in kept.items())
@@ -43,8 +45,8 @@ def test_an_interrupted_study_ends_with_the_same_table(study, tmp_path, monkeypa
 def test_another_scene_curve_or_setting_is_another_point(study, tmp_path):
     """Kept points are taken only where everything that decides them is the same."""
     points = [*study().points(), *study(changes={}).points(), *study(repeats=4).points()]
-    assert len({runner.key(point) for point in points}) == len(points)
-    assert runner.key(study(title="another").points()[0]) == runner.key(points[0])
+    assert len({summary.key(point) for point in points}) == len(points)
+    assert summary.key(study(title="another").points()[0]) == summary.key(points[0])
 
 
 def test_points_that_cannot_be_run_say_why(study, tmp_path):
