@@ -51,7 +51,7 @@ def test_each_family_ends_where_it_meets_all_or_is_too_dear(tools, scene):
 
 def test_a_plan_that_is_the_studys_best_costs_as_much(tools, scene):
     """Equal configurations are one run, timed once in every round."""
-    for row in tools("held").rows_of(scene, [0.01], 3):
+    for row in tools("full_study").rows_of(scene, [0.01], 3):
         assert row["met"] and row["ratio"] > 0
         if row["chosen"] == row["best"]:
             assert row["ratio"] == 1
@@ -62,7 +62,7 @@ def test_a_scene_that_cannot_be_planned_is_a_miss_with_its_reason(tools, scene, 
 
     monkeypatch.setattr(reference, "LEVELS", 1)
     local = scene.model_copy(update={"damping": scene.damping.model_copy(update={"local": 0.5})})
-    (row,) = tools("held").rows_of(local, [0.01], 3)
+    (row,) = tools("full_study").rows_of(local, [0.01], 3)
     assert not row["met"] and isnan(row["ratio"]) and "no exact solution" in row["message"]
     table = tools("table")
     assert "missed" in table.line({"scene": "x", **row})

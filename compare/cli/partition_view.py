@@ -85,31 +85,22 @@ def show_partition(facts: dict[str, Any]) -> None:
     for name, one in facts["regions"].items():
         speeds = f"waves of {one['p_speed']:.4g} and {one['s_speed']:.4g} m/s"
         say(f"region {name}: {one['blocks']:,} blocks, {one['area']:.6g} m2, {speeds}")
-    rows = [[name, f"{one['contacts']:,}", f"{one['length']:.6g}"] for name, one in _rows(facts)]
+    cuts = facts["cuts_through_rock"]
+    sets = facts["joint_sets"] | ({"(no joint)": cuts} if cuts["contacts"] else {})
+    rows = [[name, f"{one['contacts']:,}", f"{one['length']:.6g}"] for name, one in sets.items()]
     show_table(["joint set", "contacts", "length, m"], rows)
     show_table(["side", "edges"], [[name, f"{n:,}"] for name, n in facts["boundary"].items()])
     at_most = spoken(facts["bytes_at_most"])
     if (lack := facts["rigid_blocks_lack"]) is not None:
-        share = f"{_percent(lack)} % of the intact rock's stiffness"
-        say(f"rigid blocks cannot have {share}: {_why(lack)}")
+        percent, why = (
+            f"{100 * lack:.2g}",
+            "their joints alone carry it, and joints of few directions",
+        )
+        why = f"{why} have no Poisson effect"
+        if lack < ROUND_OFF:
+            percent, why = "0", "their joints carry all of it"
+        say(f"rigid blocks cannot have {percent} % of the intact rock's stiffness: {why}")
     say(f"memory of the blocks: {spoken(facts['bytes'])}, at most {at_most} while they are cut")
-
-
-def _percent(lack: float) -> str:
-    return f"{100 * lack:.2g}" if lack > ROUND_OFF else "0"
-
-
-def _why(lack: float) -> str:
-    """Return what the stiffness that rigid blocks lack means."""
-    if lack < ROUND_OFF:
-        return "their joints carry all of it"
-    return "their joints alone carry it, and joints of few directions have no Poisson effect"
-
-
-def _rows(facts: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
-    """Return the joint sets, and cuts and boundaries without a joint where there are some."""
-    cuts = facts["cuts_through_rock"]
-    return [*facts["joint_sets"].items(), *([("(no joint)", cuts)] if cuts["contacts"] else [])]
 
 
 def _of_set(found: Partition, index: int) -> dict[str, Any]:

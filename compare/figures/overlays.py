@@ -155,7 +155,8 @@ def by_variant(comparisons: list[Comparison]) -> list[list[Overlay]]:
     rows = [list(row) for row in zip(*panels(comparisons), strict=False)]
     if any(len({p.place for p in row}) > 1 for row in rows):
         return []
-    return [[_of_engine(engine, row) for engine in _engines(comparisons)] for row in rows]
+    solved = in_order({name for comparison in comparisons for name in comparison.results})
+    return [[_of_engine(one, row) for one in solved if one in ENGINES] for row in rows]
 
 
 def changed_key(comparisons: list[Comparison]) -> str | None:
@@ -173,11 +174,6 @@ def variant_styles(count: int) -> list[Style]:
     at = np.linspace(0, len(few) - 1, count).round().astype(int)
     widths = np.linspace(3.4, 1.0, count).round(2).tolist()
     return [Style(few[k], w, "-", i) for i, (k, w) in enumerate(zip(at, widths, strict=True))]
-
-
-def _engines(comparisons: list[Comparison]) -> list[str]:
-    solved = {name for comparison in comparisons for name in comparison.results}
-    return [name for name in in_order(solved) if name in ENGINES]
 
 
 def _of_engine(engine: str, row: list[Panel]) -> Overlay:

@@ -69,7 +69,12 @@ def along_pillar(scene: AnyScene) -> dict[str, xr.Dataset]:
     every = [name for name in names() if applies(name, wide)]
     engines = [name for name in every if name in ENGINES]
     exact = [own for name in engines if (own := own_exact(name, every, wide))]
-    return {name: _thinned(solve(name, wide)) for name in dict.fromkeys([*engines, *exact])}
+    found = {}
+    for name in dict.fromkeys([*engines, *exact]):
+        result = solve(name, wide)
+        step = max(1, -(-(result.sizes["time"] - 1) // TIMES))
+        found[name] = result.isel(time=slice(None, None, step)).copy(deep=True)  # not all of it
+    return found
 
 
 def sections(scene: Scene) -> list[float]:
@@ -104,9 +109,3 @@ def recorded_along(scene: AnyScene) -> AnyScene:
         places = []
     record = scene.record.model_copy(update={"stress": places, "velocity": points, "fields": None})
     return scene.model_copy(update={"record": record})
-
-
-def _thinned(result: xr.Dataset) -> xr.Dataset:
-    """Return a result at every k-th sample, in memory of its own."""
-    step = max(1, -(-(result.sizes["time"] - 1) // TIMES))
-    return result.isel(time=slice(None, None, step)).copy(deep=True)

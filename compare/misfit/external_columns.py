@@ -54,7 +54,11 @@ def asked(text: str, is_label: Callable[[str], bool]) -> Asked:
     found = next((i for i in colons if Path(text[:i]).is_file()), None)
     if found is None:
         file, colon, label = text.rpartition(":")
-        return Asked(text, Path(file), "", label) if colon and "@" in label else _only(text)
+        return (
+            Asked(text, Path(file), "", label)
+            if colon and "@" in label
+            else Asked(text, Path(text))
+        )
     path, which = Path(text[:found]), text[found + 1 :].strip()
     if is_label(which):
         return Asked(text, path, "", which)
@@ -85,10 +89,6 @@ def parts_of(name: str) -> list[str]:
 def listed(columns: list[Column]) -> str:
     """Return the names of columns, as a message lists them."""
     return ", ".join(column.name or "one column without a name" for column in columns)
-
-
-def _only(text: str) -> Asked:
-    return Asked(text, Path(text))
 
 
 def _unquoted(text: str) -> str:

@@ -22,8 +22,9 @@ def waveforms(
     axis : the component, "x", "y", "xy" ...; None: the one that moves most.
     """
     if quantity not in result:
-        where = str(result.attrs.get("title", "result"))
-        raise SceneError(where, "quantity", quantity, f"must be one of {', '.join(_known(result))}")
+        where, receivers = str(result.attrs.get("title", "result")), set(RECEIVERS)
+        known = [str(n) for n, x in result.items() if "time" in x.dims and receivers & set(x.dims)]
+        raise SceneError(where, "quantity", quantity, f"must be one of {', '.join(known)}")
     found = result[quantity].copy(data=motion(result, quantity))
     receiver, places = next((d, RECEIVERS[str(d)]) for d in found.dims if d in RECEIVERS)
     for components in set(found.dims) - {receiver, "time"}:
@@ -33,10 +34,6 @@ def waveforms(
     along = np.array([result[name].values - result[name].values[0] for name in places])
     found = found.transpose(receiver, "time").rename({receiver: "receiver"})
     return found.assign_coords(distance=("receiver", np.hypot.reduce(along, axis=0)))
-
-
-def _known(result: xr.Dataset) -> list[str]:
-    return [str(n) for n, x in result.items() if "time" in x.dims and set(x.dims) & set(RECEIVERS)]
 
 
 def sampling(row: xr.DataArray) -> float:

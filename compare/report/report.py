@@ -91,7 +91,9 @@ def build(
             solved = _solved(Path(out), part("scenes"), pool, begin)
             page = _of_paper(*solved, untimed[0].result())
             page = _with_studies(page, Path(out), studies, others, pool, part("studies"))
-            page = _with_effects(page, Path(out), pool, part("effects"))
+            kept, tell = Path(out) / "effects", part("effects")
+            effects = ablation_runs.run(ablation_runs.reported(), kept, pool, tell)
+            page = replace(page, effects=summarise_ablation(kept, effects))
     return Report(write_text(Path(out) / "index.html", render(page, Path(out))), page)
 
 
@@ -195,11 +197,6 @@ def _with_studies(
         peers=None if others is None else peers.write_section(out / "studies", others),
         peers_file=str(peers.PLACE),
     )
-
-
-def _with_effects(page: Page, out: Path, pool: Pool, progress: Progress | None) -> Page:
-    effects = ablation_runs.run(ablation_runs.reported(), out / "effects", pool, progress)
-    return replace(page, effects=summarise_ablation(out / "effects", effects))
 
 
 def write_comparisons(comparisons: list[Comparison], out: Path) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future, as_completed
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,7 +14,6 @@ from cases.schema.scene import Scene
 from compare.engines import Progress
 from compare.experiments.cost import timings
 from compare.experiments.pool import Pool
-from compare.figures.figure import SceneFigure
 from compare.figures.scene_figures import along_pillar, figures_of, recorded_along
 from compare.misfit.pairs import Comparison, compare
 from compare.report.section import PAPER, SceneRequest, Section, begin, finish, make_section
@@ -22,7 +21,7 @@ from compare.scenes import find, load
 from results.dataset import scene_hash
 
 if TYPE_CHECKING:
-    import xarray as xr
+    pass
 
 
 #: The shipped scenes of rock masses that the page shows beside the paper's figures.
@@ -81,7 +80,8 @@ def solve(
     unique = {_key(scene): scene for variants in loaded.values() for scene in variants}
     tell = _teller(progress)
     with timings.timing(RATE, len(asked)), pool() as executor:
-        order = _longest_first(unique)
+        # The most damped first, which cost most: dashpots shorten the step.
+        order = sorted(unique, key=lambda key: -_damping(unique[key]))
         found = {key: executor.submit(compare, unique[key], None, True) for key in order}
         wide = {_along(scene): scene for variants in loaded.values() for scene in variants}
         along = {key: executor.submit(along_pillar, scene) for key, scene in wide.items()}
@@ -94,22 +94,16 @@ def solve(
             name: [along[_along(scene)].result() for scene in variants]
             for name, variants in loaded.items()
         }
-        begun = begin(folder, _pictures(asked, comparisons, fields), executor)
+        pictures = (
+            (one, picture)
+            for one in asked
+            for picture in figures_of(one.name, comparisons[one.name], fields[one.name])
+        )
+        begun = begin(folder, pictures, executor)
         begin_others()
         tell([files for some in begun.values() for _, files in some if files], DRAWN)
     sections = [make_section(folder, a, comparisons[a.name], finish(begun[a.name])) for a in asked]
     return Solved(comparisons, sections)
-
-
-def _pictures(
-    asked: list[SceneRequest],
-    comparisons: dict[str, list[Comparison]],
-    fields: dict[str, list[dict[str, xr.Dataset]]],
-) -> Iterator[tuple[SceneRequest, SceneFigure]]:
-    """Yield the pictures of every scene, in the page's order."""
-    for one in asked:
-        for picture in figures_of(one.name, comparisons[one.name], fields[one.name]):
-            yield one, picture
 
 
 def _teller(progress: Progress | None) -> Callable[[list[Future], tuple[float, float]], None]:
@@ -133,11 +127,6 @@ def _key(scene: AnyScene) -> str:
 def _along(scene: AnyScene) -> str:
     """Return what decides a scene's results all along its pillar."""
     return _key(recorded_along(scene))
-
-
-def _longest_first(scenes: dict[str, AnyScene]) -> list[str]:
-    """Return the keys in order of cost, the most damped first: dashpots shorten the step."""
-    return sorted(scenes, key=lambda key: -_damping(scenes[key]))
 
 
 def _damping(scene: AnyScene) -> float:

@@ -1,14 +1,14 @@
 """The table of points: a row each, what is missing or failed included."""
 
-import csv
-import io
-import json
 import os
 import platform
 from pathlib import Path
 
+import pandas as pd
+
 from compare.experiments.cost.timings import processor
-from compare.runs.output import write_text
+from compare.experiments.summary import cell
+from compare.runs.output import write_csv
 
 #: The columns that all studies share, then those of the peers.
 COLUMNS = (
@@ -27,12 +27,8 @@ def missing_row(curve: str, solves: str, reason: str) -> dict:
 
 def write(path: Path, rows: list[dict]) -> Path:
     """Write the rows as CSV; a value that a row does not have stays empty."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, COLUMNS, restval="", lineterminator="\n")
-    writer.writeheader()
-    for row in rows:
-        writer.writerow({key: _plain(value) for key, value in row.items()})
-    return write_text(path, text.getvalue())
+    cells = [{key: cell(value) for key, value in row.items()} for row in rows]
+    return write_csv(path, pd.DataFrame(cells, columns=list(COLUMNS)))
 
 
 def show(rows: list[dict]) -> None:
@@ -75,7 +71,3 @@ def _over(row: dict, name: str) -> str:
     if key not in row:
         return ""
     return f"{row[key]:7.3g} ({row[f'{key}_least']:.3g} to {row[f'{key}_most']:.3g})"
-
-
-def _plain(value: object) -> object:
-    return json.dumps(value) if isinstance(value, dict) else value

@@ -9,18 +9,16 @@ Rows that are done are kept, and not run again.
 """
 
 import argparse
-import hashlib
-import json
 from pathlib import Path
 from time import perf_counter
 
-from held import rows_of
+from full_study import rows_of
 from table import show, write
 
 import cases
 from cases.kinds import AnyScene
-from compare.runs.checkpoint.signature import program
-from compare.runs.output import write_text
+from compare.experiments import store
+from compare.experiments.store import Store
 from compare.scenes import shipped
 from results.dataset import scene_hash
 
@@ -29,12 +27,12 @@ def kept(
     path: Path, scene: AnyScene, misfits: list[float], rounds: int, folder: Path
 ) -> list[dict]:
     """Return the rows of a scene, from the folder if they are there."""
-    about = json.dumps([scene_hash(scene), misfits, rounds, program()])
-    place = folder / f"{hashlib.sha256(about.encode()).hexdigest()[:16]}.json"
-    if not place.is_file():
-        write_text(place, json.dumps(rows_of(scene, misfits, rounds), indent=1))
-    name = f"{path.parent.name}/{path.stem}"
-    return [{"scene": name, **row} for row in json.loads(place.read_text(encoding="utf-8"))]
+    (found,) = Store[list[dict]](list[dict], folder).compute(
+        [scene],
+        lambda one: store.key(scene_hash(one), misfits, rounds),
+        lambda one: rows_of(one, misfits, rounds),
+    )
+    return [{"scene": f"{path.parent.name}/{path.stem}", **row} for row in found]
 
 
 def main() -> None:

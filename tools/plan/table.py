@@ -1,10 +1,10 @@
 """The table of plans: a line each, misses included, what they say together, and all as CSV."""
 
-import csv
-import io
 from pathlib import Path
 
-from compare.runs.output import write_text
+import pandas as pd
+
+from compare.runs.output import write_csv
 
 WITHIN = 1.5  # times the cheapest of the study
 COLUMNS = (
@@ -58,8 +58,4 @@ def sentence(rows: list[dict], misfit: float) -> str:
 
 def write(path: Path, rows: list[dict]) -> None:
     """Write the rows as CSV; a value that a row does not have stays empty."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, COLUMNS, restval="", lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    write_text(path, text.getvalue())
+    write_csv(path, pd.DataFrame(rows, columns=list(COLUMNS)))

@@ -80,7 +80,8 @@ class Health(NamedTuple):
 
 def examine(progress: Callable[[float], None]) -> Health:
     """Look at everything; `progress` is called with the finished fraction."""
-    parts = [_program(), *_libraries()]
+    program = f"{version('jointwave')}, Python {platform.python_version()} ({sys.executable})"
+    parts = [Component("program", "jointwave", "found", program), *_libraries()]
     progress(0.3)
     parts += [_mpiexec(), *_machine(), _cache()]
     progress(0.5)
@@ -90,11 +91,6 @@ def examine(progress: Callable[[float], None]) -> Health:
         checks.append(_check(pair))
         progress(0.5 + 0.5 * (i + 1) / len(pairs))
     return Health(sorted(parts, key=lambda part: list(GROUPS).index(part.group)), checks)
-
-
-def _program() -> Component:
-    python = f"Python {platform.python_version()} ({sys.executable})"
-    return Component("program", "jointwave", "found", f"{version('jointwave')}, {python}")
 
 
 def _libraries() -> list[Component]:
@@ -113,14 +109,10 @@ def _libraries() -> list[Component]:
     return parts
 
 
-def _launcher() -> str | None:
-    """Return the mpiexec of this Python's own environment, else that on the PATH."""
-    return which("mpiexec", path=str(Path(sys.executable).parent)) or which("mpiexec")
-
-
 def _mpiexec() -> Component:
     """Return how many processes the launcher starts that see each other."""
-    launcher, cores = _launcher(), min(_cores(), MOST_RANKS)
+    own = str(Path(sys.executable).parent)  # of this Python's own environment, if it has one
+    launcher, cores = which("mpiexec", path=own) or which("mpiexec"), min(_cores(), MOST_RANKS)
     if launcher is None:
         return Component("continuum", "mpiexec", "missing", "is not on the PATH", HINTS["mpiexec"])
     for ranks in sorted({cores, min(2, cores), 1}, reverse=True):

@@ -77,7 +77,10 @@ def bounded(
     t = dt * np.arange(count)
     s = decay + 2j * np.pi * np.fft.rfftfreq(count, dt)
     fraction, load_transform = s.imag * dt / np.pi, _transform(load, s, t, decay)
-    entering = [load_transform * _rounding(share * fraction) for share in (1, 2)]
+    # Rounded off at the highest frequency, by a filter of order 8 that is 1e-16 there.
+    entering = [
+        load_transform * np.exp(-36 * np.minimum(share * fraction, 1.5) ** 8) for share in (1, 2)
+    ]
     sigma, v = transfer(bar, s, places)
     shares = np.zeros(len(places)) if front is None else front.shares(places)
     sharp = [np.zeros((len(y), len(times))) for y in (stress_y, velocity_y, velocity_y)]
@@ -218,8 +221,3 @@ def _fine_step(times: np.ndarray, period: float | None, nodes: int) -> tuple[flo
     stride *= max(1, min(FINER, int(CHEAP / (TAIL * stride * len(times) * nodes))))
     count = ceil(TAIL * stride * len(times))
     return interval / stride, stride, 2 * next_fast_len(ceil(count / 2))
-
-
-def _rounding(fraction: np.ndarray) -> np.ndarray:
-    """Return the filter at these fractions of the highest frequency (order 8, 1e-16 there)."""
-    return np.exp(-36 * np.minimum(fraction, 1.5) ** 8)

@@ -48,7 +48,8 @@ def solve(scene: Scene) -> xr.Dataset:
     """Return stress, shear, velocity, displacement and rotation of the scene's row of blocks."""
     times, record = sample_times(scene), scene.record
     area, blocks = scene.pillar.area, row(scene)
-    push, fall, base = drive_vector(scene), falling(scene), _base(scene)
+    push, fall = drive_vector(scene), falling(scene)
+    base = np.array([*scene.load.direction, 0.0, 0.0, 0.0]) if scene.shakes_base else None
     forces = np.zeros((2, len(record.stress), 6, len(times)))
     motion, rate = np.zeros((2, 2, len(record.velocity), 6, len(times)))
     for freedoms in PLANES[scene.motion.rotation]:
@@ -100,12 +101,6 @@ def falling(scene: Scene) -> np.ndarray:
     if gravity is not None:
         vector[:3] = gravity.acceleration * np.array(gravity.direction)
     return vector
-
-
-def _base(scene: Scene) -> np.ndarray | None:
-    """Return the velocity [6] of the start's held face by a unit drive, None where it stands."""
-    load = scene.load
-    return np.array([*load.direction, 0.0, 0.0, 0.0]) if scene.shakes_base else None
 
 
 def _receivers(scene: Scene, parts: SpatialSystem, c: int, times: np.ndarray) -> list[np.ndarray]:

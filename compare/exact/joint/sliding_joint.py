@@ -139,6 +139,8 @@ def _snaps(scene: Scene, p: Properties) -> bool:
 def solve(scene: Scene) -> xr.Dataset:
     """Return shear, velocity and displacement on both sides of the joint that slips."""
     p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
+    from compare.exact.joint import worn_joint
+
     joint, enters = the_joint(scene, p), ENTERS[scene.ends.start]
     scaled = joint.scaled(enters)
     is_worn = isfinite(joint.distance) or joint.dilation > 0
@@ -155,7 +157,9 @@ def solve(scene: Scene) -> xr.Dataset:
                 rated, p.shear_impedance, load, times[-1], tolerance, rest
             )
         elif is_worn:
-            passed = worn = _worn(scaled, p, load, times[-1], tolerance)
+            passed = worn = worn_joint.Passed(
+                scaled, p.shear_impedance, load, times[-1], tolerance, p.impedance
+            )
         else:
 
             def passed(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -197,12 +201,6 @@ def _lifted(
     for key, sent in zip(found, pressure(scene.record.velocity), strict=True):
         found[key][..., 1] += side * sent
     return found | {"stress": pressure(scene.record.stress)[0]}
-
-
-def _worn(joint: SlipJoint, p: Properties, load: LoadHistory, end: float, tolerance: float) -> Any:
-    from compare.exact.joint.worn_joint import Passed
-
-    return Passed(joint, p.shear_impedance, load, end, tolerance, p.impedance)
 
 
 def _finer(times: np.ndarray, parts: int) -> np.ndarray:

@@ -100,7 +100,6 @@ def scattering(
 def _between(
     rock: ElasticRock, behind: ElasticRock, joint: Joint, slowness: Values, omega: Values
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return R and T between two rocks."""
     here, there = face(rock, slowness), face(behind, slowness)
     x_n, x_s = _softness(joint, omega)
     side = there.shear_velocity + x_s[..., None] * there.shear

@@ -91,7 +91,6 @@ def march(
 
 
 def _each(rock: ElasticRock | Sequence[ElasticRock], joints: int) -> Sequence[ElasticRock]:
-    """Return the rocks of all layers."""
     rocks = [rock] * (joints + 1) if isinstance(rock, ElasticRock) else rock
     if len(rocks) != joints + 1:
         raise ValueError(f"{joints} joints need {joints + 1} rocks, not {len(rocks)}")

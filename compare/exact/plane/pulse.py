@@ -138,7 +138,9 @@ def pulse_fields(pulse: Pulse, stack: PulseStack, points: np.ndarray, times: np.
     found, error = inverse(transfer, pulse.velocity, t, earliest.min(), not stack.is_evanescent)
     if callable(pulse.velocity):
         for each, mode, (layer, delays) in zip(found, modes, waves, strict=True):
-            each += mode.real.T @ _shifted(pulse.velocity, t, delays.real, sharp[layer])
+            at = t - delays.real[:, None]
+            passed = np.where(at < t[0], 0, pulse.velocity(at))  # zero before the first time
+            each += mode.real.T @ (sharp[layer][:, None] * passed)
     unit = float(stack.rocks[0].p_impedance)
     return Fields(found[:, :2], unit * found[:, 2:], error[:, :2], unit * error[:, 2:])
 
@@ -172,9 +174,3 @@ def _delayed(amplitudes: np.ndarray, omega: np.ndarray, delays: np.ndarray) -> n
     """Return amplitudes [omega, wave] so much later (s)."""
     phases = 1j * omega[:, None] * delays
     return amplitudes * np.exp(np.where(amplitudes == 0, 0, phases))
-
-
-def _shifted(velocity, times, delays, amplitudes) -> np.ndarray:
-    """Return the waves [wave, times] of a pulse that is zero before the first of the times."""
-    t = times - delays[:, None]
-    return amplitudes[:, None] * np.where(t < times[0], 0, velocity(t))

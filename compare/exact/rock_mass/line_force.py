@@ -43,7 +43,8 @@ def applies(scene: RockMass) -> Answer:
     if reason is None and any(_jumps(one) for one in _histories(scene)):
         reason = "a force jumps, and the velocity at its arrivals has no bound"
     if reason is None:
-        reach = _distances(scene).min()
+        points = np.array(scene.record.points)
+        reach = min(np.hypot(*(points - np.array(one.at)).T).min() for one in scene.loads)
         if not reach > 0:
             reason = "a receiver lies on a force"
         elif known_until(scene) <= reach / float(elastic_rock(scene.rock).p_speed):
@@ -86,12 +87,6 @@ def known_until(scene: RockMass) -> float:
                 image = at + 2 * ((start - at) @ normal) * normal
                 first = min(first, np.hypot(*(points - image).T).min())
     return float(first / elastic_rock(scene.rock).p_speed)
-
-
-def _distances(scene: RockMass) -> np.ndarray:
-    """Return the distances of the points from the forces, [forces, points], m."""
-    points = np.array(scene.record.points)
-    return np.array([np.hypot(*(points - np.array(one.at)).T) for one in scene.loads])
 
 
 def _histories(scene: RockMass) -> list[Shape]:

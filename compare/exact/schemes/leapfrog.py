@@ -40,7 +40,8 @@ def of_modes(
     half = modes.omega * dt / 2
     if half.max() >= 1:
         raise ValueError(f"the step must be below the critical {dt / half.max():.6g} s")
-    sums = [_mode(force, steps, 2 * np.arcsin(x)) if x > 0 else _rigid(force, steps) for x in half]
+    rigid = np.concatenate([[0.0], np.cumsum(np.cumsum(force))])[steps]
+    sums = [_mode(force, steps, 2 * np.arcsin(x)) if x > 0 else rigid for x in half]
     return modes.shapes @ ((modes.shapes.T @ place * dt**2)[:, None] * np.array(sums))
 
 
@@ -53,11 +54,6 @@ def modes(mass: np.ndarray, root: np.ndarray) -> Modes:
     omega = np.pad(omega, (0, max(0, len(mass) - len(omega))))
     omega[omega < RIGID * omega.max()] = 0
     return Modes(omega, shapes.T / np.sqrt(mass)[:, None])
-
-
-def _rigid(force: np.ndarray, steps: np.ndarray) -> np.ndarray:
-    """Return sum_{k < j} F^k (j - k)."""
-    return np.concatenate([[0.0], np.cumsum(np.cumsum(force))])[steps]
 
 
 def _mode(force: np.ndarray, steps: np.ndarray, angle: float) -> np.ndarray:

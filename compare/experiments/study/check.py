@@ -61,7 +61,8 @@ def _refuse_arguments(path: Path, key: str, curve: Curve) -> None:
     for name, values in given:
         if name not in ARGUMENTS:
             continue
-        takers = _takers(name)
+        takers = [one.name for one in solvers() if name in one.arguments]
+        takers += [one for one, module in METHODS.items() if name in module.ARGUMENTS]
         if curve.method not in takers:
             allowed = f"is an argument of {', '.join(takers)}"
             raise SceneError(str(path), f"{key}.{name}", None, allowed)
@@ -70,8 +71,3 @@ def _refuse_arguments(path: Path, key: str, curve: Curve) -> None:
             if type(value) is not kind or not 0 < float(value) < LARGEST_ARGUMENT:
                 allowed = f"must be {'a whole number' if kind is int else 'a number'} above 0"
                 raise SceneError(str(path), f"{key}.{name}", value, allowed)
-
-
-def _takers(argument: str) -> list[str]:
-    found = [one.name for one in solvers() if argument in one.arguments]
-    return found + [name for name, module in METHODS.items() if argument in module.ARGUMENTS]

@@ -24,14 +24,11 @@ def judged(rows: list[PointRow]) -> list[PointRow]:
     found = []
     for row, total, numerical in zip(rows, totals, numericals, strict=True):
         held = numerical if math.isnan(total) else total
-        found.append(row._replace(held=held, cancels=_cancels(row, held)))
+        # Nearer than the larger of its errors, or than a finer point.
+        alone = max(row.numerical, row.modelling)
+        cancels = row.measured < CLEARLY * alone or _counted(row) < CLEARLY * held
+        found.append(row._replace(held=held, cancels=cancels))
     return found
-
-
-def _cancels(row: PointRow, held: float) -> bool:
-    """Return whether a point is nearer than the larger of its errors, or than a finer point."""
-    alone = max(row.numerical, row.modelling)
-    return row.measured < CLEARLY * alone or _counted(row) < CLEARLY * held
 
 
 def _counted(row: PointRow) -> float:

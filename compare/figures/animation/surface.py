@@ -79,17 +79,13 @@ def surface_of(s: Snapshots) -> Surface:
     )
     outside = times[which.ravel()] == 1
     faces, cells = faces[outside], cells[outside]
-    normals = _normals(s.points[faces])
+    a, b, d = (s.points[faces[:, k]] for k in (0, 1, -1))
+    normals = np.cross(b - a, d - a)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     outwards = s.points[faces].mean(axis=1) - s.points[s.cells].mean(axis=1)[cells]
     inside_out = (normals * outwards).sum(axis=1) < 0
     faces[inside_out], normals[inside_out] = faces[inside_out, ::-1], -normals[inside_out]
     return Surface(faces, cells, *_edges(faces, normals), flat=len(rings) == 1)
-
-
-def _normals(corners: np.ndarray) -> np.ndarray:
-    """Return unit normals [faces, 3] of flat faces [faces, corners, 3]."""
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, -1] - corners[:, 0])
-    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
 
 def _edges(faces: np.ndarray, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -31,7 +31,9 @@ def marks_of(panel: Panel) -> list[Mark]:
         return sorted(found, key=lambda mark: mark.frequency)
     p = calibrate(scene)
     if len(p.each) > 1:
-        return sorted(found + _of_segments(p), key=lambda mark: mark.frequency)
+        least = min(one.bar_speed / (pi * one.spacing) for one in p.each)
+        found.append(Mark("chain cut-off", least, "least cut-off of the chain of blocks"))
+        return sorted(found, key=lambda mark: mark.frequency)
     if panel.component is None or (panel.quantity == "velocity" and panel.component == 1):
         found += _of_waves(scene, p, p.bar_speed) + _of_layers(p) + _of_joints(p)
     elif scene.motion.rotation == "none" and panel.quantity != "rotation":
@@ -49,11 +51,6 @@ def _of_waves(scene: Scene, p: Properties, speed: float) -> list[Mark]:
         length = p.spacing * p.block_count
         marks.append(Mark("first mode", speed / (waves * length), "first mode of the pillar"))
     return marks
-
-
-def _of_segments(p: Properties) -> list[Mark]:
-    least = min(one.bar_speed / (pi * one.spacing) for one in p.each)
-    return [Mark("chain cut-off", least, "least cut-off of the chain of blocks")]
 
 
 def _of_layers(p: Properties) -> list[Mark]:

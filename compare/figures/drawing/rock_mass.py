@@ -112,7 +112,6 @@ def _draw_row(figure: Figure, one: Drawn, top: float, tall: float, heading: str)
 
 
 def _draw_domain(ax: Axes, one: Drawn) -> None:
-    """Draw a rock mass in metres."""
     partition, scene = one.partition, one.scene
     low, high = _extent(partition)
     size = high - low
@@ -228,7 +227,6 @@ def caption(scene: RockMass) -> str:
 
 
 def _rock_words(rock: IntactRock) -> str:
-    """Return rock in words."""
     return (
         f"{rock.density:g} kg/m³ with a modulus of {rock.intact_modulus / 1e9:.3g} GPa and a "
         f"Poisson's ratio of {rock.intact_poisson:g}"
@@ -236,7 +234,6 @@ def _rock_words(rock: IntactRock) -> str:
 
 
 def _set_words(one: Any) -> str:
-    """Return a joint set in words."""
     parts = [
         f"dip {one.dip:g}°",
         f"spacing {one.spacing:g} m" if one.spacing else "one joint",

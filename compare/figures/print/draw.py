@@ -31,7 +31,8 @@ def draw(
     """
     words, families = WORDS[language], _families(language)
     every = [panel for row in panels(comparisons) for panel in row]
-    titles = _titles(every, words)
+    titles = [f"({_letter(i)}) {words.title(panel)}" for i, panel in enumerate(every)]
+    titles = titles if len(every) > 1 else [words.title(every[0])]
     by_variant = [
         [title for title, panel in zip(titles, every, strict=True) if panel.comparison is one]
         for one in comparisons
@@ -57,12 +58,6 @@ def draw(
         set_titles(axes, titles)
         arrange(figure, appearance, axes, places, legend)
     return figure
-
-
-def _titles(found: list[Panel], words: Words) -> list[str]:
-    if len(found) == 1:
-        return [words.title(found[0])]
-    return [f"({_letter(i)}) {words.title(panel)}" for i, panel in enumerate(found)]
 
 
 def _letter(i: int) -> str:

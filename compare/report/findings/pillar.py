@@ -109,9 +109,10 @@ def broader(comparisons: list[Comparison]) -> Finding:
 
 def second_half_weaker(comparisons: list[Comparison]) -> Finding:
     """Fig. 6: the larger the damping ratio, the lower the second half-cycle beside the first."""
-    found = [
-        {name: _second_over_first(w) for name, w in _first_passages(c).items()} for c in comparisons
-    ]
+    found = []
+    for one in comparisons:
+        halves = {n: pulses.half_cycles(w) for n, w in _first_passages(one).items()}
+        found.append({n: second / first for n, (first, second) in halves.items()})
     return Finding(
         "large damping: second half-cycle weaker",
         f"Peak of the second half-cycle over that of the first, "
@@ -128,11 +129,6 @@ def _first_passages(comparison: Comparison) -> dict[str, pd.Series]:
         name: pulses.span(w, 0.0, stop)
         for name, w in pulses.waveforms(comparison, "stress", 0).items()
     }
-
-
-def _second_over_first(waveform: pd.Series) -> float:
-    first, second = pulses.half_cycles(waveform)
-    return second / first
 
 
 def mostly_dispersion(comparison: Comparison) -> Finding:

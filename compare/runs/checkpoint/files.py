@@ -124,7 +124,9 @@ class Checkpoints:
 
     def _refuse(self, other: Path) -> None:
         """Raise SceneError that says how another run differs."""
-        differing = differences(self.signature, _read_about(other)) or ["run"]
+        with _as_damage(other):
+            signature: Signature = dict(json.loads(str(_read(other)[ABOUT])))
+        differing = differences(self.signature, signature) or ["run"]
         raise SceneError(str(other), "", None, f"is of another {', '.join(differing)}: {ANEW}")
 
     def _remove_but(self, samples: int) -> None:
@@ -149,12 +151,6 @@ def _read(path: Path) -> dict[str, np.ndarray]:
         if sum(member.file_size for member in members) > size:
             raise ValueError("holds more than it is long")
         return {m.filename.removesuffix(".npy"): _array(whole, m) for m in members}
-
-
-def _read_about(path: Path) -> Signature:
-    """Return the signature of the run that a file is of."""
-    with _as_damage(path):
-        return dict(json.loads(str(_read(path)[ABOUT])))
 
 
 def _check(path: Path) -> int:

@@ -49,7 +49,6 @@ def exclusive(folder: Path, wait: bool = False) -> Iterator[None]:
 
 
 def _locked(folder: Path, operation: int) -> int:
-    """Return the open and locked folder."""
     while True:
         folder.mkdir(parents=True, exist_ok=True)
         handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)

@@ -38,7 +38,9 @@ def solve(scene: Scene, rtol: float = 1e-6, method: str = "DOP853") -> xr.Datase
 
     began = perf_counter()
     model, signal, times = chain(scene), drive(scene), sample_times(scene)
-    rest, speed = at_rest(scene, model), _speed(scene, model)
+    rest, push = at_rest(scene, model), scene.load.amplitude / scene.load.scale * model.gain
+    # A speed (m/s) of the size of what happens.
+    speed = abs(push) / (1.0 if model.shaken else model.end.dashpot) or 1.0
     ready = perf_counter()
     solution = solve_ivp(
         lambda t, x: rates(model, x, float(signal.value(t)) * model.gain),
@@ -62,9 +64,3 @@ def solve(scene: Scene, rtol: float = 1e-6, method: str = "DOP853") -> xr.Datase
         seconds_setup=ready - began,
         seconds_stepping=perf_counter() - ready,
     )
-
-
-def _speed(scene: Scene, model) -> float:
-    """Return a speed (m/s) of the size of what happens."""
-    size = scene.load.amplitude / scene.load.scale
-    return abs(size * model.gain) / (1.0 if model.shaken else model.end.dashpot) or 1.0
