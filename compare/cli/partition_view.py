@@ -92,14 +92,11 @@ def show_partition(facts: dict[str, Any]) -> None:
     show_table(["side", "edges"], [[name, f"{n:,}"] for name, n in facts["boundary"].items()])
     at_most = spoken(facts["bytes_at_most"])
     if (lack := facts["rigid_blocks_lack"]) is not None:
-        percent, why = (
-            f"{100 * lack:.2g}",
-            "their joints alone carry it, and joints of few directions",
-        )
-        why = f"{why} have no Poisson effect"
-        if lack < ROUND_OFF:
-            percent, why = "0", "their joints carry all of it"
-        say(f"rigid blocks cannot have {percent} % of the intact rock's stiffness: {why}")
+        share, why = "0", "their joints carry all of it"
+        if lack > ROUND_OFF:
+            share = f"{100 * lack:.2g}"
+            why = "their joints alone carry it, and joints of few directions have no Poisson effect"
+        say(f"rigid blocks cannot have {share} % of the intact rock's stiffness: {why}")
     say(f"memory of the blocks: {spoken(facts['bytes'])}, at most {at_most} while they are cut")
 
 
