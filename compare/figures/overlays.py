@@ -18,16 +18,8 @@ from compare.figures.units import Unit, unit_for
 from compare.misfit.pairs import Comparison
 
 #: Factor from SI to the unit that is drawn, and that unit.
-UNITS = {
-    "stress": (1e-6, "MPa"),
-    "shear": (1e-6, "MPa"),
-    "traction": (1e-6, "MPa"),
-    "velocity": (1.0, "m/s"),
-    "displacement": (1e3, "mm"),
-    "gap": (1e3, "mm"),
-    "slip": (1e3, "mm"),
-    "rotation": (1e3, "mrad"),
-}
+DRAWN = {"Pa": (1e-6, "MPa"), "m/s": (1.0, "m/s"), "m": (1e3, "mm"), "rad": (1e3, "mrad")}
+UNITS = {quantity: DRAWN[unit] for quantity, unit in SI.items()}
 #: Of a scene what does not change its physics, or changes how it is solved alone.
 ASIDE = {"title", "source", "name", "expect", "numerics", "record", "where"}
 MOST = 6  # variants in one pair of axes

@@ -27,10 +27,8 @@ from cases.schema.joint import UNLIMITED
 from cases.schema.scene import Scene
 from compare.exact.bar.images import ENTERS
 from compare.exact.conditions import holds, static_stress
-from compare.exact.joint.one_joint import around, back_in_time
-from compare.exact.linear import errors
+from compare.exact.joint.one_joint import back_in_time, behind_and_before
 from compare.solvers.record import JOINTED, Answer, Kind, Rock, Solver, Words, no, thin
-from results.dataset import dataset
 
 HELD = ("closure", "prestress", "soft layers", "stiff layers")
 TOLERANCES = (1e-12, 1e-9)  # of the solution and of its twin, of the largest stress
@@ -88,21 +86,9 @@ def applies(scene: Scene) -> Answer:
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, velocity and displacement on both sides of the joint that stiffens."""
     p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
-    joint, enters, places = the_joint(scene, p), ENTERS[scene.ends.start], scene.record
-
-    def waveforms(tolerance: float) -> list[np.ndarray]:
-        passed = Passed(joint, p.impedance, load, times[-1], enters, tolerance)
-
-        def waves(y: list[float]) -> np.ndarray:
-            return enters * around(joint.y, p.bar_speed, passed, load, times, y)
-
-        there, back = waves(places.stress)
-        stress = there[0] + back[0] + static_stress(scene)
-        there, back = waves(places.velocity)
-        return [stress, *((there - back) / p.impedance)]
-
-    found, twin = (waveforms(tolerance) for tolerance in TOLERANCES)
-    return dataset(scene, SOLVER.name, times, *found, errors=errors(found, twin))
+    joint, enters = the_joint(scene, p), ENTERS[scene.ends.start]
+    passed = (Passed(joint, p.impedance, load, times[-1], enters, each) for each in TOLERANCES)
+    return behind_and_before(scene, SOLVER.name, joint.y, *passed)
 
 
 def the_joint(scene: Scene, p: Properties) -> ClosingJoint:

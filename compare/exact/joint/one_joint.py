@@ -14,6 +14,7 @@ mean of both sides.
 """
 
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -30,6 +31,7 @@ from compare.exact.linear import errors, twins
 from compare.solvers.record import JOINTED, YES, Answer, Rock, Solver, Words, no, thin
 from results.dataset import dataset
 
+Passes = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 HELD = ("prestress", "damped joints", "soft layers", "stiff layers")
 
 
@@ -66,29 +68,33 @@ def back_in_time(scene: Scene, joint_y: float, speed: float) -> Answer:
 
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, velocity and displacement on both sides of the scene's soft layer."""
+    p, load = calibrate(scene), load_history(scene)
+    joint = the_joint(p)
+    passed, twin = (partial(transmitted, joint, p.impedance, load, which=which) for which in (0, 1))
+    return behind_and_before(scene, SOLVER.name, joint.y, passed, twin)
+
+
+def behind_and_before(
+    scene: Scene, name: str, joint_y: float, passed: Passes, twin: Passes
+) -> xr.Dataset:
+    """Return the result of a solver whose joint at y (m) passes what `around` takes; twin : another
+    that passes as much but for its errors."""
     p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
-    joint, enters, places = the_joint(p), ENTERS[scene.ends.start], scene.record
-
-    def waveforms(which: int) -> list[np.ndarray]:
-        def passed(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            return transmitted(joint, p.impedance, load, at, which)
-
-        def waves(y: list[float]) -> np.ndarray:
-            return enters * around(joint.y, p.bar_speed, passed, load, times, y)
-
-        there, back = waves(places.stress)
-        stress = there[0] + back[0] + static_stress(scene)
-        there, back = waves(places.velocity)
-        return [stress, *((there - back) / p.impedance)]
-
-    found, twin = waveforms(0), waveforms(1)
-    return dataset(scene, SOLVER.name, times, *found, errors=errors(found, twin))
+    found = []
+    for one in (passed, twin):
+        (stress, stress_back), (motion, motion_back) = (
+            ENTERS[scene.ends.start] * around(joint_y, p.bar_speed, one, load, times, places)
+            for places in (scene.record.stress, scene.record.velocity)
+        )
+        stress = stress[0] + stress_back[0] + static_stress(scene)
+        found.append([stress, *((motion - motion_back) / p.impedance)])
+    return dataset(scene, name, times, *found[0], errors=errors(*found))
 
 
 def around(
     joint_y: float,
     speed: float,
-    passed: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]],
+    passed: Passes,
     load: LoadHistory,
     times: np.ndarray,
     places: list[float],
