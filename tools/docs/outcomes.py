@@ -40,7 +40,9 @@ def read(path: Path) -> Results | None:
     tests: dict[tuple[str, str], Outcome] = {}
     pairs = {}
     for case in suite.iter("testcase"):
-        place, name = _file(case.attrib["classname"]), case.attrib["name"]
+        dotted, name = case.attrib["classname"], case.attrib["name"]  # without a suffix .py
+        suffix = ".toml" if dotted.endswith(".toml") else ".py"
+        place = dotted.removesuffix(".toml").replace(".", "/") + suffix
         if place.endswith(".toml"):
             values = {p.attrib["name"]: p.attrib["value"] for p in case.iter("property")}
             found = float(values["misfit"]) if "misfit" in values else None
@@ -51,13 +53,6 @@ def read(path: Path) -> Results | None:
         counts = before.counts + Counter([_state(case)])
         tests[key] = Outcome(counts, before.seconds + float(case.attrib["time"]))
     return Results(suite.attrib.get("timestamp", "")[:19], tests, pairs)
-
-
-def _file(classname: str) -> str:
-    """Return the file of a JUnit class name, which has dots for slashes and no suffix .py."""
-    if classname.endswith(".toml"):
-        return classname.removesuffix(".toml").replace(".", "/") + ".toml"
-    return classname.replace(".", "/") + ".py"
 
 
 def _state(case: ElementTree.Element) -> str:

@@ -25,7 +25,9 @@ NOT_RUN = "not run"
 def page(tests: Path, results: Path) -> str:
     """Return the tables; `tests` is the folder of the tests, `results` what a run of them left."""
     found = read(results)
-    parts = [_about(found, tests), "## Shipped scenes, held to their own bounds", _scenes(found)]
+    head = "| scene | pair | bound | misfit |\n| --- | --- | --- | --- |"
+    parts = [_about(found, tests), "## Shipped scenes, held to their own bounds"]
+    parts.append("\n".join([head, *_pairs(found)]))
     for folder, title in FOLDERS.items():
         files = sorted((tests / folder).rglob("test_*.py"))
         parts += [f"## {title}", "\n\n".join(_file(tests.parent, file, found) for file in files)]
@@ -52,11 +54,6 @@ def _newest(root: Path) -> float:
     folders = ("cases", "results", "numerics", "joints", "dem", "continuum", "compare", "tests")
     files = (f for name in folders for s in ("py", "toml") for f in (root / name).rglob(f"*.{s}"))
     return max(file.stat().st_mtime for file in files)
-
-
-def _scenes(found: Results | None) -> str:
-    head = "| scene | pair | bound | misfit |\n| --- | --- | --- | --- |"
-    return "\n".join([head, *_pairs(found)])
 
 
 def _pairs(found: Results | None) -> Iterator[str]:

@@ -83,7 +83,9 @@ def _of_body(node: ast.AST, scope: int, names: list[str]) -> Iterator[tuple]:
                 continue
             own, inner = names, scope
             if isinstance(child, ast.FunctionDef):
-                own = _names(child)
+                a = child.args
+                own = [x.arg for x in (*a.posonlyargs, *a.args, *a.kwonlyargs)]
+                own = [name for name in own if name not in ("self", "cls")]
                 first = min([child.lineno, *(d.lineno for d in child.decorator_list)])
                 inner = scope or first
             if isinstance(child, ast.If) and "TYPE_CHECKING" in ast.unparse(child.test):
@@ -103,11 +105,6 @@ def _is_text(node: ast.AST) -> bool:
     if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
         return True
     return isinstance(node, ast.JoinedStr)
-
-
-def _names(function: ast.FunctionDef) -> list[str]:
-    a = function.args
-    return [x.arg for x in (*a.posonlyargs, *a.args, *a.kwonlyargs) if x.arg not in ("self", "cls")]
 
 
 def _removed(body: list, i: int, node: ast.AST) -> list:

@@ -81,13 +81,9 @@ def _free(table: str, kind: str) -> Change:
     return change
 
 
-def _undamped(scene: AnyScene) -> AnyScene:
-    return _table("damping", rayleigh=None)(_joints(damping_ratio=None)(scene))
-
-
 #: By effect, what leaves it out of a scene.
 WITHOUT: dict[str, Change] = {
-    "dashpots": _undamped,
+    "dashpots": lambda scene: _table("damping", rayleigh=None)(_joints(damping_ratio=None)(scene)),
     "no tension": _joints(tension=None),
     "joints that differ": lambda scene: scene.model_copy(update={"soft_layers": []}),
     "scatter": lambda scene: scene.model_copy(update={"scatter": None}),

@@ -102,7 +102,9 @@ class PlanSearch:
         if any(is_finer(family, other) for other in self.dear):
             raise StoppedError(DEAR)
         asked = effort(self.scene, family)
-        if SAFETY * self._rate(family) * asked.work > self.limit:
+        # Of this engine where it has run.
+        rate = self.rates.get(family.name, min(self.rates.values(), default=0.0))
+        if SAFETY * rate * asked.work > self.limit:
             self.dear.append(family)
             raise StoppedError(DEAR)
         self._refuse_known(family, asked)
@@ -139,10 +141,6 @@ class PlanSearch:
         result, seconds = timed(family.name, asked)
         numerical = misfit_of(result, own.result) + own.error
         return choice._replace(numerical=numerical, seconds=seconds, measured=True)
-
-    def _rate(self, family: Family) -> float:
-        """Return the least seconds of a freedom-step so far, of this engine where it has run."""
-        return self.rates.get(family.name, min(self.rates.values(), default=0.0))
 
     def _is_enough(self, family: Family, trials: list[Trial], asked: float) -> bool:
         """Return whether no finer trial is needed; asked : the largest numerical error.

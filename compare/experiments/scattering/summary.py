@@ -67,7 +67,12 @@ def draw(name: str, rows: list[JointsRow]) -> Figure:
 def _draw_moduli(ax: Axes, rows: list[JointsRow], solvers: list[str], kind: str, gid: str) -> None:
     name, _, k = gid.rpartition("-")
     by_angle = name == "oblique-joint"
-    x, exact = _of_angles(kind) if by_angle else _of_counts(kind)
+    if by_angle:
+        x: np.ndarray = np.arange(0, 88, 0.5)
+        exact = np.array(closed_form(scene_of(kind, 0.0), np.radians(x)))
+    else:
+        x = np.arange(1, COUNTS[-1] + 1)
+        exact = np.array([closed_form(scene_of(kind, AT, int(n))) for n in x]).T
     for w, (wave, (marker, dashes)) in enumerate(WAVES.items()):
         (line,) = ax.plot(x, exact[w], color=LINE, linewidth=1.0, linestyle=dashes)
         line.set_gid(f"{name}-exact-{k}-{w}")
@@ -89,18 +94,6 @@ def _draw_moduli(ax: Axes, rows: list[JointsRow], solvers: list[str], kind: str,
     if not by_angle:
         ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.grid(color="#e4e7ea", linewidth=0.6)
-
-
-def _of_angles(kind: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return angles, degrees, and the closed form at them [wave, angles]."""
-    angles = np.arange(0, 88, 0.5)
-    return angles, np.array(closed_form(scene_of(kind, 0.0), np.radians(angles)))
-
-
-def _of_counts(kind: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return numbers of joints and the closed form of them [wave, numbers]."""
-    counts = np.arange(1, COUNTS[-1] + 1)
-    return counts, np.array([closed_form(scene_of(kind, AT, int(n))) for n in counts]).T
 
 
 def _draw_cost(ax: Axes, rows: list[JointsRow], solvers: list[str]) -> None:

@@ -42,16 +42,14 @@ def _axis(text: str) -> tuple[str, list[Any]]:
     between = RANGE.fullmatch(spec)
     if between is None and re.search(r"""^[^"'\[{]*:""", spec):
         raise SceneError("--sweep", text, None, FORMS)
-    values = _listed(spec) if between is None else _between(text, *between.groups())
+    if between is None:  # values as TOML, or what is none as text
+        parts = [part.strip() for part in spec.split(",")]
+        values = _toml(f"[{spec}]", None) or [_toml(part, part) for part in parts]
+    else:
+        values = _between(text, *between.groups())
     if len({json.dumps(value, default=str) for value in values}) < len(values):
         raise SceneError("--sweep", text, None, "must give every value once")
     return key, values
-
-
-def _listed(spec: str) -> list[Any]:
-    """Return values as TOML, or what is none as text."""
-    parts = [part.strip() for part in spec.split(",")]
-    return _toml(f"[{spec}]", None) or [_toml(part, part) for part in parts]
 
 
 def _toml(text: str, otherwise: Any) -> Any:

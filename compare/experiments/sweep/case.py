@@ -113,7 +113,9 @@ class Comparing(NamedTuple):
             raise SceneError(scene.where, "", None, allowed)
         files = self._kept(found.results, folder / scene.name)
         rows = [row.facts | {"faint": str(row.faint).lower()} for row in found.rows]
-        rows = [row | _files(row, files) for row in rows]
+        for row in rows:
+            both = {"file": files.get(row["one"]), "other_file": files.get(row["other"])}
+            row |= {key: file for key, file in both.items() if file is not None}
         return [{k: v if isinstance(v, str) else _real(v) for k, v in row.items()} for row in rows]
 
     def _kept(self, results: dict[str, xr.Dataset], folder: Path) -> dict[str, str]:
@@ -147,12 +149,6 @@ def key(case: SweepCase, work: Work) -> str:
     """Return what tells cases apart: everything that decides a row."""
     scene = case.message if case.scene is None else scene_hash(case.scene)
     return store.key(str(case.folder), case.variant, scene, type(work).__name__, work.about)
-
-
-def _files(row: dict[str, Any], files: dict[str, str]) -> dict[str, str]:
-    """Return the files of both results of a pair, of those that are kept."""
-    both = {"file": files.get(row["one"]), "other_file": files.get(row["other"])}
-    return {key: file for key, file in both.items() if file is not None}
 
 
 def _of_run(done: Any) -> Rows:

@@ -138,6 +138,8 @@ def _plot(scene: Scene, shown: Diagrams) -> dict[str, Any]:
 
 def _trace(i: int, diagram: Diagram, shown: Diagrams, domain: list[float]) -> dict[str, Any]:
     kept = interactive.thinned(len(shown.time), TIMES)
+    stops = np.linspace(0, 1, STOPS)
+    colours = map(to_hex, matplotlib.colormaps[diagram.colours](stops))
     place = f"{diagram.unit.name} at y = %{{y:.4~g}} m, %{{x:.2f}} ms"
     return {
         "type": "heatmap",
@@ -149,7 +151,7 @@ def _trace(i: int, diagram: Diagram, shown: Diagrams, domain: list[float]) -> di
         "zsmooth": "best",
         "zmin": -diagram.limit,
         "zmax": diagram.limit,
-        "colorscale": _colourscale(diagram.colours),
+        "colorscale": [list(stop) for stop in zip(stops.tolist(), colours, strict=True)],
         "colorbar": _key(domain),
         "hovertemplate": f"%{{z:.4~g}} {place}<extra>{diagram.name}</extra>",
     }
@@ -168,11 +170,6 @@ def _key(domain: list[float]) -> dict[str, Any]:
         "nticks": 4,
         "tickfont": {"size": 11},
     }
-
-
-def _colourscale(name: str) -> list[list[Any]]:
-    at = np.linspace(0, 1, STOPS)
-    return [[float(x), to_hex(c)] for x, c in zip(at, matplotlib.colormaps[name](at), strict=True)]
 
 
 def _layer(y: float, row: int) -> dict[str, Any]:

@@ -116,11 +116,10 @@ def _draw_domain(ax: Axes, one: Drawn) -> None:
     low, high = _extent(partition)
     size = high - low
     blocks = np.split(partition.corners, partition.first[1:-1])
-    many = len(partition.contacts) > MANY
+    many, rocks = len(partition.contacts) > MANY, (ROCK, *REGIONS)
+    tones = [rocks[(k + 1) % len(rocks)] for k in partition.region]
     ax.add_collection(
-        PolyCollection(
-            blocks, facecolors=_tones(partition), edgecolors="none", zorder=1, rasterized=many
-        )
+        PolyCollection(blocks, facecolors=tones, edgecolors="none", zorder=1, rasterized=many)
     )
     for index in range(-1, len(partition.joint_sets)):
         lines = _joint_lines(partition, index)
@@ -156,11 +155,6 @@ def _joint_lines(partition: Partition, index: int) -> np.ndarray:
     of = partition.contacts
     own = of.joint_set == index
     return np.stack([of.start[own], of.end[own]], axis=1)
-
-
-def _tones(partition: Partition) -> list[str]:
-    """Return the colour of each block's rock."""
-    return [(ROCK, *REGIONS)[(k + 1) % (1 + len(REGIONS))] for k in partition.region]
 
 
 def _sides(partition: Partition) -> dict[str, np.ndarray]:

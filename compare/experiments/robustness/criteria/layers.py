@@ -6,9 +6,7 @@ import numpy as np
 import xarray as xr
 
 from cases.loads import load_history, step_means
-from cases.material.calibrate import Properties
 from cases.sampling import interpolation
-from cases.schema.joint import SoftLayer
 from compare.exact.bar import jointed_bar
 from compare.exact.schemes.leapfrog import modes, of_modes
 from compare.experiments.robustness.case import CaseTrial, Judgement, criterion
@@ -37,15 +35,11 @@ def free_end(trial: CaseTrial) -> Judgement:
     whole = trial.run(**in_front)
     p, t = trial.properties, trial.scene.time.duration
     leak = (layer.normal_stiffness or 0.0) * 2 * t / p.impedance
-    leak += 2 * _impedance(layer, p) / p.impedance
+    elastic = (layer.normal_stiffness or 0.0) * (layer.thickness or 0.0)  # E = K h; 0 of a joint
+    leak += 2 * sqrt(elastic * p.density) / p.impedance
     passes = p.bar_speed * t / layer.y
     found = relative_l2(whole["stress"].values, short["stress"].values)
     return Judgement(found, passes * leak + 2 * _of_steps(trial, whole, short), "misfit")
-
-
-def _impedance(layer: SoftLayer, p: Properties) -> float:
-    """Return sqrt(E rho) of a layer of thickness, E = K h, Pa s/m; 0 of a joint."""
-    return sqrt((layer.normal_stiffness or 0.0) * (layer.thickness or 0.0) * p.density)
 
 
 def _of_steps(trial: CaseTrial, one: xr.Dataset, other: xr.Dataset) -> float:
