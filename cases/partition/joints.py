@@ -172,11 +172,12 @@ def _shifts(
     one: JointSet, normal: np.ndarray, stops: Stops, regions: np.ndarray, sets: Sequence[JointSet]
 ) -> np.ndarray:
     """Return by how much joints are offset in each region, m along the normal: by a part of the
-    spacing more from each joint that they end at to the next, in the direction of those joints."""
+    spacing more from each joint that they end at to the next, in the direction of those joints;
+    not at all from joints parallel to them, which have no direction across."""
     by_name, shift = {other.name: other for other in sets}, np.zeros(len(regions))
     for k, name in enumerate(stops):
         if name in one.ends_at:
-            towards = np.sign(normal @ direction_of(by_name[name].dip))
+            towards = np.sign(np.round(normal @ direction_of(by_name[name].dip), 12))
             shift += np.mod(towards * one.offset * regions[:, k], 1.0)
     return shift * (one.spacing or 0.0)
 
