@@ -24,6 +24,9 @@ from results.arrays import copied, fill
 # `make fuzz` looks for others.
 settings.register_profile("jointwave", deadline=None, max_examples=50, derandomize=True)
 settings.load_profile("jointwave")
+# Constants of the project's modules would be among them, of those that are imported by then.
+if providers := sys.modules.get("hypothesis.internal.conjecture.providers"):
+    providers.is_local_module_file = lambda file: False
 
 # Nor does a test how long it takes: no command that it runs speaks of its progress.
 os.environ["JOINTWAVE_PROGRESS"] = "0"
@@ -47,6 +50,14 @@ OPEN_MPI = {
     "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
     "PRTE_MCA_hwloc_default_binding_policy": "none",
 }
+
+
+def pytest_collection_modifyitems(items):
+    """Test what every shipped scene holds where its pairs are tested."""
+    if any(item.path.suffix == ".toml" for item in items):
+        from shipped_scenes import added_to
+
+        items[:] = added_to(items)
 
 
 def pytest_collection_finish():

@@ -148,7 +148,7 @@ class Step:
 
 
 @pytest.mark.parametrize(("dashpots", "opens", "shears"), COMBINATIONS)
-@settings(max_examples=25)
+@settings(max_examples=10)
 @given(data=st.data())
 def test_tangent_is_the_derivative(dashpots, opens, shears, data):
     """Central differences within one branch of the law.

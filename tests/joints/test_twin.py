@@ -444,7 +444,7 @@ def worn(one, t_n, step, h, n, s):
 
 
 @pytest.mark.parametrize(("dashpots", "opens", "shears"), COMBINATIONS)
-@settings(max_examples=25)
+@settings(max_examples=10)
 @given(data=st.data())
 def test_law_equals_its_twin(dashpots, opens, shears, data):
     """Step by step over a path, each step from the same history: tractions and memory."""
@@ -488,7 +488,7 @@ def rated(draw, dashpots, opens, shears):
 @pytest.mark.parametrize("shears", ["f", "cfr"])
 @pytest.mark.parametrize("opens", [*OPENS, *CLOSES])
 @pytest.mark.parametrize("dashpots", ["", "dashpots"])
-@settings(max_examples=25)
+@settings(max_examples=10)
 @given(data=st.data())
 def test_rate_and_state_equal_their_twin(dashpots, opens, shears, data):
     """As the law does its twin, where there is one root: A D_c >= b t_n. The slide is known to

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from cases.partition.faults import PartitionError, Sliver
@@ -65,6 +65,20 @@ def partition(domain, sets):
             assert shapely.Point(error.at).distance(shape_of(domain)) < 1e-6
         assume(False)
 
+
+#: Joints beside others of their direction, which they end at.
+PARALLEL = [
+    JointSet(name="set 0", dip=2.0, spacing=1.0, through=[2.0, 1.5], **LAW),
+    JointSet(
+        name="set 1",
+        dip=2.0,
+        spacing=2.0,
+        through=[2.0, 1.0],
+        ends_at=["set 0"],
+        offset=0.75,
+        **LAW,
+    ),
+]
 
 domains = st.sampled_from([Domain(**keys, non_convex="cut", least_angle=0.5) for keys in DOMAINS])
 
@@ -219,6 +233,7 @@ def test_same_seed_same_blocks_to_the_bit(domain, sets):
 
 @settings(max_examples=25)
 @given(sets=joint_sets(most=2), angle=st.floats(-20, 20))
+@example(sets=PARALLEL, angle=1.0)
 def test_a_turned_domain_is_cut_into_turned_blocks(sets, angle):
     """Turned with its joint sets, openings included; the same blocks in any order."""
     assume(all(abs(one.dip + angle) < 90 for one in sets))  # else rows are counted the other way
