@@ -135,18 +135,18 @@ def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:
     Raises SceneError where one of them would not fit a file.
     """
     record, axes = scene.record, 3 if spatial else 1
-    from cases.schema.plane import RecordInPlane
+    from cases.schema.tables import Record
 
-    if isinstance(record, RecordInPlane):
-        rows = {
-            "record.points": (len(record.points), 3, 7),
-            "record.joints": (len(record.joints), 2, 4),
-        }
-    else:
+    if isinstance(record, Record):
         across, of_point = max(axes - 1, 1), axes * (3 if spatial else 2)
         rows = {
             "record.velocity": (len(record.velocity), axes, of_point),
             "record.stress": (len(record.stress), across, axes),
+        }
+    else:
+        rows = {
+            "record.points": (len(record.points), 3, 7),
+            "record.joints": (len(record.joints), 2, 4),
         }
     samples = samples_of(scene)
     key, (places, most, _) = max(rows.items(), key=lambda row: row[1][0] * row[1][1])

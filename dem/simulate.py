@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from cases.effects import is_spatial
 from cases.errors import SceneError, StoppedError
-from cases.schema.rock_mass import RockMass
+from cases.kinds import AnyScene
 from cases.schema.scene import Scene
 from numerics.checkpoint import Keeper
 from results.dataset import Fields
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def simulate(
-    scene: Scene | RockMass,
+    scene: AnyScene,
     progress: Callable[[float], None] | None = None,
     keeper: Keeper | None = None,
     incident: IncidentField | None = None,
@@ -44,7 +44,7 @@ def simulate(
 
 
 def simulate_fields(
-    scene: Scene | RockMass,
+    scene: AnyScene,
     progress: Callable[[float], None] | None = None,
     keeper: Keeper | None = None,
     incident: IncidentField | None = None,
@@ -55,7 +55,7 @@ def simulate_fields(
 
         if reason := beyond_blocks(scene):
             raise SceneError(scene.where, "rock.quality_factor", quality, reason)
-    if isinstance(scene, RockMass):
+    if not isinstance(scene, Scene):
         from dem.blocks.simulate import simulate_fields as in_plane
 
         return in_plane(scene, progress, keeper, incident)

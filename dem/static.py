@@ -17,9 +17,9 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from cases.errors import SceneError
+from cases.kinds import AnyScene
 from cases.material.calibrate import Properties
 from cases.sampling import Interpolation
-from cases.schema.rock_mass import RockMass
 from cases.schema.scene import Scene
 from joints.law import Law, parts_of
 from joints.law import stiffest as stiffest_springs
@@ -119,7 +119,7 @@ def since_prestress(
     return displacement - at_rest[:, None]
 
 
-def settle(scene: Scene | RockMass, system: System) -> Rest:
+def settle(scene: AnyScene, system: System) -> Rest:
     """Bring a scene's blocks to rest under gravity and prestress.
 
     Raises SceneError where there is no static state within numerics.dem.static_tolerance.

@@ -75,7 +75,9 @@ Pair = Annotated[str, AfterValidator(_pair)]
 class Table(BaseModel):
     """A table of the scene file: immutable, no unknown keys, no silent conversions, no NaN."""
 
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(
+        extra="forbid", strict=True, frozen=True, allow_inf_nan=False, defer_build=True
+    )
 
 
 def contradiction(key: str, value: object, allowed: str) -> PydanticCustomError:
