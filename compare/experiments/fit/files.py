@@ -1,4 +1,4 @@
-"""The files of a fit: a table, the fitted scene, and the figure of waveforms and residuals."""
+"""The files of a fit: a table, the fitted scene as text, and the figure of what is left."""
 
 import filecmp
 import json
@@ -7,7 +7,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
@@ -16,58 +15,38 @@ from cases.errors import SceneError
 from cases.kinds import AnyScene
 from cases.schema.scene import Scene
 from compare.experiments.fit.keys import CLOCK
-from compare.experiments.fit.result import Fit, Fitted
-from compare.experiments.fit.scene_text import scene_text
+from compare.experiments.fit.result import Fit
 from compare.experiments.store import finite
-from compare.figures.export import blank, save, write_csv
-from compare.figures.overlays import UNITS
-from compare.figures.style import GIVEN, style
+from compare.figures.charts import static
+from compare.figures.charts.chart import Chart, Entry, short
+from compare.figures.export import save, write_csv
+from compare.figures.overlays import Overlay, Trace, subplots_of
+from compare.figures.style import given_style, style
 from compare.runs.output import refuse_foreign, write, write_text
 
-WIDTH, PANEL, AROUND = 7.5, 2.6, 0.8  # inches: the figure, a waveform with its residual, the rest
-MOST_MARKS = 250  # samples that are drawn one by one
+NAME = "fit-waveforms"
+HEIGHT = 1.6  # inches of a waveform
 HEAD = "# Fitted by jointwave"
 
 
 def draw(found: Fit) -> Figure:
     """Return the figure: each waveform as measured and fitted, and below it what is left."""
-    count = len(found.waveforms)
-    with blank(AROUND + count * PANEL, WIDTH) as figure:
-        axes = figure.subplots(2 * count, sharex=True, height_ratios=[3, 1] * count, squeeze=False)
-        for i, one in enumerate(found.waveforms):
-            _draw_waveform(axes[2 * i, 0], axes[2 * i + 1, 0], one, found.solver, i)
-        figure.align_ylabels()
-        axes[-1, 0].set_xlabel("time (ms)")
-        handles, labels = axes[0, 0].get_legend_handles_labels()
-        figure.legend(
-            handles, labels, loc="outside upper center", ncols=len(handles), frameon=False
-        )
-    return figure
-
-
-def _draw_waveform(wave: Any, left: Any, one: Fitted, solver: str, i: int) -> None:
-    place: Any = one.place
-    factor, unit = UNITS[place.quantity]
-    few = len(one.time) <= MOST_MARKS
-    points = {"linestyle": "none", "marker": "o", "markersize": 2.0, "color": GIVEN[0].colour}
-    line = {"color": style(solver).colour, "linewidth": 1.6, "linestyle": "-"}
-    given = points if few else GIVEN[0].of_line()
-    time = 1e3 * one.time
-    wave.plot(time, factor * one.fitted, label=f"fitted ({solver})", zorder=2, **line)
-    wave.plot(time, factor * one.measured, label="measured", **{**given, "zorder": 3})
-    left.plot(time, factor * (one.measured - one.fitted), color=GIVEN[0].colour, linewidth=0.8)
-    left.axhline(0, color="#bbbbbb", linewidth=0.6, zorder=1)
-    shown = one.name if len(one.name) <= 28 else f"{one.name[:12]}…{one.name[-15:]}"
-    where = place.heading
-    misfit = f"misfit {one.before:.2%} before, {one.after:.2%} after"
-    title = f"({chr(97 + i % 26)})  {where}, {shown}: {misfit}"
-    wave.set_title(title.replace("$", r"\$"), pad=4)
-    wave.set_ylabel(f"{place.quantity} ({unit})")
-    left.set_ylabel(f"residual\n({unit})")
-    reach = factor * float(np.abs(one.measured - one.fitted).max()) or 1.0
-    left.set_ylim(-1.15 * reach, 1.15 * reach)
-    for ax in (wave, left):
-        ax.margins(x=0)
+    cells, fitted = [], f"fitted ({found.solver})"
+    below = style(found.solver)._replace(width=3.2, dashes="-", order=0)
+    for i, one in enumerate(found.waveforms):
+        drawn, marker = given_style(0, len(one.time))
+        place: Any = one.place
+        measured, curve = (pd.Series(values, one.time) for values in (one.measured, one.fitted))
+        traces = [
+            Trace(fitted, below, curve, None, "fitted"),
+            Trace("measured", drawn, measured, measured - curve, "measured", marker),
+        ]
+        misfit = f"misfit {one.before:.2%} before, {one.after:.2%} after"
+        heading = f"{place.heading}, {short(one.name)}: {misfit}"
+        overlay = Overlay(heading, place.quantity, 0.0, traces, fitted)
+        cells.append([subplots_of(overlay, str(i), HEIGHT, "")])
+    entries = [Entry(t.name, t.name, t.style, t.marker) for t in traces]
+    return static.draw(NAME, Chart(cells, "time (ms)", {"": entries}, is_lettered=True))
 
 
 def write_fit(found: Fit, given: AnyScene, folder: Path) -> list[Path]:
@@ -83,7 +62,7 @@ def write_fit(found: Fit, given: AnyScene, folder: Path) -> list[Path]:
         *_write_scene(found, given, scene),
     ]
     title = f"{found.scene.title}, fitted"
-    drawn = save(draw(found), folder, "fit-waveforms", title, curves(found))
+    drawn = save(draw(found), folder, NAME, title, curves(found))
     return [*files, *drawn.drawings, drawn.file("csv")]
 
 
@@ -165,3 +144,38 @@ def _write_scene(found: Fit, given: AnyScene, path: Path) -> list[Path]:
             written.append(write(there, partial(shutil.copyfile, folder / name)))
     cases.load(path)  # it runs
     return written
+
+
+def scene_text(scene: AnyScene) -> str:
+    """Return a scene as the text of a scene file, defaults left out."""
+    told = scene.model_dump(mode="json", exclude_defaults=True, exclude_none=True)
+    told.pop("name", None)
+    return "\n".join(_lines("", told)) + "\n"
+
+
+def _lines(path: str, table: dict[str, Any]) -> list[str]:
+    """Return a table's own keys, then the tables in it under headings."""
+    inner = {k: v for k, v in table.items() if isinstance(v, dict)}
+    many = {k: v for k, v in table.items() if isinstance(v, list) and v and isinstance(v[0], dict)}
+    lines = [
+        f"{_key(k)} = {_value(v)}" for k, v in table.items() if k not in inner and k not in many
+    ]
+    for key, one in inner.items():
+        name = f"{path}{_key(key)}"
+        lines += ["", f"[{name}]", *_lines(f"{name}.", one)]
+    for key, several in many.items():
+        name = f"{path}{_key(key)}"
+        for one in several:
+            lines += ["", f"[[{name}]]", *_lines(f"{name}.", one)]
+    return lines
+
+
+def _key(name: str) -> str:
+    return name if name.replace("_", "").isalnum() and name.isascii() else _value(name)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, list):
+        return f"[{', '.join(map(_value, value))}]"
+    # JSON's texts and numbers are TOML's, but for one control character.
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

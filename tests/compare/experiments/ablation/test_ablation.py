@@ -171,7 +171,7 @@ def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, cheap):
     """The wall that the load shakes; the ledger beside it is measured."""
     load = {"shape": "sine", "amplitude": 0.1, "period": 0.01, "quantity": "velocity"}
     stays = ablation._drop(pillar(ends__start="fixed", load=load), "fixed ends", None)
-    assert "moves the base" in stays.reason
+    assert "is the motion of a base" in stays.reason
     scene = pillar(time__duration=0.01)
     there = ablation.Dropped("energy ledger", 0.0, 1.0, True, False, "")
     fixed, ledger = ablate("a/b", scene, [stays, there]).effects

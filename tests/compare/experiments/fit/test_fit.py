@@ -15,10 +15,9 @@ from cases.schema.keys import keys
 from compare.engines import solve
 from compare.exact.blocks import lattice
 from compare.experiments.fit import search
-from compare.experiments.fit.files import draw
+from compare.experiments.fit.files import draw, scene_text
 from compare.experiments.fit.keys import changed, free_keys
 from compare.experiments.fit.problem import problem_of
-from compare.experiments.fit.scene_text import scene_text
 from compare.experiments.fit.statistics import autocorrelation_time
 from compare.misfit.external import Curves, read_curves
 from compare.misfit.places import Place

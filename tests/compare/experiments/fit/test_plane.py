@@ -11,9 +11,9 @@ from cases.errors import SceneError
 from cases.read import load_tables
 from cases.schema.keys import keys
 from compare.engines import solve
+from compare.experiments.fit.files import scene_text
 from compare.experiments.fit.keys import changed, free_keys
 from compare.experiments.fit.problem import problem_of
-from compare.experiments.fit.scene_text import scene_text
 from compare.misfit.external import Curves
 from compare.misfit.places import Place
 from compare.scenes import shipped
@@ -102,7 +102,7 @@ def test_what_cuts_blocks_is_refused(key, scene):
 def test_a_scene_without_rigid_blocks_asks_for_another_solver(tables):
     del tables["numerics"]
     whole = load_tables(tables)
-    with pytest.raises(SceneError, match=r"dem does not apply: numerics\.dem\.block is needed"):
+    with pytest.raises(SceneError, match=r"dem does not apply: numerics\.dem\.block is required"):
         jointwave.fit(whole, [heard(solve("oblique-joint", whole))], list(TRUE))
 
 
