@@ -136,7 +136,7 @@ def _variant(
 
 
 def _merge(base: dict[str, Any], changes: dict[str, Any], key: str, where: str) -> dict[str, Any]:
-    """Return a table with changes; `waves.0.kind` changes one of a list of tables."""
+    """Return a table with changes; `waves.0.kind` changes one table of a list."""
     merged = dict(base)
     for name, value in changes.items():
         old, inner = merged.get(name), f"{key}.{name}"

@@ -88,7 +88,7 @@ def applies(name: str, scene: AnyScene) -> Answer:
     """Return whether this engine or solution holds for the scene, or the reason why not."""
     one = solver(name)
     if scene.kind not in one.kinds:
-        return no(f"is a solution of a {one.kinds[0]}, not of a {scene.kind}")
+        return no(f"is for a {one.kinds[0]}, not for a {scene.kind}")
     return one.applies(scene)
 
 

@@ -127,7 +127,7 @@ def is_inside(seed):
 
 
 inside = [is_inside(seed) for seed in range(20)]
-print(f"{sum(inside)} of {len(inside)} intervals hold the true stiffness")
+print(f"{sum(inside)} of {len(inside)} intervals contain the true stiffness")
 assert sum(inside) >= 14  # fewer happen once in 30,000 times, if the intervals are right
 
 # %% [markdown]

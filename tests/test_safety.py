@@ -235,7 +235,7 @@ def planned(scene, out):
 def test_a_file_that_is_no_result_is_not_replaced(scene, tmp_path, kind):
     taken = tmp_path / "dem.nc"
     taken.mkdir() if kind == "folder" else taken.write_text("my diary")
-    with pytest.raises(SceneError, match="would be replaced: choose another --out"):
+    with pytest.raises(SceneError, match="would be overwritten: choose another --out"):
         planned(scene, tmp_path)
 
 
@@ -263,7 +263,7 @@ def test_a_folder_with_other_files_is_not_replaced(tmp_path):
     for _ in range(2):
         write_folder(place, save)
     (place / "thesis.tex").write_text("my thesis")
-    with pytest.raises(SceneError, match=r"thesis\.tex: is not a result and would be replaced"):
+    with pytest.raises(SceneError, match=r"thesis\.tex: is not a result and would be overwritten"):
         write_folder(place, save)
     assert {p.name for p in place.iterdir()} == {"0000.vtu", "thesis.tex"}
     assert [p.name for p in tmp_path.iterdir()] == ["dem-fields"]
@@ -394,8 +394,8 @@ def test_a_mistake_is_told_without_its_escape_sequences(monkeypatch, capfd, argu
 @pytest.mark.parametrize(
     "raised, code, words",
     [
-        (KeyError("no\nsuch"), 1, "a fault of the program, KeyError at test_safety.py"),
-        (RecursionError("deep"), 1, "a fault of the program, RecursionError"),
+        (KeyError("no\nsuch"), 1, "internal error, KeyError at test_safety.py"),
+        (RecursionError("deep"), 1, "internal error, RecursionError"),
         (UnicodeEncodeError("ascii", "\xe9.nc", 0, 1, "x"), 2, "'.xe9.nc': the locale's ascii"),
         (OSError(28, "No space left on device", "x.png"), 2, "x.png: No space left on device"),
         (MemoryError("much"), 2, "not enough memory: much"),
@@ -507,6 +507,9 @@ def test_a_lock_leaves_no_file_and_is_refused_to_another(tmp_path):
     folder = tmp_path / "new" / "folder"
     with locked(folder):
         assert list(folder.iterdir()) == []
-        with pytest.raises(SceneError, match="another jointwave is writing here"), locked(folder):
+        with (
+            pytest.raises(SceneError, match="another jointwave process is writing here"),
+            locked(folder),
+        ):
             pass
     assert list(tmp_path.iterdir()) == []

@@ -15,8 +15,8 @@ from compare.report.verdict import Standing, held_to, standings
 from results.dataset import energy_residual
 
 MOST_LINES = 10  # of the answer
-HINT = "every distance, and what does not apply: --all; as JSON: --json"
-ANSWER = ["engine", "worst misfit", "of", "held against", "own error", "stepping", "verdict"]
+HINT = "all misfits, and solutions that do not apply: --all; as JSON: --json"
+ANSWER = ["engine", "worst misfit", "at", "compared with", "own error", "stepping", "verdict"]
 
 
 def show_comparisons(
@@ -70,7 +70,7 @@ def _show_readings(found: list[Comparison]) -> None:
     if groups:
         show_numbers(header, groups)
     else:
-        say("nothing to read: record.velocity or record.points is empty")
+        say("no velocities are recorded: record.velocity or record.points is empty")
 
 
 def _engine_cells(engine: str, one: Standing, found: list[Comparison], several: bool) -> list[str]:
@@ -107,19 +107,19 @@ def _remarks(stand: dict[str, Standing], several: bool) -> Iterator[str]:
     held = [one for standing in stand.values() for one in standing.variants]
     reasons = dict.fromkeys(f"{one.against}: {one.reason}" for one in held if one.against)
     if reasons:
-        yield f"held against {'; '.join(reasons)}"
+        yield f"reference: {'; '.join(reasons)}"
     alone = {engine: one.unchecked for engine, one in stand.items() if one.unchecked}
     if alone and several:
         named = (f"{engine} ({', '.join(variants)})" for engine, variants in alone.items())
         yield f"not checked independently: {'; '.join(named)}"
     broken = dict.fromkeys(pair for one in stand.values() for pair in one.broken)
     if broken:
-        yield f"beyond the scene's bound: {', '.join(broken)}"
+        yield f"exceeds the scene's bound: {', '.join(broken)}"
 
 
 def _without_engine(comparison: Comparison) -> Iterator[str]:
     """Yield what solves a scene that no engine does, and why they do not."""
-    yield f"no engine solves it; exact: {', '.join(comparison.results) or 'none'}"
+    yield f"no engine applies; exact solutions: {', '.join(comparison.results) or 'none'}"
     yield from (f"{name}: {why}" for name, why in comparison.reasons.items() if name in ENGINES)
 
 
@@ -137,7 +137,7 @@ def _files(found: list[Comparison]) -> Iterator[str]:
                 if there
             ]
             clock = f", clock {1e3 * beside.shift.seconds:+.4g} ms" if beside.shift else ""
-            where = "; ".join(parts) or "no engine has a waveform there"
+            where = "; ".join(parts) or "no engine records a waveform there"
             yield f"{name}{beside.curves.name}{clock}: {where}"
 
 
@@ -158,11 +158,11 @@ def _show_distances(comparison: Comparison) -> None:
     if groups:
         show_numbers(DISTANCE_COLUMNS, groups)
     else:
-        say("  nothing to compare: no two solutions of a pair apply")
+        say("  nothing to compare: no pair of solutions applies")
     for beside in comparison.besides:
         say(f"  {_curve_sentence(beside)}")
     for name, residual in _residuals(comparison).items():
-        say(f"  {name}: energy balance open by {residual:.1e} of the work put in")
+        say(f"  {name}: energy residual {residual:.1e} of the work done by the load")
     for name, reason in comparison.reasons.items():
         say(f"  {name} does not apply: {reason}", "dim")
 
@@ -173,14 +173,14 @@ def _curve_sentence(beside: Any) -> str:
     whose = "its own" if beside.own_times else "the scene's"
     start, end = (round(1e3 * t, 6) + 0.0 for t in (time[0], time[-1]))
     parts = [f"at {len(time)} of {whose} times, {start:.6g} to {end:.6g} ms"]
-    parts += [f"{beside.outside:.1%} of its duration lies outside"]
-    parts += [f"straight lines between them miss {beside.missed:.2%} of the finer waveform"]
+    parts += [f"{beside.outside:.1%} of its duration outside the scene's"]
+    parts += [f"linear interpolation loses {beside.missed:.2%} of the finer waveform"]
     if shift is not None:
         parts += [
-            f"clock moved by {1e3 * shift.seconds:+.4f} ms onto {shift.onto}, "
+            f"shifted by {1e3 * shift.seconds:+.4f} ms to align with {shift.onto}, "
             f"correlation {shift.correlation:.4f}"
             if shift.onto
-            else "clock not moved: no wave to correlate with"
+            else "not shifted: no wave to correlate with"
         ]
     if beside.left_out:
         parts += [f"not in this scene: {', '.join(map(str, beside.left_out))}"]

@@ -31,7 +31,7 @@ def write_new(name: str, source: str | None = None, template: Template = PILLAR)
     """
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
     if path.name.startswith((".", " ")) or not name.isprintable():
-        raise SceneError("NAME", name, None, "must be the name of a file, not beginning with '.'")
+        raise SceneError("NAME", name, None, "must be a file name that does not begin with '.'")
     if source is None:
         return [create(path, starter(path, template).encode())]
     given = find(source)
@@ -39,7 +39,7 @@ def write_new(name: str, source: str | None = None, template: Template = PILLAR)
     places = {path: given, **{path.parent / file: given.parent / file for file in _files(given)}}
     for place in places:
         if place.exists() or place.is_symlink():
-            raise SceneError(str(place), "", None, "is there already: choose another NAME")
+            raise SceneError(str(place), "", None, "exists already: choose another NAME")
     return [create(place, original.read_bytes()) for place, original in places.items()]
 
 
@@ -54,7 +54,7 @@ def starter(path: Path, template: Template = PILLAR) -> str:
     """Return a scene that runs as it stands, to be written at a path."""
     shown, folder = quote(path.name), quote(path.stem)
     begin = [
-        f"Look:  jointwave explain {shown}",
+        f"Check: jointwave explain {shown}",
         f"Run:   jointwave compare {shown} --out {folder}",
     ]
     top = TableOf("", template.model, False)

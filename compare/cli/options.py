@@ -120,7 +120,7 @@ def root(
     """Stress waves in jointed rock: rigid blocks and continuum, refereed by exact solutions."""
     command = context.invoked_subcommand
     if command not in ("run", "study") and started().comm is not None:
-        allowed = f"jointwave {command} works in one process; only run and study share their work"
+        allowed = f"jointwave {command} runs in one process; only run and study support mpiexec"
         raise SceneError("mpiexec", "", None, allowed)
 
 
@@ -153,7 +153,7 @@ def warn(scenes: Sequence["AnyScene"], strict: bool = False) -> None:
     lines = [f"{line}{_whose(said, scenes)}" for line, said in found.items()]
     if strict and lines:
         more = f" (and {len(lines) - 1} more)" if len(lines) > 1 else ""
-        raise SceneError(scenes[0].where, "", None, f"{lines[0]}{more}, refused by --strict")
+        raise SceneError(scenes[0].where, "", None, f"{lines[0]}{more} (an error by --strict)")
     for line in lines:
         print(f"jointwave: warning: {printable(line)}", file=sys.stderr)
 

@@ -62,7 +62,7 @@ def main() -> None:
             _drop_output()
         _fail(processes, f"{error.filename or 'output'}: {error.strerror or error}", 2)
     except UnicodeEncodeError as error:  # of a file's name: all else is UTF-8, or escaped
-        allowed = f"the locale's {error.encoding} cannot name a file so; set PYTHONUTF8=1"
+        allowed = f"cannot be encoded in the locale's {error.encoding}; set PYTHONUTF8=1"
         _fail(processes, f"{error.object!a}: {allowed}", 2)
     except MemoryError as error:
         _fail(processes, f"not enough memory: {error}", 2)

@@ -87,7 +87,7 @@ class SceneFile(pytest.File):
         for pair in dict.fromkeys(pair for scene in scenes for pair in scene.expect):
             reasons = [_reason(pair, scene) for scene in scenes if pair in scene.expect]
             if all(reasons):
-                reason = f"{pair} applies to no variant: {reasons[0]}"
+                reason = f"{pair} does not apply to any variant: {reasons[0]}"
                 yield PairItem.from_parent(self, name=pair, reason=reason)
 
 
@@ -116,7 +116,7 @@ class PairItem(pytest.Item):
             far = f"misfit {found.misfit:.3g} of {found.where} exceeds the bound {self.bound:g}"
             raise Misfit(f"{self.pair}: {far}\n{self._command()}")
         if not found.judged <= self.bound:
-            least = f"the reference itself errs by {found.floor:.2g}, a tenth of what it can judge"
+            least = f"the reference's own error is {found.floor:.2g}; it can verify ten times that"
             raise Misfit(f"{self.pair}: {least}; the bound is {self.bound:g}")
 
     def _warn(self) -> None:

@@ -40,7 +40,7 @@ def fault(error: Exception) -> str:
     own = [frame for frame in frames if Path(frame.filename).is_relative_to(ROOT)] or frames
     at = f" at {Path(own[-1].filename).name}:{own[-1].lineno}" if own else ""
     said = ascii(str(error))[1:-1]
-    return f"a fault of the program, {type(error).__name__}{at}: {said} ({SHOWN}=1 tells more)"
+    return f"internal error, {type(error).__name__}{at}: {said} (set {SHOWN}=1 for the traceback)"
 
 
 ROOT = Path(__file__).parents[2]

@@ -74,18 +74,18 @@ PILLAR = Template(
         "numerics.continuum.scheme": "",
     },
     head="""\
-A scene of jointwave: what is there, what acts on it, how long, and what is recorded.
+A jointwave scene: rock, joints, load, duration and receivers.
 SI units. y runs along the pillar from the loaded end, x and z across; compression is positive.
-A line such as "# cycles = 2" is a choice: take its "# " away, and that of its table's heading.
-What is left out is not computed. Numbers such as (10) are equations of Guo & Li (2002).
-There are more keys: see the scene reference.
+Optional keys are commented out: to set one, remove "# " from its line and its table's heading.
+Effects not given are not computed. Numbers such as (10) are equations of Guo & Li (2002).
+The scene reference lists all keys.
 """,
     tail="""\
-[expect]  # bounds on the relative L2 misfit of pairs; `pytest {file}` holds the scene to them
-"dem ~ lattice" = 5e-3                    # rigid blocks, to their exact solution
-"continuum-jointed ~ jointed-bar" = 1e-2  # rock with its joints, to its own
+[expect]  # bounds on the relative L2 misfit of pairs, checked by `pytest {file}`
+"dem ~ lattice" = 5e-3                    # rigid blocks, their exact solution
+"continuum-jointed ~ jointed-bar" = 1e-2  # jointed rock, its exact solution
 
-[[variants]]  # the same scene with changes, under a name of its own; any number of them
+[[variants]]  # the same scene with changed keys; repeatable
 name = "no layer"
 soft_layers = []
 """,
@@ -152,18 +152,18 @@ ROCK_MASS = Template(
         "numerics.continuum.scheme": "",
     },
     head="""\
-A rock mass of jointwave: what is there, what acts on it, how long, and what is recorded.
+A jointwave rock mass: rock, joints, loads, duration and receivers.
 SI units, plane strain. x to the right, y upwards; compression is positive.
-A line such as "# cycles = 2" is a choice: take its "# " away, and that of its table's heading.
-A table in two brackets may be there any number of times. What is left out is not computed.
-There are more keys: see the scene reference.
+Optional keys are commented out: to set one, remove "# " from its line and its table's heading.
+Tables in double brackets are repeatable. Effects that are not given are not computed.
+The scene reference lists all keys.
 """,
     tail="""\
-[expect]  # bounds on the relative L2 misfit of pairs; `pytest {file}` holds the scene to them
-"continuum-jointed ~ oblique-joint" = 5e-3  # rock with its joint, to its exact solution
-"dem ~ oblique-joint" = 1.2e-1              # rigid blocks, to the same
+[expect]  # bounds on the relative L2 misfit of pairs, checked by `pytest {file}`
+"continuum-jointed ~ oblique-joint" = 5e-3  # jointed rock, exact solution
+"dem ~ oblique-joint" = 1.2e-1              # rigid blocks, the same solution
 
-[[variants]]  # the same scene with changes, under a name of its own; any number of them
+[[variants]]  # the same scene with changed keys; repeatable
 name = "steeper"
 joint_sets.0.dip = 35.0
 """,

@@ -56,7 +56,7 @@ def show_runs(done: list[Done], as_json: bool) -> None:
         for path in d.fields:
             say(f"{name}: snapshots for ParaView, {path}")
         if d.job.scene.record.fields is not None and not d.fields:
-            say(f"{name}: no snapshots, its solution is known at the receivers only")
+            say(f"{name}: no snapshots: the solution is known at the receivers only")
 
 
 def _run_facts(done: Done) -> dict[str, Any]:
@@ -111,7 +111,7 @@ def show_explanation(found: Explanation, as_json: bool) -> None:
         _show_properties(found.properties)
     if found.blocks is not None:
         show_partition(found.blocks)
-    effects = [[e.name, "yes" if e.active else "left out", e.reason] for e in found.effects]
+    effects = [[e.name, "yes" if e.active else "no", e.reason] for e in found.effects]
     show_table(["effect", "computed", "because"], effects)
     steps = [
         [
@@ -132,9 +132,9 @@ def show_explanation(found: Explanation, as_json: bool) -> None:
     answers = [[k, "yes" if a else "no", a.reason] for k, a in found.answers.items()]
     show_table(["solution", "applies", "why not"], answers)
     for engine, reference in found.references.items():
-        held = "not checked independently: no other solution leaves out less"
+        held = "not checked independently: no other solution resolves more"
         if reference is not None:
-            held = f"held against {reference.name}: {reference.reason}"
+            held = f"reference: {reference.name} ({reference.reason})"
         say(f"{engine} is {held}")
 
 
@@ -150,7 +150,7 @@ def _show_properties(p: Properties) -> None:
         f"{2 * b.impedance / (a.impedance + b.impedance):.4g} at {y:g} m"
         for (a, b), y in zip(pairwise(p.each), ends[1:-1], strict=True)
     ]
-    say(f"of the stress of a long wave passes 2 Z2 / (Z1 + Z2): {', '.join(passed)}")
+    say(f"long-wave stress transmission 2 Z2 / (Z1 + Z2): {', '.join(passed)}")
 
 
 def _rock_words(p: Properties) -> str:
@@ -162,7 +162,7 @@ def _rock_words(p: Properties) -> str:
 
 def _cost_sentence(own: float | None, everything: float | None) -> str:
     if own is None:
-        return "what a step of a rigid block takes here is known after a run, or by --measure"
+        return "the time per step of a rigid block is known after a run, or by --measure"
     said = f"a step of a rigid block takes {own:.2g} ns here"
     if everything is None:
         return said
@@ -219,5 +219,5 @@ def show_report(found: Report, as_json: bool) -> None:
     show_numbers(page.summary.header, groups)
     if page.claims:
         holding = page.claims - len(page.failed)
-        say(f"{holding} of {page.claims} claims that the paper's figures make hold.")
+        say(f"{holding} of {page.claims} claims of the paper's figures hold.")
     say(f"report: {found.file}")

@@ -86,7 +86,7 @@ class Overlay(NamedTuple):
     def residual_heading(self) -> str:
         """What residuals are, and how large beside the waveforms."""
         if not self.residuals:
-            return "no other solution to hold it against"
+            return "no reference solution"
         peak = max(float(t.curve.abs().max()) for t in self.traces)
         share = f", at most {100 * self._largest / peak:.2g}\u00a0% of the peak" if peak else ""
         return f"less {self.reference} ({self.unit.name}){share}"

@@ -223,7 +223,7 @@ def variant_names(comparisons: list[Comparison]) -> list[str]:
 
 def _base_name(base: AnyScene, variants: list[AnyScene]) -> str:
     if not isinstance(base, Scene):
-        return "as it stands"
+        return "base scene"
     ratio = base.joints.damping_ratio
     words = {
         "damping": "undamped" if ratio is None else f"ζ = {ratio:g}",
@@ -233,7 +233,7 @@ def _base_name(base: AnyScene, variants: list[AnyScene]) -> str:
         "tension": "no tension" if base.joints.tension is False else "tension",
     }
     changed = {key for v in variants for key in words if _part(v, key) != _part(base, key)}
-    unknown = "as it stands" if variants else words["damping"]
+    unknown = "base scene" if variants else words["damping"]
     return ", ".join(words[key] for key in words if key in changed) or unknown
 
 

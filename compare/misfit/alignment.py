@@ -115,8 +115,8 @@ def common_times(curves: Curves, scene: AnyScene) -> tuple[np.ndarray, bool]:
             "time",
             f"{curves.time[0]:.6g} to {curves.time[-1]:.6g} s",
             f"must share at least {LEAST_SAMPLES} samples of either with the scene, 0 to "
-            f"{scene.time.duration:g} s; a header such as time [ms] gives the unit, --align moves "
-            "a clock of its own",
+            f"{scene.time.duration:g} s; a header such as time [ms] gives the unit, --align shifts "
+            "its time",
         )
     return (own, True) if len(own) <= len(ours) else (ours, False)
 

@@ -128,11 +128,11 @@ def _require_recorded(curves: Curves, scenes: list[AnyScene]) -> None:
     key = place.key
     if not hasattr(scene.record, key):
         wanted = EXAMPLES if scene.kind == "pillar" else EXAMPLES_IN_PLANE
-        allowed = f"is no place of a {scene.kind}, whose columns are called as {wanted}"
+        allowed = f"is not a receiver of a {scene.kind}; columns are named as {wanted}"
         raise SceneError(curves.file, str(place), None, allowed)
     held = ", ".join(place._replace(at=one).receiver for one in recorded(scene, key))
     allowed = (
-        f"must be where the scene records: {key} at {held or 'nowhere'}; "
+        f"must be at a receiver of the scene: {key} at {held or 'none'}; "
         f"record.{key} in the scene, or --set, adds a receiver"
     )
     raise SceneError(curves.file, str(place), None, allowed)
@@ -151,7 +151,7 @@ def _of_file(name: str, every: list[Asked]) -> list[Curves]:
         there = b"" if one.column.empty is None else one.column.empty.tobytes()
         group = groups.setdefault((one.solution, one.variant, there), {})
         if one.label.place in group:
-            raise SceneError(str(path), "", None, f"{one.label.place} must be given once only")
+            raise SceneError(str(path), "", None, f"{one.label.place} must be given only once")
         group[one.label.place] = one
     several = len({solution for solution, *_ in groups}) > 1
     named: Counter[tuple] = Counter()
@@ -218,7 +218,7 @@ def _as_wanted(column: Column, own: _Label | None, wanted: _Label, alone: bool) 
 def _without_place(column: Column, choice: Asked, table: Columns) -> SceneError:
     which = f"{column.name}=" if column.name else ""
     allowed = (
-        f"must be called as {EXAMPLES}, of a rock mass as {EXAMPLES_IN_PLANE}, or its place be "
+        f"must be named as {EXAMPLES}, in a rock mass as {EXAMPLES_IN_PLANE}, or its place be "
         f"given as {choice.path}:{which}stress@20; "
         f"the file holds {listed(table.rest)}"
     )

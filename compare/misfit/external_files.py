@@ -67,7 +67,7 @@ def read_columns(path: Path, time_name: str = "time") -> Columns:
     late = np.diff(time) <= 0
     if late.any():
         i = int(np.argmax(late))
-        fault = "is there twice; each time must be" if time[i] == time[i + 1] else "must be"
+        fault = "is repeated; each time must be" if time[i] == time[i + 1] else "must be"
         allowed = f"{fault} later than the one before it, {time[i]:.12g}"
         raise SceneError(found.row(i + 1), "time", float(time[i + 1]), allowed)
     return found
@@ -121,7 +121,7 @@ def _where_time(path: Path, header: list[str], time_name: str) -> int:
     if names.count(time_name) != 1 or len(names) < 2:
         allowed = (
             "must name one column time, and one or more as stress@20; "
-            f"{path}:{header[0]}=time says that this is the time"
+            f"{path}:{header[0]}=time marks this one as time"
         )
         raise SceneError(str(path), "header", ", ".join(header), allowed)
     return names.index(time_name)

@@ -40,7 +40,7 @@ def lacks(name: str, scene: AnyScene) -> str:
     dim, free_sides = scene.numerics.continuum.dim or 1, scene.motion.rotation != "none"
     if dim > 1 and of.dimension == 1 and free_sides and of.rock in (Rock.JOINTED, Rock.HOMOGENISED):
         poisson = scene.rock.intact_poisson if of.rock is Rock.JOINTED else calibrate(scene).poisson
-        return "the inertia across the axis" if poisson else ""
+        return "lateral inertia" if poisson else ""
     return ""
 
 
@@ -51,7 +51,7 @@ def finest(names: Iterable[str], scene: AnyScene) -> Reference | None:
         return None
     name = max(complete, key=_fineness)
     of = solver(name)
-    how = "exact" if of.exact else "computed, with no exact solution of this scene to check it"
+    how = "exact" if of.exact else "computed; no exact solution of this scene exists"
     return Reference(name, f"{of.rock.words}, {how}")
 
 

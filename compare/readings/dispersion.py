@@ -81,7 +81,7 @@ def dispersion_theory(scene: Scene, frequency: Sequence[float] | np.ndarray) -> 
     with segments.
     """
     if scene.segments:
-        raise SceneError(scene.where, "segments", None, "give each rock as a scene of its own")
+        raise SceneError(scene.where, "segments", None, "give each rock in its own scene")
     p, omega = calibrate(scene), 2 * np.pi * np.asarray(frequency, dtype=float)
     loss = 1 + 1j * omega * (p.time_constant or 0.0)
     rock, mass = (mechanisms_of(scene, model) for model in ("jointed", "equivalent"))

@@ -66,7 +66,7 @@ def _sentence(engine: str, scenes: list[RankedScene]) -> str:
     totals = [x for s in scenes if not isnan(x := s.standings[engine].total)]
     own = [x for s in scenes if not isnan(x := s.standings[engine].own)]
     held = any(s.standings[engine].finest for s in scenes)
-    alone = "not held against finer physics" if held else NOT_CHECKED.word
+    alone = "not compared with finer physics" if held else NOT_CHECKED.word
     far = f"{_span(_short, totals)} % from the finest physics" if totals else alone
     error = f", own numerical error ≤ {_short(max(own))} %" if own else ""
     open_ones = sum(bool(s.standings[engine].unchecked) for s in scenes)
@@ -79,7 +79,7 @@ def _cost(engine: str, scenes: list[RankedScene]) -> str:
     ratios = [s.ratio(engine) for s in scenes]
     if max(ratios) == 1:
         return f"cheapest, {_span(in_seconds, [s.seconds[engine] for s in scenes])} a run"
-    return f"{_span(times, ratios)} the cheapest's time"
+    return f"{_span(times, ratios)} the time of the cheapest"
 
 
 def _span(write: Callable[[float], str], values: list[float]) -> str:

@@ -63,7 +63,7 @@ def read(file: Path | None) -> pd.DataFrame | None:
     except ValueError as error:
         raise SceneError(str(path), "", None, f"cannot be read: {error}") from error
     if fault := _fault(table):
-        raise SceneError(str(path), "", None, f"is no table of make bench-peers: {fault}")
+        raise SceneError(str(path), "", None, f"is not a table of make bench-peers: {fault}")
     return table
 
 
@@ -79,9 +79,9 @@ def _fault(table: pd.DataFrame) -> str:
         try:
             dict(json.loads(row["settings"]))
         except (TypeError, ValueError, RecursionError):
-            return f"its settings {str(row['settings'])[:60]!r} are no JSON object"
+            return f"its settings {str(row['settings'])[:60]!r} are not a JSON object"
         if not all(isinstance(row[name], str) for name in ("curve", "solves")):
-            return "a run has no curve or does not say what it solves"
+            return "a run lacks its curve or what it solves"
     return ""
 
 
@@ -96,7 +96,7 @@ def write_section(folder: Path, found: pd.DataFrame) -> PeersSection:
         if row["state"] != "done"
     ]
     machines = found["machine"].dropna().unique() if "machine" in found else []
-    machine = "; ".join(machines) or "a machine that the table does not name"
+    machine = "; ".join(machines) or "an unnamed machine"
     return PeersSection(figure, sentences(found), table(found), missing, machine)
 
 
@@ -133,7 +133,7 @@ def sentences(found: pd.DataFrame) -> list[str]:
     """Return over all peers, then for each, how many times as long as ours they take."""
     held = found[(found["state"] == "done") & found["stepping_over_ours"].notna()]
     if held.empty:
-        return ["No other code ran: there is nothing to hold ours beside."]
+        return ["No other code ran: there is nothing to compare with."]
     over = held["stepping_over_ours"]
     low, high = held.loc[over.idxmin()], held.loc[over.idxmax()]
     whole = held["whole_over_ours"]

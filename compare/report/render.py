@@ -149,10 +149,10 @@ def licences(interactive: bool) -> dict[str, str]:
     import matplotlib
 
     fonts = Path(matplotlib.get_data_path(), "fonts", "ttf", "LICENSE_DEJAVU")
-    found = {"DejaVu, the letters of figures": fonts.read_text(encoding="utf-8")}
+    found = {"DejaVu, the font of figures": fonts.read_text(encoding="utf-8")}
     for file in files("plotly") or ():
         if interactive and file.name == "LICENSE.txt" and ".dist-info" in str(file):
-            found["plotly.js, which draws the interactive figures"] = file.read_text()
+            found["plotly.js, for interactive figures"] = file.read_text()
     return found
 
 

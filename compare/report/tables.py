@@ -50,7 +50,7 @@ def misfit_table(comparisons: list[Comparison]) -> Table:
     for name, row in shown:
         cells.setdefault(row.pair, {})[name, row.place] = percent(row.distance.misfit)
     columns = [(name, place) for name in variant_names(comparisons) for place in places]
-    header = ["pair", "what it is made of"]
+    header = ["pair", "cause of the difference"]
     header += [
         f"{name}, {_column(at, places)}" if len(places) > 1 else name for name, at in columns
     ]
@@ -179,7 +179,7 @@ def _run_cells(result: xr.Dataset) -> list[str]:
         f"{1e6 * about['dt']:.3g}",
         f"{about['dt'] / about['critical_dt']:.3f}",
         f"{about['seconds_stepping']:.3f}",
-        f"{energy_residual(result):.1e}" if "energy" in result else "not kept",
+        f"{energy_residual(result):.1e}" if "energy" in result else "not recorded",
     ]
 
 

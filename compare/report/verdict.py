@@ -95,12 +95,12 @@ class Standing(NamedTuple):
     @property
     def explanation(self) -> str:
         """What the engine is held against, where nothing checks it, and which bounds are broken."""
-        parts = [f"held against {' and '.join(self.finest)}: {self.where}"] if self.finest else []
+        parts = [f"compared with {' and '.join(self.finest)}: {self.where}"] if self.finest else []
         if self.unchecked:
             named = [name for name in self.unchecked if name] if len(self.variants) > 1 else []
             parts.append(": ".join([NOT_CHECKED.word, *([", ".join(named)] if named else [])]))
         if self.broken:
-            parts.append(f"beyond the scene's bound: {', '.join(self.broken)}")
+            parts.append(f"exceeds the scene's bound: {', '.join(self.broken)}")
         return "; ".join(parts)
 
     @property

@@ -79,7 +79,7 @@ def refuse_vtx() -> None:
     except ImportError as error:
         raise SceneError("--vtx", "", None, f"dolfinx cannot be imported ({error})") from None
     if forms.vtx_writer() is None:
-        allowed = "this dolfinx is built without ADIOS2; the .pvd file needs neither"
+        allowed = "this dolfinx was built without ADIOS2; the .pvd file needs neither"
         raise SceneError("--vtx", "", None, allowed)
 
 

@@ -27,7 +27,7 @@ def wanted(engines: list[str], models: list[str]) -> list[tuple[str, str | None]
         left = [m for m in left if m not in mine]
         found += [(engine, m) for m in mine] or [(engine, None)]
     if left:
-        allowed_text = f"must be a model of a chosen --engine: {', '.join(models_known())}"
+        allowed_text = f"must be a model of a selected --engine: {', '.join(models_known())}"
         raise SceneError("--model", left[0], None, allowed_text)
     return found
 

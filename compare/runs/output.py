@@ -62,7 +62,7 @@ def create(path: Path, content: bytes) -> Path:
         try:
             os.link(temporary, path)  # unlike renaming, this never replaces
         except FileExistsError:
-            raise SceneError(str(path), "", None, "is there already, and is not replaced") from None
+            raise SceneError(str(path), "", None, "exists already and is not overwritten") from None
 
     return write(path, save)
 
@@ -102,7 +102,7 @@ def refuse_foreign(path: Path, begins: tuple[bytes, ...] = NETCDF) -> None:
     found = "is a folder" if path.is_dir() else "is not a result"
     if not path.is_file() or not _begins(path, begins):
         raise SceneError(
-            str(path), "", None, f"{found} and would be replaced: choose another --out"
+            str(path), "", None, f"{found} and would be overwritten: choose another --out"
         )
 
 
@@ -119,7 +119,7 @@ def _refuse_foreign_folder(path: Path, new: Path) -> None:
         return
     foreign = [path] if path.is_file() else [f for f in path.iterdir() if f.suffix not in kinds]
     if foreign:
-        allowed = "is not a result and would be replaced: choose another --out"
+        allowed = "is not a result and would be overwritten: choose another --out"
         raise SceneError(str(min(foreign)), "", None, allowed)
 
 

@@ -74,7 +74,7 @@ def _watch(job: Job, keeping: Keeping | None, processes: Processes) -> Watch | N
         if job.path.is_dir():
             raise SceneError(str(job.path), "", None, "is a folder, must be a file")
         if job.path.exists() and not os.access(job.path, os.W_OK):
-            raise SceneError(str(job.path), "", None, "is protected from being written")
+            raise SceneError(str(job.path), "", None, "is write-protected")
         return watch(job.scene, job.name, job.path, keeping, who)
 
     return by(processes) if _is_shared(job) else processes.by_first(lambda: by(ALONE))
@@ -145,7 +145,7 @@ def _finished(job: Job, watched: Watch, vtx: bool, result: Fields | None = None)
     if result is None:
         result = result_of(job.path, watched.signature)
         if result is None:
-            raise SceneError(str(job.path), "", None, "has changed since this command began")
+            raise SceneError(str(job.path), "", None, "has changed since this command started")
     done = Done(
         job,
         int(result.attributes.get("steps", 0)),

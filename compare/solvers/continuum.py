@@ -104,7 +104,7 @@ JOINTED_ROCK = _of(
     line=Line("#f0a030", 3.4, 1, printed=(3.5, 0.9), printed_width=2.2, ledger=(5, 2)),
     distances={
         Kind.BETWEEN: {
-            "dem": "engine against engine, same joints",
+            "dem": "two engines, same joints",
             "continuum-equivalent": "one engine, with and without joints",
         }
     },
@@ -114,5 +114,5 @@ EQUIVALENT_ROCK = _of(
     rock=Rock.HOMOGENISED,
     words=Words(BAR, "homogenised rock", "等效岩体（有限元）", "homogenised continuum"),
     line=Line("#8fd4bd", 4.8, 0, printed=(1.1, 0.8), printed_width=2.9, ledger=(1.2, 1.6)),
-    distances={Kind.BETWEEN: {"dem": "engine against engine, joints against none"}},
+    distances={Kind.BETWEEN: {"dem": "two engines, with and without joints"}},
 )

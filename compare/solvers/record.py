@@ -97,7 +97,7 @@ BLOCKS, JOINTED, BAR, ALONE = HEADINGS = (
     "Rigid blocks",
     "Intact rock and joints",
     "Homogenised bar",
-    "One mechanism alone",
+    "Single mechanisms",
 )
 
 

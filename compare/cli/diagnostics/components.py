@@ -46,7 +46,7 @@ def _threads() -> str:
         return found
 
     assert count(100) == 100
-    return f"{numba.get_num_threads()} of numba, by {threading_layer()}"
+    return f"{numba.get_num_threads()} (numba, {threading_layer()})"
 
 
 def _of_fenicsx(module: str) -> Callable[[], str]:
@@ -82,8 +82,8 @@ def _adios() -> str:
     from continuum.space.forms import vtx_writer
 
     if vtx_writer() is None:
-        raise Missing("dolfinx is built without it")
-    return "there: snapshots can be written as VTX (--vtx)"
+        raise Missing("dolfinx was built without it")
+    return "available: snapshots can be written as VTX (--vtx)"
 
 
 def _on_path(*programs: str) -> str:

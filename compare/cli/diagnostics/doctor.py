@@ -39,16 +39,16 @@ GROUPS = {
 #: How to get what is not there.
 HINTS = {
     "basix": f"make setup; or {INSTALL}",
-    "dolfinx": "apt install python3-dolfinx; only --vtx and studies of a plain loop need it",
-    "PETSc": "comes with dolfinx; implicit steps and static states need it",
-    "gmsh": f"{GMSH}; only triangles and tetrahedra need it",
+    "dolfinx": "apt install python3-dolfinx; needed for --vtx and the plain dolfinx loop only",
+    "PETSc": "comes with dolfinx; needed for implicit steps and static states",
+    "gmsh": f"{GMSH}; needed for triangles and tetrahedra only",
     "MPI": "comes with dolfinx; or pip install mpi4py",
-    "ADIOS2": "only --vtx needs it; dolfinx of conda-forge has it",
+    "ADIOS2": "needed for --vtx only; included in dolfinx of conda-forge",
     "mpiexec": "apt install openmpi-bin; or conda install -c conda-forge mpich",
     "pyvista": "pip install pyvista",
     "ffmpeg": "apt install ffmpeg; or pip install imageio-ffmpeg",
     "Chinese font": "apt install fonts-wqy-microhei (or fonts-noto-cjk, for SVG and PNG)",
-    "chromium": "apt install chromium; only tests of the page need it",
+    "chromium": "apt install chromium; needed for tests of the report page only",
 }
 
 
@@ -124,7 +124,7 @@ def _mpiexec() -> Component:
     if os.geteuid() == 0 and "run-as-root" in done.stderr.lower().replace(" ", "-"):
         hint = "set OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1"
         return Component(
-            "continuum", "mpiexec", "broken", f"{launcher} starts nothing for root", hint
+            "continuum", "mpiexec", "broken", f"{launcher} refuses to run as root", hint
         )
     found = f"{launcher} starts no ranks: {_end(done)}"
     return Component("continuum", "mpiexec", "broken", found, "mpi4py may belong to another MPI")
@@ -135,7 +135,7 @@ def _machine() -> list[Component]:
     from cases.size import LIMIT, memory, spoken
 
     try:
-        size = Component("machine", "memory", "found", f"{spoken(memory())} for a run")
+        size = Component("machine", "memory", "found", f"{spoken(memory())} available to a run")
     except SceneError as error:
         size = Component("machine", "memory", "broken", str(error), f"unset {LIMIT}")
     cores = f"{_cores()} of {os.cpu_count()}, {platform.machine()}, {platform.platform()}"
@@ -158,10 +158,10 @@ def _cache() -> Component:
     files = [file for file in folder.rglob("*") if file.is_file()] if folder.is_dir() else []
     size = spoken(sum(file.stat().st_size for file in files))
     states = sum(place.is_dir() for place in folder.iterdir()) if folder.is_dir() else 0
-    found = f"{folder}: {size} of {states} states of the program; `rm -r {folder}` clears it"
+    found = f"{folder}: {size} for {states} versions of the code; `rm -r {folder}` clears it"
     place = next(place for place in (folder, *folder.parents) if place.exists())
     if not os.access(place, os.W_OK):
-        hint = "set NUMBA_CACHE_DIR to a folder that can be written, or every run compiles"
+        hint = "set NUMBA_CACHE_DIR to a writable folder, or every run compiles"
         return Component("machine", "kernel cache", "broken", f"{folder} cannot be written", hint)
     return Component("machine", "kernel cache", "found", found)
 

@@ -21,7 +21,7 @@ def show_health(found: Health, as_json: bool) -> None:
     say("")
     for check in found.checks:
         say(_sentence(check), "green" if check.holds else "bold red")
-    say("all is well" if found.is_well else "not well: see the self-check above")
+    say("all checks pass" if found.is_well else "a check fails: see the self-check above")
 
 
 def _said(found: str, hint: str) -> str:

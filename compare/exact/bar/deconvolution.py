@@ -69,7 +69,7 @@ def _column(scene: Scene) -> tuple[Bar, float]:
     reasons = [
         (
             (scene.ends.start, scene.ends.end) != ("quiet", "free"),
-            "its ends are not quiet and free",
+            "the ends are not quiet and free",
         ),
         (load.is_across and scene.motion.rotation != "none", "motion.rotation is not 'none'"),
         (load.is_across and bool(load.direction[1]), "the load is neither along nor across"),

@@ -69,6 +69,6 @@ SOLVER = Solver(
         Kind.NUMERICAL: {
             "continuum-equivalent": "elements and time stepping of the homogenised bar"
         },
-        Kind.MODELLING: {"dem": "the paper's own comparison: discrete blocks against a smooth bar"},
+        Kind.MODELLING: {"dem": "the paper's comparison: discrete blocks and a homogenised bar"},
     },
 )

@@ -37,7 +37,7 @@ ENTERS = {"free": 1.0, "quiet": 0.5, "matched": 0.5}
 def applies(scene: Scene) -> Answer:
     """Return whether images are the exact solution of the scene's homogenised bar."""
     trips = calibrate(scene).bar_speed * scene.time.duration / (2 * scene.pillar.length)
-    many = f"the wave runs through the bar more than {MOST_TRIPS:,} times"
+    many = f"the wave crosses the bar more than {MOST_TRIPS:,} times"
     return holds(scene, ("prestress", "thick layers"), (trips > MOST_TRIPS, many))
 
 
@@ -101,8 +101,8 @@ SOLVER = Solver(
     run=solve,
     distances={
         Kind.NUMERICAL: {
-            "continuum-equivalent": "the same, against d'Alembert's images",
-            "series": "the paper's series, cut after its last term",
+            "continuum-equivalent": "the same, from d'Alembert's images",
+            "series": "truncation of the paper's series",
         }
     },
 )

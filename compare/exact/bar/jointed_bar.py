@@ -79,7 +79,7 @@ SOLVER = Solver(
         Kind.NUMERICAL: {"continuum-jointed": "elements and time stepping of the jointed rock"},
         Kind.MODELLING: {
             "dem": "rigid instead of deformable blocks",
-            "continuum-equivalent": "joints smeared out over the bar",
+            "continuum-equivalent": "joints smeared over the bar",
         },
     },
 )

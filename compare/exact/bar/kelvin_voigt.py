@@ -135,7 +135,7 @@ SOLVER = Solver(
     applies=applies,
     run=solve,
     distances={
-        Kind.NUMERICAL: {"continuum-equivalent": "the same, against the damped modes"},
+        Kind.NUMERICAL: {"continuum-equivalent": "the same, from the damped modes"},
     },
     arguments=("n_terms",),
 )

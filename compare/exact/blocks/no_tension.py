@@ -43,7 +43,7 @@ def applies(scene: Scene) -> Answer:
         (scene.block_count > MOST_BLOCKS, MANY),
     )
     if answer and _pulled(scene):
-        return no("a joint that bars tension is pulled at rest")
+        return no("a no-tension joint is in tension at rest")
     return answer
 
 

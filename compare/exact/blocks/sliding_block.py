@@ -32,17 +32,17 @@ def applies(scene: Scene) -> Answer:
     """Return whether one rigid block slides or rests on another."""
     p, gravity = calibrate(scene), scene.gravity
     if scene.pillar.block_count != 2:
-        return no("there are not two blocks")
+        return no("the pillar does not have two blocks")
     if gravity is None or gravity.static or gravity.direction[1] <= 0:
-        return no("no sudden gravity presses the joint")
+        return no("no sudden gravity compresses the joint")
     stands = (scene.ends.start, scene.ends.end) == ("free", "fixed")
     rubs = p.friction is not None and p.cohesion is None
     answer = holds(
         scene,
         HELD,
         (bool(scene.load.amplitude), "a load acts"),
-        (not stands, "the block is not free, or its base not fixed"),
-        (not rubs, "the joint does not slip by friction alone"),
+        (not stands, "the block is not free, or its base is not fixed"),
+        (not rubs, "the joint does not slip by friction only"),
     )
     if answer and p.friction is not None and _topples(scene, float(p.friction[0])):
         return no("the block topples")
@@ -111,5 +111,5 @@ SOLVER = Solver(
     line=thin("#a83200", 8, (9, 18), (9, 2.4, 3, 2.4)),
     applies=applies,
     run=solve,
-    distances={Kind.MODELLING: {"dem": "blocks on springs, which settle first"}},
+    distances={Kind.MODELLING: {"dem": "blocks settle on springs first"}},
 )

@@ -70,7 +70,7 @@ def applies(scene: Scene) -> Answer:
     answer = holds(
         scene,
         HELD,
-        (np.count_nonzero(stiffens) != 1, "not exactly one joint stiffens"),
+        (np.count_nonzero(stiffens) != 1, "not exactly one joint has closure"),
         (bool(p.excess_compliance[~stiffens].any()), "another joint differs in stiffness"),
         (scene.ends.end not in ("quiet", "matched"), "the far end reflects"),
     )
@@ -79,7 +79,7 @@ def applies(scene: Scene) -> Answer:
     joint, times = the_joint(scene, p), sample_times(scene)
     most = ENTERS[scene.ends.start] * np.abs(load_history(scene).value(times)).max()
     if joint.compliance(joint.prestress + most) <= 0:
-        return no("the joint becomes stiffer than the ordinary joints")
+        return no("the joint becomes stiffer than the other joints")
     return back_in_time(scene, joint.y, p.bar_speed)
 
 
@@ -164,8 +164,8 @@ SOLVER = Solver(
     distances={
         Kind.NUMERICAL: {"continuum-equivalent": "elements, time stepping, the joint's excess"},
         Kind.MODELLING: {
-            "dem": "discrete blocks against a smooth bar",
-            "continuum-jointed": "every joint against a smooth bar",
+            "dem": "discrete blocks instead of a homogenised bar",
+            "continuum-jointed": "every joint instead of a homogenised bar",
         },
     },
 )

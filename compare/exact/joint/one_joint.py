@@ -51,7 +51,7 @@ def applies(scene: Scene) -> Answer:
         scene,
         HELD,
         (np.count_nonzero(compliance) != 1, "not exactly one joint differs in stiffness"),
-        (bool((compliance < 0).any()), "the layer is stiffer than the ordinary joints"),
+        (bool((compliance < 0).any()), "the layer is stiffer than the other joints"),
         (scene.ends.end not in ("quiet", "matched"), "the far end reflects"),
     )
     return answer if not answer else back_in_time(scene, the_joint(p).y, p.bar_speed)
@@ -63,7 +63,7 @@ def back_in_time(scene: Scene, joint_y: float, speed: float) -> Answer:
     back = (2 * joint_y + nearest) / speed
     if scene.ends.start != "free" or back >= scene.time.duration:
         return YES
-    return no(f"the free start sends the reflection back, to a receiver at {back:.4g} s")
+    return no(f"the free start reflects back to a receiver at {back:.4g} s")
 
 
 def solve(scene: Scene) -> xr.Dataset:

@@ -100,7 +100,7 @@ def applies(scene: Scene) -> Answer:
     """Return whether a plane shear wave meets one joint that can slip, and nothing else."""
     p, load, ends = calibrate(scene), scene.load, {scene.ends.start, scene.ends.end}
     if not load.is_across or load.direction[1] or load.arm or scene.motion.rotation != "none":
-        return no("there is no plane shear wave: a load across, on blocks that do not turn")
+        return no("there is no plane shear wave: needs a load across and no rotation")
     slips, compliance = _slips(p), _excess_compliance(p)
     return holds(
         scene,
@@ -111,7 +111,7 @@ def applies(scene: Scene) -> Answer:
         *_against_rate(scene, p),
         (bool(compliance[~slips].any()), "a joint that cannot slip differs in stiffness"),
         (bool((compliance < 0).any()), "the joint is stiffer than the others"),
-        (_snaps(scene, p), "the joint is softer than its friction falls with slip"),
+        (_snaps(scene, p), "friction falls with slip faster than the joint unloads"),
         (
             p.dilation is not None and bool(compliance.any() or p.excess_compliance.any()),
             "the joint that dilates is softer than the others",
@@ -124,9 +124,9 @@ def _against_rate(scene: Scene, p: Properties) -> Iterator[tuple[bool, str]]:
     if p.direct_effect is not None:
         rated = p.direct_effect > 0
         holds_still = p.cohesion is not None and bool(p.cohesion[rated].any())
-        yield holds_still, "the joint whose friction depends on the rate of slip has cohesion"
+        yield holds_still, "the rate-and-state joint has cohesion"
         pressed = scene.prestress is not None and scene.prestress.normal > 0
-        yield not pressed, "nothing presses the joint whose friction depends on the rate of slip"
+        yield not pressed, "the rate-and-state joint has no normal stress"
 
 
 def _snaps(scene: Scene, p: Properties) -> bool:
@@ -327,8 +327,8 @@ SOLVER = Solver(
     run=solve,
     distances={
         Kind.MODELLING: {
-            "dem": "discrete blocks around the joint that slips",
-            "continuum-equivalent": "joints smeared out around the one that slips",
+            "dem": "discrete blocks around the slipping joint",
+            "continuum-equivalent": "other joints smeared over the bar",
         }
     },
 )

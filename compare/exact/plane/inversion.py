@@ -95,7 +95,7 @@ def require_equally_spaced(times: np.ndarray) -> None:
     """Raise ValueError unless there are at least two times and they are equally spaced."""
     steps = np.diff(times)
     if times.ndim != 1 or len(times) < 2 or not steps[0] > 0:
-        raise ValueError("times must be a row of at least two, ascending")
+        raise ValueError("times must be at least two, ascending")
     if np.abs(steps - steps[0]).max() > 1e-6 * steps[0]:
         raise ValueError("times must be equally spaced")
 

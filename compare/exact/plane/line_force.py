@@ -81,7 +81,7 @@ def _places(offsets: np.ndarray) -> np.ndarray:
     """Return offsets [m, 2] off the line."""
     x = np.atleast_2d(np.asarray(offsets, dtype=float))
     if not (np.hypot(*x.T) > 0).all():
-        raise ValueError("a place lies on the line of the force, where the motion is infinite")
+        raise ValueError("a point lies on the line of the force, where the motion is infinite")
     return x
 
 

@@ -54,11 +54,11 @@ def applies(scene: RockMass) -> Answer:
         (scene.prestress is not None, "the rock is prestressed"),
         (bool(scene.regions), "regions differ in rock"),
         ("fixed" in held, "a side is fixed"),
-        (scene.numerics.dem.block is not None, "intact rock is cut into blocks, too"),
-        (not any(one.spacing for one in sets), "no joints with a spacing make blocks"),
+        (scene.numerics.dem.block is not None, "intact rock is subdivided into blocks"),
+        (not any(one.spacing for one in sets), "no joint set has a spacing"),
         (any(one.damping_ratio for one in sets), "the joints are damped"),
         (any(one.time_scale is None for one in scene.waves), "a wave has no period"),
-        (not scene.record.points, "no point records the motion"),
+        (not scene.record.points, "no point is recorded"),
     ]
     reason = beyond_linear_rock(scene) or next((why for there, why in reasons if there), None)
     if reason is None and block_count(scene.domain, sets) > MOST_BLOCKS:

@@ -114,7 +114,7 @@ def applies(scene: RockMass) -> Answer:
         corners = np.array(scene.domain.corners)
         first = min(one.lateness(corners).min() for one in medium_field(scene).waves)
         if first < -1e-9 * scene.time.duration:
-            reason = "a pulse has begun within the domain before t = 0"
+            reason = "a pulse is inside the domain before t = 0"
     return no(reason) if reason else YES
 
 
@@ -152,8 +152,8 @@ SOLVER = Solver(
             "continuum-equivalent": "elements and time stepping of the homogenised rock"
         },
         Kind.MODELLING: {
-            "continuum-jointed": "joints smeared out over the rock",
-            "dem": "rigid blocks with every joint, against the rock homogenised",
+            "continuum-jointed": "joints smeared over the rock",
+            "dem": "rigid blocks with every joint instead of homogenised rock",
         },
     },
 )

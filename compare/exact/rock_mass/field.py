@@ -87,6 +87,6 @@ def _layered_field(scene: RockMass) -> StackField | FreeField:
     stack = stack_of(intact) if reason is None else None
     reason = reason if stack is None else begun(scene, stack)
     if stack is None or reason is not None:
-        allowed = f"enter regions of rock in which their field is not known: {reason}"
+        allowed = f"enter regions in which their field is not known: {reason}"
         raise SceneError(scene.where, "waves", len(scene.waves), allowed)
     return StackField(stack, waves, whole=False)

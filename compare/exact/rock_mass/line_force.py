@@ -33,15 +33,15 @@ def applies(scene: RockMass) -> Answer:
         (bool(scene.regions), "regions differ in rock"),
         (bool(scene.waves), "a wave enters"),
         (not scene.loads, "no force acts"),
-        (any(one.kind != "force" for one in scene.loads), "another load than a force acts"),
+        (any(one.kind != "force" for one in scene.loads), "a load other than a force acts"),
         (gravity is not None and bool(gravity.acceleration), "gravity acts"),
         (bool(outline_of(scene.domain).taken), "the domain is not convex, or has openings"),
         ("periodic" in held, "a side is periodic"),
-        (not scene.record.points, "no point records the motion"),
+        (not scene.record.points, "no point is recorded"),
     ]
     reason = beyond_linear_rock(scene) or next((why for there, why in reasons if there), None)
     if reason is None and any(_jumps(one) for one in _histories(scene)):
-        reason = "a force jumps, and the velocity at its arrivals has no bound"
+        reason = "a force jumps, so that velocities at its arrivals are unbounded"
     if reason is None:
         points = np.array(scene.record.points)
         reach = min(np.hypot(*(points - np.array(one.at)).T).min() for one in scene.loads)

@@ -23,7 +23,7 @@ from compare.solvers.record import JOINTED, Answer, Rock, Solver, Words, no, thi
 def applies(scene: RockMass) -> Answer:
     """Return whether a P wave meets one joint that stiffens, at a right angle."""
     if all(one.maximum_closure is None for one in scene.joint_sets):
-        return no("no joint stiffens: see oblique-joint")
+        return no("no joint has closure: see oblique-joint")
     linear = [one.model_copy(update={"maximum_closure": None}) for one in scene.joint_sets]
     answer = stack_waves.holds(scene.model_copy(update={"joint_sets": linear}), one=True)
     if not answer:
@@ -32,7 +32,7 @@ def applies(scene: RockMass) -> Answer:
         return no("the joint is damped")
     wave, normal = scene.waves[0], stack_of(scene).normal
     if len(scene.waves) > 1 or wave.kind != "P" or not along(np.array(wave.direction), normal):
-        return no("the wave is not one of P straight on the joint")
+        return no("the wave is not a P wave at normal incidence")
     return answer
 
 

@@ -123,7 +123,7 @@ def scatters_otherwise(scene: RockMass, leaves: bool = True) -> str | None:
         runs_along = any(along(np.array(wave.direction), one) for one in directions)
         reasons.append((runs_along, f"waves[{i}] travels along the joints"))
         decays = bool(scene.regions and directions) and _decays(scene, wave)
-        reasons.append((decays, f"of waves[{i}] another is evanescent in a region"))
+        reasons.append((decays, f"waves[{i}] has an evanescent wave in a region"))
     found = beyond_linear_rock(scene) if leaves else None
     found = found or next((why for there, why in reasons if there), None)
     found = found or (reflecting_side(scene) if leaves else None)
@@ -148,8 +148,8 @@ def begun(scene: RockMass, stack: JointStack) -> str | None:
             place = incident.through + late * incident.speed * incident.direction
             where = ", ".join(f"{x:.6g}" for x in place)
             return (
-                f"waves[{i}] has met a joint before t = 0: waves[{i}].through = [{where}] "
-                "or further back would do"
+                f"waves[{i}] reaches a joint before t = 0: move it back, to "
+                f"waves[{i}].through = [{where}] or further"
             )
     return None
 

@@ -29,7 +29,7 @@ DISTANCES = {
     Kind.NUMERICAL: {"continuum-jointed": "elements and time stepping of the jointed rock"},
     Kind.MODELLING: {
         "dem": "rigid instead of deformable blocks",
-        "continuum-equivalent": "joints smeared out over the rock",
+        "continuum-equivalent": "joints smeared over the rock",
     },
 }
 BESIDE = 1e-13  #: over the size of the domain: far above round-off, far below any wave

@@ -68,7 +68,7 @@ def _finish(ax: Axes) -> None:
     ax.set_yscale("log")
     ax.set_xlim(LEAST_SHARE / 1.12, 150)
     ax.set_ylim(LEAST_MISFIT / 1.8, max(300, 1.5 * ax.get_ylim()[1]))
-    ax.set_xlabel("cost: part of a step of a block in the scene, %")
+    ax.set_xlabel("cost: share of a block's step in the scene, %")
     ax.set_ylabel("influence: misfit of the result without the effect, %")
     for axis, least in ((ax.xaxis, LEAST_SHARE), (ax.yaxis, LEAST_MISFIT)):
         ticks = [10.0**n for n in range(-3, 7) if 10.0**n > 1.1 * least]

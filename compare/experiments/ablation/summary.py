@@ -13,16 +13,16 @@ from compare.report.tables import Table, percent
 from compare.runs.output import write_csv
 
 NAME = "effects"
-TITLE = "Cost and influence of every effect"
+TITLE = "Cost and influence of each effect"
 COLUMNS = [
     "effect",
     "misfit without (%)",
     "of the scene's step (%)",
     "in the scene (ns)",
     "alone (ns)",
-    "steps, times",
+    "steps, ratio",
     "jointed rock (ns)",
-    "why it stays",
+    "why it is required",
 ]
 
 
@@ -96,7 +96,7 @@ def _cells(e: EffectCost) -> list[str]:
     if e.reason:
         return [e.effect, *[""] * 6, e.reason]
     misfit = "0" if e.misfit == 0 else percent(e.misfit) if isfinite(e.misfit) else ""
-    stirred = f"{e.stirred} stands still with it: not resolved" if e.stirred else ""
+    stirred = f"{e.stirred} is at rest with it: not resolved" if e.stirred else ""
     return [
         e.effect,
         "; ".join(filter(None, [misfit, stirred])),
@@ -126,7 +126,7 @@ def sentences(found: list[Ablation]) -> list[str]:
     if idle:
         a, e = max(idle, key=lambda pair: pair[1].share)
         said.append(
-            f"The dearest effect that changes nothing of the result is the {e.effect}: "
+            f"The most expensive effect that does not change the result is {e.effect}: "
             f"{percent(e.share)} % of a step of {a.label}."
         )
     if len(active) == 1:
@@ -136,8 +136,8 @@ def sentences(found: list[Ablation]) -> list[str]:
         most = max(active, key=lambda pair: pair[1].misfit)
         least = min(active, key=lambda pair: pair[1].misfit)
         said.append(
-            f"Of those that change it, the dearest is {_of_effect(*dearest)}; "
-            f"the most influential is {_of_effect(*most)}; the least is {_of_effect(*least)}."
+            f"Of those that change it, the most expensive is {_of_effect(*dearest)}; "
+            f"the most influential is {_of_effect(*most)}, the least is {_of_effect(*least)}."
         )
     return said
 
@@ -146,13 +146,13 @@ def _of_sets(found: list[Ablation]) -> str:
     parts = sorted((a.own / a.everything, a.label) for a in found)
     ends = [f"{percent(share)} % ({label})" for share, label in (parts[0], parts[-1])]
     return (
-        "With the effects that it calls for, a scene's block-step costs "
+        "With the effects that a scene needs, its block-step costs "
         f"{' to '.join(dict.fromkeys(ends))} of one with everything on."
     )
 
 
 def _of_effect(a: Ablation, e: EffectCost) -> str:
-    share = "nothing that shows"
+    share = "no measurable cost"
     if e.is_resolved("cost"):
         share = f"{percent(abs(e.share))} % of a step{' less with it' if e.share < 0 else ''}"
     return f"{e.effect} in {a.label} ({share}, misfit {percent(e.misfit)} % without)"

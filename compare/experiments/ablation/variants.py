@@ -25,7 +25,7 @@ NEEDS: dict[str | None, str] = {part.name: "slip" for part in PARTS if part.alon
 def left_out(scene: Either, name: str) -> Either:
     """Return a scene without one of its effects; raises SceneError where there is none."""
     if name not in WITHOUT:
-        raise SceneError(scene.where, name, None, "is what the scene is about")
+        raise SceneError(scene.where, name, None, "is the subject of the scene")
     return checked(WITHOUT[name](scene))
 
 
@@ -36,7 +36,7 @@ def only(scene: Either, name: str | None) -> Either:
     Raises SceneError where the scene cannot be so, or cannot be without the effect either.
     """
     if name is not None and name in active_effects(only(scene, None)):
-        raise SceneError(scene.where, name, None, "stays when all others go")
+        raise SceneError(scene.where, name, None, "cannot be removed")
     for other in active_effects(scene):
         if other not in (name, NEEDS.get(name)) and other in WITHOUT:
             try:
@@ -44,7 +44,7 @@ def only(scene: Either, name: str | None) -> Either:
             except SceneError:  # it stays, as it does when every other effect does
                 continue
     if name is not None and name not in active_effects(scene):
-        raise SceneError(scene.where, name, None, "does not act without the others")
+        raise SceneError(scene.where, name, None, "has no effect without the others")
     return scene
 
 

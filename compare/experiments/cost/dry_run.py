@@ -11,7 +11,7 @@ from compare.engines import applies, names, solver
 from compare.experiments.cost import timings
 
 COLUMNS = ["", "variant", "engine", "scheme", "steps", "size", "time", "memory"]
-UNKNOWN = "no estimate"  # where nothing of the kind was ever timed here
+UNKNOWN = "no estimate"  # nothing of the kind was timed on this machine
 Run = tuple[str, "AnyScene", str]  # the point of a sweep, empty without; the scene; what solves it
 
 
@@ -93,16 +93,16 @@ def _print_table(found: list[tuple[str, Forecast]], failed: dict[str, str]) -> N
     most = max((one.bytes for _, one in found), default=0.0)
     say(
         f"{len(found)} would run, {_together(*seconds_of(one for _, one in found))}; the largest "
-        f"takes about {spoken(most)} of memory; nothing has been run or written"
+        f"needs about {spoken(most)} of memory; nothing was run or written"
     )
 
 
 def _together(seconds: float, unknown: int) -> str:
     """Return in words the seconds of runs one after the other, of which some were never timed."""
     if unknown and not seconds:
-        return f"{UNKNOWN} of the time: none of the kind was ever timed here"
-    others = f", and {unknown} that were never timed here" if unknown else ""
-    return f"about {in_words(seconds)} of computing{others}"
+        return f"{UNKNOWN} of the time: nothing of the kind was timed on this machine"
+    others = f", plus {unknown} not timed on this machine" if unknown else ""
+    return f"about {in_words(seconds)} of CPU time{others}"
 
 
 def in_words(seconds: float) -> str:

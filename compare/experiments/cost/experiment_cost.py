@@ -104,4 +104,4 @@ def show_parts(found: Sequence[CommandPart], as_json: bool) -> None:
     points = [f"{one.to_do} of {one.count} to do" for one in found]
     rows = [[one.part, *cells] for one, *cells in zip(found, points, times, strict=True)]
     show_table(["part", "", "time"], rows)
-    say("nothing has been run or written")
+    say("nothing was run or written")

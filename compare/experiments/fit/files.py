@@ -139,7 +139,7 @@ def _write_scene(found: Fit, given: AnyScene, path: Path) -> list[Path]:
         there = path.parent / name
         if (folder / name).resolve() != there.resolve():
             if there.exists() and not filecmp.cmp(folder / name, there, shallow=False):
-                allowed = "is another file and would be replaced: choose another --out"
+                allowed = "exists and was not written by a fit: choose another --out"
                 raise SceneError(str(there), "", None, allowed)
             written.append(write(there, partial(shutil.copyfile, folder / name)))
     cases.load(path)  # it runs

@@ -42,7 +42,7 @@ def fit(
     name = solver_of(first, solver)
     mine = [curve for curve in curves if curve.holds_for(scene)]
     if not mine or not keys:
-        raise SceneError(scene.where, "", None, "a fit takes a curve of this scene and a free key")
+        raise SceneError(scene.where, "", None, "a fit needs a curve of this scene and a free key")
     _refuse_several(mine)
     keys, clock = _with_clock(keys, first, name, mine)
     reach = clock_reach(scene) if clock is not None else 0.0
@@ -123,13 +123,13 @@ def _notes(
 ) -> list[str]:
     """Return what a reader of the values must know."""
     found = [
-        f"{e.key} stopped at its bound, {e.value:.6g}: its interval does not hold"
+        f"{e.key} stopped at its bound, {e.value:.6g}: its interval is not valid"
         for e in estimates
         if e.at_bound
     ]
     found += [
-        f"{e.key} is not determined by these waveforms: they do not depend on it, or only on it "
-        "together with another key"
+        f"{e.key} is not determined by these waveforms: they do not depend on it, or only "
+        "in combination with another key"
         for e in estimates
         if not np.isfinite(e.high)
     ]
@@ -139,11 +139,9 @@ def _notes(
         if widened > 1.05 and one.after > ROUND_OFF:
             found.append(
                 f"{one.name}, {one.place}: {len(one.time)} samples count as "
-                f"{one.independent:.0f} independent ones, because what is left of one is like its "
-                f"neighbour's: intervals are {widened:.2g} times as wide"
+                f"{one.independent:.0f} independent ones, because residuals of neighbours are "
+                f"correlated: intervals are {widened:.2g} times as wide"
             )
     if search.refused:
-        found.append(
-            f"{search.refused} of {search.trials} trials had no solution and were left out"
-        )
+        found.append(f"{search.refused} of {search.trials} trials had no solution and were skipped")
     return found

@@ -62,7 +62,7 @@ def free_keys(texts: list[str], scene: AnyScene) -> list[Free]:
     for text in [part for given in texts for part in given.split(",")]:
         key, numbers = _parsed(text)
         if any(key == other.key for other in found):
-            raise SceneError("--free", key, None, "must be given once only")
+            raise SceneError("--free", key, None, "must be given only once")
         found.append(_free(key, numbers, scene))
     return found
 
@@ -118,7 +118,7 @@ def _free(key: str, numbers: list[float], scene: AnyScene) -> Free:
     field, owner, old = _find(key, scene)
     number = _number(field)
     if number is None or any(_matches(key, fixed) for fixed in FIXED):
-        raise SceneError("--free", key, None, "must be a number that can change by a little")
+        raise SceneError("--free", key, None, "must be a continuous number")
     least, most, logarithmic = number
     if old is None and not numbers:
         allowed = f"is not in {scene.where}: give a start, --free {key}=START"
@@ -168,7 +168,7 @@ def _find(key: str, scene: AnyScene) -> tuple[FieldInfo, type[BaseModel] | BaseM
     for i, part in enumerate(parts):
         if model is None or part not in model.model_fields:
             known = f"; allowed: {', '.join(model.model_fields)}" if model else ""
-            raise SceneError("--free", key, None, f"is no key of a scene{known}")
+            raise SceneError("--free", key, None, f"is not a key of a scene{known}")
         field, owner = model.model_fields[part], table or model
         model, table = model_in(field.annotation), getattr(table, part, None)
         if isinstance(table, list) and model is not None and i + 1 < len(parts):

@@ -82,7 +82,7 @@ class Problem:
             return scene
         fraction = scene.interval / self.steps / DEM.prepare(scene).critical
         if fraction > COARSEST:
-            raise UnstableError("beyond the critical step, with the steps of where the fit began")
+            raise UnstableError("the initial step exceeds the critical step of this trial")
         step = {"step_fraction": fraction * (1 + 1e-6)}  # or rounding makes it one step more
         dem = scene.numerics.dem.model_copy(update=step)
         return scene.model_copy(update={"numerics": scene.numerics.model_copy(update={"dem": dem})})
@@ -131,12 +131,12 @@ def problem_of(
 
 def _require_samples(found: list[Measured], curves: list[Curves], scene: AnyScene) -> None:
     if not found:
-        raise SceneError(curves[0].file, "", None, "has no waveform where the scene has one")
+        raise SceneError(curves[0].file, "", None, "has no waveform at a receiver of the scene")
     for one in found:
         if len(one.time) < 10:
             allowed = (
                 f"must share at least 10 samples with the scene, 0 to {scene.time.duration:g} s, "
-                f"not {len(one.time)}; --free clock moves a clock of its own"
+                f"not {len(one.time)}; --free clock shifts its time"
             )
             raise SceneError(one.name, str(one.place), None, allowed)
 

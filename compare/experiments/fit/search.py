@@ -65,7 +65,7 @@ class FitSearch:
             ends = [(u, here if r is None else r) for u, r in ends]
         (a, low), (b, high) = ends
         if low is None or high is None or a == b:
-            raise StoppedError("fit: no solution near the values that were reached")
+            raise StoppedError("fit: no solution near the current values")
         return [(after - before) / (b - a) for before, after in zip(low, high, strict=True)]
 
     def _weighed(self, parts: list[np.ndarray]) -> np.ndarray:
@@ -104,7 +104,7 @@ class FitSearch:
             values = self.values(min(found, key=attrgetter("cost")).x)
             at = ", ".join(f"{k.key} = {v:.6g}" for k, v in zip(self.keys, values, strict=True))
             raise StoppedError(
-                f"fit: not converged after {self.trials} solutions, at {at}: begin closer "
+                f"fit: not converged after {self.trials} solutions, at {at}: start closer "
                 "(--free KEY=START), bound the keys, or free fewer"
             )
         best = min(converged, key=attrgetter("cost")).x

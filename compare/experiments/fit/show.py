@@ -24,8 +24,8 @@ def show_fit(found: Fit, scene: str, changes: list[str], files: list[Path]) -> N
         + (f"; worst {worst.name}, {worst.place}" if len(found.waveforms) > 1 else "")
     )
     show_numbers(
-        ["key", "value", "from", "to", "", "began at"],
-        {"values, with intervals of 95 %": [_cells(e) for e in found.estimates]},
+        ["key", "value", "from", "to", "", "start"],
+        {"values, with 95 % intervals": [_cells(e) for e in found.estimates]},
     )
     if len(found.estimates) > 1:
         names = [e.key for e in found.estimates]
@@ -36,9 +36,7 @@ def show_fit(found: Fit, scene: str, changes: list[str], files: list[Path]) -> N
         show_numbers(["", *names], {"correlations": rows})
     for note in found.notes:
         say(f"note: {note}")
-    say(
-        "The intervals hold if the model is right: jointwave compare says how far models are apart."
-    )
+    say("The intervals assume the model: jointwave compare shows how far models differ.")
     arguments = ["jointwave", "compare", scene, "--variant", found.scene.name]
     for setting in [*changes, *found.settings]:
         arguments += ["--set", setting]

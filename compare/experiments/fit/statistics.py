@@ -90,7 +90,7 @@ def _inverted(information: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def not_told_apart(correlation: np.ndarray, names: list[str]) -> list[str]:
     """Return in words which unknowns the waveforms do not tell apart."""
     found = [
-        f"{names[i]} and {names[j]} are not told apart: correlation {correlation[i, j]:+.5f}"
+        f"{names[i]} and {names[j]} cannot be distinguished: correlation {correlation[i, j]:+.5f}"
         for i in range(len(names))
         for j in range(i)
         if abs(correlation[i, j]) > ALIKE
@@ -98,5 +98,5 @@ def not_told_apart(correlation: np.ndarray, names: list[str]) -> list[str]:
     values, vectors = np.linalg.eigh(correlation)
     if not found and values[0] < 1 - ALIKE:
         together = [n for n, v in zip(names, vectors[:, 0], strict=True) if abs(v) > 0.2]
-        found = [f"{', '.join(together)} are not told apart all together"]
+        found = [f"{', '.join(together)} cannot be distinguished in combination"]
     return found

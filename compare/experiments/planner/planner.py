@@ -41,8 +41,8 @@ from compare.misfit.metrics import misfit as misfit_of
 #: A family is not tried where it would be too dear at this share of the least seconds that a
 #: freedom-step has taken so far.
 SAFETY = 0.5
-DEAR = "would cost more than what is known to do"
-SAME = "has the blocks and elements of a family that is tried"
+DEAR = "would cost more than a setting that meets the misfit"
+SAME = "has the same blocks and elements as another family"
 
 
 class Plan(NamedTuple):

@@ -42,7 +42,7 @@ class OwnModel(NamedTuple):
 
     def too_far(self, family: Family) -> str:
         """Return why no step of a family comes within a misfit below its modelling error."""
-        return f"the modelling error of {family.model.label} alone is {100 * self.least:.3g} %"
+        return f"the modelling error of {family.model.label} is already {100 * self.least:.3g} %"
 
 
 class References:
@@ -57,7 +57,7 @@ class References:
         self._own: dict[str, OwnModel] = {}
         found = ranking.finest(_applicable(scene), scene)
         if found is None:
-            raise SceneError(scene.where, "", None, "nothing here resolves all that the scene has")
+            raise SceneError(scene.where, "", None, "no solver resolves all physics of the scene")
         self.finest = self._reference(found.name, Family(found.name, {}))
         self.reason = found.reason
 
@@ -120,7 +120,7 @@ def _converged(
         before = result
     what = f"no exact solution to plan by, and {model.label} within {longest:g} s a run"
     if apart == inf:
-        raise SceneError(scene.where, "", None, f"{what} has no finer elements to hold it against")
+        raise SceneError(scene.where, "", None, f"{what} has no finer elements to compare with")
     raise _not_known(scene, f"{what} converges", apart, asked)
 
 

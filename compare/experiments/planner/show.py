@@ -18,9 +18,9 @@ def show_plans(found: list[Plan], misfit: float, as_json: bool) -> None:
         say(f"{one.scene.title}{f', {one.scene.name}' if one.scene.name else ''}")
         say(f"modelling error: from {_named(one.reference)} ({one.reason})")
         if one.chosen is None:
-            say(f"missed: nothing is predicted to come within {percent(misfit)} %")
+            say(f"missed: no setting is predicted to reach {percent(misfit)} %")
             for reason in dict.fromkeys(one.skipped.values()):
-                say(f"left out: {reason}")
+                say(f"skipped: {reason}")
         else:
             _show_chosen(one, misfit)
 

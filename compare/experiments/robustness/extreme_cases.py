@@ -17,7 +17,7 @@ def _periods() -> list[HardCase]:
         "time.duration": 0.01,
     }
     rock = rock_is_spared("it has no lattice cut-off; its waves at these periods are below")
-    blocks = {"dem": "its chain passes no such wave: see the rigid blocks above"}
+    blocks = {"dem": "its chain transmits no such wave: see the rigid blocks above"}
     found = []
     for words, period in (("at", CUT_OFF), ("twice", CUT_OFF / 2)):
         name, changes = f"load {words} the lattice cut-off", fine | {"load.period": period}
@@ -64,7 +64,7 @@ def _loads() -> list[HardCase]:
 
 def _sizes() -> list[HardCase]:
     many = {"pillar.length": 5e5, "time.duration": 0.01, "record.velocity": [], STEP: 0.9}
-    implicit = {"implicit": "implicit steps pass on all blocks at once"}
+    implicit = {"implicit": "implicit steps couple all blocks"}
     rock, blocks = rock_is_spared("see the hundred thousand"), {"dem": "see the million"}
     fewer = many | {"pillar.length": 5e4}
     return [

@@ -26,7 +26,7 @@ def _opening() -> list[HardCase]:
             BARRED | {STEP: 0.5},
             HOMOGENEOUS | STAGES,
         ),
-        HardCase("gap of the smallest number", contact.one_ulp, BARRED, HOMOGENEOUS),
+        HardCase("gap of the smallest float", contact.one_ulp, BARRED, HOMOGENEOUS),
         HardCase(
             "joints that open and close by 1e-40 m", contact.scales_by_two, BARRED, HOMOGENEOUS
         ),

@@ -26,7 +26,7 @@ def _steps() -> list[HardCase]:
         "numerics.continuum.elements_per_block": 1,
     }
     explicit = {
-        "dem": "explicit steps alone, see the step at 1.001",
+        "dem": "explicit steps only, see the step at 1.001",
         "explicit": "see the step at 1.001",
     }
     return [
@@ -59,7 +59,7 @@ def _layer(stiffness: float) -> dict[str, Any]:
 def _layers() -> list[HardCase]:
     whole = {
         "dem": "blocks are rigid: see the two blocks that are one",
-        "continuum-equivalent": "its ordinary joint would have to be taken out",
+        "continuum-equivalent": "its ordinary joint would have to be removed",
     }
     many = {"continuum-jointed explicit": "takes 1e9 steps: see the layer 1e5 as stiff"}
     stiff, welded = _layer(1e5 * JOINT) | {STEP: 0.9}, _layer(1e8 * JOINT) | RIGID

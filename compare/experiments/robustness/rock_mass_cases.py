@@ -15,7 +15,7 @@ PULSE = {"shape": "ricker", "amplitude": 1e6, "period": 5e-3}
 RIGID = rock_is_spared("its rock deforms: see the ledger, or the case of rock")
 ROCK = {"dem": "see the cases of rigid blocks"}
 PLANE = {
-    "dem fourth-order": "rigid blocks in the plane have leapfrog alone",
+    "dem fourth-order": "rigid blocks in the plane support leapfrog only",
     "continuum-equivalent": "a homogenised rock mass has no such blocks",
 }
 EXPLICIT = PLANE | {"implicit": "see the explicit steps"}

@@ -27,7 +27,7 @@ from compare.experiments.robustness.rock_mass_cases import ROCK_MASSES
 from compare.experiments.store import Store
 
 RATE = "hard case"  # what the seconds of rows are remembered by
-HELD, FAILED, NONE = "held", "failed", "does not apply"
+HELD, FAILED, NONE = "passed", "failed", "does not apply"
 CASES: list[HardCase] = [*LINEAR, *EXTREME, *FAILING, *ROCK_MASSES]  # in the order of the report
 Place = tuple[int, int]  # the numbers of a case and of an engine with its scheme
 
@@ -37,7 +37,7 @@ class CaseRow(NamedTuple):
 
     bound, value : what the criterion bounds and what was found; nan where nothing was.
     margin : bound over value; infinite where the value is zero.
-    state : "held", "failed" or "does not apply"; message : why, or more about the value.
+    state : "passed", "failed" or "does not apply"; message : why, or more about the value.
     """
 
     case: str

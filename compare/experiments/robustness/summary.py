@@ -26,9 +26,9 @@ from compare.report.tables import Table
 LIGHT = "#eceff2"  # of unstable cells
 LONG = {stepper.name: stepper for stepper in (LEAPFROG, JOINTED, EQUIVALENT)}
 NAME = "stability"
-TITLE = "Hard cases: what both engines are put to, and by what margin they hold"
+TITLE = "Hard cases for both engines, and the margin by which they pass"
 NOTE = (
-    "Above: stable and unstable cells as computed, under the line that theory draws. Below: "
+    "Above: stable and unstable cells as computed, under the theoretical limit. Below: "
     "kinetic and elastic energy of undamped pillars over a million steps. The table has every hard "
     "case on every engine and scheme; its margin is the bound over the value."
 )
@@ -100,7 +100,7 @@ def _draw_drifts(ax: Axes, drifts: dict[str, Drift]) -> None:
         )
         line.set_gid(f"stability-energy-{k}")
     ax.set_xlabel("million steps at 0.9 of the critical one")
-    ax.set_ylabel("energy over its mean, less one, 1e-13")
+    ax.set_ylabel("relative deviation of energy from its mean, 1e-13")
     ax.legend(frameon=False, ncols=len(drifts), loc="upper left")
     ax.grid(color="#e4e7ea", linewidth=0.6)
 
@@ -160,7 +160,7 @@ def sentences(rows: list[CaseRow], maps: list[StabilityMap]) -> list[str]:
     """Return how many rows hold, the least margin, and the cells of maps that theory denies."""
     held, failed, none = ([r for r in rows if r.state == state] for state in (HELD, FAILED, NONE))
     found = [
-        f"{len(held)} of {len(held) + len(failed)} rows hold; {len(none)} do not apply, each with "
+        f"{len(held)} of {len(held) + len(failed)} rows pass; {len(none)} do not apply, each with "
         "its reason."
     ]
     least = min(held, key=lambda row: row.margin, default=None)

@@ -36,10 +36,10 @@ NOTE = (
     "joints a tenth of the former apart. The exact field of the joints enters through all sides."
 )
 LEGEND = (
-    "Off: the largest difference from the closed form. Residual: of the motion, what no plane "
-    "waves of the rock make up. CPU: of a run, its set-up included, without compiling."
+    "Error: the largest difference from the closed form. Residual: motion that plane waves "
+    "of the rock cannot represent. CPU: time of a run, with set-up, without compiling."
 )
-COLUMNS = ["R_p", "R_s", "T_p", "T_s", "off", "residual, %", "freedoms", "CPU, s"]
+COLUMNS = ["R_p", "R_s", "T_p", "T_s", "error", "residual, %", "DOFs", "CPU, s"]
 
 
 def draw(name: str, rows: list[JointsRow]) -> Figure:
@@ -110,7 +110,7 @@ def _draw_cost(ax: Axes, rows: list[JointsRow], solvers: list[str]) -> None:
     ax.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     ax.xaxis.set_major_formatter("{x:g}")
     ax.xaxis.set_minor_formatter(NullFormatter())
-    ax.set_ylabel("off from the closed form")
+    ax.set_ylabel("error from the closed form")
     ax.grid(color="#e4e7ea", linewidth=0.6)
 
 
@@ -176,8 +176,8 @@ def sentences(rows: list[JointsRow]) -> list[str]:
         worst = max(some, key=lambda row: row.error)
         cpu = sum(row.cpu for row in some if isfinite(row.cpu))
         found.append(
-            f"{heading(worst)}: off by {percent(worst.error)} % of the incident wave at most, "
-            f"{_where(worst)}; {len(some)} runs take {cpu:.2g} s of processors."
+            f"{heading(worst)}: error of at most {percent(worst.error)} % of the incident wave, "
+            f"{_where(worst)}; {len(some)} runs take {cpu:.2g} s of CPU time."
         )
     return found
 

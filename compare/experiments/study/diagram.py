@@ -25,7 +25,7 @@ ERRORS = {
     "numerical": "numerical error (own model)",
     "total": "numerical + modelling error",
 }
-COSTS = {"seconds": "seconds of stepping", "work": "freedoms x evaluations of the forces"}
+COSTS = {"seconds": "seconds of stepping", "work": "degrees of freedom x force evaluations"}
 MARKERS = "DPX*<>hpd8H"
 OF_ORDER = {1: "o", 2: "s", 3: "^", 4: "v"}  # of elements
 OF_DIM: dict[Any, Any] = {2: (0, (1, 1)), 3: (0, (5, 1, 1, 1))}  # dashes; a bar has none
@@ -82,7 +82,7 @@ def _draw_panel(
             color="#bbbbbb",
             linewidth=5,
             zorder=1,
-            label="none is better (Pareto's front)",
+            label="Pareto front",
         )
     for k, curve in enumerate(study.curves):
         found = measured([r for r in rows if r.curve == curve.label], error, cost)
@@ -107,7 +107,7 @@ def _draw_cancelling(ax: Axes, rows: list[PointRow], error: str, cost: str, name
     ]
     if found:
         x, y = ([getattr(r, name) for r in found] for name in (cost, shown))
-        words = "errors cancel, or a finer point is worse: not counted"
+        words = "errors cancel, or a finer point is worse: excluded"
         (line,) = ax.plot(x, y, "x", color="#c0392b", markersize=6, zorder=3, label=words)
         line.set_gid(f"{name}-cancels")
 

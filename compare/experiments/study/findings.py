@@ -74,7 +74,7 @@ def sentences(study: Study, rows: list[PointRow]) -> list[str]:
     found = [_cheapest(target) for target in cheapest(rows)]
     if best := most_digits_per_second(rows):
         found.append(
-            f"The most digits a second, {digits_per_second(best):.2g}, are those of {best.curve} "
+            f"The most digits per second, {digits_per_second(best):.2g}, come from {best.curve} "
             f"at {percent(best.held)} %."
         )
     found += _cancelling([row for row in rows if row.cancels])

@@ -171,7 +171,7 @@ def load(name: str) -> Study:
     if not path.is_file():
         names = [*shipped(), *IN_CODE]
         known = ", ".join(names) + nearest(name, names)
-        raise SceneError(name, "", None, f"is no file, nor one of {known}")
+        raise SceneError(name, "", None, f"is not a file, nor one of {known}")
     try:
         table = read_toml(path, LARGEST_FILE)
     except ValueError as error:

@@ -76,7 +76,7 @@ def reported(
 def cells(row: PointRow) -> list[str]:
     """Return a row as text, under `COLUMNS`."""
     return [
-        _settings(row) or "as it stands",
+        _settings(row) or "base scene",
         *(number(100 * error, ".3g") for error in (row.numerical, row.modelling, row.total)),
         number(100 * row.measured, ".3g") + (f" {CANCELS}" if row.cancels else ""),
         number(row.steps, ".0f"),

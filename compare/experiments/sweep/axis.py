@@ -48,7 +48,7 @@ def _axis(text: str) -> tuple[str, list[Any]]:
     else:
         values = _between(text, *between.groups())
     if len({json.dumps(value, default=str) for value in values}) < len(values):
-        raise SceneError("--sweep", text, None, "must give every value once")
+        raise SceneError("--sweep", text, None, "must not repeat a value")
     return key, values
 
 

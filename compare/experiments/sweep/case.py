@@ -109,7 +109,7 @@ class Comparing(NamedTuple):
 
             write_comparisons([found], folder / scene.name)
         if not found.rows:
-            allowed = "has nothing to compare: no two solutions of a pair apply"
+            allowed = "has nothing to compare: no pair of solutions applies"
             raise SceneError(scene.where, "", None, allowed)
         files = self._kept(found.results, folder / scene.name)
         rows = [row.facts | {"faint": str(row.faint).lower()} for row in found.rows]

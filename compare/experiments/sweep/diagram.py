@@ -132,7 +132,7 @@ def distribution(table: pd.DataFrame) -> Figure:
         ax.set_xscale("log")
         ax.set_ylim(0, 1.02)
         ax.set_xlabel("worst misfit of a member, %")
-        ax.set_ylabel("share of members with at most this")
+        ax.set_ylabel("cumulative share of members")
         ax.grid(which="major", color="#e4e7ea", linewidth=0.6)
         figure.legend(loc="outside right upper", frameon=False, fontsize=8)
     return figure

@@ -35,7 +35,7 @@ def member(scene: AnyScene, number: int) -> dict[str, int]:
         if one.seed is not None:
             seeds[f"joint_sets.{i}.seed"] = one.seed
     if not seeds:
-        allowed = "needs joints at random: [scatter], or joint_sets.*.scatter, with a seed"
+        allowed = "needs random joints: [scatter] or joint_sets.*.scatter, with a seed"
         raise SceneError(scene.where, "--ensemble", None, allowed)
     return {key: seed + number - 1 for key, seed in seeds.items()}
 

@@ -17,9 +17,7 @@ from compare.scenes import find, load, load_variant
 
 POINTS = "points"  # the folder of what is done
 LONGEST = 100  # characters of a folder's name
-LOST = SweepOutcome(
-    "failed", "its process has ended before it was done, maybe for want of memory", []
-)
+LOST = SweepOutcome("failed", "its process ended early, possibly for lack of memory", [])
 
 
 class Sweep(NamedTuple):

@@ -140,7 +140,7 @@ def _drawn(waves: list[Path], done: pd.DataFrame, axes: list[str], out: Path) ->
     for folder, files in folders.items():
         results = {name: load_netcdf(file) for name, file in files.items()}
         if diagram.shown_places(results):
-            title = "Waveforms of an ensemble: medians, and 5 to 95 % of its members"
+            title = "Waveforms of an ensemble: median and 5 to 95 % of its members"
             figure, numbers = diagram.bands(results), diagram.band_table(results)
             found.append(save(figure, folder, f"{ENSEMBLE}-waveforms", title, numbers))
     for point, rows in done.groupby([*axes, "variant"], sort=False) if "one" in done else ():

@@ -20,7 +20,7 @@ WINDOWS = {
     "vtkOSOpenGLRenderWindow": ("libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"),
 }
 CHOICE = "VTK_DEFAULT_OPENGL_WINDOW"  # in the environment
-NEEDED = "VTK can draw nothing here: it needs EGL or OSMesa (apt install libegl1, or libosmesa6)"
+NEEDED = "VTK cannot render here: it needs EGL or OSMesa (apt install libegl1, or libosmesa6)"
 
 
 def has_display() -> bool:

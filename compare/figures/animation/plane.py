@@ -62,9 +62,9 @@ class PlaneFrame:
         axes[0].set_ylabel("y (m)")
         bar = self.figure.add_axes((0.3, 0.09, 0.4, 0.02))
         self.figure.colorbar(self.colour, cax=bar, orientation="horizontal")
-        bar.set_title(f"speed of particles ({self.unit.name})", fontsize=10, pad=3)
+        bar.set_title(f"particle speed ({self.unit.name})", fontsize=10, pad=3)
         self._say(0.07, 0.955, self.simulated.title)
-        self._say(0.07, 0.92, f"displacements drawn {self.scale:g} times as large")
+        self._say(0.07, 0.92, f"displacements exaggerated {self.scale:g} times")
         self._say(0.07, 0.01, fill("; ".join(self.simulated.missing), LETTERS))
         self.clock = self._say(0.85, 0.955, "")
 

@@ -45,7 +45,7 @@ def refuse(path: Path, count: int = 0) -> None:
     if path.suffix not in BEGINS:
         raise SceneError("--out", str(path), None, f"must end in {' or '.join(BEGINS)}")
     if path.suffix == ".gif" and count > MOST_OF_A_GIF:
-        allowed = f"at most {MOST_OF_A_GIF} for a GIF, whose pictures must all fit the memory"
+        allowed = f"at most {MOST_OF_A_GIF} for a GIF, whose frames must all fit in memory"
         raise SceneError("--frames", "", None, f"{allowed}, not {count:,}; .mp4 takes more")
     refuse_foreign(path, BEGINS[path.suffix])
 

@@ -30,7 +30,7 @@ class View3D:
 
     grids : by engine, with the points where the nodes are drawn (m), `displacement` (m) of points,
     and what the colours show, SI, under its name: `axial stress` of cells, `velocity across` and
-    `size of displacement` of points. Where bodies stand and how thick they are drawn is their
+    `displacement magnitude` of points. Where bodies stand and how thick they are drawn is their
     actors' affair.
     """
 

@@ -36,7 +36,7 @@ class Quantity(NamedTuple):
 
 STRESS = Quantity("axial stress", "MPa", 1e-6, "compression positive")
 VELOCITY = Quantity("velocity across", "m/s", 1.0, "upwards positive")
-DISPLACEMENT = Quantity("size of displacement", "mm", 1e3, "")
+DISPLACEMENT = Quantity("displacement magnitude", "mm", 1e3, "")
 
 
 class ViewSettings(NamedTuple):
@@ -61,9 +61,9 @@ def caption(scene: AnyScene, settings: ViewSettings) -> str:
     if settings.quantity != STRESS:
         return ", ".join(parts)
     if scene.gravity is not None:
-        parts.append("stress less its static state")
+        parts.append("stress change from the static state")
     elif isinstance(scene, Scene) and scene.prestress and scene.prestress.normal:
-        parts.append(f"stress less the prestress of {scene.prestress.normal / 1e6:g} MPa")
+        parts.append(f"stress change from the prestress of {scene.prestress.normal / 1e6:g} MPa")
     return ", ".join(parts)
 
 

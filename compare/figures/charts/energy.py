@@ -106,8 +106,8 @@ def _caption(ledgers: list[Ledger]) -> str:
         worst[one.engine] = max(worst.get(one.engine, 0.0), float(np.abs(one.residual).max()))
     sizes = ", ".join(f"{engine} {worst[engine]:.1g}" for engine in ENGINES if engine in worst)
     return (
-        "What the load has put in (work) and what became of it; all others add up to it. Below, on "
-        f"an axis of its own, what is missing over the largest work, at most: {sizes}."
+        "Work of the load, and the energies that balance it. Below, on "
+        f"an axis of its own, the residual over the largest work, at most: {sizes}."
     )
 
 
@@ -144,11 +144,11 @@ def _cell(variant: str, ledgers: list[Ledger], unit: Unit) -> list[Subplot]:
             _of_engine(one.engine),
             1e3 * one.time,
             one.missing,
-            f"%{{y:.2g}} missing {at}{one.engine}</extra>",
+            f"%{{y:.2g}} residual {at}{one.engine}</extra>",
         )
         for one in ledgers
     ]
-    label, heading = f"energy ({unit.name})", "missing, over the largest work"
+    label, heading = f"energy ({unit.name})", "residual over the largest work"
     return [
         Subplot(variant, label, terms, 2.2, share="terms"),
         Subplot(heading, "", missing, 0.8, share="missing", is_log=True, is_minor=True),

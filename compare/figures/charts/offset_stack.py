@@ -53,7 +53,7 @@ class Stack(NamedTuple):
             return "y (m)"
         size = self.largest / self.unit.size
         shown = max(x for x in (100, 50, 20, 10, 5, 2, 1) if x <= size)
-        return f"y (m); {self.reach * shown / size:.2g} m stand for {shown} {self.unit.name}"
+        return f"y (m); {self.reach * shown / size:.2g} m represent {shown} {self.unit.name}"
 
     @property
     def subplot(self) -> Subplot:
@@ -110,5 +110,5 @@ def stacks_of(words: str, group: list[Panel], row: int) -> tuple[Stack, Stack]:
     if not residuals.largest:
         return waveforms, residuals
     share, times = residuals.largest / waveforms.largest, waveforms.largest / residuals.largest
-    words = f"less {reference}, drawn {times:.2g} times as large: at most {100 * share:.2g} %"
+    words = f"minus {reference}, enlarged {times:.2g} times: at most {100 * share:.2g} %"
     return waveforms, residuals._replace(heading=words)

@@ -25,7 +25,7 @@ MANY = 3000  # cells, beyond which they are an image in the drawing
 HEIGHT = 3.6  # inches
 CAPTION = (
     "The largest particle velocity of each cell, the mean of its nodes', over all snapshots "
-    "(record.fields): a peak between two of them is not seen."
+    "(record.fields): peaks between snapshots are missed."
 )
 PILLAR = (
     " A pillar is seen along z, not to scale; of cells behind one another the largest peak shows."

@@ -60,11 +60,11 @@ def _caption(scene: Scene, variant: str, shown: Diagrams) -> str:
     sign = "Compression is red, tension blue. " if shown.quantity.variable == "stress" else ""
     layers = " Dashed: the soft layer." if scene.soft_layers else ""
     if shown.exact:
-        sign = "Each engine less the exact solution of its own model. "
+        sign = "Each engine minus the exact solution of its own model. "
     return (
         f"{sign}Drawn from {len(shown.y)} places and {len(shown.time)} times of the variant "
-        f"{variant!r}, less its static state; a difference has colours of its own, whose ends are "
-        f"its largest value.{layers}"
+        f"{variant!r}, minus its static state; a difference has its own colour scale, up to its "
+        f"largest value.{layers}"
     )
 
 

@@ -38,8 +38,8 @@ def _caption(found: list[Spectra]) -> str:
     marks = {mark.name: mark for s in found for mark in s.marks}.values()
     known = ", ".join(f"{mark.words} {mark.frequency:.4g} Hz" for mark in marks)
     return (
-        "Size of the Fourier transform of each waveform, its last tenth tapered by half a cosine "
-        "and zeros added to at least twice its length." + (f" Dotted: {known}." if known else "")
+        "Fourier amplitude of each waveform, its last tenth tapered by half a cosine and padded "
+        "with zeros to twice its length or more." + (f" Dotted: {known}." if known else "")
     )
 
 

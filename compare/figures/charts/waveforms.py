@@ -22,7 +22,7 @@ STYLES = (
     "Engines are wide and light, exact solutions dark and dashed over them, so that each is seen "
     "where several coincide."
 )
-BELOW = "Below, on a scale of its own, what each leaves from the reference."
+BELOW = "Below, on a separate scale, the difference from the reference."
 POSITIVE = "Stress is positive in compression."
 
 
@@ -41,8 +41,8 @@ def waveforms(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     elif len(comparisons) == 1 and (stack := stacked(receivers, comparisons)):
         chart = stack
         caption = (
-            "Each waveform stands on the y of its receiver, and beside them what each leaves from "
-            f"the reference. {STYLES} {ending}"
+            "Each waveform is offset to the y of its receiver, with its difference from "
+            f"the reference beside it. {STYLES} {ending}"
         )
     table = curve_table(comparisons).reset_index()
     found = chart_figure(f"{name}-waveforms", title, caption, chart, table, folded=bool(overlaid))
@@ -84,7 +84,7 @@ def _of_variants(
         f"thin and dark. Dotted: the reference, {_references(receivers)}. {BELOW} {POSITIVE}"
         f"{_at_rest(receivers)}"
     )
-    title = "Variants in one pair of axes, engine by engine"
+    title = "Variants overlaid, engine by engine"
     table = _variant_table([overlay for row in grid for overlay in row], receivers)
     return chart_figure(f"{name}-variants", title, caption, by_variants(grid), table)
 
@@ -105,7 +105,7 @@ def _at_rest(receivers: list[Panel]) -> str:
         for panel in receivers
         if panel.at_rest
     )
-    return f" Drawn is the motion, less the static state: {'; '.join(states)}." if states else ""
+    return f" Waveforms are relative to the static state: {'; '.join(states)}." if states else ""
 
 
 def _variant_table(overlays: list[Overlay], receivers: list[Panel]) -> pd.DataFrame:

@@ -212,7 +212,7 @@ def caption(scene: RockMass) -> str:
     named = zip(scene.regions, rocks_of(scene), strict=False)  # the last is [rock]
     regions = "; ".join(f"{one.name}: {_rock_words(own)}" for one, own in named)
     parts = [
-        f"Drawn from the scene: rock of {_rock_words(scene.rock)}, in plane strain.",
+        f"From the scene file: rock of {_rock_words(scene.rock)}, in plane strain.",
         f"Regions: {regions}." if regions else "",
         f"Joints: {sets}." if sets else "No joints.",
         "Circles: points whose motion is recorded; triangles: points of joints.",

@@ -82,7 +82,7 @@ def _caption(groups: list[tuple[str, Scene]]) -> str:
     count = len(scene.segments)
     segments = f"; other rock in {count} segment{'s' * (count > 1)}" if count else ""
     return (
-        f"Drawn from the scene: rock mass of {rock.density:g} kg/m³ with {speeds}; "
+        f"From the scene file: rock mass of {rock.density:g} kg/m³ with {speeds}; "
         f"joints: {words}{segments}. Triangles: sections whose stress is recorded; circles: points "
         "whose velocity is."
     )

@@ -42,7 +42,7 @@ def draw_section(ax: Axes, scene: Scene) -> None:
     ax.annotate("", (left, bottom - 0.14), (left + SIZE, bottom - 0.14), arrowprops=line)
     top, right, middle = bottom + SIZE, left + SIZE, MIDDLE[0]
     symbols.note(ax, middle, bottom - 0.2, f"{scene.pillar.side:g} m", va="top")
-    symbols.note(ax, middle, top + 0.1, "start, seen against y", va="bottom", color=SOFT)
+    symbols.note(ax, middle, top + 0.1, "start face, seen along -y", va="bottom", color=SOFT)
     symbols.note(ax, left - 0.06, top, "x", "right", "top", style="italic")
     symbols.note(ax, right + 0.05, bottom, "z", "left", "bottom", style="italic")
 

@@ -158,7 +158,7 @@ def _of_layer(layer: SoftLayer, spacing: float) -> str:
     ]
     if layer.friction_angle is not None:
         own.append(f"friction {layer.friction_angle:g}°")
-    return ", ".join(own) or "joint of its own law"
+    return ", ".join(own) or "joint with its own law"
 
 
 def _number(value: float, si: str) -> str:
@@ -214,7 +214,7 @@ def draw_scale(ax: Axes, scene: Scene, place: Placement) -> None:
         ax.plot([place.x(y)] * 2, [level, level - 0.05], color=INK, linewidth=0.8)
         note(ax, place.x(y), level - 0.07, f"{y:g}", va="top")
     times = place.thick / (place.scale * pillar.side)
-    drawn = f"; drawn {times:.2g} times as thick" if times > 1.01 else ""
+    drawn = f"; thickness × {times:.2g}" if times > 1.01 else ""
     blocks = f"{scene.block_count:,} blocks"
     blocks += f" in {len(regions(scene))} segments" if scene.segments else f" of {pillar.block:g} m"
     blocks += " on average" if scene.scatter else ""

@@ -48,7 +48,7 @@ def what_the_quiet_end_leaves(comparisons: list[Comparison]) -> Finding:
     predicted = pulses.peak(pulses.quiet_share(sent, scene)) / pulses.peak(sent)
     measured = pulses.peak(left) / pulses.peak(sent)
     return Finding(
-        "what is left is the end block's mass",
+        "the remaining reflection is due to the end block's mass",
         f"A dashpot on a full-mass block reflects tan(k d / 4) of a harmonic, "
         f"{share(pulses.quiet_harmonic(scene))} at the load's period. Of the pulse that comes back "
         f"from the free end this leaves {share(predicted, 2)} of the peak; dem leaves "

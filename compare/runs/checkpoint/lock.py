@@ -61,6 +61,6 @@ def _locked(folder: Path, operation: int) -> int:
             pass
         except BlockingIOError:
             os.close(handle)
-            allowed = "another jointwave is writing here; wait for it"
+            allowed = "another jointwave process is writing here; wait for it"
             raise SceneError(str(folder), "", None, allowed) from None
         os.close(handle)

@@ -81,7 +81,7 @@ def test_a_foreign_file_is_not_replaced(jointwave, command, name, tmp_path):
         pytest.importorskip("pyvista")
     (tmp_path / name).write_text("notes")
     done = jointwave(command, SCENE, *SHORT, "--out", tmp_path / name, code=2)
-    assert "is not a result and would be replaced" in done.err
+    assert "is not a result and would be overwritten" in done.err
     assert (tmp_path / name).read_text() == "notes"
 
 
@@ -92,7 +92,7 @@ def test_view_without_a_display_writes_a_picture(tmp_path):
     done = subprocess.run(command, capture_output=True, text=True)
     if "needs EGL or OSMesa" in done.stderr:
         assert done.returncode == 2 and not list(tmp_path.iterdir())
-        pytest.skip("VTK can draw nothing here")
+        pytest.skip("VTK cannot render here")
     assert done.returncode == 0 and done.stderr == ""
     assert done.stdout.startswith("fig-03.png: dem and continuum-jointed, displacements × ")
     with Image.open(tmp_path / "fig-03.png") as file:

@@ -65,7 +65,7 @@ def test_the_answer_has_at_most_ten_lines(compared, curve, capsys, variants, fil
         found.append(one)
     show_comparisons(found, False, False)
     said = capsys.readouterr().out
-    assert len(said.splitlines()) <= MOST_LINES and "beyond the scene's bound: dem ~" in said
+    assert len(said.splitlines()) <= MOST_LINES and "exceeds the scene's bound: dem ~" in said
     if variants > 1:
         assert "not checked independently: continuum-jointed (v1" in said
     assert ("more curves" in said) == (files * variants > (2 if variants == 1 else 1))

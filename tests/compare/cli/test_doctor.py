@@ -142,4 +142,4 @@ def test_it_is_shown_in_words(capsys):
     said = capsys.readouterr().out
     assert "ffmpeg" in said and "apt install ffmpeg" in said
     assert "a ~ b: holds, relative L2 misfit 0.001, at most 0.002" in said
-    assert "c ~ d: FAILS, it broke" in said and "not well" in said
+    assert "c ~ d: FAILS, it broke" in said and "a check fails" in said

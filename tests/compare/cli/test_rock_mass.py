@@ -112,7 +112,7 @@ def test_a_view_of_it_is_a_picture_of_both_engines(jointwave_says, tmp_path, mon
     coarse = "--set numerics.dem.block=5 --set record.fields=0.002"
     code, out, err = jointwave_says(f"view joint.toml {coarse} --time 0.006 --out seen.png")
     if "needs EGL or OSMesa" in err:
-        pytest.skip("VTK can draw nothing here")
+        pytest.skip("VTK cannot render here")
     assert code == 0 and out.startswith("seen.png: dem and continuum-jointed, displacements × ")
     with Image.open(tmp_path / "seen.png") as file:
         assert file.size == (1280, 720) and len(file.getcolors(1_000_000)) > 100
@@ -170,12 +170,12 @@ def test_one_waveform_of_a_result_is_asked_for_by_its_place(jointwave_says):
 def test_a_place_of_the_other_kind_of_scene_is_refused(jointwave_says, tmp_path):
     (tmp_path / "curve.csv").write_text("0,1\n0.01,2\n0.02,3\n")
     code, _, err = jointwave_says("compare joint.toml --with curve.csv:velocity_x@20")
-    assert code == 2 and "velocity_x@20: is no place of a rock mass" in err
+    assert code == 2 and "velocity_x@20: is not a receiver of a rock mass" in err
     code, _, err = jointwave_says("compare joint.toml --with curve.csv:velocity_x@[1,2]")
-    assert code == 2 and "where the scene records: points at [20, 10] m, [20, 30] m" in err
+    assert code == 2 and "at a receiver of the scene: points at [20, 10] m, [20, 30] m" in err
     pillar = "compare guo-li-2002/fig-03 --with curve.csv:gap@[1,2]"
     code, _, err = jointwave_says(pillar)
-    assert code == 2 and "gap@[1,2]: is no place of a pillar" in err
+    assert code == 2 and "gap@[1,2]: is not a receiver of a pillar" in err
 
 
 def test_a_figure_has_a_panel_a_component(jointwave_says, tmp_path):
@@ -209,7 +209,7 @@ def test_explain_in_words(jointwave_says):
     for words in (
         "A tunnel in brickwork",
         "28 blocks, 56 m2",
-        "rigid blocks cannot have 29 % of the intact rock's stiffness",
+        "rigid blocks cannot represent 29 % of the intact rock's stiffness",
         "smallest block: 2 m2",
         "rows",
         "MB",

@@ -111,9 +111,9 @@ def test_a_water_level_holds_noise_back():
     [
         (
             {"ends": {"start": "free", "end": "free"}, "load": {"shape": "step", "amplitude": 1.0}},
-            "its ends are not quiet and free",
+            "the ends are not quiet and free",
         ),
-        ({"joints": {"tension": False}}, "a joint bars tension"),
+        ({"joints": {"tension": False}}, "a joint carries no tension"),
     ],
 )
 def test_a_column_that_is_not_linear_is_refused(tables, words):

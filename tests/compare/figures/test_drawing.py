@@ -138,11 +138,11 @@ def test_a_squat_pillar_is_true_to_scale_and_a_slender_one_says_by_how_much(pill
     squat = pillar(pillar__length=4.0, pillar__side=2.0, record__stress=[2.0])
     place = placement(squat)
     assert place.thick == pytest.approx(place.scale * 2.0) and place.thick > THICK
-    assert not any("times as thick" in text for text in words(strip(squat)))
+    assert not any("thickness ×" in text for text in words(strip(squat)))
     slender = strip(pillar())
     place = placement(pillar())
     times = place.thick / (place.scale * 0.5)
-    assert times > 5 and any(f"{times:.2g} times as thick" in text for text in words(slender))
+    assert times > 5 and any(f"thickness × {times:.2g}" in text for text in words(slender))
 
 
 def test_labels_move_apart_as_far_as_they_must():

@@ -45,10 +45,10 @@ def test_all_pictures_are_made(solved):
     figures = figures_of("mass", found, [{}])
     assert [one.name for one in figures] == ["mass-scene", "mass-waveforms", "mass-spectra"]
     waveforms, spectra = figures[1].table, figures[2].table
-    assert "oblique-joint | traction s at [10, 10] m | as it stands (Pa)" in waveforms
+    assert "oblique-joint | traction s at [10, 10] m | base scene (Pa)" in waveforms
     assert "Dotted: 1/T of the load 200 Hz" in figures[2].caption and len(spectra) > 10
     table = curve_table(found)
-    column = "oblique-joint | velocity y at [10, 5] m | as it stands (m/s)"
+    column = "oblique-joint | velocity y at [10, 5] m | base scene (m/s)"
     expected = found[0].results["oblique-joint"].velocity.values[0, :, 1]
     assert table[column].to_numpy() == pytest.approx(expected)
 
@@ -65,5 +65,5 @@ def test_tables_name_places(solved):
     assert {"x (m)", "y (m)"} <= set(frame) and set(frame["y (m)"]) == {5.0, 10.0}
     assert "velocity x" in set(frame.quantity) and "slip" in set(frame.quantity)
     header = misfit_table([one]).header
-    assert "as it stands, velocity x at [10, 5] m" in header
-    assert "as it stands, traction n at [10, 10] m" in header
+    assert "base scene, velocity x at [10, 5] m" in header
+    assert "base scene, traction n at [10, 10] m" in header

@@ -96,7 +96,7 @@ def test_many_sections_of_one_variant_are_stacked_by_their_places(pillar, compar
     metres = [np.ptp(drawn[f"fig-waveforms-0-{k}-dem"]) / np.ptp(stress[k]) for k in range(3)]
     np.testing.assert_allclose(metres, metres[0])
     assert [drawn[f"fig-waveforms-0-{k}-dem"][0] for k in range(3)] == places
-    assert "m stand for" in left.get_ylabel() and left.get_yticks().tolist() == places
+    assert "m represent" in left.get_ylabel() and left.get_yticks().tolist() == places
     rest = [line for line in right.lines if line.get_gid()]
     assert {line.get_gid().split("-", 5)[5] for line in rest} == {"dem"}
     error = stress[0] - comparison.results["lattice"].stress.values[0]
@@ -115,7 +115,7 @@ def test_two_sections_or_curves_of_others_keep_panels_of_their_own(pillar, compa
 
 
 def test_waveforms_hold_the_numbers_of_the_table(pictures, values):
-    """And under them what each leaves from the reference."""
+    """And under them the difference from the reference."""
     picture = every_solution(pictures)
     columns = iter(picture.table.columns[1:])
     upper = [t for t in picture.plot["data"] if t["yaxis"] in ("y", "y3")]

@@ -376,7 +376,7 @@ FAULTS = {
         "curve.csv, line 4: time = 0.001",
         "later",
     ),
-    "twice": ("time,stress@20\n0,0\n1e-3,1\n1e-3,2\n", "curve.csv, line 4: time", "twice"),
+    "twice": ("time,stress@20\n0,0\n1e-3,1\n1e-3,2\n", "curve.csv, line 4: time", "repeated"),
     "time nan": ("time,stress@20\n0,0\nnan,1\n1e-3,2\n", "curve.csv, line 3: time = nan", "finite"),
     "nan": ("time,stress@20\n0,0\n1e-3,nan\n2e-3,2\n", "line 3: stress@20 = nan", "finite"),
     "huge": ("time,stress@20\n0,0\n1e-3,1e31\n2e-3,2\n", "line 3: stress@20 = 1e+31", "finite"),
@@ -391,7 +391,7 @@ FAULTS = {
     "no header": ("0,0\n1,1\n2,2\n", "second column", "stress@20"),
     "no unit": ("time [h],stress@20\n0,0\n1,1\n2,2\n", "unit of time = 'h'", "ms"),
     "unit": ("time,stress@20 [m/s]\n0,0\n1,1\n2,2\n", "unit of stress@20 = 'm/s'", "MPa"),
-    "axis": ("time,shear@20\n0,0\n1,1\n2,2\n", "shear@20", "must be called"),
+    "axis": ("time,shear@20\n0,0\n1,1\n2,2\n", "shear@20", "must be named"),
     "same": ("time,stress@20,stress@20\n0,0,0\n1,1,1\n2,2,2\n", "stress@20", "once"),
     "elsewhere": ("time,stress@21\n0,0\n1,1\n2,2\n", "stress@21", "stress at 20 m"),
     "wrong unit": ("time,stress@20\n0,0\n1,1\n2,2\n", "0 to 2 s", "time [ms]"),
@@ -450,7 +450,7 @@ def netcdf_faults():
     yield xr.Dataset({"stress": stress}), "time"
     yield xr.Dataset({"strain": stress}, {"time": TIME}), "one or more of stress"
     yield xr.Dataset({"stress": stress}, {"time": TIME[[0, 2, 1, 3]]}), "sample 2: time = 0.001"
-    yield xr.Dataset({"stress": stress}, {"time": TIME}), "must be called as stress@20"
+    yield xr.Dataset({"stress": stress}, {"time": TIME}), "must be named as stress@20"
     yield xr.Dataset({"stress": (("x", "time"), STRESS[None])}, {"time": TIME}), "stress_y"
     holes = np.where(TIME == 2e-3, np.nan, STRESS)
     receiver = {"time": TIME, "stress_y": 20.0}

@@ -126,7 +126,7 @@ def test_the_first_screen_answers_how_far_apart_and_at_what_cost(opened, report)
     lead = page.locator("ul.lead").inner_text()
     for engine in report.page.overview.engines:
         assert engine in lead
-    assert lead.count("from the finest physics") == 3 and "× the cheapest's time" in lead
+    assert lead.count("from the finest physics") == 3 and "× the time of the cheapest" in lead
 
 
 def test_a_verdict_is_never_a_colour_alone(whole):

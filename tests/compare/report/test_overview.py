@@ -112,7 +112,7 @@ def test_costs_are_ratios_to_the_cheapest_of_each_scene():
     ]
     sentences = found.lead
     assert "0.2 to 4 % from the finest physics" in sentences["dem"]
-    assert "1.0× to 2.0× the cheapest's time" in sentences["dem"]
+    assert "1.0× to 2.0× the time of the cheapest" in sentences["dem"]
     assert "0 to < 0.001 %" in sentences["continuum-jointed"]
 
 
@@ -124,7 +124,7 @@ def test_the_cheapest_everywhere_says_its_seconds():
 def test_an_engine_without_a_distance_is_not_given_one():
     there = {"dem": standing(nan, "lattice"), "continuum-jointed": standing(nan, "")}
     said = Overview([RankedScene("a", "a", "A", there, dict.fromkeys(there, 1.0))]).lead
-    assert "not held against finer physics" in said["dem"]
+    assert "not compared with finer physics" in said["dem"]
     assert NOT_CHECKED.word in said["continuum-jointed"]
 
 

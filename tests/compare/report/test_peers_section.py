@@ -55,7 +55,7 @@ def test_machine_is_named(rows, tmp_path):
     [
         (None, "cannot be read"),
         ("", "cannot be read"),
-        ("time,stress\n0,1\n", "is no table of make bench-peers: it has no column curve"),
+        ("time,stress\n0,1\n", "is not a table of make bench-peers: it has no column curve"),
     ],
 )
 def test_a_file_that_is_no_such_table_is_refused(tmp_path, text, message):

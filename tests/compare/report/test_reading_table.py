@@ -64,7 +64,10 @@ def test_nothing_is_read_where_no_velocity_is_recorded(compared, capsys):
     nothing = compared.__class__(compared.scene, silent, {}, compared.rows)
     assert not reading_table(reading_frame([nothing])).groups
     show_comparisons([nothing], False, False, reads=True)
-    assert "nothing to read: record.velocity or record.points is empty" in capsys.readouterr().out
+    assert (
+        "no velocities are recorded: record.velocity or record.points is empty"
+        in capsys.readouterr().out
+    )
 
 
 def test_a_damped_bar_has_its_quality_factor():

@@ -24,8 +24,8 @@ ALLOWED = ("--set", "numerics.continuum.allow_unstable=true")
 MISTAKES = {
     "a bad value": (("run", *SCENE, *CONTINUUM, "--set", "pillar.length=-1"), 2, "length = -1"),
     "no scene": (("run", "no-such.toml", *CONTINUUM), 2, "no-such.toml"),
-    "a comparison": (("compare", *SCENE), 2, "mpiexec: jointwave compare works in one process"),
-    "an explanation": (("explain", *SCENE), 2, "mpiexec: jointwave explain works in one process"),
+    "a comparison": (("compare", *SCENE), 2, "mpiexec: jointwave compare runs in one process"),
+    "an explanation": (("explain", *SCENE), 2, "mpiexec: jointwave explain runs in one process"),
     "a step above the critical": (
         ("run", *SCENE, *CONTINUUM, *SHORT, "--set", f"{FRACTION}=1.5"),
         2,
@@ -135,7 +135,7 @@ def test_a_mistake_of_the_program_on_one_process_ends_all(under_mpi, said, tmp_p
     arguments = ("run", *SCENE, *CONTINUUM, *SHORT, "--out", tmp_path)
     done = under_mpi(3, "-c", program, *arguments, code=1)
     (line,) = said(done)
-    assert "a fault of the program, KeyError" in line and "'bug'" in line
+    assert "internal error, KeyError" in line and "'bug'" in line
 
 
 def test_an_mpiexec_of_another_mpi_is_refused(said):

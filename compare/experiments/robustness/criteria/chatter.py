@@ -65,7 +65,7 @@ def _peaks(trial: CaseTrial, stride: int) -> np.ndarray:
         motion.advance(stride)
         v = speed()
         if not isfinite(v):
-            said = f"the loose block's speed is no number after {len(peaks):,} impacts"
+            said = f"the loose block's velocity is not finite after {len(peaks):,} impacts"
             raise UnstableError(said)
         if v * sign < 0:
             peaks.append(largest)

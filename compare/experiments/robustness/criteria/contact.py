@@ -41,7 +41,7 @@ def just_closed(trial: CaseTrial) -> Judgement:
     return Judgement(relative_l2(barred, bound), 10 * EPS * steps, f"misfit at {p:.3g} Pa")
 
 
-@criterion("misfit from a load 2^99 times as large, over that")
+@criterion("misfit from a load 2^99 times as large, scaled")
 def scales_by_two(trial: CaseTrial) -> Judgement:
     """Joints that bar tension know no scale: a load smaller by a power of two does the same in
     every digit, with gaps down to 1e-40 m that open and close as those of a large one do."""
@@ -81,7 +81,7 @@ def whole_joints(trial: CaseTrial) -> Judgement:
     return Judgement(abs(joints - round(joints)), KINKS, f"of a joint; {round(joints)} broke")
 
 
-@criterion("misfit from a joint that cannot slide, where the cohesion is just the largest shear")
+@criterion("misfit from a joint that cannot slide, at a cohesion equal to the largest shear")
 def just_held(trial: CaseTrial) -> Judgement:
     """At a cohesion of just the largest shear a joint holds, just below it slides.
 
@@ -111,7 +111,7 @@ def just_held(trial: CaseTrial) -> Judgement:
 KEEP = 1e-12
 
 
-@criterion("traction that should not be there, Pa")
+@criterion("spurious traction, Pa")
 def one_ulp(trial: CaseTrial) -> Judgement:
     """A gap of the smallest number is open and carries nothing; the same closed pushes back."""
     stiffness, traction = _normal_law(trial)

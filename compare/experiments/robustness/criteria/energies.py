@@ -59,7 +59,7 @@ def no_trend(steps: int) -> Criterion:
     return judge
 
 
-@criterion("fall of what is spent, over the work")
+@criterion("decrease of dissipated energy, over the work")
 def passive(trial: CaseTrial) -> Judgement:
     """What is dissipated never comes back, and energy is neither made nor lost.
 

@@ -84,14 +84,14 @@ def refused(trial: CaseTrial) -> Judgement:
     return Judgement(1.0, 0.0, "was not refused")
 
 
-@criterion("misfit from a pillar of a thousand blocks before any wave is back")
+@criterion("misfit from a pillar of a thousand blocks before any reflection")
 def untouched_far_end(trial: CaseTrial) -> Judgement:
     """What no wave has reached does not matter: a long pillar's first blocks do what those of a
     short one do, bit by bit in explicit steps, which pass on one block a step."""
     long, short = trial.result, trial.run(pillar__length=500.0)
     assert long.attrs["dt"] == short.attrs["dt"]
     found = relative_l2(long["stress"].values, short["stress"].values)
-    return Judgement(found, 0.0, f"misfit of {long.attrs['degrees_of_freedom']:,} freedoms")
+    return Judgement(found, 0.0, f"misfit of {long.attrs['degrees_of_freedom']:,} unknowns")
 
 
 @criterion("misfit from the exact bar, at most Love's correction and the phase error")

@@ -20,7 +20,7 @@ from compare.experiments.robustness.criteria.accuracy import (
 from compare.misfit.metrics import relative_l2
 
 
-@criterion("misfit in front of it from a pillar that ends there, at most what the layer leaks")
+@criterion("misfit in front of it from a pillar that ends there, at most the layer's leakage")
 def free_end(trial: CaseTrial) -> Judgement:
     """In front of a layer of almost no stiffness the pillar ends free.
 

@@ -22,7 +22,7 @@ def exactly(trial: CaseTrial, steps: int) -> dict[str, Any]:
     return {"record__interval": dt, "time__duration": dt * steps * (1 + 1e-9)}
 
 
-@criterion("fastest block or node, m/s, at most what the impulse gives at this step")
+@criterion("highest velocity, m/s, at most that of the impulse at this step")
 def impulse_bound(trial: CaseTrial) -> Judgement:
     """No point moves faster than the load's impulse can make it, amplified as at this step.
 
@@ -99,7 +99,7 @@ def _fastest(trial: CaseTrial) -> float:
     return impulse / mass
 
 
-@criterion("refused; forced, stopped before it can have passed all numbers")
+@criterion("refused; forced, stopped before overflow")
 def caught(trial: CaseTrial) -> Judgement:
     """A step above the critical one is refused; forced, it is stopped within the range of numbers.
 

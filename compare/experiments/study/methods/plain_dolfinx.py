@@ -58,9 +58,9 @@ def applies(scene: Scene) -> Answer:
     if p.excess_compliance.any():
         return no("a soft layer cuts the bar")
     if joints_are_damped(p) and not p.time_constant:
-        return no("a joint damps alone")
+        return no("a joint has its own dashpot")
     if numerics.dim not in (None, 1) or numerics.mesh is not None:
-        return no("it is a bar, meshed by itself")
+        return no("it solves a bar on its own mesh")
     if numerics.scheme == "implicit" or numerics.mass == "consistent":
         return no("its steps are explicit")
     try:

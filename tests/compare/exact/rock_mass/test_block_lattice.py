@@ -85,10 +85,10 @@ NO = [
     ({"gravity": {"static": False}}, "gravity acts"),
     ({"prestress": {"xx": 1e6, "yy": 1e6}}, "the rock is prestressed"),
     ({"boundaries": {"top": "fixed"}}, "a side is fixed"),
-    ({"numerics": {"dem": {"block": 0.5}}}, "intact rock is cut into blocks, too"),
+    ({"numerics": {"dem": {"block": 0.5}}}, "intact rock is subdivided into blocks"),
     ({"damping": {"mass_proportional": 1.0}}, "the damping is proportional to mass"),
     ({"domain": {"size": [60.0, 60.0]}}, "more than 1,000 blocks"),
-    ({"record": {"points": [], "fields": 1e-3, "joints": []}}, "no point records the motion"),
+    ({"record": {"points": [], "fields": 1e-3, "joints": []}}, "no point is recorded"),
 ]  # fmt: skip
 
 
@@ -103,9 +103,9 @@ def test_it_holds_for_blocks_between_linear_joints_alone(blocks, joint, wave):
         return applies("block-lattice", blocks(joint_sets=[bed])).reason
 
     assert reason() == ""
-    assert reason(spacing=None) == "no joints with a spacing make blocks"
+    assert reason(spacing=None) == "no joint set has a spacing"
     assert reason(damping_ratio=0.1) == "the joints are damped"
-    assert reason(tension=False) == "joint set 'joint' bars tension"
+    assert reason(tension=False) == "joint set 'joint' carries no tension"
     step = {**wave(shape="step")}
     step.pop("period")
     assert applies("block-lattice", blocks(waves=[step])).reason == "a wave has no period"

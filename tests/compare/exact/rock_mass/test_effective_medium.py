@@ -119,5 +119,5 @@ def test_it_holds_for_crossing_spaced_linear_sets_alone(crossed, joint, wave):
     assert reason(damping_ratio=0.1) == "the joints are damped"
     assert reason(friction_angle=30.0) == "joint set 'cross' can slip"
     begun = crossed(waves=[wave(through=[0.0, 5.0])])
-    expected = "a pulse has begun within the domain before t = 0"
+    expected = "a pulse is inside the domain before t = 0"
     assert applies("effective-medium", begun).reason == expected

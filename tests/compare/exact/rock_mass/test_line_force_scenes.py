@@ -75,15 +75,15 @@ NO = [
      "a wave enters"),
     ({"loads": []}, "no force acts"),
     ({"loads": [FORCE | {"shape": "step", "period": None}]},
-     "a force jumps, and the velocity at its arrivals has no bound"),
+     "a force jumps, so that velocities at its arrivals are unbounded"),
     ({"loads": [{"kind": "pressure", "side": "top", "shape": "step", "amplitude": 1.0}]},
-     "another load than a force acts"),
+     "a load other than a force acts"),
     ({"gravity": {"static": False}}, "gravity acts"),
     ({"damping": {"mass_proportional": 1.0}}, "the damping is proportional to mass"),
     ({"domain": {"openings": [[[1, 1], [2, 1], [2, 2], [1, 2]]]}},
      "the domain is not convex, or has openings"),
     ({"record": {"points": [[20.0, 15.0]], "joints": []}}, "a receiver lies on a force"),
-    ({"record": {"points": [], "joints": [], "fields": 1e-3}}, "no point records the motion"),
+    ({"record": {"points": [], "joints": [], "fields": 1e-3}}, "no point is recorded"),
     ({"boundaries": dict.fromkeys(("left", "right"), "periodic")}, "a side is periodic"),
 ]  # fmt: skip
 

@@ -9,11 +9,11 @@ from compare.exact.rock_mass.field import field_of
 
 CLOSES = {"maximum_closure": 1e-4}
 NO = [
-    ({}, {}, "no joint stiffens: see oblique-joint"),
+    ({}, {}, "no joint has closure: see oblique-joint"),
     (CLOSES | {"damping_ratio": 0.1}, {}, "the joint is damped"),
     (CLOSES | {"friction_angle": 30.0}, {}, "joint set 'joint' can slip"),
-    (CLOSES, {"kind": "S"}, "the wave is not one of P straight on the joint"),
-    (CLOSES, {"direction": [0.0, 1.0]}, "the wave is not one of P straight on the joint"),
+    (CLOSES, {"kind": "S"}, "the wave is not a P wave at normal incidence"),
+    (CLOSES, {"direction": [0.0, 1.0]}, "the wave is not a P wave at normal incidence"),
 ]
 
 

@@ -14,7 +14,7 @@ from compare.exact.plane.pulse import Pulse
 from compare.exact.rock_mass.stack import stack_of
 
 SPACED = {"spacing": 6.0, "through": [0.0, 3.0]}
-STARTS = "has met a joint before t = 0"
+STARTS = "reaches a joint before t = 0"
 FREE_SIDE = "the left is free and reflects waves"
 NO = [
     ({"waves": []}, "no wave enters"),
@@ -26,13 +26,13 @@ NO = [
     ({"damping": {"mass_proportional": 1.0}}, "the damping is proportional to mass"),
     ({"damping": {"rayleigh": {"frequencies": [100, 200], "ratios": [0.01, 0.02]}}},
      "the rock is damped"),
-    ({"damping": {"local": 0.1}}, "the damping is local, which is not linear"),
+    ({"damping": {"local": 0.1}}, "the damping is local and not linear"),
     ({"boundaries": {"left": "free"}}, FREE_SIDE),
     ({"boundaries": {"top": "fixed"}}, "the top is fixed and reflects waves"),
 ]  # fmt: skip
 LAWS = [
-    ({"tension": False}, "joint set 'joint' bars tension"),
-    ({"maximum_closure": 1e-3}, "joint set 'joint' stiffens as it closes"),
+    ({"tension": False}, "joint set 'joint' carries no tension"),
+    ({"maximum_closure": 1e-3}, "joint set 'joint' has closure"),
     ({"friction_angle": 30.0}, "joint set 'joint' can slip"),
     ({"cohesion": 1e6}, "joint set 'joint' can slip"),
     ({"tensile_strength": 1e5, "fracture_energy": 10.0},

@@ -75,7 +75,7 @@ def test_leaving_one_out_leaves_the_others(effect, pillar):
 
 
 def test_what_the_scene_is_about_stays(pillar):
-    with pytest.raises(SceneError, match="is what the scene is about"):
+    with pytest.raises(SceneError, match="is the subject of the scene"):
         left_out(pillar(**ACROSS), "spatial motion")
 
 
@@ -101,7 +101,7 @@ def test_an_effect_alone_is_the_only_one(effect, pillar):
 
 def test_what_needs_others_is_not_alone(pillar):
     """Slip does not act on a pillar that is not struck across."""
-    with pytest.raises(SceneError, match="does not act without the others"):
+    with pytest.raises(SceneError, match="has no effect without the others"):
         only(pillar(joints__friction_angle=30.0), "slip")
 
 

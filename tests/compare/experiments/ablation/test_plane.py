@@ -77,7 +77,7 @@ def test_an_effect_alone_is_the_only_one_beside_what_acts(effect):
 
 
 def test_what_acts_stays():
-    with pytest.raises(SceneError, match="is what the scene is about"):
+    with pytest.raises(SceneError, match="is the subject of the scene"):
         left_out(mass(), "loads")
 
 
@@ -125,5 +125,5 @@ def test_influence_is_the_misfit_of_the_result_without(monkeypatch):
         expected = misfit(solve("dem", left_out(scene, name)), full)
         assert found[name].misfit == expected > 0.01
         assert np.isfinite([found[name].alone, found[name].cost]).all()
-    assert found["loads"].reason == "is what the scene is about"
+    assert found["loads"].reason == "is the subject of the scene"
     assert np.isnan(one.rock) and one.own > 0 and one.bare > 0

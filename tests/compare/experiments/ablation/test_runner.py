@@ -18,7 +18,7 @@ LEDGER = EffectCost("energy ledger", 1.0, 3.0, 0.75, 1.0, nan, 0.0, "", NOISE)
 LAYER = EffectCost("joints that differ", 0.1, -0.1, -0.025, 1.0, nan, 0.8, "", NOISE)
 DAMPED = EffectCost("dashpots", 0.2, 2.0, 0.5, 4.0, 1.5, 0.05, "", NOISE)
 SPACE = EffectCost(
-    "spatial motion", nan, nan, nan, nan, nan, nan, "is what the scene is about", NOISE
+    "spatial motion", nan, nan, nan, nan, nan, nan, "is the subject of the scene", NOISE
 )
 FOUND = [
     Ablation("set/one", "One", "", 0.5, 4.0, 40.0, nan, [LAYER, LEDGER]),
@@ -102,7 +102,7 @@ def test_table_has_the_dearest_first_and_says_why_an_effect_stays():
     one, two = found.groups.values()
     assert [row[0] for row in one] == ["energy ledger", "joints that differ"]
     assert [row[0] for row in two] == ["dashpots", "spatial motion"]
-    assert two[1][1:] == [*[""] * 6, "is what the scene is about"]
+    assert two[1][1:] == [*[""] * 6, "is the subject of the scene"]
     assert two[0][1:] == ["5.00", "50", "+2", "+0.2", "4", "+1.5", ""]
     assert "10.0 % of 40 ns" in next(iter(found.groups))
     assert table(FOUND[:1]).header == found.header[:-1]
@@ -114,7 +114,7 @@ def test_table_says_what_is_not_resolved():
     rows = table([FOUND[0]._replace(effects=[LAYER, stirred])]).groups.popitem()[1]
     hidden = ["not resolved", "not resolved (within ±0.2)", "+0.1", "1"]
     assert rows[0][:6] == ["joints that differ", "80.0", *hidden]
-    assert rows[1][1] == "velocity x at 3 m stands still with it: not resolved"
+    assert rows[1][1] == "velocity x at 3 m is at rest with it: not resolved"
 
 
 def test_diagram_has_a_point_for_every_effect_that_can_be_left_out():

@@ -83,7 +83,7 @@ def test_the_study_writes_its_table_and_its_figure(few, tmp_path):
     cells = found.table.groups["joint at an angle, exact: P wave"][0]
     assert cells[:5] == ["30", "0.2836", "0.4144", "0.8999", "0.0188"]
     assert "at 30 degrees" in found.sentences[0]
-    why = "is a solution of a pillar, not of a rock mass"
+    why = "is for a pillar, not for a rock mass"
     assert found.failed == [f"lattice, 2 runs from P at 30 degrees and one joint on: {why}"]
     saved = [file.stat().st_mtime_ns for file in sorted((tmp_path / "oblique-joint").iterdir())]
     again = summary.make_study("oblique-joint", tmp_path)

@@ -37,7 +37,7 @@ def test_sentences_hold_for_their_numbers(study, tmp_path):
         for e, cost, name in zip(errors, costs, "ababc", strict=True)
     ]
     one, two, most = sentences(timed, judged(rows))
-    assert most == "The most digits a second, 1.3, are those of a at 5.00 %."
+    assert most == "The most digits per second, 1.3, come from a at 5.00 %."
     costs = "set-up 0.3 s, compiling 0.2 ms, stepping 1 s"
     assert f"a (numerical 4.90 % + modelling 0.100 % = 5.00 %; {costs})" in one
     assert one.startswith("Within 10.0 %") and "b (numerical 1.90 %" in one

@@ -75,7 +75,7 @@ def test_plain_dolfinx_runs_away_just_above_its_critical_step(bar, damping):
     ("changes", "words"),
     [
         ({"soft_layers": [{"y": 20.0, "spacing_stiffness": 4e8}]}, "soft layer"),
-        ({"joints__tension": False}, "bars tension"),
+        ({"joints__tension": False}, "carries no tension"),
         ({"load": RICKER | {"direction": [0.0, 0.6, 0.8]}}, "spatial"),
         ({"numerics__continuum__scheme": "implicit"}, "explicit"),
         ({"numerics__continuum__dim": 2}, "is a bar"),

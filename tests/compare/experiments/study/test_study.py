@@ -84,7 +84,7 @@ def test_a_curve_for_each_value_is_one_as_written_out(study):
 
 def test_a_study_that_is_not_there_names_those_that_are(command):
     said = command("study", "no-such", code=2).err
-    assert said.startswith("jointwave: no-such: is no file, nor one of column-3d")
+    assert said.startswith("jointwave: no-such: is not a file, nor one of column-3d")
     assert "oblique-joint" in said
 
 

@@ -80,8 +80,8 @@ def test_the_ends_are_what_was_given(first, last, count):
         ("1:inf:3", "finite ends"),
         ("log:0:1:3", "one sign"),
         ("log:-1:1:3", "one sign"),
-        ("0.1,0.1", "every value once"),
-        ("1,1.0,true,1", "every value once"),
+        ("0.1,0.1", "repeat a value"),
+        ("1,1.0,true,1", "repeat a value"),
     ],
 )
 def test_a_bad_form_is_one_line(spec, words):

@@ -110,5 +110,5 @@ def test_a_rock_mass_shifts_the_seed_of_every_set():
 
 
 def test_a_scene_without_joints_at_random_has_no_members():
-    with pytest.raises(SceneError, match=r"--ensemble: needs joints at random: \[scatter\]"):
+    with pytest.raises(SceneError, match=r"--ensemble: needs random joints: \[scatter\]"):
         sweep_of("guo-li-2002/fig-03", [], "", [], Path("out"), 3)

@@ -89,7 +89,7 @@ def view(simulated, monkeypatch):
         try:
             monkeypatch.setenv(offscreen.CHOICE, offscreen._window())
         except SceneError:
-            pytest.skip("VTK can draw nothing here")
+            pytest.skip("VTK cannot render here")
     from compare.figures.animation.view3d import View3D
 
     found = {"dem": simulated.found["dem"], "continuum-jointed": simulated.found["dem"]}
@@ -107,7 +107,7 @@ def test_the_view_has_blocks_where_they_are_with_the_size_of_their_displacement(
         np.testing.assert_array_equal(edges.points, grid.points)
         np.testing.assert_allclose(grid.point_data[DISPLACEMENT.name], 4 * [0.0] + 4 * [1e-4])
         assert grid.area == pytest.approx(2.0) and edges.n_lines == 8
-    assert view.settings.quantity.label == "size of displacement (mm)"
+    assert view.settings.quantity.label == "displacement magnitude (mm)"
 
 
 def test_the_view_looks_along_z_at_both_engines_side_by_side(view):

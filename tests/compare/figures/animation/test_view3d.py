@@ -23,7 +23,7 @@ def stage(simulated, monkeypatch):
         try:
             monkeypatch.setenv(offscreen.CHOICE, offscreen._window())
         except SceneError:
-            pytest.skip("VTK can draw nothing here")
+            pytest.skip("VTK cannot render here")
     from compare.figures.animation.view3d import View3D
 
     taken = simulated()
@@ -107,7 +107,7 @@ def test_a_picture_without_a_display_shows_the_wave(simulated, engines, tmp_path
         offscreen.draw(tmp_path / "wave.png", some, settings, 18)
     except SceneError as error:
         assert offscreen.NEEDED in str(error)
-        pytest.skip("VTK can draw nothing here")
+        pytest.skip("VTK cannot render here")
     red, blue = colours_of(tmp_path / "wave.png")
     assert red > 1000 * len(engines) and blue > 1000 * len(engines)
 

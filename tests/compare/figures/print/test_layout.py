@@ -125,6 +125,6 @@ def test_the_motion_is_drawn_and_the_title_says_without_what(many):
         result.attrs |= {"starts": "prestressed", "prestress": 1e7}
     figure = draw([found], STYLES["journal"], 1, "en")
     for ax, wave in zip(figure.axes, waves, strict=True):
-        assert "less the static 10\u00a0MPa" in ax.get_title(loc="left").replace("\n", " ")
+        assert "minus the static 10\u00a0MPa" in ax.get_title(loc="left").replace("\n", " ")
         assert ax.get_ylabel() == "stress (MPa)"
         assert ax.lines[1].get_ydata() == pytest.approx(wave, abs=1e-8)

@@ -227,7 +227,7 @@ def test_what_is_asked_for_is_drawn(pillar, tmp_path):
         (("--out", "figure.pdf", "--language", "de"), "de"),
         (("--out", "figure.pdf", "--style", "poster"), "poster"),
         (("--out", "figure.pdf", "--engine", "exact", "--model", "no-tension-chain"), "tension"),
-        (("--out", "taken.pdf", "--variant", "", "--engine", "dem"), "would be replaced"),
+        (("--out", "taken.pdf", "--variant", "", "--engine", "dem"), "would be overwritten"),
         ((), "--out"),
     ],
 )

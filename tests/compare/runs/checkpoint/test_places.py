@@ -120,7 +120,7 @@ def test_second_run_into_a_folder_is_refused_and_the_first_goes_on(
     assert until(first, lambda: is_locked(out))
     first.send_signal(signal.SIGSTOP)  # lest it ends before the second has started
     code, (line,) = finish(start(*arguments("axial", out, *SHORT)))
-    assert code == 2 and f"{out}: another jointwave is writing here" in line
+    assert code == 2 and f"{out}: another jointwave process is writing here" in line
     first.send_signal(signal.SIGCONT)
     assert finish(first) == (0, []) and not is_locked(out)
 

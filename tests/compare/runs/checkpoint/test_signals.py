@@ -62,7 +62,7 @@ def test_run_that_is_stopped_keeps_what_is_there_and_goes_on(
         until_then = {"time": slice(count), "field_time": slice(shots)}
         xr.testing.assert_equal(part, all_of_it.isel(until_then))
     ended, (line,) = finish(start(*arguments("axial", out, "--resume")))
-    assert ended == 0 and "goes on at t = 0." in line
+    assert ended == 0 and "continues at t = 0." in line
     refuse_difference(out / "dem.nc", undisturbed / "dem.nc")
     assert {p.name for p in out.iterdir()} == {p.name for p in undisturbed.iterdir()}
 
