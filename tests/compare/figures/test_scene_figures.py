@@ -101,7 +101,7 @@ def test_many_sections_of_one_variant_are_stacked_by_their_places(pillar, compar
     assert {line.get_gid().split("-", 5)[5] for line in rest} == {"dem"}
     error = stress[0] - comparison.results["lattice"].stress.values[0]
     times = np.ptp(rest[0].get_ydata()) / np.ptp(error)
-    assert f"drawn {times / metres[0]:.2g} times" in right.get_title(loc="left")
+    assert f"enlarged {times / metres[0]:.2g} times" in right.get_title(loc="left")
     hovered = [t for t in picture.plot["data"] if t["name"] == "dem" and t["yaxis"] == "y"]
     for trace, expected in zip(hovered, stress, strict=True):
         kept = 1e-6 * expected[thinned(expected.size)]
