@@ -75,9 +75,9 @@ def _lack(scene: RockMass) -> float | None:
 
 def show_partition(facts: dict[str, Any]) -> None:
     """Print the blocks of a rock mass."""
-    say(f"{facts['blocks']:,} blocks, {facts['area']:.6g} m2 in all")
+    say(f"{facts['blocks']:,} blocks, {facts['area']:.6g} m2 in total")
     if facts["rigid_blocks"] != facts["blocks"]:
-        say(f"{facts['rigid_blocks']:,} rigid blocks: numerics.dem.block cuts the rock between")
+        say(f"{facts['rigid_blocks']:,} rigid blocks: numerics.dem.block subdivides the rock")
     for word in ("smallest", "largest"):
         one = facts[word]
         x, y = one["centroid"]
@@ -92,12 +92,12 @@ def show_partition(facts: dict[str, Any]) -> None:
     show_table(["side", "edges"], [[name, f"{n:,}"] for name, n in facts["boundary"].items()])
     at_most = spoken(facts["bytes_at_most"])
     if (lack := facts["rigid_blocks_lack"]) is not None:
-        share, why = "0", "their joints carry all of it"
+        share, why = "0", "their joints represent all of it"
         if lack > ROUND_OFF:
             share = f"{100 * lack:.2g}"
-            why = "their joints alone carry it, and joints of few directions have no Poisson effect"
+            why = "only their joints deform, and joints of few directions have no Poisson effect"
         say(f"rigid blocks cannot have {share} % of the intact rock's stiffness: {why}")
-    say(f"memory of the blocks: {spoken(facts['bytes'])}, at most {at_most} while they are cut")
+    say(f"memory of the blocks: {spoken(facts['bytes'])}, at most {at_most} during subdivision")
 
 
 def _of_set(found: Partition, index: int) -> dict[str, Any]:

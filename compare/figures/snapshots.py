@@ -87,7 +87,7 @@ def _add_colour_bar(figure: Figure, colour: ScalarMappable, scale: float) -> Non
     for part in bar.collections:
         part.set(rasterized=False, edgecolor="face")  # an SVG would hold an image of it
     bar.set_title("axial stress (MPa), compression positive", loc="left", pad=3)
-    figure.text(1 - RIGHT / WIDTH, 1 - 0.3 * inch, f"displacements drawn × {scale:,g}", ha="right")
+    figure.text(1 - RIGHT / WIDTH, 1 - 0.3 * inch, f"displacements × {scale:,g}", ha="right")
 
 
 SCENE = "beyond/eccentric-blow"  # and the changes that make its snapshots

@@ -26,10 +26,10 @@ def beyond_linear_rock(scene: RockMass) -> str | None:
         (bool(damping.alpha), "the damping is proportional to mass"),
         (bool(damping.rayleigh and damping.rayleigh.coefficients[1]), "the rock is damped"),
         (scene.rock.quality_factor is not None, "the rock has a quality_factor"),
-        (bool(damping.local), "the damping is local, which is not linear"),
+        (bool(damping.local), "the damping is local and not linear"),
     ]
     meshed = scene.domain.given is not None and bool(scene.joint_sets)
-    reasons.append((meshed, "the joints are those of a mesh, wherever these are"))
+    reasons.append((meshed, "the joints are those of a mesh"))
     laws = (beyond_linear_law(one) for one in scene.joint_sets)
     return next((why for there, why in reasons if there), None) or next(filter(None, laws), None)
 
@@ -37,7 +37,7 @@ def beyond_linear_rock(scene: RockMass) -> str | None:
 def beyond_linear_law(one: JointSet) -> str | None:
     """Return why the law of a joint set is not linear, None where it is."""
     if one.tension is False:
-        return f"joint set {one.name!r} bars tension"
+        return f"joint set {one.name!r} carries no tension"
     for part in PARTS:
         if part.of(one):
             return f"joint set {one.name!r}: {part.words}"
@@ -52,7 +52,7 @@ def reflecting_side(scene: RockMass) -> str | None:
     for side in outline_of(scene.domain).normals():
         held = getattr(scene.boundaries, side)
         if held == "periodic" and not _is_invariant(scene, side):
-            return f"the {side} is periodic, and waves or joints are not the same all along the way"
+            return f"the {side} is periodic, and waves or joints vary along it"
         if held in ("free", "fixed"):
             return f"the {side} is {held} and reflects waves"
     return None

@@ -58,7 +58,7 @@ def _of_layers(p: Properties) -> list[Mark]:
     Myer & Cook 1990)."""
     compliances = {c for c in p.excess_compliance[p.soft].tolist() if c > 0}
     return [
-        Mark("soft layer", 1 / (pi * p.impedance * c), "half energy through the soft layer")
+        Mark("soft layer", 1 / (pi * p.impedance * c), "half-energy frequency of the soft layer")
         for c in compliances
     ]
 

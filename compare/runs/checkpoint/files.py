@@ -127,7 +127,7 @@ class Checkpoints:
         with _as_damage(other):
             signature: Signature = dict(json.loads(str(_read(other)[ABOUT])))
         differing = differences(self.signature, signature) or ["run"]
-        raise SceneError(str(other), "", None, f"is of another {', '.join(differing)}: {ANEW}")
+        raise SceneError(str(other), "", None, f"is from another {', '.join(differing)}: {ANEW}")
 
     def _remove_but(self, samples: int) -> None:
         for name in self._found():
@@ -149,7 +149,7 @@ def _read(path: Path) -> dict[str, np.ndarray]:
     with _as_damage(path), within(COPIES * size + DIRECTORY), zipfile.ZipFile(path) as whole:
         members = whole.infolist()
         if sum(member.file_size for member in members) > size:
-            raise ValueError("holds more than it is long")
+            raise ValueError("is truncated")
         return {m.filename.removesuffix(".npy"): _array(whole, m) for m in members}
 
 
@@ -180,10 +180,10 @@ def _array(whole: zipfile.ZipFile, member: zipfile.ZipInfo) -> np.ndarray:
         raise ValueError("is compressed")
     with whole.open(member) as file:
         if np.lib.format.read_magic(file) != (1, 0):
-            raise ValueError("is of another version")
+            raise ValueError("is from another version")
         shape, by_columns, kind = np.lib.format.read_array_header_1_0(file)
         if kind.hasobject or file.tell() + kind.itemsize * prod(shape) != member.file_size:
-            raise ValueError("is not as long as it says")
+            raise ValueError("has the wrong length")
         return np.frombuffer(file.read(), kind).reshape(shape, order="F" if by_columns else "C")
 
 
@@ -195,7 +195,7 @@ def _as_damage(path: Path) -> Iterator[None]:
     except (SceneError, OSError, MemoryError):
         raise
     except Exception:
-        raise SceneError(str(path), "", None, f"is no checkpoint: {ANEW}") from None
+        raise SceneError(str(path), "", None, f"is not a checkpoint: {ANEW}") from None
 
 
 def _kind(array: np.ndarray) -> tuple:

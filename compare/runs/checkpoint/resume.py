@@ -48,7 +48,7 @@ class RunKeeper:
     def restore(self, parts: Any) -> None:
         """Copy into `parts` what they were at the newest checkpoint, and say so."""
         self.files.load(self.done, parts)
-        self._say(f"{self.files.result} goes on at t = {self._time(self.done):.4g} s")
+        self._say(f"{self.files.result} continues at t =  {self._time(self.done):.4g} s")
 
     def look(self, samples: int, parts: Any) -> None:
         """Keep the parts of a run where it is time to; raises Interrupted where a signal waits."""
@@ -77,7 +77,7 @@ class RunKeeper:
             self.files.save(samples, parts)
         except OSError as error:
             if not self._warned:
-                self._say(f"no checkpoint, {error.filename}: {error.strerror}; the run goes on")
+                self._say(f"no checkpoint, {error.filename}: {error.strerror}; the run continues")
             self._warned = True
             return False
         finally:
@@ -87,7 +87,7 @@ class RunKeeper:
     def _stop(self, number: int, samples: int, parts: Any) -> None:
         can_go_on = self._every > 0 and self._save(samples, parts)
         message = f"{word(number)} at t = {self._time(samples):.4g} s"
-        error = Interrupted(f"{message}, --resume goes on from there" if can_go_on else message)
+        error = Interrupted(f"{message}, --resume continues from there" if can_go_on else message)
         error.code = exit_code(number)
         raise error
 
