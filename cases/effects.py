@@ -1,4 +1,4 @@
-"""Effects that a scene calls for; all others are left out of the computation."""
+"""The effects of a scene; all others are not computed."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ STICKS = "neither friction_angle nor cohesion"
 
 @dataclass(frozen=True)
 class Effect:
-    """One optional part of the physics: its name, whether the scene calls for it, and why."""
+    """One optional part of the physics: its name, whether the scene has it, and why."""
 
     name: str
     active: bool
@@ -23,7 +23,7 @@ class Effect:
 
 
 def called_for(name: str, why: object, why_not: str) -> Effect:
-    """Return an effect; why : the reason where the scene calls for it, untrue where it does not."""
+    """Return an effect; why : the reason if the scene has it, false otherwise."""
     return Effect(name, bool(why), str(why) if why else why_not)
 
 
@@ -50,12 +50,12 @@ def effects(scene: AnyScene) -> list[Effect]:
 
 
 def active_effects(scene: AnyScene) -> list[str]:
-    """Return the names of the effects that the scene calls for."""
+    """Return the names of the scene's active effects."""
     return [effect.name for effect in effects(scene) if effect.active]
 
 
 def off_axis(scene: Scene) -> str | None:
-    """Return what takes the scene off its axis; None where nothing does."""
+    """Return why the scene is not axial; None if it is."""
     if scene.load.arm is not None:
         return "the load is a couple"
     if scene.load.is_across:
@@ -90,13 +90,13 @@ def _of_ends(scene: Scene, kind: str) -> Effect:
 
 
 def of_ledger(scene: AnyScene) -> Effect:
-    """Return whether a scene keeps its energy ledger."""
+    """Return whether a scene records its energy ledger."""
     kept = scene.record.energy and "record.energy is on"
     return called_for("energy ledger", kept, "record.energy = false")
 
 
 def of_fields(scene: AnyScene) -> Effect:
-    """Return whether a scene keeps snapshots of all of it."""
+    """Return whether a scene records snapshots."""
     every = scene.record.fields
     return called_for("field output", every and f"a snapshot every {every:g} s", "no record.fields")
 
@@ -115,7 +115,7 @@ def _of_motion(scene: Scene, p: Properties) -> Iterator[Effect]:
 
 
 def _of_law(scene: Scene, along: bool) -> Iterator[Effect]:
-    """Yield the optional parts of the joints' law: those along them alone, or the others."""
+    """Yield the optional parts of the joint law: those in shear, or the others."""
     still = along and off_axis(scene) is None
     for part in PARTS:
         if part.along == along:

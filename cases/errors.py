@@ -1,4 +1,4 @@
-"""The errors that a user meets: a scene that cannot be run, a run that went wrong."""
+"""User-facing errors: scenes that cannot be run, and runs that failed."""
 
 import reprlib
 from collections.abc import Iterable
@@ -13,10 +13,10 @@ class SceneError(ValueError):
 
     Parameters
     ----------
-    where : the scene file (or other source) that holds the mistake.
+    where : the scene file (or other source) with the mistake.
     key : dotted key, `pillar.length`; empty when the mistake is not in one key.
-    value : the value that was found, or None when a key is missing or absent.
-    allowed : what would be accepted, as a phrase.
+    value : the value found, or None for a missing key.
+    allowed : what is allowed, as a phrase.
     """
 
     def __init__(self, where: str, key: str, value: object, allowed: str) -> None:
@@ -27,14 +27,14 @@ class SceneError(ValueError):
         super().__init__(" ".join(printable(f"{where}: {subject}{allowed}").split()))
 
     def __reduce__(self) -> tuple:
-        """Return how to make it again: it crosses from worker processes."""
+        """Support pickling: errors are passed from worker processes."""
         return type(self), self._arguments
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """Return the known name that one was likely meant as, as the end of a message; else nothing.
+    """Return the likely intended name as the end of a message; else an empty string.
 
-    Of names with folders the last part alone may be given.
+    The last part of a name with folders suffices.
     """
     names = list(known)
     ends = {one.rpartition("/")[2]: one for one in reversed(names)}
@@ -45,7 +45,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 
 class UnstableError(RuntimeError):
-    """A run that left its stability bound and was stopped; its message says what and when."""
+    """A run stopped because it exceeded its bounds; its message gives cause and time."""
 
 
 class StoppedError(UnstableError):
@@ -60,7 +60,7 @@ class StoppedError(UnstableError):
 
 
 class InterruptedRun(StoppedError):
-    """A run that was asked to stop, by the user or the machine."""
+    """A run stopped by the user or the system."""
 
 
 class _Found(reprlib.Repr):
@@ -87,7 +87,7 @@ _short = _Found().repr
 
 
 def printable(text: str) -> str:
-    """Return a text of others as one line that moves no cursor and hides nothing.
+    """Return an external text as one safe line, without control sequences.
 
     Control and format characters (escape sequences, C1, DEL, direction marks) and unassigned ones
     are spelled as Python does; any kind of space, and the end of a line, is a space.

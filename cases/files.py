@@ -1,6 +1,6 @@
-"""Reading the text files that a user names, with one phrase for whatever is wrong.
+"""Reading of user-supplied text files, with one-phrase errors.
 
-What a file would take of memory follows from its size, and is asked before it is read.
+The memory that a file needs is estimated from its size before it is read.
 """
 
 import io
@@ -15,14 +15,14 @@ from typing import Any, BinaryIO
 
 from cases.size import memory, spoken
 
-#: A key of so many parts: tomllib takes time with the third power of their number.
+#: Keys of many parts: tomllib takes time cubic in their number.
 LONG_KEY = re.compile(r"""(?<![\w"'-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){64}""")
 
 #: Bytes of memory at most for each byte of a file: as text of four bytes a character, with its
 #: copies, and as what TOML and JSON make of it: a table for each `a=1`, a list for each `[],`.
 TEXT, TOML, JSON = 12, 120, 40
 NUMBER = 64  # bytes of memory for each number of a table, with its copies
-SMALL = 10_000_000  # bytes: what takes less is read, however little memory a run may take
+SMALL = 10_000_000  # bytes: smaller files are always read
 LONGEST_LINE = 200_000  # characters, of a table
 
 
@@ -33,7 +33,7 @@ def read_bytes(path: Path, largest: int, times: int) -> bytes:
     regular files are opened: a pipe would block.
     """
     with _opened(path, largest, times) as file:
-        content = file.read(largest + 1)  # what the system makes up may have no size
+        content = file.read(largest + 1)  # virtual files may report no size
         if len(content) > largest:
             raise ValueError(_too_large(largest))
         return content
@@ -95,7 +95,7 @@ def _refuse_beyond_memory(size: float) -> None:
 
 
 def _numbers_at_most(file: BinaryIO, largest: int) -> int:
-    """Return how many numbers a table can hold, by what separates them; go back to its start."""
+    """Return a bound on the numbers in a table, from its separators; rewind it."""
     found = seen = 0
     while part := file.read(1 << 20):
         seen += len(part)
@@ -134,8 +134,8 @@ def parse_toml(text: str) -> dict[str, Any]:
 def beside(folder: str | Path, file: str, anywhere: bool = False) -> Path:
     """Return the path of a file that a scene in `folder` names.
 
-    It lies in that folder or below, whatever links are on the way, unless it may be `anywhere`:
-    where the user names it. Raises ValueError, in one phrase.
+    It lies in that folder or below, with links resolved, unless it may be `anywhere` (named by the
+    user). Raises ValueError, in one phrase.
     """
     path = Path(folder, file).absolute()
     try:

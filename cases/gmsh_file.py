@@ -1,4 +1,4 @@
-"""A gmsh file as it stands: vertices, rock cells, and the facets of its named groups."""
+"""The content of a gmsh file: vertices, rock cells, and the facets of its named groups."""
 
 from contextlib import redirect_stderr
 from io import StringIO
@@ -47,7 +47,7 @@ SAVE_GROUPS = "save it with Mesh.SaveAll = 0"
 
 
 class MeshError(ValueError):
-    """What is wrong with a gmsh file, in one phrase."""
+    """An error in a gmsh file, in one phrase."""
 
 
 class Tagged(NamedTuple):
@@ -97,7 +97,7 @@ def _read(path: Path):
         with redirect_stderr(StringIO()), catch_warnings(), within(room):
             simplefilter("ignore")
             return meshio.gmsh.read(path)
-    # A broken file makes the reader fail in any way.
+    # A broken file can raise any error in the reader.
     except Exception as error:
         reason = str(error) or type(error).__name__
         if "gmsh:physical" in reason:

@@ -1,4 +1,4 @@
-"""Functions of time that a load can be: its value, its time integrals, and where it is not smooth.
+"""Load histories: value, time integrals, and times where they are not smooth.
 
 All are closed forms. Units are those of an end stress, Pa and Pa s; a force or a motion has its own
 in their place.
@@ -179,7 +179,7 @@ class Gabor:
 
 @dataclass(frozen=True)
 class Step:
-    """A stress p0 that is applied at t = 0 and stays."""
+    """A stress p0 applied at t = 0 and held constant."""
 
     amplitude: float
 
@@ -197,7 +197,7 @@ class Step:
 
     @property
     def end(self) -> float:
-        """Time after which it does not change, s."""
+        """Time after which it is constant, s."""
         return 0.0
 
     @property

@@ -18,7 +18,7 @@ from cases.kinds import AnyScene
 
 LIMIT = "JOINTWAVE_MEMORY"  # GB, in the environment: a bound of the user's own
 LARGEST_VARIABLE = 2**31 - 4  # bytes, of a NetCDF 3 file
-#: Of what a control group may take, version 2 and 1.
+#: Memory limits of control groups, versions 2 and 1.
 GROUPS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
 
 #: Bytes a step for the load's mean over it, and what that is made of; its history is table.
@@ -34,8 +34,8 @@ _asked: ContextVar[dict[str, float] | None] = ContextVar("_asked", default=None)
 
 @contextmanager
 def estimates() -> Iterator[dict[str, float]]:
-    """Collect what the parts of a run would take (bytes, by the key that decides them), as they are
-    looked at before it is made."""
+    """Collect the memory of the parts of a run (bytes, by the key that decides them) in the
+    checks before it."""
     parts: dict[str, float] = {}
     token = _asked.set(parts)
     try:
@@ -87,14 +87,14 @@ def refuse_beyond_memory(scene: AnyScene, parts: Mapping[str, float]) -> None:
 
 
 def require(size: float, what: str) -> None:
-    """Raise MemoryError where so many bytes are more than a run may take."""
+    """Raise MemoryError for more bytes than a run may take."""
     if size > memory():
         raise MemoryError(f"{what} would need about {spoken(size)}; {spoken(memory())} available")
 
 
 @contextmanager
 def within(room: float) -> Iterator[None]:
-    """Let allocations of more than so many bytes raise MemoryError, where the system can tell."""
+    """Make allocations beyond so many bytes raise MemoryError, where the system supports it."""
     try:
         pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
     except OSError:
@@ -110,7 +110,7 @@ def within(room: float) -> Iterator[None]:
 
 
 def value_of(scene: AnyScene, key: str) -> object:
-    """Return what a scene has at a dotted key."""
+    """Return the value of a dotted key of a scene."""
     found: object = scene
     for part in key.split("."):
         found = getattr(found, part)
@@ -125,12 +125,12 @@ def spoken(size: float) -> str:
 
 
 def samples_of(scene: AnyScene) -> float:
-    """Return how many samples a scene asks for."""
+    """Return the number of samples of a scene."""
     return scene.time.duration / scene.interval + 1
 
 
 def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:
-    """Return what the waveforms and the ledger take (bytes), written ones included.
+    """Return the memory of waveforms and ledger (bytes), written copies included.
 
     Raises SceneError where one of them would not fit a file.
     """
@@ -164,12 +164,12 @@ def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:
 
 
 def load_bytes(scene: AnyScene, steps: float) -> float:
-    """Return what the loads of so many steps take (bytes) while they are made."""
+    """Return the memory of the loads of so many steps (bytes)."""
     tables = [one.history is not None for one in scene.pulses]
     return steps * sum(TABLE_OF_STEP if table else LOAD_OF_STEP for table in tables)
 
 
 def snapshot_bytes(scene: AnyScene, nodes: float) -> float:
-    """Return what the snapshots of so many nodes take (bytes)."""
+    """Return the memory of snapshots of so many nodes (bytes)."""
     fields = scene.record.fields
     return 0.0 if fields is None else (scene.time.duration / fields + 1) * nodes * 7 * 8 * COPIES

@@ -38,7 +38,7 @@ class ShortestWave(NamedTuple):
 
     @property
     def reflection(self) -> float:
-        """tan(k d / 4): what a quiet end on a rigid block reflects of it (Guo & Li 2002, (9))."""
+        """tan(k d / 4), the reflection by a quiet end on a rigid block (Guo & Li 2002, (9))."""
         if self.frequency >= self.cut_off:
             return 1.0
         return tan(asin(self.frequency / self.cut_off) / 2)

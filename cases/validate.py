@@ -1,4 +1,4 @@
-"""From the table of a scene to its model; what is wrong is an error in one line."""
+"""Validation of a scene's tables by its model; errors are one line."""
 
 import re
 from pathlib import Path
@@ -14,7 +14,7 @@ FILE_KEYS = ("load.file", "numerics.continuum.mesh")
 FILE_KEYS_OF_ROCK_MASSES = ("waves.file", "loads.file")
 PLACE = re.compile(r"\.\d+(?=\.)")  # in a list of tables, as in `waves.0.file`
 
-#: What is allowed, by pydantic's type of error.
+#: Allowed values, by pydantic's type of error.
 ALLOWED = {
     "contradiction": "{allowed}",
     "extra_forbidden": "unknown key; allowed: ",

@@ -1,6 +1,6 @@
-"""Warnings of likely mistakes in a scene, a line each, from the scene alone.
+"""Warnings of likely mistakes in a scene, one line each.
 
-No rule refuses a scene: what is unusual may be meant. `--strict` takes each line for an error.
+No scene is refused: unusual values may be intended. `--strict` makes each line an error.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ Rule = Callable[[Scene, Properties, ShortestWave | None], Iterator[str]]
 
 
 def warnings(scene: AnyScene) -> list[str]:
-    """Return what a scene may say but hardly means, a line each; a pure function of the scene."""
+    """Return warnings of probable mistakes in a scene, one line each."""
     if not isinstance(scene, Scene):
         from cases.plane.warnings import warnings_in_plane
 
@@ -238,7 +238,7 @@ def onset(pulse: Pulse) -> float:
 
 
 def _wavelet(pulse: Pulse) -> Ricker | Gabor | None:
-    """Return a pulse that swells from nothing; None of any other."""
+    """Return a pulse with a gradual onset; None for others."""
     if pulse.shape not in ("ricker", "gabor") or pulse.period is None:
         return None
     found = periodic(pulse.shape, 1.0, pulse.period, pulse.cycles)
@@ -247,7 +247,7 @@ def _wavelet(pulse: Pulse) -> Ricker | Gabor | None:
 
 
 def _of_quiet_ends(scene: Scene, p: Properties, wave: ShortestWave | None) -> Iterator[str]:
-    """Say what a dashpot on a whole block reflects; a scene that names its source has it so."""
+    """Warn of the reflection by a dashpot on a whole block; scenes with a source are exempt."""
     if wave is None or scene.source is not None or wave.reflection <= MOST_REFLECTED:
         return
     for key in ("start", "end"):

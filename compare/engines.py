@@ -85,7 +85,7 @@ def selection() -> dict[str, dict[str | None, str]]:
 
 
 def applies(name: str, scene: AnyScene) -> Answer:
-    """Return whether this engine or solution holds for the scene, or the reason why not."""
+    """Return whether this engine or solution applies to the scene, or the reason why not."""
     one = solver(name)
     if scene.kind not in one.kinds:
         return no(f"is for a {one.kinds[0]}, not for a {scene.kind}")

@@ -1,4 +1,4 @@
-"""The numbers of a scene: every joint's stiffness, damping and strength, the blocks' inertia."""
+"""The properties of a scene: stiffness, damping and strength of joints, inertia of blocks."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Properties(Strength):
-    """The numbers of a scene that both engines and all exact solutions start from, with the
+    """The properties of a scene shared by both engines and all exact solutions, with the
     strength of its joints.
 
     Attributes
@@ -87,7 +87,7 @@ class Properties(Strength):
 
     @property
     def is_uniform(self) -> bool:
-        """Whether all blocks are alike, and all joints but for the soft layers."""
+        """Whether all blocks are equal, and all joints except the soft layers."""
         return True
 
     @property
@@ -111,7 +111,7 @@ class Properties(Strength):
         return self.contact_y[1:] - self.spacing / 2
 
     def travel_time(self, y: float) -> float:
-        """Return when what the start sends along the homogenised bar is at y (m), s."""
+        """Return the travel time along the homogenised bar from the start to y (m), s."""
         return y / self.bar_speed
 
     @property

@@ -1,5 +1,5 @@
-"""Joints that stiffen as they close: their constants from roughness and strength, and how far
-they may close in a scene.
+"""Joints that stiffen as they close: their constants from roughness and strength, and their
+largest closure in a scene.
 
 Bandis, Lumsden & Barton, Int. J. Rock Mech. Min. Sci. 20, 249-268 (1983), and Barton, Bandis &
 Bakhtar, 22, 121-140 (1985), measured joints of JRC 5 to 15 and JCS 22 to 182 MPa. In their units,
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from cases.schema.pulse import Pulse
     from cases.schema.rock_mass import RockMass
 
-SAMPLES = 10_001  # of a pulse, whose peak is looked for among them and its breaks
+SAMPLES = 10_001  # of a pulse, for its peak, in addition to its breaks
 
 
 class Closure(NamedTuple):
@@ -40,7 +40,7 @@ def bandis_closure(roughness: float, wall_strength: float, rock_strength: float)
     """Return the closure of a joint of JRC `roughness`, JCS `wall_strength` (Pa), in rock of
     uniaxial compressive strength sigma_c `rock_strength` (Pa).
 
-    Raises ValueError beyond what was measured: JRC 5 to 15, JCS 22 to 182 MPa and at most sigma_c,
+    Raises ValueError outside measured ranges: JRC 5 to 15, JCS 22 to 182 MPa and at most sigma_c,
     aperture 0.1 to 0.6 mm.
     """
     jcs, sigma_c = wall_strength / 1e6, rock_strength / 1e6
@@ -58,17 +58,17 @@ def bandis_closure(roughness: float, wall_strength: float, rock_strength: float)
 
 
 def stress_in_reach(scene: AnyScene) -> float:
-    """Return the normal stress (Pa) that the critical step lets joints stiffen up to.
+    """Return the normal stress (Pa) for which the critical step accounts in joint closure.
 
-    What stands before anything acts, and twice the peaks of all that acts, as before a wall that
-    does not give way. Waves that gather in one place can exceed it: it bounds no run.
+    The initial stress plus twice the peaks of all loads and waves, as at a rigid wall. Focusing
+    waves can exceed it: it is not a strict bound.
     """
     pulses = sum(_stress_of(one, scene) * _peak(one, scene.time.duration) for one in scene.pulses)
     return _at_rest(scene) + 2 * pulses
 
 
 def _at_rest(scene: AnyScene) -> float:
-    """Return the stress of prestress and weight, twice that of a weight put on at once, Pa."""
+    """Return the stress of prestress and weight, doubled for a sudden weight, Pa."""
     if isinstance(scene, Scene):
         stress = abs(scene.prestress.normal) if scene.prestress else 0.0
         extent = scene.pillar.length

@@ -52,7 +52,7 @@ class LayeredProperties(Properties):
 
     @property
     def is_uniform(self) -> bool:
-        """Whether all blocks are alike, and all joints but for the soft layers."""
+        """Whether all blocks are equal, and all joints except the soft layers."""
         return False
 
     @property
@@ -86,7 +86,7 @@ class LayeredProperties(Properties):
         return (self.contacts[1:] + self.contacts[:-1]) / 2
 
     def travel_time(self, y: float) -> float:
-        """Return when what the start sends along the homogenised bar is at y (m), s."""
+        """Return the travel time along the homogenised bar from the start to y (m), s."""
         slowness = np.array([1 / one.bar_speed for one in self.segments])[self.of_block]
         arrivals = np.append(0.0, np.cumsum(slowness * np.diff(self.contacts)))
         return float(np.interp(y, self.contacts, arrivals))

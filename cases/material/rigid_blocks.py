@@ -59,7 +59,7 @@ class RockShare(NamedTuple):
     left_over: float
 
     def of_set(self, index: int) -> np.ndarray:
-        """Return the excess of a set [2], m/Pa; none of joints that are alone."""
+        """Return the excess of a set [2], m/Pa; none for single joints."""
         at = self.direction[index]
         return self.compliance[at] * self.apart[at] if at >= 0 else np.zeros(2)
 
@@ -101,7 +101,7 @@ def rigid_joints(
 
 
 def rock_shares(scene: RockMass, further: list[JointSet]) -> list[RockShare]:
-    """Return what intact rock adds to joints in each region, and last in the rest."""
+    """Return the compliance that intact rock adds to joints in each region, the rest last."""
     if why := against(scene):
         raise SceneError(scene.where, "numerics.dem.block", None, why)
     sets = [*scene.joint_sets, *further]
@@ -153,7 +153,7 @@ def welded(
 
 
 def against(scene: RockMass) -> str | None:
-    """Return why a scene is none of rigid blocks, None where it is one."""
+    """Return why rigid blocks cannot represent a scene, None if they can."""
     if scene.domain.given is not None:
         return "cannot make rigid blocks from the cells of domain.mesh"
     if scene.numerics.dem.block is not None:

@@ -1,4 +1,4 @@
-"""Blocks, contacts and boundary edges as plain arrays: what engines start from."""
+"""Blocks, contacts and boundary edges as plain arrays, the input of engines."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""The domain's shape: its convex hull, and what is taken out of it."""
+"""The domain's shape: its convex hull, and the polygons excluded from it."""
 
 from dataclasses import dataclass
 

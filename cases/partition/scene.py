@@ -1,4 +1,4 @@
-"""The partition of a rock-mass scene, and what it takes, known before it is made."""
+"""The partition of a rock-mass scene, and its memory, estimated in advance."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -165,7 +165,7 @@ def block_count(domain: Domain, sets: list[JointSet]) -> float:
 
 
 def partition_bytes(scene: RockMass, further: Sequence[JointSet] = ()) -> float:
-    """Return what cutting a rock mass into blocks takes, bytes."""
+    """Return the memory for the partition of a rock mass, bytes."""
     return OF_BLOCK * block_count(scene.domain, [*scene.joint_sets, *further])
 
 

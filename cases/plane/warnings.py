@@ -1,4 +1,4 @@
-"""Warnings of likely mistakes in a rock mass, a line each, from the scene alone."""
+"""Warnings of likely mistakes in a rock mass, one line each."""
 
 from collections.abc import Callable, Iterator
 from typing import cast
@@ -23,12 +23,12 @@ Source = tuple[str, "Wave | PlaneLoad"]  # its table in the scene and itself
 
 
 def warnings_in_plane(scene: RockMass) -> list[str]:
-    """Return what a rock mass may say but hardly means, a line each."""
+    """Return warnings of probable mistakes in a rock mass, one line each."""
     return [line for rule in RULES for line in rule(scene)]
 
 
 def _sources(scene: RockMass) -> list[Source]:
-    """Return what acts with its table, what has no amplitude left out."""
+    """Return waves and loads of nonzero amplitude with their tables."""
     named: list[Source] = [(f"waves[{i}]", wave) for i, wave in enumerate(scene.waves)]
     named += [(f"loads[{i}]", load) for i, load in enumerate(scene.loads)]
     return [(table, one) for table, one in named if one.amplitude]
@@ -91,7 +91,7 @@ def _block_size(scene: RockMass) -> float | None:
 
 
 def _of_arrivals(scene: RockMass) -> Iterator[str]:
-    """Say which receivers nothing reaches before the end of the scene, in intact rock."""
+    """Warn of receivers that no wave in intact rock reaches before the end of the scene."""
     falls = scene.gravity is not None and not scene.gravity.static
     sources, end = _sources(scene), scene.time.duration
     if falls or not sources:
@@ -117,7 +117,7 @@ def _arrival(scene: RockMass, pulse: Wave | PlaneLoad, place: np.ndarray) -> flo
 
 
 def _nearest(scene: RockMass, load: PlaneLoad, place: np.ndarray) -> float:
-    """Return how far a place is from what a load acts on, m."""
+    """Return the distance of a point from a load, m."""
     if load.at is not None:
         return float(np.hypot(*(place - load.at)))
     return distance(place, outline_of(scene.domain).edges(load.side, load.opening))

@@ -16,12 +16,12 @@ CHECKS = {"_magnitude": "", "_amplitude": "", "_unit": "of length 1", "_words": 
 
 
 def in_words(field: FieldInfo) -> str:
-    """Return what a field allows; raises KeyError for a type or check without words."""
+    """Return what a field allows, in words; raises KeyError for an unknown type or check."""
     return _words(field.annotation, field.metadata)
 
 
 def model_in(annotation: Any) -> type[BaseModel] | None:
-    """Return the model that a field holds, or a list of which it holds, if any."""
+    """Return the model of a field, or of the items of its list, if any."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
     return next((m for part in get_args(annotation) if (m := model_in(part))), None)

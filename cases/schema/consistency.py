@@ -105,7 +105,7 @@ def _check_lever(scene: Scene) -> None:
 
 
 def _check_extreme(scene: Scene) -> None:
-    """An extreme load is scaled, and so must be all that it does."""
+    """An extreme load is scaled, so that its effects must be linear."""
     if not is_extreme(scene.load.amplitude):
         return
     for key, value, wrong in _beyond_scaling(scene):
@@ -118,7 +118,7 @@ def _check_extreme(scene: Scene) -> None:
 
 
 def _beyond_scaling(scene: Scene) -> Iterator[tuple[str, object, bool]]:
-    """Yield what a load beyond all sizes must not meet: key, value, and whether it is there."""
+    """Yield what an extreme load excludes: key, value, and whether it is present."""
     load, record = scene.load, scene.record
     yield "gravity", None, scene.gravity is not None
     yield "prestress", None, scene.prestress is not None

@@ -1,4 +1,4 @@
-"""The comments `#: text` that say what a model's fields mean, read from its source."""
+"""The comments `#: text` that describe a model's fields, read from its source."""
 
 import ast
 import inspect
@@ -9,7 +9,7 @@ CASES = __name__.rpartition(".schema.")[0]
 
 
 def field_comments(model: type) -> dict[str, str]:
-    """Return what the comments say of each field that a model, or one that it extends, defines."""
+    """Return the comment of each field of a model, inherited fields included."""
     found: dict[str, str] = {}
     for base in reversed(model.__mro__):
         if "__annotations__" in vars(base) and base.__module__.startswith(CASES):

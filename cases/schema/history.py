@@ -13,7 +13,7 @@ import numpy as np
 from cases.files import beside, is_number, read_bytes, read_lines
 
 LARGEST_FILE = 200_000_000  # bytes; some ten million samples
-LARGEST = 1e30  # s, Pa; what lies beyond is a mistake, and its squares overflow
+LARGEST = 1e30  # s, Pa; larger numbers are mistakes, and their squares overflow
 TRACE = 16  # bytes of memory for each of a trace's: compressed samples, as two numbers
 #: Formats of traces by the ends of their files' names, as ObsPy names them.
 FORMATS = {".sac": "SAC", ".mseed": "MSEED", ".miniseed": "MSEED"}

@@ -1,4 +1,4 @@
-"""Every table and key that a scene file may hold, from the models that read it."""
+"""Every table and key of a scene file, from the models that read it."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple, get_origin
@@ -22,7 +22,7 @@ class TableOf(NamedTuple):
 
     @property
     def fields(self) -> list[tuple[str, FieldInfo]]:
-        """The keys that a file may hold here, tables included."""
+        """The keys of this table, subtables included."""
         named = self.model.model_fields.items()
         return [(name, field) for name, field in named if self.path or name not in NOT_A_KEY]
 
@@ -47,7 +47,7 @@ def tables(path: str = "", model: type[BaseModel] = Scene, many: bool = False) -
 
 
 def keys(model: type[BaseModel] = Scene) -> Iterator[tuple[str, FieldInfo]]:
-    """Yield the dotted path of every key that a scene file may hold, tables left out."""
+    """Yield the dotted path of every key of a scene file, without tables."""
     for table in tables(model=model):
         for name, field in table.fields:
             if not model_in(field.annotation):
@@ -55,6 +55,6 @@ def keys(model: type[BaseModel] = Scene) -> Iterator[tuple[str, FieldInfo]]:
 
 
 def default_of(field: FieldInfo) -> Any:
-    """Return what holds where a key is absent; None where its effect is left out."""
+    """Return the default of a key; None if its effect is then absent."""
     value = field.get_default(call_default_factory=True)
     return None if isinstance(value, BaseModel) or value in ([], {}) else value

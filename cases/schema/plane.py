@@ -1,4 +1,4 @@
-"""The small tables of a rock mass: its intact rock, its sides, what fills it, what is recorded."""
+"""The small tables of a rock mass: intact rock, boundaries, initial stress, receivers, numerics."""
 
 from typing import Annotated, Literal
 

@@ -64,7 +64,7 @@ def implausible(scene: AnyScene) -> Iterator[str]:
 
 
 def meant(value: float, usual: Usual) -> str:
-    """Return what a value is in the unit in which it would be rock's; nothing where in none."""
+    """Return a value in the unit in which it would be usual for rock; empty if there is none."""
     for unit, factor in usual.others:
         if usual.low <= value * factor <= usual.high:
             return f": {value:g} {unit} is {value * factor:.4g} {usual.unit}"

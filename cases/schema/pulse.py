@@ -96,7 +96,7 @@ class Pulse(Table):
 
 
 def shortest_period(pulses: Iterable[Pulse]) -> float | None:
-    """Return the shortest time scale of pulses, s; None where none has one."""
+    """Return the shortest time scale of pulses, s; None without any."""
     return min((one.time_scale for one in pulses if one.time_scale), default=None)
 
 

@@ -1,4 +1,4 @@
-"""The scene of a rock mass in the plane: a domain cut by joint sets, and what acts on it.
+"""The scene of a rock mass in the plane: a domain cut by joint sets, under waves and loads.
 
 A file with a table [domain] holds one; a file with [pillar] is a `Scene`. Tables that both have
 mean the same. SI units; x to the right, y upwards, plane strain.

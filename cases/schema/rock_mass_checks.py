@@ -155,7 +155,7 @@ def _check_side(table: str, load: PlaneLoad, scene: RockMass, outline: Outline) 
 
 
 def _check_part(table: str, load: PlaneLoad, outline: Outline) -> None:
-    """Refuse the ends of a part that are not on what the pressure acts on."""
+    """Refuse `between` points that are not on the loaded side or opening."""
     assert load.between is not None
     edges = outline.edges(load.side, load.opening)
     for point in load.between:

@@ -108,7 +108,7 @@ class Scene(Table):
 
     @property
     def is_uniform(self) -> bool:
-        """Whether all blocks are alike, and all joints but for the soft layers."""
+        """Whether all blocks are equal, and all joints except the soft layers."""
         return not self.segments and self.scatter is None
 
     @property

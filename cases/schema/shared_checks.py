@@ -1,4 +1,4 @@
-"""Contradictions that a pillar and a rock mass can have alike."""
+"""Contradictions common to pillars and rock masses."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def check_fields(scene: AnyScene) -> None:
 
 
 def check_quality(scene: AnyScene) -> None:
-    """Raise a contradiction of a quality factor with what acts, or with other damping of rock."""
+    """Raise a contradiction of a quality factor with the loads, or with other damping of rock."""
     quality = scene.rock.quality_factor
     if quality is None:
         return

@@ -1,4 +1,4 @@
-"""The small tables of a scene: the pillar, its rock, what holds and fills it, what is recorded."""
+"""The small tables of a scene: pillar, rock, ends, initial state, receivers, numerics."""
 
 from pathlib import Path
 from typing import Annotated, Any, Literal

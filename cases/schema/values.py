@@ -9,8 +9,8 @@ from pydantic_core import PydanticCustomError
 
 from cases.files import beside
 
-#: What a text may not hold: it moves a terminal's cursor (C0, DEL, C1), turns the direction of
-#: what follows, or is no character of XML. Tabs and ends of lines it may.
+#: Characters excluded from texts: control characters (C0, DEL, C1), direction marks, and those
+#: invalid in XML. Tabs and line ends are allowed.
 CONTROL = re.compile(
     "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f"
     "\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]"
@@ -26,21 +26,21 @@ def _words(text: str) -> str:
 
 
 def _magnitude(value: float) -> float:
-    """Refuse what no unit system explains; the squares of such numbers overflow or vanish."""
+    """Refuse numbers outside any unit system; their squares overflow or vanish."""
     if value and not 1e-30 <= abs(value) <= 1e30:
         raise PydanticCustomError("magnitude", "must lie between 1e-30 and 1e30 in magnitude")
     return value
 
 
 def _amplitude(value: float) -> float:
-    """Refuse what leaves no room between itself and the end of all numbers."""
+    """Refuse amplitudes close to overflow or underflow."""
     if value and not 1e-300 <= abs(value) <= 1e300:
         raise PydanticCustomError("magnitude", "must lie between 1e-300 and 1e300 in magnitude")
     return value
 
 
 def is_extreme(amplitude: float) -> bool:
-    """Return whether a load is so small or large that squares or sums of it are no numbers."""
+    """Return whether squares or sums of a load overflow or underflow."""
     return bool(amplitude) and not 1e-30 <= abs(amplitude) <= 1e30
 
 
@@ -53,7 +53,7 @@ def _pair(text: str) -> str:
 
 
 def _unit(vector: list[float]) -> list[float]:
-    """Refuse what is not a direction."""
+    """Refuse vectors that are not directions."""
     if abs(sum(x * x for x in vector) - 1) > 1e-9:
         raise PydanticCustomError("unit", "must be a unit vector")
     return vector

@@ -22,7 +22,7 @@ ANSWER = ["engine", "worst misfit", "at", "compared with", "own error", "steppin
 def show_comparisons(
     found: list[Comparison], every: bool, as_json: bool, reads: bool = False
 ) -> None:
-    """Print where each engine stands; every : also all distances, and why a solution is missing.
+    """Print one line for each engine; every : also all misfits, and why solutions do not apply.
 
     reads : also what engineers read off the velocities of all solutions.
     """
@@ -103,7 +103,7 @@ def in_percent(worst: Worst) -> str:
 
 
 def _remarks(stand: dict[str, Standing], several: bool) -> Iterator[str]:
-    """Yield what the references are, what nothing has checked, and which bounds are not met."""
+    """Yield the references, engines not checked independently, and bounds that are exceeded."""
     held = [one for standing in stand.values() for one in standing.variants]
     reasons = dict.fromkeys(f"{one.against}: {one.reason}" for one in held if one.against)
     if reasons:
@@ -124,7 +124,7 @@ def _without_engine(comparison: Comparison) -> Iterator[str]:
 
 
 def _files(found: list[Comparison]) -> Iterator[str]:
-    """Yield a line for each file of others in each variant: its worst misfit from each engine."""
+    """Yield a line for each external file in each variant: its worst misfit from each engine."""
     for comparison in found:
         rows = [row for row in comparison.rows if row.pair.kind == GIVEN]
         name = f"{comparison.scene.name}: " if len(found) > 1 and comparison.scene.name else ""
@@ -240,7 +240,7 @@ def _comparison_facts(comparison: Comparison) -> dict[str, Any]:
 
 
 def _engine_facts(engine: str, comparison: Comparison) -> dict[str, Any]:
-    """Return where an engine stands in one variant; floor : of its reference's own error."""
+    """Return an engine's line for one variant; floor : of its reference's own error."""
     held, about = held_to(engine, comparison), comparison.results[engine].attrs
     return {
         "misfit": held.total.misfit,

@@ -1,6 +1,6 @@
 """Shell completion: scenes, variants, keys with their values, models, studies.
 
-Each is called when a key is pressed: nothing heavy is imported, and what is wrong is no message.
+Called at every key press: nothing heavy is imported, and errors are silent.
 """
 
 import os
@@ -14,7 +14,7 @@ from cases.files import read_toml
 from compare.experiments import IN_CODE
 from compare.scenes import find, names
 
-LARGEST_FILE = 1_000_000  # bytes: what takes longer to read than a key may take is not looked into
+LARGEST_FILE = 1_000_000  # bytes: larger files take too long to read at a key press
 
 
 def scenes(incomplete: str) -> list[str]:
@@ -72,7 +72,7 @@ def models(incomplete: str) -> list[str]:
 
 
 def studies(incomplete: str) -> list[str]:
-    """Return shipped studies and the files of others."""
+    """Return shipped studies and study files."""
     shipped = Path(__file__).parents[1] / "experiments" / "study" / "shipped"
     known = sorted(path.stem for path in shipped.glob("*.toml"))
     return [*_begun([*known, *IN_CODE], incomplete), *files(incomplete)]

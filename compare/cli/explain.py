@@ -16,7 +16,7 @@ from compare.solvers.record import Answer, Prepared
 
 
 class Explanation(NamedTuple):
-    """Everything that can be said of a scene but what comes out of it.
+    """Everything known about a scene before a run.
 
     properties : of a pillar. blocks : of a rock mass, see `partition_view`. runs : of each engine
     that applies, with its step; failures : why one that applies could not run. references : what

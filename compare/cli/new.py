@@ -51,7 +51,7 @@ def _files(scene: Path) -> list[str]:
 
 
 def starter(path: Path, template: Template = PILLAR) -> str:
-    """Return a scene that runs as it stands, to be written at a path."""
+    """Return a runnable scene, to be written at a path."""
     shown, folder = quote(path.name), quote(path.stem)
     begin = [
         f"Check: jointwave explain {shown}",

@@ -17,7 +17,7 @@ LARGEST_FILE = 10_000_000  # bytes, as of any scene
 
 
 class SceneWarning(UserWarning):
-    """What a scene says but hardly means."""
+    """A probable mistake in a scene."""
 
 
 class Misfit(Exception):
@@ -25,7 +25,7 @@ class Misfit(Exception):
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "SceneFile | None":
-    """Collect a TOML file that describes a scene and says what it expects."""
+    """Collect a TOML file that is a scene with [expect]."""
     if file_path.suffix != ".toml" or not _is_scene(file_path):
         return None
     return SceneFile.from_parent(parent, path=file_path)
@@ -92,7 +92,7 @@ class SceneFile(pytest.File):
 
 
 class PairItem(pytest.Item):
-    """The misfit of one pair in one variant, held to its bound."""
+    """The misfit of one pair in one variant, compared with its bound."""
 
     def __init__(self, *, scene=None, pair="", bound=0.0, reason="", **kwargs) -> None:
         super().__init__(**kwargs)
@@ -142,13 +142,13 @@ class PairItem(pytest.Item):
         return shlex.join(["jointwave", "compare", str(self.path), *variant, "--out", "misfit"])
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style=None):
-        """Return the message alone: a traceback would say nothing about the scene."""
+        """Return the message without a traceback."""
         if isinstance(excinfo.value, Misfit | SceneWarning):
             return str(excinfo.value)
         return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, None, str]:
-        """Return where the test stands."""
+        """Return the location of the test."""
         return self.path, None, self.name
 
 

@@ -1,4 +1,4 @@
-"""The scenes that `jointwave new` writes: their values, and what stands around them."""
+"""The templates of `jointwave new`: values, header and footer."""
 
 from typing import NamedTuple
 

@@ -43,7 +43,7 @@ def beyond(scene: Scene, *held: str) -> str | None:
 
 
 def holds(scene: Scene, held: tuple[str, ...], *against: tuple[bool, str]) -> Answer:
-    """Return whether a solution that holds for the physics `held` holds for a scene.
+    """Return whether a solution valid for the physics `held` applies to a scene.
 
     against : conditions that are against it, each with its reason; the first that is true counts.
     """
@@ -58,7 +58,7 @@ def is_free(scene: Scene) -> bool:
 
 
 def static_stress(scene: Scene) -> float:
-    """Return what every section holds before the load acts, Pa, where gravity does not."""
+    """Return the stress of every section before the load, Pa, without gravity."""
     return scene.prestress.normal if scene.prestress else 0.0
 
 

@@ -60,7 +60,7 @@ class Panel(NamedTuple):
 
     @property
     def given(self) -> dict[str, pd.Series]:
-        """The curves of others here: their own samples while the scene lasts, by their file."""
+        """External curves here: their own samples during the scene, by file."""
         along = not self.place.component and self.quantity in ("velocity", "displacement")
         place = self.place._replace(component="y") if along else self.place
         return {
@@ -87,7 +87,7 @@ class Panel(NamedTuple):
 
     @property
     def reference(self) -> str:
-        """The solution that the others are held against, "" where none resolves the scene."""
+        """The reference solution, "" if none resolves the scene."""
         found = finest(self._names, self.comparison.scene)
         return found.name if found else ""
 

@@ -1,4 +1,4 @@
-"""Curves of others beside our solutions, on the same times, by stated rules.
+"""Alignment of external curves with solutions, on common times.
 
 Overlap: only times that both have are compared. Times: those of whichever has fewer samples in the
 overlap, the curve's own where both have as many; the other is interpolated linearly, with error at
@@ -157,7 +157,7 @@ def _waveforms(
 
 
 def static_level(place: Place, result: xr.Dataset) -> float:
-    """Return what a solution holds at a place before its load acts, SI."""
+    """Return the static value of a solution at a receiver before its load acts, SI."""
     found = result[place.quantity]
     still = np.broadcast_to(static_state(result, place.quantity), found.shape)
     level = place.waveform(result.assign({place.quantity: (found.dims, still)}))

@@ -1,4 +1,4 @@
-"""Waveforms of others, as `jointwave compare --with` names them: quantity, place, sign and unit.
+"""External waveforms of `jointwave compare --with`: quantity, receiver, sign and unit.
 
 A column is called [-]QUANTITY[_COMPONENT]@Y [UNIT]: `stress@20`, `-stress@20 [MPa]`,
 `velocity_x@20.25 [mm/s]`; velocity and displacement are along y where no component is named. Of a
@@ -84,7 +84,7 @@ class _Label(NamedTuple):
 
 
 class _Found(NamedTuple):
-    """A column, what it holds, and whose it is in a table of ours."""
+    """A column, its quantity, and its solution in a table of ours."""
 
     column: Column
     label: _Label

@@ -39,7 +39,7 @@ class Asked(NamedTuple):
 
 
 class Exported(NamedTuple):
-    """What a header of ours says: solution, place as a label, and variant."""
+    """The parts of our headers: solution, receiver as a label, and variant."""
 
     solution: str
     label: str
@@ -69,14 +69,14 @@ def asked(text: str, is_label: Callable[[str], bool]) -> Asked:
 
 
 def exported(name: str) -> Exported | None:
-    """Return what a header of ours says; None where it is none."""
+    """Return the parts of one of our headers; None for others."""
     parts = parts_of(name)
     place = parsed(parts[1], WORDS) if len(parts) == 3 else None
     return None if place is None else Exported(parts[0], str(place), parts[2])
 
 
 def base_of(columns: list[Column]) -> str:
-    """Return what a table of ours calls the scene as it stands, its first variant; else ""."""
+    """Return the name of the base scene, the first variant, in a table of ours; else ""."""
     found = (exported(column.name) for column in columns)
     return next((one.variant for one in found if one is not None), "")
 

@@ -1,4 +1,4 @@
-"""Waveforms of others as files hold them: a CSV or NetCDF file as named columns over time."""
+"""Files of external waveforms: CSV or NetCDF as named columns over time."""
 
 import csv
 import re

@@ -88,7 +88,7 @@ class Pairing(NamedTuple):
 
 
 class Worst(NamedTuple):
-    """The waveform of two results that is furthest off; `place` is None where nothing moves."""
+    """The worst waveform of two results; `place` is None without motion."""
 
     misfit: float
     place: Place | None = None
@@ -199,7 +199,7 @@ def motion(result: xr.Dataset, quantity: str) -> np.ndarray:
 
 
 def static_state(result: xr.Dataset, quantity: str) -> np.ndarray:
-    """Return what a quantity holds before the load acts, of a shape that broadcasts over time."""
+    """Return the static value of a quantity before the load, broadcastable over time."""
     values, starts = result[quantity].values, result.attrs.get("starts")
     in_plane = result.attrs.get("kind") == "rock mass"
     if starts == "at rest under gravity" or (starts == "prestressed" and in_plane):

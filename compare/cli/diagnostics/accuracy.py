@@ -1,4 +1,4 @@
-"""Each engine against the exact solution of its own model, on the paper's free pillar.
+"""Self-check of each engine against the exact solution of its model, on the paper's free pillar.
 
 `python -m compare.cli.diagnostics.accuracy PAIR` prints one line of JSON. The bound is the one that
 the shipped scene is held to by its [expect].

@@ -1,6 +1,6 @@
 """The installation on this machine, and whether both engines compute correctly here.
 
-Libraries are looked at in processes of their own: one that breaks is a line of the report.
+Libraries are checked in separate processes: a broken one is a line of the report.
 """
 
 import json
@@ -67,7 +67,7 @@ class Component(NamedTuple):
 
 
 class Health(NamedTuple):
-    """Everything that `jointwave doctor` says."""
+    """The report of `jointwave doctor`."""
 
     parts: list[Component]
     checks: list[Check]

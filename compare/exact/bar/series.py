@@ -36,7 +36,7 @@ NEAR = sqrt(np.finfo(float).eps)  # relative distance to resonance below which t
 
 
 def applies(scene: Scene) -> Answer:
-    """Return whether the paper's series holds: an undamped free-free bar under a sine."""
+    """Return whether the paper's series applies: an undamped free-free bar under a sine."""
     answer = images.applies(scene)
     if not answer:
         return answer

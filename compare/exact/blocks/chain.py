@@ -27,7 +27,7 @@ from cases.schema.scene import Scene
 
 
 class EndOfChain(NamedTuple):
-    """What holds an end: its kind; the spring (N/m) and dashpot (N s/m) of the half block behind
+    """The support of an end: its kind; the spring (N/m) and dashpot (N s/m) of the half block behind
     it; the dashpot Z A of a quiet or matched one, N s/m."""
 
     kind: str

@@ -1,4 +1,4 @@
-"""A rigid block that slides on a slope under its weight: Coulomb friction alone.
+"""A rigid block that slides on a slope under its weight by Coulomb friction.
 
 Of two blocks the second stands on a wall, and gravity g presses the first onto it at the slope
 angle beta from the axis. The joint carries N = m g cos beta and at most N tan phi, so

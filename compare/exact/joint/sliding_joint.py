@@ -97,7 +97,7 @@ class SlipJoint(NamedTuple):
 
 
 def applies(scene: Scene) -> Answer:
-    """Return whether a plane shear wave meets one joint that can slip, and nothing else."""
+    """Return whether a plane shear wave meets exactly one joint that can slip."""
     p, load, ends = calibrate(scene), scene.load, {scene.ends.start, scene.ends.end}
     if not load.is_across or load.direction[1] or load.arm or scene.motion.rotation != "none":
         return no("there is no plane shear wave: needs a load across and no rotation")

@@ -163,7 +163,7 @@ def layers_at_once(rocks: Sequence[ElasticRock], first: Joint, axes: Axes) -> La
 
 
 def without_springs(joint: Joint) -> Joint:
-    """Return a joint with its dashpots alone; infinite stiffness remains."""
+    """Return a joint with its dashpots only; infinite stiffness remains."""
     K_n, K_s = (
         np.where(np.isinf(K), K, 0.0) for K in (joint.normal_stiffness, joint.shear_stiffness)
     )

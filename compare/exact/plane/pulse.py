@@ -92,7 +92,7 @@ class PulseStack(NamedTuple):
 
     @property
     def lead(self) -> complex:
-        """How late the pulse is at the first joint, s."""
+        """Arrival time of the pulse at the first joint, s."""
         return self.axes.incident @ self.slownesses[0] * self.depths[0]
 
     @property

@@ -43,7 +43,7 @@ IN_A_PERIOD = 400  #: samples of the field
 
 
 def applies(scene: RockMass) -> Answer:
-    """Return whether waves alone act on blocks between linear joints."""
+    """Return whether only waves act on blocks between linear joints."""
     held, sets = scene.boundaries.model_dump().values(), scene.joint_sets
     gravity = scene.gravity is not None and bool(scene.gravity.acceleration)
     many = f"more than {MOST_BLOCKS:,} blocks"

@@ -95,7 +95,7 @@ def medium_wave(scene: RockMass, wave: Wave, C: np.ndarray) -> MediumWave:
 
 
 def applies(scene: RockMass) -> Answer:
-    """Return whether the waves of a scene are those of its effective medium alone."""
+    """Return whether the scene has waves in an effective medium only."""
     gravity = scene.gravity is not None and bool(scene.gravity.acceleration)
     reasons = [
         (not scene.waves, "no wave enters"),

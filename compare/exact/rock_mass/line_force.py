@@ -26,7 +26,7 @@ PARTS = 8
 
 
 def applies(scene: RockMass) -> Answer:
-    """Return whether forces alone act on rock without joints, and reach a receiver undisturbed."""
+    """Return whether only forces act on rock without joints, and reach a receiver undisturbed."""
     held, gravity = scene.boundaries.model_dump().values(), scene.gravity
     reasons = [
         (bool(scene.joint_sets), "there are joints"),

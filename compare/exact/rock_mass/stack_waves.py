@@ -24,7 +24,7 @@ from compare.exact.rock_mass.stack import JointStack, against, begun, stack_of
 from compare.solvers.record import YES, Answer, Kind, no
 from results.plane import plane_fields
 
-#: What the engines' distances from these waves are made of.
+#: Causes of the engines' misfits from these waves.
 DISTANCES = {
     Kind.NUMERICAL: {"continuum-jointed": "elements and time stepping of the jointed rock"},
     Kind.MODELLING: {

@@ -1,4 +1,4 @@
-"""Variants of a scene: without one of its effects, or with one alone."""
+"""Variants of a scene: without one of its effects, or with only one."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     Change = Callable[[Any], Any]  # from a scene to one of its kind
 
 
-#: Effects that are nothing without another one.
+#: Effects that require another one.
 NEEDS: dict[str | None, str] = {part.name: "slip" for part in PARTS if part.along}
 
 

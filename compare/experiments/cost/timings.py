@@ -77,7 +77,7 @@ def note_whole(what: str, seconds: float) -> None:
 
 @contextmanager
 def timing(what: str, count: int) -> Iterator[None]:
-    """Remember what one of so many points took, in the mean; nothing where there are none."""
+    """Store the mean time per point; nothing without points."""
     began = perf_counter()
     yield
     if count:

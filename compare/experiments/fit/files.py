@@ -93,7 +93,7 @@ def curves(found: Fit) -> pd.DataFrame:
 
 
 def facts(found: Fit) -> dict[str, Any]:
-    """Return everything that is known of a fit, for a machine; null for what nothing bounds."""
+    """Return a fit as JSON; null for unbounded values."""
     return {
         "title": found.scene.title,
         "variant": found.scene.name,

@@ -17,7 +17,7 @@ from cases.schema.pulse import Pulse
 
 CLOCK = "clock"  # what is added to the times of the files, s
 DECADES = 3.0  # that a key on a logarithmic scale may change without bounds of its own
-#: What says how a scene is cut, solved and recorded: no number that can change by a little.
+#: Keys of discretisation, solution and recording: not continuous parameters.
 FIXED = (
     *("pillar.length", "pillar.block", "soft_layers.*.y", "time", "record", "numerics", "expect"),
     *("domain", "regions.*.dip", "segments.*.y", "segments.*.block"),
@@ -46,11 +46,11 @@ class Free(NamedTuple):
     unit: str
 
     def unknown(self, value: float) -> float:
-        """Return the number of the search that stands for a value."""
+        """Return the search variable of a value."""
         return log(value / self.start) if self.logarithmic else (value - self.start) / self.size
 
     def value(self, unknown: float) -> float:
-        """Return the value that a number of the search stands for."""
+        """Return the value of a search variable."""
         linear = self.start + self.size * unknown
         found = self.start * exp(unknown) if self.logarithmic else linear
         return min(max(found, self.low), self.high)
@@ -150,7 +150,7 @@ def _unit(key: str, owner: type[BaseModel] | BaseModel) -> str:
 def _three(
     numbers: list[float], start: float | None, low: float, high: float
 ) -> tuple[float | None, float, float]:
-    """Return start and bounds as given, or what holds without."""
+    """Return start and bounds as given, or the defaults."""
     if len(numbers) == 1:
         return numbers[0], low, high
     if len(numbers) == 2:

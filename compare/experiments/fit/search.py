@@ -38,14 +38,14 @@ class FitSearch:
         return [key.value(u) for key, u in zip(self.keys, x, strict=True)]
 
     def residuals(self, x: np.ndarray) -> list[np.ndarray] | None:
-        """Return solution less measured of each waveform [n], SI; None where nothing solves it."""
+        """Return solution minus measurement of each waveform [n], SI; None without a solution."""
         self.trials += 1
         found = self.problem.residual(
             {k.key: v for k, v in zip(self.keys, self.values(x), strict=True)}
         )
         self.refused += found is None
         if self.progress:
-            self.progress(1 - 0.97**self.trials)  # nobody knows how many there will be
+            self.progress(1 - 0.97**self.trials)  # the number of trials is unknown
         return found
 
     def jacobians(self, x: np.ndarray) -> list[np.ndarray]:
@@ -115,7 +115,7 @@ class FitSearch:
         return again.x if again.success else best
 
     def _weigh_by_noise(self, x: np.ndarray) -> None:
-        """Let each waveform count by its residual, as the noise of its own gauge."""
+        """Weight each waveform by its residual, as the noise of its gauge."""
         found = self.residuals(x)
         assert found is not None
         sizes = [m.size for m in self.problem.measured]

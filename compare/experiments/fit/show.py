@@ -9,7 +9,7 @@ from compare.experiments.fit.result import Estimate, Fit
 
 
 def show_fit(found: Fit, scene: str, changes: list[str], files: list[Path]) -> None:
-    """Print values with intervals, correlations, misfits, and the command that goes on.
+    """Print values with intervals, correlations, misfits, and the command to continue.
 
     changes : those that the scene was given, KEY=VALUE.
     """

@@ -23,7 +23,7 @@ BLOCKS_IN_WAVE, ELEMENTS_IN_WAVE = (6, 12, 24, 48), {1: 20, 2: 6, 3: 3, 4: 2}
 
 
 class Family(NamedTuple):
-    """Configurations that differ in their step alone.
+    """Configurations that differ only in their step.
 
     name : of the engine. changes : of its numerics. order : of the scheme.
     """

@@ -50,7 +50,7 @@ class Plan(NamedTuple):
 
     reference : the finest physics, and the reason why it is that. trials : runs that were made to
     predict; planning : s that all of the planning took, the references and compiling included.
-    chosen : None where nothing is predicted to do. own : what its numerical error is from.
+    chosen : None if no configuration is predicted to suffice. own : the numerical reference.
     obtained : the configuration as it was run; None without.
     skipped : families that could not or need not be run, with their reason.
     """

@@ -41,7 +41,7 @@ class OwnModel(NamedTuple):
         return self.modelling + self.reference.error
 
     def too_far(self, family: Family) -> str:
-        """Return why no step of a family comes within a misfit below its modelling error."""
+        """Return why no step of a family can reach a misfit below its modelling error."""
         return f"the modelling error of {family.model.label} is already {100 * self.least:.3g} %"
 
 

@@ -18,7 +18,7 @@ from compare.experiments.planner.families import COARSEST, Family, configured, s
 from compare.experiments.planner.reference import OwnModel
 from compare.misfit.metrics import Stack, stacked
 
-SHORT = 0.05  # s: a shorter run is timed three times more, as it is noise alone
+SHORT = 0.05  # s: shorter runs are timed three more times, because they are mostly noise
 SLOWEST = 0.5  # order at which errors fall, at least: they do at kinks that repeat
 FINEST = 64  # times the steps of the coarsest
 LONGEST = 1.0  # s: a trial that takes as long is the last of its family

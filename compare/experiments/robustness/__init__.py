@@ -1,1 +1,1 @@
-"""The robustness suite: hard cases, each held to a criterion from theory."""
+"""The robustness suite: hard cases, each with a criterion from theory."""

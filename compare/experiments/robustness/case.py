@@ -44,7 +44,7 @@ LEAPFROG, FOURTH, JOINTED, _, EQUIVALENT, _ = SCHEMES
 
 
 class Judgement(NamedTuple):
-    """The finding of a criterion: it holds where value <= bound; `said` adds to the message."""
+    """The finding of a criterion: passed if value <= bound; `said` adds to the message."""
 
     value: float
     bound: float
@@ -68,7 +68,7 @@ class HardCase(NamedTuple):
 
     name : in words. changes : of the scene, dotted keys; those of [numerics] may be `STEP` and
     `ALLOW`. spared : why an engine is not put to the case, by its name, its scheme's or both.
-    slow : takes long; run by `make test-all` and the study alone. scene : a shipped one.
+    slow : run only by `make test-all` and the study. scene : a shipped one.
     """
 
     name: str

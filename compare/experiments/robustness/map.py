@@ -117,7 +117,7 @@ class StabilityMap(NamedTuple):
 
     @property
     def wrong(self) -> np.ndarray:
-        """Cells [n, m] that are not what theory says of their centres."""
+        """Cells [n, m] that differ from theory at their centres."""
         return self.stable != (self.step[:, None] < boundary(self.ratio))
 
     @property

@@ -74,7 +74,7 @@ def row_at(place: Place) -> CaseRow:
 
 
 def row_of(case: HardCase, stepper: EngineScheme) -> CaseRow:
-    """Return the row of a case on an engine; nothing that a run can meet escapes it."""
+    """Return the row of a case on an engine; all errors of a run are caught."""
     began = perf_counter()
     state, (value, bound, said) = _judged(case, stepper)
     margin = bound / value if value > 0 else (inf if value == 0 else nan)

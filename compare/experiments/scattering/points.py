@@ -137,7 +137,7 @@ def scene_of(
 
 
 def measure(point: JointsPoint) -> JointsRow:
-    """Run a point and return its row; what cannot be run is a row that says why."""
+    """Run a point and return its row; a point that fails gives a row with the reason."""
     scene = scene_of(point.incidence, point.angle, point.joints)
     exact = closed_form(scene)
     try:

@@ -33,7 +33,7 @@ def plain(value: Any) -> Any:
 
 
 def refuse_senseless(path: Path, study: Study) -> None:
-    """Raise SceneError for what no point could be made of, or too many."""
+    """Raise SceneError for invalid points, or too many."""
     count = sum(prod(map(len, curve.vary.values())) for curve in study.curves)
     if count > MOST_POINTS:
         allowed = f"give {count:.6g} points, at most {MOST_POINTS}"
@@ -50,7 +50,7 @@ def refuse_senseless(path: Path, study: Study) -> None:
 def _refuse_unknown(
     path: Path, key: str, named: str | FineRun | None, known: tuple[str, ...]
 ) -> None:
-    """Raise SceneError for what solves nothing: a name, or the method of a fine run."""
+    """Raise SceneError for an unknown method, also of a fine run."""
     method = named if named is None or isinstance(named, str) else named.method
     if method is not None and method not in known:
         raise SceneError(str(path), key, method, f"must be one of {', '.join(known)}")

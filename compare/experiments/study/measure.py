@@ -61,7 +61,7 @@ class PointRow(NamedTuple):
 
 
 def measure(point: StudyPoint) -> PointRow:
-    """Run a point and return its row; what cannot be run is a row that says why."""
+    """Run a point and return its row; a point that fails gives a row with the reason."""
     try:
         return _measured(point)
     except FAILURES as error:
@@ -122,7 +122,7 @@ def runner(point: StudyPoint, scene: AnyScene) -> Callable[[], xr.Dataset]:
 
 
 def method_applies(point: StudyPoint, scene: AnyScene) -> Answer:
-    """Return whether a point's method holds for its scene, or the reason why not."""
+    """Return whether a point's method applies to its scene, or the reason why not."""
     method = point.curve.method
     if method not in METHODS:
         return applies(method, scene)
@@ -130,7 +130,7 @@ def method_applies(point: StudyPoint, scene: AnyScene) -> Answer:
 
 
 def _timed(run: Callable[[], xr.Dataset]) -> xr.Dataset:
-    """Return a result that says what it took, exact solutions included."""
+    """Return a result with its cost, exact solutions included."""
     began = perf_counter()
     result = run()
     result.attrs.setdefault("seconds_stepping", perf_counter() - began)

@@ -1,4 +1,4 @@
-"""The layout of a view in three dimensions: what is drawn, and from where it is looked at."""
+"""The layout of a three-dimensional view: bodies and camera."""
 
 from typing import NamedTuple
 

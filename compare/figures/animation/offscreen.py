@@ -1,4 +1,4 @@
-"""A picture in three dimensions where there may be no display: drawn by a process of its own.
+"""Off-screen three-dimensional rendering, in a separate process.
 
 VTK ends a process in which it finds no way to draw; this one is left with a message instead.
 """

@@ -15,7 +15,7 @@ NEAR = 1.25  # the ratio of two marks whose names stand on either side of them
 
 
 def spectra(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
-    """Return the picture of all spectra, none where nothing moves."""
+    """Return the figure of all spectra, None without motion."""
     grid = [[spectra_of(panel) for panel in row] for row in in_page(panels(comparisons))]
     found = [s for row in grid for s in row]
     if not any(curve.any() for s in found for curve in s.curves.values()):

@@ -99,7 +99,7 @@ def _references(receivers: list[Panel]) -> str:
 
 
 def _at_rest(receivers: list[Panel]) -> str:
-    """Say what static state was taken from the waveforms; nothing where they had none."""
+    """Describe the static state subtracted from the waveforms; empty without one."""
     states = dict.fromkeys(
         f"{panel.at_rest:.4g} {UNITS[panel.quantity]} ({panel.heading}, {panel.variant})"
         for panel in receivers

@@ -37,7 +37,7 @@ def pulse_curve(pulse: Pulse, duration: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def law_words(law: JointLaw) -> str:
-    """Return what joints can do beside being elastic; nothing where that is all."""
+    """Return the nonlinear properties of joints in words; empty for elastic joints."""
     parts = [
         f"damping ratio {law.damping_ratio:g}" if law.damping_ratio else "",
         "no tension" if law.tension is False else "",

@@ -1,4 +1,4 @@
-"""A rock mass as it is drawn: its joints, what holds its sides, what acts, what is recorded."""
+"""The drawing of a rock mass: joints, boundaries, waves and loads, receivers."""
 
 from typing import Any, NamedTuple
 
@@ -22,7 +22,7 @@ from compare.figures.export import blank
 
 #: Of joint sets, one after the other; told apart under every colour blindness (Tol 2021, bright).
 SETS = ("#4477aa", "#ee6677", "#228833", "#aa3377", "#ccbb44", "#66ccee")
-#: How sides are drawn, by what holds them: width (points) and dashes.
+#: Line styles of sides by boundary condition: width (points) and dashes.
 SIDES: dict[str, tuple[float, Any]] = {
     "free": (1.0, "-"),
     "quiet": (2.2, (0, (3.0, 1.2))),
@@ -166,7 +166,7 @@ def _sides(partition: Partition) -> dict[str, np.ndarray]:
 
 
 def _held(scene: RockMass, side: str) -> str:
-    """Return what holds a side; those of openings are free."""
+    """Return the boundary condition of a side; openings are free."""
     return getattr(scene.boundaries, side, "free")
 
 

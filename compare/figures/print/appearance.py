@@ -60,7 +60,7 @@ class Appearance(NamedTuple):
         return line
 
     def of_given(self, k: int) -> dict[str, Any]:
-        """Return how the curve of the k-th file of others is drawn."""
+        """Return the line style of the k-th external file."""
         return GIVEN[k % len(GIVEN)].of_line()
 
 

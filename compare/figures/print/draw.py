@@ -109,7 +109,7 @@ def _label_times(
 
 
 def _entries(found: list[Comparison], appearance: Appearance, words: Words) -> list[Line2D]:
-    """Return the legend's entries: solutions in their order, then the files of others."""
+    """Return the legend's entries: solutions in their order, then external files."""
     names = in_order({name for comparison in found for name in comparison.results})
     entries = [Line2D([], [], label=words.solution(n), **appearance.of_line(n)) for n in names]
     given = enumerate(found[0].besides)

@@ -1,4 +1,4 @@
-"""From scenes to a figure that holds its own fonts: solve what is asked for, draw it, write it."""
+"""Print figures with embedded fonts: solve the scenes, draw and write them."""
 
 import base64
 import io
@@ -95,7 +95,7 @@ def _face(family: str, letters: str) -> str:
 
 
 class FigureRequest(NamedTuple):
-    """What `jointwave figure` is to write; kind : None where the file's name says it."""
+    """The request of `jointwave figure`; kind : None to follow the file's suffix."""
 
     style: str
     columns: int
@@ -105,7 +105,7 @@ class FigureRequest(NamedTuple):
 
     @property
     def format(self) -> str:
-        """pdf, svg or png; raises SceneError where there is no such, or the name says another."""
+        """pdf, svg or png; raises SceneError for others, or if the suffix contradicts it."""
         named = self.out.suffix.removeprefix(".").lower()
         if self.kind is None and named not in BEGINS:
             raise SceneError("--out", str(self.out), None, f"must end in .{', .'.join(BEGINS)}")
@@ -121,7 +121,7 @@ def make(
     request: FigureRequest,
     progress: Progress,
 ) -> Path:
-    """Solve scenes, draw them with the curves of others, and write the figure.
+    """Solve scenes, draw them with external curves, and write the figure.
 
     runs : (engine, model) each, see `compare.runs.jobs`; empty: all that apply.
     """

@@ -39,7 +39,7 @@ class Words(NamedTuple):
         return f"y\u00a0=\u00a0{at[0]:g}" if len(at) == 1 else f"[{at[0]:g},\u00a0{at[1]:g}]"
 
     def title(self, panel: Panel) -> str:
-        """Return what stands over a panel."""
+        """Return the title of a panel."""
         quantity = " ".join([self.quantities[panel.quantity], panel.place.component]).strip()
         parts = [self.parts.get(part, part) for part in panel.variant.split(", ")]
         place = [self.place.format(quantity=quantity, at=self._at(panel))]

@@ -83,7 +83,7 @@ def whole_joints(trial: CaseTrial) -> Judgement:
 
 @criterion("misfit from a joint that cannot slide, at a cohesion equal to the largest shear")
 def just_held(trial: CaseTrial) -> Judgement:
-    """At a cohesion of just the largest shear a joint holds, just below it slides.
+    """At a cohesion equal to the largest shear a joint sticks, just below it slides.
 
     A joint of any cohesion tells the largest shear; at that and an eps each step the run is the
     same and friction has done no work. At a thousandth less it has. Implicit steps are the same to
@@ -113,7 +113,7 @@ KEEP = 1e-12
 
 @criterion("spurious traction, Pa")
 def one_ulp(trial: CaseTrial) -> Judgement:
-    """A gap of the smallest number is open and carries nothing; the same closed pushes back."""
+    """A gap of the smallest float is open and carries no traction; the same closure carries one."""
     stiffness, traction = _normal_law(trial)
     least = float(np.finfo(float).tiny)
     wrong = [traction(least, 0.0)]

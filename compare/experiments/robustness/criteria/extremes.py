@@ -52,7 +52,7 @@ def in_space(trial: CaseTrial) -> Judgement:
 
 @criterion("largest number of the result")
 def nothing(trial: CaseTrial) -> Judgement:
-    """Without a load nothing moves: every number of the result is zero, not merely small."""
+    """Without a load every number of the result is exactly zero."""
     numbers = (v.values for v in trial.result.data_vars.values() if v.dtype.kind == "f")
     found = [np.abs(values).max() for values in numbers]
     return Judgement(float(max(found)), 0.0, "largest number of the result")

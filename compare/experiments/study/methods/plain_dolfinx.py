@@ -1,4 +1,4 @@
-"""The homogenised bar as one steps it with dolfinx alone, in the manner of its tutorial.
+"""The homogenised bar stepped with plain dolfinx, in the manner of its tutorial.
 
 Leapfrog with a lumped mass in plain Python; in every step dolfinx assembles the form
 

@@ -32,11 +32,11 @@ NO = [
 ]  # fmt: skip
 LAWS = [
     ({"tension": False}, "joint set 'joint' carries no tension"),
-    ({"maximum_closure": 1e-3}, "joint set 'joint' has closure"),
+    ({"maximum_closure": 1e-3}, "joint set 'joint': a joint stiffens as it closes"),
     ({"friction_angle": 30.0}, "joint set 'joint' can slip"),
     ({"cohesion": 1e6}, "joint set 'joint' can slip"),
     ({"tensile_strength": 1e5, "fracture_energy": 10.0},
-     "joint set 'joint' has a tensile strength"),
+     "joint set 'joint': a joint has a tensile strength"),
 ]  # fmt: skip
 
 
