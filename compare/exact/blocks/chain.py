@@ -27,8 +27,8 @@ from cases.schema.scene import Scene
 
 
 class EndOfChain(NamedTuple):
-    """The support of an end: its kind; the spring (N/m) and dashpot (N s/m) of the half block behind
-    it; the dashpot Z A of a quiet or matched one, N s/m."""
+    """The support of an end: its kind; the spring (N/m) and dashpot (N s/m) of its half block;
+    the dashpot Z A of a quiet or matched one, N s/m."""
 
     kind: str
     stiffness: float
