@@ -149,7 +149,7 @@ def bent(x: np.ndarray) -> np.ndarray:
 
 @deep
 def test_sections_of_bent_cells_read_uniform_stress_exactly(dim, cell, order, body):
-    at = body(dim, cell, order, along=3, across=3, rock=ROCK, bent=bent)
+    at = body(dim, cell, order, along=2, across=2, rock=ROCK, bent=bent)
     u, force = moved_by(at, lambda x: x @ GRADIENT[:dim, :dim].T), uniform_force(dim)
     read = sections(at, None, [ROCK], [0.11, 0.3, 0.77])
     found = (read.elastic @ u).reshape(dim, -1).T
@@ -164,7 +164,7 @@ def test_section_force_of_a_bar_pushed_at_one_end_falls_linearly(dim, cell, orde
     Whatever Poisson's ratio bends the section to: the balance of momentum holds on every mesh.
     """
     rock, force = Material(1.0, 0.25, 1.0), 5.0
-    at = body(dim, cell, order, blocks=2, along=2, rock=rock)
+    at = body(dim, cell, order, blocks=2, along=2 if order < 4 else 1, rock=rock)
     nodes = np.arange(len(at.x) // 2)
     freedoms = np.concatenate([at.freedom(nodes, c) for c in range(dim)])
     upright = np.repeat(np.arange(dim) == axis(dim), nodes.size)

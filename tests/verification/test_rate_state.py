@@ -11,14 +11,21 @@ import pytest
 import cases
 import continuum
 import dem
-from cases.histories import Ricker
 from cases.validate import validated
 from compare.exact.joint import sliding_joint
 from compare.exact.joint.rate_state_joint import RateJoint, RateStateWave
 from compare.misfit.metrics import relative_l2
 from compare.scenes import SHIPPED
 from results.dataset import energy_residual
-from tests.verification.test_worn_joint import FAULT, IMPLICIT, JOINT, SIDES, bar, shear
+from tests.verification.test_worn_joint import (
+    FAULT,
+    IN_THE_PLANE,
+    JOINT,
+    SIDES,
+    bar,
+    hold_in_the_plane,
+    shear,
+)
 
 SCENE = SHIPPED / "beyond" / "rate-and-state.toml"
 
@@ -68,33 +75,13 @@ RATE |= {"reference_rate": 1e-6, "initial_state": 1e3}
 RATED |= RATE
 
 
-@pytest.mark.parametrize(
-    ("engine", "rock", "bound"),
-    [
-        (dem.simulate, {}, 0.006),
-        (continuum.simulate, {"scheme": "explicit"}, 0.02),
-        (continuum.simulate, IMPLICIT, 0.02),
-    ],
-    ids=["blocks", "rock", "implicit"],
-)
+@IN_THE_PLANE
 def test_one_joint_in_the_plane(engine, rock, bound):
-    """Its slip, and what it carries, in a column of a wide rock mass whose sides are joints a
-    thousand times as stiff: blocks of 0.8 m, elements of 2 m, in a wave of 55 m."""
-    numerics = {"dem": {"block": 0.8}, "continuum": {"size": 2.0, **rock}}
-    tables = FAULT | {"joint_sets": [RATED, SIDES], "numerics": numerics}
-    scene = validated(tables, Path("fault.toml"), frozenset())
-    found = engine(scene)
-    t, speed = found["time"].values, np.sqrt(2e10 / 2600.0)
-    z, later = 2600.0 * speed, t - 24.0 / speed
-    joint = RateJoint(4e6, 0.4, 0.01, 0.02, 1e-4, 1e-6, 1e3, 1 / 2e10)
-    load = Ricker(2e6, 0.02)
-    stress, impulse = RateStateWave(joint, z, load, t[-1], 1e-10, 24.0 / speed)(later)
-    slip = 2 * (load.impulse(later) - impulse) / z
-    carried, slipped = found["traction"].values[0, :, 1], found["slip"].values[0]
-    sign = np.sign(carried @ stress)
-    assert relative_l2(sign * carried, stress) < bound
-    assert relative_l2(np.sign(slipped @ slip) * slipped, slip) < bound
-    assert energy_residual(found) < 1e-6
+    one = RateJoint(4e6, 0.4, 0.01, 0.02, 1e-4, 1e-6, 1e3, 1 / 2e10)
+    hold_in_the_plane(
+        *(engine, rock, bound, RATED),
+        lambda z, load, end, delay: RateStateWave(one, z, load, end, 1e-10, delay),
+    )
 
 
 @pytest.mark.parametrize("simulate", [dem.simulate, bar], ids=["blocks", "rock"])

@@ -120,22 +120,22 @@ program.main()
 """
 
 
-@pytest.mark.parametrize(("function", "rank"), [("body.restrict", 0), ("build.weight_of", 2)])
-def test_a_process_that_fails_alone_ends_all(rank, function, under_mpi, said, tmp_path):
-    """Others wait for what it would have sent them; its line is the only one."""
-    program = SERIAL.format(error="MemoryError('of one')", rank=rank, function=function)
+@pytest.mark.parametrize(
+    ("rank", "function", "error", "code", "words"),
+    [
+        (0, "body.restrict", "MemoryError('of one')", 2, ["not enough memory: of one"]),
+        (1, "build.weight_of", "KeyError('bug')", 1, ["internal error, KeyError", "'bug'"]),
+    ],
+)
+def test_a_process_that_fails_alone_ends_all(
+    rank, function, error, code, words, under_mpi, said, tmp_path
+):
+    """Others wait for what it would have sent them; its line is the only one, of a mistake of the
+    program too."""
+    program = SERIAL.format(error=error, rank=rank, function=function)
     arguments = ("run", *SCENE, *CONTINUUM, *SHORT, "--out", tmp_path)
-    done = under_mpi(3, "-c", program, *arguments, code=2)
-    assert said(done) == ["jointwave: not enough memory: of one"]
-
-
-def test_a_mistake_of_the_program_on_one_process_ends_all(under_mpi, said, tmp_path):
-    """Its line says where the bug is, and no processes are left waiting."""
-    program = SERIAL.format(error="KeyError('bug')", rank=1, function="build.weight_of")
-    arguments = ("run", *SCENE, *CONTINUUM, *SHORT, "--out", tmp_path)
-    done = under_mpi(3, "-c", program, *arguments, code=1)
-    (line,) = said(done)
-    assert "internal error, KeyError" in line and "'bug'" in line
+    (line,) = said(under_mpi(3, "-c", program, *arguments, code=code))
+    assert all(word in line for word in words)
 
 
 def test_an_mpiexec_of_another_mpi_is_refused(said):
