@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cases.spectrum import highest_frequency
-from dem.blocks.leapfrog import relative
-from dem.blocks.model import LENGTH, PlaneState
+from dem.blocks.model import PlaneState
 from dem.blocks.shaking import variation
+from dem.blocks.tile import relative
+from dem.blocks.tiles import LANES, LENGTH, START
 from numerics.divergence import speed_that
 
 if TYPE_CHECKING:
@@ -40,12 +41,13 @@ def highest_energy(system: PlaneSystem, state: PlaneState) -> float:
 
 def stored(system: PlaneSystem, state: PlaneState) -> float:
     """Return the root of twice the energy in all contacts that hold, sqrt(J per metre)."""
-    own, contacts = system.blocks.columns, system.model.contacts
-    column, table = system.blocks.links.column, contacts.table.T
-    i, j = contacts.blocks.T
-    gap, slip, turn = relative(state.u, i, j, table)
-    if contacts.start is not None:
-        gap, slip = gap + contacts.start[:, 0], slip + contacts.start[:, 1]
-    length = table[LENGTH]
+    contacts, links, own = system.model.contacts, system.blocks.links, system.blocks.columns
+    k = contacts.table.reshape(len(contacts.table), -1, LANES).swapaxes(0, 1)
+    k = k.reshape(len(k), -1)[:, contacts.place]  # in the order of the links
+    (x_i, y_i, turn_i), (x_j, y_j, turn_j) = state.u.T[:, links.blocks].transpose(2, 0, 1)
+    gap, slip, turn = relative(x_j - x_i, y_j - y_i, turn_i, turn_j, *k[:LENGTH])
+    if system.model.form.stressed:
+        gap, slip = gap + k[START], slip + k[START + 1]
+    length, column = k[LENGTH], links.column
     twice = own.normal[column] * (gap**2 + (length * turn) ** 2 / 12) + own.shear[column] * slip**2
     return float(np.sqrt((length * twice).sum()))

@@ -14,8 +14,9 @@ from cases.partition.regions import rocks_of
 from cases.partition.scene import partition_of
 from dem.blocks.joints import Columns, columns
 from dem.blocks.links import Links, links_of
-from dem.blocks.model import Blocks, Contacts, PlaneForm, contacts_of
+from dem.blocks.model import Blocks, PlaneForm
 from dem.blocks.stability import critical_plane_step
+from dem.blocks.tiles import Contacts, contacts_of
 from joints.law import Law, parts_of
 from joints.normal import gap_under
 
@@ -90,7 +91,7 @@ def constants(scene: RockMass, blocks: RigidBlocks, dt: float) -> Blocks:
     if scene.gravity is not None:
         g = scene.gravity.acceleration * np.array(scene.gravity.direction)
     return Blocks(
-        inertia=np.ascontiguousarray(blocks.masses[:, 1:]),
+        inertia=blocks.masses,
         dt=dt,
         keep=(1 - drag) / (1 + drag),
         local=scene.damping.local or 0.0,
@@ -101,21 +102,32 @@ def constants(scene: RockMass, blocks: RigidBlocks, dt: float) -> Blocks:
 
 def contacts(blocks: RigidBlocks) -> Contacts:
     """Return the table of contacts, with what they carry under a prestress."""
-    links, own, stress = blocks.links, blocks.columns, blocks.scene.prestress
+    links, own = blocks.links, blocks.columns
     varied = parts_of(own.law).varied or len(own.rules) > 1
-    found = contacts_of(
+    second = None
+    if not own.points:
+        second = (own.rules[:, 1] * own.rules[:, 0] ** 2).sum(axis=1)
+        second = second[links.column if len(second) > 1 else 0]
+    return contacts_of(
         links.blocks,
         links.start,
         links.end,
         links.normal,
         (links.beside_i, links.beside_j),
-        links.column if varied else None,
+        blocks.partition.count,
+        law=links.column if varied else None,
+        carried=None if blocks.scene.prestress is None else carried(blocks),
+        second=second,
     )
-    if stress is None:
-        return found
+
+
+def carried(blocks: RigidBlocks) -> np.ndarray:
+    """Return the opening and the slip that stand for the prestress in each contact [c, 2], m."""
+    links, own, stress = blocks.links, blocks.columns, blocks.scene.prestress
+    assert stress is not None
     traction = links.normal @ np.array([[stress.xx, stress.xy], [stress.xy, stress.yy]])
     along = np.stack([-links.normal[:, 1], links.normal[:, 0]], axis=1)
     t_n, t_s = ((traction * axis).sum(axis=1) for axis in (links.normal, along))
     law = Law(*(x[links.column] if np.ndim(x) else x for x in own.law))
     gap, slip = gap_under(law, parts_of(law), t_n), -t_s / own.shear[links.column]
-    return found._replace(start=np.stack([gap, slip], axis=1))
+    return np.stack([gap, slip], axis=1)

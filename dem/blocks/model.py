@@ -15,17 +15,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from dem.blocks.tiles import LANES, START, Contacts
 from joints.law import Law, Parts
 from numerics.cache_lines import zeros
-
-#: Columns of the table of contacts.
-N_X, N_Y, I_X, I_Y, J_X, J_Y, LENGTH = range(7)
-CONTACT = 8
-
-#: Columns of the force of a contact on its block j: F, the moments about the centroids of j and
-#: of i (that on i has the other sign), M and the sum of e L w t_s.
-F_X, F_Y, ON_J, ON_I, BENDING, STRETCH = range(6)
-FORCE = 6
+from results.plane import TERMS
 
 
 class PlaneForm(NamedTuple):
@@ -51,41 +44,33 @@ class PlaneForm(NamedTuple):
     shaken: bool = False
     relaxed: bool = False
 
+    @property
+    def rate_rows(self) -> int:
+        """Rows of history with the rates of a contact's relative motion, and its dashpots' forces
+        for the ledger."""
+        return 3 * self.parts.dashpots * (1 + self.ledger)
 
-class Contacts(NamedTuple):
-    """The joints between blocks.
+    @property
+    def point_rows(self) -> int:
+        """Rows of history for each point: what has slid, opening, cohesion, path."""
+        p = self.parts
+        return (1 + p.softening + p.residual + p.path) * (self.points > 0)
 
-    blocks : int array [c, 2], i and j. table : float array [c, CONTACT], normal, from each block's
-    centroid to the contact's centre, m, and length, m. law : int array [c], the column of the
-    law's table; None where all joints are alike. start : float array [c, 2], the opening and the
-    slip that stand for what a contact carries before anything moves, m; None without prestress.
-    """
-
-    blocks: np.ndarray
-    table: np.ndarray
-    law: Any
-    start: Any = None
-
-
-class Adjacency(NamedTuple):
-    """The contacts of each block, in their order.
-
-    first : int array [N + 1]. side : int array, twice the contact, plus 1 where the block is its j.
-    """
-
-    first: np.ndarray
-    side: np.ndarray
+    @property
+    def bend_row(self) -> int:
+        """Row of the contacts' table with what bends joints that always hold."""
+        return START + 2 * self.stressed
 
 
 class Held(NamedTuple):
     """Blocks that dashpots beyond the domain, or forces, act on.
 
-    row : int array [N], the row of a block in what follows, -1 of all others. keeps, moves :
-    float arrays [h, 3, 3], what is left of its velocity in a step, and the velocity by an impulse.
-    dashpot : float array [h, 3, 3], of all its dashpots, N s/m.
+    block : int array [h], ascending. keeps, moves : float arrays [h, 3, 3], what is left of its
+    velocity in a step, and the share of the velocity without its dashpots. dashpot : float array
+    [h, 3, 3], of all its dashpots, N s/m.
     """
 
-    row: np.ndarray
+    block: np.ndarray
     keeps: np.ndarray
     moves: np.ndarray
     dashpot: np.ndarray
@@ -94,8 +79,8 @@ class Held(NamedTuple):
 class Blocks(NamedTuple):
     """Constants of the blocks.
 
-    inertia : float array [N, 2], mass (kg) and moment of inertia (kg m2). dt : s. keep : what
-    mass-proportional damping leaves of a velocity in a step. local : Cundall's damping.
+    inertia : float array [N, 3], mass (kg), twice, and moment of inertia (kg m2). dt : s. keep :
+    what mass-proportional damping leaves of a velocity in a step. local : Cundall's damping.
     gravity_x, gravity_y : m/s2.
     """
 
@@ -122,7 +107,6 @@ class PlaneModel(NamedTuple):
     form: PlaneForm
     blocks: Blocks
     contacts: Contacts
-    adjacency: Adjacency
     laws: np.ndarray
     rules: np.ndarray
     held: Any
@@ -135,85 +119,46 @@ class PlaneState(NamedTuple):
     """What changes: displacement u [N, 3] at a whole step, velocity v [N, 3] half a step before it,
     of the blocks and then the walls.
 
-    force : float array [c, FORCE], of the contacts at the last step. rate : float array [c, 3], of
-    their opening, slip and rotation one and a half steps before; None without dashpots.
-    drag : float array [c, 3], N, N and N m, of their dashpots at the last step; None without a
-    ledger of them. history : float array [c, points, 3], what has slid, m, the largest opening, m,
-    and the cohesion, Pa, of each point, with a fourth, the path, m, where that changes it; None
-    where joints always hold. sums : float array [4], J,
-    running sums of the ledger: viscous, friction, boundary, work; None without.
+    history : float array [chunks, rows LANES], what contacts remember; None where that is nothing.
+    Rows: with dashpots the rates of opening, slip and rotation one and a half steps before, with a
+    ledger too their forces at the last step (N, N and N m), and then for each point what has slid,
+    m, and where the law asks for them the largest opening, m, the cohesion, Pa, and the path, m.
+    sums : float array [terms], J, what has been dissipated or put in; None without a ledger.
     """
 
     u: np.ndarray
     v: np.ndarray
-    force: np.ndarray
-    rate: Any
-    drag: Any
     history: Any
     sums: Any
 
 
-def contacts_of(
-    blocks: np.ndarray,
-    start: np.ndarray,
-    end: np.ndarray,
-    normal: np.ndarray,
-    centroids: tuple[np.ndarray, np.ndarray],
-    law: np.ndarray | None = None,
-) -> Contacts:
-    """Return contacts between blocks i, j [c, 2] along the edges from start to end [c, 2], m.
+def held_by(dashpot: np.ndarray, block: np.ndarray, inertia: np.ndarray, dt: float) -> Held:
+    """Return held blocks from their dashpots [h, 3, 3], N s/m, and their numbers [h], ascending.
 
-    normal : float array [c, 2], unit vectors from i to j. centroids : of i and of j where they
-    touch [c, 2], m, those of j moved by the period where they touch across periodic sides. law :
-    int array [c], column of each; None where all joints are alike.
-    """
-    centre = (start + end) / 2
-    table = np.zeros((len(blocks), CONTACT))
-    table[:, [N_X, N_Y]] = normal
-    table[:, [I_X, I_Y]] = centre - centroids[0]
-    table[:, [J_X, J_Y]] = centre - centroids[1]
-    table[:, LENGTH] = np.linalg.norm(end - start, axis=1)
-    return Contacts(np.ascontiguousarray(blocks, dtype=np.int64), table, law)
-
-
-def adjacency_of(blocks: np.ndarray, count: int) -> Adjacency:
-    """Return the contacts [c, 2] of each of so many blocks."""
-    order = np.argsort(blocks.ravel(), kind="stable")
-    first = np.searchsorted(blocks.ravel()[order], np.arange(count + 1))
-    return Adjacency(first.astype(np.int64), order.astype(np.int64))
-
-
-def held_by(dashpot: np.ndarray, index: np.ndarray, inertia: np.ndarray, dt: float) -> Held:
-    """Return held blocks from their dashpots [h, 3, 3], N s/m, and their numbers [h].
-
-    inertia : of all blocks [N, 2]. Their dashpots see the mean velocity of both half steps:
+    inertia : of all blocks [N, 3]. Their dashpots see the mean velocity of both half steps:
     (1 + dt C / 2 M) v[n+1/2] = v - (dt C / 2 M) v[n-1/2], v the velocity without them.
     """
-    row = np.full(len(inertia), -1)
-    row[index] = np.arange(len(index))
-    lost = 0.5 * dt * dashpot / inertia[index][:, [0, 0, 1], None]
+    lost = 0.5 * dt * dashpot / inertia[block][:, :, None]
     moves = np.linalg.inv(np.eye(3) + lost)
     # In one layout, whatever it comes from: another is another kernel.
-    return Held(row, -moves @ lost, moves, np.ascontiguousarray(dashpot))
+    return Held(block, -moves @ lost, moves, np.ascontiguousarray(dashpot))
 
 
 def state_at_rest(model: PlaneModel) -> PlaneState:
     """Return the state at rest, with no array for any effect that the rock mass does not have."""
-    form, contacts = model.form, len(model.contacts.blocks)
+    form, pair = model.form, model.contacts.pair
     count = len(model.blocks.inertia) + model.walls
-    history = None
-    if form.points:
-        history = zeros((contacts, form.points, 3 + form.parts.path))
+    rows, history = form.rate_rows + form.points * form.point_rows, None
+    if rows:
+        history = zeros((len(pair), rows, LANES))
         if form.parts.residual:
-            row = Law._fields.index("cohesion")
-            of = 0 if model.laws.shape[1] == 1 else model.contacts.law
-            history[:, :, 2] = np.broadcast_to(model.laws[row, of], contacts)[:, None]
+            cohesion = model.laws[Law._fields.index("cohesion")]
+            own = cohesion[pair[:, None, 2 * LANES :] if form.parts.varied else 0]
+            history[:, form.rate_rows + 1 + form.parts.softening :: form.point_rows] = own
+        history = history.reshape(len(pair), rows * LANES)
     return PlaneState(
         u=zeros((count, 3)),
         v=zeros((count, 3)),
-        force=zeros((contacts, FORCE)),
-        rate=zeros((contacts, 3)) if form.parts.dashpots else None,
-        drag=zeros((contacts, 3)) if form.parts.dashpots and form.ledger else None,
         history=history,
-        sums=np.zeros(4) if form.ledger else None,
+        sums=np.zeros(len(TERMS)) if form.ledger else None,
     )

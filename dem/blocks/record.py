@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dem.blocks.leapfrog import ALONG, BEND, FORCE_X, FORCE_Y, GAP, SLIP, PlaneSamples
+from dem.blocks.leapfrog import PlaneSamples
 from dem.blocks.links import Links
 from dem.blocks.receivers import BlockReceivers
+from dem.blocks.tile import ALONG, BEND, FORCE_X, FORCE_Y, GAP, SLIP
 
 if TYPE_CHECKING:
     from dem.blocks.system import PlaneSystem

@@ -10,7 +10,7 @@ import numpy as np
 
 from dem import time_loop
 from dem.blocks.bound import highest_energy
-from dem.blocks.leapfrog import TERMS, PlaneSamples, march, samples_for
+from dem.blocks.leapfrog import PlaneSamples, march, samples_for
 from dem.blocks.model import PlaneState, state_at_rest
 from dem.blocks.record import quantities
 from dem.blocks.start import start
@@ -55,7 +55,6 @@ def simulate_fields(
             time.times[:count],
             quantities(system, system.receivers, samples, count),
             None if samples.energy is None else samples.energy[:, :count],
-            TERMS,
             model="rigid blocks",
             scheme="leapfrog",
             dt=time.dt,

@@ -11,6 +11,7 @@ from cases.material.prestress import refuse_beyond_strength
 from dem.blocks.leapfrog import march, samples_for
 from dem.blocks.model import PlaneState, held_by, state_at_rest
 from dem.blocks.stability import critical_plane_step
+from dem.blocks.tiles import LANES
 from dem.static import Rest, settle
 from joints.law import IN_MOTION
 from results.arrays import copied, fill
@@ -37,7 +38,8 @@ def start(system: PlaneSystem, state: PlaneState) -> Rest | None:
         rest = settle(scene, relaxation)
         state.u[:] = relaxation.state.u
         if state.history is not None:
-            state.history[:] = relaxation.state.history
+            points = LANES * system.model.form.rate_rows
+            state.history[:, points:] = relaxation.state.history[:, points:]
     if scene.gravity is not None and not static:
         # Gravity from t = 0 on: the velocity at t = 0 is the mean of those half a step around it.
         count = len(blocks.inertia)

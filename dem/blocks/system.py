@@ -12,7 +12,7 @@ from cases.sampling import Clock, clock
 from cases.size import refuse_beyond_memory, snapshot_bytes, waveform_bytes
 from dem.blocks.build import RigidBlocks, constants, contacts, form_of, rigid_blocks
 from dem.blocks.edges import points_on, resultant
-from dem.blocks.model import PlaneModel, adjacency_of, held_by
+from dem.blocks.model import PlaneModel, held_by
 from dem.blocks.quiet import dashpots
 from dem.blocks.receivers import BlockReceivers, receivers_of
 from dem.blocks.shaking import Shaking, shaking
@@ -64,16 +64,13 @@ def prepared(scene: RockMass, incident: IncidentField | None = None) -> PlaneSys
     held = held_by(
         np.moveaxis(resultant(np.moveaxis(resistance, 1, -1)), -1, 1),
         sources.rows,
-        blocks.masses[:, 1:],
+        blocks.masses,
         time.dt,
     )
     model = PlaneModel(
         form=form,
         blocks=constants(scene, blocks, time.dt),
         contacts=contacts(blocks),
-        adjacency=adjacency_of(
-            blocks.links.blocks, blocks.partition.count + len(blocks.links.walls)
-        ),
         laws=table_of(blocks.columns.law),
         rules=blocks.columns.rules,
         held=held if form.held else None,

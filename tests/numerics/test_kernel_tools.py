@@ -1,39 +1,13 @@
-"""Parts of kernels: borrowed arrays, denormals, counters between threads."""
+"""Parts of kernels: denormals, counters between threads."""
 
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 
 from numerics.atomic import give_way, peek, post
-from numerics.borrowed import borrowed
 from numerics.denormals import ARM, X86, flush_tiny, restore_tiny
 from numerics.jit import jitted
-
-
-class Pair(NamedTuple):
-    numbers: np.ndarray
-    more: Any
-
-
-@jitted
-def fill(pair, value):
-    pair = borrowed(pair)
-    for i in range(pair.numbers.shape[0]):
-        row = pair.numbers[i]
-        row[0] = value
-        pair.more.numbers[0] += row[0]
-
-
-def test_borrowed_arrays_are_the_callers_own():
-    """Rows taken out of them, nested ones included, write where the caller looks, and are alive."""
-    inner = Pair(np.zeros(1), None)
-    pair = Pair(np.zeros((3, 2)), inner)
-    for _ in range(1000):
-        fill(pair, 2.0)
-    assert pair.numbers[:, 0].tolist() == [2.0, 2.0, 2.0]
-    assert inner.numbers[0] == 6000.0
 
 
 @jitted

@@ -25,9 +25,9 @@ def formula(function):
 
 flags = formula
 """,
-    "numerics.borrowed": """
-def borrowed(value):
-    return value
+    "numerics.pointers": """
+def pointers(values):
+    return values
 """,
     "numerics.denormals": """
 def flush_tiny():

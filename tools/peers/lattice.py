@@ -56,10 +56,12 @@ write_dump     all custom end.txt id x y modify sort id format float %.17g
 
 
 class Lattice(NamedTuple):
-    """Blocks of 1 m, `side` along each side; velocities [bodies, 3], m/s and rad/s; steps."""
+    """Blocks of 1 m, `side` along each side; pairs that touch [bonds, 2]; velocities [bodies, 3],
+    m/s and rad/s; steps."""
 
     side: int
     model: PlaneModel
+    pairs: np.ndarray
     centres: np.ndarray
     velocity: np.ndarray
     steps: int
@@ -69,13 +71,14 @@ def bodies(side: int) -> Lattice:
     """Return the lattice, with the inertia of spheres of diameter 1 m."""
     system = prepared(lattice(side**2, ELASTIC, ELASTIC, {"loads": [LOAD]}))
     inertia = system.model.blocks.inertia.copy()
-    inertia[:, 1] = inertia[:, 0] / 10
+    inertia[:, 2] = inertia[:, 0] / 10
     blocks = system.model.blocks._replace(inertia=inertia, dt=0.5 * system.model.blocks.dt)
     model = system.model._replace(blocks=blocks, held=None)
     model = model._replace(form=model.form._replace(held=False))
     velocity = SPEED * np.random.default_rng(1).uniform(-1, 1, (len(inertia), 3))
     centres = system.blocks.partition.centroid
-    return Lattice(side, model, centres, velocity, BODY_STEPS // side**2)
+    pairs = system.blocks.links.blocks
+    return Lattice(side, model, pairs, centres, velocity, BODY_STEPS // side**2)
 
 
 def ours(own: Lattice) -> tuple[np.ndarray, float]:
@@ -90,8 +93,10 @@ def ours(own: Lattice) -> tuple[np.ndarray, float]:
 def theirs(own: Lattice, place: Place, folder: Path) -> tuple[np.ndarray, float]:
     """Return the same from LAMMPS, whose own loop time is taken."""
     law, steps = law_of(own.model.laws, 0), own.steps
-    numbers = [law.normal_stiffness, law.shear_stiffness, law.shear_stiffness / 6]
-    numbers += [law.normal_stiffness / 12, *4 * [UNBREAKABLE], *4 * [0.0]]
+    (places, weights), stiffness = own.model.rules[0], law.normal_stiffness
+    bending = stiffness * float(weights @ places**2)  # of the points of a contact
+    numbers = [stiffness, law.shear_stiffness, law.shear_stiffness / 6, bending]
+    numbers += [*4 * [UNBREAKABLE], *4 * [0.0]]
     bond = " ".join(repr(float(number)) for number in numbers)
     folder.mkdir(parents=True, exist_ok=True)
     text = INPUT.format(bond=bond, dt=float(own.model.blocks.dt), steps=steps)
@@ -110,7 +115,7 @@ def theirs(own: Lattice, place: Place, folder: Path) -> tuple[np.ndarray, float]
 def data(own: Lattice) -> str:
     """Return the data file: bodies at the blocks' centres, a bond at each joint."""
     density = float(own.model.blocks.inertia[0, 0] / (np.pi / 6))
-    pairs, size = own.model.contacts.blocks, float(own.side)
+    pairs, size = own.pairs, float(own.side)
     head = f"lattice\n\n{len(own.centres)} atoms\n{len(pairs)} bonds\n1 atom types\n1 bond types\n"
     box = f"\n0 {size!r} xlo xhi\n0 {size!r} ylo yhi\n-1 1 zlo zhi\n"
     places = [(float(x), float(y)) for x, y in own.centres]
@@ -144,7 +149,7 @@ def main() -> None:
         ratios = sorted(peer / mine for mine, peer in turns)
         mine, peer = (side**2 * own.steps / median(column) for column in zip(*turns, strict=True))
         print(
-            f"  {side**2:>7,} bodies, {len(own.model.contacts.blocks):>7,} bonds: "
+            f"  {side**2:>7,} bodies, {len(own.pairs):>7,} bonds: "
             f"{mine:.2e} over {peer:.2e}: {median(ratios):.1f} ({ratios[0]:.1f} to "
             f"{ratios[-1]:.1f}); after {SHORT} steps {apart:.0e} apart",
             flush=True,

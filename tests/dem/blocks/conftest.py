@@ -11,10 +11,9 @@ from dem.blocks.model import (
     Blocks,
     PlaneForm,
     PlaneModel,
-    adjacency_of,
-    contacts_of,
     held_by,
 )
+from dem.blocks.tiles import contacts_of
 from joints.law import Law, parts_of, table_of
 
 SIDE, DENSITY, K_N, K_S = 0.5, 2600.0, 9e9, 4e9
@@ -103,11 +102,13 @@ def _lattice(law=None, points=0, ledger=False, turned=0.0, shifted=(0.0, 0.0), p
     along = SIDE / 2 * np.stack([-normal[:, 1], normal[:, 0]], axis=1)
     near = SIDE * np.concatenate([at, at])
     ends = [(centre + sign * along) @ turn.T + shifted for sign in (-1, 1)]
-    contacts = contacts_of(
-        pairs, *ends, normal @ turn.T, (near @ turn.T + shifted, far @ turn.T + shifted)
-    )
+    rule = np.array(points_of("gauss", points or 2))
+    rule[0] -= 0.5
+    beside = near @ turn.T + shifted, far @ turn.T + shifted
+    second = None if points else rule[1] @ rule[0] ** 2
+    contacts = contacts_of(pairs, *ends, normal @ turn.T, beside, len(at), second=second)
     mass = DENSITY * SIDE**2
-    inertia = np.tile([mass, mass * SIDE**2 / 6], (len(at), 1))
+    inertia = np.tile([mass, mass, mass * SIDE**2 / 6], (len(at), 1))
     omega = np.sqrt(4 * (K_N + K_S) * SIDE / mass)
     dt = form.pop("step", 0.25) * 2 / omega
     drag = 0.5 * dt * form.pop("mass_damping", 0.0)
@@ -117,10 +118,8 @@ def _lattice(law=None, points=0, ledger=False, turned=0.0, shifted=(0.0, 0.0), p
     held = held and held_by(*held, inertia, dt)
     effects = drag > 0, local > 0, any(gravity), held is not None
     form = PlaneForm(parts_of(law), points, *effects, ledger)
-    rule = np.array(points_of("gauss", points or 2))
-    rule[0] -= 0.5
     model = PlaneModel(
-        form, blocks, contacts, adjacency_of(contacts.blocks, len(at)), table_of(law),
-        rule[None], held, np.array(places, dtype=np.int64), np.zeros(0, dtype=np.int64),
+        form, blocks, contacts, table_of(law), rule[None], held,
+        np.array(places, dtype=np.int64), np.zeros(0, dtype=np.int64),
     )  # fmt: skip
     return model, at, turn

@@ -6,10 +6,14 @@ The ledger is kept throughout, so that each law is compiled once.
 import numpy as np
 import pytest
 
-from dem.blocks.leapfrog import TERMS, march, samples_for
-from dem.blocks.model import I_X, J_Y, state_at_rest
+from dem.blocks.leapfrog import march, samples_for
+from dem.blocks.model import state_at_rest
+from dem.blocks.tile import ALONG, BEND, FORCE_X, FORCE_Y
+from dem.blocks.tiles import LANES
 from joints.law import Law
+from results.plane import TERMS
 
+SIDE = 0.5  # of the blocks of `lattice`, m
 STIFF = {"normal_stiffness": 9e9, "shear_stiffness": 4e9}
 DASHPOTS = {"normal_viscosity": 9e5, "shear_viscosity": 4e5}
 SLIP = {"cohesion": 2e4, "friction": 0.5}
@@ -59,16 +63,26 @@ def test_momentum_is_kept(law, lattice):
 
 
 @EACH
-def test_moments_of_a_contact_cancel_about_any_point(law, lattice):
-    """Both blocks get one force at one place: about the origin its moments are opposite."""
+def test_each_block_gets_what_its_contacts_say(law, lattice):
+    """A contact's force on j, and its moment about the contact's centre, are those on i but for the
+    sign; what they give at the centroids, half a block away, is what each block's motion gains."""
     fields, points = LAWS[law]
-    model, _, _ = lattice(Law(**fields), points, ledger=True)
-    state = kicked(model)
-    march(model, state, samples_for(model, 0), 1 << 40, (1, 101))
-    f, table = state.force, model.contacts.table
-    apart = table[:, I_X : I_X + 2] - table[:, J_Y - 1 : J_Y + 1]  # from i to j
-    about_i = f[:, 2] + (apart[:, 0] * f[:, 1] - apart[:, 1] * f[:, 0])
-    assert np.abs(about_i - f[:, 3]).max() < 1e-13 * np.abs(f[:, 2:4]).max()
+    model, at, _ = lattice(Law(**fields), points, ledger=True)
+    contacts, number = model.contacts, 2 * len(at)
+    model = model._replace(watched=np.arange(number))
+    state, samples = kicked(model), samples_for(model, 1)
+    march(model, state, samples, 1 << 40, (1, 101))
+    before = state.v.copy()
+    march(model, state, samples, 1 << 40, (0, 1))
+    gained = model.blocks.inertia * (state.v - before) / model.blocks.dt
+    pair = contacts.pair.reshape(len(contacts.pair), -1, LANES)[:, :2].swapaxes(0, 1)
+    f, arm = samples.contact[..., 0], SIDE / 2 * np.repeat(np.eye(2), len(at), axis=0)
+    turning = arm[:, 0] * f[:, FORCE_Y] - arm[:, 1] * f[:, FORCE_X]
+    for blocks, sign in zip(pair.reshape(2, -1)[:, contacts.place] // 3, (-1, 1), strict=True):
+        moment = sign * f[:, BEND] - turning  # the arm from j is the other way
+        given = np.column_stack([sign * f[:, [FORCE_X, FORCE_Y]], moment])
+        np.subtract.at(gained, blocks, given)
+    assert np.abs(gained).max() < 1e-12 * np.abs(f[:, :3]).max() * len(f)
 
 
 def ledger_of(law, lattice, step, count):
@@ -149,8 +163,9 @@ def test_a_rigid_motion_makes_no_force(law, lattice):
     """All blocks with one velocity: joints feel nothing, now and later."""
     fields, points = LAWS[law]
     model, _, _ = lattice(Law(**fields), points, ledger=True)
-    state = state_at_rest(model)
+    model = model._replace(watched=np.arange(len(model.contacts.place)))
+    state, samples = state_at_rest(model), samples_for(model, 2)
     state.v[:, :2] = 3.0, -2.0
-    march(model, state, samples_for(model, 0), 1 << 40, (1, 101))
-    assert not state.force.any()
+    march(model, state, samples, 100, (1, 101))
+    assert not samples.contact[:, [FORCE_X, FORCE_Y, BEND, ALONG]].any()
     assert (state.v[:, :2] == [3.0, -2.0]).all() and not state.v[:, 2].any()

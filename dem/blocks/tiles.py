@@ -1,0 +1,129 @@
+"""Contacts in chunks of 64, and tiles of chunks and blocks that one pass takes through many steps.
+
+Contacts are ordered by the lower of their blocks. A tile's contacts join its own blocks to one
+another and to those of the next tile: before it moves all its blocks have their forces, and what
+lies two tiles on is not asked for. The better blocks are ordered, the narrower tiles are.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from numerics.cache_lines import zeros
+
+LANES = 64  # contacts in a chunk
+DEEPEST, CACHE = 16, 1 << 20  # steps, and bytes of a core's own cache, that a pass takes
+OF_BLOCK = 96  # bytes: its motion, inertia and force
+#: Rows of the table of contacts: normal, the moments about the centroids of i and of j of forces of
+#: 1 N at the centre along n and along t, m, the length, m, and where there is a prestress the
+#: opening and the slip that stand for what a contact carries before anything moves, m. Then, for
+#: joints that always hold, the second moment of the points' lengths, m3.
+N_X, N_Y, I_N, I_T, J_N, J_T, LENGTH, START = range(8)
+
+
+class Contacts(NamedTuple):
+    """The joints between blocks.
+
+    pair : int32 array [chunks, 2 LANES], three times i and j, where their motion begins, with a
+    third row where joints differ, the column of the law's table. table : float array
+    [chunks, rows LANES]. place : int array [c], where each contact is, chunk times LANES plus
+    lane. first_chunk, first_block : int arrays [tiles + 1].
+    """
+
+    pair: np.ndarray
+    table: np.ndarray
+    place: np.ndarray
+    first_chunk: np.ndarray
+    first_block: np.ndarray
+
+
+def contacts_of(
+    blocks: np.ndarray,
+    start: np.ndarray,
+    end: np.ndarray,
+    normal: np.ndarray,
+    centroids: tuple[np.ndarray, np.ndarray],
+    count: int,
+    *,
+    law: np.ndarray | None = None,
+    carried: np.ndarray | None = None,
+    second: np.ndarray | None = None,
+) -> Contacts:
+    """Return contacts between blocks i, j [c, 2] along the edges from start to end [c, 2], m.
+
+    normal : float array [c, 2], unit vectors from i to j. centroids : of i and of j where they
+    touch [c, 2], m, those of j moved by the period where they touch across periodic sides. count :
+    of blocks; a j from there on is a wall. law : int array [c], column of each; None where all
+    joints are alike. carried : opening and slip of a prestress [c, 2], m. second : sum of weights
+    times squared places of the points, over the length [c] or for all; None where joints can fail.
+    """
+    middle, length = (start + end) / 2, np.linalg.norm(end - start, axis=1)
+    rows = [*normal.T]
+    for x, y in ((middle - beside).T for beside in centroids):
+        rows += [x * normal[:, 1] - y * normal[:, 0], x * normal[:, 0] + y * normal[:, 1]]
+    rows += [length, *(() if carried is None else carried.T)]
+    rows += [] if second is None else [length**3 * second]
+    low, high = blocks.min(axis=1), np.where(blocks < count, blocks, 0).max(axis=1)
+    order = np.argsort(low, kind="stable")
+    place = np.empty(len(order), dtype=np.int64)
+    place[order] = np.arange(len(order))
+    pair = np.stack([*(3 * blocks.T), *(() if law is None else [law])])[:, order]
+    chunks = _tiles(low[order], high[order])
+    first = np.append(low[order[LANES * np.array(chunks[1:-1], dtype=int)]], count)
+    table = _chunks(np.array(rows)[:, order], "constant")
+    aligned = zeros(table.shape)
+    aligned[:] = table
+    return Contacts(
+        _chunks(pair.astype(np.int32), "edge"),
+        aligned,
+        place,
+        np.array(chunks),
+        np.append(0, first),
+    )
+
+
+def _chunks(values: np.ndarray, mode: Any) -> np.ndarray:
+    """Return values [rows, c] as [chunks, rows LANES], the last chunk filled up."""
+    rows, number = len(values), -(-values.shape[1] // LANES)
+    filled = np.pad(values, ((0, 0), (0, number * LANES - values.shape[1])), mode=mode)
+    return filled.reshape(rows, number, LANES).swapaxes(0, 1).reshape(number, rows * LANES)
+
+
+def _tiles(low: np.ndarray, high: np.ndarray) -> list[int]:
+    """Return the first chunk of each tile, and where the last one ends, of contacts by their lower
+    and higher blocks [c]: a tile begins beyond all blocks that the one before the last touches."""
+    begins, reach = low[::LANES], np.maximum.accumulate(high)
+    found = [0]
+    while found[-1] < len(begins) or len(found) == 1:
+        g = found[-1]
+        beyond = int(np.searchsorted(begins, reach[LANES * g - 1], side="right")) if g else 0
+        found.append(min(max(beyond, g + 1), len(begins)))
+    return found
+
+
+class Marks(NamedTuple):
+    """Recorded blocks or contacts by the tile that they are in: the first of each tile [tiles + 1],
+    where each is, ascending, and its row in the samples."""
+
+    first: np.ndarray
+    at: np.ndarray
+    row: np.ndarray
+
+
+def marks(at: np.ndarray, first: np.ndarray) -> Marks:
+    """Return marks of places [n], of tiles that begin at `first` [tiles + 1]."""
+    row = np.argsort(at, kind="stable")
+    return Marks(np.searchsorted(at[row], first), at[row], row)
+
+
+def depth_of(contacts: Contacts, history: np.ndarray | None, threads: int) -> int:
+    """Return how many steps are taken in one pass over the tiles: as many as a core's own cache
+    holds tiles, and as leave all threads something to do."""
+    chunks = max(1, len(contacts.pair))
+    whole = sum(x.nbytes for x in (contacts.pair, contacts.table, history) if x is not None)
+    sizes = whole / chunks * np.diff(contacts.first_chunk)
+    sizes += OF_BLOCK * np.diff(contacts.first_block)
+    depth = min(DEEPEST, int(CACHE / sizes.max()))
+    if threads > 1:
+        depth = min(depth, (len(sizes) - threads - 1) // (threads - 1))
+    return max(1, depth)
