@@ -66,17 +66,6 @@ def step_for(form: PlaneForm) -> Callable:
     cohesions, paths = (1 + softening) * L, (1 + softening + residual) * L
 
     @formula
-    def put_relative(q, to, x, wall, i, j, w, k, c):
-        """Put relative motion, or its rate, of contact c into the buffer; a wall's own motion."""
-        x_j, y_j = x[j], x[j + 1]
-        if shaken:
-            x_j, y_j = wall[w] if w > 0 else x_j, wall[w + 1] if w > 0 else y_j
-        q[to + c], q[to + L + c], q[to + 2 * L + c] = relative(
-            x_j - x[i], y_j - x[i + 1], x[i + 2], x[j + 2], k[N_X * L + c], k[N_Y * L + c],
-            k[I_N * L + c], k[I_T * L + c], k[J_N * L + c], k[J_T * L + c],
-        )  # fmt: skip
-
-    @formula
     def at_start(k, row, c):
         """Return opening or slip that stand for what a contact carries at first."""
         return k[(START + row) * L + c] if stressed else 0.0
@@ -95,24 +84,33 @@ def step_for(form: PlaneForm) -> Callable:
         the loop of `dem.blocks.leapfrog` takes.
         """
         law, still, pushed = law_of(laws, 0), last - 3, 0.5 * dt * (1.0 + keep)
-        own_walls: Any = None
-        wall_rates: Any = None
-        if shaken:
-            own_walls, wall_rates = walls[n][0], walls[n][1]
         for g in range(first_chunk[t], first_chunk[t + 1]):
             k, at = table[g], pair[g]
             h: Any = None
             if remembers:
                 h = history[g]
 
-            # Relative motion of the contacts.
+            # Relative motion of the contacts. Formulas that took a pointer here would keep LLVM from
+            # gathering.
             for c in range(L):
                 i, j, w = at[c], at[L + c], 0
+                n_x, n_y, i_n, i_t = k[N_X * L + c], k[N_Y * L + c], k[I_N * L + c], k[I_T * L + c]
+                j_n, j_t, x, y = k[J_N * L + c], k[J_T * L + c], u[j], u[j + 1]
                 if shaken:
                     w = j - still if j > still else 0
-                put_relative(q, MOVED, u, own_walls, i, j, w, k, c)
+                    x, y = walls[n, 0, w] if w > 0 else x, walls[n, 0, w + 1] if w > 0 else y
+                x, y = x - u[i], y - u[i + 1]
+                gap, slip, turn = relative(x, y, u[i + 2], u[j + 2], n_x, n_y, i_n, i_t, j_n, j_t)
+                q[MOVED + c], q[MOVED + L + c], q[MOVED + 2 * L + c] = gap, slip, turn
                 if rated:
-                    put_relative(q, RATE, v, wall_rates, i, j, w, k, c)
+                    x, y = v[j], v[j + 1]
+                    if shaken:
+                        x, y = walls[n, 1, w] if w > 0 else x, walls[n, 1, w + 1] if w > 0 else y
+                    x, y = x - v[i], y - v[i + 1]
+                    gap, slip, turn = relative(
+                        x, y, v[i + 2], v[j + 2], n_x, n_y, i_n, i_t, j_n, j_t
+                    )
+                    q[RATE + c], q[RATE + L + c], q[RATE + 2 * L + c] = gap, slip, turn
             if dashpots:
                 for r in range(3):
                     for c in range(r * L, r * L + L):
@@ -121,25 +119,8 @@ def step_for(form: PlaneForm) -> Callable:
                             own[VISCOUS + c - r * L] -= 0.5 * dt * (h[3 * L + c] * rate)
                         q[NOW + c], h[c] = 1.5 * rate - 0.5 * before, rate
 
-            # Their forces: joints that always hold, or points one by one.
-            if not by_points:
-                for c in range(L):
-                    if varied:
-                        law = law_of(laws, at[2 * L + c])
-                    k_n, k_t = law.normal_stiffness, law.shear_stiffness
-                    length, second = k[LENGTH * L + c], k[bend + c]
-                    f_n = -k_n * length * (q[MOVED + c] + at_start(k, 0, c))
-                    f_t = -k_t * length * (q[MOVED + L + c] + at_start(k, 1, c))
-                    moment = -k_n * second * q[MOVED + 2 * L + c]
-                    if dashpots:
-                        d_n = -law.normal_viscosity * length * q[NOW + c]
-                        d_t = -law.shear_viscosity * length * q[NOW + L + c]
-                        d_m = -law.normal_viscosity * second * q[NOW + 2 * L + c]
-                        f_n, f_t, moment = f_n + d_n, f_t + d_t, moment + d_m
-                        if drags:
-                            q[D_N + c], q[D_T + c], q[D_M + c] = d_n, d_t, d_m
-                    q[F_N + c], q[F_T + c], q[MOMENT + c], q[STRETCH + c] = f_n, f_t, moment, 0.0
-            else:
+            # Forces of points one by one, where joints can fail.
+            if by_points:
                 for c in range(F_N, F_X if drags else D_N):
                     q[c] = 0.0
                 for p in range(points):
@@ -204,16 +185,6 @@ def step_for(form: PlaneForm) -> Callable:
                         q[MOMENT + c] -= e * share * t_n
                         q[STRETCH + c] += e * share * t_t
 
-            if ledger and sampled and not by_points:
-                for r in range(3):
-                    for c in range(L):
-                        at_c = r * L + c
-                        f, x = q[F_N + at_c], q[MOVED + at_c]
-                        if drags:
-                            f -= q[D_N + at_c]
-                        if stressed and r < 2:
-                            x += k[START * L + at_c]
-                        own[ELASTIC + c] -= 0.5 * f * x
             if ledger and sampled and by_points:
                 for p in range(points):
                     past, x, weight = first_point + p * point_rows, rules[0, 0, p], rules[0, 1, p]
@@ -233,11 +204,36 @@ def step_for(form: PlaneForm) -> Callable:
                         stored = elastic_energy(law, parts, gap, opening, left, 0.0)
                         own[ELASTIC + c] += share * stored
 
-            # What acts on their blocks.
+            # What acts on their blocks; joints that always hold need no points.
             for c in range(L):
-                n_x, n_y, f_n, f_t = k[N_X * L + c], k[N_Y * L + c], q[F_N + c], q[F_T + c]
+                if by_points:
+                    f_n, f_t, moment = q[F_N + c], q[F_T + c], q[MOMENT + c]
+                else:
+                    if varied:
+                        law = law_of(laws, at[2 * L + c])
+                    length, second = k[LENGTH * L + c], k[bend + c]
+                    gap, slip = (
+                        q[MOVED + c] + at_start(k, 0, c),
+                        q[MOVED + L + c] + at_start(k, 1, c),
+                    )
+                    k_n, k_t, turn = law.normal_stiffness, law.shear_stiffness, q[MOVED + 2 * L + c]
+                    f_n, f_t, moment = (
+                        -k_n * length * gap,
+                        -k_t * length * slip,
+                        -k_n * second * turn,
+                    )
+                    if ledger and sampled:
+                        own[ELASTIC + c] -= 0.5 * (f_n * gap + f_t * slip + moment * turn)
+                    if dashpots:
+                        eta_n, eta_t = law.normal_viscosity, law.shear_viscosity
+                        d_n, d_t = -eta_n * length * q[NOW + c], -eta_t * length * q[NOW + L + c]
+                        d_m = -eta_n * second * q[NOW + 2 * L + c]
+                        f_n, f_t, moment = f_n + d_n, f_t + d_t, moment + d_m
+                        if drags:
+                            q[D_N + c], q[D_T + c], q[D_M + c] = d_n, d_t, d_m
+                    q[MOMENT + c] = moment
+                n_x, n_y = k[N_X * L + c], k[N_Y * L + c]
                 q[F_X + c], q[F_Y + c] = n_x * f_n - n_y * f_t, n_y * f_n + n_x * f_t
-                moment = q[MOMENT + c]
                 q[ON_I + c] = moment + (k[I_N * L + c] * f_n + k[I_T * L + c] * f_t)
                 q[ON_J + c] = moment + (k[J_N * L + c] * f_n + k[J_T * L + c] * f_t)
             if drags:
@@ -288,13 +284,15 @@ def step_for(form: PlaneForm) -> Callable:
         if held:
             for r in range(first_held[t], first_held[t + 1]):
                 for a in range(3):
-                    force[3 * block[r] + a] += drive[n, r, a]
+                    i = 3 * block[r] + a
+                    q[BEFORE + i - begin] = v[i]
+                    force[i] += drive[n, r, a]
         for i in range(begin, end):
             old, gain = v[i], pushed * force[i]
             if local_damping:  # less by local |gain| along v
                 gain = gain - local * copysign(abs(gain), old) if old != 0.0 else gain
             new = (keep * old if mass_damping else old) + gain / inertia[i]
-            if held or ledger:
+            if ledger:
                 q[BEFORE + i - begin] = old
             v[i] = new
             u[i] += dt * new

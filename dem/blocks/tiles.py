@@ -12,7 +12,7 @@ import numpy as np
 from numerics.cache_lines import zeros
 
 LANES = 64  # contacts in a chunk
-DEEPEST, CACHE = 16, 1 << 20  # steps, and bytes of a core's own cache, that a pass takes
+DEEPEST, CACHE = 16, 3 << 19  # steps, and bytes of a core's own cache, that a pass takes
 OF_BLOCK = 96  # bytes: its motion, inertia and force
 #: Rows of the table of contacts: normal, the moments about the centroids of i and of j of forces of
 #: 1 N at the centre along n and along t, m, the length, m, and where there is a prestress the
