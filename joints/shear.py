@@ -6,7 +6,7 @@ scaled back along its own direction (radial return). With T* = -K_s e - C_s de/d
 and de/dt taken over the step, e is where spring and dashpot together carry exactly T*.
 """
 
-from math import sqrt
+from math import copysign, sqrt
 
 from joints.formula import formula
 from joints.softening import is_broken, strength_left
@@ -84,6 +84,17 @@ def shear_return(law, parts, ex, ez, ex_old, ez_old, rate_x, rate_z, tau, dt):
     x = _elastic_slip(law, parts, scale * ex, t_x, ex_old, dt)
     z = _elastic_slip(law, parts, scale * ez, t_z, ez_old, dt)
     return t_x, t_z, x if slipped else ex, z if slipped else ez, slipped
+
+
+@formula
+def planar_return(law, parts, ex, ex_old, rate, tau, dt):
+    """Return (t_x, ex, slipped) of a slip in one direction: `shear_return` without its root."""
+    t, _ = shear_traction(law, parts, ex, 0.0, rate, 0.0)
+    slipped = parts.limited and abs(t) > tau
+    if parts.limited:
+        t = copysign(tau, t) if slipped else t
+        ex = _elastic_slip(law, parts, -t / law.shear_stiffness, t, ex_old, dt) if slipped else ex
+    return t, ex, slipped
 
 
 @formula

@@ -10,7 +10,7 @@ from cases.spectrum import highest_frequency
 from dem.blocks.model import PlaneState
 from dem.blocks.shaking import variation
 from dem.blocks.tile import relative
-from dem.blocks.tiles import LANES, LENGTH, START
+from dem.blocks.tiles import LENGTH, START
 from numerics.divergence import speed_that
 
 if TYPE_CHECKING:
@@ -41,9 +41,7 @@ def highest_energy(system: PlaneSystem, state: PlaneState) -> float:
 
 def stored(system: PlaneSystem, state: PlaneState) -> float:
     """Return the root of twice the energy in all contacts that hold, sqrt(J per metre)."""
-    contacts, links, own = system.model.contacts, system.blocks.links, system.blocks.columns
-    k = contacts.table.reshape(len(contacts.table), -1, LANES).swapaxes(0, 1)
-    k = k.reshape(len(k), -1)[:, contacts.place]  # in the order of the links
+    k, links, own = system.model.contacts.rows(), system.blocks.links, system.blocks.columns
     (x_i, y_i, turn_i), (x_j, y_j, turn_j) = state.u.T[:, links.blocks].transpose(2, 0, 1)
     gap, slip, turn = relative(x_j - x_i, y_j - y_i, turn_i, turn_j, *k[:LENGTH])
     if system.model.form.stressed:

@@ -70,12 +70,13 @@ def march(
     buffers = zeros((threads, BEFORE + 3 * int(widest)))
     ledgers = zeros((threads * depth, 2 * AFTER)) if form.ledger else None
     progress = np.zeros(threads + 1, dtype=np.int64)
-    loop = loop_for(form)
+    loop, inertia = loop_for(form), b.inertia.ravel()
+    inverse, force = 1.0 / inertia, np.zeros(inertia.size)
 
     def share(thread: int) -> None:
         loop(
             contacts.pair, contacts.table, model.laws, model.rules, contacts.first_chunk,
-            contacts.first_block, b.inertia.ravel(), first_held, *held, state.u.reshape(-1),
+            contacts.first_block, inertia, inverse, first_held, *held, state.u.reshape(-1),
             state.v.reshape(-1), state.history, drive, walls, force,
             *marks(model.places, contacts.first_block),
             *marks(contacts.place[model.watched], LANES * contacts.first_chunk),
@@ -83,7 +84,6 @@ def march(
             b.local, b.gravity_x, b.gravity_y, first, last, stride, depth, thread,
         )  # fmt: skip
 
-    force = np.zeros(b.inertia.size)
     if threads == 1 or first == last:  # nothing to take: compiles
         share(0)
     else:
@@ -115,8 +115,8 @@ def loop_for(form: PlaneForm) -> Callable:
 
     @jitted_for(form)
     def loop(
-        pair, table, laws, rules, first_chunk, first_block, inertia, first_held, block, keeps,
-        moves, dashpot, u, v, history, drive, walls, force, first_place, place, place_row,
+        pair, table, laws, rules, first_chunk, first_block, inertia, inverse, first_held, block,
+        keeps, moves, dashpot, u, v, history, drive, walls, force, first_place, place, place_row,
         first_seen, seen, seen_row, displacement, velocity, contact, energy, sums, ledgers, buffers,
         progress, contacts, dt, keep, local, g_x, g_y, first, last, stride, depth, thread,
     ):  # fmt: skip
@@ -126,22 +126,25 @@ def loop_for(form: PlaneForm) -> Callable:
         k - j at its step j. It enters one when band B - 1 has left the one that asks for the last
         of its own steps at the next tile.
 
-        force : float array [3 N], zero. drive : [last - first, h, 3], on held blocks. walls : of
-        `motion_of_walls`. progress : int64 [threads + 1], zero at first: diagonals that each thread
-        has left behind, as many for each band, and how many bands have closed their ledgers. The
-        rest are the arrays of `dem.blocks.model` and `tiles`, None for what the form does not have.
+        inertia, inverse, force : float arrays [3 N], of each freedom, one over it, and zero. drive
+        : [last - first, h, 3], on held blocks. walls : of `motion_of_walls`. progress : int64
+        [threads + 1], zero at first: diagonals that each thread has left behind, as many for each
+        band, and how many bands have closed their ledgers. The rest are the arrays of
+        `dem.blocks.model` and `tiles`, None for what the form does not have.
         """
         tiny = flush_tiny()
         tiles, size, threads = first_chunk.size - 1, inertia.size, progress.size - 1
         given = (
-            pair, table, laws, rules, first_chunk, first_block, inertia, first_held, block, keeps,
-            moves, dashpot, u, v, history, drive, walls, force, first_place, place, place_row,
-            first_seen, seen, seen_row, displacement, velocity, contact, ledgers, buffers,
+            pair, table, laws, rules, first_chunk, first_block, inertia, inverse, first_held, block,
+            keeps, moves, dashpot, u, v, history, drive, walls, force, first_place, place,
+            place_row, first_seen, seen, seen_row, displacement, velocity, contact, ledgers,
+            buffers,
         )  # fmt: skip
         (
-            pair, table, laws, rules, first_chunk, first_block, inertia, first_held, block, keeps,
-            moves, dashpot, u, v, history, drive, walls, force, first_place, place, place_row,
-            first_seen, seen, seen_row, displacement, velocity, contact, ledgers, buffers,
+            pair, table, laws, rules, first_chunk, first_block, inertia, inverse, first_held, block,
+            keeps, moves, dashpot, u, v, history, drive, walls, force, first_place, place,
+            place_row, first_seen, seen, seen_row, displacement, velocity, contact, ledgers,
+            buffers,
         ) = pointers(given)  # fmt: skip
         buffer, own = buffers[thread], None
         diagonals = tiles + depth - 1
@@ -158,11 +161,12 @@ def loop_for(form: PlaneForm) -> Callable:
                     if ledger:
                         own = ledgers[thread * depth + j]
                     step(
-                        pair, table, laws, rules, first_chunk, first_block, inertia, first_held,
-                        block, keeps, moves, dashpot, u, v, history, drive, walls, force,
-                        first_place, place, place_row, first_seen, seen, seen_row, displacement,
-                        velocity, contact, own, buffer, contacts, size, dt, keep, local, g_x, g_y,
-                        k - j, n + j - first, (n + j) % stride == 0, (n + j) // stride,
+                        pair, table, laws, rules, first_chunk, first_block, inertia, inverse,
+                        first_held, block, keeps, moves, dashpot, u, v, history, drive, walls,
+                        force, first_place, place, place_row, first_seen, seen, seen_row,
+                        displacement, velocity, contact, own, buffer, contacts, size, dt, keep,
+                        local, g_x, g_y, k - j, n + j - first, (n + j) % stride == 0,
+                        (n + j) // stride,
                     )  # fmt: skip
                 post(progress, thread, band * diagonals + k + 1)
             while peek(progress, threads) < band:

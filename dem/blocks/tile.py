@@ -22,7 +22,7 @@ from joints.energy import elastic_energy, fracture_energy_spent, friction_work, 
 from joints.formula import formula
 from joints.law import law_of
 from joints.normal import normal_traction, spring_traction
-from joints.shear import cohesion_left, shear_return, shear_strength
+from joints.shear import cohesion_left, planar_return, shear_strength
 from joints.slide import after_slide
 
 #: Rows of a contact's samples: F on block j, M and the sum of e L w t_s, opening and slip.
@@ -72,8 +72,8 @@ def step_for(form: PlaneForm) -> Callable:
 
     @formula
     def step(
-        pair, table, laws, rules, first_chunk, first_block, inertia, first_held, block, keeps,
-        moves, dashpot, u, v, history, drive, walls, force, first_place, place, place_row,
+        pair, table, laws, rules, first_chunk, first_block, inertia, inverse, first_held, block,
+        keeps, moves, dashpot, u, v, history, drive, walls, force, first_place, place, place_row,
         first_seen, seen, seen_row, displacement, velocity, samples, own, q, count, last, dt, keep,
         local, g_x, g_y, t, n, sampled, s,
     ):  # fmt: skip
@@ -90,8 +90,7 @@ def step_for(form: PlaneForm) -> Callable:
             if remembers:
                 h = history[g]
 
-            # Relative motion of the contacts. Formulas that took a pointer here would keep LLVM from
-            # gathering.
+            # Relative motion of the contacts; a formula that took a pointer would not be gathered.
             for c in range(L):
                 i, j, w = at[c], at[L + c], 0
                 n_x, n_y, i_n, i_t = k[N_X * L + c], k[N_Y * L + c], k[I_N * L + c], k[I_T * L + c]
@@ -166,9 +165,7 @@ def step_for(form: PlaneForm) -> Callable:
                                         law, parts, gap - moved, gap - up, opening, up
                                     )
                                 gap = gap - up
-                        t_t, _, left, _, slipped = shear_return(
-                            law, parts, ex, 0.0, old, 0.0, slip_rate, 0.0, tau, dt
-                        )
+                        t_t, left, slipped = planar_return(law, parts, ex, old, slip_rate, tau, dt)
                         h[past + c] = slip - left if slipped else slid
                         if residual:
                             h[past + cohesions + c] = cohesion_left(law, parts, cohesion, slipped)
@@ -291,7 +288,7 @@ def step_for(form: PlaneForm) -> Callable:
             old, gain = v[i], pushed * force[i]
             if local_damping:  # less by local |gain| along v
                 gain = gain - local * copysign(abs(gain), old) if old != 0.0 else gain
-            new = (keep * old if mass_damping else old) + gain / inertia[i]
+            new = (keep * old if mass_damping else old) + gain * inverse[i]
             if ledger:
                 q[BEFORE + i - begin] = old
             v[i] = new

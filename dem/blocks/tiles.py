@@ -36,6 +36,11 @@ class Contacts(NamedTuple):
     first_chunk: np.ndarray
     first_block: np.ndarray
 
+    def rows(self) -> np.ndarray:
+        """Return the table in the order of the contacts' numbers [rows, c]."""
+        chunks = self.table.reshape(len(self.table), -1, LANES)
+        return chunks.swapaxes(0, 1).reshape(chunks.shape[1], -1)[:, self.place]
+
 
 def contacts_of(
     blocks: np.ndarray,

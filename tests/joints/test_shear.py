@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from joints.energy import elastic_energy, friction_work
 from joints.law import History, Law, law_of, parts_of, table_of, traction
-from joints.shear import UNLIMITED, shear_return, shear_strength
+from joints.shear import UNLIMITED, planar_return, shear_return, shear_strength
 from joints.softening import strength_left
 from joints.weakening import friction_left
 
@@ -191,9 +191,11 @@ def test_cyclic_slip_takes_four_tau_times_the_slide(stiffness, tau, ratio):
     point, taken, e = at_point(one), [], 0.0
     for slip in (s, -2 * s, 2 * s):
         strength = shear_strength(*point, 0.0, 0.0, 0.0, 0.0, 0.0)
-        t, _, after, _, _ = shear_return(
+        t, _, after, _, slid = shear_return(
             *point, e + slip, 0.0, e, 0.0, slip / DT, 0.0, strength, DT
         )
+        in_one = planar_return(*point, e + slip, e, slip / DT, strength, DT)
+        assert in_one == (pytest.approx(t, rel=1e-15), pytest.approx(after, rel=1e-15), slid)
         taken.append(-t * (slip - (after - e)))
         e = after
     assert sum(taken[1:]) == pytest.approx(4 * tau * (s - tau / one.shear_stiffness), rel=1e-12)

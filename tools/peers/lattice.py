@@ -143,6 +143,7 @@ def main() -> None:
     )
     for side in SIDES:
         own, folder = bodies(side), options.out / str(side)
+        ours(own)  # compiles
         turns = [(ours(own), theirs(own, place, folder)) for _ in range(options.rounds)]
         apart = distance(*(displacement for displacement, _ in turns[0]))
         seconds = [(mine, peer) for (_, mine), (_, peer) in turns]

@@ -269,7 +269,7 @@ def test_a_prestressed_rock_mass_stays_still(side, rock_mass, joint):
 def test_a_prestress_that_joints_cannot_carry_is_refused_in_one_line(law, what, rock_mass, joint):
     pressed = {"xx": -1e6, "yy": -1e6} if what == "opens" else {"xx": 1e6, "yy": 4e6}
     weak = rock_mass(joint_sets=[joint(**law)], prestress=pressed)
-    with pytest.raises(SceneError, match=f"prestress: is more.*'joint' {what} under it") as caught:
+    with pytest.raises(SceneError, match=f"prestress: exceeds.*'joint' {what} under it") as caught:
         simulate(weak)
     assert "\n" not in str(caught.value)
 
