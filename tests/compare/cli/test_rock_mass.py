@@ -140,13 +140,15 @@ def test_a_sweep_of_it_has_a_row_a_receiver(jointwave_says, tmp_path):
 
 def test_tables_and_curves_of_a_comparison_name_places(jointwave_says, tmp_path):
     """What --out writes is read back by --with: the same curves, at the same places."""
-    code, out, _ = jointwave_says("compare joint.toml --out found")
+    code, out, _ = jointwave_says("compare joint.toml --set numerics.continuum.size=4 --out found")
     assert code == 0 and "oblique-joint" in out
     header = (tmp_path / "found" / "comparison.csv").read_text().splitlines()[0]
     assert "oblique-joint | velocity x at [20, 10] m" in header
     assert "oblique-joint | traction s at [20, 20] m" in header
     given = "found/comparison.csv:oblique-joint"
-    code, out, _ = jointwave_says(f"compare joint.toml --json --with {given}")
+    code, out, _ = jointwave_says(
+        f"compare joint.toml --set numerics.continuum.size=4 --json --with {given}"
+    )
     rows = [
         row
         for row in json.loads(out)[0]["rows"]
@@ -179,7 +181,9 @@ def test_a_place_of_the_other_kind_of_scene_is_refused(jointwave_says, tmp_path)
 
 
 def test_a_figure_has_a_panel_a_component(jointwave_says, tmp_path):
-    code, out, _ = jointwave_says("figure joint.toml --out joint.svg")
+    code, out, _ = jointwave_says(
+        "figure joint.toml --set numerics.continuum.size=4 --out joint.svg"
+    )
     drawn = (tmp_path / "joint.svg").read_text()
     assert code == 0 and "wrote joint.svg" in out
     assert "velocity x at [20,\u00a010]\u00a0m" in drawn
