@@ -37,7 +37,7 @@ def applies(scene: Scene | RockMass, model: str = "jointed", dim: int | None = N
 
 def _beyond_shear(stiffness: np.ndarray) -> str:
     if not np.isfinite(stiffness).all():
-        return "the intact rock alone is softer in shear than rock and joint together should be"
+        return "intact rock is softer in shear than the rock mass"
     if (stiffness < 0).any():
         return "a joint stiffer than the others in shear cannot be added to the homogenised rock"
     return ""
@@ -60,15 +60,15 @@ def _beyond_the_homogenised(scene: Scene, p: Properties, shears: bool) -> str:
         return "homogenised segments have no common quality_factor"
     ordinary = np.setdiff1d(np.arange(p.block_count - 1), p.soft)
     if not p.tension[ordinary].all():
-        return "a homogenised bar has no joints to open where tension is barred"
+        return "a homogenised bar has no joints without tension"
     if p.maximum_closure is not None:
         stiffens = p.maximum_closure < UNLIMITED
         if stiffens[ordinary].any() or (p.excess_compliance[stiffens] == 0).any():
-            return "a homogenised bar has no ordinary joints to stiffen"
+            return "a homogenised bar has no ordinary joints with closure"
     if (p.excess_compliance < 0).any():
         return "a joint stiffer than the others cannot be added to the homogenised bar"
     if p.damps_alone.any():
-        return "a homogenised bar cannot damp one ordinary joint by itself"
+        return "a homogenised bar cannot damp a single ordinary joint"
     slides = shears and p.cohesion is not None and p.cohesion < UNLIMITED
     if (slides | p.across() | np.zeros_like(p.tension))[ordinary].any():
         return "a homogenised bar has no joints that slide or break"

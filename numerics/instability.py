@@ -33,7 +33,7 @@ class Sighting(NamedTuple):
 def stopped(scene: Scene | RockMass, time: Clock, critical: float, seen: Sighting) -> StoppedError:
     """Return the error of a run out of bounds, with the samples that are sound; critical in s."""
     name = f"{scene.where}, {scene.name}" if scene.name else scene.where
-    what = "created energy" if seen.energy else "ran away"
+    what = "gained energy" if seen.energy else "diverged"
     error = StoppedError(
         f"{name}: {seen.who} {what} at t = {seen.step * time.dt:.6g} s, step {seen.step} of "
         f"{time.dt:.4g} s, fastest at {_place(seen)} m: {_cause(scene, time, critical, seen)}"
@@ -52,11 +52,11 @@ def _cause(scene: Scene | RockMass, time: Clock, critical: float, seen: Sighting
     if time.dt > 0.9999 * critical:
         return (
             f"the step is {time.dt / critical:.4g} times the critical step {critical:.4g} s; "
-            f"take {seen.key} of at most 0.9"
+            f"set {seen.key} to at most 0.9"
         )
     if any(abs(one.amplitude or 0.0) > HUGE for one in scene.pulses):
-        return "numbers grow beyond 1e308; take a smaller load.amplitude"
+        return "numbers overflow; use a smaller load.amplitude"
     return (
-        "joints open, close, stiffen or slide within a step, or the scene goes beyond what the "
-        f"scheme can do; {'halve' if seen.key.endswith('fraction') else 'double'} {seen.key}"
+        "joints open, close, stiffen or slide within a step, or the scene exceeds the limits of "
+        f"the scheme;  {'halve' if seen.key.endswith('fraction') else 'double'} {seen.key}"
     )

@@ -36,7 +36,7 @@ class PointerModel(models.StructModel):
 def _pointer_type(kind: Any) -> Any:
     if isinstance(kind, types.Array):
         if kind.layout != "C":
-            raise TypeError("pointers are to contiguous arrays alone")
+            raise TypeError("pointers require contiguous arrays")
         return Pointer(kind.dtype, kind.ndim)
     return kind
 

@@ -43,11 +43,11 @@ def given_mesh(path: str | Path, scene: Scene, p: Properties, dim: int | None = 
 def _check_kind(scene: Scene, kind: str, dim: int | None) -> None:
     numerics, simplices = scene.numerics.continuum, kind in ("triangle", "tetrahedron")
     if dim is not None and DIMENSION[kind] != dim:
-        raise MeshError(f"its rock holds {kind} cells, which do not fit dim = {dim}")
+        raise MeshError(f"its rock has {kind} cells, which do not fit dim = {dim}")
     if simplices and numerics.order > 2:
-        raise MeshError(f"its {kind} cells take numerics.continuum.order 1 or 2")
+        raise MeshError(f"its {kind} cells support numerics.continuum.order 1 or 2")
     if not simplices and numerics.mass == "consistent":
-        raise MeshError(f"its {kind} cells take numerics.continuum.mass = 'lumped'")
+        raise MeshError(f"its {kind} cells support numerics.continuum.mass = 'lumped' only")
 
 
 def _mesh(tagged: Tagged, p: Properties) -> Mesh:

@@ -23,12 +23,12 @@ def paired_joints(outer: Facets, group: np.ndarray, p: Properties) -> Joints:
     of_pair = group[pair].max(axis=1, initial=0)
     alone = (group > 0) & (partners == 0)
     outside = alone & _on_outside(outer, p)
-    _refuse(outer, outside, "facets of its joints lie on the outside of the pillar")
-    _refuse(outer, alone, "facets of its joints have no partner at the same place")
+    _refuse(outer, outside, "facets of its joints lie on the boundary of the pillar")
+    _refuse(outer, alone, "facets of its joints have no coincident partner")
     _refuse(outer, (group > 0) & (partners > 1), "facets of its joints have more than one partner")
     loose = np.zeros(len(group), dtype=bool)
     loose[pair[of_pair == 0]] = True
-    _refuse(outer, loose, "facets meet others at the same place and are in no group 'joint...'")
+    _refuse(outer, loose, "facets coincide with others and are in no group 'joint...'")
     return facets.joints(outer, pair, _law(outer.chosen(pair[:, 0]), of_pair, p))
 
 

@@ -50,7 +50,7 @@ def plane_mesh(
     if cell == "quadrilateral" and not four.all():
         x, y = partition.centroid[np.argmin(four)]
         raise ValueError(
-            f"the block at ({x:.4g}, {y:.4g}) m has not four edges, one neighbour each"
+            f"the block at ({x:.4g}, {y:.4g}) m does not have four edges with one neighbour each"
         )
     kind = cell or ("quadrilateral" if four.all() else "triangle")
     size = sizes[kind]

@@ -138,7 +138,7 @@ class Entry:
         count = int(np.ceil(self.duration / apart)) + 8
         if 2 * count * len(every) > SAMPLES:
             allowed = (
-                f"gives {count:,} samples of what enters at {len(every):,} points of quiet "
+                f"gives {count:,} samples of incident waves at {len(every):,} points of quiet "
                 f"sides; at most {SAMPLES:.0e} numbers: larger elements (numerics.continuum.size)"
             )
             raise SceneError(scene.where, "time.duration", self.duration, allowed)

@@ -19,8 +19,8 @@ def applies(scene: RockMass, model: str = "jointed") -> str:
     damped = scene.rock.quality_factor is not None
     reasons = [
         (scene.damping.local is not None, "the continuum has no local damping"),
-        (len(scene.bases) > 1, "one base alone can be shaken"),
-        (damped and bool(scene.waves), "[[waves]] enter as those of rock without a quality_factor"),
+        (len(scene.bases) > 1, "only one base can move"),
+        (damped and bool(scene.waves), "[[waves]] do not support a quality_factor"),
     ]
     if model == "equivalent":
         reasons += _beyond_medium(scene)

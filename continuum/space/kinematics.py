@@ -59,9 +59,9 @@ def least_dimension(scene: Scene) -> int:
 def holds(scene: Scene, dim: int) -> str:
     """Return "" where a mesh of this dimension holds the scene's motion, else why not."""
     if dim == 1 and is_spatial(scene) and scene.motion.rotation != "none":
-        return "the bar has no bending and no torsion: dim 2 or 3, or motion.rotation = 'none'"
+        return "a bar does not bend or twist: needs dim 2 or 3, or motion.rotation = 'none'"
     if dim == 2 and _leaves_plane(scene):
-        return "the motion leaves the plane of x and y: dim 3"
+        return "the motion leaves the plane of x and y: needs dim 3"
     if is_spatial(scene) and scene.motion.rotation == "finite":
         return "its strains and rotations are small"
     return ""

@@ -23,7 +23,7 @@ HELD = ("prestress", "soft layers", "segments", "scatter", "quality factor", *DA
 def applies(scene: Scene) -> Answer:
     """Return whether the scene's homogenised bar is linear and its layers add compliance."""
     alone = bool(calibrate(scene).damps_alone.any())
-    reason = "a homogenised bar cannot damp one ordinary joint by itself"
+    reason = "a homogenised bar cannot damp a single ordinary joint"
     many = scene.rock.quality_factor is not None and len(calibrate(scene).each) > 1
     return holds(
         scene,

@@ -36,7 +36,7 @@ def test_missing_partners_are_counted_and_placed(drawn, column):
     meshio.write(path, file, "gmsh22")
     with pytest.raises(SceneError) as error:
         given_mesh(path, scene, calibrate(scene))
-    assert "4 facets of its joints have no partner at the same place" in str(error.value)
+    assert "4 facets of its joints have no coincident partner" in str(error.value)
     assert "the first at (-0.1, 1) m" in str(error.value)
 
 
@@ -46,7 +46,7 @@ def test_pieces_that_no_group_joins_are_refused(kind, drawn, column):
     with pytest.raises(SceneError, match="are in no group 'joint") as error:
         given_mesh(path, column(), calibrate(column()))
     count = 2 * 2 if kind == "quadrilateral" else 2 * 8
-    assert f"{count} facets meet others at the same place" in str(error.value)
+    assert f"{count} facets coincide with others" in str(error.value)
 
 
 CONSISTENT = dict(numerics__continuum__mass="consistent", numerics__continuum__cell="simplex")
@@ -62,7 +62,7 @@ MISTAKES = {
                 numerics__continuum__mass="consistent", numerics__continuum__cell="simplex"
             )
         ),
-        ["quadrilateral cells take numerics.continuum.mass = 'lumped'"],
+        ["quadrilateral cells support numerics.continuum.mass = 'lumped'"],
     ),
 }
 
@@ -83,7 +83,7 @@ def test_what_does_not_fit_is_one_line(name, fault):
 
 def test_simplices_of_third_order_are_refused(fault):
     text = fault("triangle", changes=dict(numerics__continuum__order=3))
-    assert "triangle cells take numerics.continuum.order 1 or 2" in text
+    assert "triangle cells support numerics.continuum.order 1 or 2" in text
 
 
 GOOD = """\

@@ -37,7 +37,7 @@ MISTAKES = {
             *("--set", f"{FRACTION}=1.2", *ALLOWED),
         ),
         3,
-        "the continuum ran away",
+        "the continuum diverged",
     ),
     "more processes than cells": (
         (

@@ -90,7 +90,7 @@ def test_step_above_it_is_refused_with_both_numbers(pillar):
 def test_forced_step_above_it_is_caught_when_it_blows_up(pillar):
     """allow_unstable lets it run; what leaves its bounds is an UnstableError, not a result."""
     forced = {"numerics__dem__step_fraction": 1.5, "numerics__dem__allow_unstable": True}
-    with pytest.raises(UnstableError, match=r"ran away at t = .*step_fraction of at most 0.9$"):
+    with pytest.raises(UnstableError, match=r"diverged at t = .*step_fraction to at most 0.9$"):
         dem.simulate(pillar(**forced, time__duration=2.0, record__interval=1e-3))
 
 
