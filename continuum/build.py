@@ -47,7 +47,7 @@ class Discrete(NamedTuple):
 def discretise(scene: Scene, model: str, dim: int | None = None, comm=None) -> Discrete:
     """Return a scene in space; `model` is "jointed" or "equivalent".
 
-    comm : mpi4py's communicator of the processes that each take a share of it; None for one alone.
+    comm : mpi4py's communicator of the processes that share it; None for a single process.
     """
     p, motion, numerics = calibrate(scene), kinematics(scene, dim), scene.numerics.continuum
     mesh = mesh_of(scene, p, model, motion)
@@ -188,7 +188,7 @@ def rock_operators(
     """Return the rock of a body; mass : of all processes together [freedoms], kg; damping : of
     mass-proportional damping, 1/s, None without; mechanisms : of its relaxation, None without."""
     alpha, step = (damping or 0.0) * dt / 2, zeros(mass.size)
-    # Nothing moves what has no mass: nodes of another process's cell beyond a joint.
+    # Massless nodes, of another process's cell beyond a joint, do not move.
     np.divide(dt / (1 + alpha), mass, out=step, where=mass > 0)
     decay = None if damping is None else (1 - alpha) / (1 + alpha)
     memory = None if mechanisms is None else memory_of(mechanisms, dt)

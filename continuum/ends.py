@@ -21,7 +21,7 @@ from joints.ends import HalfSpring, half_spring
 def build_ends(
     scene: Scene, p: Properties, body: Body, model: str, time: Clock, mass: np.ndarray
 ) -> Ends:
-    """Return what acts on the ends of a body; mass : float array [freedoms], kg, in total."""
+    """Return the loads and supports of a body's ends; mass : float array [freedoms], kg, total."""
     return Ends(
         loaded=load_on(scene, p, body, time),
         quiet=quiet_ends(scene, p, body, model, time.dt, mass),
@@ -72,7 +72,7 @@ def load_shape(scene: Scene, p: Properties, body: Body, x: np.ndarray) -> np.nda
 def quiet_ends(
     scene: Scene, p: Properties, body: Body, model: str, dt: float, mass: np.ndarray
 ) -> Quiet | None:
-    """Return what absorbs at the ends, or None: dashpots rho c for P and S on the end faces.
+    """Return the absorbing ends, or None: dashpots rho c for P and S on the end faces.
 
     In jointed rock a matched end has half a joint in front of it, as the rock beyond would have.
     """
@@ -122,7 +122,7 @@ def _half_joint(p: Properties, z: float, is_normal: bool, dt: float) -> HalfSpri
 
 
 def end_stiffness(scene: Scene, p: Properties, body: Body, model: str) -> np.ndarray:
-    """Return what matched ends add to the stiffness at the critical step, N/m [freedoms]."""
+    """Return the stiffness of matched ends at the critical step, N/m [freedoms]."""
     found = np.zeros(body.mass.size)
     for area, springs in absorbers(scene, p, body, model):
         for share, spring in zip(area, springs, strict=True):

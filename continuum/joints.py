@@ -64,7 +64,7 @@ def _excess(compliance: np.ndarray, regular: float | np.ndarray) -> np.ndarray:
 
 
 def _fails(p: Properties, shears: bool) -> np.ndarray:
-    """Return which joints can open, slide, break or stiffen, bool array [N - 1]."""
+    """Return which joints can open, slide, break or close nonlinearly, bool array [N - 1]."""
     from joints.shear import UNLIMITED
 
     found = ~p.tension | p.across()

@@ -1,4 +1,4 @@
-"""The constants of a run in one, two or three dimensions; `continuum.state` has what changes.
+"""The constants of a run in one, two or three dimensions; `continuum.state` has the state.
 
 Absent parts are None. A freedom is one component of the displacement of one node;
 where it stands in a vector, `continuum.space.operator.layout` says.
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Memory(NamedTuple):
-    """What relaxation mechanisms make of displacements u (`cases.material.constant_q`).
+    """Relaxation mechanisms of displacements u (`cases.material.constant_q`).
 
     Of each the spring that is in series with a dashpot has the elongation e_l, e_l' = v - omega_l
     e_l, as a vector of freedoms. Over a step of constant velocity that is exactly decay e_l + gain

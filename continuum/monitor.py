@@ -10,7 +10,7 @@ from numerics.instability import Sighting, stopped
 
 
 class Monitor:
-    """Ends a run that exceeds its bounds; the kernel of leapfrog compares speeds by itself.
+    """Stops a run that exceeds its bounds; the kernel of leapfrog checks speeds by itself.
 
     Attributes
     ----------
@@ -29,14 +29,14 @@ class Monitor:
             self.parts = self.guard, self.energy
 
     def look(self, n: int) -> bool:
-        """Look at the speeds after n steps, and return whether the run is lost."""
+        """Check the speeds after n steps, and return whether the run diverges."""
         look(self.guard, np.abs(self.run.state.v).max(initial=0.0), n)
         return self.communicator.any(bool(self.guard.found[0] >= 0))
 
     def finds(self, n: int) -> bool:
-        """Look now and then at implicit steps, after step n, and return whether the run is lost.
+        """Check implicit steps periodically, after step n, and return whether the run diverges.
 
-        Their ledger is not exact, and what it is out by is no fault.
+        Their ledger is not exact, so that its imbalance is not an error.
         """
         return self.look(n) if n % EVERY == 0 else False
 

@@ -38,7 +38,7 @@ class Choice(NamedTuple):
 
 
 def choose(scene: Scene | RockMass, discrete: Discrete | PlaneDiscrete, critical: float) -> Choice:
-    """Return how a scene is stepped; critical : the critical step of explicit ones, s.
+    """Return the scheme of a scene; critical : the critical step of explicit steps, s.
 
     Raises SceneError for a step that cannot be taken.
     """
@@ -72,7 +72,7 @@ def _implicit(scene: Scene | RockMass, reason: str) -> Choice:
 def _cheaper(
     scene: Scene | RockMass, discrete: Discrete | PlaneDiscrete, critical: float
 ) -> Choice:
-    """Return the scheme that takes less time, by the operations of both."""
+    """Return the faster scheme, by operation counts."""
     implicit = _implicit(scene, "")
     many = scene.time.duration / (critical * scene.numerics.continuum.step_fraction)
     few = implicit.time.steps
@@ -106,7 +106,7 @@ def _costs(discrete: Discrete | PlaneDiscrete, many: float, few: int) -> tuple[f
 
 
 def _bends(discrete: Discrete | PlaneDiscrete) -> bool:
-    """Return whether joints open, slide, break or stiffen."""
+    """Return whether joints open, slide, break or close nonlinearly."""
     law = None if discrete.joints is None else discrete.joints.law
     return law is not None and any(
         value is not None and not name.endswith(("stiffness", "viscosity"))

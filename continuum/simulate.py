@@ -58,7 +58,7 @@ def simulate(
     progress : called with the finished fraction.
     comm : mpi4py's communicator of processes that share the run: all call this alike, each steps
         its part of the rock, and all get the whole result. None: this one alone.
-    keeper : keeps checkpoints, `numerics.checkpoint`; each process has its own.
+    keeper : of checkpoints, `numerics.checkpoint`; each process has its own.
     incident : of the waves of a rock mass, as if it had no sides; None: in rock without joints.
 
     Raises SceneError for what this model cannot simulate; StoppedError, an UnstableError with the
@@ -124,7 +124,7 @@ def _recorded(run: Run, times: np.ndarray, about: dict[str, Any]) -> Fields:
 
 
 def _about(run: Run) -> dict[str, Any]:
-    """Return what a result says of its run."""
+    """Return the attributes of a result about its run."""
     versions = {"numpy": np.__version__, "numba": numba.__version__, "basix": compat.VERSION}
     return {
         "model": run.rock,
@@ -144,7 +144,7 @@ def _about(run: Run) -> dict[str, Any]:
 
 
 def _bytes(model: Model, state: State) -> int:
-    """Return the bytes that model and state take."""
+    """Return the bytes of model and state."""
     jump = () if model.interfaces is None else (model.interfaces.jump,)
     sparse = [m for m in (*jump, *model.receivers) if isinstance(m, csr_matrix)]
     return size_of(model, state, [(m.data, m.indices, m.indptr) for m in sparse])
@@ -165,7 +165,7 @@ def _at_rest(run: Run) -> dict[str, Any]:
 
 
 def _film(run: Run, ahead: float) -> RockFilm | None:
-    """Return what keeps snapshots; None, and nothing imported, where none are asked for."""
+    """Return the recorder of snapshots; None, and nothing imported, without snapshots."""
     if run.scene.record.fields is None:
         return None
     from continuum.snapshots import RockFilm

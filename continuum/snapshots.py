@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class RockFilm(Film):
-    """The rock at every snapshot that a scene asks for; raises SceneError for too many.
+    """The rock at every snapshot of a scene; raises SceneError for too many.
 
     ahead : s, how far the displacements of the state are beyond the step of a sample.
     """

@@ -27,7 +27,7 @@ class Places(NamedTuple):
 
 
 class State(NamedTuple):
-    """What changes.
+    """The state.
 
     fields : u, v, v_before, rate, loads, drags and strained, one after the other; each is a
         property.
@@ -145,7 +145,7 @@ class Samples(NamedTuple):
 
 
 def state_at_rest(model: Model, keep_ledger: bool) -> State:
-    """Return the state at rest, with no array for anything that the model does not have."""
+    """Return the state at rest, without arrays for absent effects."""
     n, joints = model.rock.mass.size, model.interfaces
     _, quiet, fixed, dashpots, _ = model.ends
     parts = parts_of(Law(0.0)) if joints is None else joints.parts
@@ -202,7 +202,7 @@ def _fields(
 
 
 def empty_samples(model: Model, state: State, samples: int) -> Samples:
-    """Return samples to be recorded."""
+    """Return empty samples."""
     receivers = model.receivers
     sections, points = receivers.elastic.shape[0], receivers.point.shape[0]
     turns = 0 if receivers.turn is None else receivers.turn.shape[0]

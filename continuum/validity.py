@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def applies(scene: Scene | RockMass, model: str = "jointed", dim: int | None = None) -> str:
-    """Return "" where this model can simulate the scene, else the reason why not."""
+    """Return "" if this model can simulate the scene, else the reason."""
     if not isinstance(scene, Scene):
         from continuum.plane.validity import applies as of_rock_mass
 

@@ -17,7 +17,7 @@ from results.dataset import ALL_TERMS
 def waveforms(scene: Scene, discrete: Discrete, samples: Samples) -> dict[str, Any]:
     """Return the recorded fields at the scene's receivers, as `results.dataset.fields` takes them.
 
-    What a mesh in two dimensions has no room for is zero.
+    Components absent in two dimensions are zero.
     """
     components = discrete.body.section.components
     force = samples.stress.reshape(components, -1, samples.waves.shape[1])

@@ -11,7 +11,7 @@ from results.labels import label
 
 
 def fragments(p: Properties, broken: np.ndarray, velocity: np.ndarray) -> list[dict[str, Any]]:
-    """Return the pieces of a row between its broken joints, from the start on.
+    """Return the fragments of a row between its broken joints, from the start on.
 
     Parameters
     ----------

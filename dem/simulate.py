@@ -1,4 +1,4 @@
-"""From a scene to its result by the rigid-block engine, with only the freedoms it calls for."""
+"""Simulation by rigid blocks, with only the degrees of freedom that the scene needs."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ def simulate(
 ) -> xr.Dataset:
     """Simulate a scene with rigid blocks.
 
-    progress : called with the finished fraction. keeper : watches over the run,
+    progress : called with the finished fraction. keeper : of checkpoints,
     `numerics.checkpoint`. incident : of a rock mass, the field that enters through quiet sides;
     absent: that of its waves in rock without joints.
 
-    Raises SceneError for a step that cannot be taken, a static state that does not exist,
-    rotations too large for their kinematics and a quality factor beyond them; StoppedError, an
+    Raises SceneError for an unstable step, a static state that does not exist, rotations too
+    large for their kinematics and an unsupported quality factor; StoppedError, an
     UnstableError with the result so far, when the motion leaves its bounds.
     """
     import xarray as xr

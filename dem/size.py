@@ -4,17 +4,17 @@ from cases.sampling import Clock
 from cases.schema.scene import Scene
 from cases.size import load_bytes, refuse_beyond_memory, snapshot_bytes, waveform_bytes
 
-#: Bytes a block, with all that makes the model and all that can be remembered of its joint.
+#: Bytes per block, with the model and the history of its joint.
 AXIAL, SPATIAL = 80, 200
-#: Bytes a block for each contact point of joints that open or slide.
+#: Bytes per block for each contact point of joints that open or slide.
 POINT = 60
 CORNERS = 8  # of a block, in snapshots
 
 
 def refuse_large(scene: Scene, time: Clock, points: int | None = None, stages: int = 1) -> None:
-    """Raise SceneError where a run would not fit the memory.
+    """Raise SceneError for a run that does not fit in memory.
 
-    points : contact points that each joint of blocks in space looks after; None for axial motion.
+    points : contact points with a history in each joint of blocks in space; None for axial motion.
     stages : of a step, at each of which the load acts.
     """
     spatial, blocks = points is not None, scene.block_count

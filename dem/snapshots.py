@@ -41,7 +41,7 @@ class Shot(NamedTuple):
 
 
 class BlockFilm(Film):
-    """The blocks at every snapshot that a scene asks for; raises SceneError for too many.
+    """The blocks at every snapshot of a scene; raises SceneError for too many.
 
     step : s, over which the load is a mean; None where it is not.
     """

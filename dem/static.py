@@ -1,4 +1,4 @@
-"""Static states by dynamic relaxation, for any engine: motion under damping until nothing moves.
+"""Static states by dynamic relaxation, for any engine: damped motion until equilibrium.
 
 Mass-proportional damping alpha is critical for a mode omega at alpha = 2 omega. The mode that still
 moves shows itself in the change of displacement du and of unbalanced force dF over a few steps,
@@ -30,7 +30,7 @@ PATIENCE = 20  # a stall is a twentieth of the most steps without progress
 
 
 class System(Protocol):
-    """What is brought to rest. Vectors hold every freedom, displacements and rotations."""
+    """The system to be relaxed. Vectors have every freedom, displacements and rotations."""
 
     @property
     def mass(self) -> np.ndarray:
@@ -42,7 +42,7 @@ class System(Protocol):
 
     @property
     def most_steps(self) -> int:
-        """Steps after which there is no hope."""
+        """The largest number of steps."""
 
     def advance(self, steps: int, alpha: float) -> None:
         """Take steps under mass-proportional damping alpha (1/s), a stable step long."""
@@ -65,7 +65,7 @@ class Rest(NamedTuple):
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """What a result says of it."""
+        """Attributes of a result."""
         return {"static_steps": self.steps, "static_out_of_balance": self.ratio}
 
 
@@ -73,8 +73,8 @@ def prestressed(scene: Scene, p: Properties) -> np.ndarray:
     """Return the displacement of every block under the prestress alone [N], m: where results count
     displacement from.
 
-    A fixed end keeps its place, the far one if both are; between two that give way the displacement
-    has zero mean.
+    A fixed end does not move (the far one if both are fixed); between two free ends the
+    displacement has zero mean.
     """
     normal = scene.prestress.normal if scene.prestress else 0.0
     u = np.append(0.0, np.cumsum(gaps_under(p, normal)))
@@ -143,9 +143,9 @@ def settle(scene: AnyScene, system: System) -> Rest:
 
 
 def relax(system: System, tolerance: float, most_steps: int) -> Rest:
-    """Move a system towards rest until its out-of-balance ratio is within the tolerance.
+    """Relax a system until its out-of-balance ratio is within the tolerance.
 
-    It ends earlier after `most_steps`, or when the ratio has long not fallen.
+    It ends earlier after `most_steps`, or if the ratio stops falling.
     """
     steps, alpha, u, force = 0, 0.0, system.displacement().copy(), system.unbalanced().copy()
     ratio = _ratio(force, system.scale)
@@ -163,7 +163,7 @@ def relax(system: System, tolerance: float, most_steps: int) -> Rest:
 
 
 def _frequency(change: np.ndarray, resistance: np.ndarray, mass: np.ndarray) -> float:
-    """Return the frequency (rad/s) of what still moves; zero where nothing resists it."""
+    """Return the frequency (rad/s) of the remaining motion; zero without stiffness."""
     inertia = float(change @ (mass * change))
     return sqrt(max(float(change @ resistance), 0.0) / inertia) if inertia > 0 else 0.0
 

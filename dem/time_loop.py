@@ -1,4 +1,4 @@
-"""A run of rigid blocks from its first sample to its result."""
+"""The run of rigid blocks, from first sample to result."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ if TYPE_CHECKING:
     from results.snapshots import Film
 
 BLOCK_STEPS_AT_ONCE = 20_000_000  # some 10 ms to 1 s: often enough for a progress bar
-ENOUGH_BLOCKS = 20_000  # from which a second thread gains more than waiting for others costs
-LEAST_STEPS = 64  # at least: threads that follow one another need some to share
+ENOUGH_BLOCKS = 20_000  # from which a second thread gains more than synchronisation costs
+LEAST_STEPS = 64  # at least: pipelined threads need several
 
 
 class Run(NamedTuple):
     """A run: its clock, how many blocks it has, and what takes its samples.
 
-    march : of (first, last), takes samples first .. last - 1. check : of how many samples are
-    taken, raises an error where the run is not sound. parts : all that changes in it.
+    march : of (first, last), takes samples first .. last - 1. check : of the number of samples
+    taken, raises an error if the run exceeds its bounds. parts : its state.
     """
 
     time: Clock
@@ -47,8 +47,8 @@ def followed(
     film: Film | None,
     keeper: Keeper | None,
 ) -> Fields:
-    """Return the result of a run to its end; where it stops on its way, the error has the part
-    that is sound. result : of how many samples are."""
+    """Return the result of a run; if it stops early, the error has the valid part. result : a
+    function of the number of valid samples."""
 
     def march(first: int, last: int) -> None:
         if film is not None:
@@ -66,14 +66,14 @@ def followed(
 
 
 def sighting(guard: Guard, speed: np.ndarray, centre_y: np.ndarray) -> Sighting | None:
-    """Return what a guard has found, None where nothing; speed : of each block, m/s; centre_y : of
+    """Return the finding of a guard, None without; speed : of each block, m/s; centre_y : of
     them, m."""
     fastest = int(np.nan_to_num(speed, nan=np.inf).argmax())
     return sighting_at(guard, float(centre_y[fastest]))
 
 
 def sighting_at(guard: Guard, place: float | tuple[float, float]) -> Sighting | None:
-    """Return what a guard has found, None where nothing; place : of the fastest block, m."""
+    """Return the finding of a guard, None without; place : of the fastest block, m."""
     step, what, sound = guard.found.tolist()
     if step < 0:
         return None
@@ -82,7 +82,7 @@ def sighting_at(guard: Guard, place: float | tuple[float, float]) -> Sighting | 
 
 
 def thread_count(asked: int | None, blocks: int) -> int:
-    """Return the threads to use: as asked, or one for few blocks and all cores for many."""
+    """Return the threads to use: as requested, or one for few blocks and all cores for many."""
     if asked is not None:
         return asked
     return _cores() if blocks >= ENOUGH_BLOCKS else 1

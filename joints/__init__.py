@@ -1,1 +1,1 @@
-"""The joint laws: the one piece of physics that both engines share exactly."""
+"""The joint laws, shared by both engines."""

@@ -1,6 +1,6 @@
-"""Closure of a joint that stiffens: a hyperbola up to a maximum closure, elastic.
+"""Hyperbolic elastic closure of a joint, up to a maximum closure.
 
-A joint of initial stiffness k_ni that closes by d carries, up to its maximum closure d_m,
+A joint of initial stiffness k_ni and maximum closure d_m that closes by d carries
 
     sigma = k_ni d / (1 - d / d_m),   d sigma / dd = k_ni (1 + sigma / s_m)^2,   s_m = k_ni d_m
 
@@ -11,16 +11,16 @@ Between rigid blocks the compliance c of the rock is in series with it. Of D = d
 
     c sigma^2 + (c s_m + d_m - D) sigma - s_m D = 0,
 
-whose one root of the sign of D is the traction: no D is too large for it. A joint between rock
-that deforms has no c of its own; a millionth of its compliance is taken for c, so that it is a
-million times as stiff as at first, and no stiffer, where it would close beyond d_m.
+whose only root with the sign of D is the traction, for any D. For a joint between deformable rock
+c is a millionth of its own compliance, so that it is at most a million times stiffer than
+initially where it would close beyond d_m.
 """
 
 from math import log1p, sqrt
 
 from joints.formula import formula
 
-FACES = 1e-6  # of the joint's own compliance: what is left of it when it is closed
+FACES = 1e-6  # of the joint's own compliance: the remainder when it is closed
 SMALL = 1e-3  # traction over s_m below which the energy is a series: its terms cancel
 
 
@@ -57,7 +57,7 @@ def closure_stiffness(law, traction):
 
 @formula
 def closure_energy(law, traction):
-    """Return what is stored at sigma >= 0 (Pa), J/m2: c sigma^2 / 2 + s_m d_m (ln(1 + x) - x /
+    """Return the stored energy at sigma >= 0 (Pa), J/m2: c sigma^2 / 2 + s_m d_m (ln(1 + x) - x /
     (1 + x)), x = sigma / s_m."""
     c, s_m = closing(law)
     x = traction / s_m

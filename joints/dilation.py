@@ -1,7 +1,7 @@
-"""Dilation: faces that slide ride up each other's asperities, and wear them off.
+"""Dilation: sliding faces ride over each other's asperities and wear them.
 
 The opening by the length S of the path that closed faces have slid rises at the dilation angle
-psi, whose tangent falls linearly to nothing over the distance D_w:
+psi, whose tangent falls linearly to zero over the distance D_w:
 
     w'(S) = tan(psi) (1 - S / D_w),   w(S) = tan(psi) (S - S^2 / (2 D_w))   for S < D_w,
 

@@ -1,8 +1,8 @@
-"""The law of a joint: its parameters, which parts it has, and the whole of it in one call.
+"""The law of a joint: its parameters, its parts, and the complete law in one call.
 
 Every formula here is plain Python that numba compiles into the kernels that call it. A kernel takes
-the parameters as one table, and `Parts`, a tuple of booleans, as a constant: what a law lacks is
-folded away when the kernel is compiled. A new parameter is a field of `Law`, and its formula.
+the parameters as one table, and `Parts`, a tuple of booleans, as a constant: absent parts are
+eliminated when the kernel is compiled. A new parameter is a field of `Law`, and its formula.
 
 Per unit area: traction in Pa, compression positive; gap in m, positive when open, so that
 penetration is negative. The shear traction acts on the right block.
@@ -30,19 +30,17 @@ class Law(NamedTuple):
     carries_tension : whether tension is carried; None where every joint does.
     shear_stiffness, shear_viscosity : K_s, Pa/m, and K_s eta, Pa s/m; None without shear.
     cohesion, friction : c, Pa, and tan(phi); None where no joint slides.
-    residual_cohesion : what slip leaves of the cohesion, Pa; None where it leaves all.
+    residual_cohesion : cohesion after slip, Pa; None where slip does not reduce it.
     tensile_strength, critical_opening : s_t, Pa, and w_c, m; None without softening.
-    maximum_closure, rock_compliance : d_m, m, of joints that stiffen, K at first; None without.
-        And what rock has of the compliance 1/K, m/Pa; None where it has none.
-    dynamic_friction, weakening_distance : what a path of slip leaves of tan(phi), and that path D,
-        m; None where friction stays.
-    dilation, dilation_distance : tan(psi), and the path over which it falls to none, m; None where
-        slip lifts nothing.
+    maximum_closure : d_m, m, of joints with closure, initially of stiffness K; None without.
+    rock_compliance : the rock's share of the compliance 1/K, m/Pa; None without.
+    dynamic_friction, weakening_distance : tan(phi) after weakening, its path D, m; None without.
+    dilation, dilation_distance : tan(psi), and the path over which it falls to 0, m; None without.
     direct_effect, evolution_effect, critical_slip_distance, reference_rate, initial_state : a, b,
-        D_c, m, V_0, m/s, and theta_0, s, where friction depends on the rate and the state of slip;
-        None where it does not, and a = 0 of a joint beside ones where it does.
+        D_c, m, V_0, m/s, and theta_0, s, of rate-and-state friction; None without, and a = 0 for
+        joints without it among joints with it.
 
-    A joint without a strength that others have is given `joints.shear.UNLIMITED`.
+    Joints without a strength that others have get `joints.shear.UNLIMITED`.
     """
 
     normal_stiffness: Any
@@ -68,7 +66,7 @@ class Law(NamedTuple):
     initial_state: Any = None
 
 
-#: Rows of a table of what acts in motion alone: a static state is that without, under mu_0.
+#: Rows of the table that act in motion only: static states are without them, with friction mu_0.
 IN_MOTION = [
     Law._fields.index(name) for name in ("normal_viscosity", "shear_viscosity", "direct_effect")
 ]
@@ -78,9 +76,9 @@ IN_MOTION = [
 class Parts(NamedTuple):
     """Which parts the law has: constants of a compiled kernel.
 
-    path : the joint remembers what it has slid, or the state of its faces, for slip changes it.
+    path : the history has the accumulated slip, or the state of the faces.
     varied : joints differ, and the table has a column for each; else one for all.
-    limited : the shear traction has a limit: Coulomb's, or none is left where a joint is open.
+    limited : the shear traction is limited: by Coulomb's law, or zero where a joint is open.
     """
 
     dashpots: bool
@@ -99,11 +97,11 @@ class Parts(NamedTuple):
 
 
 class History(NamedTuple):
-    """What one point of a joint remembers; 0 for what its law does not use.
+    """The history of one point of a joint; 0 for what its law does not use.
 
     opening : the largest so far, m. ex, ez : elastic part of the slip, m. cohesion : of this
-    point, Pa, where slip changes it. path : slid so far, m, where the law asks for it; where
-    friction depends on rate and state ln(theta / theta_0).
+    point, Pa, where slip changes it. path : accumulated slip, m, where the law needs it; with
+    rate-and-state friction ln(theta / theta_0).
     """
 
     opening: float = 0.0
@@ -114,7 +112,7 @@ class History(NamedTuple):
 
 
 def parts_of(law: Law) -> Parts:
-    """Return which parts a law has."""
+    """Return the parts of a law."""
     shear = law.shear_stiffness is not None
     slip = law.cohesion is not None or law.friction is not None
     no_tension, softening = law.carries_tension is not None, law.tensile_strength is not None
@@ -143,7 +141,7 @@ def uniform(values: None) -> None: ...
 @overload
 def uniform(values: np.ndarray) -> float | bool | np.ndarray: ...
 def uniform(values: np.ndarray | None) -> float | bool | np.ndarray | None:
-    """Return the common value of an array if there is one, else the array itself; None of None."""
+    """Return the common value of an array if there is one, else the array; None for None."""
     if values is None:
         return None
     same = values.size > 0 and (values == values[0]).all()
@@ -194,7 +192,7 @@ def stiffest(law: Law, scene: "AnyScene") -> tuple[Any, Any]:
 def table_of(law: Law) -> np.ndarray:
     """Return the parameters as kernels take them: [field, 1], or [field, joint] where some vary.
 
-    Absent ones are 0, and take no memory: nothing reads their pages.
+    Absent ones are 0, in pages that are never read.
     """
     given = [(row, value) for row, value in enumerate(law) if value is not None]
     table = np.zeros((len(law), max(np.size(value) for _, value in given)))

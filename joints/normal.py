@@ -8,11 +8,11 @@ from joints.softening import stiffness_left, strength_left, strength_loss
 
 @formula
 def normal_traction(law, parts, gap, gap_rate, opening):
-    """Return t_n (Pa) of one joint: spring and dashpot, the whole cut by what it can pull.
+    """Return t_n (Pa) of one joint: spring and dashpot, limited by its tensile strength.
 
     opening : the largest so far with this gap included, m; any number without softening.
 
-    The total gap decides opening, equation (10); a force kept by increments would forget it.
+    The total gap decides opening, equation (10); an incremental force would lose it.
     """
     t = spring_alone(law, parts, gap)
     if parts.dashpots:
@@ -22,13 +22,13 @@ def normal_traction(law, parts, gap, gap_rate, opening):
 
 @formula
 def spring_traction(law, parts, gap, opening):
-    """Return the elastic part of t_n (Pa): what is stored, not dissipated."""
+    """Return the elastic, stored part of t_n (Pa)."""
     return _cut(law, parts, spring_alone(law, parts, gap), gap, opening)
 
 
 @formula
 def spring_alone(law, parts, gap):
-    """Return the traction (Pa) of the spring whatever it can pull."""
+    """Return the traction (Pa) of the spring without tensile limit."""
     t = -law.normal_stiffness * gap
     if parts.closure:
         closed = closure_traction(law, -gap if gap < 0.0 else 0.0)
@@ -58,7 +58,7 @@ def _cut(law, parts, t, gap, opening):
 
 @formula
 def normal_tangent(law, parts, gap, gap_rate, before, r):
-    """Return d t_n / d gap (Pa/m) alone; before : the largest opening before this gap, m; the
+    """Return d t_n / d gap (Pa/m); before : the largest opening before this gap, m; the
     others as in `tangent`."""
     t, slope = spring_alone(law, parts, gap), -law.normal_stiffness
     if parts.closure and gap < 0.0:
@@ -71,7 +71,7 @@ def normal_tangent(law, parts, gap, gap_rate, before, r):
         share = stiffness_left(law, opening) if gap > 0.0 else 1.0
         # Of s(k) / (K k), falling only where the strength does.
         falling = (loss / law.normal_stiffness - share) / opening if loss < 0.0 else 0.0
-        # The spring alone reaches the strength left and never exceeds it, but for round-off.
+        # The spring reaches the remaining strength and exceeds it only by round-off.
         cut = parts.dashpots and share * t < -strength_left(law, opening)
         slope = -loss if cut else share * slope + falling * t
     if parts.no_tension and not law.carries_tension:

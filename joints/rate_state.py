@@ -1,6 +1,6 @@
 """Friction that depends on the rate and the state of slip: the ageing law.
 
-Faces pressed by t_n that slide at the rate V, in the state theta (s, the age of their contacts):
+Friction of faces under t_n at the slip rate V and the state theta (s, the age of contacts):
 
     mu = a asinh( V / (2 V_0) exp((mu_0 + b ln(V_0 theta / D_c)) / a) ),
     d theta / dt = 1 - V theta / D_c
@@ -10,7 +10,7 @@ V = 0 as Rice & Ben-Zion, PNAS 93, 1996, and Lapusta et al., J. Geophys. Res. 10
 mu_0 + a ln(V / V_0) + b ln(V_0 theta / D_c) where mu is a few a or more. In steady slip theta is
 D_c / V, and mu falls with V where a < b.
 
-A point remembers s = ln(theta / theta_0). A step of dt whose trial traction T* is beyond the
+The history of a point is s = ln(theta / theta_0). A step of dt whose trial traction T* exceeds the
 cohesion c slides by l, at V = l / dt. The state follows exactly for this V, x = l / D_c:
 
     theta e^-x + dt (1 - e^-x) / x,
@@ -28,10 +28,10 @@ from math import asinh, exp, expm1, log, log1p, sqrt
 
 from joints.formula import formula
 
-MOST = 80  # steps of Newton's method, kept within a bracket that is halved where it leaves it
-SETTLED, ROUND_OFF = 1e-12, 1e-15  # of ln V, and of what has to be carried
-STILL = 32.0  # ln of how much less than the longest slide is none
-HELD = 1.0 + 1e-12  # of the traction of a joint that does not slide: what it could carry
+MOST = 80  # Newton steps, safeguarded by bisection of a bracket
+SETTLED, ROUND_OFF = 1e-12, 1e-15  # of ln V, and of the traction to be carried
+STILL = 32.0  # -ln of the largest slide, over the longest one, that counts as zero
+HELD = 1.0 + 1e-12  # strength over traction of a joint that does not slide
 LN_2 = log(2.0)
 LARGE = 19.0  # from here on asinh(e^x) = x + ln 2 to the last digit
 SMALL = 1e-5  # x, below which a difference is a series: its terms cancel
@@ -62,7 +62,7 @@ def rate_under(law, friction, state):
 
 @formula
 def ageing(x, young):
-    """Return by what s grows, and d ln theta / d ln V at the end, in a step whose slide is x D_c.
+    """Return the increment of s, and d ln theta / d ln V at the end, in a step with slip x D_c.
 
     young : the step over theta at its beginning.
     """
@@ -90,7 +90,7 @@ def resistance_to_sliding(law, t_n, state, slide, dt):
 
 @formula
 def slide_at_rate(law, t_n, cohesion, state, size, stiffness, dt):
-    """Return the strength (Pa) and s at the end of a step of faces that t_n > 0 (Pa) presses.
+    """Return the strength (Pa) and s at the end of a step of faces under t_n > 0 (Pa).
 
     cohesion : Pa. state : s, at the beginning. size, stiffness : |T*|, Pa, and A, Pa/m. dt : s.
     """
@@ -103,7 +103,7 @@ def slide_at_rate(law, t_n, cohesion, state, size, stiffness, dt):
     rate, once = rate_under(law, friction, state), log(least / dt)
     if rate < (fastest if fastest < once else once) - STILL:
         return HELD * size, healed
-    # Half of the load on the spring, and half on friction as strong as it can be: it slides more.
+    # Lower bound: half of the load on the spring, half on friction at its strongest.
     low, high = rate_under(law, 0.5 * friction, healed), fastest
     low = low if low < fastest - LN_2 else fastest - LN_2
     rate = rate if rate < high else high
@@ -124,6 +124,6 @@ def slide_at_rate(law, t_n, cohesion, state, size, stiffness, dt):
         if abs(further) <= SETTLED or abs(left) <= ROUND_OFF * load:
             break
         rate = rate + further if low < rate + further < high else 0.5 * (low + high)
-    # The smaller of the two has lost fewer digits.
+    # The smaller of the two has less cancellation.
     unloaded = stiffness * slide
     return size - unloaded if unloaded < carried else cohesion + carried, state + grown

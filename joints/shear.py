@@ -1,7 +1,7 @@
 """Shear traction of a joint: spring and dashpot up to Coulomb's strength, equation (3).
 
 The traction acts on the right block, in the two directions x and z of the face. The elastic part
-e of the slip is its memory: a step adds the increment of slip, and what exceeds the strength is
+e of the slip is its history: a step adds the increment of slip, and traction above the strength is
 scaled back along its own direction (radial return). With T* = -K_s e - C_s de/dt on the strength
 and de/dt taken over the step, e is where spring and dashpot together carry exactly T*.
 """
@@ -12,13 +12,13 @@ from joints.formula import formula
 from joints.softening import is_broken, strength_left
 from joints.weakening import friction_left
 
-# Pa; more than any joint carries, and still a number when squared.
+# Pa; above any strength, and finite when squared.
 UNLIMITED = 1e100
 
 
 @formula
 def shear_traction(law, parts, slip_x, slip_z, rate_x, rate_z):
-    """Return (t_x, t_z) (Pa) where nothing slides, from the whole slip (m) and its rate."""
+    """Return (t_x, t_z) (Pa) without sliding, from the total slip (m) and its rate."""
     t_x, t_z = -law.shear_stiffness * slip_x, -law.shear_stiffness * slip_z
     if parts.dashpots:
         t_x, t_z = t_x - law.shear_viscosity * rate_x, t_z - law.shear_viscosity * rate_z
@@ -29,20 +29,20 @@ def shear_traction(law, parts, slip_x, slip_z, rate_x, rate_z):
 def shear_strength(law, parts, t_n, gap, opening, cohesion, path):
     """Return the limit of |T| (Pa); `UNLIMITED` where there is none.
 
-    c s(k) / s_t + t_n tan(phi), not below zero; zero where the joint does not hold; the cohesion
-    alone where friction depends on the rate of slip.
+    c s(k) / s_t + t_n tan(phi), not below zero; zero where the faces are separated; the cohesion
+    only where friction depends on the rate of slip.
 
     t_n, gap : normal traction, Pa, and gap, m.
     opening : the largest so far, m. cohesion : of this point, Pa, where slip changes it.
-    path : that it has slid, m, where that weakens it.
+    path : its accumulated slip, m, where that weakens it.
     """
     tau = UNLIMITED
     if parts.slip:
         c = cohesion if parts.residual else law.cohesion
-        # A cohesion that stands for no limit has none where broken faces touch either.
+        # An unlimited cohesion stays unlimited where broken faces touch.
         if parts.softening and c < UNLIMITED:
             c = c * (strength_left(law, opening) / law.tensile_strength)
-        # Friction that depends on the rate comes with the slide.
+        # Rate-dependent friction is added by `joints.slide`.
         if not parts.rate_state or law.direct_effect == 0.0:
             c = max(c + t_n * friction_left(law, parts, t_n, path), 0.0)
         tau = c
@@ -51,7 +51,7 @@ def shear_strength(law, parts, t_n, gap, opening, cohesion, path):
 
 @formula
 def holds(law, parts, gap, opening):
-    """Return whether the two faces hold each other: not where open without tension, or broken."""
+    """Return whether the faces are in contact or bonded: not if open without tension, or broken."""
     pulls = (not parts.no_tension or law.carries_tension != 0.0) and not is_broken(
         law, parts, opening
     )
@@ -60,7 +60,7 @@ def holds(law, parts, gap, opening):
 
 @formula
 def resistance(law, parts, dt):
-    """Return what a slide within a step takes off the traction, Pa/m: spring and dashpot."""
+    """Return the decrease of traction per slip within a step, Pa/m: spring and dashpot."""
     if parts.dashpots:
         return law.shear_stiffness + law.shear_viscosity / dt
     return law.shear_stiffness

@@ -1,13 +1,13 @@
-"""The slide of a step where slip changes the joint: its strength, and what presses it.
+"""The slip of a step where slip changes the joint: its strength and its normal traction.
 
 A point of a joint whose trial traction T* exceeds the strength slides by l, which unloads spring
 and dashpot by a l, a = K_s + C_s / dt, until they carry the strength that is left there:
 
     |T*| - a l = tau(t_n(l), S + l),
 
-t_n of the gap less the lift w(S + l). Faces that are open, or not pressed, wear nothing, and do
-not age: what they slide is no part of the path S. `joints.rate_state` has the slide of friction
-that depends on its rate.
+t_n of the gap less the lift w(S + l). Open faces and faces without
+compression neither wear nor age: their slip does not count in the path S. `joints.rate_state` has
+the slip under rate-dependent friction.
 """
 
 from math import sqrt
@@ -19,8 +19,8 @@ from joints.rate_state import slide_at_rate
 from joints.shear import resistance, shear_strength, shear_traction
 from joints.weakening import friction_left, strength_fall, weakened
 
-MOST = 60  # steps of Newton's method, kept within a bracket that is halved where it leaves it
-SETTLED = 1e-14  # of the longest slide that there can be: what the last of them would move
+MOST = 60  # Newton steps, safeguarded by bisection of a bracket
+SETTLED = 1e-14  # convergence, over the longest possible slip
 
 
 @formula
@@ -77,8 +77,8 @@ def after_slide(
 
 @formula
 def resistance_to_slide(law, parts, t_n, gap, gap_rate, opening, path, dt):
-    """Return by how much a slide lowers |T*| less the strength, Pa/m: a, less the strength's fall,
-    more what the lift adds to it. gap : less the lift."""
+    """Return the decrease of |T*| - strength per slip, Pa/m: a, minus the weakening, plus the
+    strength added by dilation. gap : minus the dilation."""
     slope = resistance(law, parts, dt)
     if parts.weakening:
         slope = slope - strength_fall(law, t_n, path)
@@ -90,5 +90,5 @@ def resistance_to_slide(law, parts, t_n, gap, gap_rate, opening, path, dt):
 
 @formula
 def pressing(law, parts, gap, gap_rate, opening, dt):
-    """Return what a lift within a step adds to the normal traction, Pa/m; gap : less the lift."""
+    """Return the normal traction added per dilation in a step, Pa/m; gap : minus the dilation."""
     return -normal_tangent(law, parts, gap, gap_rate, opening, 1.0 / dt)

@@ -1,7 +1,7 @@
-"""Tensile strength that is spent by opening: linear softening, secant unloading.
+"""Tensile strength that opening reduces: linear softening, secant unloading.
 
 A joint carries tension up to its strength s_t, reached at the opening w_0 = s_t / K. From there
-the strength left falls linearly with the largest opening k so far, to nothing at w_c = 2 G_c / s_t:
+the remaining strength falls linearly with the largest opening k, to zero at w_c = 2 G_c / s_t:
 
     s(k) = s_t for k <= w_0,   s_t (w_c - k) / (w_c - w_0) up to w_c,   0 beyond.
 
@@ -14,7 +14,7 @@ from joints.formula import formula
 
 @formula
 def strength_left(law, opening):
-    """Return s(k) (Pa), the tension that a joint opened by k (m) can carry again."""
+    """Return s(k) (Pa), the remaining strength of a joint opened by k (m)."""
     first = law.tensile_strength / law.normal_stiffness
     slope = law.tensile_strength / (law.critical_opening - first)
     falling = slope * (law.critical_opening - opening)
@@ -33,7 +33,7 @@ def stiffness_left(law, opening):
 
 @formula
 def is_broken(law, parts, opening):
-    """Return whether a joint has no tensile strength left; never without softening."""
+    """Return whether a joint has lost its tensile strength; never without softening."""
     return parts.softening and strength_left(law, opening) == 0.0
 
 

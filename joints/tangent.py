@@ -1,10 +1,10 @@
-"""The consistent tangent of the joint law: how traction answers displacement within one step.
+"""The consistent tangent of the joint law: derivatives of traction within one step.
 
 An implicit step of rate factor r has gap_rate = r gap + const and slip_rate = r slip + const
 (Newmark: r = gamma / (beta dt)), so a dashpot C counts as a spring r C. With them the derivatives
 of `joints.law.traction` make Newton's method quadratic (Simo & Hughes, Computational
-Inelasticity, 1998, section 3.3). Shear acts back on the normal traction where slip lifts the
-faces, else t_n depends on the gap alone.
+Inelasticity, 1998, section 3.3). Slip changes the normal traction where it
+dilates the faces; otherwise t_n depends on the gap only.
 
 At a kink the tangent is that of the side whose branch the traction takes: a joint of zero gap is
 closed, one at its largest opening unloads, shear on the strength has not slipped yet.
@@ -26,7 +26,7 @@ from joints.weakening import friction_left
 class Tangent(NamedTuple):
     """Derivatives of the traction, Pa/m: nn of t_n with the gap, xn and zn of t_x and t_z with it,
     xx, xz, zz of t_x and t_z with the slips (xz = zx), nx and nz of t_n with them. Without shear nn
-    alone."""
+    only."""
 
     nn: float
     xn: float = 0.0
@@ -97,7 +97,7 @@ def tangent(law, parts, gap, gap_rate, slip, slip_rate, dt, history, r):
 
 @formula
 def _strength_rise(law, parts, rise, tau, gap, before, cohesion):
-    """Return d tau / d gap (Pa/m) of the shear strength tau, zero where nothing is left of it.
+    """Return d tau / d gap (Pa/m) of the shear strength tau, zero where it is lost.
 
     rise : that of friction, Pa/m.
     """
@@ -119,7 +119,7 @@ def _returned(parts, tau, rise, t_x, t_z, slope, share, pressed):
     size = sqrt(t_x * t_x + t_z * t_z)
     slips = size > tau
     n_x, n_z = t_x / size if slips else 0.0, t_z / size if slips else 0.0
-    # Without any strength left the traction is zero, whether there is a trial one or not.
+    # Without strength the traction is zero, whatever the trial traction.
     left = 0.0 if tau <= 0.0 else slope
     turn = left * tau / size if slips else left
     if parts.path:

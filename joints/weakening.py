@@ -1,19 +1,19 @@
 """Friction that falls with slip: linear slip weakening.
 
-The friction of pressed faces falls linearly with the length S of the path that they have slid:
+The friction of faces in compression falls linearly with their accumulated slip S:
 
     mu(S) = mu_s - (mu_s - mu_d) S / D   for S < D,   mu_d beyond
 
-(Ida, J. Geophys. Res. 77, 1972; Andrews, J. Geophys. Res. 81, 1976). The path only grows, whatever
-the direction of the slip.
+(Ida, J. Geophys. Res. 77, 1972; Andrews, J. Geophys. Res. 81, 1976). S only grows, whatever the
+direction of slip.
 
 A step whose trial traction T* exceeds the strength tau(S) slides by l until spring and dashpot
 carry the strength that is left, a = K_s + C_s / dt, h = t_n (mu_s - mu_d) / D:
 
     T* - a l = tau(S) - h l,   l = (T* - tau(S)) / (a - h),
 
-or, where that is beyond D, carry tau(D). A joint of a <= h is softer than its friction falls: it
-snaps, all the way to mu_d within the step.
+or, where that is beyond D, carry tau(D). For a <= h friction falls faster than the joint
+unloads: it snaps to mu_d within the step.
 """
 
 from joints.formula import formula
@@ -21,7 +21,7 @@ from joints.formula import formula
 
 @formula
 def friction_left(law, parts, t_n, path):
-    """Return tan(phi) under t_n (Pa) after a path (m); the whole where faces are not pressed."""
+    """Return tan(phi) under t_n (Pa) after a path (m); the static one without compression."""
     if not parts.weakening:
         return law.friction
     share = 1.0 - path / law.weakening_distance
@@ -32,7 +32,7 @@ def friction_left(law, parts, t_n, path):
 
 @formula
 def strength_fall(law, t_n, path):
-    """Return h (Pa/m), what the strength loses per path at this path: none beyond D."""
+    """Return h (Pa/m), the loss of strength per path at this path: zero beyond D."""
     pressed = t_n if t_n > 0.0 and path < law.weakening_distance else 0.0
     return pressed * (law.friction - law.dynamic_friction) / law.weakening_distance
 

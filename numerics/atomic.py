@@ -1,4 +1,4 @@
-"""Counters that threads tell each other their progress by, for use in kernels."""
+"""Atomic counters by which threads share their progress, for use in kernels."""
 
 from llvmlite import ir
 from numba import types
@@ -15,7 +15,7 @@ def _place(context, builder, signature, arguments):
 
 @intrinsic
 def peek(typing, counters, i):
-    """Return counters[i] (an int64 array), with all that was written before it was set."""
+    """Return counters[i] (int64 array) with acquire semantics: earlier writes are visible."""
 
     def generate(context, builder, signature, arguments):
         place = _place(context, builder, signature, arguments)
@@ -26,7 +26,7 @@ def peek(typing, counters, i):
 
 @intrinsic
 def post(typing, counters, i, value):
-    """Set counters[i] to value, after all that was written before."""
+    """Set counters[i] to value with release semantics, after all earlier writes."""
 
     def generate(context, builder, signature, arguments):
         place = _place(context, builder, signature, arguments)
@@ -38,7 +38,7 @@ def post(typing, counters, i, value):
 
 @intrinsic
 def give_way(typing):
-    """Let another thread have the core."""
+    """Yield the core to another thread."""
 
     def generate(context, builder, signature, arguments):
         kind = ir.FunctionType(ir.IntType(32), [])
@@ -51,8 +51,8 @@ def give_way(typing):
 
 @register_jitable
 def wait_for_all(counters, own, met):
-    """Wait until all threads, one a counter, have met once more than `met` times; return how often
-    that is. What each wrote before is there for all."""
+    """Barrier of all threads, one counter each, after `met` earlier ones; return met + 1. Earlier
+    writes of each are visible to all."""
     post(counters, own, met + 1)
     for other in range(len(counters)):
         while peek(counters, other) <= met:

@@ -1,4 +1,4 @@
-"""The cache of compiled kernels: a folder for each state of the sources, while it is in use."""
+"""The cache of compiled kernels: one folder for each version of the sources in use."""
 
 import hashlib
 import os
@@ -11,8 +11,8 @@ from time import time
 import numba
 
 PACKAGES = ("numerics", "joints", "dem", "continuum")
-STATE = re.compile("[0-9a-f]{16}")  # how the folder of a state is called
-UNUSED = 30 * 86400.0  # s, after which a state is taken for one of the past
+STATE = re.compile("[0-9a-f]{16}")  # name of a version's folder
+UNUSED = 30 * 86400.0  # s, after which a version is removed
 
 
 def cache_directory(root: Path) -> Path:
@@ -32,20 +32,20 @@ def cache_directory(root: Path) -> Path:
 
 
 def mark_used(directory: Path) -> None:
-    """Note that a state is used now, where it is kept and can be written."""
+    """Record the use of a version, if it is cached and writable."""
     with suppress(OSError):
         os.utime(directory)
 
 
 def make(directory: Path) -> None:
-    """Make the folder of a state where it is not there yet, and drop those that went unused."""
+    """Create the folder of a version if missing, and remove unused ones."""
     if not directory.exists():
         directory.mkdir(parents=True, exist_ok=True)
         forget_unused(directory.parent)
 
 
 def forget_unused(base: Path) -> None:
-    """Remove the states, and nothing else, that no program has used for `UNUSED`."""
+    """Remove versions, and nothing else, that were not used for `UNUSED`."""
     for state in base.iterdir():
         with suppress(OSError):
             if STATE.fullmatch(state.name) and time() - state.stat().st_mtime > UNUSED:

@@ -1,4 +1,4 @@
-"""Arrays whose rows kernels load register by register: none of these straddles two cache lines."""
+"""Aligned arrays: no vector register of a row straddles two cache lines."""
 
 from math import prod
 
@@ -9,9 +9,9 @@ NUMBERS = CACHE_LINE // 8
 
 
 def zeros(shape: int | tuple[int, ...], first: int = 0) -> np.ndarray:
-    """Return zeros, contiguous, of which number `first` starts a cache line: where loops start.
+    """Return contiguous zeros with item `first`, where loops start, on a cache line.
 
-    Elsewhere every second register or each one straddles two lines, and steps take up to a third
+    Otherwise every register or every second one straddles two lines, and steps take up to a third
     more time.
     """
     room = np.zeros(prod(np.atleast_1d(shape).tolist()) + NUMBERS)

@@ -1,7 +1,7 @@
-"""Checkpoints of a run, seen from an engine: its state is saved, restored, or the run is stopped.
+"""Checkpoints of a run as engines see them: the state is saved or restored, or the run is stopped.
 
-Engines write no files and know no signals. They hand all that changes in them to a keeper, as
-nested tuples of arrays (`results.arrays`), between stretches of steps.
+Engines write no files and handle no signals. They pass their state to a keeper, as nested tuples
+of arrays (`results.arrays`), between intervals of steps.
 """
 
 from __future__ import annotations
@@ -12,35 +12,35 @@ from cases.errors import InterruptedRun
 
 
 class Film(Protocol):
-    """Snapshots of every `every`-th sample, of which those of an earlier part may be there already.
+    """Snapshots of every `every`-th sample; those of an earlier part of the run may be present.
 
-    shots : what is kept of each.
+    shots : the recorded arrays of each.
     """
 
     every: int
     shots: list[Any]
 
     def expect(self, samples: int) -> None:
-        """Take the snapshots of so many samples for taken."""
+        """Count the snapshots of so many samples as taken."""
 
 
 class Keeper(Protocol):
     """Saves and restores the state of one run.
 
-    done : how many samples an earlier run of the same scene got to; 0 where this one is the first.
+    done : number of samples of an earlier run of the same scene; 0 for a new run.
     """
 
     done: int
 
     def restore(self, parts: Any) -> None:
-        """Copy into `parts` what they were when `done` samples were done."""
+        """Copy the state after `done` samples into `parts`."""
 
     def look(self, samples: int, parts: Any) -> None:
-        """Save the parts where so many samples are done, or raise InterruptedRun."""
+        """Save the parts after so many samples, or raise InterruptedRun."""
 
 
 def begin(keeper: Keeper | None, film: Film | None, parts: Any) -> int:
-    """Return how many samples are done before a run starts, its parts brought to what they were."""
+    """Restore the parts of a run, and return how many samples are done."""
     if keeper is None or not keeper.done:
         return 0
     if film is not None:
@@ -50,7 +50,7 @@ def begin(keeper: Keeper | None, film: Film | None, parts: Any) -> int:
 
 
 def show(keeper: Keeper, samples: int, parts: Any) -> None:
-    """Hand a run to its keeper, and note how many samples it has where the keeper stops it."""
+    """Pass a run to its keeper, and record its number of samples if the keeper stops it."""
     try:
         keeper.look(samples, parts)
     except InterruptedRun as error:

@@ -26,7 +26,7 @@ def critical_step(largest: Callable[[float, float], float], damped: bool) -> flo
     Parameters
     ----------
     largest : function of (a, b) that returns the largest eigenvalue of M^-1 (a K + b C).
-    damped : whether there is any C; without it one eigenvalue is enough.
+    damped : whether C is present; without it one eigenvalue suffices.
     """
     undamped = 2 / sqrt(largest(1.0, 0.0))
     if not damped:

@@ -1,8 +1,8 @@
-"""Numbers too small for full precision, below 2e-308, taken as zero while kernels run.
+"""Denormals, numbers below 2e-308, treated as zero while kernels run.
 
 Ahead of every wave the motion of discrete blocks falls off faster than exponentially, and so do its
-squares in a ledger or a yield condition. Processors handle what lies between 2e-308 and zero by
-slow exceptions, for numbers that mean nothing.
+squares in a ledger or a yield condition. Processors handle numbers between 2e-308 and zero by
+slow exceptions, although they are physically irrelevant.
 """
 
 import platform
@@ -47,7 +47,7 @@ def _write(builder, value):
 
 @intrinsic
 def flush_tiny(typing):
-    """Take tiny numbers as zero in this thread from now on; return what `restore_tiny` needs."""
+    """Flush denormals to zero in this thread from now on; return the setting for `restore_tiny`."""
 
     def generate(context, builder, signature, arguments):
         if not X86 and not ARM:
@@ -61,7 +61,7 @@ def flush_tiny(typing):
 
 @intrinsic
 def restore_tiny(typing, old):
-    """Treat tiny numbers in this thread as before `flush_tiny`."""
+    """Restore this thread's handling of denormals before `flush_tiny`."""
 
     def generate(context, builder, signature, arguments):
         if X86:

@@ -1,8 +1,8 @@
 """The divergence monitor, which stops a run within its kernel where it exceeds its bounds.
 
-No speed can be more than all forces together can cause, and no energy come from nowhere. Kernels
-look at the speeds every 96 steps, which costs a look at every velocity in the time of 96 steps, and
-leapfrog, whose ledger is exact, at its last sample.
+Speeds cannot exceed what all forces together can cause, and energy cannot increase without work.
+Kernels check the speeds every 96 steps, at the cost of reading all velocities once, and leapfrog,
+whose ledger is exact, also the energy of its last sample.
 """
 
 from typing import Any, NamedTuple
@@ -11,22 +11,22 @@ import numpy as np
 
 from joints.formula import formula
 
-EVERY = 96  # steps, at most, between two looks at the speeds
-RUNAWAY = 100.0  # times the speed that forces can cause: at the critical step leapfrog swings wide
-CREATED = 0.1  # of the largest term of the ledger: more than any scheme here makes of a bounded run
-LAST_DIGITS = 1e-9  # of what a ledger holds at rest, of which small changes are differences
+EVERY = 96  # steps, at most, between two checks of the speeds
+RUNAWAY = 100.0  # over the speed that forces can cause: leapfrog overshoots at the critical step
+CREATED = 0.1  # of the largest term of the ledger: more than any bounded run of any scheme gains
+LAST_DIGITS = 1e-9  # of the ledger's initial terms, from which small changes are differences
 MAGNITUDE = 0x7FFF_FFFF_FFFF_FFFF  # all bits of a number but its sign
 
-SPEED, ENERGY = 0, 1  # what was found out of bounds
+SPEED, ENERGY = 0, 1  # the exceeded bound
 
 
 class Guard(NamedTuple):
-    """What a run is held to, and what was found.
+    """The bounds of a run, and the finding.
 
     limit : int64 array, the bits of the largest speed of each kind, m/s (or rad/s, kg m2/s).
     peak : float array [1], the largest change of a ledger's term so far, J.
-    found : int64 array [3], the step at which the run was found out of bounds, -1 before, what was,
-        SPEED or ENERGY, and the last step that was sound.
+    found : int64 array [3], the step at which a bound was found exceeded (-1: none), which one
+        (SPEED or ENERGY), and the last valid step.
     """
 
     limit: np.ndarray
@@ -35,22 +35,22 @@ class Guard(NamedTuple):
 
 
 def guard(speeds: Any) -> Guard:
-    """Return what holds a run to `RUNAWAY` times the speeds that its forces can cause."""
+    """Return the guard of a run for `RUNAWAY` times the speeds that its forces can cause."""
     with np.errstate(over="ignore"):
         limit = np.minimum(RUNAWAY * np.atleast_1d(speeds), np.finfo(float).max)
     return Guard(limit.view(np.int64), np.zeros(1), np.array([-1, SPEED, -1]))
 
 
 def look(guard: Guard, speeds: Any, n: int) -> None:
-    """Look at the largest speed of each kind after n steps, whatever n is."""
+    """Check the largest speed of each kind after n steps, for any n."""
     limit = guard.limit.view(np.float64)
     if guard.found[0] < 0 and not np.all(np.atleast_1d(speeds) <= limit):
         guard.found[:] = n, SPEED, n - EVERY - 1
 
 
 def audit(guard: Guard, energy: np.ndarray, first: int, last: int, stride: int) -> None:
-    """Look at samples first .. last - 1 of a ledger, `stride` steps apart, as `gains_energy` does;
-    what was found at the earliest step is kept."""
+    """Check samples first .. last - 1 of a ledger, `stride` steps apart, by `gains_energy`; the
+    earliest finding is kept."""
     with np.errstate(over="ignore", invalid="ignore"):
         gained = energy[:, first:last] - energy[:, :1]
         peak = np.fmax.accumulate(np.append(guard.peak, np.fmax.reduce(np.abs(gained))))
@@ -64,7 +64,7 @@ def audit(guard: Guard, energy: np.ndarray, first: int, last: int, stride: int) 
 
 
 def speed_that(*motions: float) -> float:
-    """Return a bound on sqrt(2 E / m) from all that puts energy into a body at once.
+    """Return a bound on sqrt(2 E / m) from everything that adds energy to a body.
 
     Each is a speed: an impulse over the mass, a velocity of the base, sqrt(2 E / m) of what is
     stored. They add up: d sqrt(2 E) / dt is at most |F| in the norm of 1 / m.
@@ -83,10 +83,10 @@ def out_of_bounds(v, limit):
 
 @formula
 def exceeds(v, limit):
-    """Return whether a magnitude is above the limit, given by its bits, or no number.
+    """Return whether a magnitude exceeds the limit, given by its bits, or is NaN.
 
-    As whole numbers the bits of magnitudes are in the order of the magnitudes, with infinity and
-    what is no number behind all others. A difference has its sign in one bit, which is collected.
+    As integers the bits of magnitudes are ordered like the magnitudes, with infinity and NaN
+    above all others. The sign of a difference is one bit, which is collected.
     """
     bits, signs = v.view(np.int64), 0
     for i in range(bits.size):
@@ -96,7 +96,7 @@ def exceeds(v, limit):
 
 @formula
 def creates_energy(guard, energy, s, n):
-    """Return whether sample s, at step n, of a ledger [term, sample] holds energy from nowhere."""
+    """Return whether sample s, at step n, of a ledger [term, sample] has gained energy."""
     if guard is not None and energy is not None and gains_energy(guard.peak, energy, s):
         note(guard.found, n, ENERGY, n - EVERY - 1)
         return True
@@ -105,7 +105,7 @@ def creates_energy(guard, energy, s, n):
 
 @formula
 def gains_energy(peak, energy, s):
-    """Return whether sample s of a ledger [term, sample] holds energy from nowhere.
+    """Return whether sample s of a ledger [term, sample] has gained energy.
 
     peak : float array [1], the largest change of a term so far, J.
     """
@@ -121,6 +121,6 @@ def gains_energy(peak, energy, s):
 
 @formula
 def note(found, n, what, sound):
-    """Keep what was found first."""
+    """Keep the first finding."""
     if found[0] < 0:
         found[0], found[1], found[2] = n, what, sound

@@ -1,4 +1,4 @@
-"""The one line that a stopped run leaves behind: where, when, why, what to change."""
+"""The one-line error of a stopped run: where, when, why, and what to change."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
     from cases.schema.scene import Scene
 
-HUGE = 1e100  # an amplitude whose squares are no numbers
+HUGE = 1e100  # an amplitude whose square overflows
 
 
 class Sighting(NamedTuple):
-    """What was seen of a run that is out of bounds.
+    """A finding of the divergence monitor.
 
-    who : in words. key : of the scene, that decides the step. step : at which, after the last that
-    was `sound`. energy : whether the ledger shows it, not a speed. y : of the fastest, m; in the
-    plane x and y.
+    who : in words. key : of the scene, that decides the step. step : at which a bound was exceeded,
+    after the last `sound` one. energy : whether the ledger exceeded it, not a speed. y : of the
+    fastest point, m; in the plane x and y.
     """
 
     who: str
@@ -31,7 +31,7 @@ class Sighting(NamedTuple):
 
 
 def stopped(scene: Scene | RockMass, time: Clock, critical: float, seen: Sighting) -> StoppedError:
-    """Return the error of a run out of bounds, with the samples that are sound; critical in s."""
+    """Return the error of a run that exceeds its bounds, with the valid samples; critical in s."""
     name = f"{scene.where}, {scene.name}" if scene.name else scene.where
     what = "gained energy" if seen.energy else "diverged"
     error = StoppedError(

@@ -1,4 +1,4 @@
-"""Compilation of kernels: one set of options, one cache that follows the sources."""
+"""Compilation of kernels: one set of options, one cache keyed by the sources."""
 
 import fcntl
 import gc
@@ -30,9 +30,9 @@ def widest_vectors() -> None:
 
 
 def shorter_compiling() -> None:
-    """Spare kernels what LLVM spends a third of its time on, and what makes none of them faster:
-    copies of loops that are vectorised already, and other sums for addresses that x86 adds up by
-    itself. Other versions of LLVM, which may not know these options, would end the program."""
+    """Disable LLVM passes that take a third of the compile time and make no kernel faster: runtime
+    unrolling of vectorised loops, and strength reduction of addresses that x86 computes by
+    itself. Versions of LLVM without these options would end the program."""
     if numba.version_info.short in KNOWN:
         llvmlite.binding.set_option("jointwave", "-unroll-runtime=false")
         llvmlite.binding.set_option("jointwave", "-disable-lsr")

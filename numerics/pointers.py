@@ -1,4 +1,4 @@
-"""Arrays as kernels compile them fastest: where they begin and how long their rows are.
+"""Pointers to arrays, which compile fastest in kernels: an address and the row lengths.
 
 An item of an array takes numba some thirty instructions, which count its references, allow for
 negative indices and read its shape; each is typed, lowered, parsed and optimised away again. An
@@ -26,7 +26,7 @@ class Pointer(types.Type):
 
 @register_model(Pointer)
 class PointerModel(models.StructModel):
-    """Where an array begins, and the lengths of its dimensions but for the first."""
+    """The address of an array, and the lengths of its dimensions except the first."""
 
     def __init__(self, manager, kind):
         lengths = [(f"length{k}", types.intp) for k in range(1, kind.ndim)]
@@ -55,8 +55,8 @@ def _pointer(context, builder, kind, value):
 
 @intrinsic
 def pointers(typing, values):
-    """Return a tuple with a pointer in place of each array: only for use while the kernel that was
-    given it runs, and with indices within it."""
+    """Return a tuple with a pointer for each array: valid only while the kernel that received it
+    runs, and for indices within bounds."""
     given = values.types
     result = types.Tuple([_pointer_type(kind) for kind in given])
 
@@ -71,7 +71,7 @@ def pointers(typing, values):
 
 
 def _index_types(kind: Pointer, index: Any) -> Any:
-    """Return the types that an index is taken as, and what it gives."""
+    """Return the types of an index and of the item."""
     if isinstance(index, types.Integer):
         rest = kind.ndim - 1
         return types.intp, Pointer(kind.dtype, rest) if rest else kind.dtype
@@ -94,7 +94,7 @@ class PointerItem(AbstractTemplate):
 
 @infer_global(operator.setitem)
 class PointerSetItem(AbstractTemplate):
-    """A number is set."""
+    """The typing of an assignment to an item."""
 
     def generic(self, args, kws):
         """Return its signature."""
@@ -106,7 +106,7 @@ class PointerSetItem(AbstractTemplate):
 
 
 def _place(builder, kind, pointer, index):
-    """Return where an item lies, for one index or all of them."""
+    """Return the address of an item, for one index or all of them."""
     at = index[0]
     for k in range(1, kind.ndim):
         at = builder.mul(at, builder.extract_value(pointer, k), flags=["nsw"])

@@ -1,13 +1,13 @@
-"""Sums over blocks or freedoms."""
+"""Sums over blocks or degrees of freedom."""
 
 from joints.formula import formula
 
 
 @formula
 def total(x, y=None, z=None):
-    """Return the sum of all x y z, factors that are None left out.
+    """Return the sum of all x y z; factors that are None are omitted.
 
-    As four sums side by side: in one, every addition would wait for the one before.
+    Four partial sums avoid the latency of a single chain of additions.
     """
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
     whole = x.size - x.size % 4
@@ -38,7 +38,7 @@ def total_of(x):
 
 @formula
 def factor(values, i):
-    """Return the i-th of values; one where there are none."""
+    """Return values[i], or 1 if values is None."""
     if values is None:
         return 1.0
     return values[i]

@@ -1,4 +1,4 @@
-"""The time loop: a run in stretches, after each of which it is checked, saved and reported."""
+"""The time loop: a run in intervals, after each of which it is checked, saved and reported."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ def run_in_stretches(
     keeper: Keeper | None = None,
     snapshot_at: int = 0,
 ) -> None:
-    """Take all samples of a run, `chunk` at once; `march(first, last)` takes samples first ..
-    last - 1, and raises an error where the run is not sound.
+    """Take all samples of a run in intervals of `chunk`; `march(first, last)` takes samples
+    first .. last - 1, and raises an error if the run exceeds its bounds.
 
-    parts : all that changes in the run. keeper : may save them after every stretch; None without.
-    film : snapshots, at ends of stretches: of the sample before them where `snapshot_at` is 1, of
-    the sample after them where it is 0; None without.
+    parts : the state of the run. keeper : may save it after every interval; None without.
+    film : snapshots at ends of intervals, of the sample before (`snapshot_at` 1) or after
+    (`snapshot_at` 0); None without.
     """
     stops = {samples, *range(0, samples, max(1, chunk))}
     if film is not None:

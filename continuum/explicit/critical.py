@@ -67,7 +67,7 @@ def critical_step(k, c, start: np.ndarray) -> float:
     for _ in range(ROUNDS):
         mode, error = _highest_mode(dt**2 * k + 4 * dt * c, mode)
         elastic, viscous = float(mode @ (k @ mode)) + error / dt**2, float(mode @ (c @ mode))
-        # Of elastic dt^2 + 4 viscous dt = 4, in a form that loses no digits for strong dashpots.
+        # Of elastic dt^2 + 4 viscous dt = 4, in a form without cancellation for strong dashpots.
         found = 2 / (viscous + sqrt(viscous**2 + elastic))
         if abs(found - dt) <= SETTLED * dt:
             return found

@@ -228,7 +228,7 @@ def add_work(
     """Add to the ledger (J) the work of the forces of step n over half a step (s) at velocity
     `way`, m/s: viscous, boundary, load; that of friction is known already."""
     if drag is not None:
-        # As four sums: in one, every addition would wait for the last.
+        # Four partial sums avoid the latency of a single chain of additions.
         a, b, c, d = 0.0, 0.0, 0.0, 0.0
         for i in range(0, way.size, 4):
             a += drag[i] * way[i]

@@ -26,9 +26,9 @@ def newton(
     start: np.ndarray,
     communicator: Serial = SERIAL,
 ) -> Outcome:
-    """Return what Newton's method makes of a start, after one correction at least.
+    """Return the solution by Newton's method from a start, after at least one correction.
 
-    Where nothing moves at all there is nothing to correct.
+    Without any motion no correction is made.
 
     Parameters
     ----------
@@ -52,6 +52,6 @@ def newton(
 
 
 def _size(values: np.ndarray) -> float:
-    """Return the largest magnitude; infinite where one is not a number."""
+    """Return the largest magnitude; infinite if any is NaN."""
     found = float(np.abs(values).max(initial=0.0))
     return found if np.isfinite(found) else np.inf

@@ -107,13 +107,13 @@ class System:
 
 
 def empty_tangents(model: Model) -> np.ndarray:
-    """Return an array for how the joints resist displacement, [k, q], N/m."""
+    """Return an array for the tangents of the joints, [k, q], N/m."""
     joints = model.interfaces
     return np.zeros((6, 0) if joints is None else (kinds(joints), joints.area.size))
 
 
 def kinds(interfaces: Interfaces) -> int:
-    """Return how many kinds of tangents a point has."""
+    """Return the number of tangents of a point."""
     return 8 if interfaces.parts.dilation else 6
 
 

@@ -1,4 +1,4 @@
-"""Implicit runs of jointed rock: step after step, and what becomes of one that does not converge.
+"""Implicit runs of jointed rock: time steps, and the subdivision of those that do not converge.
 
 Such a step is taken in halves, down to a 1024th of the whole; halves that are done make way for
 longer ones again, so that whole steps end on the clock.
@@ -46,7 +46,7 @@ class Implicit:
         )
         self.communicator = matrices.communicator
         mass = self.communicator.total(model.rock.mass)
-        self.mass = np.where(mass > 0, mass, np.inf)  # what no rock is part of does not move
+        self.mass = np.where(mass > 0, mass, np.inf)  # massless freedoms do not move
         self.counts = np.array([0, -1])
         self.receivers = readings(model, state)
         self.outcome: Outcome | None = None

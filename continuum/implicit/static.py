@@ -1,7 +1,7 @@
 """Static states: rock and joints at rest under gravity and around openings, by Newton's method.
 
-The steady forces are put on in parts, and a part that does not converge in halves, because what
-slides, opens or breaks on the way depends on the way.
+The static forces are applied in increments, halved if they do not converge, because the state of
+joints that slide, open or break depends on the path.
 
 Rock that no side holds is at rest wherever it is put. What is excavated from it leaves forces that
 cancel, with their moments; a mass matrix that is next to nothing beside the stiffness then makes
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
     from cases.schema.scene import Scene
 
-TOLERANCE = 1e-10  # what may be left of the largest force that is summed up
+TOLERANCE = 1e-10  # of the residual, over the largest summed force
 LEAST_PART = 2.0**-10  # of the steady forces
 #: Of the largest stiffness over mass: what holds loose rock. Far below its slowest mode, by 1e-3
 #: and less, and far above the round-off of the largest.

@@ -29,7 +29,7 @@ from continuum.implicit.substeps import (
 from continuum.model import Model
 from continuum.state import State
 
-RESIDUAL = 1e-10  # what may be left, of the largest force that is summed up
+RESIDUAL = 1e-10  # tolerance over the largest summed force
 #: Of a displacement, and of the prestress that joints carry: what they weigh cannot be balanced.
 LAST_DIGITS = 8 * np.finfo(float).eps
 

@@ -24,7 +24,7 @@ class Part(NamedTuple):
 
     @property
     def copies(self) -> int:
-        """At how many places the part stands."""
+        """The number of copies of the part."""
         return len(self.shifts)
 
 
@@ -43,7 +43,7 @@ class Side(NamedTuple):
 
 
 class Joints(NamedTuple):
-    """Pairs of facets at the same place that joints hold together.
+    """Pairs of coincident facets that joints connect.
 
     joint : int array [facets], index of the joint whose law holds: of a pillar's, 0 nearest the
         loaded end; of the contact of a rock mass.

@@ -1,4 +1,4 @@
-"""gmsh without its side effects: silent, with its own defaults, and gone when it is done."""
+"""gmsh without side effects: silent, with its defaults, and finalised after use."""
 
 import inspect
 import locale
@@ -39,7 +39,7 @@ def gmsh_session() -> Iterator:
 
 @contextmanager
 def _process_as_it_was() -> Iterator[None]:
-    """Undo what gmsh does to the notation of numbers and, when old, to interrupts."""
+    """Restore the locale's number format and, for old versions, interrupts changed by gmsh."""
     notation, interrupt = locale.setlocale(locale.LC_NUMERIC), signal.getsignal(signal.SIGINT)
     try:
         yield

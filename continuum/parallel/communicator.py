@@ -1,4 +1,4 @@
-"""The processes that share a run: what they have in common, and what they do together."""
+"""The processes that share a run: their common freedoms and collective operations."""
 
 import weakref
 from collections.abc import Callable, Iterator
@@ -161,7 +161,7 @@ class Communicator(Serial):
         return 1 + int(self.largest(self.number.max()))
 
     def count(self, here: int) -> int:
-        """Return how many freedoms there are in all."""
+        """Return the total number of freedoms."""
         return self.degrees_of_freedom
 
     def critical_step(self, *assembled) -> float:

@@ -59,7 +59,7 @@ def _whole(
 
 
 def _serve(communicator: Communicator, matrices: list) -> None:
-    """Multiply what the first process sends until it stops."""
+    """Multiply the vectors that the first process sends until it stops."""
     message = np.empty(communicator.degrees_of_freedom + 1)
     while True:
         communicator.comm.Bcast(message)

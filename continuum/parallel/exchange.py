@@ -30,7 +30,7 @@ wait_all = _from_mpi("MPI_Waitall", types.intc(types.intc, types.voidptr, types.
 
 
 class Link(NamedTuple):
-    """What joins a process to the others.
+    """The connections of a process to the others.
 
     freedom : int array [k], own freedoms that others have too. sum : float array [k].
     source : int array [s], the freedoms to send, process by process; sent : float array [s].
@@ -59,7 +59,7 @@ class Connection(NamedTuple):
 
 
 def connect(comm, common: list[np.ndarray]) -> Connection:
-    """Return what joins a process to the others.
+    """Return the connections of a process to the others.
 
     common : for each rank of `comm` the freedoms (int array) in common with it, in an order that
         both agree on; that of the process itself does not count.
@@ -128,7 +128,7 @@ def send(link, values):
 
 @inlined
 def receive(link, values):
-    """Add what the others have sent to a process's own shares.
+    """Add the contributions received from other processes.
 
     All who have a freedom add in the order of their ranks, and come to the same bits.
     """

@@ -30,7 +30,7 @@ class Copies(NamedTuple):
 
 
 class Share(NamedTuple):
-    """What one process holds of a mesh.
+    """The part of a mesh on one process.
 
     parts : its own cells, and as ghosts those beyond its joints; copies that are whole stand
         together, and of others only what is held. The material of ghosts is mesh.materials.

@@ -1,4 +1,4 @@
-"""PETSc, started so that it does not turn a closed pipe or an interrupt into a crash report."""
+"""PETSc, initialised without its handlers of signals and closed pipes."""
 
 from continuum.space.compat import load_mpi
 

@@ -50,7 +50,7 @@ class Serial:
         return value
 
     def of_largest(self, value: float, about: T) -> T:
-        """Return what the process with the largest number says of it."""
+        """Return the information of the process with the largest number."""
         return about
 
     def all(self, holds: bool) -> bool:
@@ -62,7 +62,7 @@ class Serial:
         return not self.all(not holds)
 
     def count(self, here: int) -> int:
-        """Return how many freedoms there are in all, of so many here."""
+        """Return the total number of freedoms, given the number on this process."""
         return here
 
     def critical_step(self, *assembled) -> float:
@@ -72,7 +72,7 @@ class Serial:
         return critical_time_step(*assembled)
 
     def same(self, value: T) -> T:
-        """Return what the first process has."""
+        """Return the object of the first process."""
         return value
 
     def assembled(self, share: csr_matrix) -> csr_matrix | None:

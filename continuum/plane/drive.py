@@ -126,7 +126,7 @@ class Entry:
             self.sampled = self._sampled(scene, body.communicator)
 
     def _sampled(self, scene: RockMass, communicator: Serial) -> FaceTractions:
-        """Return the tractions of a field that is worth asking once for all times.
+        """Return the tractions of a field that is evaluated once for all times.
 
         It is asked for the points of all processes, since what it makes of some may depend on which
         others they are asked with.

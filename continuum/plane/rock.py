@@ -66,7 +66,7 @@ def smeared(scene: RockMass, model: str) -> list[JointSet]:
 def discretise(scene: RockMass, model: str, comm=None) -> PlaneDiscrete:
     """Return a rock mass in space; `model` is "jointed" or "equivalent".
 
-    comm : mpi4py's communicator of the processes that each take a share of it; None for one alone.
+    comm : mpi4py's communicator of the processes that share it; None for a single process.
     Raises SceneError where the scene cannot be cut or meshed as it asks for.
     """
     sets = smeared(scene, model)

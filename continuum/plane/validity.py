@@ -10,12 +10,12 @@ from continuum.plane.rock import smeared
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
 
-#: Keys of a joint set that the effective medium has no room for.
+#: Keys of a joint set that the effective medium does not support.
 NONLINEAR = ("friction_angle", "cohesion", "damping_ratio", *(part.keys[0] for part in PARTS))
 
 
 def applies(scene: RockMass, model: str = "jointed") -> str:
-    """Return "" where this model can simulate the scene, else the reason why not."""
+    """Return "" if this model can simulate the scene, else the reason."""
     damped = scene.rock.quality_factor is not None
     reasons = [
         (scene.damping.local is not None, "the continuum has no local damping"),
@@ -28,7 +28,7 @@ def applies(scene: RockMass, model: str = "jointed") -> str:
 
 
 def _beyond_medium(scene: RockMass) -> list[tuple[bool, str]]:
-    """Return what keeps a scene from having an effective medium, and whether it does."""
+    """Return why a scene has no effective medium, each reason with whether it holds."""
     sets = smeared(scene, "equivalent")
     found = [
         (not sets, "no joint set has a spacing: there is nothing to homogenise"),

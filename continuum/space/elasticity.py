@@ -56,8 +56,8 @@ Rock = Material | PlaneRock
 
 
 class Section(NamedTuple):
-    """What a mesh of this dimension leaves out: components of the motion, and the factor (m2, m
-    or 1) that makes an integral over the mesh one over the rock."""
+    """What a mesh of this dimension does not resolve: components of the motion, and the factor (m2,
+    m or 1) from integrals over the mesh to integrals over the rock."""
 
     components: int
     extent: float

@@ -16,7 +16,7 @@ from scipy.sparse import csr_matrix
 
 @contextmanager
 def quiet_logging() -> Iterator[None]:
-    """Undo what the form compiler does to the root logger, and hide its progress reports."""
+    """Restore the root logger changed by the form compiler, and hide its progress messages."""
     root, disabled = logging.getLogger(), logging.root.manager.disable
     handlers, level = list(root.handlers), root.level
     logging.disable(max(disabled, logging.INFO))

@@ -44,7 +44,7 @@ def kinematics(scene: Scene, dim: int | None = None) -> Kinematics:
 
 
 def least_dimension(scene: Scene) -> int:
-    """Return the least dimension that holds what a scene calls for.
+    """Return the least dimension that can represent a scene.
 
     1 along the axis, or across it where nothing turns; 2 in the plane of x and y; else 3. A mesh of
     the user's own is in 2 or 3.
@@ -57,7 +57,7 @@ def least_dimension(scene: Scene) -> int:
 
 
 def holds(scene: Scene, dim: int) -> str:
-    """Return "" where a mesh of this dimension holds the scene's motion, else why not."""
+    """Return "" if a mesh of this dimension can represent the motion, else the reason."""
     if dim == 1 and is_spatial(scene) and scene.motion.rotation != "none":
         return "a bar does not bend or twist: needs dim 2 or 3, or motion.rotation = 'none'"
     if dim == 2 and _leaves_plane(scene):
@@ -142,7 +142,7 @@ def impedances(scene: Scene, p: Properties, model: str, dim: int, components: in
 
 
 def _confined_modulus(scene: Scene, p: Properties, model: str, dim: int) -> float:
-    """Return the modulus (Pa) of the rock mass that cannot widen: in plane stress along x alone."""
+    """Return the modulus (Pa) of laterally confined rock mass: in plane stress along x only."""
 
     def confined(modulus: float, nu: float) -> float:
         return modulus / (1 - nu**2 if dim == 2 else (1 + nu) * (1 - 2 * nu) / (1 - nu))

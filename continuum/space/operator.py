@@ -1,4 +1,4 @@
-"""The stiffness of many alike blocks as one sparse operator, tile by tile.
+"""The stiffness of many equal blocks as one sparse operator, tile by tile.
 
 Blocks of one part share one matrix K, so its entries are read once for a tile of blocks, whose
 values of one row stand side by side; a tile's motion stays in the nearest cache while K passes.

@@ -80,7 +80,7 @@ def shares_of_pieces(which: np.ndarray, piece: np.ndarray) -> np.ndarray:
 def sections(
     body: Body, jumps: Jumps | None, materials: list[Material], places: list[float]
 ) -> Sections:
-    """Return how the forces over sections are read."""
+    """Return the receivers of forces over sections."""
     directions, size, count = body.section.components, body.mass.size, len(places)
     nothing = 3 * (csr_matrix((directions, size)),)
     rows = [nothing if is_on_joint(body, y) else _section(body, materials, y) for y in places]

@@ -1,1 +1,1 @@
-"""One row of blocks in motion along its axis: one freedom a block."""
+"""One row of blocks in axial motion: one degree of freedom per block."""

@@ -1,4 +1,4 @@
-"""A bound on the speed of a chain, which the divergence monitor compares its run with."""
+"""A bound on the speed of a chain, for the divergence monitor."""
 
 import numpy as np
 
@@ -11,8 +11,8 @@ from numerics.divergence import speed_that
 def highest_speed(model: Model, state: State, time: Clock) -> float:
     """Return a bound on the speed of any block, m/s.
 
-    What the load, the weight and a prestress can add to blocks of mass m, the motion of a base, in
-    whose frame all blocks are loaded, and what joints and ends store at the start.
+    From the load, weight and prestress on blocks of mass m, the motion of a base (in whose frame
+    all blocks are loaded), and the energy stored in joints and ends at the start.
     """
     c, blocks = model.chain, state.u.size
     duration = time.dt * (time.steps + time.stride)
@@ -27,8 +27,8 @@ def highest_speed(model: Model, state: State, time: Clock) -> float:
 
 
 def shaking(base: np.ndarray | None, dt: float) -> float:
-    """Return the total variation of the velocity of a shaken base, m/s, given its displacement
-    increments (m); 0 for none."""
+    """Return the total variation of the velocity of a moving base, m/s, from its displacement
+    increments (m); 0 without."""
     if base is None:
         return 0.0
     return float(np.abs(np.diff(base, prepend=0.0, append=0.0)).sum() / dt)

@@ -41,7 +41,7 @@ def build_end(kind: str, p: Properties, dt: float) -> End:
 
 
 def end_stiffness(kind: str, p: Properties) -> float:
-    """Return what the end adds to the end block's stiffness at the critical step, N/m."""
+    """Return the end's contribution to the end block's stiffness at the critical step, N/m."""
     return 0.0 if kind in ("free", "quiet") else _half_block(kind, p).critical_stiffness
 
 

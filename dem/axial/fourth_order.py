@@ -56,7 +56,7 @@ def half_trace() -> Polynomial:
     """Return half the trace of one step of u'' = -omega^2 u, a polynomial in (omega dt)^2.
 
     The step has determinant one: its eigenvalues lie on the unit circle where this is in [-1, 1].
-    Both diagonal entries of a symmetric step are alike, so one of them will do.
+    Both diagonal entries of a symmetric step are equal, so that one suffices.
     """
     square, u, v = Polynomial([0.0, 1.0]), Polynomial([1.0]), Polynomial([0.0])
     for drift, kick in zip(DRIFTS, (*KICKS, 0.0), strict=True):
@@ -141,7 +141,7 @@ def run(
 ) -> None:
     """Take samples first .. last - 1, `stride` steps apart, the steps after each included.
 
-    monitor : ends it where it runs out of bounds; None without.
+    monitor : stops a run that exceeds its bounds; None without.
     """
     _take(composition, model, state, samples, monitor, first * stride, last * stride, first, stride)
 
@@ -163,10 +163,10 @@ def _take(composition, model, state, samples, monitor, first, last, index, strid
 
 @cache
 def loop_for(effects):
-    """Return the time loop of chains with these effects: what they lack is not compiled.
+    """Return the time loop of chains with these effects; absent ones are not compiled.
 
-    It takes steps first .. last - 1, and sample s at step s * stride. Every so many steps it looks
-    whether the speeds are within bounds.
+    It takes steps first .. last - 1, and sample s at step s * stride, and periodically checks that
+    the speeds are within bounds.
     """
     parts, gravity, ledger = effects.joints, effects.gravity, effects.ledger
     varied, start_held, end_held = parts.varied, effects.start, effects.end

@@ -24,7 +24,7 @@ from numerics.divergence import ENERGY, EVERY, SPEED, Guard, gains_energy, guard
 from numerics.jit import jitted
 from numerics.sums import total_of
 
-UNGUARDED = guard(0.0)  # what a loop without a monitor neither reads nor sets
+UNGUARDED = guard(0.0)  # placeholder of a loop without a monitor
 
 
 def run(
@@ -38,7 +38,7 @@ def run(
 ) -> None:
     """Take samples first .. last - 1, `stride` steps apart, the steps after each included.
 
-    monitor : ends it where it runs out of bounds; None without.
+    monitor : stops a run that exceeds its bounds; None without.
     """
     _take(model, state, samples, monitor, first * stride, last * stride, first, stride)
 
@@ -54,7 +54,7 @@ def _take(model, state, samples, monitor, first, last, index, stride):
 
 
 def arguments(model: Model, state: State, samples: Samples, monitor: Guard | None) -> tuple:
-    """Return what a time loop takes, but for its steps and samples."""
+    """Return the arguments of a time loop, except steps and samples."""
     limits, every = (UNGUARDED, 0) if monitor is None else (monitor, EVERY)
     limit = limits.limit.view(np.float64)[0]
     return (
@@ -67,10 +67,10 @@ def arguments(model: Model, state: State, samples: Samples, monitor: Guard | Non
 
 @cache
 def loop_for(effects):
-    """Return the time loop of chains with these effects: what they lack is not compiled.
+    """Return the time loop of chains with these effects; absent ones are not compiled.
 
-    It takes steps first .. last - 1, and sample s at step s * stride. Every so many steps it looks
-    whether speeds and energies are within bounds.
+    It takes steps first .. last - 1, and sample s at step s * stride, and periodically checks that
+    speeds and energies are within bounds.
     """
     parts = effects.joints
     dashpots, softening, varied = parts.dashpots, parts.softening, parts.varied
@@ -158,7 +158,7 @@ def loop_for(effects):
                 work[1] += half * (last_force[2] + f_load) * v_start
                 work[1] += dt * (c.start_force * v_start - c.end_force * v_end)
                 if shaken:
-                    # What the base does beyond pushing the block is left in the end.
+                    # Work of the base that does not reach the block stays in the end.
                     by_base = -0.5 * (last_force[0] + start[1]) * base_before
                     work[0] += by_base
                     work[1] += by_base
@@ -174,7 +174,7 @@ def loop_for(effects):
                     velocity[i, s] = (1.0 - w) * v[a] + w * v[b]
                     displacement[i, s] = (1.0 - w) * u[a] + w * u[b]
                 if ledger:
-                    # v_before holds the energies of all joints first.
+                    # v_before first has the energies of all joints.
                     largest = 0.0
                     for j in range(count - 1):
                         if varied:
@@ -215,7 +215,7 @@ def loop_for(effects):
                     gain -= c.local * copysign(abs(gain), v[j])
                 after_step = kept + gain
                 if block_ledger:
-                    # Known only once the block has moved, as what is missing in its momentum: the
+                    # Known only after the motion, as the deficit of momentum: the
                     # half step behind the whole step is added by the next step.
                     half_impulse = 0.5 * (mass * (after_step - v[j]) - dt * f)
                     viscous[j] -= behind[j] + half_impulse * v[j]

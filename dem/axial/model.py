@@ -1,4 +1,4 @@
-"""The constants of a run, and how they follow from a scene."""
+"""The constants of a run, from its scene."""
 
 from typing import NamedTuple
 
@@ -18,18 +18,18 @@ from joints.law import Law, Parts, law, parts_of, table_of
 
 
 class Receivers(NamedTuple):
-    """Where the run is read: sections between contacts 0 .. N, points between block centres."""
+    """Receivers: sections between contacts 0 .. N, points between block centres."""
 
     sections: Interpolation
     points: Interpolation
 
 
 class Effects(NamedTuple):
-    """What a chain has: the constants that its kernel is compiled for.
+    """The effects of a chain: compile-time constants of its kernel.
 
     joints : parts of their law. masses : whether blocks differ in mass. start, end : whether these
-    are held by a spring or a dashpot. base : whether the start is shaken. relaxes : by how many
-    mechanisms each joint does. ledger : whether energies are summed.
+    have a spring or a dashpot. base : whether the start moves. relaxes : number of relaxation
+    mechanisms of each joint. ledger : whether energies are recorded.
     """
 
     joints: Parts
@@ -49,7 +49,7 @@ class Chain(NamedTuple):
 
     dt : s; mass : of a block, kg, of the lightest where they differ; area : m2.
     impulse_to_speed : dt / m, s/kg, less by mass-proportional damping.
-    keep : the share of a velocity that mass-proportional damping leaves in a step.
+    keep : factor of a velocity per step under mass-proportional damping.
     local : Cundall's damping. weight : m g along y, N.
     start_force, end_force : of a prestress on the start and the end, N.
     """
@@ -174,7 +174,7 @@ def with_mass_damping(model: Model, alpha: float) -> Model:
 
 
 def receivers(scene: Scene, p: Properties) -> Receivers:
-    """Return where the scene records its blocks."""
+    """Return the receivers of the scene."""
     return Receivers(
         interpolation(p.contact_y, scene.record.stress),
         interpolation(p.centre_y, scene.record.velocity),

@@ -1,4 +1,4 @@
-"""From an axial scene to its result."""
+"""Simulation of an axial scene."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def scheme_of(scene: Scene) -> Scheme:
 def simulate_fields(
     scene: Scene, progress: Callable[[float], None] | None = None, keeper: Keeper | None = None
 ) -> Fields:
-    """Simulate a scene of axial motion, one freedom a block."""
+    """Simulate a scene of axial motion, one degree of freedom per block."""
     began = perf_counter()
     scheme = scheme_of(scene)
     model, state, time, critical = scheme.build(scene)
@@ -136,7 +136,7 @@ def _with_breaks(result: Fields, scene: Scene, state: State, time: Clock) -> Fie
 def _film(
     scene: Scene, run: Run, model: Model, state: State, stride: int, mean: float | None
 ) -> BlockFilm | None:
-    """Return what keeps snapshots; None, and nothing imported, where none are asked for.
+    """Return the recorder of snapshots; None, and nothing imported, without snapshots.
 
     mean : s, over which the load is a mean; None where it is not.
     """
@@ -148,7 +148,7 @@ def _film(
     everywhere = model._replace(receivers=_everywhere(p))
 
     def shoot(sample: int) -> Shot:
-        """Take a sample, and the step that it needs, of all contacts and blocks on a copy."""
+        """Take a sample of all contacts and blocks, with the step that it needs, on a copy."""
         now, twin = sample * stride, copied(state)
         found = buffers(everywhere, twin, 1)
         shifted = everywhere._replace(load=model.load[now:], base=model.base[now:])

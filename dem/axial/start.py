@@ -17,14 +17,14 @@ from dem.static import Rest, gaps_under, settle, stiffest
 from joints.law import Parts
 from numerics.jit import jitted
 
-STEP_FRACTION = 0.9  # of the critical step: only where it ends counts
+STEP_FRACTION = 0.9  # of the critical step: only the final state matters
 
 
 def start(scene: Scene, model: Model, state: State) -> Rest | None:
-    """Bring the unloaded state to where the scene starts; return how if that is a static state.
+    """Set the initial state of the scene; return how a static state was reached, if it is one.
 
-    The exact elastic state under gravity and prestress is tried first. Where a joint cannot carry
-    it, the pillar is relaxed from its prestress alone. Raises SceneError where that does not end.
+    The exact elastic state under gravity and prestress is tried first. If a joint cannot carry
+    it, the pillar is relaxed from its prestress. Raises SceneError if that does not converge.
     """
     gravity = scene.gravity
     static = gravity is not None and gravity.static
@@ -43,15 +43,15 @@ def start(scene: Scene, model: Model, state: State) -> Rest | None:
 
 
 def forget_steps(state: State) -> None:
-    """Let joints that broke on the way to rest be broken from the first step on."""
+    """Set joints that broke during relaxation as broken from the first step."""
     if state.broke is not None:
         state.broke[state.broke >= 0] = 0
 
 
 class ChainRelaxation:
-    """The pillar at its static forces alone: `dem.static.System` on the arrays of a state.
+    """The pillar under its static forces: `dem.static.System` on the arrays of a state.
 
-    Dashpots decide no static state and are left out, with those behind quiet and matched ends.
+    Dashpots, also of quiet and matched ends, do not affect a static state and are omitted.
     """
 
     def __init__(self, scene: Scene, p: Properties, state: State, weighed: bool) -> None:
@@ -96,14 +96,14 @@ class ChainRelaxation:
         self.state.v[:] = 0.0
 
     def is_at_rest(self, tolerance: float) -> bool:
-        """Return whether nothing would move."""
+        """Return whether the state is in equilibrium."""
         return bool(np.abs(self.unbalanced()).max() <= tolerance * self.scale)
 
     def place(self, weight: float) -> None:
-        """Put the blocks where elastic joints would carry this weight of each (N) and prestress.
+        """Set the displacements of elastic joints under this weight of each (N) and prestress.
 
-        A fixed end keeps its place and turns the pillar's displacement into closure; between two
-        that give way the displacement has zero mean.
+        A fixed end does not move and turns the pillar's displacement into closure; between two
+        free ends the displacement has zero mean.
         """
         s, forces = self.state, self.elastic_forces(weight)
         gaps = gaps_under(self.properties, forces[1:-1] / self.chain.area)

@@ -1,4 +1,4 @@
-"""The state of a run; the arrays of absent effects are None."""
+"""The state of a run; arrays of absent effects are None."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class State(NamedTuple):
     broke : the step at which each joint lost its strength, -1 before; None without softening.
     start, end : [closure (m), reaction at the last step (N)] of the ends; zero where free.
 
-    The ledger, None without: the work (J) of every force that no potential gives, up to the last
+    The ledger, None without: the work (J) of every nonconservative force, up to the last
     step.
     work : [of the ends, of the load]. last_force : of start, end and load at the last step, N.
     viscous : against the damping of each block and of the joint behind it, and what that relaxes;
@@ -50,7 +50,7 @@ class State(NamedTuple):
 
 
 def state_at_rest(effects: Effects, block_count: int, ledger: bool) -> State:
-    """Return the state at rest, with no array for any effect that the chain does not have."""
+    """Return the state at rest, without arrays for absent effects."""
     damped, softens = effects.joints.dashpots, effects.joints.softening
     damps_blocks = effects.mass_damping or effects.local_damping
     loses = damped or damps_blocks or bool(effects.relaxes)

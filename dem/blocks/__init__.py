@@ -1,1 +1,1 @@
-"""Rigid blocks of any convex shape in the plane: three freedoms a block, joints between edges."""
+"""Convex rigid blocks in the plane: three degrees of freedom per block, joints between edges."""

@@ -1,4 +1,4 @@
-"""Points on edges of blocks, and what tractions there do to a block."""
+"""Points on edges of blocks, and the forces and moments of tractions there."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 from cases.material.contact_points import points_of
 from cases.partition.blocks import BoundaryEdges, Partition
 
-#: Rows of what tractions do to a block: the force, and the sums of arm times force, whose
-#: antisymmetric part is the moment about the centroid.
+#: Rows of the resultants of tractions on a block: the force, and the sums of arm times force,
+#: whose antisymmetric part is the moment about the centroid.
 F_X, F_Y, S_XX, S_XY, S_YX, S_YY = range(6)
 
 
@@ -28,10 +28,10 @@ class EdgePoints(NamedTuple):
 def points_on(
     partition: Partition, edges: BoundaryEdges, chosen: np.ndarray, part: np.ndarray | None = None
 ) -> EdgePoints:
-    """Return two Gauss points on each of the chosen edges, bool array [b]; what is linear along an
-    edge is integrated exactly.
+    """Return two Gauss points on each of the chosen edges, bool array [b], exact for functions
+    linear along an edge.
 
-    part : from where to where along each edge, of its length [b, 2]; absent: all of it.
+    part : start and end along each edge, over its length [b, 2]; absent: all of it.
     """
     index = np.flatnonzero(chosen)
     x, w = points_of("gauss", 2)
@@ -46,7 +46,7 @@ def points_on(
 
 
 def gathered(arm: np.ndarray, traction: np.ndarray) -> np.ndarray:
-    """Return what forces [..., m, 2] at arms [m, 2] do, of each [..., m, 6]."""
+    """Return the resultants of forces [..., m, 2] at arms [m, 2], each [..., m, 6]."""
     sums = arm[:, :, None] * traction[..., None, :]
     return np.concatenate([traction, sums.reshape(*traction.shape[:-1], 4)], axis=-1)
 
@@ -62,6 +62,6 @@ def on_rows(values: np.ndarray, row: np.ndarray, count: int) -> np.ndarray:
 
 
 def resultant(sums: np.ndarray) -> np.ndarray:
-    """Return force and moment [..., 3] of what tractions do [..., 6]."""
+    """Return force and moment [..., 3] of resultants [..., 6]."""
     moment = sums[..., S_XY] - sums[..., S_YX]
     return np.stack([sums[..., F_X], sums[..., F_Y], moment], axis=-1)

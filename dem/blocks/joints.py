@@ -1,5 +1,5 @@
-"""The law of the contacts of a rock mass, and the rule of their points: a column for each joint
-set, for each set of cuts, and for every other contact."""
+"""The law of the contacts of a rock mass, and the rule of their points: one column for each joint
+set, each set of cuts, and every other contact."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Columns(NamedTuple):
     time_constants : viscosity over stiffness, normal and in shear [2, columns], s; None without
     dashpots. rules : places over length from the centre and weights of points [1, 2, points] or
     [columns, 2, points].
-    points : how many are looked after one by one; 0 where joints always hold.
+    points : number with a history of their own; 0 for linear joints.
     """
 
     law: Law
@@ -42,7 +42,7 @@ class Columns(NamedTuple):
 def columns(scene: RockMass, joints: RigidJoints, others: Stiffness) -> Columns:
     """Return the law of a scene's contacts.
 
-    joints : of the sets. others : of further contacts, in columns of their own, which always hold.
+    joints : of the sets. others : of further contacts, in separate columns, always linear.
     """
     sets, made = scene.joint_sets, len(joints.normal)
     normal = np.concatenate([joints.normal, others.normal])

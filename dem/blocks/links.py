@@ -1,4 +1,4 @@
-"""All that touches in a rock mass: blocks, blocks across periodic sides, and walls."""
+"""All contacts of a rock mass: of blocks, across periodic sides, and with walls."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def links_of(scene: RockMass, partition: Partition, further: list[JointSet]) -> 
 
 
 def _walls(scene: RockMass, partition: Partition) -> tuple[str, ...]:
-    """Return the fixed sides that there are."""
+    """Return the fixed sides."""
     present = {partition.sides[k] for k in np.unique(partition.boundary.side)}
     held = scene.boundaries.model_dump()
     return tuple(name for name, kind in held.items() if kind == "fixed" and name in present)
@@ -105,7 +105,7 @@ def _extent(partition: Partition, far: str, near: str, axis: int) -> np.ndarray:
 def _columns(
     scene: RockMass, partition: Partition, joint_set: np.ndarray, pairs: np.ndarray, further: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the kinds of joints, and which one each contact is [c], NO_SET of none."""
+    """Return the kinds of joints, and the kind of each contact [c], NO_SET for none."""
     if not scene.regions:
         sets = len(scene.joint_sets) + further
         return np.stack([np.arange(sets), *np.full((2, sets), ROCK)], axis=1), joint_set
@@ -120,7 +120,7 @@ def _columns(
 def _welds(
     scene: RockMass, partition: Partition, further: list[JointSet], cuts: np.ndarray
 ) -> Stiffness:
-    """Return the stiffness of contacts of the partition that no joint set made."""
+    """Return the stiffness of contacts of the partition outside all joint sets."""
     if not len(cuts):
         return Stiffness(np.zeros(0), np.zeros(0))
     contacts, corners = partition.contacts, partition.corners

@@ -11,8 +11,8 @@ from dem.blocks.edges import EdgePoints, gathered, on_rows
 
 
 def dashpots(points: EdgePoints, impedance: np.ndarray, row: np.ndarray, count: int) -> np.ndarray:
-    """Return what a velocity of each row's block gives of forces and sums at its quiet edges, with
-    the sign of a resistance [count, 6, 3].
+    """Return the resultants of each row's quiet edges per velocity of its block, with the sign of a
+    resistance [count, 6, 3].
 
     impedance : [m, 2], Pa s/m. row : of each point [m].
     """

@@ -30,7 +30,7 @@ SHARED = 0.5
 
 
 class BlockReceivers(NamedTuple):
-    """What is read from blocks and contacts.
+    """Receivers as linear combinations of blocks and contacts.
 
     places : blocks that are read [r]. weights : of each place at each point [points, r]. turns :
     what a place's rotation adds to the motion at each point [points, r, 2], m. touching : contacts

@@ -1,6 +1,6 @@
-"""Waveforms that a run of rigid blocks in the plane has recorded, as results have them.
+"""Waveforms of a run of rigid blocks in the plane, in the form of results.
 
-The mean stress of a block follows from what acts on it (Love 1927; Weber 1966): with arms x from
+The mean stress of a block follows from the forces on it (Love 1927; Weber 1966): with arms x from
 the centroid and forces F,
 
     A sigma_ij = sum of x_i F_j,

@@ -1,4 +1,4 @@
-"""The motion of fixed sides that are shaken."""
+"""The motion of fixed sides that move as a base."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Shaking = Callable[[np.ndarray], np.ndarray]
 
 
 def shaking(scene: RockMass, walls: tuple[str, ...], dt: float) -> Shaking | None:
-    """Return how the fixed sides of a scene move in steps of dt (s); None where none does.
+    """Return the motion of the fixed sides of a scene in steps of dt (s); None without.
 
     A velocity is the mean over the step, so that displacements are exact; an acceleration gives
     the velocity at the half step, as leapfrog does.

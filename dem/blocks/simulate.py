@@ -1,4 +1,4 @@
-"""From the scene of a rock mass to its result."""
+"""Simulation of a rock mass by rigid blocks."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
     from dem.blocks.snapshots import PlaneFilm
 
-MOST_OF_DRIVE = 2_000_000  # numbers: forces on held blocks that are there at once
+MOST_OF_DRIVE = 2_000_000  # numbers: forces on held blocks in memory at a time
 
 
 def simulate_fields(
@@ -36,7 +36,7 @@ def simulate_fields(
     keeper: Keeper | None = None,
     incident: IncidentField | None = None,
 ) -> Fields:
-    """Simulate a rock mass in the plane, three freedoms a block."""
+    """Simulate a rock mass in the plane, three degrees of freedom per block."""
     began = perf_counter()
     system = prepared(scene, incident)
     model, time = system.model, system.time
@@ -90,7 +90,7 @@ def simulate_fields(
 
 
 def _film(system: PlaneSystem, state: PlaneState) -> PlaneFilm | None:
-    """Return what keeps snapshots; None, and nothing imported, where none are asked for."""
+    """Return the recorder of snapshots; None, and nothing imported, without snapshots."""
     if system.blocks.scene.record.fields is None:
         return None
     from dem.blocks.snapshots import PlaneFilm
@@ -101,7 +101,7 @@ def _film(system: PlaneSystem, state: PlaneState) -> PlaneFilm | None:
 def step(
     system: PlaneSystem, state: PlaneState, samples: PlaneSamples, first: int, last: int
 ) -> None:
-    """Take the steps first .. last - 1, with as many forces at once as there is memory for."""
+    """Take the steps first .. last - 1, in batches whose forces fit in memory."""
     model, sources = system.model, system.sources
     size = max(1, MOST_OF_DRIVE // max(1, 6 * len(sources.rows)))
     for begin in range(first, max(last, first + 1), size):
@@ -119,7 +119,7 @@ def look(
     first: int,
     last: int,
 ) -> None:
-    """Look at the motion after samples first .. last - 1, of which all may be unsound."""
+    """Check the motion after samples first .. last - 1, all of which may be invalid."""
     stride, limit = system.time.stride, monitor.limit.view(np.float64)
     if samples.energy is not None:
         audit(monitor, samples.energy, first, last, stride)

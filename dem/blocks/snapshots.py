@@ -32,7 +32,7 @@ class Shot(NamedTuple):
 
 
 class PlaneFilm(Film):
-    """The blocks at every snapshot that a scene asks for; raises SceneError for too many."""
+    """The blocks at every snapshot of a scene; raises SceneError for too many."""
 
     def __init__(self, system: PlaneSystem, state: PlaneState) -> None:
         self.system, self.partition = system, system.blocks.partition
@@ -42,7 +42,7 @@ class PlaneFilm(Film):
         model = system.model._replace(places=everywhere, watched=everywhere[:0])
 
         def shoot(sample: int) -> Shot:
-            """Take a sample, and the step that it needs, of all blocks on a copy."""
+            """Take a sample of all blocks, with the step that it needs, on a copy of the state."""
             step = sample * system.time.stride
             drive = None if model.held is None else system.sources.drive(step, step + 1)
             shake = None if system.shaking is None else system.shaking(np.array([step]))

@@ -1,4 +1,4 @@
-"""Actions on blocks from outside: waves at quiet sides, pressures, forces, a steady stress."""
+"""External forces on blocks: waves at quiet sides, pressures, forces, a static stress."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 
 #: Samples times held blocks whose forces are there at once.
 AT_ONCE = 100_000
-IN_A_PERIOD = 20  # of the highest frequency that acts: looks at what acts
+IN_A_PERIOD = 20  # samples of the forces per period of their highest frequency
 
 
 class Pattern(NamedTuple):
-    """Forces that keep their shape: forces [m, 2], N, at arms [m, 2] on blocks [m], times a
-    history; None: they are steady."""
+    """A force pattern: forces [m, 2], N, at arms [m, 2] on blocks [m], times a history; None:
+    constant."""
 
     block: np.ndarray
     arm: np.ndarray
@@ -37,7 +37,7 @@ class Pattern(NamedTuple):
 
 
 class Sources:
-    """All that acts on held blocks, step by step.
+    """All forces on held blocks, step by step.
 
     rows : int array [h], the block of each row.
     """
@@ -60,7 +60,7 @@ class Sources:
 
     @property
     def steady(self) -> np.ndarray:
-        """Forces and moments that do not change [h, 3], N and N m."""
+        """Constant forces and moments [h, 3], N and N m."""
         own = [k for k, history in enumerate(self.histories) if history is None]
         return resultant(self.shapes[own].sum(axis=0))
 
@@ -83,7 +83,7 @@ class Sources:
         return found
 
     def _add_patterns(self, found: np.ndarray, steps: np.ndarray, shapes: np.ndarray) -> None:
-        """Add the means over each step of what keeps its shape."""
+        """Add the mean of every pattern over each step."""
         dt = self.time.dt
         for shape, history in zip(shapes, self.histories, strict=True):
             if history is None:

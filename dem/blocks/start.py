@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from dem.blocks.system import PlaneSystem
 
 NEVER = 1 << 60  # steps between samples where none are taken
-STEP_FRACTION = 0.9  # of the critical step: only where it ends counts
+STEP_FRACTION = 0.9  # of the critical step: only the final state matters
 
 
 def start(system: PlaneSystem, state: PlaneState) -> Rest | None:
-    """Bring the unloaded state to where the scene starts; return how if that is a static state.
+    """Set the initial state of the scene; return how a static state was reached, if it is one.
 
     Raises SceneError where there is none.
     """
@@ -48,11 +48,11 @@ def start(system: PlaneSystem, state: PlaneState) -> Rest | None:
 
 
 class PlaneRelaxation:
-    """The blocks under their static forces alone: `dem.static.System`.
+    """The blocks under their static forces: `dem.static.System`.
 
-    Neither damping nor rates decide a static state: dashpots, those of quiet sides too, and local
-    damping are nought, and friction has no rate. The kernel is that of the motion, so that a first
-    run compiles one.
+    Damping and rates do not affect a static state: dashpots, also of quiet sides, and local
+    damping are zero, and friction is independent of rate. The kernel is that of the motion, so
+    that a first run compiles one.
     """
 
     def __init__(self, system: PlaneSystem, weighed: bool) -> None:

@@ -1,4 +1,4 @@
-"""The scene of a rock mass ready to run: its model, its clock, and what acts on it."""
+"""A rock mass ready to run: its model, clock and sources."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class PlaneSystem(NamedTuple):
 
 
 def prepared(scene: RockMass, incident: IncidentField | None = None) -> PlaneSystem:
-    """Return a scene ready to run; raises SceneError for what cannot be run.
+    """Return a scene ready to run; raises SceneError if it cannot run.
 
     incident : the field of waves that quiet sides take in; absent: that of the scene's waves in
     rock without joints.
@@ -85,8 +85,8 @@ def prepared(scene: RockMass, incident: IncidentField | None = None) -> PlaneSys
 
 
 def clock_of(blocks: RigidBlocks) -> tuple[Clock, float]:
-    """Return the clock of a run and its critical step (s); raises SceneError for a step that cannot
-    be taken and for what would not fit the memory."""
+    """Return the clock of a run and its critical step (s); raises SceneError for an unstable step
+    and for a run that does not fit in memory."""
     scene, critical, count = blocks.scene, blocks.critical, blocks.partition.count
     numerics = scene.numerics.dem
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
@@ -102,7 +102,7 @@ def clock_of(blocks: RigidBlocks) -> tuple[Clock, float]:
 def held_blocks(
     blocks: RigidBlocks, time: Clock, field: IncidentField
 ) -> tuple[Sources, np.ndarray]:
-    """Return what acts on blocks from outside, and the resistance of quiet edges [h, 6, 3]."""
+    """Return the external forces on blocks, and the resistance of quiet edges [h, 6, 3]."""
     scene, partition = blocks.scene, blocks.partition
     held = scene.boundaries.model_dump()
     quiet = points_on(

@@ -22,7 +22,7 @@ IN_A_PERIOD = 200
 
 
 class Delayed:
-    """Forces on points that share a history, each later by a time of its own.
+    """Forces on points with a common history, each with its own delay.
 
     row : of each point [m]. sums : what a unit does there as `edges.gathered` has it [m, 6].
     history : with a mean over each step. late : s [m].
@@ -35,7 +35,7 @@ class Delayed:
         self.forces_of = resultant(sums)
 
     def sums(self, steps: np.ndarray, dt: float, rows: np.ndarray) -> np.ndarray:
-        """Return what acts in steps [n] of dt, s, on some rows [k], ascending: [n, k, 6]."""
+        """Return the resultants in steps [n] of dt, s, on rows [k], ascending: [n, k, 6]."""
         own = np.flatnonzero(np.isin(self.row, rows))
         here = dt * steps[:, None] - self.late[own]
         mean = (self.history.impulse(here + dt / 2) - self.history.impulse(here - dt / 2)) / dt
@@ -64,7 +64,7 @@ class Sampled:
         self.forces = FaceTractions(times, resultant(sums))
 
     def sums(self, steps: np.ndarray, dt: float, rows: np.ndarray) -> np.ndarray:
-        """Return what acts in equally spaced steps [n] of dt, s, on some rows [k]: [n, k, 6]."""
+        """Return the resultants in equally spaced steps [n] of dt, s, on rows [k]: [n, k, 6]."""
         return FaceTractions(self.times, self.sums_of[:, rows]).at(dt * steps)
 
     def drive(self, first: int, last: int, dt: float, count: int) -> np.ndarray:
@@ -98,7 +98,7 @@ def incoming(
     if isinstance(field, FreeField):
         found: list[Delayed | Sampled] = []
         for wave in field.waves:
-            unit = FreeField((replace(wave, pulse=Step(1.0)),))  # 1 in the end
+            unit = FreeField((replace(wave, pulse=Step(1.0)),))  # 1 eventually
             (shape,) = sums(unit, np.array([inf]))
             found.append(Delayed(row, shape, wave.pulse, wave.lateness(points.place)))
         return found

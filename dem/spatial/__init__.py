@@ -1,1 +1,1 @@
-"""Blocks that translate and turn in space, stepped 64 at a time."""
+"""Blocks that translate and rotate in space, stepped 64 at a time."""

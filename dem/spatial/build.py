@@ -189,7 +189,7 @@ def build_receivers(sections: Interpolation, points: Interpolation) -> RowReceiv
 
 
 def state_at_rest(model: RowModel) -> RowState:
-    """Return the state at rest, with no array for anything that the model does not have."""
+    """Return the state at rest, without arrays for absent effects."""
     form, tiles, points = model.form, tile_count(model.block_count), model.points.shape[1]
     kept = form.rate_rows + points * form.point_rows
     history = zeros((tiles, kept * LANES)) if kept else None

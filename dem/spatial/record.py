@@ -82,7 +82,7 @@ def shooter(p: Properties, model: RowModel, state: RowState, threads: int) -> Ca
 
     def shoot(sample: int) -> Shot:
         n = sample * model.stride
-        # Samples are the steps that the stride divides: step 0, and step n as number 1.
+        # Samples are at multiples of the stride: step 0, and step n as sample 1.
         everywhere = model._replace(receivers=everything, stride=max(n, 1))
         twin, found = copied(state), samples_for(everywhere, 2)
         # A guard that finds nothing, as the run has one: the same kernel.
@@ -95,14 +95,14 @@ def shooter(p: Properties, model: RowModel, state: RowState, threads: int) -> Ca
 
 
 def _all(count: int) -> Interpolation:
-    """Return how every place is read by itself."""
+    """Return receivers that read every contact and block."""
     return Interpolation(np.arange(count), np.arange(0), np.zeros(count))
 
 
 def with_breaks(result: Fields, p: Properties, model: RowModel, state: RowState) -> Fields:
     """Return a result with its fragments, where joints soften.
 
-    A joint is broken when all its contact points are. When it broke is not kept.
+    A joint is broken when all its contact points are. Break times are not recorded.
     """
     form = model.form
     if not form.parts.softening:

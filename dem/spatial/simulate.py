@@ -1,4 +1,4 @@
-"""From a spatial scene to its result."""
+"""Simulation of a spatial scene."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from results.dataset import Fields, fields
 if TYPE_CHECKING:
     from dem.snapshots import BlockFilm
 
-MOST_TURN = 0.045  # rad: the part of a lever that small rotations neglect, 1 - cos, is then 1e-3
+MOST_TURN = 0.045  # rad: small rotations then neglect 1 - cos = 1e-3 of a lever
 
 
 class Prepared(NamedTuple):
@@ -51,7 +51,7 @@ class Prepared(NamedTuple):
 
 
 def prepare(scene: Scene) -> Prepared:
-    """Return the model and the clock of a scene; raises SceneError for a step it cannot take."""
+    """Return the model and the clock of a scene; raises SceneError for an unstable step."""
     p, numerics = calibrate(scene), scene.numerics.dem
     critical = critical_step_of(scene, p)
     time = clock(scene, critical, numerics.step_fraction, numerics.allow_unstable, "dem")
@@ -69,7 +69,7 @@ def critical_step_of(scene: Scene, p: Properties) -> float:
 def simulate_fields(
     scene: Scene, progress: Callable[[float], None] | None = None, keeper: Keeper | None = None
 ) -> Fields:
-    """Simulate a scene of motion in space, three or six freedoms a block."""
+    """Simulate a scene of motion in space, three or six degrees of freedom per block."""
     began = perf_counter()
     p, model, time, critical = prepare(scene)
     state, samples = state_at_rest(model), samples_for(model, time.samples)
@@ -127,7 +127,7 @@ def simulate_fields(
 def _film(
     scene: Scene, p: Properties, model: RowModel, state: RowState, threads: int, dt: float
 ) -> BlockFilm | None:
-    """Return what keeps snapshots; None, and nothing imported, where none are asked for."""
+    """Return the recorder of snapshots; None, and nothing imported, without snapshots."""
     if scene.record.fields is None:
         return None
     from dem.snapshots import BlockFilm
@@ -142,7 +142,7 @@ def speeds(model: RowModel, state: RowState, blocks: int) -> np.ndarray:
 
 
 def refuse_large_turns(scene: Scene, model: RowModel, state: RowState, t: float) -> None:
-    """Raise SceneError where blocks have turned too far for small rotations at t (s)."""
+    """Raise SceneError if blocks have rotated too far for small rotations at t (s)."""
     if not model.form.turns or model.form.finite:
         return
     rows = state.motion[:, 3 * STRIDE : 6 * STRIDE].reshape(-1, 3, STRIDE)[:, :, :LANES]

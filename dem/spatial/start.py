@@ -27,11 +27,11 @@ from results.arrays import copied, fill
 
 NEVER = 1 << 60  # steps between samples where none are taken
 NOWHERE = Interpolation(np.arange(0), np.arange(0), np.zeros(0))
-STEP_FRACTION = 0.9  # of the critical step: only where it ends counts
+STEP_FRACTION = 0.9  # of the critical step: only the final state matters
 
 
 def start(scene: Scene, p: Properties, model: RowModel, state: RowState) -> Rest | None:
-    """Bring the unloaded state to where the scene starts; return how if that is a static state.
+    """Set the initial state of the scene; return how a static state was reached, if it is one.
 
     Raises SceneError where there is none.
     """
@@ -50,10 +50,10 @@ def start(scene: Scene, p: Properties, model: RowModel, state: RowState) -> Rest
 
 
 class RowRelaxation:
-    """The blocks under their static forces alone: `dem.static.System`.
+    """The blocks under their static forces: `dem.static.System`.
 
-    Neither damping nor rates decide a static state: dashpots, those behind quiet and matched ends
-    too, and local damping are nought, and friction has no rate. The kernel is that of the motion,
+    Damping and rates do not affect a static state: dashpots, also of quiet and matched ends, and
+    local damping are zero, and friction is independent of rate. The kernel is that of the motion,
     so that a first run compiles one.
     """
 
