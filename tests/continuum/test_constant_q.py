@@ -262,7 +262,7 @@ def test_what_has_no_quality_factor_says_so(pillar, one_joint):
     engines = {"dem", "continuum-jointed", "continuum-equivalent"}
     assert holding == {"jointed-bar", "equivalent-bar", *engines}
     for changes, reason in (
-        ({"joints__tension": False}, "linear joints alone"),
+        ({"joints__tension": False}, "linear joints only"),
         ({"prestress": {"normal": 1e5}}, "without gravity, prestress"),
         ({"load__at": [0.1, 0.0]}, "axial motion only"),
     ):

@@ -130,7 +130,7 @@ FILES = {
         "has quad and triangle cells, must be of one kind",
     ),
     "cells outside the rock": ("2 3 2 1 1", "2 3 2 0 1", "1 of its cells are in no group"),
-    "a joint without facets": ('1 2 "joint"', '1 5 "joint"', "group 'joint' holds no facets"),
+    "a joint without facets": ('1 2 "joint"', '1 5 "joint"', "group 'joint' has no facets"),
     "a joint inside a cell": ("2 2 1 3 4", "2 2 1 3 6", "belong to no rock cell"),
     "a joint on the outside": ("2 2 1 3 4", "2 2 1 3 1", "(-0.2, 0.25) m"),
     "a cell inside out": ("1 1 2 4 3", "1 1 2 3 4", "1 of its cells are flat or inside out"),

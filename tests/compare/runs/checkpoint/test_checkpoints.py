@@ -173,7 +173,7 @@ def test_input_that_has_vanished_is_one_line_and_the_checkpoint_stays(
     assert code == 2 and table.name in line and sorted(out.iterdir()) == left
     gone.rename(table)
     code, (line,) = finish(start(*run, *changes))
-    assert code == 0 and "goes on at t = " in line
+    assert code == 0 and "continues at t = " in line
 
 
 def test_damaged_checkpoint_is_one_line_of_the_command(tmp_path, start, finish, until, arguments):

@@ -112,7 +112,7 @@ def test_resume_goes_on_with_the_first_variant_that_is_not_whole(
     process.kill()
     before = first.stat().st_mtime_ns
     code, (line,) = finish(start(*every, "--resume"))
-    assert code == 0 and f"{folder / 'dem.nc'} goes on" in line
+    assert code == 0 and f"{folder / 'dem.nc'} continues" in line
     assert first.stat().st_mtime_ns == before and (folder / "dem.nc").is_file()
 
 
