@@ -1,4 +1,4 @@
-"""A bound on the motion of a rock mass, which the divergence monitor compares its run with."""
+"""A bound on the motion of a rock mass, for the divergence monitor."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 
 def highest_energy(system: PlaneSystem, state: PlaneState) -> float:
-    """Return a bound on sqrt(m) v of any freedom of any block, sqrt(J per metre).
+    """Return a bound on sqrt(m) v of any degree of freedom, sqrt(J per metre).
 
-    What sources, gravity and shaken walls can add to sqrt(2 E), and what is stored at the start.
+    From sources, gravity and moving walls, and the energy stored at the start.
     """
     blocks, time, mass = system.blocks, system.time, system.blocks.inertia.mass
     own = system.model.blocks
@@ -40,7 +40,7 @@ def highest_energy(system: PlaneSystem, state: PlaneState) -> float:
 
 
 def stored(system: PlaneSystem, state: PlaneState) -> float:
-    """Return the root of twice the energy in all contacts that hold, sqrt(J per metre)."""
+    """Return the root of twice the energy in all contacts, sqrt(J per metre)."""
     k, links, own = system.model.contacts.rows(), system.blocks.links, system.blocks.columns
     (x_i, y_i, turn_i), (x_j, y_j, turn_j) = state.u.T[:, links.blocks].transpose(2, 0, 1)
     gap, slip, turn = relative(x_j - x_i, y_j - y_i, turn_i, turn_j, *k[:LENGTH])

@@ -1,4 +1,4 @@
-"""From the scene of a rock mass to its rigid blocks, and the constants of their steps."""
+"""Rigid blocks of a rock mass from its scene, and the constants of their steps."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
 
 class RigidBlocks(NamedTuple):
-    """A rock mass as rigid blocks, before time is cut into steps.
+    """A rock mass as rigid blocks, before time discretisation.
 
-    joints : the stiffness between blocks, and what intact rock becomes by it.
+    joints : the stiffness between blocks, and the homogenised stiffness.
     """
 
     scene: RockMass
@@ -50,7 +50,7 @@ class RigidBlocks(NamedTuple):
 
 
 def rigid_blocks(scene: RockMass) -> RigidBlocks:
-    """Return the rigid blocks of a scene; raises SceneError where they cannot be made."""
+    """Return the rigid blocks of a scene; raises SceneError if they cannot be made."""
     further = further_sets(scene)
     partition = partition_of(scene, further)
     links = links_of(scene, partition, further)
@@ -62,7 +62,7 @@ def rigid_blocks(scene: RockMass) -> RigidBlocks:
 
 
 def form_of(blocks: RigidBlocks, held: bool, shaken: bool) -> PlaneForm:
-    """Return which effects a rock mass has."""
+    """Return the effects of a rock mass."""
     scene, own = blocks.scene, blocks.columns
     return PlaneForm(
         parts=parts_of(own.law),
@@ -101,7 +101,7 @@ def constants(scene: RockMass, blocks: RigidBlocks, dt: float) -> Blocks:
 
 
 def contacts(blocks: RigidBlocks) -> Contacts:
-    """Return the table of contacts, with what they carry under a prestress."""
+    """Return the table of contacts, with their tractions under a prestress."""
     links, own = blocks.links, blocks.columns
     varied = parts_of(own.law).varied or len(own.rules) > 1
     second = None

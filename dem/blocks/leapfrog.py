@@ -37,7 +37,7 @@ class PlaneSamples(NamedTuple):
 
 
 def samples_for(model: PlaneModel, count: int) -> PlaneSamples:
-    """Return room for so many samples."""
+    """Return empty samples of this number."""
     displacement, velocity = np.zeros((2, len(model.places), 3, count))
     contact = np.zeros((len(model.watched), CONTACT_ROWS, count))
     energy = np.zeros((len(TERMS), count)) if model.form.ledger else None
@@ -54,9 +54,9 @@ def march(
     shake: np.ndarray | None = None,
     threads: int = 1,
 ) -> None:
-    """Take the steps first .. last - 1, with the samples that fall on them, `stride` steps apart.
+    """Take the steps first .. last - 1, with their samples, `stride` steps apart.
 
-    drive : float array [last - first, h, 3], N and N m, what acts on held blocks in each step.
+    drive : float array [last - first, h, 3], N and N m, forces on held blocks in each step.
     shake : float array [last - first, walls, 2], the velocity of walls in each step, m/s.
     """
     form, b, contacts, (first, last) = model.form, model.blocks, model.contacts, steps
@@ -109,7 +109,7 @@ def motion_of_walls(state: PlaneState, shake: np.ndarray, dt: float) -> np.ndarr
 
 @cache
 def loop_for(form: PlaneForm) -> Callable:
-    """Return the time loop of rock masses with these effects: what they lack is not compiled."""
+    """Return the time loop of rock masses with these effects; absent ones are not compiled."""
     step = step_for(form)
     ledger = form.ledger
 

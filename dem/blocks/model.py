@@ -1,6 +1,6 @@
-"""The constants of a rock mass of rigid blocks in the plane, and what changes in it.
+"""The constants and the state of a rock mass of rigid blocks in the plane.
 
-All is per metre of thickness. A contact joins block i to block j along a straight edge; n is its
+All per metre of thickness. A contact joins block i to block j along a straight edge; n is its
 normal from i to j, t = (-n_y, n_x) its tangent and e the place of a point on it, from its centre
 along t. For small rotations, with the displacement and the rotation of both blocks at the centre,
 
@@ -22,7 +22,7 @@ from results.plane import TERMS
 
 
 class PlaneForm(NamedTuple):
-    """Which effects a rock mass has: the constants of its compiled kernel.
+    """The effects of a rock mass: compile-time constants of its kernel.
 
     parts : of the joint law. points : points of a contact; 0 where joints always hold, which
     need none. mass_damping, local_damping, gravity : of the blocks. held : whether some blocks have
@@ -63,7 +63,7 @@ class PlaneForm(NamedTuple):
 
 
 class Held(NamedTuple):
-    """Blocks that dashpots beyond the domain, or forces, act on.
+    """Blocks with boundary dashpots or external forces.
 
     block : int array [h], ascending. keeps, moves : float arrays [h, 3, 3], what is left of its
     velocity in a step, and the share of the velocity without its dashpots. dashpot : float array
@@ -116,7 +116,7 @@ class PlaneModel(NamedTuple):
 
 
 class PlaneState(NamedTuple):
-    """What changes: displacement u [N, 3] at a whole step, velocity v [N, 3] half a step before it,
+    """The state: displacement u [N, 3] at a whole step, velocity v [N, 3] half a step before it,
     of the blocks and then the walls.
 
     history : float array [chunks, rows LANES], what contacts remember; None where that is nothing.
@@ -145,7 +145,7 @@ def held_by(dashpot: np.ndarray, block: np.ndarray, inertia: np.ndarray, dt: flo
 
 
 def state_at_rest(model: PlaneModel) -> PlaneState:
-    """Return the state at rest, with no array for any effect that the rock mass does not have."""
+    """Return the state at rest, without arrays for absent effects."""
     form, pair = model.form, model.contacts.pair
     count = len(model.blocks.inertia) + model.walls
     rows, history = form.rate_rows + form.points * form.point_rows, None

@@ -79,7 +79,7 @@ def test_checkpoint_of_another_run_is_refused(key, tmp_path, parts):
     """The line says what differs, and the file stays; a run that does not resume replaces it."""
     Checkpoints(tmp_path / "dem.nc", SIGNATURE, ALONE).save(5, parts)
     other = Checkpoints(tmp_path / "dem.nc", SIGNATURE | {key: "2"}, ALONE)
-    with pytest.raises(SceneError, match=f"is of another {key}: remove it"):
+    with pytest.raises(SceneError, match=f"is from another {key}: remove it"):
         other.newest()
     assert len(list(tmp_path.iterdir())) == 1
     other.save(2, parts)
