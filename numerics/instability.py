@@ -58,5 +58,5 @@ def _cause(scene: Scene | RockMass, time: Clock, critical: float, seen: Sighting
         return "numbers overflow; use a smaller load.amplitude"
     return (
         "joints open, close, stiffen or slide within a step, or the scene exceeds the limits of "
-        f"the scheme;  {'halve' if seen.key.endswith('fraction') else 'double'} {seen.key}"
+        f"the scheme; {'halve' if seen.key.endswith('fraction') else 'double'} {seen.key}"
     )

@@ -48,7 +48,7 @@ class RunKeeper:
     def restore(self, parts: Any) -> None:
         """Copy into `parts` what they were at the newest checkpoint, and say so."""
         self.files.load(self.done, parts)
-        self._say(f"{self.files.result} continues at t =  {self._time(self.done):.4g} s")
+        self._say(f"{self.files.result} continues at t = {self._time(self.done):.4g} s")
 
     def look(self, samples: int, parts: Any) -> None:
         """Keep the parts of a run where it is time to; raises Interrupted where a signal waits."""
