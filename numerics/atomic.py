@@ -3,7 +3,7 @@
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.extending import intrinsic, register_jitable
+from numba.extending import intrinsic
 
 
 def _place(context, builder, signature, arguments):
@@ -47,14 +47,3 @@ def give_way(typing):
         return context.get_dummy_value()
 
     return types.none(), generate
-
-
-@register_jitable
-def wait_for_all(counters, own, met):
-    """Barrier of all threads, one counter each, after `met` earlier ones; return met + 1. Earlier
-    writes of each are visible to all."""
-    post(counters, own, met + 1)
-    for other in range(len(counters)):
-        while peek(counters, other) <= met:
-            give_way()
-    return met + 1

@@ -45,9 +45,6 @@ def post(counters, i, value):
 
 def give_way():
     pass
-
-def wait_for_all(counters, own, met):
-    return met + 1
 """,
     "continuum.space.simd": """
 WIDTH = 8
