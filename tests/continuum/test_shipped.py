@@ -1,6 +1,8 @@
 """The first steps of shipped scenes that say nothing of the rock in the blocks, in jointed rock.
 
-Whatever applies to a shipped scene as it stands is held by `tests/test_cases.py`.
+Whatever applies to a shipped scene as it stands is held by `tests/theory/shipped_scenes.py`. Slow,
+for nearly each compiles kernels of its own: of the effects one by one, ledgers close in
+`test_energy.py` and momentum is kept in `test_conservation.py`.
 """
 
 import numpy as np
@@ -11,6 +13,7 @@ from compare.scenes import SHIPPED
 from continuum import applies, simulate
 from results.dataset import energy_residual
 
+pytestmark = pytest.mark.slow
 SAMPLES = 30
 INTACT = 8.64e10  # Pa
 
