@@ -34,11 +34,11 @@ SceneArgument = Annotated[
 
 #: What can simulate or solve a scene, as --engine selects it.
 Engine = StrEnum("Engine", list(selection()))  # type: ignore[misc]
-EngineOption = Annotated[list[Engine], typer.Option(help="May be given more than once.")]
+EngineOption = Annotated[list[Engine], typer.Option(help="Repeatable.")]
 ModelOption = Annotated[
     list[str] | None,
     typer.Option(
-        help="Of the continuum (jointed, equivalent) or an exact solution's name.",
+        help="Continuum model (jointed, equivalent) or name of an exact solution.",
         autocompletion=completion.models,
     ),
 ]
@@ -47,7 +47,7 @@ SetOption = Annotated[
     typer.Option(
         "--set",
         metavar="KEY=VALUE",
-        help="Change one key, for every variant.",
+        help="Override a key in every variant.",
         autocompletion=completion.settings,
     ),
 ]
@@ -56,8 +56,8 @@ SweepOption = Annotated[
     typer.Option(
         "--sweep",
         metavar="KEY=VALUES",
-        help="Every value of a key: FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C; more than once: "
-        "all combinations. A folder for each, and a table, sweep.csv and sweep.nc.",
+        help="Sweep a key over FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C; repeatable for all "
+        "combinations. Writes a folder for each point, and sweep.csv and sweep.nc.",
         autocompletion=completion.settings,
     ),
 ]
@@ -68,35 +68,33 @@ EnsembleOption = Annotated[
         metavar="N",
         min=0,
         max=10_000,
-        help="N members, with the seed of their joints and the next ones: mean and percentiles of "
-        "every number, ensemble.csv, and waveform, NAME-ensemble.nc.",
+        help="N members with consecutive seeds of random joints: mean and percentiles of every "
+        "number (ensemble.csv) and waveform (NAME-ensemble.nc).",
         show_default=False,
     ),
 ]
 VariantOption = Annotated[
     str | None,
     typer.Option(
-        help="Only this variant; '' is the scene as it stands.", autocompletion=completion.variants
+        help="Only this variant ('' for the base scene).", autocompletion=completion.variants
     ),
 ]
-OutOption = Annotated[Path, typer.Option(help="Folder for the results.")]
+OutOption = Annotated[Path, typer.Option(help="Folder for results.")]
 WithOption = Annotated[
     list[str],
     typer.Option(
         "--with",
         metavar="FILE[:COLUMN][=][LABEL]",
-        help="Curves of others: FILE, FILE:stress@20, FILE:COLUMN=stress@20; more than once.",
+        help="External curves: FILE, FILE:stress@20, FILE:COLUMN=stress@20; repeatable.",
     ),
 ]
 WorkersOption = Annotated[int, typer.Option(min=1, help="Processes, where nothing is timed.")]
 DryOption = Annotated[
     bool,
-    typer.Option("--dry-run", help="Only say what would run, how long, and how much memory."),
+    typer.Option("--dry-run", help="Only print what would run, with time and memory."),
 ]
-StrictOption = Annotated[
-    bool, typer.Option("--strict", help="Refuse a scene that would be warned of.")
-]
-JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON for a machine to read.")]
+StrictOption = Annotated[bool, typer.Option("--strict", help="Treat warnings as errors.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print machine-readable JSON.")]
 
 CORES = os.cpu_count() or 1
 

@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 
 ScaleOption = Annotated[
     float | None,
-    typer.Option(metavar="X", help="Of displacements; without it one that can be seen."),
+    typer.Option(metavar="X", help="Exaggeration of displacements (default: visible)."),
 ]
-OneVariantOption = Annotated[str, typer.Option(help="This variant in place of the scene itself.")]
+OneVariantOption = Annotated[str, typer.Option(help="Use this variant instead of the base scene.")]
 FRAMES, SECONDS = 201, 10.0
 
 
@@ -36,19 +36,19 @@ def animate(
     changes: SetOption = [],  # noqa: B006
     variant: OneVariantOption = "",
     out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help=".mp4 or .gif; without it SCENE.mp4 here.")
+        Path | None, typer.Option(metavar="FILE", help=".mp4 or .gif; default SCENE.mp4 here.")
     ] = None,
     scale: ScaleOption = None,
-    frames: Annotated[int, typer.Option(min=2, max=5000, help="From start to end.")] = FRAMES,
-    seconds: Annotated[float, typer.Option(help="That the animation lasts.")] = SECONDS,
+    frames: Annotated[int, typer.Option(min=2, max=5000, help="Number of frames.")] = FRAMES,
+    seconds: Annotated[float, typer.Option(help="Length of the animation.")] = SECONDS,
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Write how the blocks move, by both engines, with the wave on them, as MP4 or GIF.
+    """Animate the blocks and the wave of both engines as MP4 or GIF.
 
-    Displacements are exaggerated; the picture says how much. The rock is that with every joint,
-    where that applies, else the homogenised one; where neither does, the picture says why. A rock
-    mass is coloured by the speed of its particles.
+    The frame gives the exaggeration of displacements. The continuum is the jointed rock if it
+    applies, else the homogenised rock; if neither does, the frame gives the reason. A rock mass is
+    coloured by particle speed.
     """
     _require_positive("--scale", scale)
     _require_positive("--seconds", seconds)
@@ -126,19 +126,19 @@ def view(
     changes: SetOption = [],  # noqa: B006
     variant: OneVariantOption = "",
     out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write this .png; open no window.")
+        Path | None, typer.Option(metavar="FILE", help="Write this .png, open no window.")
     ] = None,
     time: Annotated[
-        float | None, typer.Option(metavar="T", help="s; without it the middle of the scene.")
+        float | None, typer.Option(metavar="T", help="s (default: middle of the scene).")
     ] = None,
     scale: ScaleOption = None,
     strict: StrictOption = False,
 ) -> None:
     """Show a scene by both engines, displaced and coloured by the wave.
 
-    Pillars are seen in three dimensions; a rock mass in its plane, coloured by the size of its
-    displacement. Opens a window with a slider over time; with --out, or where there is no display,
-    writes a picture instead, of the time T. Needs PyVista.
+    Pillars are shown in three dimensions, rock masses in their plane, coloured by displacement
+    magnitude. Opens a window with a slider over time; with --out, or without a display, writes an
+    image at the time T. Needs PyVista.
     """
     _require_positive("--scale", scale)
     _require_pyvista()

@@ -28,7 +28,7 @@ def effects(
     scene: Annotated[
         str | None,
         typer.Argument(
-            help="A scene file or a shipped scene; absent: every shipped pillar.",
+            help="A scene file or a shipped scene (default: every shipped pillar).",
             autocompletion=completion.scenes,
         ),
     ] = None,
@@ -42,10 +42,10 @@ def effects(
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Measure the cost of every effect of a scene, and how far the result is without it.
+    """Measure the cost of every effect of a scene, and the misfit of the result without it.
 
-    Of a pillar, or of a rock mass that rigid blocks can be. Without a scene: of every variant of
-    every shipped pillar. That takes a while; what is done is saved in DIR and not run again.
+    For a pillar, or a rock mass that rigid blocks can represent. Without a scene: every variant of
+    every shipped pillar. Slow; finished scenes are saved in DIR and not run again.
     """
     from compare.experiments.ablation import runner
     from compare.experiments.ablation.summary import summarise
@@ -69,9 +69,9 @@ def effects(
 @app.command()
 def plan(
     scene: SceneArgument,
-    misfit: Annotated[float, typer.Option(min=0.0, help="Relative L2, from the finest physics.")],
+    misfit: Annotated[float, typer.Option(min=0.0, help="Relative L2, from finest physics.")],
     seconds: Annotated[
-        float | None, typer.Option(min=0.0, help="At most so long a run, the best within it.")
+        float | None, typer.Option(min=0.0, help="Most accurate within this time.")
     ] = None,
     changes: SetOption = [],  # noqa: B006
     variant: VariantOption = None,
@@ -107,10 +107,10 @@ def study(
     """Run a study: a scene solved in many ways, each with its error and its cost, as one table
     and its diagram.
 
-    Points that are done are saved in DIR/NAME/ and not run again. Under mpiexec the processes share
-    the points; those of a timed study are run one at a time. The study `stability` puts both
-    engines to hard cases, each with a criterion from theory; `oblique-joint` has what each solver
-    makes of P and SV waves at one joint, against the angle, and `parallel-joints` at several.
+    Finished points are saved in DIR/NAME/ and not run again. Under mpiexec the processes share
+    the points; those of a timed study are run one at a time. The study `stability` runs both
+    engines on hard cases, each with a criterion from theory; `oblique-joint` compares reflection
+    and transmission of P and SV waves at one joint, over the angle, `parallel-joints` at several.
     """
     if dry:
         from compare.experiments.cost.experiment_cost import parts_of_study, show_parts
@@ -153,22 +153,22 @@ def report(
         list[str] | None,
         typer.Argument(
             metavar="SCENE",
-            help="Scene files or shipped scenes; absent: the figures of Guo & Li (2002).",
+            help="Scene files or shipped scenes (default: the figures of Guo & Li (2002)).",
             autocompletion=completion.scenes,
         ),
     ] = None,
     out: OutOption = Path("report"),
     peers: Annotated[
         Path | None,
-        typer.Option(help="Table of make bench-peers; absent: out/peers/points.csv if there."),
+        typer.Option(help="Table of make bench-peers (default: out/peers/points.csv if present)."),
     ] = None,
     dry: DryOption = False,
     strict: StrictOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Write scenes with every picture, misfit and cost as one HTML page that needs no other file.
+    """Write scenes with all figures, misfits and costs as one self-contained HTML page.
 
-    Without a scene: the figures of Guo & Li (2002), what they must show, and all studies.
+    Without a scene: the figures of Guo & Li (2002), the paper's claims, and all studies.
     """
     for one in scenes or []:
         load(one, [], None, strict)
@@ -193,5 +193,5 @@ def _cases(scene: str | None, changes: list[str], variant: str | None, strict: b
         return [Variant(scene, one) for one in load(scene, changes, variant or "", strict)]
     if changes or variant is not None:
         key = "--set" if changes else "--variant"
-        raise SceneError(key, "", None, "needs a scene: without one every shipped pillar is taken")
+        raise SceneError(key, "", None, "needs a scene: the default is every shipped pillar")
     return all_shipped()

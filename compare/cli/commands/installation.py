@@ -11,23 +11,23 @@ from compare.cli.options import JsonOption, app
 
 @app.command()
 def new(
-    name: Annotated[str, typer.Argument(help="Of the file, with or without .toml.")],
+    name: Annotated[str, typer.Argument(help="File name, with or without .toml.")],
     source: Annotated[
         str | None,
         typer.Option(
             "--from",
             metavar="SCENE",
-            help="Copy this scene, its comments and files.",
+            help="Copy this scene with its comments and files.",
             autocompletion=completion.scenes,
         ),
     ] = None,
     rock_mass: Annotated[
-        bool, typer.Option("--rock-mass", help="A wave at a joint in place of a pillar.")
+        bool, typer.Option("--rock-mass", help="Write a rock mass (a wave at one joint).")
     ] = False,
 ) -> None:
-    """Write a scene to begin with: NAME.toml, every key explained, ready to run.
+    """Write a runnable scene template, NAME.toml, with every key explained.
 
-    Nothing that is there already is replaced.
+    Existing files are not overwritten.
     """
     from compare.cli import new as starter
     from compare.cli import templates, terminal
@@ -41,10 +41,10 @@ def new(
 
 @app.command()
 def doctor(as_json: JsonOption = False) -> None:
-    """Say what is installed and what is not, and check both engines against exact solutions.
+    """Print what is installed and missing, and check both engines against exact solutions.
 
-    Exit code 0 where both engines give what they should, else 1; a part that is missing or broken
-    is a line. The first time kernels are compiled, which takes up to a minute.
+    Exit code 0 if both engines pass, else 1; missing or broken parts are listed. The first run
+    compiles kernels, which takes up to a minute.
     """
     from compare.cli import terminal
     from compare.cli.diagnostics.doctor import examine

@@ -61,11 +61,14 @@ def run(
     every: Annotated[
         float,
         typer.Option(
-            "--checkpoint-every", metavar="SECONDS", min=0.0, help="Of wall time; 0: none are kept."
+            "--checkpoint-every",
+            metavar="SECONDS",
+            min=0.0,
+            help="Of wall time; 0: no checkpoints.",
         ),
     ] = 60.0,
     resume: Annotated[
-        bool, typer.Option("--resume", help="Go on where an earlier run of the same has stopped.")
+        bool, typer.Option("--resume", help="Continue an interrupted run from its checkpoint.")
     ] = False,
     workers: WorkersOption = CORES,
     dry: DryOption = False,
@@ -77,12 +80,12 @@ def run(
     With record.fields also its snapshots, as a .pvd file for ParaView. Under mpiexec the processes
     share each run of the continuum; everything else is done by the first of them.
 
-    A run that is killed goes on from its last checkpoint with --resume, to the same bits as if it
-    had not been; results that are whole already are kept. Ctrl-C keeps what is there.
+    With --resume a killed run continues from its last checkpoint, with a bit-identical result;
+    complete results are kept. Ctrl-C saves the partial result.
 
-    --sweep runs every value of a key, DIR/KEY=VALUE/... each, in several processes; points that are
-    done are not run again, those that fail are listed. --ensemble does so with every member of a
-    scene whose joints are at random.
+    --sweep runs every value of a key, DIR/KEY=VALUE/... each, in several processes; finished
+    points are not run again, failed ones are listed. --ensemble does so for every member of a
+    scene with random joints.
     """
     from compare.cli import terminal, views
     from compare.runs import jobs
@@ -121,12 +124,12 @@ def explain(
     strict: StrictOption = False,
     measured: Annotated[
         bool,
-        typer.Option("--measure", help="Time a rigid block's step; may compile for a minute."),
+        typer.Option("--measure", help="Time a rigid block's step; may compile a minute."),
     ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Say what a scene calls for, its critical steps, which exact solutions hold, and which of them
-    is the reference; of a rock mass, the blocks that it is cut into."""
+    """Print the effects of a scene, its critical steps, the exact solutions that apply, and the
+    reference; for a rock mass also its blocks."""
     from compare.cli import views
     from compare.cli.explain import explanation
 

@@ -38,7 +38,7 @@ def compare(
     ] = True,
     given: WithOption = [],  # noqa: B006
     align: Annotated[
-        bool, typer.Option("--align", help="Move the clock of each --with by cross-correlation.")
+        bool, typer.Option("--align", help="Align each --with curve by cross-correlation.")
     ] = False,
     swept: SweepOption = [],  # noqa: B006
     members: EnsembleOption = 0,
@@ -46,36 +46,35 @@ def compare(
     dry: DryOption = False,
     strict: StrictOption = False,
     every: Annotated[
-        bool, typer.Option("--all", help="Also every distance, and why a solution is missing.")
+        bool, typer.Option("--all", help="Also every misfit, and why solutions do not apply.")
     ] = False,
     reads: Annotated[
         bool, typer.Option("--read", help="Also peak velocity, Arias intensity, spectra, speeds.")
     ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Solve a scene by all that applies, and say how far each engine is from the finest of it.
+    """Solve a scene by every solver that applies, and print each engine's misfit from the finest.
 
-    A line an engine: its worst misfit and where, the solution that it is held against, its own
-    numerical error, the time of its steps, and the verdict. --all, --json, --out and --with solve
-    it by everything else too; --all shows every distance
-    of every pair; of curves of others, data over model.
+    One line per engine: its worst misfit and receiver, its reference, its own numerical error,
+    the stepping time, and the verdict. --all, --json, --out and --with also run all other
+    solvers; --all shows every misfit of every pair, and data over model for external curves.
 
-    --with puts a waveform of another code, figure or experiment beside them: a CSV file with a
+    --with adds a waveform of another code, figure or experiment: a CSV file with a
     header such as "time [ms], stress@20 [MPa]" (# starts a comment; commas, semicolons or tabs),
     or a NetCDF file of jointwave run or with time and stress(time). A label names the only curve
     of a file without names, or takes one out of several: curve.csv:stress@20,
     "run.nc:-velocity@20.25 [mm/s]", and with a column's header in front it takes that column:
-    "gauge.csv:CH 3=stress@20 [MPa]", "gauge.csv:t=time [ms]". A comparison.csv that --out has
-    written is read as it is, variant by variant, or one solution of it: comparison.csv:dem. Empty
-    cells are left out. Without a unit, SI. Receivers of a rock mass have two coordinates:
+    "gauge.csv:CH 3=stress@20 [MPa]", "gauge.csv:t=time [ms]". A comparison.csv of --out is
+    read variant by variant, or one solution of it: comparison.csv:dem. Empty
+    cells are skipped. The default unit is SI. Receivers of a rock mass have two coordinates:
     "velocity_x@[20,30]", "stress_xx@[20,30] [MPa]", "traction_n@[20,20]", "gap@[20,20]"; in a file
-    with commas such a header stands in quotes. Stress is positive in compression; a minus
-    sign says that the file has the negative. Only the overlap in time is compared, at the times of
-    whichever has fewer samples there, the other interpolated linearly; amplitudes are never scaled,
-    and clocks never moved without --align.
+    with commas such a header is quoted. Stress is positive in compression; a minus
+    sign inverts it. Only the overlap in time is compared, at the times of the curve with fewer
+    samples there, the other interpolated linearly; amplitudes are never scaled, and times shifted
+    only by --align.
 
-    --sweep compares every value of a key, in several processes, and gives one table of all;
-    --ensemble every member of a scene whose joints are at random, and statistics of all.
+    --sweep compares every value of a key, in several processes, and writes one table of all;
+    --ensemble every member of a scene with random joints, with statistics of all.
     """
     from compare.cli import comparison_view, terminal
     from compare.misfit import pairs
@@ -138,29 +137,29 @@ class Language(StrEnum):
 @app.command()
 def figure(
     scene: SceneArgument,
-    out: Annotated[Path, typer.Option(help="The file: .pdf, .svg or .png.")],
+    out: Annotated[Path, typer.Option(help="Output file: .pdf, .svg or .png.")],
     engine: EngineOption = [],  # noqa: B006
     model: ModelOption = None,
     changes: SetOption = [],  # noqa: B006
     variant: VariantOption = None,
     given: WithOption = [],  # noqa: B006
-    style: Annotated[Style, typer.Option(help="For print, or for slides.")] = Style.journal,
+    style: Annotated[Style, typer.Option(help="Style for print or for slides.")] = Style.journal,
     columns: Annotated[
-        int, typer.Option(min=1, max=2, help="Of the page: 90 or 190 mm in print.")
+        int, typer.Option(min=1, max=2, help="Width in columns: 90 or 190 mm in print.")
     ] = 1,
     kind: Annotated[
-        Format | None, typer.Option("--format", help="Absent: what the file's name says.")
+        Format | None, typer.Option("--format", help="File format (default: from the suffix).")
     ] = None,
     language: Annotated[
-        Language, typer.Option(help="Of the labels; zh needs a font that has it.")
+        Language, typer.Option(help="Language of labels; zh needs a Chinese font.")
     ] = Language.en,
     strict: StrictOption = False,
 ) -> None:
     """Draw the waveforms of a scene as a figure for a paper.
 
-    A panel for each variant and receiver, 90 or 190 mm wide, in letters of 7.5 and 8 points. PDF
-    and SVG hold their fonts. Each solution has the colour that it has everywhere, and dashes that
-    tell it from others without colour. Without --engine, all that apply are drawn.
+    A panel for each variant and receiver, 90 or 190 mm wide, in type of 7.5 and 8 points. PDF
+    and SVG embed their fonts. Each solution has its usual colour, and dashes that distinguish it
+    in greyscale. Without --engine, all solvers that apply are drawn.
     """
     from compare.cli import terminal
     from compare.figures.print.make import FigureRequest, make
@@ -179,7 +178,7 @@ def _read_curves(given: list[str], scenes: list["AnyScene"], align: bool) -> lis
     """Read what `--with` names; what is wrong with it is said before anything is solved."""
     if not given:
         if align:
-            raise SceneError("--align", "", None, "needs --with: there is no clock to move")
+            raise SceneError("--align", "", None, "needs --with: there is no curve to align")
         return []
     from compare.misfit.alignment import common_times
     from compare.misfit.external import read_curves

@@ -126,7 +126,7 @@ def sentences(found: list[Ablation]) -> list[str]:
     if idle:
         a, e = max(idle, key=lambda pair: pair[1].share)
         said.append(
-            f"The most expensive effect that does not change the result is {e.effect}: "
+            f"The most expensive effect that does not change the result is the {e.effect}: "
             f"{percent(e.share)} % of a step of {a.label}."
         )
     if len(active) == 1:

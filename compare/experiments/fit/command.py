@@ -31,11 +31,11 @@ def fit(
         typer.Option(
             "--free",
             metavar="KEY",
-            help="A key of the scene, or clock; more than once, or parted by commas.",
+            help="A key of the scene, or clock; repeatable, or separated by commas.",
         ),
     ],
     engine: Annotated[
-        Engine | None, typer.Option(help="What solves the scene; absent: rigid blocks.")
+        Engine | None, typer.Option(help="Solver of the scene (default: rigid blocks).")
     ] = None,
     model: ModelOption = None,
     changes: SetOption = [],  # noqa: B006
@@ -49,21 +49,20 @@ def fit(
     """Fit keys of a scene to measured waveforms by least squares, with 95 % intervals.
 
     --free names keys by their dotted path, joints.normal_stiffness or
-    soft_layers.0.spacing_stiffness, each with a start or bounds of its own if they are not those of
-    the scene: KEY=START, KEY=LOW:HIGH or KEY=LOW:START:HIGH. clock is what is added to the times of
-    the files, s, found by cross-correlation first. --with is that of compare: quantity, place, sign
+    soft_layers.0.spacing_stiffness, optionally with start and bounds:
+    KEY=START, KEY=LOW:HIGH or KEY=LOW:START:HIGH. clock is a shift of the times of the files, s,
+    started from cross-correlation. --with is that of compare: quantity, place, sign
     and unit of every column; noise needs no removal, amplitudes are never scaled.
 
     Without --engine the scene is solved by rigid blocks, exactly in time (lattice) where that
-    holds and the chain is short. Of a rock mass keys are joint_sets.0.normal_stiffness or
+    applies and the chain is short. In a rock mass keys are joint_sets.0.normal_stiffness or
     waves.0.amplitude, and waveforms those of its points and joints.
 
-    Intervals take account of residuals that are alike from one sample to the next; what the
-    waveforms do not tell apart, and keys that stop at a bound, are named. A search that does not
-    converge ends with exit code 3.
+    Intervals account for correlated residuals; keys that the waveforms cannot distinguish, and
+    keys that stop at a bound, are named. A search that does not converge ends with exit code 3.
 
-    --out writes fit.csv, fit.json, fitted.toml, a scene that runs, and fit-waveforms as SVG, PDF,
-    PNG and CSV, with what is left below each waveform.
+    --out writes fit.csv, fit.json, fitted.toml, a runnable scene, and fit-waveforms as SVG, PDF,
+    PNG and CSV, with the residual below each waveform.
     """
     from compare.cli import terminal
     from compare.experiments.fit.fit import fit as fitted

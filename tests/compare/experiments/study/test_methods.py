@@ -78,7 +78,7 @@ def test_plain_dolfinx_runs_away_just_above_its_critical_step(bar, damping):
         ({"joints__tension": False}, "carries no tension"),
         ({"load": RICKER | {"direction": [0.0, 0.6, 0.8]}}, "spatial"),
         ({"numerics__continuum__scheme": "implicit"}, "explicit"),
-        ({"numerics__continuum__dim": 2}, "is a bar"),
+        ({"numerics__continuum__dim": 2}, "solves a bar"),
         (
             {
                 "numerics__continuum__order": 2,
@@ -107,5 +107,5 @@ def test_a_method_that_does_not_apply_is_a_failed_point_with_the_reason(study):
     }
     (point,) = study([curve]).points()
     row = measure(point)
-    assert row.state == "failed" and "plain-dolfinx does not apply: it is a bar" in row.message
+    assert row.state == "failed" and "plain-dolfinx does not apply: it solves a bar" in row.message
     assert "\n" not in row.message
