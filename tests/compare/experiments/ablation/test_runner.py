@@ -84,7 +84,10 @@ def test_sentences_have_the_numbers_of_the_extremes():
     sets, nothing, some = sentences(FOUND)
     assert "10.0 % (set/one) to 20.0 % (set/two, hard)" in sets
     assert "the energy ledger: 75.0 % of a step of set/one" in nothing
-    assert "dearest is dashpots in set/two, hard (50.0 % of a step, misfit 5.00 % without)" in some
+    assert (
+        "most expensive is dashpots in set/two, hard (50.0 % of a step, misfit 5.00 % without)"
+        in some
+    )
     assert "influential is joints that differ in set/one (nothing that shows, misfit 80.0 %" in some
 
 
