@@ -156,8 +156,13 @@ def _separator(text: str, time_name: str) -> str:
 
 
 def _cells(text: str, separator: str) -> list[str]:
-    cells = next(csv.reader([text], delimiter=separator, skipinitialspace=True))
-    return [printable(cell).strip() for cell in cells]
+    found: list[str] = []
+    for cell in next(csv.reader([text], delimiter=separator, skipinitialspace=True)):
+        if found and found[-1].count("[") > found[-1].count("]"):  # a place, velocity_x@[20,30]
+            found[-1] += separator + cell
+        else:
+            found.append(cell)
+    return [printable(cell).strip() for cell in found]
 
 
 def _numbers(where: str, header: list[str], cells: list[str], at: int) -> list[float]:

@@ -99,11 +99,14 @@ def _references(receivers: list[Panel]) -> str:
 
 
 def _at_rest(receivers: list[Panel]) -> str:
-    """Describe the static state subtracted from the waveforms; empty without one."""
+    """Describe the static state subtracted from the waveforms; empty without one.
+
+    It has no velocity, but for what dynamic relaxation leaves.
+    """
     states = dict.fromkeys(
         f"{panel.at_rest:.4g} {UNITS[panel.quantity]} ({panel.heading}, {panel.variant})"
         for panel in receivers
-        if panel.at_rest
+        if panel.at_rest and panel.quantity != "velocity"
     )
     return f" Waveforms are relative to the static state: {'; '.join(states)}." if states else ""
 

@@ -139,11 +139,12 @@ def test_the_bound_of_a_reference_is_that_of_its_place():
     assert found["slip@[20,20]"] == 0
 
 
+@pytest.mark.parametrize("quotes", ['"', ""])
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
-def test_columns_of_a_file_are_called_by_places(tmp_path, separator):
-    """In a file with commas a header that holds one stands in quotes."""
+def test_columns_of_a_file_are_called_by_places(tmp_path, separator, quotes):
+    """In a file with commas, too, in quotes or not: a comma in brackets parts no columns."""
     names = ["time [ms]", "-velocity_x@[20,10] [mm/s]", "traction_n@[20 20] [MPa]"]
-    quoted = [f'"{name}"' if separator in name else name for name in names]
+    quoted = [f"{quotes}{name}{quotes}" if separator in name else name for name in names]
     rows = [separator.join(map(str, (k, -k, 2 * k))) for k in range(4)]
     file = tmp_path / "curve.csv"
     file.write_text("\n".join([separator.join(quoted), *rows]))
