@@ -147,19 +147,35 @@ def relax(system: System, tolerance: float, most_steps: int) -> Rest:
 
     It ends earlier after `most_steps`, or if the ratio stops falling.
     """
-    steps, alpha, u, force = 0, 0.0, system.displacement().copy(), system.unbalanced().copy()
-    ratio = _ratio(force, system.scale)
+    steps, damped = 0, Damped(system)
+    ratio = _ratio(damped.force, system.scale)
     best, best_at = ratio, 0
     while tolerance < ratio and steps - best_at <= most_steps / PATIENCE and steps < most_steps:
-        system.advance(STEPS_BETWEEN_LOOKS, alpha)
+        damped.advance()
         steps += STEPS_BETWEEN_LOOKS
-        u_new, force_new = system.displacement().copy(), system.unbalanced().copy()
-        alpha = 2 * _frequency(u_new - u, force - force_new, system.mass)
-        u, force, ratio = u_new, force_new, _ratio(force_new, system.scale)
+        ratio = _ratio(damped.force, system.scale)
         if ratio < 0.9 * best:
             best, best_at = ratio, steps
     system.stop()
     return Rest(steps, ratio)
+
+
+class Damped:
+    """Motion under damping that is critical for the mode that still moves.
+
+    force : unbalanced, on every freedom, N and N m.
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system, self.alpha = system, 0.0
+        self.u, self.force = system.displacement().copy(), system.unbalanced().copy()
+
+    def advance(self) -> None:
+        """Take `STEPS_BETWEEN_LOOKS` steps, and look."""
+        self.system.advance(STEPS_BETWEEN_LOOKS, self.alpha)
+        u, force = self.system.displacement().copy(), self.system.unbalanced().copy()
+        self.alpha = 2 * _frequency(u - self.u, self.force - force, self.system.mass)
+        self.u, self.force = u, force
 
 
 def _frequency(change: np.ndarray, resistance: np.ndarray, mass: np.ndarray) -> float:

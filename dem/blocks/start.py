@@ -3,6 +3,7 @@ gravity."""
 
 from __future__ import annotations
 
+from math import ceil
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,9 +11,10 @@ import numpy as np
 from cases.material.prestress import refuse_beyond_strength
 from dem.blocks.leapfrog import march, samples_for
 from dem.blocks.model import PlaneState, held_by, state_at_rest
+from dem.blocks.sources import Sources, reactions
 from dem.blocks.stability import critical_plane_step
 from dem.blocks.tiles import LANES
-from dem.static import Rest, settle
+from dem.static import STEPS_BETWEEN_LOOKS, Damped, Rest, settle
 from joints.law import IN_MOTION
 from results.arrays import copied, fill
 
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
 
 NEVER = 1 << 60  # steps between samples where none are taken
 STEP_FRACTION = 0.9  # of the critical step: only the final state matters
+PARTS = 40  # in which walls of openings are released where joints may slip or open
+LOOKS = 0.3  # stretches of ten steps after each part, over the root of the number of blocks
 
 
 def start(system: PlaneSystem, state: PlaneState) -> Rest | None:
@@ -35,7 +39,9 @@ def start(system: PlaneSystem, state: PlaneState) -> Rest | None:
         refuse_beyond_strength(scene)
     if static or scene.prestress is not None:
         relaxation = PlaneRelaxation(system, static)
+        before = relaxation.excavate()
         rest = settle(scene, relaxation)
+        rest = rest._replace(steps=before + rest.steps)
         state.u[:] = relaxation.state.u
         if state.history is not None:
             points = LANES * system.model.form.rate_rows
@@ -63,18 +69,43 @@ class PlaneRelaxation:
         if not weighed:
             own = own._replace(gravity_x=0.0, gravity_y=0.0)
         laws[IN_MOTION] = 0.0
-        nothing = np.zeros((len(sources.rows), 3, 3))
-        held = held_by(nothing, sources.rows, own.inertia, dt) if model.form.held else None
+        rows, self.steady, self.walls = sources.rows, sources.steady, None
+        stress, partition = blocks.scene.prestress, blocks.partition
+        if stress is not None and blocks.scene.excavated and model.form.points:
+            openings = [name for name in partition.sides if name.startswith("opening")]
+            walls = reactions(partition, openings, stress)
+            rows = np.union1d(rows, walls.block)
+            self.walls = Sources(rows, [walls], [], system.time).steady
+            self.steady = np.zeros_like(self.walls)
+            self.steady[np.searchsorted(rows, sources.rows)] = sources.steady
+        nothing = np.zeros((len(rows), 3, 3))
+        held = held_by(nothing, rows, own.inertia, dt) if model.form.held else None
         self.model = model._replace(blocks=own, laws=laws, held=held)
         self.state, self.samples = state_at_rest(self.model), samples_for(self.model, 0)
-        self.steady, self.count = sources.steady, len(own.inertia)
+        self.count = len(own.inertia)
         self.threads = system.threads
         self.mass = blocks.masses.ravel()
         g = np.hypot(own.gravity_x, own.gravity_y)
-        edges, stress = blocks.partition.boundary, blocks.scene.prestress
         pressed = 0.0 if stress is None else max(map(abs, (stress.xx, stress.yy, stress.xy)))
-        self.scale = float(g * blocks.inertia.mass.sum() + pressed * edges.length.sum())
+        self.scale = float(
+            g * blocks.inertia.mass.sum() + pressed * partition.boundary.length.sum()
+        )
         self.most_steps = 10_000 + 10_000 * int(np.sqrt(self.count))
+
+    def excavate(self) -> int:
+        """Release the walls of openings but for the last part, and return the steps taken: all at
+        once blocks overshoot, and slip further than they must."""
+        if self.walls is None:
+            return 0
+        whole, looks = self.steady, ceil(LOOKS * np.sqrt(self.count))
+        for part in range(1, PARTS):
+            self.steady = whole + (1 - part / PARTS) * self.walls
+            damped = Damped(self)
+            for _ in range(looks):
+                damped.advance()
+            self.stop()
+        self.steady = whole
+        return (PARTS - 1) * looks * STEPS_BETWEEN_LOOKS
 
     def advance(self, steps: int, alpha: float) -> None:
         """Take steps under mass-proportional damping alpha, 1/s."""

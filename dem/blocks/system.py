@@ -60,7 +60,7 @@ def prepared(scene: RockMass, incident: IncidentField | None = None) -> PlaneSys
     receivers = receivers_of(scene, blocks.partition, blocks.links)
     sources, resistance = held_blocks(blocks, time, field)
     moving = shaking(scene, blocks.links.walls, time.dt)
-    form = form_of(blocks, len(sources.rows) > 0, moving is not None)
+    form = form_of(blocks, len(sources.rows) > 0 or scene.excavated, moving is not None)
     held = held_by(
         np.moveaxis(resultant(np.moveaxis(resistance, 1, -1)), -1, 1),
         sources.rows,

@@ -7,7 +7,7 @@ from dem import simulate
 from dem.blocks.leapfrog import samples_for
 from dem.blocks.model import state_at_rest
 from dem.blocks.simulate import step
-from dem.blocks.start import start
+from dem.blocks.start import PARTS, start
 from dem.blocks.system import prepared
 from dem.blocks.tile import FORCE_X, FORCE_Y, relative
 from dem.blocks.tiles import LENGTH
@@ -164,3 +164,18 @@ def test_without_a_prestress_an_opening_costs_nothing(excavated):
     system, state = at_rest(excavated(prestress=None))
     assert not system.model.form.stressed and not state.u.any()
     assert "static_steps" not in simulate(excavated(prestress=None)).attrs
+
+
+def test_walls_are_released_slowly_enough_for_slip(excavated, monkeypatch):
+    """What blocks overshoot by falls with the part of the walls that is released at a time. Between
+    fixed sides, where nothing but the opening acts on blocks."""
+    fixed = dict.fromkeys(("left", "right", "bottom", "top"), "fixed")
+    scene, slid = excavated(SLIPS, boundaries=fixed), {}
+    for parts in (1, 10, PARTS, 4 * PARTS):
+        monkeypatch.setattr("dem.blocks.start.PARTS", parts)
+        slid[parts] = at_rest(scene)[1].history
+    finest = slid.pop(4 * PARTS)
+    off = [np.linalg.norm(found - finest) / np.linalg.norm(finest) for found in slid.values()]
+    assert off[0] > 1.0
+    assert off[2] < 0.03
+    assert off[1] > 2 * off[2]
