@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import isqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import cases
 from cases.kinds import AnyScene, pillar_of
-from cases.schema.joint import PARTS, JointLaw
+from cases.schema.joint import PARTS
+from cases.schema.law_part import LawPart
 from cases.schema.scene import Scene
 from cases.validate import validated
 
@@ -21,10 +23,24 @@ BLOCKS = 1000  # of the pillar that effects are compared on
 #: A blow that moves blocks in all their freedoms.
 ACROSS = {"load.direction": [0.6, 0.8, 0.0], "load.at": [0.1, 0.05]}
 
-#: The parts of the joints' law but for those that leave no place for others of them, and these.
-OTHERS = [part for part in PARTS if JointLaw.model_fields.keys() & {*part.instead_of} - {"tension"}]
-TOGETHER = {k: v for part in PARTS if part not in OTHERS for k, v in part.sample.items()}
-BY_ITSELF = {k: v for part in OTHERS for k, v in part.sample.items()}
+
+def _together(parts: Iterable[LawPart]) -> list[LawPart]:
+    """Return the parts of a joint that can have as many of them as their keys allow."""
+    found: list[LawPart] = []
+    for part in parts:
+        rest = {key for one in found for key in one.instead_of}
+        keys = {key for one in found for key in one.all_keys}
+        if not keys & {*part.instead_of} and not rest & {*part.all_keys}:
+            found.append(part)
+    return found
+
+
+def _sample(parts: Iterable[LawPart]) -> dict[str, Any]:
+    return {key: value for part in parts for key, value in part.sample.items()}
+
+
+FIRST = _together(PARTS)
+SECOND = _together(part for part in PARTS if part not in FIRST)
 
 #: Every effect at once: the line against which a scene's own cost is held.
 EVERYTHING = {
@@ -34,7 +50,7 @@ EVERYTHING = {
     "joints.friction_angle": 30.0,
     "joints.cohesion": 1e5,
     "joints.residual_cohesion": 0.0,
-    **{f"joints.{key}": value for key, value in TOGETHER.items()},
+    **{f"joints.{key}": value for key, value in _sample(FIRST).items()},
     "soft_layers": [{"y": 0.5, "spacing_stiffness": 4.375e8}],
     "record.stress": [0.5],
     "damping.mass_proportional": 1.0,
@@ -63,8 +79,8 @@ EVERYTHING_IN_PLANE: dict[str, Any] = {
 FRICTION = {"damping_ratio": 0.02, "friction_angle": 30.0, "cohesion": 1e6}
 #: The joints along y and along x of that.
 FAILING = (
-    ELASTIC | FRICTION | TOGETHER | {"residual_cohesion": 0.0},
-    ELASTIC | FRICTION | BY_ITSELF | {"tension": False},
+    ELASTIC | FRICTION | _sample(FIRST) | {"residual_cohesion": 0.0},
+    ELASTIC | FRICTION | _sample(SECOND) | {"tension": False},
 )
 
 
