@@ -39,10 +39,12 @@ PLACE = re.compile(r"([ML]) (-?[\d.]+(?:e-?\d+)?) (-?[\d.]+(?:e-?\d+)?) ?\n?")
 
 
 @contextmanager
-def blank(height: float, width: float = WIDTH, laid_out: bool = False) -> Iterator[Figure]:
+def blank(
+    height: float, width: float = WIDTH, laid_out: bool = False, rc: dict[Any, Any] = RC
+) -> Iterator[Figure]:
     """Give an empty figure to be drawn on, inches; constraints lay it out once that is done, unless
     the drawing lays it out itself."""
-    with matplotlib.rc_context(RC):
+    with matplotlib.rc_context(rc):
         figure = Figure(figsize=(width, height))
         FigureCanvasAgg(figure)
         yield figure

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from pandas import DataFrame
 
+from cases.errors import SceneError
 from compare.engines import Progress
 from compare.experiments.ablation import runner as ablation_runs
 from compare.experiments.ablation.summary import summarise as summarise_ablation
@@ -33,6 +34,7 @@ from compare.report.overview import Overview, RankedScene, seconds, versions
 from compare.report.reading_table import reading_frame
 from compare.report.render import Page, RockMasses, render
 from compare.report.scenes import ROCK_MASSES, Solved, asked_for, solve
+from compare.report.section import SceneRequest
 from compare.runs.output import write_csv, write_text
 from compare.runs.workers import Workers
 
@@ -67,6 +69,7 @@ def build(
     studies: tuple[str, ...] = REPORTED,
     peers_table: Path | None = None,
     hard: bool = True,
+    ensembles: Sequence[Path] = (),
 ) -> Report:
     """Solve scenes by all that applies, and write their figures, tables and `out`/index.html.
 
@@ -74,13 +77,16 @@ def build(
     after them the studies. `progress` is called with the finished fraction of the whole.
     `peers_table` is what `make bench-peers` wrote; None: where it writes, if it did.
     `hard` : also put both engines to the hard cases, except those that take long.
+    `ensembles` : folders of ensembles of these scenes, whose pictures stand among theirs.
     Raises SceneError and UnstableError, as `compare` does; the page is then not written.
     """
     with ThreadPoolExecutor(1) as beside, Workers(workers) as executor:
         pool = partial(Lent, executor)
         if scenes:
-            page = _of_scenes(Path(out), scenes, progress, pool)
+            page = _of_scenes(Path(out), asked_for(scenes, ensembles), progress, pool)
         else:
+            if ensembles:
+                raise SceneError("--ensemble", str(ensembles[0]), None, "needs its scene")
             others = peers.read(peers_table)
             part = _parts(progress)
             untimed: list[Future[_Untimed]] = []
@@ -113,12 +119,16 @@ def _parts(progress: Progress | None) -> Callable[[str], Progress]:
     return part
 
 
-def _of_scenes(out: Path, scenes: Sequence[str], progress: Progress | None, pool: Pool) -> Page:
+def _of_scenes(out: Path, asked: list[SceneRequest], progress: Progress | None, pool: Pool) -> Page:
     """Return the page of some scenes alone."""
-    solved = solve(out / "figures", asked_for(scenes), progress, pool)
+    solved = solve(out / "figures", asked, progress, pool)
     count = len(solved.sections)
     about = solved.sections[0].title if count == 1 else f"{count} scenes"
-    return _page(solved, about, shlex.join(["jointwave", "report", *scenes, "--out", "DIR"]))
+    return _page(
+        solved,
+        about,
+        shlex.join(["jointwave", "report", *(one.called for one in asked), "--out", "DIR"]),
+    )
 
 
 def _solved(

@@ -9,11 +9,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cases.errors import SceneError
 from cases.kinds import AnyScene
 from cases.schema.scene import Scene
 from compare.engines import Progress
 from compare.experiments.cost import timings
 from compare.experiments.pool import Pool
+from compare.experiments.sweep.diagram import ensemble_in
 from compare.figures.scene_figures import along_pillar, figures_of, recorded_along
 from compare.misfit.pairs import Comparison, compare
 from compare.report.section import PAPER, SceneRequest, Section, begin, finish, make_section
@@ -49,8 +51,11 @@ class Solved:
         return Solved({s.name: self.comparisons[s.name] for s in sections}, sections)
 
 
-def asked_for(scenes: Sequence[str]) -> list[SceneRequest]:
-    """Return the scenes to report, each under a name of its own; without any, the paper's."""
+def asked_for(scenes: Sequence[str], ensembles: Sequence[Path] = ()) -> list[SceneRequest]:
+    """Return the scenes to report, each under a name of its own; without any, the paper's.
+
+    ensembles : folders of ensembles of these scenes; raises SceneError where one is of another.
+    """
     paper = [f"{PAPER.name}/{file.stem}" for file in sorted(PAPER.glob("fig-*.toml"))]
     called = list(dict.fromkeys(scenes)) or paper
     found: dict[str, SceneRequest] = {}
@@ -60,6 +65,12 @@ def asked_for(scenes: Sequence[str]) -> list[SceneRequest]:
         names = [stem, *(f"{stem or 'scene'}-{k}" for k in range(2, len(called) + 3))]
         name = next(n for n in names if n not in found and n not in TAKEN)
         found[name] = SceneRequest(file, one, name)
+    for folder in ensembles:
+        scene, figures = ensemble_in(folder)
+        name = next((n for n, one in found.items() if one.file.resolve() == scene.resolve()), "")
+        if not name:
+            raise SceneError("--ensemble", str(folder), None, f"is of {scene}: name that, too")
+        found[name] = found[name]._replace(besides=(*found[name].besides, *figures))
     return list(found.values())
 
 
@@ -97,7 +108,10 @@ def solve(
         pictures = (
             (one, picture)
             for one in asked
-            for picture in figures_of(one.name, comparisons[one.name], fields[one.name])
+            for picture in (
+                *figures_of(one.name, comparisons[one.name], fields[one.name]),
+                *(replace(b, name=f"{one.name}-{b.name}") for b in one.besides),
+            )
         )
         begun = begin(folder, pictures, executor)
         begin_others()

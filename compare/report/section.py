@@ -21,11 +21,13 @@ PAPER = Path(cases.__file__).parent / "guo-li-2002"
 
 
 class SceneRequest(NamedTuple):
-    """A scene of the report: its file, how its user calls it, and its name on the page."""
+    """A scene of the report: its file, how its user calls it, its name on the page, and pictures
+    that are there already."""
 
     file: Path
     called: str
     name: str
+    besides: tuple[SceneFigure, ...] = ()
 
     @property
     def number(self) -> int | None:

@@ -162,6 +162,10 @@ def report(
         Path | None,
         typer.Option(help="Table of make bench-peers (default: out/peers/points.csv if present)."),
     ] = None,
+    ensembles: Annotated[
+        list[Path],
+        typer.Option("--ensemble", help="Folder that --ensemble of compare or run has written."),
+    ] = [],  # noqa: B006
     dry: DryOption = False,
     strict: StrictOption = False,
     as_json: JsonOption = False,
@@ -169,6 +173,7 @@ def report(
     """Write scenes with all figures, misfits and costs as one self-contained HTML page.
 
     Without a scene: the figures of Guo & Li (2002), the paper's claims, and all studies.
+    --ensemble adds the figures of an ensemble of a scene to those of the scene.
     """
     for one in scenes or []:
         load(one, [], None, strict)
@@ -181,7 +186,7 @@ def report(
         show_parts(parts_of_report(scenes or (), out), as_json)
         return
     with locked(out, out / "figures", out / "studies"), terminal.progress("report") as advance:
-        found = build(out, advance, scenes=scenes or (), peers_table=peers)
+        found = build(out, advance, scenes=scenes or (), peers_table=peers, ensembles=ensembles)
     views.show_report(found, as_json)
 
 

@@ -160,11 +160,20 @@ def figure(
     A panel for each variant and receiver, 90 or 190 mm wide, in type of 7.5 and 8 points. PDF
     and SVG embed their fonts. Each solution has its usual colour, and dashes that distinguish it
     in greyscale. Without --engine, all solvers that apply are drawn.
+
+    In place of a scene, a folder that --ensemble has written: median and bands of its waveforms.
     """
     from compare.cli import terminal
-    from compare.figures.print.make import FigureRequest, make
+    from compare.figures.print.make import FigureRequest, make, make_bands
     from compare.runs import jobs
 
+    if Path(scene).is_dir():
+        if model or changes or given or variant is not None:
+            allowed = "is a folder of results: --model, --set, --variant and --with are of scenes"
+            raise SceneError(scene, "", None, allowed)
+        request = FigureRequest(style.value, columns, kind and kind.value, language.value, out)
+        terminal.say(f"wrote {make_bands(Path(scene), [e.value for e in engine], request)}")
+        return
     scenes = load(scene, changes, variant, strict)
     runs = jobs.wanted([e.value for e in engine], model or []) if engine or model else []
     curves = _read_curves(given, scenes, False)

@@ -4,7 +4,11 @@ Bands hold what lies between the 5th and the 95th percentile at every time, with
 line; a distribution is the share of members whose misfit is at most that on the axis.
 """
 
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
 from itertools import cycle, product
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,11 +17,17 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from cases.errors import SceneError
 from compare.experiments.ablation.diagram import COLOURS
+from compare.experiments.sweep.axis import MEMBER
+from compare.experiments.sweep.ensemble import ENSEMBLE
 from compare.figures.export import blank
-from compare.figures.style import in_order, style
+from compare.figures.figure import SceneFigure
+from compare.figures.style import RC, WIDTH, in_order, style
 from compare.figures.subplots import UNITS
 from compare.misfit.places import Place, places_of
+from compare.scenes import find
+from results.netcdf import load_netcdf
 
 SEEN = ("stress", "velocity", "traction", "gap", "slip")  # of a result; displacement shows little
 MOST, COLUMNS = 12, 2  # waveforms drawn, and side by side
@@ -26,15 +36,74 @@ WIDE = 1.3  # points, of every curve
 DASHES = ("-", (0, (5, 2)), (0, (1.5, 1.5)))
 FAINT = 1e-6  # of the largest of its quantity: a waveform of round-off
 LOW, MIDDLE, HIGH = "p5", "p50", "p95"
+WAVEFORMS = "Waveforms of an ensemble: median and 5 to 95 % of its members"
+MISFITS = "Misfits of an ensemble: the worst of each member"
+OF_BANDS = (
+    "At every time the median of all members, and the band from the 5th to the 95th percentile."
+)
+OF_MISFITS = "The share of members whose worst misfit of a pair is at most that on the axis."
 
 
-def bands(results: dict[str, xr.Dataset]) -> Figure:
+def pictures(
+    waves: list[Path], done: pd.DataFrame, axes: list[str], out: Path
+) -> Iterator[tuple[Path, SceneFigure]]:
+    """Yield the pictures of an ensemble, each with its folder: the bands of the waveforms in each,
+    and of comparisons the misfits of each variant at each point.
+
+    waves : files of statistics. done : rows of the table. axes : swept keys without the member.
+    """
+    for folder in dict.fromkeys(file.parent for file in waves):
+        results = statistics_in(folder)
+        if shown_places(results):
+            table, drawing = band_table(results), partial(bands, results)
+            yield folder, SceneFigure(f"{ENSEMBLE}-waveforms", WAVEFORMS, OF_BANDS, drawing, table)
+    for point, rows in done.groupby([*axes, "variant"], sort=False) if "one" in done else ():
+        worst = misfits_of(rows)
+        if len(worst):
+            rest = ",".join(f"{key}={value}" for key, value in zip(axes, point, strict=False))
+            place, drawing = out / rest / str(point[-1]), partial(distribution, worst)
+            yield place, SceneFigure(f"{ENSEMBLE}-misfits", MISFITS, OF_MISFITS, drawing, worst)
+
+
+def statistics_in(folder: Path) -> dict[str, xr.Dataset]:
+    """Return the statistics of every waveform in a folder by the name of what solved it; raises
+    SceneError where there are none."""
+    end = f"-{ENSEMBLE}.nc"
+    found = {file.name.removesuffix(end): load_netcdf(file) for file in folder.glob(f"*{end}")}
+    if not found:
+        allowed = f"has no *{end}, which --ensemble writes"
+        raise SceneError(str(folder), "", None, allowed)
+    return found
+
+
+def ensemble_in(out: Path) -> tuple[Path, list[SceneFigure]]:
+    """Return the scene's file and the pictures, by names of their own, of a folder that
+    `--ensemble` has written; raises SceneError where it has not."""
+    waves = sorted(out.rglob(f"*-{ENSEMBLE}.nc"))
+    try:
+        rows = pd.read_csv(out / "sweep.csv", dtype={"faint": str}).fillna({"variant": ""})
+        scene = find(load_netcdf(out / "sweep.nc").attrs["scene"])
+    except OSError:
+        allowed = "must be a folder that --ensemble has written"
+        raise SceneError("--ensemble", str(out), None, allowed) from None
+    axes = [key for key in rows.columns[: list(rows).index("variant")] if key != MEMBER]
+    found = pictures(waves, rows[rows.state == "done"], axes, out)
+    return scene, [
+        replace(
+            one, name=f"{one.name}-{k}", title=", ".join([one.title, *of.relative_to(out).parts])
+        )
+        for k, (of, one) in enumerate(found)
+    ]
+
+
+def bands(results: dict[str, xr.Dataset], width: float = WIDTH, rc: dict[Any, Any] = RC) -> Figure:
     """Return the bands of an ensemble; results : mean and percentiles of every waveform by the name
-    of what solved it, with `statistic` as their first dimension."""
+    of what solved it, with `statistic` as their first dimension; width : inches; rc : settings of
+    matplotlib."""
     places = shown_places(results)
     columns = min(COLUMNS, len(places))
     rows = -(-len(places) // columns)
-    with blank(0.5 + TALL * rows) as figure:
+    with blank(0.5 + TALL * rows, width, rc=rc) as figure:
         grid = figure.subplots(rows, columns, squeeze=False, sharex=True).ravel()
         for ax, place in zip(grid, places, strict=False):
             for name in in_order(set(results)):

@@ -127,29 +127,14 @@ def with_statistics(
 
 
 def _drawn(waves: list[Path], done: pd.DataFrame, axes: list[str], out: Path) -> list[Path]:
-    """Draw an ensemble: bands of the waveforms in each folder, and of comparisons the misfits of
-    each variant at each point; return the files."""
-    from compare.experiments.sweep import diagram
+    """Draw an ensemble; return the files."""
+    from compare.experiments.sweep.diagram import pictures
     from compare.figures.export import save
-    from results.netcdf import load_netcdf
 
-    folders: dict[Path, dict[str, Path]] = {}
-    for file in waves:
-        folders.setdefault(file.parent, {})[file.stem.removesuffix(f"-{ENSEMBLE}")] = file
-    found = []
-    for folder, files in folders.items():
-        results = {name: load_netcdf(file) for name, file in files.items()}
-        if diagram.shown_places(results):
-            title = "Waveforms of an ensemble: median and 5 to 95 % of its members"
-            figure, numbers = diagram.bands(results), diagram.band_table(results)
-            found.append(save(figure, folder, f"{ENSEMBLE}-waveforms", title, numbers))
-    for point, rows in done.groupby([*axes, "variant"], sort=False) if "one" in done else ():
-        worst = diagram.misfits_of(rows)
-        if len(worst):
-            rest = ",".join(f"{key}={value}" for key, value in zip(axes, point, strict=False))
-            title = "Misfits of an ensemble: the worst of each member"
-            figure, folder = diagram.distribution(worst), out / rest / str(point[-1])
-            found.append(save(figure, folder, f"{ENSEMBLE}-misfits", title, worst))
+    found = [
+        save(one.static, folder, one.name, one.title, one.table)
+        for folder, one in pictures(waves, done, axes, out)
+    ]
     return [one.file(kind) for one in found for kind in ("csv", "svg", "pdf", "png")]
 
 

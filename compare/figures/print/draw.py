@@ -29,7 +29,7 @@ def draw(
     columns : 1 or 2, of the page. language : "en" or "zh".
     Raises SceneError where it would be taller than a page, and where no font here has its letters.
     """
-    words, families = WORDS[language], _families(language)
+    words, families = WORDS[language], families_of(language)
     every = [panel for row in panels(comparisons) for panel in row]
     titles = [f"({_letter(i)}) {words.title(panel)}" for i, panel in enumerate(every)]
     titles = titles if len(every) > 1 else [words.title(every[0])]
@@ -75,7 +75,7 @@ def _units(found: list[Panel]) -> dict[str, Unit]:
     return {quantity: unit_for(UNITS[quantity], 1.001 * peak) for quantity, peak in peaks.items()}
 
 
-def _families(language: str) -> list[str]:
+def families_of(language: str) -> list[str]:
     """Return the fonts' families; raises SceneError where there is none for a language."""
     found = fonts.families()
     if len(found) == 1 and language == "zh":

@@ -15,10 +15,10 @@ from matplotlib.text import Text
 
 from cases.errors import SceneError
 from cases.kinds import AnyScene
-from compare.engines import Progress, applies, names, solve
+from compare.engines import Progress, applies, exact_names, names, solve
 from compare.figures import fonts
-from compare.figures.print.appearance import STYLES
-from compare.figures.print.draw import draw
+from compare.figures.print.appearance import MM, STYLES
+from compare.figures.print.draw import draw, families_of
 from compare.misfit.alignment import lay_beside
 from compare.misfit.pairs import Comparison
 from compare.runs.jobs import names_of
@@ -139,6 +139,23 @@ def make(
         found.append(comparison)
     figure = draw(found, appearance, request.columns, request.language)
     return save(figure, request.out, kind, scenes[0].title, appearance.dpi)
+
+
+def make_bands(folder: Path, engines: list[str], request: FigureRequest) -> Path:
+    """Draw the bands of an ensemble from its folder and write the figure; engines : "dem",
+    "continuum", "exact"; empty: all that solved it."""
+    from compare.experiments.sweep.diagram import WAVEFORMS, bands, statistics_in
+
+    kind, appearance = request.format, STYLES[request.style]
+    starts = tuple(
+        one for name in engines for one in (exact_names() if name == "exact" else [name])
+    )
+    found = {k: v for k, v in statistics_in(folder).items() if not engines or k.startswith(starts)}
+    if not found:
+        raise SceneError("--engine", ", ".join(engines), None, f"has no results in {folder}")
+    width = appearance.widths[request.columns - 1] * MM
+    figure = bands(found, width, appearance.rc(families_of(request.language)))
+    return save(figure, request.out, kind, WAVEFORMS, appearance.dpi)
 
 
 def _solvers(scene: AnyScene, runs: list[tuple[str, str | None]]) -> list[str]:

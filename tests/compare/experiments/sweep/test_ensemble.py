@@ -14,6 +14,7 @@ import cases
 from cases.errors import SceneError
 from compare.experiments.sweep.ensemble import PERCENTILES, STATISTICS
 from compare.experiments.sweep.runner import sweep_of
+from compare.report.scenes import asked_for
 from compare.scenes import find
 from dem import simulate
 
@@ -101,6 +102,18 @@ def test_misfits_and_waveforms_of_a_comparison(command, tmp_path):
     for name, curves in (("waveforms", "jointed-bar"), ("misfits", "dem ~ lattice")):
         assert curves in (tmp_path / f"ensemble-{name}.svg").read_text()
         assert (tmp_path / f"ensemble-{name}.png").read_bytes().startswith(b"\x89PNG")
+    command("figure", tmp_path, "--engine", "dem", "--out", tmp_path / "bands.svg")
+    drawn = (tmp_path / "bands.svg").read_text()
+    assert "dem" in drawn and "lattice" not in drawn and "@font-face" in drawn
+    (asked,) = asked_for([SCENE], [tmp_path])
+    assert [one.name for one in asked.besides] == ["ensemble-waveforms-0", "ensemble-misfits-1"]
+    for one, name in zip(asked.besides, ("waveforms", "misfits"), strict=True):
+        written = pd.read_csv(tmp_path / f"ensemble-{name}.csv")
+        assert list(one.table) == list(written) and len(one.table) == len(written)
+    with pytest.raises(SceneError, match=r"is of .*random-joints.toml: name that, too"):
+        asked_for(["guo-li-2002/fig-03"], [tmp_path])
+    said = command("figure", tmp_path / "member=1", "--out", "a.svg", code=2)
+    assert "has no *-ensemble.nc" in said.err
 
 
 def test_a_rock_mass_shifts_the_seed_of_every_set():
