@@ -88,7 +88,7 @@ def test_sentences_have_the_numbers_of_the_extremes():
         "most expensive is dashpots in set/two, hard (50.0 % of a step, misfit 5.00 % without)"
         in some
     )
-    assert "influential is joints that differ in set/one (nothing that shows, misfit 80.0 %" in some
+    assert "influential is joints that differ in set/one (no measurable cost, misfit 80.0 %" in some
 
 
 def test_a_sentence_says_what_costs_less_with_an_effect():
