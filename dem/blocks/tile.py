@@ -83,7 +83,8 @@ def step_for(form: PlaneForm) -> Callable:
         `walls`. s : of the sample. own : the ledger of this step. q : a buffer. The rest is what
         the loop of `dem.blocks.leapfrog` takes.
         """
-        law, still, pushed = law_of(laws, 0), last - 3, 0.5 * dt * (1.0 + keep)
+        common, still, pushed = law_of(laws, 0), last - 3, 0.5 * dt * (1.0 + keep)
+        weighed = 1.0 if sampled else 0.0  # states are summed at samples alone
         for g in range(first_chunk[t], first_chunk[t + 1]):
             k, at = table[g], pair[g]
             h: Any = None
@@ -123,13 +124,11 @@ def step_for(form: PlaneForm) -> Callable:
                 for c in range(F_N, F_X if drags else D_N):
                     q[c] = 0.0
                 for p in range(points):
-                    past, x, weight = first_point + p * point_rows, rules[0, 0, p], rules[0, 1, p]
+                    past = first_point + p * point_rows
                     for c in range(L):
-                        if varied:
-                            law = law_of(laws, at[2 * L + c])
-                        if ruled:
-                            x, weight = rules[at[2 * L + c], 0, p], rules[at[2 * L + c], 1, p]
-                        e, share = x * k[LENGTH * L + c], weight * k[LENGTH * L + c]
+                        law = law_of(laws, at[2 * L + c]) if varied else common
+                        rule, length = at[2 * L + c] if ruled else 0, k[LENGTH * L + c]
+                        e, share = rules[rule, 0, p] * length, rules[rule, 1, p] * length
                         gap = q[MOVED + c] + at_start(k, 0, c) - e * q[MOVED + 2 * L + c]
                         slip = q[MOVED + L + c] + at_start(k, 1, c)
                         rate, slip_rate, moved, slide = 0.0, 0.0, 0.0, 0.0
@@ -172,6 +171,11 @@ def step_for(form: PlaneForm) -> Callable:
                         if ledger:
                             work = friction_work(law, old, 0.0, left, 0.0, slide, 0.0)
                             own[FRICTION + c] += share * work
+                            stored = elastic_energy(law, parts, gap, opening, left, 0.0)
+                            own[ELASTIC + c] += weighed * share * stored
+                            if softening:
+                                spent = fracture_energy_spent(law, opening)
+                                own[FRACTURE + c] += weighed * share * spent
                         if drags:  # what is not the springs'
                             spring = spring_traction(law, parts, gap, opening)
                             q[D_N + c] += share * (t_n - spring)
@@ -182,32 +186,12 @@ def step_for(form: PlaneForm) -> Callable:
                         q[MOMENT + c] -= e * share * t_n
                         q[STRETCH + c] += e * share * t_t
 
-            if ledger and sampled and by_points:
-                for p in range(points):
-                    past, x, weight = first_point + p * point_rows, rules[0, 0, p], rules[0, 1, p]
-                    for c in range(L):
-                        if varied:
-                            law = law_of(laws, at[2 * L + c])
-                        if ruled:
-                            x, weight = rules[at[2 * L + c], 0, p], rules[at[2 * L + c], 1, p]
-                        e, share = x * k[LENGTH * L + c], weight * k[LENGTH * L + c]
-                        gap = q[MOVED + c] + at_start(k, 0, c) - e * q[MOVED + 2 * L + c]
-                        left, opening = q[MOVED + L + c] + at_start(k, 1, c) - h[past + c], 0.0
-                        if dilation:
-                            gap = gap - lift(law, h[past + paths + c])
-                        if softening:
-                            opening = h[past + L + c]
-                            own[FRACTURE + c] += share * fracture_energy_spent(law, opening)
-                        stored = elastic_energy(law, parts, gap, opening, left, 0.0)
-                        own[ELASTIC + c] += share * stored
-
             # What acts on their blocks; joints that always hold need no points.
             for c in range(L):
                 if by_points:
                     f_n, f_t, moment = q[F_N + c], q[F_T + c], q[MOMENT + c]
                 else:
-                    if varied:
-                        law = law_of(laws, at[2 * L + c])
+                    law = law_of(laws, at[2 * L + c]) if varied else common
                     length, second = k[LENGTH * L + c], k[bend + c]
                     gap, slip = (
                         q[MOVED + c] + at_start(k, 0, c),
