@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
 if TYPE_CHECKING:
     from cases.schema.joint import JointLaw
 
@@ -61,4 +59,6 @@ class LawPart(NamedTuple):
 
 def tangent(angle: float | None) -> float:
     """Return the tangent of an angle in degrees, 0 of none."""
+    import numpy as np  # not where keys alone are completed
+
     return float(np.tan(np.radians(angle or 0.0)))
