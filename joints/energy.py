@@ -52,5 +52,6 @@ def fracture_energy_spent(law, opening):
     """
     first = law.tensile_strength / law.normal_stiffness
     whole = 0.5 * law.tensile_strength * law.critical_opening
-    share = min((opening - first) / (law.critical_opening - first), 1.0)
+    share = (opening - first) / (law.critical_opening - first)
+    share = 1.0 if share > 1.0 else share
     return 0.0 if opening <= first else whole * share

@@ -12,12 +12,26 @@ flags before anything is typed: what stands behind an untrue one is not compiled
 It relies on the inside of numba: `joints.formula` asks for its version.
 """
 
+from typing import ClassVar
+
 from numba._dynfunc import make_function
-from numba.core import compiler, compiler_machinery, ir, typed_passes, types, untyped_passes
+from numba.core import (
+    cgutils,
+    compiler,
+    compiler_machinery,
+    ir,
+    typed_passes,
+    types,
+    untyped_passes,
+)
 from numba.core.codegen import JITCodeLibrary
 from numba.core.imputils import lower_constant, lower_getattr_generic
+from numba.core.lowering import Lower
+from numba.core.rewrites.static_getitem import RewriteConstGetitems
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import models, register_model, typeof_impl
+
+from joints.live_ranges import LiveRanges
 
 
 class Flags(types.Opaque):
@@ -99,6 +113,96 @@ class KnownFlags(compiler_machinery.FunctionPass):
         return found
 
 
+@compiler_machinery.register_pass(mutates_CFG=False, analysis_only=False)
+class ConstantIndices(compiler_machinery.FunctionPass):
+    """Put constant indices in their places: of all that numba would rewrite, what is found here."""
+
+    _name = "constant indices"
+
+    def __init__(self):
+        super().__init__()
+
+    def run_pass(self, state):
+        """Return whether there are any."""
+        rewrite, blocks = RewriteConstGetitems(state), state.func_ir.blocks
+        found = [at for at in blocks if rewrite.match(state.func_ir, blocks[at], None, None)]
+        for at in found:
+            rewrite.match(state.func_ir, blocks[at], None, None)
+            blocks[at] = rewrite.apply()
+        return bool(found)
+
+
+class Signatures:
+    """A typing context that remembers the signatures of functions: numba tries every overload of an
+    operator, some twice, wherever it stands."""
+
+    known: ClassVar[dict] = {}
+
+    def __init__(self, context):
+        self._context = context
+
+    def __getattr__(self, name):
+        return getattr(self._context, name)
+
+    def resolve_function_type(self, function, arguments, keywords):
+        """Return the signature of a function for arguments of these types."""
+        asked = function, tuple(arguments)
+        if keywords or not isinstance(function, types.Function):
+            return self._context.resolve_function_type(function, arguments, keywords)
+        if asked not in self.known:
+            found = self._context.resolve_function_type(function, arguments, keywords)
+            if found is None:
+                return None
+            self.known[asked] = found
+        return self.known[asked]
+
+
+@compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
+class TypeInference(typed_passes.NopythonTypeInference):
+    """Infer types, each signature once."""
+
+    _name = "type inference"
+
+    def run_pass(self, state):
+        """Return that the state has changed."""
+        context = state.typingctx
+        state.typingctx = Signatures(context)
+        try:
+            return super().run_pass(state)
+        finally:
+            state.typingctx = context
+
+
+@compiler_machinery.register_pass(mutates_CFG=False, analysis_only=True)
+class Releases(typed_passes.IRLegalization):
+    """Say where each variable ends, if any of them counts references."""
+
+    _name = "releases"
+
+    def run_pass(self, state):
+        """Return whether one does."""
+        models_of = state.targetctx.data_model_manager
+        kinds = set(state.typemap.values())
+        counted = any(models_of[kind].contains_nrt_meminfo() for kind in kinds)
+        return counted and super().run_pass(state)
+
+
+class Plainly(Lower):
+    """Write code without what only debuggers read."""
+
+    def lower_inst(self, inst):
+        """Write one instruction."""
+        if isinstance(inst, ir.Assign):
+            name = inst.target.name
+            self.storevar(self.lower_assign(self.typeof(name), inst), name)
+        else:
+            super().lower_inst(inst)
+
+    def alloca_lltype(self, name, lltype, datamodel=None):
+        """Return the place of a variable."""
+        return cgutils.alloca_once(self.builder, lltype, name=name, zfill=False)
+
+
 class FormulaLibrary(JITCodeLibrary):
     """The code of a formula, as it will be linked to that of its callers."""
 
@@ -111,7 +215,19 @@ class FormulaLibrary(JITCodeLibrary):
 
 
 @compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
-class Lowering(typed_passes.NativeLowering):
+class KernelLowering(typed_passes.NativeLowering):
+    """Write the code of a kernel."""
+
+    _name = "lowering of a kernel"
+
+    @property
+    def lowering_class(self):
+        """The class that writes it."""
+        return Plainly
+
+
+@compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
+class Lowering(KernelLowering):
     """Write the code of a formula, and tell its callers where it is.
 
     Arrays of a type that is `distinct` do not overlap: loops over them need no check of that.
@@ -140,12 +256,11 @@ BEFORE_LOWERING = (
     KnownFlags,
     untyped_passes.RewriteSemanticConstants,
     untyped_passes.DeadBranchPrune,
-    untyped_passes.GenericRewrites,
-    untyped_passes.ReconstructSSA,
+    ConstantIndices,
+    LiveRanges,
     untyped_passes.DeadBranchPrune,
-    typed_passes.NopythonTypeInference,
-    typed_passes.PreLowerStripPhis,
-    typed_passes.IRLegalization,
+    TypeInference,
+    Releases,
 )
 
 
@@ -166,4 +281,4 @@ class FormulaCompiler(compiler.CompilerBase):
 class KernelCompiler(FormulaCompiler):
     """The passes over a kernel: those over a formula, and machine code."""
 
-    name, lowering = "kernel", typed_passes.NativeLowering
+    name, lowering = "kernel", KernelLowering

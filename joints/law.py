@@ -226,7 +226,7 @@ def traction(law, parts, gap, gap_rate, slip, slip_rate, dt, history):
     """
     if parts.dilation:
         gap = gap - lift(law, history.path)
-    opening = max(history.opening, gap)
+    opening = gap if gap > history.opening else history.opening
     t_n = normal_traction(law, parts, gap, gap_rate, opening)
     if not parts.shear:
         h = history

@@ -66,7 +66,7 @@ def normal_tangent(law, parts, gap, gap_rate, before, r):
     if parts.dashpots:
         t, slope = t - law.normal_viscosity * gap_rate, slope - law.normal_viscosity * r
     if parts.softening:
-        opening = max(before, gap)
+        opening = gap if gap > before else before
         loss = strength_loss(law, gap, before)
         share = stiffness_left(law, opening) if gap > 0.0 else 1.0
         # Of s(k) / (K k), falling only where the strength does.

@@ -44,7 +44,8 @@ def shear_strength(law, parts, t_n, gap, opening, cohesion, path):
             c = c * (strength_left(law, opening) / law.tensile_strength)
         # Rate-dependent friction is added by `joints.slide`.
         if not parts.rate_state or law.direct_effect == 0.0:
-            c = max(c + t_n * friction_left(law, parts, t_n, path), 0.0)
+            c = c + t_n * friction_left(law, parts, t_n, path)
+            c = 0.0 if c < 0.0 else c
         tau = c
     return tau if holds(law, parts, gap, opening) else 0.0
 
@@ -110,5 +111,5 @@ def _elastic_slip(law, parts, scaled, t, old, dt):
 def cohesion_left(law, parts, cohesion, slipped):
     """Return the cohesion (Pa) of a point after a step, where slip changes it."""
     if parts.residual and slipped:
-        return min(cohesion, law.residual_cohesion)
+        return law.residual_cohesion if law.residual_cohesion < cohesion else cohesion
     return cohesion

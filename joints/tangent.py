@@ -56,7 +56,7 @@ def tangent(law, parts, gap, gap_rate, slip, slip_rate, dt, history, r):
         slope = slope - law.shear_viscosity * r
     if not parts.limited:
         return Tangent(nn, 0.0, 0.0, slope, 0.0, slope, 0.0, 0.0)
-    opening = max(before, gap)
+    opening = gap if gap > before else before
     t_n = normal_traction(law, parts, gap, gap_rate, opening)
     ex, ez = history.ex + slip[0], history.ez + slip[1]
     tau = still = shear_strength(law, parts, t_n, gap, opening, history.cohesion, path)

@@ -112,7 +112,7 @@ def _in_one_process(compiling: Callable, lock: str) -> Callable:
     def alone(signature: Any) -> Any:
         with global_compiler_lock, ExitStack() as held:
             if gc.isenabled():
-                held.callback(gc.enable)
+                held.callback(_collect_later)
                 gc.disable()
             with suppress(OSError):  # a cache that cannot be written
                 make(DIRECTORY)
@@ -121,6 +121,13 @@ def _in_one_process(compiling: Callable, lock: str) -> Callable:
             return compiling(signature)
 
     return alone
+
+
+def _collect_later() -> None:
+    """Look for garbage again; what there is by now, at the next full search alone."""
+    gc.freeze()
+    gc.unfreeze()
+    gc.enable()
 
 
 def _without_registries(cache: Any) -> Callable:

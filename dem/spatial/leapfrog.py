@@ -347,8 +347,8 @@ def step_for(form: Form) -> Callable:
         that of its own. own : the ledger of this step. The rest is what `march` takes.
         """
         count, tiles, stride, contacts = counts[0], counts[1], counts[2], counts[3]
-        receivers, per_face, loaded = counts[4], counts[5], counts[6]
-        b, m, final = constants_of(constants), motion[t], t == tiles - 1
+        receivers, per_face, loaded, sides = counts[4], counts[5], counts[6], counts[9]
+        b, m, final = constants_of(constants, counts[8]), motion[t], t == tiles - 1
         blocks, joints = L, L
         if final:
             blocks = count - t * L
@@ -434,7 +434,7 @@ def step_for(form: Form) -> Callable:
         if t == 0:
             add_at_face(b, q, 0, 1.0, stress, b.rows[DIRECTION])
         if held:
-            for e in range(2):
+            for e in range(sides):
                 if (has_start and e == 0 and t == 0) or (has_end and e == 1 and final):
                     end, state, i, side = ends[e], end_states[e], 0, 1.0
                     moved = before + after
@@ -547,7 +547,7 @@ def step_for(form: Form) -> Callable:
                 if out > 0:
                     note(found, n + 1, SPEED, n - EVERY)
         if held:
-            for e in range(2):
+            for e in range(sides):
                 if (has_start and e == 0 and t == 0) or (has_end and e == 1 and final):
                     end, state, i, side = ends[e], end_states[e], 0, 1.0
                     start, moved, moving = stress, before, after

@@ -44,7 +44,7 @@ def march_for(form: Form) -> Callable:
         run: what it reads is finished then, and what it writes nobody reads any more.
 
         counts : of blocks, tiles, steps from a sample to the next, contacts among the receivers,
-        receivers, points of a face, steps of the load, depth.
+        receivers, points of a face, steps of the load, depth, freedoms of a block.
         progress : int64 [threads + 1], zero at first: B runs + r when r runs of band B are left
         behind, for each thread, and how many bands have closed their ledgers. The rest are the
         arrays of `dem.spatial.model`, None for what the form does not have.
@@ -137,7 +137,7 @@ def arguments(
     drive, places = stress if base is None else base, np.hstack(receivers)
     counts = (
         model.block_count, len(state.motion), model.stride, receivers.contacts.shape[1],
-        places.shape[1], model.points.shape[1], drive.size, buffers.depth,
+        places.shape[1], model.points.shape[1], drive.size, buffers.depth, model.form.freedoms, 2,
     )  # fmt: skip
     limit, peak, found = None, np.zeros(1), np.array([-1, 0, -1])  # no limit, nothing found
     if buffers.guard is not None:

@@ -38,9 +38,9 @@ class Block(NamedTuple):
     face: np.ndarray
 
     def as_array(self, direction: np.ndarray) -> np.ndarray:
-        """Return all in one array [7, 9], as kernels take them, the load's direction last."""
-        rows = np.zeros((7, 9))
-        rows[0], rows[1:6, :6], rows[6, : direction.size] = self[:9], self[9:], direction
+        """Return all in one array [7, 8], as kernels take them, the load's direction last."""
+        rows = np.zeros((7, 8))
+        rows[0], rows[1:6, :6], rows[6, : direction.size] = self[:8], self[9:], direction
         return rows
 
 
@@ -66,10 +66,10 @@ INERTIA, PUSH, FALL, WEIGHT, FACE, DIRECTION = range(1, 7)  # rows
 
 
 @formula
-def constants_of(c):
+def constants_of(c, freedoms):
     """Return the constants of a block from its array."""
     return Constants(
-        c[0, 0], c[0, 1], c[0, 2], c[0, 3], c[0, 4], c[0, 5], c[0, 6], c[0, 7], int(c[0, 8]), c
+        c[0, 0], c[0, 1], c[0, 2], c[0, 3], c[0, 4], c[0, 5], c[0, 6], c[0, 7], freedoms, c
     )
 
 
