@@ -154,7 +154,7 @@ def test_a_page_without_charts_does_not_carry_what_draws_them(page, section):
 def test_a_page_holds_the_licences_of_what_it_holds_of_others(page, section):
     assert "Bitstream Vera" in page(sections=[section([])])
     texts = licences(interactive=True)
-    assert "Permission is hereby granted" in texts["plotly.js, which draws the interactive figures"]
+    assert "Permission is hereby granted" in texts["plotly.js, for interactive figures"]
     assert len(texts) == 2 and len(licences(interactive=False)) == 1
 
 
