@@ -201,20 +201,27 @@ def table_of(law: Law) -> np.ndarray:
     return table
 
 
-def law_reader(row: str) -> Any:
-    """Return the formula of (table, j) that returns a law, every parameter a number.
+@formula
+def law_of(table, j):
+    """Return the law of joint j, of column 0 where all are alike: every parameter a number."""
+    return Law(
+        table[0, j], table[1, j], table[2, j], table[3, j], table[4, j], table[5, j], table[6, j],
+        table[7, j], table[8, j], table[9, j], table[10, j], table[11, j], table[12, j],
+        table[13, j], table[14, j], table[15, j], table[16, j], table[17, j], table[18, j],
+        table[19, j], table[20, j],
+    )  # fmt: skip
 
-    row : expression of where the number of a row {} is in the table. It is written out for every
-    row: numba makes no tuple of fields from a loop.
-    """
-    rows = ", ".join(f"table[{row.format(i)}]" for i in range(len(Law._fields)))
-    scope = {"Law": Law, "__name__": __name__}
-    exec(f"def law_of(table, j):\n    return Law({rows})", scope)
-    return formula(scope["law_of"])
 
-
-#: The law of joint j, of column 0 where all are alike.
-law_of = law_reader("{}, j")
+@formula
+def law_at(table, j, n):
+    """Return the law of joint j of a table whose rows of n joints follow one another."""
+    return Law(
+        table[j], table[n + j], table[2 * n + j], table[3 * n + j], table[4 * n + j],
+        table[5 * n + j], table[6 * n + j], table[7 * n + j], table[8 * n + j], table[9 * n + j],
+        table[10 * n + j], table[11 * n + j], table[12 * n + j], table[13 * n + j],
+        table[14 * n + j], table[15 * n + j], table[16 * n + j], table[17 * n + j],
+        table[18 * n + j], table[19 * n + j], table[20 * n + j],
+    )  # fmt: skip
 
 
 @formula

@@ -90,7 +90,7 @@ from dem.spatial.model import DIRECTION, FACE, FALL, INERTIA, PUSH, WEIGHT, cons
 from joints.dilation import lift
 from joints.energy import elastic_energy, fracture_energy_spent, friction_work, lift_work
 from joints.formula import formula
-from joints.law import Law, law_reader
+from joints.law import Law, law_at
 from joints.normal import normal_traction, spring_traction
 from joints.shear import cohesion_left, shear_return, shear_strength, shear_traction
 from joints.slide import after_slide
@@ -100,10 +100,6 @@ CHECK = 64  # steps between two checks of a tile's speeds: others run ahead of i
 #: Rows of the law's table that a face as a whole needs: of its springs, then of its dashpots.
 NORMAL, SHEAR = L * Law._fields.index("normal_stiffness"), L * Law._fields.index("shear_stiffness")
 DASHPOT = L * Law._fields.index("normal_viscosity") - NORMAL
-
-
-#: The law of the joint in lane i of a tile's table; of all joints for i = 0.
-law_at = law_reader(f"{{}} * {L} + j")
 
 
 def contacts_for(form: Form) -> Callable:
@@ -149,7 +145,7 @@ def contacts_for(form: Form) -> Callable:
             past = first_point + p * point_rows
             for i in range(n):
                 if varied:
-                    law = law_at(laws, i)
+                    law = law_at(laws, i, L)
                 gap, slip_x, slip_z = at_point(q, RELATIVE + i, x, z)
                 area, rate, rate_x, rate_z = whole, 0.0, 0.0, 0.0
                 opening, cohesion, path, slipped = 0.0, 0.0, 0.0, False
@@ -401,7 +397,7 @@ def step_for(form: Form) -> Callable:
                         q[k * R + i + 1] = f
 
         # Forces of the joints at their contact points.
-        law = law_at(laws, 0)
+        law = law_at(laws, 0, L)
         if by_points:
             beyond = 0 if m[SLIDING] == 0.0 else 1
             # Where no point slid in the last step, none is taken to slide until one does; friction
@@ -484,7 +480,7 @@ def step_for(form: Form) -> Callable:
                         past = first_point + p * point_rows
                         for i in range(joints):
                             if varied:
-                                law = law_at(laws, i)
+                                law = law_at(laws, i, L)
                             gap, slip_x, slip_z = at_point(q, RELATIVE + i, x, z)
                             share, opening = area, 0.0
                             if finite:

@@ -4,6 +4,7 @@ Bands hold what lies between the 5th and the 95th percentile at every time, with
 line; a distribution is the share of members whose misfit is at most that on the axis.
 """
 
+import io
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
@@ -18,6 +19,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cases.errors import SceneError
+from cases.files import read_text
 from compare.experiments.ablation.diagram import COLOURS
 from compare.experiments.sweep.axis import MEMBER
 from compare.experiments.sweep.ensemble import ENSEMBLE
@@ -35,6 +37,7 @@ TALL = 1.9  # inches of each
 WIDE = 1.3  # points, of every curve
 DASHES = ("-", (0, (5, 2)), (0, (1.5, 1.5)))
 FAINT = 1e-6  # of the largest of its quantity: a waveform of round-off
+LARGEST_FILE = 100_000_000  # bytes of a table: a row for each pair of each member
 LOW, MIDDLE, HIGH = "p5", "p50", "p95"
 WAVEFORMS = "Waveforms of an ensemble: median and 5 to 95 % of its members"
 MISFITS = "Misfits of an ensemble: the worst of each member"
@@ -81,13 +84,14 @@ def ensemble_in(out: Path) -> tuple[Path, list[SceneFigure]]:
     `--ensemble` has written; raises SceneError where it has not."""
     waves = sorted(out.rglob(f"*-{ENSEMBLE}.nc"))
     try:
-        rows = pd.read_csv(out / "sweep.csv", dtype={"faint": str}).fillna({"variant": ""})
+        text = io.StringIO(read_text(out / "sweep.csv", LARGEST_FILE))
+        rows = pd.read_csv(text, dtype={"faint": str}).fillna({"variant": ""})
+        rows, axes = rows[rows.state == "done"], list(rows)[: list(rows).index("variant")]
         scene = find(load_netcdf(out / "sweep.nc").attrs["scene"])
-    except OSError:
+    except (OSError, ValueError, KeyError, AttributeError):
         allowed = "must be a folder that --ensemble has written"
         raise SceneError("--ensemble", str(out), None, allowed) from None
-    axes = [key for key in rows.columns[: list(rows).index("variant")] if key != MEMBER]
-    found = pictures(waves, rows[rows.state == "done"], axes, out)
+    found = pictures(waves, rows, [key for key in axes if key != MEMBER], out)
     return scene, [
         replace(
             one, name=f"{one.name}-{k}", title=", ".join([one.title, *of.relative_to(out).parts])
