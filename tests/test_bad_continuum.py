@@ -82,7 +82,7 @@ MISTAKES = {
     "a bar from a file": (
         ORDER,
         MESH + "dim = 1\n",
-        ["numerics.continuum.dim = 1", "is the bar"],
+        ["numerics.continuum.dim = 1", "is a bar"],
     ),
     "a cell beside a file": (
         ORDER,
@@ -113,22 +113,22 @@ MISTAKES = {
     "a layer with friction": (
         STIFFNESS,
         STIFFNESS + "thickness = 0.1\nfriction_angle = 30.0\n",
-        ["soft_layers[0].friction_angle = 30.0", "the layer is rock"],
+        ["soft_layers[0].friction_angle = 30.0", "a layer with thickness is rock"],
     ),
     "a layer with cohesion": (
         STIFFNESS,
         STIFFNESS + "thickness = 0.1\ncohesion = 0.0\n",
-        ["soft_layers[0].cohesion = 0.0", "the layer is rock"],
+        ["soft_layers[0].cohesion = 0.0", "a layer with thickness is rock"],
     ),
     "a layer that opens": (
         STIFFNESS,
         STIFFNESS + "thickness = 0.1\ntension = false\n",
-        ["soft_layers[0].tension = false", "the layer is rock"],
+        ["soft_layers[0].tension = false", "a layer with thickness is rock"],
     ),
     "a layer that breaks": (
         STIFFNESS,
         STIFFNESS + "thickness = 0.1\ntensile_strength = 1e5\nfracture_energy = 100.0\n",
-        ["soft_layers[0].tensile_strength = 100000.0", "the layer is rock"],
+        ["soft_layers[0].tensile_strength = 100000.0", "a layer with thickness is rock"],
     ),
 }
 

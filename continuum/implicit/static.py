@@ -69,7 +69,7 @@ def settle_static(
 
 def _refuse(scene: Scene | RockMass, done: float) -> None:
     key, what, remedy = "gravity", "the weight", "static = false starts without it"
-    if scene.gravity is None or not scene.gravity.static:
+    if scene.excavated and (scene.gravity is None or not scene.gravity.static):
         key, what, remedy = "prestress", "the excavation", "the joints around it cannot carry it"
     raise SceneError(
         scene.where,

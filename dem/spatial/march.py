@@ -44,7 +44,8 @@ def march_for(form: Form) -> Callable:
         run: what it reads is finished then, and what it writes nobody reads any more.
 
         counts : of blocks, tiles, steps from a sample to the next, contacts among the receivers,
-        receivers, points of a face, steps of the load, depth, freedoms of a block.
+        receivers, points of a face, steps of the load, depth, freedoms of a block, ends: a number
+        that is given, since loops over constants are unrolled.
         progress : int64 [threads + 1], zero at first: B runs + r when r runs of band B are left
         behind, for each thread, and how many bands have closed their ledgers. The rest are the
         arrays of `dem.spatial.model`, None for what the form does not have.

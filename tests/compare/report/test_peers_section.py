@@ -41,7 +41,7 @@ def test_every_row_is_in_the_table_and_the_missing_one_says_why(rows, tmp_path):
     assert groups["Gone: spheres"][0][0] == "missing: no apt here"
     section = peers.write_section(tmp_path, rows)
     assert section.missing == ["Gone (spheres): missing, no apt here"]
-    assert "does not name" in section.machine
+    assert "unnamed machine" in section.machine
     assert peers.read(tmp_path / "peers.csv").shape == rows.shape
     assert "Code: points" in section.figure.svg and "Gone" not in section.figure.svg
 

@@ -150,7 +150,7 @@ def test_a_scene_whose_runs_do_not_converge_in_reach_is_refused(pillar, monkeypa
 
 def barred(found, name):
     """Return the modelling error (%) that the families of an engine were not tried for."""
-    said = f"the modelling error of {name} alone is (.*) %"
+    said = f"the modelling error of {name} is already (.*) %"
     reasons = (re.fullmatch(said, reason) for reason in found.skipped.values())
     return next(float(found[1]) for found in reasons if found)
 

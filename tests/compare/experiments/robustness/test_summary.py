@@ -25,7 +25,7 @@ def test_table_has_every_row_with_its_margin_or_reason(rows):
     assert heading.startswith(CASES[0].name) and len(lines) == len(rows)
     assert lines[0][-1] == "failed: because" and f"{rows[1].margin:.3g}" in lines[1]
     assert any("does not apply" in line[-1] for line in lines)
-    assert len(summary.failures(rows)) == 1 and "3 of 4 rows hold" in summary.sentences(rows, [])[0]
+    assert len(summary.failures(rows)) == 1 and "3 of 4 rows pass" in summary.sentences(rows, [])[0]
 
 
 def test_files_hold_every_row_and_cell(rows, tmp_path):
