@@ -264,7 +264,7 @@ def test_joint_that_differs_in_shear_alone_is_there_where_rock_moves_across(pill
         ({"rock__intact_modulus": None}, "jointed", "needs rock.intact_modulus"),
         ({"joints__tension": False}, "equivalent", "no joints without tension"),
         ({"soft_layers": [{"y": 20.0, "spacing_stiffness": 9e9}]}, "equivalent", "stiffer"),
-        ({"soft_layers": [{"y": 20.0, "damping_ratio": 0.1}]}, "equivalent", "single ordinary joint"),
+        ({"soft_layers": [{"y": 20.0, "damping_ratio": 0.1}]}, "equivalent", "ordinary joint"),
         (
             {
                 "soft_layers": [{"y": 20.0, "shear_stiffness": 1e11}],
