@@ -66,7 +66,10 @@ def march(
         if drive is None:
             drive = np.zeros((last - first, len(model.held.block), 3))
     walls = None if shake is None else motion_of_walls(state, shake, b.dt)
-    depth, widest = depth_of(contacts, state.history, threads), np.diff(contacts.first_block).max()
+    widest = np.diff(contacts.first_block).max()
+    bands = -(-(last - first) // depth_of(contacts, state.history, threads))
+    bands = max(1, bands + -bands % threads)  # as many for each thread
+    depth = max(1, -(-(last - first) // bands))
     buffers = zeros((threads, BEFORE + 3 * int(widest)))
     ledgers = zeros((threads * depth, 2 * AFTER)) if form.ledger else None
     progress = np.zeros(threads + 1, dtype=np.int64)

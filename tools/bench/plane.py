@@ -17,7 +17,7 @@ from dem.blocks.system import prepared
 COULOMB = ELASTIC | {"friction_angle": 30.0, "cohesion": 1e5}
 PRESSURE = {"kind": "pressure", "side": "left", "shape": "step", "amplitude": 1e5}
 SIZES = (1024, 10_000, 102_400, 1_000_000)
-BLOCK_STEPS = 500_000  # of one call
+BLOCK_STEPS, LEAST = 5_000_000, 48  # block-steps and steps of one call
 POINTS = 4  # of a block: two contacts of two points; in the row one contact of 2 x 2
 
 
@@ -31,7 +31,7 @@ def moving(model: PlaneModel, threads: int = 1) -> Stretch:
     state, samples = state_at_rest(model), samples_for(model, 0)
     state.v[:] = 1e-3 * np.random.default_rng(1).uniform(-1.0, 1.0, state.v.shape)
     count = len(model.blocks.inertia)
-    steps = max(16, BLOCK_STEPS // count)
+    steps = max(LEAST, BLOCK_STEPS // count)
 
     def take() -> None:
         march(model, state, samples, 2 * steps, (1, 1 + steps), threads=threads)
