@@ -132,10 +132,10 @@ def show_explanation(found: Explanation, as_json: bool) -> None:
     answers = [[k, "yes" if a else "no", a.reason] for k, a in found.answers.items()]
     show_table(["solution", "applies", "why not"], answers)
     for engine, reference in found.references.items():
-        held = "not checked independently: no other solution resolves more"
-        if reference is not None:
-            held = f"reference: {reference.name} ({reference.reason})"
-        say(f"{engine} is {held}")
+        if reference is None:
+            say(f"{engine} is not checked independently: no other solution resolves more")
+        else:
+            say(f"reference of {engine}: {reference.name} ({reference.reason})")
 
 
 def _show_properties(p: Properties) -> None:
