@@ -14,7 +14,7 @@ KNOWN = ((0, 68),)
 options: dict[str, Any] = {"forceinline": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 kernel_options: dict[str, Any] = {}
 if numba.version_info.short in KNOWN:
-    from joints.formula_compiler import FormulaCompiler, KernelCompiler, flags
+    from joints.compiler.passes import FormulaCompiler, KernelCompiler, flags
 
     options["pipeline_class"] = FormulaCompiler
     kernel_options["pipeline_class"] = KernelCompiler

@@ -31,7 +31,7 @@ from numba.core.rewrites.static_getitem import RewriteConstGetitems
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import models, register_model, typeof_impl
 
-from joints.live_ranges import LiveRanges
+from joints.compiler.live_ranges import LiveRanges
 
 
 class Flags(types.Opaque):
