@@ -206,7 +206,7 @@ def test_compare_tells_numerical_from_modelling_error(jointwave):
 @pytest.mark.parametrize(
     "arguments, words",
     [
-        (("run",), "scene"),
+        (("run",), "Missing argument"),
         (("run", "nothing.toml"), "nothing.toml"),
         (("run", "fig-3"), "did you mean guo-li-2002/fig-03?"),
         (("run", SCENE, "--set", "pillar.length"), "key=value"),
