@@ -7,6 +7,7 @@ from itertools import groupby
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
@@ -104,7 +105,16 @@ def add_legend(figure: Figure, entries: list[Line2D], appearance: Appearance) ->
         borderpad=0.1,
         borderaxespad=0.2,
     )
-    return float(legend.get_window_extent().height) / figure.dpi / MM
+    return _highest(figure, legend)
+
+
+def _highest(figure: Figure, legend: Legend) -> float:
+    """Return a legend's height, mm: at 72 dots an inch, as in a PDF, rows may be rounded up."""
+    measured, found = figure.dpi, []
+    for dpi in (72.0, measured):
+        figure.dpi = dpi
+        found.append(legend.get_window_extent().height / dpi / MM)
+    return max(found)
 
 
 def _columns(widths: list[float], apart: float, room: float) -> int:
