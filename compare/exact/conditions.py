@@ -1,4 +1,4 @@
-"""The physics of a scene that an exact solution must hold for."""
+"""The physics of a scene that an exact solution must cover."""
 
 from cases.effects import is_spatial
 from cases.material.calibrate import Properties, calibrate
@@ -12,9 +12,9 @@ LAYERS = ("thick layers", "soft layers", "stiff layers")
 
 
 def beyond(scene: Scene, *held: str) -> str | None:
-    """Return why a solution does not hold for a scene, None where it does.
+    """Return why a solution is not valid for a scene, None if it is.
 
-    held : what the solution holds for, of the names below.
+    held : physics that the solution covers, of the names below.
     """
     p, laws = calibrate(scene), (scene.joints, *scene.layers)
     physics = {part.name: (any(map(part.of, laws)), part.words) for part in PARTS} | {
@@ -45,7 +45,7 @@ def beyond(scene: Scene, *held: str) -> str | None:
 def holds(scene: Scene, held: tuple[str, ...], *against: tuple[bool, str]) -> Answer:
     """Return whether a solution valid for the physics `held` applies to a scene.
 
-    against : conditions that are against it, each with its reason; the first that is true counts.
+    against : conditions that exclude it, each with its reason; the first true one is reported.
     """
     if reason := beyond(scene, *held):
         return no(reason)
@@ -58,15 +58,15 @@ def is_free(scene: Scene) -> bool:
 
 
 def static_stress(scene: Scene) -> float:
-    """Return the stress of every section before the load, Pa, without gravity."""
+    """Return the stress in every section before the load, Pa, without gravity."""
     return scene.prestress.normal if scene.prestress else 0.0
 
 
 def joints_are_damped(p: Properties) -> bool:
-    """Return whether any joint carries a dashpot; a damped rock has damped joints."""
+    """Return whether any joint has a dashpot; in damped rock all joints have one."""
     return p.joint_time_constant is not None and bool(p.joint_time_constant.any())
 
 
 def has_thick_layer(scene: Scene) -> bool:
-    """Return whether a soft layer is rock of some thickness, not a joint."""
+    """Return whether a soft layer is rock with a thickness, not a joint."""
     return any(layer.thickness is not None for layer in scene.soft_layers)

@@ -17,7 +17,7 @@ class Signal(Protocol):
 
     @property
     def end(self) -> float:
-        """Time after which it hardly changes, s."""
+        """Time after which it is practically constant, s."""
 
     def value(self, t: np.ndarray) -> np.ndarray:
         """Return its value at times t (s)."""

@@ -2,8 +2,8 @@
 
 Over each interval of length h, x(t + h) = e^{Ah} x(t) + int_0^h e^{A(h - s)} b f(t + s) ds. As a
 function of s, e^{A(h - s)} b is entire, so its values at the Gauss-Legendre nodes of the interval
-give it everywhere to round-off; only f decides how the integral is taken, and it is cut where f
-is not smooth (Moler & Van Loan, SIAM Review 45, 2003, for the exponential).
+give it everywhere to round-off; only f determines the quadrature, which is split where f is not
+smooth (Moler & Van Loan, SIAM Review 45, 2003, for the exponential).
 """
 
 from collections.abc import Sequence
@@ -18,9 +18,9 @@ from compare.exact.drive import Signal
 
 NEGLIGIBLE = 1e-18  # of a propagator whose largest entries are about 1: below round-off
 NOISE = 64 * float(np.finfo(float).eps)  # of the twin, in each interval
-BATCH = 256  # instants whose loads and outputs are worked out at once
+BATCH = 256  # instants whose loads and outputs are computed together
 MORE_POINTS = 7  # of integration, for the twin
-SAFETY = 4.0  # on what a solution and its twin differ by
+SAFETY = 4.0  # factor on the difference of a solution and its twin
 
 
 def twins(
@@ -31,14 +31,14 @@ def twins(
     times: np.ndarray,
 ) -> np.ndarray:
     """Return output @ x at `times`, and that of a twin whose difference shows the error, [2, n,
-    outputs]: with more points of integration, each state off by NOISE of itself in every interval,
-    always to the same side.
+    outputs]: the twin has more points of integration and, in every interval, each state perturbed
+    by NOISE of itself, always with the same sign.
 
     Parameters
     ----------
-    matrix, vector : A [m, m] (1/s) and b [m], in units that make A's entries of one size.
+    matrix, vector : A [m, m] (1/s) and b [m], in units that make A's entries similar in size.
     output : float array [outputs, m].
-    load : f; smooth between its breaks, at most about one cycle an interval.
+    load : f; smooth between its breaks, at most about one cycle per interval.
     times : equally spaced, s; the system is at rest at the first.
     """
     from scipy.sparse import csr_array
@@ -71,13 +71,13 @@ def twins(
 
 
 def bound(one: np.ndarray, twin: np.ndarray) -> np.ndarray:
-    """Return the bound of the root-mean-square error of waveforms [..., n] by their twins."""
+    """Return the bound on the root-mean-square error of waveforms [..., n] from their twins."""
     apart = np.sqrt(np.mean((one - twin) ** 2, axis=-1))
     return SAFETY * apart + 4 * np.finfo(float).eps * np.abs(one).max(axis=-1, initial=0.0)
 
 
 def errors(found: Sequence[np.ndarray], twin: Sequence[np.ndarray]) -> dict[str, np.ndarray]:
-    """Return the bounds of stress, velocity and displacement [..., n] by their twins."""
+    """Return error bounds of stress, velocity and displacement [..., n] from their twins."""
     bounds = [bound(one, other) for one, other in zip(found, twin, strict=True)]
     return dict(zip(("stress", "velocity", "displacement"), bounds, strict=True))
 
@@ -102,7 +102,7 @@ def _load_on_nodes(load, starts, h, nodes, weights) -> np.ndarray:
 
 
 def _cut_intervals(load, starts, h) -> list[tuple[int, np.ndarray]]:
-    """Return the intervals in which the load has breaks, and where they are cut, from 0 to h."""
+    """Return the intervals that contain breaks of the load, with their cuts from 0 to h."""
     breaks = np.asarray(load.breaks)
     inside = np.floor((breaks - starts[0]) / h)
     offset = breaks - starts[0] - h * inside

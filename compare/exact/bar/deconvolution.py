@@ -1,15 +1,15 @@
-"""Deconvolution: the motion that comes up to the start of a column, from that of its free end.
+"""Deconvolution: the incident motion at the start of a column, from the motion of its free end.
 
-The motion of the free end over that of the wave that comes up is H = 2 Z v(L), Z the impedance of
-the rock behind the start and v(L) the end's velocity by an end stress of 1 (`laplace.transfer`). It
-is divided by in the frequency domain, with a water level where the joints let little through
+The ratio of the free end's motion to the incident wave's is H = 2 Z v(L), Z the impedance of the
+rock behind the start and v(L) the end's velocity under an end stress of 1 (`laplace.transfer`). The
+division is done in the frequency domain, with a water level where the joints transmit little
 (Clayton & Wiggins, Geophys. J. R. Astr. Soc. 47, 1976):
 
     incoming = surface conj(H) / max(|H|^2, (w max|H|)^2)
 
-Of uniform rock H = 2 exp(-i omega L / c): half of the record, L / c earlier.
+In uniform rock H = 2 exp(-i omega L / c): half of the record, L / c earlier.
 
-Holds for linear joints and rock, along the axis or, where the load is across it, in shear alone.
+Valid for linear joints and rock, in axial motion or, where the load is across the axis, in shear.
 """
 
 from dataclasses import replace
@@ -32,19 +32,19 @@ HELD = (
 
 
 def deconvolve(scene: Scene, surface: xr.DataArray, water_level: float = 1e-3) -> xr.DataArray:
-    """Return the wave that comes up to a column's quiet start, from the motion of its free end.
+    """Return the wave incident on a column's quiet start, from the motion of its free end.
 
-    It is what `load.quantity` of a compliant base takes, with the same unit and sampling interval,
-    and begins earlier than the record by the time that intact rock takes.
+    It can serve as the load of a compliant base (`load.quantity`). Unit and sampling interval are
+    those of the record; it begins earlier by the travel time through the intact rock.
 
     Parameters
     ----------
-    scene : a pillar, of whose load the direction alone counts; ends "quiet" and "free".
-    surface : velocity or acceleration over `time` (s) alone, equally spaced, of
-        the whole motion: where it is cut off, the end of what is found is off.
-    water_level : w, of the largest |H|: frequencies that the joints pass less of are held back.
+    scene : a pillar with ends "quiet" and "free"; only the load's direction is used.
+    surface : velocity or acceleration over `time` (s) only, equally spaced, of
+        the whole motion: a truncated record makes the end of the result wrong.
+    water_level : w, relative to the largest |H|: frequencies with a lower |H| are attenuated.
 
-    Raises SceneError where the column is not linear.
+    Raises SceneError if the column is not linear.
     """
     import xarray as xr
     from scipy.fft import next_fast_len
@@ -63,7 +63,7 @@ def deconvolve(scene: Scene, surface: xr.DataArray, water_level: float = 1e-3) -
 
 
 def _column(scene: Scene) -> tuple[Bar, float]:
-    """Return a scene's column, and the impedance of the rock behind its start, Pa s/m."""
+    """Return a scene's column and the impedance of the rock behind its start, Pa s/m."""
     p, load = calibrate(scene), scene.load
     slips = p.friction is not None or p.cohesion is not None
     reasons = [
@@ -100,7 +100,7 @@ def _column(scene: Scene) -> tuple[Bar, float]:
 
 
 def _crossing(bar: Bar) -> float:
-    """Return how long a wave takes from end to end of the rock of a bar, s."""
+    """Return the travel time of a wave through the rock of a bar, from end to end, s."""
     if not bar.rocks:
         return bar.length * sqrt(bar.density / bar.modulus)
     lengths = np.diff([*(rock.y for rock in bar.every), bar.length])
@@ -110,14 +110,14 @@ def _crossing(bar: Bar) -> float:
 
 def _stretched(p: Properties) -> tuple[float, np.ndarray]:
     """Return the modulus (Pa) and the compliance of every joint (m/Pa) along the axis: of intact
-    rock and its joints or, where that is not known, of the rock mass and what joints add to it."""
+    rock and joints or, if unknown, of the rock mass and what its joints add to it."""
     if p.own_stiffness is None or p.intact_modulus is None:
         return p.modulus, p.excess_compliance
     return p.intact_modulus, 1 / p.own_stiffness
 
 
 def _sheared(scene: Scene, p: Properties) -> tuple[float, np.ndarray]:
-    """Return the same across the axis."""
+    """Return the modulus (Pa) and the compliance of every joint (m/Pa) in shear across the axis."""
     if p.own_shear_stiffness is None or p.intact_modulus is None:
         return p.shear_modulus, 1 / p.shear_stiffness - 1 / p.regular_shear_stiffness
     return p.intact_modulus / (2 * (1 + scene.rock.intact_poisson)), 1 / p.own_shear_stiffness

@@ -1,10 +1,10 @@
 """The homogenised bar with dashpots, soft layers and any ends, in the Laplace variable (`laplace`).
 
-A bar of the rock mass's modulus E_eq (1 + s eta); a soft layer is an interface of the compliance
-that it adds, 1/K = 1/K'_n(soft) - 1/K'_n(regular), with its own time constant, because the bar
-already holds one ordinary joint there. Segments of other rock are bars of their own, bonded.
+A bar of the rock mass's modulus E_eq (1 + s eta); a soft layer is an interface with the additional
+compliance 1/K = 1/K'_n(soft) - 1/K'_n(regular) and its own time constant, because the bar already
+contains one ordinary joint there. Segments of other rock are bars of their own, bonded together.
 
-Holds for any load; every joint carries tension and no layer is stiffer than the ordinary joints.
+Valid for any load; every joint carries tension and no layer is stiffer than the ordinary joints.
 """
 
 import numpy as np

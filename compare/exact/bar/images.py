@@ -1,7 +1,7 @@
 """Undamped homogenised bar by images (d'Alembert; Graff, Wave Motion in Elastic Solids, 1975).
 
-The end stress f enters with amplitude g and runs up and down the bar, multiplied at each end by
-that end's reflection coefficient of stress: R = -1 free, +1 fixed, 0 quiet or matched.
+The end stress f enters with amplitude g and travels back and forth in the bar, multiplied at each
+end by that end's reflection coefficient of stress: R = -1 free, +1 fixed, 0 quiet or matched.
 
     sigma = g sum_k (R_start R_end)^k [f(t - (2kL + y)/c) + R_end f(t - (2(k+1)L - y)/c)]
     v = (g/Z) sum_k (R_start R_end)^k [f(t - (2kL + y)/c) - R_end f(t - (2(k+1)L - y)/c)]
@@ -9,7 +9,7 @@ that end's reflection coefficient of stress: R = -1 free, +1 fixed, 0 quiet or m
 g = 1 at a free start; behind a dashpot Z (quiet or matched start) half the stress goes into the
 dashpot, g = 1/2. Displacement is v with the load's impulse in place of f.
 
-Holds for any load; no dashpots, no soft layers, every joint carries tension.
+Valid for any load; no dashpots, no soft layers, every joint carries tension.
 """
 
 from collections.abc import Callable
@@ -69,13 +69,13 @@ def images(
     start: float = -1.0,
     end: float = -1.0,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the waves that run from the start and back to it, each [places, times].
+    """Return the waves travelling away from the start and back to it, each [places, times].
 
     Stress is their sum, particle velocity their difference over the impedance.
 
     Parameters
     ----------
-    signal : what enters at y = 0, a function of time (s), zero before t = 0.
+    signal : the wave entering at y = 0, a function of time (s), zero before t = 0.
     places, times : m and s.
     length, speed : of the bar, m and m/s.
     start, end : reflection coefficients of stress at the two ends.

@@ -1,12 +1,12 @@
 """Intact rock with every joint resolved, by marching in the Laplace variable (`laplace`).
 
 Intact rock (E, Kelvin-Voigt eta of the rock) between joints of their own stiffness K_n (Guo & Li
-2002, equation 4) and time constants; of another E and density in each segment; quiet, matched, free
-or fixed ends, the dashpots with the rock mass's impedance there. This is the physics that both the
-rigid blocks and the homogenised bar approximate (Schoenberg, JASA 68, 1980; Pyrak-Nolte et al., JGR
-95, 1990).
+2002, equation 4) and time constants; E and density may differ between segments; quiet, matched,
+free or fixed ends, the dashpots with the rock mass's impedance there. This is the physics that both
+the rigid blocks and the homogenised bar approximate (Schoenberg, JASA 68, 1980; Pyrak-Nolte et al.,
+JGR 95, 1990).
 
-Holds for any load; every joint carries tension and the scene gives intact_modulus.
+Valid for any load; every joint carries tension and the scene gives intact_modulus.
 """
 
 import numpy as np

@@ -6,11 +6,11 @@
 
 The modal damping ratio is eta omega_n / 2 (Graff, Wave Motion in Elastic Solids, 1975); above 1
 the roots r of r^2 + eta omega_n^2 r + omega_n^2 are real. q_n follows from
-C(r) = int_0^t f(s) e^{r (t - s)} ds. What high modes tend to, q_n = w / omega_n^2 with
+C(r) = int_0^t f(s) e^{r (t - s)} ds. The limit of high modes, q_n = w / omega_n^2 with
 w + eta w' = f, is summed in closed form: sigma = f (1 - x) and
-u = (L / E)(1/3 - x + x^2/2) w. What is left converges as 1/n^3 and 1/n^4.
+u = (L / E)(1/3 - x + x^2/2) w. The remainder converges as 1/n^3 and 1/n^4.
 
-Holds for shape "sine", free ends, dashpots, no soft layers, every joint carrying tension.
+Valid for shape "sine", free ends, dashpots, no soft layers, every joint carrying tension.
 
 A harmonic wave in this rock has the modulus E (1 + i omega eta), hence attenuation and dispersion.
 """
@@ -86,9 +86,9 @@ def solve(scene: Scene, n_terms: int = 500) -> xr.Dataset:
 
 
 def _left_out(waves: np.ndarray, half: np.ndarray) -> np.ndarray:
-    """Return the bound of the errors of sums of modes [receivers, n] by the sums of half of them.
+    """Return the error bound of sums of modes [receivers, n], from the sums of half of the modes.
 
-    The second half of terms that fall as 1/n^2 is as large as what is left out, of 1/n^3 thrice.
+    The second half of the terms equals the remainder if they fall as 1/n^2, thrice it for 1/n^3.
     """
     from scipy.ndimage import maximum_filter1d
 
@@ -116,8 +116,8 @@ def sums(
 def _convolutions(
     weights: np.ndarray, roots: np.ndarray, load: Sine, times: np.ndarray
 ) -> np.ndarray:
-    """Return sums [m, times] of weights [m, n] times C(r) = int_0^t f(s) e^{r (t - s)} ds, of roots
-    that are real or conjugate."""
+    """Return sums [m, times] of weights [m, n] times C(r) = int_0^t f(s) e^{r (t - s)} ds, for
+    roots that are real or conjugate."""
     omega, on = 2 * pi / load.period, np.searchsorted(times, load.end)
     k, t = weights * load.amplitude / (roots**2 + omega**2), omega * times[:on]
     during = omega * exponentials(k, roots, times[:on])

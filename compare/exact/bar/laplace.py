@@ -1,18 +1,18 @@
 """The bars of `compare.exact.bar.transfer` over time, by inversion of their Laplace transforms.
 
 By FFT with an exponential window (Wilcox, Int. J. Elect. Eng. Educ. 15, 1978; Kausel & Roesset,
-JEM 118, 1992). Its errors, and what bounds them:
-- A window of TAIL durations wraps what comes later, reduced to WRAPPED of itself, and multiplies
-  round-off by as much as it lets the end of the record grow.
-- The load's transform is that of its exact means over the fine steps, over the transform of such a
-  step: no digit is lost to the sampling but at the highest frequencies.
-- Frequencies end at pi/dt, rounded off by exp(-36 (omega dt/pi)^8) so that no ringing grows under
-  the window. What is smooth stays; a kink is off by its change of slope times dt/(0.61 pi^2).
-  The steps are finer than they need be, as far as that costs little, and undamped rock carries
-  kinks and jumps of the load to and fro in front of its first joint, which returns them as a free
-  end does: this part is summed as `images`, and the rest, smoother by one order, is inverted.
-The inversion by half of the frequencies, which is off by twice as much or more, tells the error:
-twice the most that the two differ by within some fine steps of each sample.
+JEM 118, 1992). Its errors and their bounds:
+- A window of TAIL durations wraps the later motion, reduced by the factor WRAPPED, and amplifies
+  round-off as much as the exponential window amplifies the end of the record.
+- The load's transform is that of its exact means over the fine steps, divided by the transform of
+  such a step: sampling loses no digits except at the highest frequencies.
+- Frequencies end at pi/dt, tapered by exp(-36 (omega dt/pi)^8) so that no ringing grows under
+  the window. Smooth parts are unaffected; a kink's error is its change of slope times
+  dt/(0.61 pi^2). The steps are finer than necessary where that is cheap. In undamped rock, kinks
+  and jumps of the load travel to and fro in front of the first joint, which reflects them like a
+  free end: this part is summed as `images`, and the rest, smoother by one order, is inverted.
+The inversion with half of the frequencies has at least twice the error and thus gives the bound:
+twice the largest difference of the two within some fine steps of each sample.
 """
 
 from dataclasses import replace
@@ -36,12 +36,12 @@ TAIL = 1.5
 WRAPPED = 1e-10
 STEPS_PER_PERIOD = 1600
 STEPS_PER_DURATION = 20_000  # where the load has no period
-FINER = 4  # times, at most: shipped scenes are within 1e-7 of their peaks
+FINER = 4  # times, at most: errors of shipped scenes are below 1e-7 of their peaks
 CHEAP = 12_000_000  # instants times nodes, about half a second
 MOST_TRIPS = 5000  # of the part in front of the first joint, to and fro
-SAFETY = 2.0  # on the difference of the two inversions
-NEAR = 17  # fine steps in which it is sought
-FLOOR = 4e-9  # of a quantity's peak: the window's wrapping and the round-off that it raises
+SAFETY = 2.0  # factor on the difference of the two inversions
+NEAR = 17  # fine steps within which its maximum is taken
+FLOOR = 4e-9  # of a quantity's peak: the window's wrapping and the round-off that it amplifies
 
 
 def solved(scene: Scene, name: str, bar: Bar) -> xr.Dataset:
@@ -63,7 +63,7 @@ def bounded(
     period: float | None = None,
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Return stress (Pa), velocity (m/s) and displacement (m) [receivers, n] at `times`, and bounds
-    of their root-mean-square errors [receivers].
+    on their root-mean-square errors [receivers].
 
     `times` are equally spaced from 0; `period` (s) is that of the load, if it has one. The
     velocity on an interface is the mean of both sides.
@@ -77,7 +77,7 @@ def bounded(
     t = dt * np.arange(count)
     s = decay + 2j * np.pi * np.fft.rfftfreq(count, dt)
     fraction, load_transform = s.imag * dt / np.pi, _transform(load, s, t, decay)
-    # Rounded off at the highest frequency, by a filter of order 8 that is 1e-16 there.
+    # Tapered towards the highest frequency by a filter of order 8 that is 1e-16 there.
     entering = [
         load_transform * np.exp(-36 * np.minimum(share * fraction, 1.5) ** 8) for share in (1, 2)
     ]
@@ -106,7 +106,7 @@ def bounded(
 
 
 def _transform(load: LoadHistory, s: np.ndarray, t: np.ndarray, decay: float) -> np.ndarray:
-    """Return the load's transform over the fine step, from its means there but for its jumps."""
+    """Return the load's transform over the fine step, from its means, with exact jumps."""
     dt, jumps = t[1], _jumps(load)
     edges = np.append(t, t[-1] + dt) - dt / 2
     impulse = load.impulse(edges)
@@ -120,7 +120,7 @@ def _transform(load: LoadHistory, s: np.ndarray, t: np.ndarray, decay: float) ->
 
 
 def _jumps(load: LoadHistory) -> list[tuple[float, float]]:
-    """Return when (s) and by how much (Pa) a load jumps."""
+    """Return the times (s) and heights (Pa) of a load's jumps."""
     if isinstance(load, Step):
         return [(0.0, load.amplitude)]
     if isinstance(load, Recorded):
@@ -130,10 +130,10 @@ def _jumps(load: LoadHistory) -> list[tuple[float, float]]:
 
 
 class Front(NamedTuple):
-    """The undamped rock in front of the first joint, `bar`, whose ends return what is sharp.
+    """The undamped rock in front of the first joint, `bar`, whose ends reflect kinks and jumps.
 
-    start, end : their reflection coefficients of stress. enters : the share of the end stress that
-    enters. interface : whether it ends at a joint, not with the whole bar.
+    start, end : their reflection coefficients of stress. enters : the fraction of the end stress
+    that enters. interface : whether it ends at a joint, not at the end of the whole bar.
     """
 
     bar: Bar
@@ -143,7 +143,7 @@ class Front(NamedTuple):
     interface: bool
 
     def shares(self, places: np.ndarray) -> np.ndarray:
-        """Return how much of its motion each place takes part in: on a joint, half."""
+        """Return this part's share in each place's motion: 1 inside, on the joint 1/2, else 0."""
         off = (places - self.bar.length) / self.bar.length
         on = 0.5 if self.interface else 1.0
         return np.where(np.abs(off) < 1e-9, on, np.where(off < 0, 1.0, 0.0))
@@ -172,7 +172,7 @@ class Front(NamedTuple):
 
 
 def _front(bar: Bar, duration: float) -> Front | None:
-    """Return the part of a bar that kinks of the load run to and fro in; None without one."""
+    """Return the part of a bar in which kinks of the load travel to and fro, None without one."""
     if bar.time_constant or bar.relaxation is not None:
         return None
     z = np.sqrt(bar.density * bar.modulus)
@@ -209,7 +209,7 @@ def _front(bar: Bar, duration: float) -> Front | None:
 def _fine_step(times: np.ndarray, period: float | None, nodes: int) -> tuple[float, int, int]:
     """Return the fine step (s), steps per sample, and steps in the window.
 
-    nodes : that each instant costs.
+    nodes : number of nodes computed at each instant.
     """
     from scipy.fft import next_fast_len
 

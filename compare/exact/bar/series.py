@@ -8,10 +8,10 @@ Guo & Li (2002), appendix (5a), (5b), with the prefactor of a stress and t > T i
 
 and at omega_n = omega the limits (sin(omega t)/omega - t cos(omega t))/2 and -T_e cos(omega t)/2.
 Velocity has cos(n pi y / L), the time derivative of g_n over rho c, and the rigid mode, to which
-displacement adds its integral. The paper stops at n = 100. What a sum leaves out is measured by
-`images`.
+displacement adds its integral. The paper stops at n = 100. The truncation error is measured
+against `images`.
 
-Holds for shape "sine", free ends, no dashpots, no soft layers, every joint carrying tension.
+Valid for shape "sine", free ends, no dashpots, no soft layers, every joint carrying tension.
 """
 
 from math import pi, sqrt
@@ -30,7 +30,7 @@ from compare.solvers.record import BAR, Answer, Rock, Solver, Words, no, thin
 from results.dataset import dataset
 
 PAPER_TERMS = 100
-ROUND_OFF = 1e-12  # of the sum, by a waveform's peak
+ROUND_OFF = 1e-12  # of the sum, relative to a waveform's peak
 RUN = 64  # samples
 NEAR = sqrt(np.finfo(float).eps)  # relative distance to resonance below which the limit is nearer
 
@@ -71,7 +71,7 @@ def solve(scene: Scene, n_terms: int = 2000) -> xr.Dataset:
 
 
 def _left_out(found: dict, exact: xr.Dataset, scale: float) -> dict[str, np.ndarray]:
-    """Return the root-mean-square errors of waveforms by the closed form, with its round-off."""
+    """Return root-mean-square errors of waveforms from the closed form, with its round-off."""
     errors = {}
     for name, waves in found.items():
         closed = exact[name].values.reshape(waves.shape) / scale
@@ -89,7 +89,7 @@ def amplitudes(
     resonant, on = np.abs(mode - omega) < NEAR * omega, np.searchsorted(times, load.end)
     factor = load.amplitude * omega / np.where(resonant, 1.0, omega**2 - mode**2)
     share = weights * np.where(resonant, 0.0, factor)
-    # e^{i m t} - e^{i m (t - end)}, but while the load lasts.
+    # e^{i m t} - e^{i m (t - end)}; without the second term while the load lasts.
     after = share * (1 - np.exp(-1j * mode * load.end))
     turned = np.concatenate(
         [
@@ -109,7 +109,7 @@ def amplitudes(
 
 def exponentials(weights: np.ndarray, roots: np.ndarray, times: np.ndarray) -> np.ndarray:
     """Return sums [m, times] of weights [m, n] times e^{r t} at equally spaced times for roots [n],
-    1/s: powers of a run of times, times those of where runs start."""
+    1/s: the exponentials within a run of times, multiplied by those at the starts of runs."""
     starts, run = times[::RUN], times[:RUN] - times[:1]
     first = weights[:, None] * np.exp(np.outer(starts, roots))
     found = first @ np.exp(np.outer(roots, run))

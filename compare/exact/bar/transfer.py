@@ -1,7 +1,7 @@
 """The motion of a bar with any joints, layers and ends under an end stress of 1, in the Laplace
 variable s = sigma + i omega.
 
-Rock of modulus E(s), E (1 + s eta) or what its relaxation mechanisms make of it
+Rock of modulus E(s), E (1 + s eta) or the modulus of its relaxation mechanisms
 (`cases.material.constant_q`), has impedance z = sqrt(rho E(s)); an interface of
 compliance 1/K and time constant eta_j lets the velocity jump by s sigma / (K (1 + s eta_j)). The
 reflection coefficient of stress R = (Z - z)/(Z + z), Z the impedance seen towards the far end, is
@@ -59,7 +59,7 @@ def end_of(kind: str, impedance: float, compliance: float = 0.0, time_constant: 
 
 class RockFrom(NamedTuple):
     """The rock of a bar from y (m) on: density (kg/m3), modulus (Pa), Kelvin-Voigt eta (s), and
-    what relaxes (`Bar.relaxation`)."""
+    relaxation (`Bar.relaxation`)."""
 
     y: float
     density: float
@@ -87,7 +87,7 @@ def rocks(
 
 
 def rock_eta(p: Properties, relaxation: Mechanisms | None) -> float:
-    """Return the Kelvin-Voigt eta of rock, s; where rock relaxes, dashpots are of joints alone."""
+    """Return the Kelvin-Voigt eta of rock, s: 0 in relaxing rock (dashpots in joints only)."""
     return p.time_constant or 0.0 if relaxation is None else 0.0
 
 
@@ -100,9 +100,9 @@ class Bar:
     length, density, modulus : m, kg/m3, Pa.
     time_constant : Kelvin-Voigt eta of the rock, s.
     rocks : other rocks behind the first, in order.
-    relaxation : what makes of a modulus that of a Laplace variable, None of rock without.
+    relaxation : mechanisms that make the modulus depend on the Laplace variable, None without.
     joint_y, joint_compliance, joint_time_constant : float arrays [joints], sorted; m, m/Pa, s.
-    start, end : what holds each end; the start cannot be fixed.
+    start, end : supports of the ends; the start cannot be fixed.
     """
 
     length: float
@@ -119,14 +119,14 @@ class Bar:
 
     @property
     def every(self) -> tuple[RockFrom, ...]:
-        """All its rocks, in order."""
+        """All rocks of the bar, in order."""
         first = self.density, self.modulus, self.time_constant, self.relaxation
         return (RockFrom(0.0, *first), *self.rocks)
 
 
 class Cell(NamedTuple):
-    """A part of a bar between two places: reflection from its near and its far side, and the
-    waves that pass to the far side, and back, arrays of Laplace variables."""
+    """A part of a bar between two places: reflection from its near and its far side, and
+    transmission to the far side and back, arrays over the Laplace variables."""
 
     near: np.ndarray
     far: np.ndarray
@@ -134,12 +134,12 @@ class Cell(NamedTuple):
     back: np.ndarray
 
     def before(self, R: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the reflection with R behind it, and the wave that then reaches R."""
+        """Return the reflection with R behind this part, and the wave that then reaches R."""
         share = self.passed / (1 - self.far * R)
         return self.near + self.back * share * R, share
 
     def twice(self) -> Cell:
-        """Return two such parts of one rock in a row."""
+        """Return two such parts of the same rock in series."""
         near, share = self.before(self.near)
         passed = share * self.passed
         return Cell(near, self.far + self.passed * share * self.far, passed, passed)
@@ -149,15 +149,15 @@ def transfer(bar: Bar, s: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, n
     """Return stress and velocity [places, len(s)] at `places` (m) for an end stress of 1.
 
     s : complex array of Laplace variables, 1/s, with positive real parts. Equal joints at equal
-    spacings with no place among them are passed by doubling.
+    spacings with no place among them are combined by doubling.
     """
     every = bar.every
     zs = [rock.impedance(s) for rock in every]
     slowness = [s * rock.density / z for rock, z in zip(every, zs, strict=True)]
     R = _end_reflection(bar.end, s, zs[-1])
     stress, velocity = np.zeros((2, len(places), len(s)), dtype=complex)
-    # Places from the far end on, each with what passes from it to those farther on, and what
-    # passes to the last of them.
+    # Places from the far end on, each with the transmission from it to those farther on, and the
+    # transmission to the last of them.
     reached: list[tuple[np.ndarray, np.ndarray]] = []
     passing = np.ones_like(R)
     nodes, joint_of = nodes_of(bar, places)
@@ -201,7 +201,7 @@ def transfer(bar: Bar, s: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, n
 
 
 class Kind(NamedTuple):
-    """A joint, or none, and the rock from it to the node before: m/Pa, s, m, and the number of
+    """A joint, or none, and the rock from it to the previous node: m/Pa, s, m, and the numbers of
     that rock and of the one behind."""
 
     compliance: float
@@ -212,8 +212,8 @@ class Kind(NamedTuple):
 
 
 def _runs(bar: Bar, nodes: np.ndarray, joint_of: dict[int, int], places: np.ndarray) -> list[list]:
-    """Return the nodes with their kinds from the far end on, alike ones together; those with a
-    place are alone."""
+    """Return runs of nodes of the same kind from the far end on; a node with a place is a run of
+    its own."""
     held = (np.abs(places[:, None] - nodes) < 1e-9 * bar.length).any(axis=0)
     h = np.append(0.0, np.diff(nodes)).round(12)
     starts, close = [rock.y for rock in bar.rocks], 1e-9 * bar.length
@@ -236,7 +236,7 @@ def _end_reflection(end: End, s: np.ndarray, z: np.ndarray) -> np.ndarray:
 
 
 def nodes_of(bar: Bar, places: np.ndarray) -> tuple[np.ndarray, dict[int, int]]:
-    """Return the ends, interfaces and receivers in order, and which node holds which joint."""
+    """Return the ends, interfaces and receivers in order, and the joints by node."""
     joints = np.flatnonzero(bar.joint_compliance)
     own = bar.joint_y[joints]
     near = np.abs(places[:, None] - np.concatenate([own, [0.0, bar.length]])).min(axis=1)

@@ -1,8 +1,8 @@
-"""Roots of a polynomial on [0, 1] by its Bernstein coefficients, of which none is missed.
+"""All roots of a polynomial on [0, 1], by its Bernstein coefficients.
 
-A polynomial has no more roots in (0, 1) than its Bernstein coefficients have changes of sign, and
-as many but for an even number (Descartes' rule in this basis; Farouki, Computer Aided Geometric
-Design 29, 2012). Where there are several changes the interval is halved by de Casteljau's scheme.
+A polynomial has no more roots in (0, 1) than its Bernstein coefficients have changes of sign; the
+numbers differ by an even number (Descartes' rule in this basis; Farouki, Computer Aided Geometric
+Design 29, 2012). If there are several changes the interval is halved by de Casteljau's scheme.
 """
 
 from functools import cache
@@ -10,11 +10,11 @@ from math import comb
 
 import numpy as np
 
-NARROWEST = 2.0**-40  # below it, roots in pairs are a touch without a change of sign
+NARROWEST = 2.0**-40  # below it, a pair of roots counts as a tangency without a change of sign
 
 
 def of_powers(degree: int) -> np.ndarray:
-    """Return the matrix [degree + 1, degree + 1] from coefficients of powers to Bernstein's."""
+    """Return the matrix [degree + 1, degree + 1] from power to Bernstein coefficients."""
     n = degree + 1
     return np.array([[comb(i, k) / comb(degree, k) for k in range(n)] for i in range(n)])
 
@@ -28,9 +28,9 @@ def _halves(degree: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def sign_changes(bernstein: np.ndarray, powers: list[float], up_to: float = 1.0) -> list[float]:
-    """Return where in (0, 1) a polynomial changes its sign, in order, to round-off.
+    """Return the points in (0, 1) at which a polynomial changes sign, in order, to round-off.
 
-    bernstein, powers : its coefficients in both bases. up_to : beyond which none is asked for.
+    bernstein, powers : its coefficients in both bases. up_to : upper limit of the search.
     """
     halves, roots = _halves(len(bernstein) - 1), []
     parts = [(0.0, 1.0, bernstein)]
@@ -58,7 +58,7 @@ def _sign(c: np.ndarray) -> float:
 
 
 def _root(powers: list[float], a: float, b: float, rises: bool) -> float:
-    """Return the only root between a and b, by Newton's steps, or halves where they leave it."""
+    """Return the only root between a and b, by Newton steps, or bisection where they leave it."""
     x = (a + b) / 2
     for _ in range(200):
         value = slope = 0.0

@@ -4,14 +4,14 @@ Blocks of mass m, joints k_j and dashpots c_j between them, gap g_j = u_{j+1} - 
 
     m v_j' = F_{j-1} - F_j (+ load on block 1),   F_j = P - k_j g_j - c_j g_j'
 
-and where tension is barred F_j = max(F_j, 0), nothing while P < k_j g_j (Guo & Li 2002, equation
+and in a joint without tension F_j = max(F_j, 0), 0 while P < k_j g_j (Guo & Li 2002, equation
 10). F_0 and F_N are P and the reactions of the ends: none (free), dashpot Z A on the block (quiet,
 equation 9), dashpot Z A on a massless face behind the half-block spring 2k (matched), or that
-spring to a wall (fixed), which a load that is a motion moves. Each block also feels its weight and
-the damping -alpha m v_j. States count displacement from the prestressed state.
+spring to a wall (fixed), moved by a load that is a motion. Each block is also subject to its weight
+and the damping -alpha m v_j. Displacements are measured from the prestressed state.
 
 A state is an array whose last axis holds w u of the N blocks (m/s), their N velocities (m/s) and
-w times the displacement of the two faces; w = 2 sqrt(k/m) makes its parts equally large.
+w times the displacement of the two faces; w = 2 sqrt(k/m) makes its parts of equal magnitude.
 """
 
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ class EndOfChain(NamedTuple):
 
 @dataclass(frozen=True)
 class Chain:
-    """What the equations of motion hold: forces in N, not tractions.
+    """Coefficients of the equations of motion, in forces (N), not tractions.
 
     Attributes
     ----------
@@ -47,12 +47,12 @@ class Chain:
     contact_y, centre_y : float arrays [N + 1] and [N], faces and centres of the blocks, m.
     stiffness, viscosity : float arrays [N - 1], N/m and N s/m.
     tension : bool array [N - 1], whether a joint carries tension.
-    start, end : what holds them.
+    start, end : supports of the ends.
     prestress : N, compression positive.
     gravity : its component along y, m/s2.
     mass_damping : alpha, 1/s.
     shaken : whether the drive is the velocity of the fixed start's wall (m/s), else a force (N).
-    gain : the drive by the scene's `drive` signal: the area (m2) or 1, along y.
+    gain : ratio of the drive to the scene's `drive` signal: the area (m2) or 1, along y.
     """
 
     mass: float | np.ndarray
@@ -165,7 +165,7 @@ def contact_forces(
 
 
 def reaction(end: EndOfChain, u, v, face, wall=0.0):
-    """Return what an end takes from its block (N) and the velocity of its face (m/s)."""
+    """Return the force that an end exerts on its block (N) and the velocity of its face (m/s)."""
     if end.kind == "free":
         return 0.0, 0.0
     if end.kind == "quiet":

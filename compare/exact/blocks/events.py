@@ -1,15 +1,14 @@
 """The motion of a chain whose joints open and close, from one event to the next.
 
 While no joint opens or closes the chain is linear, and from rest under static gravity and prestress
-its motion is a Taylor series of x' = A x + b f(t): at steps of STEP over the norm of A the term of
-order ORDER is below round-off. The force of a joint and its spring's are polynomials then, and
-the roots at which they change sign come from their Bernstein coefficients (`bernstein`), of which
-none can be missed. At the first of them the step ends, the joint opens or closes, and the series
-starts anew.
+its motion is a Taylor series of x' = A x + b f(t): with steps of STEP over the norm of A the term
+of order ORDER is below round-off. The force of a joint and that of its spring are then polynomials,
+and all points at which they change sign are found from their Bernstein coefficients (`bernstein`).
+At the first of them the step ends, the joint opens or closes, and the series restarts.
 
-A joint that bars tension is closed where neither its spring nor spring and dashpot together pull.
-Damped, it opens where the two together vanish, its spring being compressed still, and closes where
-the gap does, at once with the force of its dashpot.
+A tension-free joint is closed while neither its spring nor spring and dashpot together pull. A
+damped one opens when their sum vanishes, with its spring still compressed, and closes when the gap
+vanishes, immediately with the force of its dashpot.
 """
 
 from dataclasses import dataclass, replace
@@ -25,9 +24,9 @@ from compare.exact.drive import Signal
 
 ORDER = 24
 STEP = 2.0  # over the norm of A: the last term is 2^24 / 24! = 3e-17
-LOAD_STEP = 1 / 24  # of the load's period: its interpolation is off by less than 1e-15
-SETTLED = 4 / 3  # of the time after which 1e-8 of a wavelet is left: 1e-24 of it
-LEAST = 1e-6  # of a step: how soon a joint may change again that has changed back and forth at once
+LOAD_STEP = 1 / 24  # of the load's period: its interpolation error is below 1e-15
+SETTLED = 4 / 3  # of the time at which a wavelet has fallen to 1e-8: it is 1e-24 then
+LEAST = 1e-6  # of a step: minimum time between changes of a joint that has just changed twice
 
 _NODES = (1 + chebpts1(10)) / 2
 _POWERS = np.vander(_NODES, increasing=True)
@@ -36,10 +35,10 @@ _BERNSTEIN = of_powers(ORDER)
 
 @dataclass(frozen=True)
 class ChainMotion:
-    """A chain's states since it was at rest, and its events.
+    """A chain's states from rest on, and its events.
 
-    states : float array [n, size], `chain.split` tells what it holds. events : number of openings
-    and closings. steps : number of Taylor series.
+    states : float array [n, size], in the layout of `chain.split`. events : number of openings and
+    closings. steps : number of Taylor series.
     """
 
     states: np.ndarray
@@ -49,12 +48,12 @@ class ChainMotion:
 
 @dataclass
 class _Contacts:
-    """The joints that bar tension: which are closed, and which have only just changed.
+    """The tension-free joints: which are closed, and which have changed at the current time.
 
     index, closed : of the chain's joints, int and bool arrays [barred].
     spring : force of each at rest, N.
-    changed : how often each has changed since time has gone on.
-    zero : bool arrays [2, barred], whose spring, and spring with dashpot, has just passed zero.
+    changed : number of changes of each since the last advance in time.
+    zero : bool arrays [2, barred], whether the force of spring, or spring and dashpot, is now zero.
     """
 
     index: np.ndarray
@@ -73,14 +72,14 @@ def integrate(
     noise: float = 0.0,
     seed: int = 0,
 ) -> ChainMotion:
-    """Return what the chain moves by since it was in the state `rest` [size], absent: zero.
+    """Return the chain's motion from the state `rest` [size] (default: zero).
 
     Parameters
     ----------
     times : increasing, s; the chain is at rest at the first.
     period : of the load (s), if it has one.
-    noise : of round-off: every step is perturbed at random by so much of what it adds up; the
-        motion's type of floating-point number is that of `times`.
+    noise : random perturbation of every step, relative to its terms, to mimic round-off; the
+        motion has the floating-point type of `times`.
     """
     require(3 * 8.0 * len(times) * chain.size, f"{len(times):,} states of {chain.size:,} numbers")
     walk = _Walk(chain, load, times, rest, period, noise, seed)
@@ -114,7 +113,7 @@ class _Walk:
         self.contacts = _Contacts(index, spring >= 0, spring, np.zeros(len(index), int), none)
 
     def to(self, start: float, end: float) -> None:
-        """Go on from `start` to `end` (s), between which the load is smooth."""
+        """Advance from `start` to `end` (s), between which the load is smooth."""
         t = start
         while t < end:
             longest = self.longest
@@ -127,7 +126,7 @@ class _Walk:
             t = end if last and share == 1 else t + h * share
 
     def _step(self, t: float, h: float, end: float) -> float:
-        """Take one series, up to its end or the first event; return the share of the step."""
+        """Advance by one series, to its end or the first event; return the fraction of the step."""
         X = self._series(t, h)
         first, event = self._first_event(X)
         until = end if event is None else t + h * first
@@ -146,7 +145,7 @@ class _Walk:
         return first
 
     def _series(self, t: float, h: float) -> np.ndarray:
-        """Return the state's series [ORDER + 1, size] in powers of the share of a step."""
+        """Return the state's series [ORDER + 1, size] in powers of the fraction of a step."""
         chain, n = self.chain, self.chain.block_count
         drive = np.linalg.solve(_POWERS, self.load.value(t + h * _NODES).astype(float)) * chain.gain
         drive = np.pad(drive, (0, ORDER + 1 - len(drive)))
@@ -174,7 +173,7 @@ class _Walk:
         return X
 
     def _without_open(self, slope: np.ndarray) -> None:
-        """Take from the accelerations what open joints no longer carry of the force at rest."""
+        """Subtract from the accelerations the static forces that open joints no longer carry."""
         is_open = ~self.contacts.closed
         lost = self.contacts.spring[is_open] / self.chain.mass
         at = self.contacts.index[is_open]
@@ -191,7 +190,7 @@ class _Walk:
         return first, last
 
     def _first_event(self, X: np.ndarray) -> tuple[float, tuple[int, int] | None]:
-        """Return the share of the step until a joint changes, which one and by which force."""
+        """Return the fraction of the step at the first change of a joint, that joint and force."""
         contacts, n = self.contacts, self.chain.block_count
         j = contacts.index
         gap, rate = (X[:, a + j + 1] - X[:, a + j] for a in (0, n))
@@ -215,7 +214,7 @@ class _Walk:
         return best, event
 
     def _change(self, share: float, event: tuple[int, int] | None) -> None:
-        """Open or close the joint of an event, and forget what has only just changed before."""
+        """Open or close the joint of an event; if time has advanced, clear old changes."""
         contacts = self.contacts
         if share > 0:
             contacts.changed[:] = 0
@@ -231,8 +230,8 @@ class _Walk:
 def _change_of(
     forces: np.ndarray, bounds: np.ndarray, closed: bool, least: float, up_to: float
 ) -> tuple[float, int] | None:
-    """Return when a joint changes first, before `up_to`, and by which of its forces: 0 that of the
-    spring, 1 that of spring and dashpot together."""
+    """Return the first time before `up_to` at which a joint changes, and the force that causes it:
+    0 that of the spring, 1 that of spring and dashpot together."""
     powers = [p.tolist() for p in forces]
     roots = [(r, kind) for kind in (0, 1) for r in sign_changes(bounds[kind], powers[kind], up_to)]
     edges = sorted([(0.0, -1), *roots])

@@ -1,16 +1,16 @@
-"""The chain of rigid blocks, exact in time: what the rigid-block engine discretises.
+"""The chain of rigid blocks, exact in time: the equations of the rigid-block engine.
 
 x' = A x + b f(t) with the state matrix of `chain`, solved by matrix exponentials. Without
 dashpots and with free ends its modes are omega_n = 2 sqrt(k/m) sin(n pi / 2N) of shape
 cos(n pi (j - 1/2) / N), j = 1..N; Kelvin-Voigt dashpots are proportional and damp each mode at the
 rate eta omega_n^2 / 2 (Brillouin, Wave Propagation in Periodic Structures, 1946).
 
-Its error is that of round-off, and bounded by what a twin of the solution shows (`linear`).
+Its only error is round-off, bounded by the difference from a perturbed twin solution (`linear`).
 
-The solution is a sum: what the drive does from rest, the static state under gravity (or what
-gravity does that acts suddenly), and the prestress.
+The solution is a sum: the response to the drive from rest, the static state under gravity (or the
+response to suddenly applied gravity), and the prestress.
 
-Holds for any load or shaken base, soft layers, segments, dashpots, mass-proportional damping, ends,
+Valid for any load or shaken base, soft layers, segments, dashpots, mass-proportional damping, ends,
 gravity along the axis and prestress; every joint carries tension.
 """
 
@@ -75,9 +75,9 @@ def state_space(model: Chain) -> tuple[np.ndarray, np.ndarray]:
 
 
 def at_rest(scene: Scene, model: Chain) -> np.ndarray:
-    """Return the state [size] that the chain starts from: at rest, under static gravity if any.
+    """Return the chain's initial state [size]: at rest, under static gravity if any.
 
-    Every joint is taken to carry tension; faces that no equation moves stay at zero.
+    Every joint is taken to carry tension; faces without an equation of motion stay at zero.
     """
     state = np.zeros(model.size)
     if scene.gravity is None or not scene.gravity.static:

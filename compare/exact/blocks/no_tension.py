@@ -1,13 +1,13 @@
-"""The chain of rigid blocks whose joints bar tension, from event to event.
+"""The chain of rigid blocks with tension-free joints, from event to event.
 
 The equations of `chain`, exact between the openings and closings of its joints and these found as
-roots (`events`); it shares no code with the engines' joint laws. What round-off does to the motion
-is measured: a second solution is perturbed at every step by NOISE units of round-off, and the error
-is bounded by what the two differ by (`linear`). Blocks that rattle do so chaotically, and from the
-time on at which the two differ by PARTED of the motion nothing is known (`known_until`).
+roots (`events`); it shares no code with the engines' joint laws. The effect of round-off is
+measured: a second solution is perturbed at every step by NOISE units of round-off, and the
+difference of the two bounds the error (`linear`). Rattling of blocks is chaotic: the solution is
+unknown from the time on at which the two differ by PARTED of the motion (`known_until`).
 
-Holds for any load or shaken base, soft layers, dashpots, mass-proportional damping, ends, gravity
-along the axis and prestress, if no joint that bars tension would be pulled at rest.
+Valid for any load or shaken base, soft layers, dashpots, mass-proportional damping, ends, gravity
+along the axis and prestress, if no tension-free joint would be pulled at rest.
 """
 
 from dataclasses import replace
@@ -34,7 +34,7 @@ PARTED = 1e-6
 
 
 def applies(scene: Scene) -> Answer:
-    """Return whether a joint of the chain bars tension and the chain is not too long."""
+    """Return whether the chain has a tension-free joint and is not too long."""
     carried = bool(calibrate(scene).tension.all())
     answer = holds(
         scene,
@@ -48,7 +48,7 @@ def applies(scene: Scene) -> Answer:
 
 
 def _pulled(scene: Scene) -> bool:
-    """Return whether the static state without a load opens a joint that bars tension."""
+    """Return whether the static state without a load opens a tension-free joint."""
     model = chain(scene)
     elastic = replace(model, tension=np.ones_like(model.tension))
     forces, _ = contact_forces(elastic, at_rest(scene, model))
@@ -83,7 +83,7 @@ def solve(scene: Scene) -> xr.Dataset:
 
 
 def _known(model: Chain, states: np.ndarray, other: np.ndarray) -> int:
-    """Return how many samples there are before two solutions [n, size] have parted."""
+    """Return the number of samples before two solutions [n, size] diverge."""
 
     def motion(x: np.ndarray) -> np.ndarray:
         u, v, _ = split(model, x)

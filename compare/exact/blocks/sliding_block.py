@@ -1,15 +1,15 @@
 """A rigid block that slides on a slope under its weight by Coulomb friction.
 
-Of two blocks the second stands on a wall, and gravity g presses the first onto it at the slope
-angle beta from the axis. The joint carries N = m g cos beta and at most N tan phi, so
+The second of two blocks is fixed, and gravity g presses the first onto it at the slope angle beta
+from the axis. The joint carries N = m g cos beta and in shear at most N tan phi, so
 
     v = max(0, g (sin beta - cos beta tan phi)) t   down the slope,
 
-the shear force is m g sin beta where that is less. Springs and dashpots, which let the blocks
-settle at first, are left out.
+the shear force is m g sin beta where that is less. The initial settling of the blocks on springs
+and dashpots is neglected.
 
-Holds for two blocks, a free start, a fixed end, no load, gravity that acts suddenly and presses the
-joint, friction without cohesion, and blocks that do not topple.
+Valid for two blocks, a free start, a fixed end, no load, gravity that acts suddenly and compresses
+the joint, friction without cohesion, and blocks that do not topple.
 """
 
 from math import hypot
@@ -50,7 +50,7 @@ def applies(scene: Scene) -> Answer:
 
 
 def _topples(scene: Scene, friction: float) -> bool:
-    """Return whether what the joint carries leaves the square of its contact points."""
+    """Return whether the joint's resultant lies outside the square of its contact points."""
     if scene.motion.rotation == "none":
         return False
     x, _, _ = face_points(scene.pillar.side, scene.joints.contact_points, scene.joints.point_rule)

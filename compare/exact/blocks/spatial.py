@@ -8,8 +8,8 @@ left side's, and point (x, z) of the contact moves by
     gap = r_y + phi_z x - phi_x z,   slip = (r_x + phi_y z, r_z - phi_y x)
 
 Springs K and K_s per unit area at all points add up to the contact's matrix (Guo & Li 2002,
-equations 1, 2); dashpots on a face likewise. Points that lie symmetrically leave stretching,
-torsion and the two bendings uncoupled, and each is a `Plane` of its own.
+equations 1, 2); dashpots on a face likewise. Symmetrically placed points decouple stretching,
+torsion and the two bendings, and each is a `Plane` of its own.
 """
 
 from dataclasses import dataclass
@@ -20,13 +20,13 @@ from cases.material.calibrate import calibrate
 from cases.material.face import face_points
 from cases.schema.scene import Scene
 
-#: Freedoms that move together, by the kinematics.
+#: Degrees of freedom that are coupled by the kinematics.
 PLANES = {"none": ((0,), (1,), (2,)), "small": ((1,), (4,), (0, 5), (2, 3))}
 
 
 @dataclass(frozen=True)
 class Row:
-    """A row of N blocks between two ends, in all six freedoms; SI units.
+    """A row of N blocks between two ends, in all six degrees of freedom; SI units.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Row:
     inertia : float array [6], mass (kg) and moments of inertia (kg m2) of a block.
     stiffness, viscosity : float arrays [N + 1, 6, 6] of the contacts, the ends included.
     dashpot : float array [6, 6] of the massless face of a matched end.
-    ends : what holds the start and the end.
+    ends : supports of the start and the end.
     mass_damping : alpha of mass-proportional damping, 1/s.
     """
 
@@ -54,7 +54,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Plane:
-    """The c freedoms of every block that move together, and the N + 1 contacts between them.
+    """The c coupled degrees of freedom of every block, and the N + 1 contacts between them.
 
     Coordinates are the motions of the start's face, the N blocks and the end's face, c each.
 
@@ -62,10 +62,10 @@ class Plane:
     ----------
     freedoms : which of the six.
     mass : float array [N c], of the blocks; the faces have none.
-    relative : float array [(N + 1) c, (N + 2) c], relative motion of the contacts by coordinates.
+    relative : float array [(N + 1) c, (N + 2) c], relative motion of the contacts per coordinate.
     stiffness, viscosity : float arrays [(N + 1) c, (N + 1) c] of the contacts.
     dashpot : float array [c, c] of a matched end's face.
-    matched : whether the face of the start and of the end is carried by that dashpot, else held.
+    matched : whether the face of the start and of the end is on that dashpot, else held.
     mass_damping : alpha, 1/s.
     """
 
@@ -94,7 +94,7 @@ class Plane:
 
 
 def row(scene: Scene) -> Row:
-    """Return the scene's row of blocks; slip, opening and softening are left out."""
+    """Return the scene's row of blocks, without slip, opening and softening."""
     p, kinds = calibrate(scene), (scene.ends.start, scene.ends.end)
     points = face_points(scene.pillar.side, scene.joints.contact_points, scene.joints.point_rule)
     half = face_matrix(points, 2 * p.regular_stiffness, 2 * p.regular_shear_stiffness)
@@ -119,7 +119,7 @@ def row(scene: Scene) -> Row:
 
 
 def face_matrix(points: tuple, normal: float, shear: float) -> np.ndarray:
-    """Return what a face resists by, [6, 6]: forces and moments at its centre by its motion.
+    """Return the resistance of a face, [6, 6]: forces and moments at its centre per unit motion.
 
     points : x, z (m) and area (m2) of the contact points; normal, shear : stiffness (Pa/m) or
     impedance (Pa s/m) per unit area.
@@ -134,14 +134,14 @@ def face_matrix(points: tuple, normal: float, shear: float) -> np.ndarray:
 
 
 def to_face(h: float) -> np.ndarray:
-    """Return the motion of a face by that of its block, [6, 6]; h (m) from the centroid along y."""
+    """Return the matrix [6, 6] from block to face motion; h (m) from the centroid along y."""
     matrix = np.eye(6)
     matrix[0, 5], matrix[2, 3] = -h, h
     return matrix
 
 
 def plane(row: Row, freedoms: tuple[int, ...]) -> Plane:
-    """Return the part of the row that moves in these freedoms."""
+    """Return the part of the row that moves in these degrees of freedom."""
     n, c, own = row.block_count, len(freedoms), np.ix_(freedoms, freedoms)
     start, end = (kind == "matched" for kind in row.ends)
     return Plane(
@@ -157,7 +157,7 @@ def plane(row: Row, freedoms: tuple[int, ...]) -> Plane:
 
 
 def _relative(n: int, c: int, left_face: np.ndarray, right_face: np.ndarray) -> np.ndarray:
-    """Return the contacts' relative motions by the coordinates of a plane."""
+    """Return the matrix from the coordinates of a plane to the contacts' relative motions."""
     matrix, j = np.zeros((n + 1, c, n + 2, c)), np.arange(n)
     matrix[j, :, j + 1, :] = left_face
     matrix[j + 1, :, j + 1, :] = -right_face

@@ -1,12 +1,12 @@
-"""The row of rigid blocks in space, exact in time: what the rigid-block engine discretises.
+"""The row of rigid blocks in space, exact in time: the equations of the rigid-block engine.
 
 Stretching, torsion and the two bendings of `spatial`, as first-order systems (`spatial_system`) by
-matrix exponentials. The solution is a sum: what the load does from rest, the static state under
-gravity (or what gravity does that acts suddenly), and the state under the prestress. Only the
-planes that something drives are solved.
+matrix exponentials. The solution is a sum: the response to the load from rest, the static state
+under gravity (or the response to suddenly applied gravity), and the state under the prestress. Only
+planes that are excited are solved.
 
-Holds for loads of any direction, eccentricity or couple, shaken bases, soft layers, dashpots,
-mass-proportional damping, any ends, gravity and prestress; every joint carries tension and holds.
+Valid for loads of any direction, eccentricity or couple, shaken bases, soft layers, dashpots,
+mass-proportional damping, any ends, gravity and prestress; no joint opens, slips or softens.
 """
 
 import numpy as np
@@ -83,7 +83,7 @@ def solve(scene: Scene) -> xr.Dataset:
 
 
 def drive_vector(scene: Scene) -> np.ndarray:
-    """Return the force and moment [6] at the start face's centre by an end stress of 1 Pa."""
+    """Return the force and moment [6] at the start face's centre under an end stress of 1 Pa."""
     load, vector = scene.load, np.zeros(6)
     if scene.shakes_base:
         return vector
@@ -96,7 +96,7 @@ def drive_vector(scene: Scene) -> np.ndarray:
 
 
 def falling(scene: Scene) -> np.ndarray:
-    """Return the acceleration of gravity in all six freedoms, m/s2."""
+    """Return the acceleration of gravity in all six degrees of freedom, m/s2."""
     gravity, vector = scene.gravity, np.zeros(6)
     if gravity is not None:
         vector[:3] = gravity.acceleration * np.array(gravity.direction)
@@ -123,7 +123,7 @@ def _receivers(scene: Scene, parts: SpatialSystem, c: int, times: np.ndarray) ->
 
 
 def _rows(scene: Scene, parts: SpatialSystem, c: int) -> tuple[np.ndarray, tuple[int, int]]:
-    """Return what the receivers read of a state, and how many rows are forces and displacements."""
+    """Return the matrix from state to receivers, and its numbers of force and displacement rows."""
     record = scene.record
     contacts = _contacts(scene)
     points = _read((contacts[1:] + contacts[:-1]) / 2, record.velocity, c)
@@ -133,7 +133,7 @@ def _rows(scene: Scene, parts: SpatialSystem, c: int) -> tuple[np.ndarray, tuple
 
 
 def _contacts(scene: Scene) -> np.ndarray:
-    """Return where the N + 1 contacts lie, m."""
+    """Return the positions of the N + 1 contacts, m."""
     count = scene.pillar.block_count
     return scene.pillar.length / count * np.arange(count + 1)
 

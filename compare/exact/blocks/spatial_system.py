@@ -6,9 +6,9 @@ stiffness D and viscosity C of the contacts, and alpha of mass-proportional damp
     M u'' + alpha M u' + [B^T (D r + C r')]_u = load + M gravity
     Z w' + [B^T (D r + C r')]_w = 0            on a matched end's massless face
 
-while a held face stands, or moves with the base. The contact j pushes what is right of it by
--(D r + C r'). States are mass-weighted, and displacements are w times as large, so that the
-entries of A are of one size.
+while a held face is at rest, or moves with the base. The contact j exerts -(D r + C r') on its
+right side. States are mass-weighted, and displacements are scaled by w, so that the entries of A
+are of similar magnitude.
 """
 
 from math import sqrt
@@ -20,12 +20,12 @@ from compare.exact.blocks.spatial import Plane
 
 
 class SpatialSystem(NamedTuple):
-    """The first-order form of one plane, n = N c freedoms of the blocks in m states.
+    """The first-order form of one plane, n = N c degrees of freedom of the blocks in m states.
 
     matrix, load, gravity : A [m, m] (1/s), b [m] of a unit drive, g [m].
-    displacement, velocity : float arrays [n, m], of the blocks by the state; m, m/s (rad, rad/s).
-    forces, direct : [(N + 1) c, m] and [(N + 1) c], what the contacts and the drive at the start
-        push what is right of them by, by the state and by a unit drive; N (N m).
+    displacement, velocity : float arrays [n, m], from the state to the blocks' motion; m, m/s (rad,
+        rad/s). forces, direct : [(N + 1) c, m] and [(N + 1) c], forces (N, N m) of the contacts and
+        of the drive at the start on their right side, per state and per unit drive.
     """
 
     matrix: np.ndarray
@@ -44,9 +44,9 @@ def system(
 
     Parameters
     ----------
-    push : float array [c], forces and moments at the centre of the start's face by a unit drive.
+    push : float array [c], forces and moments at the centre of the start's face per unit drive.
     gravity : float array [c], acceleration of every block, m/s2.
-    base : float array [c], velocity of the start's held face by a unit drive; None: it stands.
+    base : float array [c], velocity of the start's held face per unit drive; None: at rest.
     """
     n, c, q, f = len(plane.mass), len(push), plane.blocks, plane.faces
     B, D, C = plane.relative, plane.stiffness, plane.viscosity
@@ -71,9 +71,9 @@ def system(
 
 
 def _coordinates(plane: Plane, base: np.ndarray | None) -> tuple[np.ndarray, ...]:
-    """Return the coordinates and their rates [(N + 2) c, m] by the state: displacements and
-    velocities of the blocks, displacements of the matched faces, then of the base if it moves; and
-    the rates [(N + 2) c] by a unit drive. The faces' rates follow from their balance.
+    """Return the matrices [(N + 2) c, m] from the state to the coordinates and to their rates, and
+    the rates [(N + 2) c] per unit drive. A state holds displacements and velocities of the blocks,
+    displacements of the matched faces and of a moving base. Balance gives the faces' rates.
     """
     n, q, f = len(plane.mass), plane.blocks, plane.faces
     count, size = plane.relative.shape[1], 2 * n + len(f) + (base is not None)
@@ -88,7 +88,7 @@ def _coordinates(plane: Plane, base: np.ndarray | None) -> tuple[np.ndarray, ...
 def at_rest(system: SpatialSystem) -> np.ndarray:
     """Return the state [m] in which the blocks rest under gravity; an end must be fixed.
 
-    The base, if there is one, stands at zero: its state has a row without entries.
+    The base, if there is one, is at zero: its row of the matrix has no entries.
     """
     moves = system.matrix.any(axis=1)
     state = np.zeros(len(moves))

@@ -6,12 +6,12 @@ the rock and the incident stress sigma_I (Zhao & Cai, Rock Mech. Rock Eng. 34, 2
     (Z / 2) e'(s) sigma_T' = sigma_I - sigma_T,   sigma_R = sigma_T - sigma_I
 
 with the hyperbola of Bandis et al. (1983) e' = 1 / (k_ni (1 + s / (k_ni d_m))^2), and 1 / k_ni
-where s pulls, each less the compliance that the rock has without this joint. What passes is
-integrated by Runge-Kutta of order 8 (Dormand & Prince) from break to break of the load: the
-equation forgets its errors, and a run of a thousandth of the accuracy shows their size.
+where s is tensile, each minus the compliance that the rock has without this joint. The transmitted
+stress is integrated by Runge-Kutta of order 8 (Dormand & Prince) from break to break of the load:
+errors decay, and a run with a thousand times the tolerance shows their size.
 
-Holds for one such joint in the homogenised bar, as `one_joint` does, without dashpots, or alone in
-intact rock that a P wave crosses along a periodic strip.
+Valid for one such joint in the homogenised bar, as `one_joint`, without dashpots, or as the only
+joint in intact rock crossed by a P wave along a periodic strip.
 """
 
 from dataclasses import dataclass
@@ -31,8 +31,8 @@ from compare.exact.joint.one_joint import back_in_time, behind_and_before
 from compare.solvers.record import JOINTED, Answer, Kind, Rock, Solver, Words, no, thin
 
 HELD = ("closure", "prestress", "soft layers", "stiff layers")
-TOLERANCES = (1e-12, 1e-9)  # of the solution and of its twin, of the largest stress
-SAMPLES, SHORTEST = 2001, 1e-9  # of the load, whose peak is looked for; s, of an integration
+TOLERANCES = (1e-12, 1e-9)  # of the solution and its twin, relative to the largest stress
+SAMPLES, SHORTEST = 2001, 1e-9  # of the load to find its peak; s, of an integration
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class ClosingJoint:
     prestress: float = 0.0
 
     def closure(self, stress: np.ndarray) -> np.ndarray:
-        """Return e (m) of a stress (Pa)."""
+        """Return e (m) at a stress (Pa)."""
         pressed, most = np.maximum(stress, 0.0), self.stiffness * self.maximum
         return (
             self.maximum * pressed / (most + pressed)
@@ -62,7 +62,7 @@ class ClosingJoint:
 
 
 def applies(scene: Scene) -> Answer:
-    """Return whether one joint that stiffens is all that the waves meet within the duration."""
+    """Return whether the waves meet only one joint that stiffens within the duration."""
     p = calibrate(scene)
     stiffens = np.zeros(len(p.stiffness), dtype=bool)
     if p.maximum_closure is not None:
@@ -106,8 +106,8 @@ def the_joint(scene: Scene, p: Properties) -> ClosingJoint:
 
 
 class Passed:
-    """sigma_T (Pa) and its impulse (Pa s), both over a factor, at any times up to `end` (s), for
-    the incident stress factor times the load.
+    """sigma_T (Pa) and its impulse (Pa s), both divided by a factor, at any times up to `end` (s),
+    for an incident stress of factor times the load.
 
     impedance : Z, Pa s/m. tolerance : of each step, of the largest incident stress.
     """

@@ -3,14 +3,14 @@
 Harmonic, kappa = K/(Z omega): |T| = 2 kappa/sqrt(4 kappa^2 + 1), |R| = 1/sqrt(4 kappa^2 + 1); a
 dashpot c_j takes K to K + i omega c_j (Schoenberg, JASA 68, 1980; Pyrak-Nolte, Myer & Cook, JGR
 95, 1990). In time (Z/2K) sigma_T' + sigma_T = sigma_I, sigma_R = sigma_T - sigma_I. A dashpot of
-time constant eta passes the share eta/tau at once and smooths the rest with tau = eta + Z/2K:
+time constant eta passes the share eta/tau without delay, smoothing the rest with tau = eta + Z/2K:
 
     sigma_T = (eta/tau) sigma_I + (1 - eta/tau) s,   tau s' + s = sigma_I
 
-Holds for the homogenised bar without rock damping, one soft layer, a quiet or matched far end;
-behind a quiet or matched start for all times, behind a free one until a wave reflected by the
-layer has been back to the start and reached a receiver again. On the layer itself velocity is the
-mean of both sides.
+Valid for the homogenised bar without rock damping, one soft layer, a quiet or matched far end; with
+a quiet or matched start at all times, with a free one until a wave reflected by the layer has been
+reflected again at the start and reached a receiver. On the layer itself velocity is the mean of
+both sides.
 """
 
 from collections.abc import Callable
@@ -44,7 +44,7 @@ class Joint(NamedTuple):
 
 
 def applies(scene: Scene) -> Answer:
-    """Return whether one joint is all that the waves meet within the scene's duration."""
+    """Return whether the waves meet only one joint within the scene's duration."""
     p = calibrate(scene)
     compliance = p.excess_compliance
     answer = holds(
@@ -58,7 +58,7 @@ def applies(scene: Scene) -> Answer:
 
 
 def back_in_time(scene: Scene, joint_y: float, speed: float) -> Answer:
-    """Return whether what a joint at y (m) reflects is back at no receiver by a free start."""
+    """Return whether no reflection of a joint at y (m) reaches a receiver from a free start."""
     nearest = min([*scene.record.stress, *scene.record.velocity])
     back = (2 * joint_y + nearest) / speed
     if scene.ends.start != "free" or back >= scene.time.duration:
@@ -77,8 +77,8 @@ def solve(scene: Scene) -> xr.Dataset:
 def behind_and_before(
     scene: Scene, name: str, joint_y: float, passed: Passes, twin: Passes
 ) -> xr.Dataset:
-    """Return the result of a solver whose joint at y (m) passes what `around` takes; twin : another
-    that passes as much but for its errors."""
+    """Return the result of a solver for a joint at y (m) with the transmission `passed` (`around`);
+    twin : a second computation of it whose difference bounds the error."""
     p, load, times = calibrate(scene), load_history(scene), sample_times(scene)
     found = []
     for one in (passed, twin):
@@ -101,7 +101,7 @@ def around(
 ) -> np.ndarray:
     """Return the waves around a joint between half-spaces, in front of it, on it and behind it.
 
-    passed : sigma_T (Pa) and its impulse (Pa s) at equally spaced times at the joint (s), by the
+    passed : sigma_T (Pa) and its impulse (Pa s) at equally spaced times at the joint (s), under the
         incident stress `load`; joint_y, places in m, speed in m/s.
     The result is [there and back, stress and impulse, place, time].
     """

@@ -1,7 +1,7 @@
 """A plane shear wave at a joint under rate-and-state friction, by Runge-Kutta of order 8.
 
-Pressed by n, the joint carries s where its faces slide at V in the state theta (Dieterich 1979;
-Ruina 1983; Rice & Ben-Zion 1996):
+Under the pressure n the joint carries s while its faces slide at V in the state theta (Dieterich
+1979; Ruina 1983; Rice & Ben-Zion 1996):
 
     V = 2 V_0 sinh(s / (a n)) e^(-psi / a),   psi = mu_0 + b ln(V_0 theta / D_c),
     theta' = 1 - |V| theta / D_c.
@@ -11,9 +11,9 @@ the joint adds to the rock,
 
     (Z / 2) (s' / K + V) = sigma_I - s.
 
-Where 1/K = 0 that is an equation for s at every time, monotone and convex for s > 0, which Newton's
-method solves from above. The slip u = s / K + S, S' = V, gives the impulse of what passes: that of
-sigma_I less Z u / 2.
+Where 1/K = 0 that is an equation for s at every time, monotone and convex for s > 0, solved by
+Newton's method from above. The slip u = s / K + S, S' = V, gives the transmitted impulse: that of
+sigma_I minus Z u / 2.
 """
 
 from itertools import pairwise
@@ -26,13 +26,13 @@ from cases.material.calibrate import Properties
 
 SPANS = 500  # of the whole time: no step is longer than one
 SHORTEST = 1e-12  # s, of a part of the time
-LARGE = 300.0  # ln of a rate that only a step too long meets
+LARGE = 300.0  # ln of a rate that occurs only in too long a step
 MOST, SETTLED = 100, 1e-15  # corrections of Newton's method, and the last one, relative
 
 
 class RateJoint(NamedTuple):
-    """A joint under the pressure n, Pa: mu_0, a and b, D_c (m), V_0 (m/s), theta_0 (s), and the
-    compliance 1/K that it adds, m/Pa."""
+    """A joint under the pressure n, Pa: mu_0, a and b, D_c (m), V_0 (m/s), theta_0 (s), and its
+    additional compliance 1/K, m/Pa."""
 
     pressure: float
     friction: float
@@ -44,17 +44,17 @@ class RateJoint(NamedTuple):
     compliance: float = 0.0
 
     def scaled(self, factor: float) -> "RateJoint":
-        """Return the joint for stresses and slips less by this factor."""
+        """Return the joint for stresses and slips divided by this factor."""
         names = ("pressure", "distance", "rate")
         return self._replace(**{name: getattr(self, name) / factor for name in names})
 
     def offset(self, log_state: Any) -> Any:
-        """Return ln V_0 - psi / a of ln theta."""
+        """Return ln V_0 - psi / a at ln theta."""
         aged = np.log(self.rate / self.distance) + log_state
         return np.log(self.rate) - (self.friction + self.evolution * aged) / self.direct
 
     def slides(self, stress: Any, log_state: Any) -> Any:
-        """Return V (m/s) of s (Pa) and ln theta."""
+        """Return V (m/s) at s (Pa) and ln theta."""
         x, offset = stress / (self.direct * self.pressure), self.offset(log_state)
         return np.exp(np.minimum(offset + x, LARGE)) - np.exp(np.minimum(offset - x, LARGE))
 
@@ -75,7 +75,7 @@ class RateJoint(NamedTuple):
 
 
 def rate_joint(p: Properties, j: int, pressure: float, compliance: float) -> RateJoint:
-    """Return joint j under a pressure (Pa), with the compliance (m/Pa) that it adds."""
+    """Return joint j under a pressure (Pa), with its additional compliance (m/Pa)."""
     names = (
         "friction",
         "direct_effect",
@@ -89,10 +89,10 @@ def rate_joint(p: Properties, j: int, pressure: float, compliance: float) -> Rat
 
 
 class RateStateWave:
-    """sigma_T (Pa) and its impulse (Pa s) at any times up to `end` (s), by the incident `load`.
+    """sigma_T (Pa) and its impulse (Pa s) at any times up to `end` (s), under the incident `load`.
 
-    impedance : Z, Pa s/m. tolerance : of each step of the integration, relative. rest : s, how
-    long the faces rest before t = 0.
+    impedance : Z, Pa s/m. tolerance : of each step of the integration, relative. rest : time of
+    stationary contact before t = 0, s.
     """
 
     def __init__(
@@ -116,9 +116,7 @@ class RateStateWave:
         self.parts: list[tuple[float, float, Any]] = []
         now = np.array([0.0, np.log(joint.state + rest + first), 0.0])
         for part in pairwise(edges):
-            with np.errstate(
-                over="ignore", invalid="ignore"
-            ):  # steps that are tried, and are too long
+            with np.errstate(over="ignore", invalid="ignore"):  # of trial steps that are too long
                 found = solve_ivp(
                     self._rate, part, now, "DOP853", dense_output=True, max_step=span,
                     rtol=tolerance, atol=small,
@@ -132,7 +130,7 @@ class RateStateWave:
         stress = now[2]
         if joint.compliance == 0:
             stress = joint.carries(incident, now[1], self.impedance)
-            # From the balance of stresses: no digits are lost where the joint carries little less.
+            # From the balance of stresses: no cancellation where the joint carries almost sigma_I.
             slides = joint.slides(stress, now[1])
             return np.array([slides, np.exp(-now[1]) - abs(slides) / joint.distance, 0.0])
         slides = joint.slides(stress, now[1])

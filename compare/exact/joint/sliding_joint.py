@@ -6,14 +6,14 @@ shear impedance Z and the compliance 1/K that the joint adds to the rock
     (Z / 2K) s' = sigma_I - s while |s| < tau or |s| is about to fall,   s' = 0 while it slips;
     sigma_T = s,   sigma_R = s - sigma_I,   slip rate 2 (sigma_I - s) / Z
 
-and a joint as stiff as the others is rigid before it slips: s = sigma_I, cut off at +-tau (Miller,
+and a joint as stiff as the others is rigid before it slips: s = sigma_I, clipped at +-tau (Miller,
 Bull. Seism. Soc. Am. 68, 1978, for the harmonic wave). s leaves the linear solution only where it
-reaches tau while |sigma_I| > tau, once between two crossings of sigma_I with +-tau, and clings to
-tau up to the next; from crossing to crossing it is integrated exactly. Where slip weakens the
+reaches tau while |sigma_I| > tau, once between two crossings of sigma_I with +-tau, and stays at
+tau until the next; between crossings it is integrated exactly. Where slip weakens the
 joint, `compare.exact.joint.worn_joint` integrates it, and `compare.exact.joint.rate_state_joint`
 where its friction depends on the rate of slip.
 
-Holds for blocks that do not turn, a load across the axis, ends that absorb, one joint with cohesion
+Valid for blocks that do not rotate, a load across the axis, absorbing ends, one joint with cohesion
 or with friction under the prestress, and all else elastic and undamped.
 """
 
@@ -46,15 +46,15 @@ HELD = ("spatial motion", "prestress", "fixed start", *WORN, *LAYERS)
 _gauss = cache(leggauss)
 ROUND_OFF = 1e-11  # of the largest waveform: the roots' tolerance
 TOLERANCES = 1e-11, 1e-9  # of the integration where slip weakens the joint, and of its twin
-FORGOTTEN = 40.0  # time constants after which exp has lost all digits
+FORGOTTEN = 40.0  # time constants after which exp is below round-off
 
 
 class SlipJoint(NamedTuple):
-    """A joint: y (m), the compliance 1/K that it adds (m/Pa), its strength tau (Pa), and the path
-    of slip (m) that leaves the dynamic one (Pa).
+    """A joint: y (m), its additional compliance 1/K (m/Pa), its strength tau (Pa), and the slip
+    path (m) over which it falls to the dynamic one (Pa).
 
-    friction, dynamic_friction : tan(phi) of both. dilation, dilation_distance : tan(psi) at first,
-    and the path (m) that leaves none.
+    friction, dynamic_friction : tan(phi) of both. dilation, dilation_distance : initial tan(psi),
+    and the slip path (m) over which it falls to 0.
     """
 
     y: float
@@ -69,29 +69,29 @@ class SlipJoint(NamedTuple):
 
     @property
     def fall(self) -> float:
-        """What the strength loses per path, Pa/m."""
+        """Loss of strength per slip path, Pa/m."""
         return (self.strength - self.dynamic) / self.distance
 
     def left(self, path: Any) -> Any:
-        """Return the strength (Pa) after a path of slip (m)."""
+        """Return the strength (Pa) after a slip path (m)."""
         return self.strength - self.fall * np.minimum(path, self.distance)
 
     def friction_at(self, path: Any) -> Any:
-        """Return tan(phi) after a path of slip (m)."""
+        """Return tan(phi) after a slip path (m)."""
         fall = (self.friction - self.dynamic_friction) / self.distance
         return self.friction - fall * np.minimum(path, self.distance)
 
     def lift(self, path: Any) -> Any:
-        """Return what a path of slip (m) opens the joint by, m."""
+        """Return the opening of the joint by dilation after a slip path (m), m."""
         way = np.minimum(path, self.dilation_distance)
         return self.dilation * way * (1 - way / self.dilation_distance / 2)
 
     def lift_rate(self, path: Any) -> Any:
-        """Return the rate of that with the path."""
+        """Return the derivative of `lift` with respect to the path."""
         return self.dilation * np.maximum(1 - path / self.dilation_distance, 0.0)
 
     def scaled(self, factor: float) -> "SlipJoint":
-        """Return the joint for stresses and slips less by this factor: both are homogeneous."""
+        """Return the joint for stresses and slips divided by this factor; both scale alike."""
         names = ("strength", "dynamic", "distance", "dilation_distance")
         return self._replace(**{name: getattr(self, name) / factor for name in names})
 
@@ -120,7 +120,7 @@ def applies(scene: Scene) -> Answer:
 
 
 def _against_rate(scene: Scene, p: Properties) -> Iterator[tuple[bool, str]]:
-    """Yield what is against the solution of a joint whose friction depends on the rate."""
+    """Yield conditions that exclude the solution of a joint with rate-dependent friction."""
     if p.direct_effect is not None:
         rated = p.direct_effect > 0
         holds_still = p.cohesion is not None and bool(p.cohesion[rated].any())
@@ -188,8 +188,8 @@ def solve(scene: Scene) -> xr.Dataset:
 def _lifted(
     scene: Scene, p: Properties, joint_y: float, worn: Any, enters: float, waves: dict
 ) -> dict[str, np.ndarray]:
-    """Return stress, velocity and displacement with the pressure that the joint sends off along the
-    axis on both sides as slip lifts it; waves : what it sends along itself."""
+    """Return stress, velocity and displacement with the pressure waves that the joint radiates
+    along the axis on both sides as it dilates; waves : those of the shear wave."""
     times = sample_times(scene)
 
     def pressure(places: list[float]) -> np.ndarray:
@@ -204,15 +204,14 @@ def _lifted(
 
 
 def _finer(times: np.ndarray, parts: int) -> np.ndarray:
-    """Return equally spaced times with each interval cut into so many parts."""
+    """Return equally spaced times with each interval divided into `parts`."""
     count = parts * (len(times) - 1) + 1
     return times[0] + (times[1] - times[0]) / parts * np.arange(count)
 
 
 def _bound(one: np.ndarray, twin: np.ndarray) -> np.ndarray:
-    """Return the bound of the error of waveforms [receiver, n, axis], or [receiver, n], whose twin
-    has half as long intervals, in which it integrates and seeks where the joint begins and ends to
-    slip."""
+    """Return the error bound of waveforms [receiver, n, axis], or [receiver, n], from a twin that
+    integrates, and locates the beginning and end of slip, in intervals of half the length."""
     peak = np.abs(one).max(initial=0.0)
     own, other = (np.moveaxis(x, 1, -1) for x in (one, twin))
     return bound(own, other) + ROUND_OFF * peak
@@ -261,8 +260,8 @@ def transmitted(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return sigma_T (Pa) and its impulse (Pa s) at the joint for the incident stress `load`.
 
-    `times` increase and begin before the load does; between two of them it crosses each of +-tau
-    at most once.
+    `times` increase and begin before the load does; between two of them the load crosses each of
+    +-tau at most once.
     """
     tau, relaxation = joint.strength, impedance * joint.compliance / 2
     nodes = _nodes(load, times, tau)

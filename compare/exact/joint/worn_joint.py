@@ -1,16 +1,16 @@
 """A plane shear wave at a joint that slip changes, by Runge-Kutta of order 8.
 
-With the path S of the slip and the strength tau(S), that falls by h per path, the joint carries s:
+With the slip path S and the strength tau(S), which falls by h per path, the joint carries s:
 
     sticking: (Z / 2K) s' = sigma_I - s;   sliding along s: s = +-tau(S),
     (Z / 2) (1 - h / K) S' = |sigma_I| - tau(S),
 
-each phase from where the one before ends: at |s| = tau(S), at S' = 0, at the end of the weakening.
-Where 1/K = 0, s = sigma_I while it sticks. The slip u = s / K +- S gives the impulse of what
-passes: that of sigma_I less Z u / 2.
+each phase starting where the previous one ends: at |s| = tau(S), at S' = 0, at the end of the
+weakening. Where 1/K = 0, s = sigma_I while it sticks. The slip u = s / K +- S gives the transmitted
+impulse: that of sigma_I minus Z u / 2.
 
-A joint with 1/K = 0 that slip lifts by w(S) sends off a wave of pressure p = (Z_n / 2) w'(S) S' on
-both sides, Z_n along the normal, and carries mu(S) p more:
+A joint with 1/K = 0 that dilates by w(S) radiates a wave of pressure p = (Z_n / 2) w'(S) S' to
+both sides, Z_n along the normal, and its strength rises by mu(S) p:
 
     (Z / 2 + mu w' Z_n / 2) S' = |sigma_I| - tau(S);   the impulse of p is Z_n w / 2.
 """
@@ -26,12 +26,12 @@ from compare.exact.joint.sliding_joint import SlipJoint
 
 SPANS = 2000  # of the whole time, in each of which at most one phase ends
 SHORTEST = 1e-12  # s, of a part of the time
-NEAR = 1e-12  # of a strength: what two phases that meet may differ by
+NEAR = 1e-12  # of a strength: tolerated jump between two consecutive phases
 
 
 class Phase(NamedTuple):
-    """start, end : s. way : +-1 where it slides, 0 where it sticks. path, slide : S and what has
-    slid, signed, at its start, m. state : of time to s (Pa) or S (m); None where s = sigma_I."""
+    """start, end : s. way : +-1 where it slides, 0 where it sticks. path, slide : S and the signed
+    slip at its start, m. state : function of time to s (Pa) or S (m); None where s = sigma_I."""
 
     start: float
     end: float
@@ -42,10 +42,10 @@ class Phase(NamedTuple):
 
 
 class Passed:
-    """sigma_T (Pa) and its impulse (Pa s) at any times up to `end` (s), by the incident `load`.
+    """sigma_T (Pa) and its impulse (Pa s) at any times up to `end` (s), under the incident `load`.
 
     impedance : Z, Pa s/m. tolerance : of each step of the integration, relative. normal_impedance :
-    Z_n, Pa s/m, of a joint that slip lifts.
+    Z_n, Pa s/m, of a joint that dilates.
     """
 
     def __init__(
@@ -79,7 +79,7 @@ class Passed:
         return pressure, self.normal_impedance * self.joint.lift(path) / 2
 
     def _at(self, times: np.ndarray) -> np.ndarray:
-        """Return s, what has slid, S and p at times [4, n]."""
+        """Return s, the signed slip, S and p at times [4, n]."""
         found = np.zeros((4, *np.shape(times)))
         for phase in self.phases:
             own = (times > phase.start) & (times <= phase.end)
@@ -91,7 +91,7 @@ class Passed:
         return found
 
     def _within(self, phase: Phase, t: np.ndarray) -> np.ndarray:
-        """Return s, what has slid, S and p at times of a phase [4, n]."""
+        """Return s, the signed slip, S and p at times of a phase [4, n]."""
         none = np.zeros(np.shape(t))
         if not phase.way:
             stress = self.load.value(t) if phase.state is None else phase.state(t)[0]
@@ -114,7 +114,7 @@ class Passed:
         return 2 * (incident - joint.left(path)) / resistance
 
     def _next(self, start: float, stop: float) -> float:
-        """Add the phase that begins at `start`, and return where it ends, by `stop`."""
+        """Add the phase that begins at `start`, and return its end, at most `stop`."""
         stress, path, slide = 0.0, 0.0, 0.0
         if self.phases:
             last = self.phases[-1]
@@ -180,7 +180,7 @@ class Passed:
     def _solved(
         self, rate: Callable, start: float, stop: float, now: float, scale: float, *ends: Callable
     ) -> Any:
-        """Return a phase from `now` on that ends where its events fall from above or rise to 0."""
+        """Return the solution from `now` on, ending where an event falls or rises to 0."""
         from scipy.integrate import solve_ivp
 
         for event in ends:

@@ -1,4 +1,4 @@
-"""The motion in time behind a transfer function H(omega), by FFT with an exponential window.
+"""The motion in time of a transfer function H(omega), by FFT with an exponential window.
 
 With F the transform of the pulse f, along any path from 0 to infinity on which F H is analytic,
 
@@ -6,15 +6,15 @@ With F the transform of the pulse f, along any path from 0 to infinity on which 
 
 Here it runs at the height i decay, in bins of 2 pi / window (Wilcox, Int. J. Elect. Eng. Educ. 15,
 1978; Kausel & Roesset, JEM 118, 1992). A causal H is real on the imaginary axis, where the path can
-begin without a share of its own, and one point in the middle of each bin is the midpoint rule of a
-function without ends. Where waves are evanescent H jumps at Re(omega) = 0, its response begins
-before its cause and dies off as a power of time, and between joints it has poles near the imaginary
-axis. There the path climbs from 0 by a slope of Gauss points of its own, and GAUSS points in each
-bin keep the tails from wrapping; an FFT sums over all bins at once for one point in each.
+begin without a contribution of its own, and one point in the middle of each bin is the midpoint
+rule on an infinite interval. Where waves are evanescent H jumps at Re(omega) = 0, its response
+begins before its cause and decays as a power of time, and between joints it has poles near the
+imaginary axis. There the path climbs from 0 on a slope with Gauss points of its own, and GAUSS
+points in each bin avoid wrapping of the tails; one FFT per point sums over all bins.
 
-What comes after the window is reduced to WRAPPED of itself; frequencies end at pi / step, rounded
-off by exp(-36 (omega step / pi)^8). A rougher inversion, of half of the window and every second
-sample of the pulse, is off by more: SAFETY times the most that the two differ by within NEAR fine
+Motion after the window is reduced by the factor WRAPPED; frequencies end at pi / step, tapered by
+exp(-36 (omega step / pi)^8). A coarser inversion, with half of the window and every second sample
+of the pulse, has a larger error: SAFETY times the largest difference of the two within NEAR fine
 steps bounds the error, with FLOOR times the largest motion for round-off.
 """
 
@@ -24,14 +24,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-WINDOW = 2  # times what is asked for, in the rougher of the two inversions
+WINDOW = 2  # times the requested duration, in the coarser of the two inversions
 WRAPPED = 1e-11
-STEPS = 4096  # of the time that is asked for, at least, of a pulse that is a function
-GAUSS = 10  # points a bin
-SLOPE = 16  # bins, on which the path climbs
-CLIMB = 160  # points on them
+STEPS = 4096  # least number in the requested duration, of a pulse that is a function
+GAUSS = 10  # points per bin
+SLOPE = 16  # bins over which the path climbs
+CLIMB = 160  # points on the slope
 NEAR = 9  # fine steps
-SAFETY = 2.0  # on the difference of the two inversions
+SAFETY = 2.0  # factor on the difference of the two inversions
 FLOOR = 2e-10  # of the largest motion
 FAINT = 1e-9  # of a pulse's spectrum: the highest frequencies that `analytic_inverse` leaves out
 
@@ -40,7 +40,7 @@ Velocity = Callable[[np.ndarray], np.ndarray] | np.ndarray
 
 
 class Window(NamedTuple):
-    """Fine times (s) of a whole window, their step (s), steps a sample and the decay (1/s)."""
+    """Fine times (s) of a whole window, their step (s), steps per sample and the decay (1/s)."""
 
     times: np.ndarray
     step: float
@@ -56,11 +56,11 @@ class Window(NamedTuple):
 def inverse(
     transfer: Transfer, pulse: Velocity, times: np.ndarray, earliest: float, causal: bool
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return u [..., n] at `times` (s, equally spaced) and the bound of its root-mean-square error
+    """Return u [..., n] at `times` (s, equally spaced) and the bound on its root-mean-square error
     [...].
 
     transfer : H [..., k] at complex omega [k] (rad/s). pulse : f, as a function of time or as
-    samples at `times`, zero before the first. earliest : delay of what arrives first, s.
+    samples at `times`, zero before the first. earliest : delay of the first arrival, s.
     """
     from scipy.ndimage import maximum_filter1d
 
@@ -82,9 +82,9 @@ def inverse(
 def analytic_inverse(
     transfer: Transfer, pulse: Callable[[np.ndarray], np.ndarray], times: np.ndarray, causal: bool
 ) -> np.ndarray:
-    """Return (1/pi) int F H e^{-i omega t} d omega [..., n], whose real part is u, of a pulse that
-    nothing arrives before. As `inverse` has it, but without a bound, and of the pulse's spectrum
-    only what is not faint."""
+    """Return (1/pi) int F H e^{-i omega t} d omega [..., n], whose real part is u, for a pulse that
+    no arrival precedes; as `inverse`, but without a bound and without the frequencies at which the
+    pulse's spectrum is below FAINT."""
     require_equally_spaced(times)
     window = window_of(times, pulse, 2 * WINDOW, 0.0)
     found = _inverse(transfer, sampled(pulse, window), window, len(times), 1, causal, FAINT)
@@ -113,8 +113,8 @@ def window_of(times: np.ndarray, pulse: Velocity, size: float, lead: float) -> W
 
 
 def _inverse(transfer, signal, window, n, skip, causal, least=0.0) -> np.ndarray:
-    """Return what has the real part u, at the fine steps of n samples, by every `skip`-th fine
-    sample of the pulse."""
+    """Return the complex motion whose real part is u, at the fine steps of n samples, from every
+    `skip`-th fine sample of the pulse."""
     signal, keep = signal[::skip], slice(0, n * window.stride)
     if causal:
         return _level(transfer, signal, window, skip, 0.5, 0, least)[..., keep]
@@ -126,7 +126,7 @@ def _inverse(transfer, signal, window, n, skip, causal, least=0.0) -> np.ndarray
 
 
 def sampled(pulse: Velocity, window: Window) -> np.ndarray:
-    """Return f at the fine times, where it is known."""
+    """Return f at the fine times, zero where it is not given."""
     if callable(pulse):
         return np.asarray(pulse(window.times), dtype=float)
     return np.pad(np.asarray(pulse, dtype=float), (0, len(window.times) - len(pulse)))
@@ -135,8 +135,8 @@ def sampled(pulse: Velocity, window: Window) -> np.ndarray:
 def _level(
     transfer, signal, window: Window, skip: int, node: float, first: int, least: float
 ) -> np.ndarray:
-    """Return the integral over the level path from bin `first` on, with one point a bin, up to
-    where the spectrum is `least` of its largest."""
+    """Return the integral over the level path from bin `first` on, with one point per bin, up to
+    the frequency above which the spectrum is below `least` of its maximum."""
     t, step = window.times - window.times[0], skip * window.step
     width = window.bin_width
     omega = width * (np.arange(len(signal) // 2) + node) + 1j * window.decay

@@ -1,11 +1,11 @@
-"""A plane pulse among parallel joints at many places at once.
+"""A plane pulse among parallel joints, at many places together.
 
-In each layer the waves are four plane ones (`pulse`). One that travels is the same pulse everywhere
-in the layer, only later, so its amplitude is inverted once and read at each place by Lagrange's
+Each layer contains four plane waves (`pulse`). A travelling wave is the same pulse everywhere in
+the layer, only delayed, so its amplitude is inverted once and read at each place by Lagrange's
 polynomial through 2 HALF samples. An evanescent one decays with the depth d as e^{i omega q d}: it
-is inverted at the depths of the places or, where they are more than it takes, at the Chebyshev
-points between which it is interpolated in d (Trefethen, Approximation Theory and Approximation
-Practice, 2013). What follows a pulse without delay is summed in time, with all its kinks.
+is inverted at the depths of the places or, if there are many, at Chebyshev points, between which it
+is interpolated in d (Trefethen, Approximation Theory and Approximation Practice, 2013). The part
+that follows a pulse without delay is summed in time, with all its kinks.
 """
 
 from collections.abc import Callable, Iterator
@@ -17,7 +17,7 @@ from compare.exact.plane.inversion import STEPS, analytic_inverse
 from compare.exact.plane.pulse import Pulse, PulseStack, modes_of
 
 HALF = 4  # samples on either side
-MOST_NODES = 40  # depths of an evanescent wave in a layer, SPARE beyond what its decay asks for
+MOST_NODES = 40  # depths of an evanescent wave in a layer, SPARE more than its decay requires
 SPARE = 8
 NEGLIGIBLE = 1e-10  # of an evanescent wave
 FAINT = 1e-8  # of a pulse's spectrum
@@ -27,11 +27,11 @@ TOGETHER = 32  # places at which an evanescent wave is found together
 
 @dataclass(frozen=True)
 class LayerWave:
-    """One wave of one layer at the places where it is wanted.
+    """One wave of one layer at the places where it is evaluated.
 
     layer : counted along n. wave : of P+, SV+, P-, SV-. members : the places [k]. delays : of the
-    pulse at them [k], s. depths : of an evanescent wave, where it is inverted [d], m, and `shares`
-    [k, d] of these at the places; None of a wave that travels.
+    pulse at them [k], s. depths : those at which an evanescent wave is inverted [d], m, with their
+    weights `shares` [k, d] at the places; None for a travelling wave.
     """
 
     layer: int
@@ -77,7 +77,7 @@ def motion(
 
 
 def _highest(velocity: Callable, t: np.ndarray) -> float:
-    """Return the frequency above which a pulse has less than FAINT of its spectrum, rad/s."""
+    """Return the frequency above which a pulse's spectrum is below FAINT of its peak, rad/s."""
     step = (t[-1] - min(t[0], 0.0)) / STEPS
     spectrum = np.abs(np.fft.rfft(velocity(step * np.arange(STEPS))))
     last = int(np.flatnonzero(spectrum >= FAINT * spectrum.max())[-1])
@@ -85,7 +85,7 @@ def _highest(velocity: Callable, t: np.ndarray) -> float:
 
 
 def _waves_of(stack: PulseStack, places: np.ndarray, highest: float) -> Iterator[LayerWave]:
-    """Yield the waves of all layers that hold places (t, n) [m, 2]."""
+    """Yield the waves of all layers that contain places (t, n) [m, 2]."""
     axes, depths, evanescent = stack.axes, stack.depths, stack.is_evanescent
     lead = stack.lead.real
     layers = np.searchsorted(depths, places[:, 1])
@@ -107,8 +107,8 @@ def _waves_of(stack: PulseStack, places: np.ndarray, highest: float) -> Iterator
 
 
 def _depths(way: np.ndarray, decay: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return depths [d] at which what decays by e^{-decay d} or slower is known, and its shares
-    [k, d] at `way`. The Chebyshev coefficients of e^{-s x}, 0 to 1, fall as e^{-k^2 / s}."""
+    """Return depths [d] that resolve a decay by e^{-decay d} or slower, and their weights [k, d]
+    at `way`. The Chebyshev coefficients of e^{-s x}, 0 to 1, fall as e^{-k^2 / s}."""
     found, which = np.unique(np.round(way, 9), return_inverse=True)
     wanted = SPARE + np.sqrt(decay * (found[-1] - found[0]) * np.log(1 / NEGLIGIBLE))
     count = int(min(np.ceil(wanted), MOST_NODES))
@@ -122,7 +122,7 @@ def _depths(way: np.ndarray, decay: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _fine_times(stack: PulseStack, waves: list[LayerWave], t: np.ndarray) -> tuple[np.ndarray, int]:
-    """Return the times of amplitudes, s, and how many of their steps a step of `t` has."""
+    """Return the times of amplitudes, s, and the number of their steps per step of `t`."""
     late = np.concatenate([one.delays for one in waves])
     causal = not stack.is_evanescent
     start, dt = 0.0 if causal else min(0.0, t[0] - late.max()), t[1] - t[0]
@@ -138,9 +138,9 @@ def _amplitudes(
     waves: list[LayerWave],
     fine: np.ndarray,
 ) -> Iterator[np.ndarray]:
-    """Yield of each wave the amplitude beyond what follows at once, whose real part it is,
+    """Yield each wave's complex amplitude without the undelayed part (its real part is the motion),
     [1, samples], or those of an evanescent wave at its depths [d, samples]."""
-    q = stack.slownesses[0, 0]  # of P where that is evanescent: of one rock
+    q = stack.slownesses[0, 0]  # of P: where it is evanescent all rocks are the same
     sharp = np.concatenate(stack.at_once, axis=-1)
     causal = not stack.is_evanescent
     rows = [(one, d) for one in waves for d in (one.depths if one.depths is not None else [0.0])]
@@ -177,6 +177,6 @@ def _read(series: np.ndarray, offset: float, stride: int, count: int) -> np.ndar
 
 
 def _lagrange(x: float) -> np.ndarray:
-    """Return the weights of the samples at -HALF + 1 .. HALF for the place x in [0, 1)."""
+    """Return the weights of the samples at -HALF + 1 .. HALF for x in [0, 1)."""
     nodes = np.arange(-HALF + 1, HALF + 1)
     return np.array([np.prod([(x - m) / (k - m) for m in nodes if m != k]) for k in nodes])

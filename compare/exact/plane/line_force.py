@@ -1,4 +1,4 @@
-"""A line force in plane strain in rock without end (Achenbach, Wave Propagation in Elastic Solids,
+"""A line force in plane strain in unbounded rock (Achenbach, Wave Propagation in Elastic Solids,
 1973; Kausel, Fundamental Solutions in Elastodynamics, 2006).
 
 With gamma = x/r, s_c = sqrt(t^2 - r^2/c^2) from the arrival r/c on and 0 before, an impulse of
@@ -7,12 +7,12 @@ With gamma = x/r, s_c = sqrt(t^2 - r^2/c^2) from the arrival r/c on and 0 before
     2 pi rho G_ij = gamma_i gamma_j / (a^2 s_a) + (delta_ij - gamma_i gamma_j) / (b^2 s_b)
                     + (2 gamma_i gamma_j - delta_ij) (s_a - s_b) / r^2
 
-and a force f(t) the convolution of both. The delays (r/a) cosh(eta) up to the arrival of the S wave
-and (r/b) cosh(eta) from there on have no singular roots left, and
-s_a - s_b = (1/b^2 - 1/a^2) r^2 / (s_a + s_b) no cancellation; Gauss-Legendre points between the
-breaks of f do the rest, and the difference from half as many bounds the error. G is homogeneous of
-degree -1 in r and t, so that r dG/dr convolved with f is -(tau G) convolved with f', which gives
-strains and stresses. Holds for every place off the line and every time; stress tension positive.
+and a force f(t) displaces by the convolution of both. Substituting the delays (r/a) cosh(eta) up to
+the arrival of the S wave and (r/b) cosh(eta) after it removes the singular roots, and
+s_a - s_b = (1/b^2 - 1/a^2) r^2 / (s_a + s_b) avoids cancellation; the integrals use Gauss-Legendre
+points between the breaks of f, and the difference from half as many bounds the error. G is
+homogeneous of degree -1 in r and t, so that r dG/dr convolved with f is -(tau G) convolved with f',
+which gives strains and stresses. Valid at every place off the line; stress tension positive.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -25,14 +25,14 @@ from numpy.polynomial.legendre import leggauss
 from cases.material.rock import ElasticRock
 
 POINTS = 64  # of integration between two breaks
-SAFETY = 2.0  # on the difference from half of them
+SAFETY = 2.0  # factor on the difference from half of them
 FLOOR = 1e-13  # of the largest value
 
 Signal = Callable[[np.ndarray], np.ndarray]
 
 
 class LineForceMotion(NamedTuple):
-    """Motion at m places, arrays [m, components, times], and bounds [m, components] of its error at
+    """Motion at m places, arrays [m, components, times], and bounds [m, components] on its error at
     any time: x, y of displacement (m) and velocity (m/s); xx, yy, xy of stress (Pa, tension +)."""
 
     displacement: np.ndarray
@@ -52,14 +52,14 @@ def motion(
     offsets: np.ndarray,
     times: np.ndarray,
 ) -> LineForceMotion:
-    """Return the motion that a force per length of line makes.
+    """Return the motion caused by a force per length of line.
 
     Parameters
     ----------
     direction : of the force, unit vector [2].
     force, rate : f (N/m), continuous, and its rate (N/m/s), at times (s).
     breaks : ascending, s: f is 0 up to the first and from the last on (which may be inf), and
-        smooth between them, about one cycle at most; give more of them for a longer signal.
+        smooth between them, about one cycle at most; a longer signal needs more of them.
     offsets : of the places from the line, [m, 2], m.
     times : s, in any order.
     """
@@ -103,7 +103,7 @@ def _motion(rock, d, force, rate, breaks, x, t, points) -> np.ndarray:
 
 
 def _gradient(g, d, r, values, slopes) -> np.ndarray:
-    """Return the gradient of P g (g.d) + Q d, of the values and slopes over r of (P, Q)."""
+    """Return the gradient of P g (g.d) + Q d, from the values and slopes over r of (P, Q)."""
     (P, _), (P_r, Q_r) = values, slopes
     along, across = g @ d, np.eye(2) - np.outer(g, g)
     turned = along * across + np.outer(g, across @ d)
@@ -115,7 +115,7 @@ def _gradient(g, d, r, values, slopes) -> np.ndarray:
 
 
 def _pieces(rock: ElasticRock, r: float, breaks, t: np.ndarray, points: int) -> Iterator[tuple]:
-    """Yield which times (indices [k]) some delays tau [k, points] matter to, and the weights
+    """Yield the indices [k] of times that have delays tau, these [k, points], and the weights
     [(P, Q), k, points] of f(t - tau) there."""
     nodes, weights = leggauss(points)
     fast, slow = r / rock.p_speed, r / rock.s_speed

@@ -13,7 +13,7 @@ S = sin 2 phi, X = 2 s c,
     sliding:  Z_p C (1 + q_p) - Z_s S q_s = 0
               i omega Z_s (X (1 - q_p) - C q_s) = -2 K_s (a' (1 + q_p) + k q_s)
 
-and the same with the columns of SV. Amplitudes are those of particle velocity. Holds for every
+and the same with the columns of SV. Amplitudes are those of particle velocity. Valid for every
 angle below 90 degrees and every K from 0 (free faces) to inf (none).
 
 Between unlike half-spaces the sum and the difference d +- u of the waves before the joint follow
@@ -59,7 +59,7 @@ class Joint:
 
 
 class Coefficients(NamedTuple):
-    """Complex amplitudes of particle velocity over that of the incident wave."""
+    """Complex amplitudes of particle velocity, relative to the incident wave."""
 
     R_p: np.ndarray
     R_s: np.ndarray
@@ -82,8 +82,8 @@ def scattering(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the matrices R and T, complex arrays [..., out, in] in the order P, SV.
 
-    slowness : p along the joint, s/m, below 1/a for P to be a wave and below 1/b for SV. behind :
-    the rock beyond the joint; absent: the same.
+    slowness : p along the joint, s/m, below 1/a for travelling P waves and below 1/b for SV.
+    behind : the rock beyond the joint (default: the same).
     """
     if not (np.real(np.asarray(omega)) >= 0).all():
         raise ValueError("omega has a negative real part; conjugate the result of -conj(omega)")
@@ -113,7 +113,7 @@ def _between(
 
 
 def _softness(joint: Joint, omega: Values) -> list[np.ndarray]:
-    """Return i omega / (K - i omega eta), m/s of jump by 1 Pa, normal and in shear."""
+    """Return i omega / (K - i omega eta), velocity jump per traction (m/s/Pa), normal and shear."""
     found = []
     for K, eta in (
         (joint.normal_stiffness, joint.normal_viscosity),
@@ -147,9 +147,9 @@ def _weighed(traction, velocity, impedance, omega, joint, axis) -> tuple[np.ndar
 
 
 def layers_at_once(rocks: Sequence[ElasticRock], first: Joint, axes: Axes) -> Layers:
-    """Return what the first joint between layers of these rocks returns and passes without delay:
-    the limit of high frequencies, in which springs do not act. Where P is evanescent only the
-    incident wave is real.
+    """Return the reflection and transmission without delay at the first joint between layers of
+    these rocks: the limit of high frequencies, in which springs do not act. Where P is evanescent
+    only the incident wave is real.
     """
     down, up = np.zeros((2, len(rocks), 2))
     down[0] = axes.incident
@@ -163,7 +163,7 @@ def layers_at_once(rocks: Sequence[ElasticRock], first: Joint, axes: Axes) -> La
 
 
 def without_springs(joint: Joint) -> Joint:
-    """Return a joint with its dashpots only; infinite stiffness remains."""
+    """Return a joint with its dashpots only; infinite stiffness is kept."""
     K_n, K_s = (
         np.where(np.isinf(K), K, 0.0) for K in (joint.normal_stiffness, joint.shear_stiffness)
     )

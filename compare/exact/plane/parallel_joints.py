@@ -1,16 +1,16 @@
 """P and SV waves through N parallel linear-slip joints at any angle, all reflections included.
 
 R and T are the matrices of one joint (`oblique_joint.scattering`), R' and T' those from its other
-side, which differ where the rocks on both sides do. E_i = diag(e^{i omega d_i q}) of P and SV takes
-waves over the spacing d_i, with the slownesses q across the joints of the rock there. Behind joint
-i lies a stack of reflection R_{i+1}; from the last joint backwards
+side, which differ if the rocks on both sides do. E_i = diag(e^{i omega d_i q}) propagates P and SV
+over the spacing d_i, with the slownesses q across the joints of the rock there. Behind joint i lies
+a stack of reflection R_{i+1}; from the last joint backwards
 
     Y_i = (I - R' E_i R_{i+1} E_i)^-1 T,   R_i = R + T' E_i R_{i+1} E_i Y_i
 
 and forwards the waves behind each joint are D_i = Y_i E_{i-1} D_{i-1} (Kennett, Seismic Wave
 Propagation in Stratified Media, 1983; at normal incidence Cai & Zhao, IJRMMS 37, 2000).
-Nothing grows: evanescent waves only decay. Axes, signs and validity are those of `oblique_joint`;
-joints and layers may differ from each other, as far as no wave of unlike layers is evanescent.
+No exponential grows: evanescent waves only decay. Axes, signs and validity are those of
+`oblique_joint`; joints and layers may differ, unless a wave in differing layers is evanescent.
 """
 
 from collections.abc import Sequence
@@ -48,7 +48,7 @@ def coefficients(
 
     incidence : "P" or "SV". angle : of travel from the normal, rad. omega : rad/s, Re >= 0; with a
     positive imaginary part it is a Laplace variable. These and rock are broadcast together.
-    joints : as the wave meets them. spacings : between them, m, one less.
+    joints : in the order in which the wave meets them. spacings : between them, m, one less.
     """
     slowness = slowness_along(rock, incidence, angle)
     R, behind = march(rock, joints, spacings, slowness, omega)
@@ -67,7 +67,7 @@ def march(
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Return R_i and Y_i of every joint, complex arrays [..., 2, 2].
 
-    rock : of all, or of each layer, one more than joints. slowness : s/m.
+    rock : of all layers, or one for each, one more than joints. slowness : s/m.
     """
     if not joints:
         raise ValueError("joints is empty, must hold at least one")
@@ -111,12 +111,12 @@ def fields(
 
     Parameters
     ----------
-    rock : of all, or of each layer in the order of `offsets`, [N + 1].
+    rock : of all layers, or one for each in the order of `offsets`, [N + 1].
     joints : in the order of `offsets`, [N].
     pulse : its velocity is that of the incident wave at `point`.
     point, dip : a place [2] (m), and the joints' angle from x, anticlockwise (rad).
     offsets : of the joints from `point` along (-sin dip, cos dip), ascending, m, [N].
-    points : [m, 2], m; one on a joint counts to the side that the pulse comes from.
+    points : [m, 2], m; one on a joint belongs to the side from which the pulse comes.
     times : equally spaced, s.
     """
     stack = stack_of(rock, joints, pulse, dip, offsets)
@@ -130,7 +130,7 @@ def stack_of(
     dip: float,
     offsets: np.ndarray,
 ) -> PulseStack:
-    """Return the joints as the pulse meets them, arguments as those of `fields`."""
+    """Return the joints in the order in which the pulse meets them; arguments as for `fields`."""
     depths, met = np.asarray(offsets, dtype=float), list(joints)
     rocks = list(_each(rock, len(met)))
     if np.asarray(pulse.direction) @ (-np.sin(dip), np.cos(dip)) < 0:

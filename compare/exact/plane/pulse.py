@@ -1,4 +1,4 @@
-"""A plane pulse among parallel joints in time, put together from harmonic waves of each layer.
+"""A plane pulse among parallel joints in time, as the sum of harmonic waves of each layer.
 
 In each layer waves along +n start at its first joint and waves along -n at its last one, so that
 every exponential of the sum decays. Points lie at (x, z) in the axes (t, n) of the joints, and
@@ -33,8 +33,8 @@ class Pulse:
     ----------
     kind : "P" or "SV".
     direction : of travel, [2], of any length.
-    velocity : of the particles at the place that the solution names, along `direction` (P) or along
-        `direction` turned anticlockwise by a right angle (SV), m/s: a function of times (s), or
+    velocity : particle velocity at the solution's reference point, along `direction` (P) or along
+        `direction` rotated anticlockwise by a right angle (SV), m/s: a function of times (s), or
         samples at the times of the result. It is taken as zero before the first of these times.
     """
 
@@ -44,7 +44,7 @@ class Pulse:
 
 
 class Fields(NamedTuple):
-    """Motion at points, arrays [points, components, times], and bounds [points, components] of its
+    """Motion at points, arrays [points, components, times], and bounds [points, components] on its
     root-mean-square error: velocity (x, y) in m/s, stress (xx, yy, xy) in Pa, tension positive.
     """
 
@@ -71,11 +71,11 @@ class Layers(NamedTuple):
 
 
 class PulseStack(NamedTuple):
-    """Joints as a pulse meets them.
+    """Joints in the order in which a pulse meets them.
 
     depths : along n, ascending, m. layers : of omega (rad/s), for a unit incident wave at the first
-    joint. at_once : real amplitudes [layers, 2] that follow a pulse without delay; of one that is a
-    function they are summed in time, with all its kinks, and the smoother rest is inverted.
+    joint. at_once : real amplitudes [layers, 2] that follow a pulse without delay; if the pulse is
+    a function they are summed in time, with all its kinks, and only the smoother rest is inverted.
     rocks : of the layers; where they differ no wave may be evanescent.
     """
 
@@ -146,8 +146,8 @@ def pulse_fields(pulse: Pulse, stack: PulseStack, points: np.ndarray, times: np.
 
 
 def modes_of(stack: PulseStack) -> np.ndarray:
-    """Return velocity and stress over Z_p of the first rock [layers, (P+, SV+, P-, SV-),
-    (x, y, xx, yy, xy)] of unit waves."""
+    """Return velocity, and stress over the first rock's Z_p, of unit waves [layers, (P+, SV+, P-,
+    SV-), (x, y, xx, yy, xy)]."""
     axes, found = stack.axes, []
     for rock, across in zip(stack.rocks, stack.slownesses, strict=True):
         g = polarisations(rock, axes.slowness).reshape(4, 2)
@@ -160,8 +160,8 @@ def modes_of(stack: PulseStack) -> np.ndarray:
 
 
 def _waves(place: np.ndarray, stack: PulseStack) -> tuple[int, np.ndarray]:
-    """Return the layer of a place (t, n) and how late [P+, SV+, P-, SV-] come there from where
-    their amplitudes are given, complex, s."""
+    """Return the layer of a place (t, n) and the complex delays (s) of [P+, SV+, P-, SV-] there
+    from the points at which their amplitudes are given."""
     (x, z), depths = place, stack.depths
     layer = int(np.searchsorted(depths, z))
     first, last = depths[max(layer - 1, 0)], depths[min(layer, len(depths) - 1)]
@@ -171,6 +171,6 @@ def _waves(place: np.ndarray, stack: PulseStack) -> tuple[int, np.ndarray]:
 
 
 def _delayed(amplitudes: np.ndarray, omega: np.ndarray, delays: np.ndarray) -> np.ndarray:
-    """Return amplitudes [omega, wave] so much later (s)."""
+    """Return amplitudes [omega, wave] delayed by `delays` (s)."""
     phases = 1j * omega[:, None] * delays
     return amplitudes * np.exp(np.where(amplitudes == 0, 0, phases))

@@ -1,13 +1,13 @@
 """Rigid blocks with linear contacts and dashpots in the plane, exactly in time.
 
-    M u'' + C u' + K u = F(t),   freedoms (u, v, phi) of one block after the other,
+    M u'' + C u' + K u = F(t),   degrees of freedom (u, v, phi) of one block after the other,
 
 K from the relative motion at the points of each contact, C from dashpots at two Gauss points of
 each edge. F is a cubic between its
-samples, so that on each of its pieces the motion is an entire function of time: its Taylor series
-to the order ORDER, over steps of at most STEP / omega, omega a bound of the highest frequency, is
-below round-off off (Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, 1993,
-I.8). What is left is what cubics are off from F.
+samples, so that on each of its pieces the motion is an entire function of time: the error of its
+Taylor series to the order ORDER, over steps of at most STEP / omega, omega a bound on the highest
+frequency, is below round-off (Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I,
+1993, I.8). The only error is that of the cubics against F.
 """
 
 from typing import NamedTuple
@@ -33,8 +33,8 @@ class RigidSystem(NamedTuple):
 
     @property
     def highest(self) -> float:
-        """A bound of the highest frequency and of the fastest decay, rad/s: Gershgorin's discs of
-        the matrices over the roots of the masses."""
+        """A bound on the highest frequency and on the fastest decay, rad/s: Gershgorin's discs of
+        the matrices scaled by the roots of the masses."""
         root = 1 / np.sqrt(self.masses)
         sums = [
             float((abs(x).multiply(root[:, None]).multiply(root)).sum(axis=1).max())
@@ -45,7 +45,7 @@ class RigidSystem(NamedTuple):
 
 class Points(NamedTuple):
     """Points of edges: block [p], arm from its centroid [p, 2] (m), place [p, 2] (m), unit normal
-    [p, 2], length that each stands for [p] (m)."""
+    [p, 2], length represented by each [p] (m)."""
 
     block: np.ndarray
     arm: np.ndarray
@@ -81,7 +81,7 @@ def stiffness_of(
 
 
 def viscosity_of(points: Points, impedance: np.ndarray, count: int) -> csr_array:
-    """Return C of dashpots along the normal and across it, impedance [p, 2], Pa s/m."""
+    """Return C of normal and tangential dashpots, impedance [p, 2], Pa s/m."""
     total = 0
     for axis, Z in ((points.normal, impedance[:, 0]), (_left(points.normal), impedance[:, 1])):
         rows = jump(axis, points.arm)
@@ -135,7 +135,7 @@ def _shifted(coefficients: np.ndarray, s: float) -> np.ndarray:
 
 
 def _assembled(rows: np.ndarray, blocks: np.ndarray, weights: np.ndarray, count: int) -> csr_array:
-    """Return the sum of weight row^T row over points, of the freedoms of blocks [p, b]."""
+    """Return the sum of weight row^T row over points in the freedoms of blocks [p, b]."""
     from scipy.sparse import csr_array
 
     column = (3 * blocks[:, :, None] + np.arange(3)).reshape(len(rows), -1)

@@ -1,4 +1,4 @@
-"""Plane P and SV waves in isotropic rock in plane strain, as a plane face or joint meets them.
+"""Plane P and SV waves in isotropic rock in plane strain, incident on a plane face or joint.
 
 Factor e^{-i omega t}; stress tension positive. The axes of the face are t along it and n across
 it, p is the slowness along t that all waves share (Aki & Richards, Quantitative Seismology, 2002,
@@ -7,7 +7,7 @@ waves along +n and -n have the polarisations (t, n)
 
     P+- = (a', +-c),   SV+ = (k, -s),   SV- = (k, s)
 
-so that a wave and its mirror image have the same amplitude. SV+ is its direction of travel turned
+so that a wave and its mirror image have the same amplitude. SV+ is its direction of travel rotated
 by a right angle from n to t. Beyond the critical angle c is imaginary, +i |c|: for Re(omega) > 0
 the P wave decays away from the face. For negative frequencies take complex conjugates.
 """
@@ -25,7 +25,7 @@ KINDS = ("P", "SV")
 class Face(NamedTuple):
     """A face under unit waves (m/s) along +n: complex arrays [..., 2], P and SV.
 
-    Waves along -n have `shear` and `normal_velocity` of the other sign.
+    For waves along -n, `shear` and `normal_velocity` change sign.
     """
 
     normal: np.ndarray  # sigma_nn, Pa
@@ -67,7 +67,7 @@ def slownesses_across(rock: ElasticRock, slowness: Values) -> np.ndarray:
 
 
 def face(rock: ElasticRock, slowness: Values) -> Face:
-    """Return what unit waves along +n of slowness p (s/m) do to a face."""
+    """Return traction and velocity of unit waves along +n of slowness p (s/m) on a face."""
     c, k = cosines(rock, slowness)
     a, s = rock.p_speed * slowness, rock.s_speed * slowness
     double = 1 - 2 * s * s  # cos 2 phi
@@ -81,7 +81,7 @@ def face(rock: ElasticRock, slowness: Values) -> Face:
 
 
 def polarisations(rock: ElasticRock, slowness: float) -> np.ndarray:
-    """Return those of P and SV waves along +n and along -n, complex array [2, 2, (t, n)]."""
+    """Return the polarisations of P and SV along +n and along -n, complex array [2, 2, (t, n)]."""
     c, k = cosines(rock, slowness)
     a, s = rock.p_speed * slowness, rock.s_speed * slowness
     return np.array([[[a, c], [k, -s]], [[a, -c], [k, s]]])

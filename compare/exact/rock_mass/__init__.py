@@ -1,1 +1,1 @@
-"""Exact solutions of whole rock masses: which scenes they hold for, and their results."""
+"""Exact solutions of whole rock masses: their conditions and results."""

@@ -1,10 +1,10 @@
 """Scenes of rigid blocks between the joints of a rock mass, exactly in time (`plane.rigid_motion`).
 
-The model of the rigid-block engine without its time steps: joints as stiff as those of rigid blocks
-are (`cases.material.rigid_blocks`), dashpots and the incident field on quiet sides. The field is a
-cubic between samples of which a period has IN_A_PERIOD; a twin with half as many bounds the error.
+The model of the rigid-block engine without its time steps: joints with the stiffness of those
+between rigid blocks (`cases.material.rigid_blocks`), dashpots and the incident field on quiet
+sides, a cubic between IN_A_PERIOD samples per period; a twin with half as many bounds the error.
 
-Holds for linear joints without dashpots that cut all of the rock into blocks, waves alone, sides
+Valid for linear joints without dashpots that cut all of the rock into blocks, waves only, sides
 that are quiet, free or periodic, and up to MOST_BLOCKS blocks.
 """
 
@@ -39,11 +39,11 @@ from compare.solvers.record import BLOCKS, YES, Answer, Kind, Rock, Solver, Word
 from results.plane import plane_fields
 
 MOST_BLOCKS = 1000
-IN_A_PERIOD = 400  #: samples of the field
+IN_A_PERIOD = 400  #: samples of the field per period per period
 
 
 def applies(scene: RockMass) -> Answer:
-    """Return whether only waves act on blocks between linear joints."""
+    """Return whether only waves act, on blocks between linear joints."""
     held, sets = scene.boundaries.model_dump().values(), scene.joint_sets
     gravity = scene.gravity is not None and bool(scene.gravity.acceleration)
     many = f"more than {MOST_BLOCKS:,} blocks"
@@ -109,7 +109,7 @@ def _quiet(scene: RockMass, partition: Partition) -> Points:
 
 
 def masses(scene: RockMass, partition: Partition) -> np.ndarray:
-    """Return the masses (kg) and moments of inertia (kg m2) of all freedoms [3 N], per m."""
+    """Return masses (kg) and moments of inertia (kg m2) of all degrees of freedom [3 N], per m."""
     own = inertia(partition, scene.rock.density)
     return np.stack([own.mass, own.mass, own.moment], axis=1).ravel()
 
@@ -132,8 +132,8 @@ def _stiffness(scene: RockMass, partition: Partition):
 
 
 def at_points(scene: RockMass, partition: Partition, values: np.ndarray) -> np.ndarray:
-    """Return the motion of the points of a scene [points, (x, y), n], of that of the freedoms of
-    all blocks [n, 3 N]."""
+    """Return the motion of the points of a scene [points, (x, y), n] from that of all blocks'
+    degrees of freedom [n, 3 N]."""
     points = np.array(scene.record.points)
     block = block_at(partition, points)
     u, v, turn = values.reshape(len(values), -1, 3)[:, block].transpose(2, 1, 0)

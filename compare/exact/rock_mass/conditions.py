@@ -1,4 +1,4 @@
-"""The physics of a rock mass that an exact solution must hold for."""
+"""The physics of a rock mass that an exact solution must cover."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from cases.schema.joint_set import JointSet
     from cases.schema.rock_mass import RockMass
 
-PARALLEL = 1e-9  #: sine of the angle up to which two directions are one
+PARALLEL = 1e-9  #: sine of the largest angle between directions that count as parallel
 
 
 def beyond_linear_rock(scene: RockMass) -> str | None:
-    """Return why a scene is not one of undamped rock and linear joints, None where it is."""
+    """Return why a scene is not undamped rock with linear joints, None if it is."""
     damping = scene.damping
     reasons = [
         (bool(damping.alpha), "the damping is proportional to mass"),
@@ -35,7 +35,7 @@ def beyond_linear_rock(scene: RockMass) -> str | None:
 
 
 def beyond_linear_law(one: JointSet) -> str | None:
-    """Return why the law of a joint set is not linear, None where it is."""
+    """Return why the law of a joint set is not linear, None if it is."""
     if one.tension is False:
         return f"joint set {one.name!r} carries no tension"
     for part in PARTS:
@@ -47,8 +47,8 @@ def beyond_linear_law(one: JointSet) -> str | None:
 
 
 def reflecting_side(scene: RockMass) -> str | None:
-    """Return why waves do not leave through all sides: each must be quiet, or periodic with waves
-    and joints the same all along the way to its partner."""
+    """Return why waves do not leave through all sides, None if they do: each side must be quiet, or
+    periodic with waves and joints uniform along the direction to its partner."""
     for side in outline_of(scene.domain).normals():
         held = getattr(scene.boundaries, side)
         if held == "periodic" and not _is_invariant(scene, side):
@@ -59,7 +59,7 @@ def reflecting_side(scene: RockMass) -> str | None:
 
 
 def prestress_of(scene: RockMass) -> np.ndarray:
-    """Return the stress (xx, yy, xy) that a scene carries before anything acts, Pa, compression
+    """Return the initial stress (xx, yy, xy) of a scene, before any load, Pa, compression
     positive."""
     stress = scene.prestress
     return np.zeros(3) if stress is None else np.array([stress.xx, stress.yy, stress.xy])

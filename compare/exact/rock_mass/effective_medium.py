@@ -1,14 +1,14 @@
-"""Scenes of plane waves in rock full of joints, as waves of its effective medium.
+"""Scenes of plane waves in densely jointed rock, as waves of its effective medium.
 
 A wave is that of the medium (`cases.material.effective_medium`) along the direction that the scene
 gives, at its own speed: the fastest for P, the slowest for S, with the polarisation nearest to the
-scene's. `quantity = "stress"` is the traction on its front, rho c v. It enters all engines through
-their quiet sides where joints cross, since there no wave of the intact rock would come from the
-rock beyond: the solution is exact for the homogenised rock, and holds for the jointed one as far as
-waves are long against the spacings.
+scene's. `quantity = "stress"` is the traction on its front, rho c v. Where joints cross, it enters
+all engines through their quiet sides, since the rock beyond is jointed too and transmits no wave of
+intact rock: the solution is exact for the homogenised rock, and approximate for the jointed one if
+wavelengths are large compared with the spacings.
 
-Holds for any crossing sets of linear joints without dashpots, in undamped rock whose sides waves
-leave through, from rest: at t = 0 no pulse may have begun within the domain.
+Valid for any crossing sets of linear joints without dashpots, in undamped rock with sides through
+which waves leave, from rest: at t = 0 no pulse may have begun within the domain.
 """
 
 from dataclasses import dataclass
@@ -36,8 +36,8 @@ from results.plane import plane_fields
 
 @dataclass(frozen=True)
 class MediumWave:
-    """A plane wave of a medium: direction and polarisation, unit vectors; speed, m/s; `through`,
-    where it begins at t = 0, m; stress by 1 m/s (xx, yy, xy), Pa, tension positive; its pulse."""
+    """A plane wave of a medium: unit direction and polarisation; speed, m/s; `through`, a point of
+    its front at t = 0, m; stress at 1 m/s (xx, yy, xy), Pa, tension positive; its pulse."""
 
     direction: np.ndarray
     polarisation: np.ndarray
@@ -47,7 +47,7 @@ class MediumWave:
     pulse: LoadHistory
 
     def lateness(self, points: np.ndarray) -> np.ndarray:
-        """Return when the pulse begins at points [m, 2], s."""
+        """Return the time at which the pulse begins at points [m, 2], s."""
         return (np.asarray(points) - self.through) @ self.direction / self.speed
 
 
@@ -68,7 +68,7 @@ class MediumField:
 
 
 def medium_field(scene: RockMass) -> MediumField:
-    """Return the waves of a scene, all of whose sets have a spacing, in its effective medium."""
+    """Return the waves of a scene in its effective medium; all its sets must have a spacing."""
     C = medium_stiffness(scene)
     waves = tuple(medium_wave(scene, one, C) for one in scene.waves)
     return MediumField(waves, reflecting_side(scene) is None)

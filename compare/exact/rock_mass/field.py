@@ -1,14 +1,14 @@
 """The incident field of a scene.
 
-Where its joints are a stack it is the stack's, also of one joint that stiffens and is met straight
-on; where they cross and all have a spacing it is that of the waves in their effective medium, since
-no wave of intact rock would come from the rock beyond; else that of the waves in the intact rock,
-with what the boundaries of its regions make of them.
+If the joints are a stack it is the stack's, also for one joint that stiffens at normal incidence;
+if they cross and all have a spacing it is that of the waves in their effective medium, since the
+rock beyond transmits no wave of intact rock; else that of the waves in the intact rock, with
+reflection and transmission at the boundaries of its regions.
 
-With the exact field of the stack on all quiet sides nothing is missing there, and what is wrong
-inside is an engine's own. 1000 points and 2000 times of one joint take about 0.5 s of a processor,
-1 s where P waves are evanescent; it differs from `parallel_joints.fields` by less than the bound
-that these give, about 1e-9 of a smooth pulse.
+The exact field of the stack on all quiet sides makes the sides exact: errors inside are the
+engine's own. 1000 points and 2000 times of one joint take about 0.5 s of CPU time, 1 s where P
+waves are evanescent; it differs from `parallel_joints.fields` by less than the bound given there,
+about 1e-9 of a smooth pulse.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class StackField:
-    """The waves of a scene with all that its parallel joints make of them."""
+    """The waves of a scene with all reflections and transmissions at its parallel joints."""
 
     stack: JointStack
     waves: tuple[PlaneWave, ...]
@@ -57,7 +57,7 @@ class StackField:
 
 
 def field_of(scene: RockMass) -> IncidentField:
-    """Return what enters a scene of waves through its quiet sides."""
+    """Return the field that enters a scene of waves through its quiet sides."""
     if not scene.waves:
         return free_field(scene)
     if normal_incidence.applies(scene):
@@ -74,8 +74,8 @@ def field_of(scene: RockMass) -> IncidentField:
 
 
 def _layered_field(scene: RockMass) -> StackField | FreeField:
-    """Return the field of the waves in the regions' intact rock, but for those with an outline,
-    which no wave meets at a side.
+    """Return the field of the waves in the regions' intact rock, except regions with an outline,
+    which do not reach a side.
 
     Raises SceneError where that is not known.
     """

@@ -1,8 +1,8 @@
 """Scenes of line forces in rock without joints (`plane.line_force`).
 
-Holds for any forces that do not jump, in undamped rock without joints and openings, whatever holds
-the sides: up to `known_until`, the first time at which a P wave may have been to a side and come to
-a receiver, the rock is as if it had no end.
+Valid for any forces that do not jump, in undamped rock without joints and openings, with any
+supports of the sides: up to `known_until`, the earliest arrival at a receiver of a P wave reflected
+by a side, the rock acts as unbounded.
 """
 
 from typing import Any
@@ -21,12 +21,12 @@ from compare.exact.rock_mass.conditions import beyond_linear_rock, prestress_of
 from compare.solvers.record import JOINTED, YES, Answer, Kind, Rock, Solver, Words, no, thin
 from results.plane import plane_fields
 
-#: Of a Ricker wavelet: each is smooth enough for the points of one integral.
+#: Pieces of a Ricker wavelet, each smooth enough for the points of one integral.
 PARTS = 8
 
 
 def applies(scene: RockMass) -> Answer:
-    """Return whether only forces act on rock without joints, and reach a receiver undisturbed."""
+    """Return whether only forces act on rock without joints, and reach a receiver before echoes."""
     held, gravity = scene.boundaries.model_dump().values(), scene.gravity
     reasons = [
         (bool(scene.joint_sets), "there are joints"),
@@ -77,7 +77,7 @@ def solve(scene: RockMass) -> xr.Dataset:
 
 
 def known_until(scene: RockMass) -> float:
-    """Return when what a side returns may come to a receiver first, s: by its mirror image."""
+    """Return the earliest arrival of a side's reflection at a receiver, by its mirror image, s."""
     outline, points = outline_of(scene.domain), np.array(scene.record.points)
     first = np.inf
     for side, normals in outline.normals().items():

@@ -1,7 +1,7 @@
-"""Scenes of a P wave that meets one joint that stiffens straight on (`joint.closing_joint`).
+"""Scenes of a P wave at normal incidence on one joint that stiffens (`joint.closing_joint`).
 
-Holds for one such joint that does not slide, open or damp, in undamped rock whose sides waves leave
-through. The stress along the front is nu / (1 - nu) of that across it.
+Valid for one such joint that does not slide, open or damp, in undamped rock with sides through
+which waves leave. The stress along the front is nu / (1 - nu) of that across it.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ from compare.solvers.record import JOINTED, Answer, Rock, Solver, Words, no, thi
 
 
 def applies(scene: RockMass) -> Answer:
-    """Return whether a P wave meets one joint that stiffens, at a right angle."""
+    """Return whether a P wave meets one joint that stiffens at normal incidence."""
     if all(one.maximum_closure is None for one in scene.joint_sets):
         return no("no joint has closure: see oblique-joint")
     linear = [one.model_copy(update={"maximum_closure": None}) for one in scene.joint_sets]
@@ -37,7 +37,7 @@ def applies(scene: RockMass) -> Answer:
 
 
 def solve(scene: RockMass) -> xr.Dataset:
-    """Return what the receivers of a scene record of the wave at the joint."""
+    """Return the receivers' records of the wave at the joint."""
     return stack_waves.solve(scene, SOLVER.name, _motion)
 
 
@@ -45,7 +45,7 @@ BESIDE = 2e-9  # m
 
 
 class ClosingField:
-    """The wave of a scene with all that its joint makes of it: `cases.incident.IncidentField`."""
+    """The wave of a scene with reflection and transmission: `cases.incident.IncidentField`."""
 
     whole = True
 
@@ -75,13 +75,13 @@ class ClosingField:
         """Return the waves to and fro [2, stress and impulse, m, n]; Pa, compression positive."""
         y = (np.asarray(points) - self.wave.through) @ self.wave.direction
         joint, speed = self.joint, self.wave.speed
-        # On one of its sides, not on the joint, where `around` takes the mean of both.
+        # On one side of the joint, not on it, where `around` takes the mean of both sides.
         off = np.copysign(np.maximum(np.abs(y - joint.y), BESIDE), y - joint.y)
         y = joint.y + off
         return around(joint.y, speed, self.passed, self.load, np.asarray(times), y.tolist())
 
     def stress(self, across: np.ndarray) -> np.ndarray:
-        """Return (xx, yy, xy) [m, 3, n], tension positive, of the stress on the fronts [m, n]."""
+        """Return (xx, yy, xy) [m, 3, n], tension positive, from the stress on the fronts [m, n]."""
         x, y = self.wave.direction
         share = [self.share + (1 - self.share) * c for c in (x * x, y * y)]
         return -across[:, None] * np.array([*share, (1 - self.share) * x * y])[:, None]
@@ -95,7 +95,7 @@ class ClosingField:
 def _motion(
     scene: RockMass, stack: JointStack, places: np.ndarray, times: np.ndarray
 ) -> stack_waves.StackMotion:
-    """Return the motion at places [m, 2] (m), displacement from the start of the scene on."""
+    """Return the motion at places [m, 2] (m), displacement relative to the start of the scene."""
     found = []
     for tolerance in TOLERANCES:
         field = ClosingField(scene, tolerance)

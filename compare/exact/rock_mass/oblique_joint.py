@@ -1,7 +1,7 @@
 """Scenes of plane P and SV waves at one joint at any angle (`plane.oblique_joint`).
 
-Holds for one linear joint, with a dashpot or without, in undamped rock whose sides waves leave
-through, and any number of plane waves that meet it after the start (`stack`).
+Valid for one linear joint, with a dashpot or without, in undamped rock with sides through which
+waves leave, and any number of plane waves that meet it after the start (`stack`).
 """
 
 from functools import partial

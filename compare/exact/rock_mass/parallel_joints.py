@@ -1,7 +1,7 @@
 """Scenes of plane P and SV waves at parallel joints at any angle (`plane.parallel_joints`).
 
-Holds for any parallel linear joints, with dashpots or without, in undamped rock whose sides waves
-leave through, and any number of plane waves that meet them after the start (`stack`).
+Valid for any parallel linear joints, with dashpots or without, in undamped rock with sides through
+which waves leave, and any number of plane waves that meet them after the start (`stack`).
 """
 
 from functools import partial

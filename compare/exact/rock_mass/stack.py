@@ -1,8 +1,8 @@
-"""The parallel joints of a scene as a stack without end, and whether they are one.
+"""The parallel joints of a scene as a stack of unbounded joints, and the conditions for that.
 
-Holds for undamped rock with linear joints and boundaries of regions, all parallel and unbroken, in
-a convex domain whose sides waves leave through, from rest: at t = 0 no pulse may have met a joint
-there.
+Valid for undamped rock with linear joints and boundaries of regions, all parallel and continuous,
+in a convex domain with sides through which waves leave, from rest: at t = 0 no pulse may have met a
+joint there.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
     from cases.schema.sources import Wave
 
-BEGUN = 1e-9  #: of the duration, that a pulse may have met a joint for at t = 0
+BEGUN = 1e-9  #: of the duration: tolerated time for which a pulse has met a joint at t = 0
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def stack_of(scene: RockMass) -> JointStack:
     order = np.argsort(depths)
     met = (contacts.joint_set != NO_SET) | (region[:, 0] != region[:, 1])
     order = order[met[order]]
-    apart = np.diff(depths[order], prepend=-np.inf)  # an opening may cut a joint in parts
+    apart = np.diff(depths[order], prepend=-np.inf)  # an opening may cut a joint into parts
     order = order[apart > TOLERANCE * np.ptp(partition.corners, axis=0).max()]
     joints = [laws[k] for k in contacts.joint_set[order]]
     below, above = region[order].T
@@ -98,7 +98,7 @@ def stiffnesses(scene: RockMass) -> np.ndarray:
 
 
 def against(scene: RockMass) -> str | None:
-    """Return why a scene is not one of plane waves at a stack of joints, None where it is."""
+    """Return why a scene is not one of plane waves at a stack of joints, None if it is."""
     gravity = scene.gravity is not None and bool(scene.gravity.acceleration)
     reasons = [
         (not scene.waves, "no wave enters"),
@@ -110,8 +110,8 @@ def against(scene: RockMass) -> str | None:
 
 
 def scatters_otherwise(scene: RockMass, leaves: bool = True) -> str | None:
-    """Return why the waves that enter and the joints do not make the field of a stack, None where
-    they do; what else acts, and openings, add to it. leaves : whether sides must let waves out."""
+    """Return why the incident waves and the joints do not form the field of a stack, None if they
+    do; other loads and openings add to it. leaves : whether waves must leave through the sides."""
     directions = directions_of(scene)
     outlined = len(strata(scene.regions)) < len(scene.regions)
     reasons = [
@@ -133,14 +133,14 @@ def scatters_otherwise(scene: RockMass, leaves: bool = True) -> str | None:
 
 
 def _decays(scene: RockMass, wave: Wave) -> bool:
-    """Return whether some wave that a wave makes at parallel boundaries decays away from them."""
+    """Return whether a wave scattered at parallel boundaries decays away from them."""
     incident, along = plane_wave(scene, wave), directions_of(scene)[0]
     slowness = abs(incident.direction @ along) / incident.speed
     return any(slowness * elastic_rock(one).p_speed >= 1 for one in rocks_of(scene))
 
 
 def begun(scene: RockMass, stack: JointStack) -> str | None:
-    """Return how a pulse has met a joint of the domain before the start, None where none has."""
+    """Return which pulse has met a joint of the domain before the start, None if none has."""
     for i, wave in enumerate(scene.waves):
         incident = plane_wave(scene, wave)
         late = first_scattered(stack, incident)
@@ -155,11 +155,11 @@ def begun(scene: RockMass, stack: JointStack) -> str | None:
 
 
 def first_scattered(stack: JointStack, wave: PlaneWave) -> float:
-    """Return when the first of what joints return and pass comes to a place of the domain, s.
+    """Return the first arrival of a reflected or transmitted wave in the domain, s.
 
     With the slowness p along the joints and q across them it is p x + q d + min(q_p, q_s) |z - d|
-    there, d the first joint's depth. An evanescent wave, which has no arrival, counts from where it
-    is made.
+    there, d the first joint's depth. An evanescent wave has no arrival and counts from the joint at
+    which it is generated.
     """
     n = stack.normal if wave.direction @ stack.normal > 0 else -stack.normal
     t = np.array([-n[1], n[0]])

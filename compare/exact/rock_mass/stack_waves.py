@@ -1,9 +1,8 @@
-"""The waves of a scene at a stack of joints, at its receivers: what solves such scenes.
+"""Solution of scenes of waves at a stack of joints, at their receivers.
 
 Displacement is the same solution of the pulse's time integral; the opening and the slip of a joint
 are the jumps of displacement across it. Where P waves are evanescent the motion begins before its
-cause: what there is of it at t = 0 is not in the scene, which begins at rest, and is added to the
-bound of the error.
+cause: its part at t = 0 is not in the scene, which begins at rest, and is added to the error bound.
 """
 
 from collections.abc import Callable
@@ -24,7 +23,7 @@ from compare.exact.rock_mass.stack import JointStack, against, begun, stack_of
 from compare.solvers.record import YES, Answer, Kind, no
 from results.plane import plane_fields
 
-#: Causes of the engines' misfits from these waves.
+#: Causes of the engines' misfits against these waves.
 DISTANCES = {
     Kind.NUMERICAL: {"continuum-jointed": "elements and time stepping of the jointed rock"},
     Kind.MODELLING: {
@@ -32,11 +31,11 @@ DISTANCES = {
         "continuum-equivalent": "joints smeared over the rock",
     },
 }
-BESIDE = 1e-13  #: over the size of the domain: far above round-off, far below any wave
+BESIDE = 1e-13  #: relative to the domain's size: far above round-off, far below any wavelength
 
 
 class StackMotion(NamedTuple):
-    """Motion [points, components, times] and bounds [points, components] of its root-mean-square
+    """Motion [points, components, times] and bounds [points, components] on its root-mean-square
     error: (x, y) of velocity (m/s) and displacement (m), (xx, yy, xy) of stress (Pa, tension +)."""
 
     velocity: np.ndarray
@@ -52,15 +51,15 @@ Motion = Callable[["RockMass", JointStack, np.ndarray, np.ndarray], StackMotion]
 
 
 class JointReceivers(NamedTuple):
-    """Places on joints [m, 2] (m), and the axes there [m, (n, s), 2]: the normal out of the block
-    with the smaller number, and its left."""
+    """Places on joints [m, 2] (m), and the axes there [m, (n, s), 2]: the outward normal of the
+    block with the smaller number, and the direction to its left."""
 
     places: np.ndarray
     axes: np.ndarray
 
 
 def holds(scene: RockMass, one: bool) -> Answer:
-    """Return whether a scene is one of plane waves at one joint, or else at several."""
+    """Return whether a scene has plane waves at one joint or, if not `one`, at several."""
     if reason := against(scene):
         return no(reason)
     stack = stack_of(scene)
@@ -74,7 +73,7 @@ def holds(scene: RockMass, one: bool) -> Answer:
 
 
 def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Dataset:
-    """Return what the receivers of a scene record; motion : in place of `motion_at`."""
+    """Return the records of a scene's receivers; motion : in place of `motion_at`."""
     import xarray as xr
 
     stack, times = stack_of(scene), sample_times(scene)
@@ -115,7 +114,7 @@ def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Datase
 def motion_at(
     scene: RockMass, stack: JointStack, places: np.ndarray, times: np.ndarray
 ) -> StackMotion:
-    """Return the motion of all waves at places [m, 2] (m), from the start of the scene on."""
+    """Return the motion of all waves at places [m, 2] (m), relative to the start of the scene."""
     m, n = len(places), len(times)
     shapes = (m, 2, n), (m, 2, n), (m, 3, n), (m, 2), (m, 2), (m, 3)
     total = [np.zeros(shape) for shape in shapes]
@@ -164,7 +163,7 @@ def point_receivers(scene: RockMass, stack: JointStack) -> np.ndarray:
 
 
 def joint_receivers(scene: RockMass, stack: JointStack) -> JointReceivers:
-    """Return the places on joints that are nearest to those that a scene names."""
+    """Return the places on joints nearest to those given by a scene."""
     asked, contacts = np.array(scene.record.joints).reshape(-1, 2), stack.partition.contacts
     chosen = contact_at(stack.partition, asked) if len(asked) else np.zeros(0, dtype=int)
     start, normal = contacts.start[chosen], contacts.normal[chosen]

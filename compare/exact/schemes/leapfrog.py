@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-RIGID = 1e-12  # of the highest frequency; singular values are known to some 1e-15 of it
+RIGID = 1e-12  # of the highest frequency; singular values are accurate to about 1e-15 of it
 
 
 class Modes(NamedTuple):
@@ -32,10 +32,10 @@ def of_modes(
 
     Parameters
     ----------
-    place : float array [freedoms], what a unit force pushes each freedom by.
+    place : float array [freedoms], generalised force on each degree of freedom per unit force.
     force : float array [n], force (N) at steps 0, 1, ...; n at least max(steps).
     steps : int array of step numbers.
-    dt : step, s, below the critical one, 2 / omega_max, where the highest mode would be double.
+    dt : step, s, below the critical one, 2 / omega_max, where the highest mode has a double root.
     """
     half = modes.omega * dt / 2
     if half.max() >= 1:
@@ -48,7 +48,7 @@ def of_modes(
 def modes(mass: np.ndarray, root: np.ndarray) -> Modes:
     """Return the modes of the masses [n] and the stiffness K = root^T root, root [m, n].
 
-    The singular values of root M^{-1/2} give omega itself, so that low modes keep their digits.
+    The singular values of root M^{-1/2} give omega itself, so that low modes lose no digits.
     """
     _, omega, shapes = np.linalg.svd(root / np.sqrt(mass))
     omega = np.pad(omega, (0, max(0, len(mass) - len(omega))))
