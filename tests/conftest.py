@@ -14,6 +14,7 @@ from contextlib import suppress
 from copy import deepcopy
 from pathlib import Path
 from resource import RUSAGE_SELF, getrusage
+from threading import current_thread, main_thread
 
 import numba
 import pytest
@@ -165,7 +166,8 @@ def _in_a_child(compiling, lock):
     def compiled(signature):
         target, types = cpu_target.target_context, normalize_signature(signature)[0]
         large = getrusage(RUSAGE_SELF).ru_maxrss > LARGE
-        if large and kernel._cache.load_overload(types, target) is None:
+        alone = current_thread() is main_thread()  # a child would keep the locks of another thread
+        if large and alone and kernel._cache.load_overload(types, target) is None:
             cpu_target.typing_context.refresh()  # once, not in every child
             target.refresh()
             with warnings.catch_warnings():
