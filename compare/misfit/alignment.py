@@ -1,12 +1,12 @@
 """Alignment of external curves with solutions, on common times.
 
-Overlap: only times that both have are compared. Times: those of whichever has fewer samples in the
-overlap, the curve's own where both have as many; the other is interpolated linearly, with error at
-most h^2 / 8 max |s''| for its sampling interval h. Nothing is filtered first: straight lines
-neither ring nor spread at the kinks of a load, as band-limited interpolation does. What the coarser
-times cannot show is measured instead (`missed`). Clock: moved only when asked, as a whole for all
-curves of a file, by the cross-correlation with the solution that then fits best. Amplitudes: never
-scaled.
+Overlap: only the common time span is compared. Times: those of the waveform with fewer samples in
+the overlap, the curve's own if both have the same number; the other is interpolated linearly, with
+an error of at most h^2 / 8 max |s''| for its sampling interval h. No filter is applied: straight
+lines neither ring nor spread at the kinks of a load, unlike band-limited interpolation. The part
+that the coarser times do not resolve is measured instead (`missed`). Clock: shifted only on
+request, by the same amount for all curves of a file, by cross-correlation with the solution that
+then fits best. Amplitudes: never scaled.
 """
 
 from collections.abc import Iterator
@@ -25,18 +25,18 @@ from compare.misfit.external_files import LEAST_SAMPLES
 from compare.misfit.metrics import Distance, delay, distance, relative_l2, static_state
 from compare.misfit.places import Place
 
-MOST_SAMPLES = 4_000_000  # of a curve at a scene's interval, when its clock is moved
-INSTANT = 1e-12  # s; times are told apart from there on, in the tables too
-UNEVEN = 0.01  # of the sampling interval: what the rounding of printed times amounts to
+MOST_SAMPLES = 4_000_000  # of a curve at a scene's interval, when its clock is shifted
+INSTANT = 1e-12  # s, resolution of times, in the tables too
+UNEVEN = 0.01  # of the sampling interval: rounding error of printed times
 
 Results = dict[str, xr.Dataset]
 
 
 @dataclass(frozen=True)
 class Shift:
-    """What was added to a curve's times, s; the solution that it fits then, and how well.
+    """The shift added to a curve's times, s; the solution that it then fits, and how well.
 
-    onto : empty where nothing could be correlated, and nothing is moved. correlation : normalised,
+    onto : empty if nothing could be correlated: no shift. correlation : normalised,
     over the overlap, 1 for the same shape.
     """
 
@@ -47,13 +47,13 @@ class Shift:
 
 @dataclass(frozen=True)
 class Beside:
-    """A file's curves beside the solutions of one scene.
+    """A file's curves compared with the solutions of one scene.
 
-    curves : at their own samples, on the moved clock. shift : None where none was asked for.
-    time : [n] s, where both are compared. own_times : whether these are the curves' own.
+    curves : at their own samples, on the shifted clock. shift : None if not requested.
+    time : [n] s, common times of the comparison. own_times : whether these are the curves' own.
     outside : the part of the curves' duration that lies outside the overlap.
-    missed : relative L2 of what straight lines between `time` leave out of the finer waveforms, the
-    largest. left_out : places that the scene has no waveform at.
+    missed : largest relative L2 error of interpolating the finer waveforms linearly between `time`.
+    left_out : places at which the scene has no waveform.
     """
 
     curves: Curves
@@ -73,9 +73,9 @@ class Beside:
 
 
 def lay_beside(curves: Curves, scene: AnyScene, results: Results, align: bool) -> Beside:
-    """Return a file's curves beside all results of a scene; `align` moves their clock.
+    """Return a file's curves with all results of a scene; `align` shifts their clock.
 
-    Raises SceneError where curve and scene share fewer than three samples.
+    Raises SceneError if curve and scene share fewer than three samples.
     """
     shift = _shift(curves, scene, results) if align else None
     moved = _moved(curves, shift.seconds) if shift else curves
@@ -103,11 +103,11 @@ def distances(
 def common_times(curves: Curves, scene: AnyScene) -> tuple[np.ndarray, bool]:
     """Return the times [n] at which a curve is compared, s, and whether they are its own.
 
-    Raises SceneError where they are fewer than three.
+    Raises SceneError if there are fewer than three.
     """
     ours = sample_times(scene)
     start, end = max(curves.time[0], ours[0]), min(curves.time[-1], ours[-1])
-    slack = 1e-6 * scene.interval  # the same instant as two files print it
+    slack = 1e-6 * scene.interval  # rounding of the same time in two files
     own, ours = (t[(t >= start - slack) & (t <= end + slack)] for t in (curves.time, ours))
     if min(len(own), len(ours)) < LEAST_SAMPLES:
         raise SceneError(
@@ -126,8 +126,8 @@ def distance_at(
 ) -> Distance:
     """Return all distances of two waveforms [n] at times [n], which may be spaced unevenly.
 
-    Misfit and peaks are then of the samples, each weighed by the time it stands for (trapezoidal
-    rule); the rest is of both waveforms at as many even times, interpolated linearly.
+    Misfit and peaks then use the samples, weighted by the trapezoidal rule; all else uses both
+    waveforms interpolated linearly at the same number of equally spaced times.
     """
     even = np.linspace(time[0], time[-1], len(time))
     dt = even[1] - even[0]
@@ -146,7 +146,7 @@ def _waveforms(
 ) -> Iterator[tuple[str, Place, np.ndarray, np.ndarray, np.ndarray]]:
     """Yield solution, place, the curve's values, and the solution's times and values there.
 
-    Both less what the solution holds before its load acts: a prestress is no part of the motion.
+    Both without the solution's static state before its load: a prestress is not part of the motion.
     """
     for name, result in results.items():
         for place, values in curves.waveforms.items():
@@ -165,14 +165,14 @@ def static_level(place: Place, result: xr.Dataset) -> float:
 
 
 def _missed(t: np.ndarray, values: np.ndarray, time: np.ndarray) -> float:
-    """Return the relative L2 of what straight lines between `time` leave out of a waveform."""
+    """Return the relative L2 error of linear interpolation of a waveform between `time`."""
     inside = (t >= time[0]) & (t <= time[-1])
     lines = np.interp(t[inside], time, np.interp(time, t, values))
     return relative_l2(lines, values[inside])
 
 
 def _shift(curves: Curves, scene: AnyScene, results: Results) -> Shift:
-    """Return the shift onto the solution whose cross-correlation leaves the best fit."""
+    """Return the shift onto the solution that fits best after cross-correlation."""
     count = (curves.time[-1] - curves.time[0]) / scene.interval
     if count > MOST_SAMPLES:
         allowed = f"must last at most {MOST_SAMPLES:,} intervals of the scene to be aligned"
@@ -183,9 +183,9 @@ def _shift(curves: Curves, scene: AnyScene, results: Results) -> Shift:
 
 
 def _shift_onto(name: str, curves: Curves, scene: AnyScene, result: Results) -> Shift | None:
-    """Return the shift onto one solution; None where either has nothing but zeros.
+    """Return the shift onto one solution; None if either is zero throughout.
 
-    All places count alike, each waveform divided by the solution's norm.
+    All places have equal weight, each waveform divided by the solution's norm.
     """
     dt = scene.interval
     span = curves.time[-1] - curves.time[0]
@@ -193,7 +193,7 @@ def _shift_onto(name: str, curves: Curves, scene: AnyScene, result: Results) -> 
     ones, others = [], []
     for _, _, values, time, ours in _waveforms(curves, result):
         scale = np.linalg.norm(ours) or np.inf
-        # Behind each waveform as much silence as the other lasts: places do not run together.
+        # Zeros behind each waveform, as long as the other one, keep places separate.
         ones.append(np.pad(np.interp(even, curves.time, values) / scale, (0, len(time))))
         others.append(np.pad(ours / scale, (0, len(even))))
     if not ones:
@@ -201,19 +201,19 @@ def _shift_onto(name: str, curves: Curves, scene: AnyScene, result: Results) -> 
     seconds = -delay(np.concatenate(ones), np.concatenate(others), dt) - even[0]
     try:
         return None if np.isnan(seconds) else _refined(seconds, name, curves, scene, result)
-    except SceneError:  # so moved they meet nowhere
+    except SceneError:  # no overlap after this shift
         return None
 
 
 def _refined(seconds: float, name: str, curves: Curves, scene: AnyScene, result: Results) -> Shift:
     """Return the shift near `seconds` where the correlation at the samples themselves is largest.
 
-    Straight lines between few and uneven samples have moved the peak by a part of their distance.
+    Linear interpolation between few, uneven samples displaces the peak by a part of their interval.
     """
     from scipy.optimize import minimize_scalar  # slow to import
 
     reach = max(scene.interval, float(np.diff(curves.time).mean()))
-    near = _moved(curves, seconds)  # the search is as fine as its variable is small
+    near = _moved(curves, seconds)  # a small search variable gives a fine search
     found = minimize_scalar(
         lambda s: -_correlation(_moved(near, s), scene, result),
         bounds=(-reach, reach),

@@ -3,10 +3,10 @@
 A column is called [-]QUANTITY[_COMPONENT]@Y [UNIT]: `stress@20`, `-stress@20 [MPa]`,
 `velocity_x@20.25 [mm/s]`; velocity and displacement are along y where no component is named. Of a
 rock mass it is QUANTITY[_COMPONENT]@[X,Y]: `velocity_x@[20,30]`, `stress_xx@[20,30] [MPa]`,
-`traction_n@[20,20]`, `gap@[20,20]`; a header of a CSV file that holds a comma stands in quotes.
-Stress is positive in compression and motion along +x, +y, +z; a minus sign says that the column
-holds the negative, as where tension is positive. Without a unit, SI. A column with another header
-is taken by COLUMN=LABEL, and one of a table of `jointwave compare --out` by its solution
+`traction_n@[20,20]`, `gap@[20,20]`; in a CSV file a header that contains a comma is quoted.
+Stress is positive in compression and motion along +x, +y, +z; a minus sign marks a column with the
+opposite sign, e.g. tension positive. Without a unit, SI. A column with another header is selected
+by COLUMN=LABEL, and one of a table of `jointwave compare --out` by its solution
 (`compare.misfit.external_columns`).
 """
 
@@ -35,7 +35,7 @@ from compare.misfit.places import Place, parsed, recorded, same
 MICRO = ("u", "µ", "μ")  # as typed, the micro sign, and the Greek letter
 
 TIME = {"s": 1.0, "ms": 1e-3, "ns": 1e-9} | {f"{u}s": 1e-6 for u in MICRO}
-# What xarray calls the units of its own durations.
+# xarray's names for the units of its durations.
 TIME |= {"seconds": 1.0, "milliseconds": 1e-3, "microseconds": 1e-6, "nanoseconds": 1e-9}
 STRESS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9}
 LENGTH = {"m": 1.0, "cm": 1e-2, "mm": 1e-3} | {f"{u}m": 1e-6 for u in MICRO}
@@ -61,9 +61,9 @@ EXAMPLES_IN_PLANE = "velocity_x@[20,30], -stress_xx@[20,30] [MPa] or traction_n@
 class Curves:
     """Waveforms of one file over one time.
 
-    name : what tables call it. file : the path, as it was given. time : [n] s, strictly increasing.
-    waveforms : [n] by place, SI, compression positive. variant : of the scene that it is of, ""
-    the scene as it stands; None: of every variant.
+    name : its name in tables. file : the path, as given. time : [n] s, strictly increasing.
+    waveforms : [n] by place, SI, compression positive. variant : the scene's variant that it
+    belongs to, "" for the base scene; None: to every variant.
     """
 
     name: str
@@ -73,7 +73,7 @@ class Curves:
     variant: str | None = None
 
     def holds_for(self, scene: AnyScene) -> bool:
-        """Return whether it is to be put beside this variant of a scene."""
+        """Return whether the curves belong to this variant of a scene."""
         return self.variant is None or self.variant == scene.name
 
 
@@ -84,7 +84,7 @@ class _Label(NamedTuple):
 
 
 class _Found(NamedTuple):
-    """A column, its quantity, and its solution in a table of ours."""
+    """A column, its quantity, and its solution in a table of jointwave."""
 
     column: Column
     label: _Label
@@ -93,15 +93,15 @@ class _Found(NamedTuple):
 
 
 def read_curves(texts: list[str], scenes: Sequence[AnyScene]) -> list[Curves]:
-    """Read what `--with` names, each FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL.
+    """Read the arguments of `--with`, each FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL.
 
-    FILE is NetCDF (.nc), as `jointwave run` writes it or any that has `time` and, say, `stress`; or
+    FILE is NetCDF (.nc), written by `jointwave run` or with `time` and, for example, `stress`; or
     CSV: comma, semicolon or tab, # comments, a header `time [ms], stress@20 [MPa]` or two bare
-    columns, time in s first; or a table of `jointwave compare --out`. LABEL takes one curve out of
-    several, or names the only one; COLUMN is a header, or a solution or variant of such a table.
-    Empty cells are left out. One entry a file; where a file holds several solutions, variants, or
-    columns of different times, one for each. Raises SceneError for a file that cannot be read, is
-    not as stated, or has no curve at a receiver that one of the scenes records.
+    columns, time in s first; or a table of `jointwave compare --out`. LABEL selects one of several
+    curves, or labels the only one; COLUMN is a header, or a solution or variant of such a table.
+    Empty cells are skipped. One entry per file; one each for the solutions, variants, or columns
+    with different times of a file. Raises SceneError for a file that cannot be read, is not in this
+    format, or has no curve at a receiver of one of the scenes.
     """
     every = [asked(text, lambda label: _parse(*split_unit(label)) is not None) for text in texts]
     files = dict.fromkeys(str(one.path) for one in every)
@@ -159,7 +159,7 @@ def _of_file(name: str, every: list[Asked]) -> list[Curves]:
     for (solution, variant, _), group in groups.items():
         called = f"{name}:{solution}" if several else name
         named[called, variant] += 1
-        if named[called, variant] > 1:  # the same at other times
+        if named[called, variant] > 1:  # same name, different times
             called = f"{called}:{next(iter(group))}"
         whose = variant if len({v for _, v, _ in groups}) > 1 else None
         curves.append(_curves(called, path, seconds, list(group.values()), whose))
@@ -182,7 +182,7 @@ def _curves(
 
 
 def _fitting(table: Columns, choice: Asked) -> list[_Found]:
-    """Return the columns of a file that one argument asks for, with what each of them holds."""
+    """Return the columns of a file selected by one argument, with their quantities."""
     wanted = _parse(*split_unit(choice.label)) if choice.label else None
     named = [c for c in table.rest if not choice.column or choice.fits(c)]
     alone = len(table.rest) == 1 or bool(choice.column and len(named) == 1)
@@ -204,7 +204,7 @@ def _fitting(table: Columns, choice: Asked) -> list[_Found]:
 
 
 def _as_wanted(column: Column, own: _Label | None, wanted: _Label, alone: bool) -> _Label | None:
-    """Return what a column holds that may have a label of its own; None where another is wanted."""
+    """Return the label of a column, which may have its own; None if another one is requested."""
     unit = wanted.unit or column.unit
     if own is not None:
         (*what, at), (*wanted_what, wanted_at) = own.place, wanted.place
@@ -236,7 +236,7 @@ def _not_there(choice: Asked, table: Columns) -> SceneError:
 
 
 def _parse(name: str, unit: str) -> _Label | None:
-    """Return [-]QUANTITY[_COMPONENT]@PLACE as a label; None where the name is none."""
+    """Return [-]QUANTITY[_COMPONENT]@PLACE as a label; None if the name is not a label."""
     text = name.strip()
     place = parsed(text.removeprefix("-").lstrip())
     return None if place is None else _Label(place, text.startswith("-"), unit)

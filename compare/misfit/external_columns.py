@@ -11,12 +11,12 @@ from typing import NamedTuple
 from compare.misfit.external_files import Column, split_unit
 from compare.misfit.places import WORDS, parsed
 
-PART = " | "  # between what a header of ours is made of
+PART = " | "  # separator of the parts of jointwave's headers
 TIME = "time"
 
 
 class Asked(NamedTuple):
-    """One argument of `--with`: column and label are empty where they are not given."""
+    """One argument of `--with`: column and label are empty if not given."""
 
     text: str
     path: Path
@@ -25,11 +25,11 @@ class Asked(NamedTuple):
 
     @property
     def is_time(self) -> bool:
-        """Whether it says which column the times are."""
+        """Whether it selects the column of times."""
         return split_unit(self.label)[0].lower() == TIME
 
     def fits(self, column: Column) -> bool:
-        """Return whether a column is called as this asks for."""
+        """Return whether a column's name matches the argument."""
         if self.column in (column.name, f"{column.name} [{column.unit}]"):
             return True
         if split_unit(self.column) == (column.name, column.unit):
@@ -39,7 +39,7 @@ class Asked(NamedTuple):
 
 
 class Exported(NamedTuple):
-    """The parts of our headers: solution, receiver as a label, and variant."""
+    """The parts of jointwave's headers: solution, receiver as a label, and variant."""
 
     solution: str
     label: str
@@ -47,7 +47,7 @@ class Exported(NamedTuple):
 
 
 def asked(text: str, is_label: Callable[[str], bool]) -> Asked:
-    """Return what an argument asks for; a file that is not there takes a label alone."""
+    """Return a parsed argument; a file that does not exist can only have a label."""
     if Path(text).exists():
         return Asked(text, Path(text))
     colons = [i for i, letter in enumerate(text) if letter == ":"]
@@ -69,14 +69,14 @@ def asked(text: str, is_label: Callable[[str], bool]) -> Asked:
 
 
 def exported(name: str) -> Exported | None:
-    """Return the parts of one of our headers; None for others."""
+    """Return the parts of one of jointwave's headers; None for others."""
     parts = parts_of(name)
     place = parsed(parts[1], WORDS) if len(parts) == 3 else None
     return None if place is None else Exported(parts[0], str(place), parts[2])
 
 
 def base_of(columns: list[Column]) -> str:
-    """Return the name of the base scene, the first variant, in a table of ours; else ""."""
+    """Return the name of the base scene, the first variant, in a table of jointwave; else ""."""
     found = (exported(column.name) for column in columns)
     return next((one.variant for one in found if one is not None), "")
 

@@ -17,16 +17,16 @@ from compare.misfit.places import COMPONENT_DIMENSIONS, QUANTITIES
 from results.labels import RECEIVERS
 from results.netcdf import load_netcdf
 
-LEAST_SAMPLES = 3  # what a parabola through the peak of a correlation takes
-NUMBER = re.compile(r"\s*[-+.\d]")  # a line that begins so is no header
+LEAST_SAMPLES = 3  # needed for a parabola through the peak of a correlation
+NUMBER = re.compile(r"\s*[-+.\d]")  # a line that begins like this is not a header
 HEADER_COMMENT = r"^\s*#|#(?=\s|$)"
 NETCDF = (".nc", ".nc3", ".nc4", ".netcdf", ".cdf")
 
 
 class Column(NamedTuple):
-    """The numbers of one column [n] in the file's unit; unit is empty where the file has none.
+    """The numbers of one column [n] in the file's unit; unit is empty if the file has none.
 
-    empty : [n] where the file has no number, nan in `values`; None where it has all.
+    empty : mask [n] of missing numbers, nan in `values`; None if none is missing.
     """
 
     name: str
@@ -36,7 +36,7 @@ class Column(NamedTuple):
 
 
 class Columns(NamedTuple):
-    """A file's columns over one time; `row` says where in the file sample i stands."""
+    """A file's columns over one time; `row` locates sample i in the file."""
 
     time: Column
     rest: list[Column]
@@ -46,8 +46,8 @@ class Columns(NamedTuple):
 def read_columns(path: Path, time_name: str = "time") -> Columns:
     """Return the columns of a NetCDF file, known by its suffix, or of a CSV file.
 
-    time_name : the header of a CSV file's times. Raises SceneError, which names file, row and what
-    is allowed: times must increase strictly, and every number be finite and at most 1e30.
+    time_name : the header of a CSV file's times. Raises SceneError, which names file, row and the
+    requirement: times increase strictly, and every number is finite and at most 1e30.
     """
     netcdf = path.suffix.lower() in NETCDF
     found = _read_netcdf(path) if netcdf else _read_csv(path, split_unit(time_name)[0].lower())
@@ -79,7 +79,7 @@ def split_unit(text: str) -> tuple[str, str]:
     for opening, closing in ("[]", "()"):
         if text.endswith(closing) and opening in text:
             name, _, unit = text[:-1].rpartition(opening)
-            if not name.rstrip().endswith("@"):  # else the place of a receiver, `gap@[20,30]`
+            if not name.rstrip().endswith("@"):  # else a receiver's place, `gap@[20,30]`
                 return name.strip(), unit.strip()
     return text, ""
 
@@ -128,9 +128,9 @@ def _where_time(path: Path, header: list[str], time_name: str) -> int:
 
 
 def _rows(lines: Iterable[tuple[int, str]], time_name: str) -> Iterator[tuple[int, list[str]]]:
-    """Yield line number and cells, separated by what the first line that is no comment has.
+    """Yield line number and cells, split at the separator of the first line that is not a comment.
 
-    A comment ends a line; within a header it begins with "# ", since names may hold the sign.
+    A comment ends a line; within a header it begins with "# ", since names may contain #.
     """
     separator = ""
     for number, line in lines:
@@ -147,7 +147,7 @@ def _rows(lines: Iterable[tuple[int, str]], time_name: str) -> Iterator[tuple[in
 
 
 def _separator(text: str, time_name: str) -> str:
-    """Return what separates the cells of a file's first line: what parts the name of the times."""
+    """Return the separator of cells in a file's first line, next to the name of the times."""
     for separator in ";\t,":
         names = [split_unit(cell)[0].lower() for cell in _cells(text, separator)]
         if len(names) > 1 and time_name in names:
@@ -166,7 +166,7 @@ def _cells(text: str, separator: str) -> list[str]:
 
 
 def _numbers(where: str, header: list[str], cells: list[str], at: int) -> list[float]:
-    """Return the numbers of a row, nan for an empty cell; the times, column `at`, have none."""
+    """Return the numbers of a row, nan for an empty cell; times, column `at`, cannot be empty."""
     if len(cells) != len(header):
         columns = ", ".join(header) if header[1] else "time and value, without a header"
         allowed = f"must hold {len(header)} numbers ({columns}), not {len(cells)}"
@@ -181,11 +181,11 @@ def _read_netcdf(path: Path) -> Columns:
     coordinates = [name for names in RECEIVERS.values() for name in names]
     wanted = {"time", *QUANTITIES, *RECEIVERS, *coordinates, *COMPONENT_DIMENSIONS}
     try:
-        # Undecoded, times keep the numbers and the unit that the file gives them.
+        # Undecoded, times keep the numbers and the unit of the file.
         found = load_netcdf(path, wanted, decode_times=False)
     except FileNotFoundError as error:
         raise SceneError(str(path), "", None, f"cannot be read: {error.strerror}") from None
-    except Exception as error:  # of whichever library xarray finds, on a file that is not whole
+    except Exception as error:  # from whichever library xarray uses, on a truncated file
         reason = str(error).partition(". ")[0]
         raise SceneError(str(path), "", None, f"cannot be read as NetCDF: {reason}") from None
     if "time" not in found.variables or found.time.dims != ("time",):
@@ -205,10 +205,10 @@ def _read_netcdf(path: Path) -> Columns:
 
 
 def _columns_of(path: Path, variable: xr.DataArray) -> Iterator[Column]:
-    """Yield `velocity_x@20` or `velocity_x@[20,30]` for each component and receiver; what the file
-    lacks is left out."""
+    """Yield `velocity_x@20` or `velocity_x@[20,30]` for each component and receiver; missing values
+    are left out."""
     name = str(variable.name)
-    # A receiver that was selected from a result is still there, as a coordinate without dimension.
+    # A receiver selected from a result is still present, as a coordinate without dimension.
     place, component = (
         next((one for one in known if one in variable.dims or one in variable.coords), "")
         for known in (RECEIVERS, COMPONENT_DIMENSIONS)
@@ -234,7 +234,7 @@ def _columns_of(path: Path, variable: xr.DataArray) -> Iterator[Column]:
 
 
 def _receiver(variable: xr.DataArray, place: str, index: int) -> str:
-    """Return where a receiver is, as labels have it: `20`, `[20,30]`."""
+    """Return a receiver's place as in labels: `20`, `[20,30]`."""
     at = [float(np.atleast_1d(variable[name].values)[index]) for name in RECEIVERS[place]]
     numbers = [f"{x:.12g}" for x in at]
     return numbers[0] if len(numbers) == 1 else f"[{','.join(numbers)}]"

@@ -1,9 +1,9 @@
 """The distance of one waveform from another, and of one result from another.
 
-A waveform is one component of one quantity at one receiver, less its static state: what a scene
-holds before its load acts is not part of the motion. Nothing is pooled: the misfit of two results
-is that of the waveform which is furthest off. Every function takes a waveform or result first and
-its reference second, equally sampled.
+A waveform is one component of one quantity at one receiver, minus its static state: the state of a
+scene before its load is not part of the motion. Nothing is pooled: the misfit of two results is
+that of the worst waveform. Every function takes a waveform or result first and its reference
+second, equally sampled.
 """
 
 from collections.abc import Iterator
@@ -14,7 +14,7 @@ import xarray as xr
 
 from compare.misfit.places import Place, places_of
 
-#: Quantities of one unit, loudest first judged beside each other.
+#: Quantities of one unit, whose amplitudes are compared with each other.
 UNITS = (
     ("stress", "shear", "traction"),
     ("velocity",),
@@ -25,14 +25,14 @@ QUANTITIES = tuple(quantity for unit in UNITS for quantity in unit)
 #: A waveform whose root mean square stays below this part of the loudest one of its unit, in both
 #: results, is listed and does not decide a misfit.
 FAINT = 0.01
-ROUND_OFF = 1e-9  # of the loudest displacement (m): rotations (rad) below are none
-JUDGED = 10.0  # times its own error: the least misfit that a reference can tell
+ROUND_OFF = 1e-9  # of the largest displacement (m): rotations (rad) below count as zero
+JUDGED = 10.0  # times its own error: the smallest misfit that a reference can resolve
 
 
 class Distance(NamedTuple):
-    """All distances of one waveform from its reference; nan where one has no meaning.
+    """All distances of one waveform from its reference; nan where undefined.
 
-    misfit : relative L2. peak_ratio : of the largest magnitudes. delay : s, positive when late.
+    misfit : relative L2. peak_ratio : of the largest magnitudes. delay : s, positive if late.
     period_ratio : of the mean periods. envelope, phase : single-valued misfits, None if not asked.
     """
 
@@ -64,9 +64,9 @@ def relative_l2(one: np.ndarray, other: np.ndarray) -> float:
 
 
 class Pairing(NamedTuple):
-    """One waveform [n] of a result beside that of its reference, both less their static state.
+    """One waveform [n] of a result and that of its reference, both minus their static state.
 
-    error : bound of the reference's own root-mean-square error, 0 of a closed form.
+    error : bound on the reference's own root-mean-square error, 0 for a closed form.
     faint : whether both are too weak to decide a misfit.
     """
 
@@ -96,7 +96,7 @@ class Worst(NamedTuple):
 
     @property
     def judged(self) -> float:
-        """What is certain: the misfit, but not less than ten times the reference's own error."""
+        """The resolved misfit: at least ten times the reference's own error."""
         return max(self.misfit, JUDGED * self.floor)
 
     @property
@@ -106,18 +106,18 @@ class Worst(NamedTuple):
 
 
 def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
-    """Return the relative L2 misfit of the waveform of two results that is furthest off."""
+    """Return the relative L2 misfit of the worst waveform of two results."""
     return worst(one, other).misfit
 
 
 def worst(one: xr.Dataset, other: xr.Dataset) -> Worst:
-    """Return the waveform of two results that is furthest off, faint ones left out."""
+    """Return the worst waveform of two results, faint ones left out."""
     found = [Worst(p.misfit, p.place, p.floor) for p in pairings(one, other) if not p.faint]
     return max(found, key=lambda w: w.judged, default=Worst(0.0))
 
 
 def pairings(one: xr.Dataset, other: xr.Dataset) -> list[Pairing]:
-    """Return every waveform that both results have, up to when the reference is known.
+    """Return every waveform that both results have, while the reference is known.
 
     Those that are zero in both are left out.
     """
@@ -141,9 +141,9 @@ def _shared(one: xr.Dataset, other: xr.Dataset) -> list[Pairing]:
 
 
 class Stack(NamedTuple):
-    """All waveforms of a result [waveform, n] and of its reference, less their static states.
+    """All waveforms of a result [waveform, n] and of its reference, minus their static states.
 
-    least : root mean square [waveform] below which one decides nothing, where it is in both.
+    least : root mean square [waveform]: one that is smaller in both is ignored.
     """
 
     one: np.ndarray
@@ -152,11 +152,11 @@ class Stack(NamedTuple):
 
     @property
     def misfits(self) -> np.ndarray:
-        """Relative L2 distance of each waveform, 0 of those that are faint in both."""
+        """Relative L2 distance of each waveform, 0 if it is faint in both."""
         return self.distances(self.one, self.other)
 
     def distances(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
-        """Return ||one - other|| / ||reference|| of each waveform, 0 of those that are faint."""
+        """Return ||one - other|| / ||reference|| of each waveform, 0 if it is faint."""
         goal = np.linalg.norm(self.other, axis=1)
         loudest = np.maximum(np.linalg.norm(self.one, axis=1), goal)
         loud = loudest / np.sqrt(max(self.one.shape[1], 1)) >= self.least
@@ -166,7 +166,7 @@ class Stack(NamedTuple):
 
 
 def stacked(one: xr.Dataset, reference: xr.Dataset) -> Stack:
-    """Return the waveforms of a result beside those of its reference, for arithmetic on all."""
+    """Return the waveforms of a result and of its reference as arrays."""
     found = _shared(one, reference)
     loudest = _loudest(found)
     least = np.array([loudest[p.place.quantity] for p in found])
@@ -189,10 +189,10 @@ def waveforms(result: xr.Dataset, like: xr.Dataset) -> Iterator[tuple[Place, np.
 
 
 def motion(result: xr.Dataset, quantity: str) -> np.ndarray:
-    """Return a quantity less its static state [place, time] or [place, time, component].
+    """Return a quantity minus its static state [place, time] or [place, time, component].
 
-    The prestress of a section; all of the first sample where gravity's static state is there, or
-    the prestress of a rock mass.
+    The static state is the prestress of a section, or the whole first sample under static gravity
+    or, in a rock mass, under prestress.
     """
     values = result[quantity].values
     return values - static_state(result, quantity)
@@ -209,7 +209,7 @@ def static_state(result: xr.Dataset, quantity: str) -> np.ndarray:
 
 
 def error_of(result: xr.Dataset, place: Place) -> float:
-    """Return the bound of a result's own root-mean-square error at a place, 0 of a closed form."""
+    """Return the bound on a result's own root-mean-square error at a place, 0 for a closed form."""
     name = f"{place.quantity}_error"
     if name not in result:
         return 0.0
@@ -221,7 +221,7 @@ def error_of(result: xr.Dataset, place: Place) -> float:
 def _loudest(found: list[Pairing]) -> dict[str, float]:
     """Return by quantity the root mean square below which a waveform is faint.
 
-    Of a unit in which the reference stands still while something else moves, all are.
+    In a unit in which the reference is at rest while something else moves, all are faint.
     """
     loud = {
         quantity: max((rms(p.other) for p in found if p.place.quantity in unit), default=0.0)
@@ -240,7 +240,7 @@ def rms(waveform: np.ndarray) -> float:
 
 
 def delay(one: np.ndarray, other: np.ndarray, dt: float) -> float:
-    """Return by how much `one` arrives later, s: the peak of the cross-correlation.
+    """Return the delay of `one`, s: the peak of the cross-correlation.
 
     A parabola through the three largest values resolves a fraction of a sample.
     """
@@ -268,17 +268,17 @@ def mean_period(waveform: np.ndarray, dt: float) -> float:
 
 def envelope_phase_misfit(one: np.ndarray, other: np.ndarray, dt: float) -> tuple[float, float]:
     """Return the single-valued envelope and phase misfits of Kristekova et al. (2006), by the
-    wavelet transform of ObsPy, whose own `em` and `pm` each make both anew.
+    wavelet transform of ObsPy, whose own `em` and `pm` would each compute both transforms.
 
-    Bull. Seism. Soc. Am. 96, 1836-1850; over the band that holds the reference's energy. A
-    reference that stands still, or swings more slowly than the record lasts, has no such band.
+    Bull. Seism. Soc. Am. 96, 1836-1850; over the band that contains the reference's energy. A
+    reference at rest, or with a period longer than the record, has no such band.
     """
     from obspy.signal.tf_misfit import cwt
 
     period = mean_period(other, dt)
     if not one.any() or not period < dt * len(other):
         return np.nan, np.nan
-    coarse = max(1, int(period / (40 * dt)))  # 40 samples a period: far above the band's end
+    coarse = max(1, int(period / (40 * dt)))  # 40 samples per period: far above the band's end
     band = {"dt": dt * coarse, "w0": 6, "fmin": 0.25 / period, "fmax": 4 / period, "nf": 24}
     found, wanted = (cwt(wave[::coarse], **band) for wave in (one, other))
     size = np.abs(wanted)

@@ -1,4 +1,4 @@
-"""A scene solved by all that applies to it, and how far apart the solutions are, pair by pair."""
+"""All solutions that apply to a scene, and the distances between them, pair by pair."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -21,20 +21,20 @@ from compare.solvers.record import Answer
 
 
 class Pair(NamedTuple):
-    """A result, what it is held against, and what their distance means."""
+    """A result, its reference, and the meaning of their distance."""
 
     one: str
     other: str
     kind: str
 
 
-GIVEN = "given curves"  # those of others
+GIVEN = "given curves"  # external data
 
 
 @cache
 def pairs() -> tuple[Pair, ...]:
-    """Return the pairs whose distance is measured, as the records of the solvers name them: by the
-    meaning of their distance, then in the order of the registry."""
+    """Return the pairs whose distance is measured, from the solvers' records: sorted by the meaning
+    of their distance, then in the order of the registry."""
     every = solvers()
     place = {one.name: i for i, one in enumerate(every)}
     found = [
@@ -47,7 +47,7 @@ def pairs() -> tuple[Pair, ...]:
 
 
 def meaning(pair: Pair) -> str:
-    """Return what the distance of a pair is made of; nothing where a curve of others is one."""
+    """Return the causes of a pair's distance; "" if one is an external curve."""
     if pair.kind == GIVEN:
         return ""
     of_kinds = (solver(pair.other).distances or {}).values()
@@ -57,8 +57,8 @@ def meaning(pair: Pair) -> str:
 class Row(NamedTuple):
     """The distance of one pair at one receiver.
 
-    place : with the component, where there are several. floor : relative error of the second
-    solution itself, below ten times which nothing is judged. faint : too weak to decide a misfit.
+    place : with the component, if there are several. floor : relative error of the second solution
+    itself; a misfit below ten times this is not resolved. faint : too weak to decide a misfit.
     """
 
     pair: Pair
@@ -74,17 +74,17 @@ class Row(NamedTuple):
 
     @property
     def facts(self) -> dict[str, Any]:
-        """Pair, place and distances, for a machine."""
+        """Pair, place and distances, machine-readable."""
         where = {"quantity": self.quantity, **self.place.coordinates}
         return {**self.pair._asdict(), **where, **self.distance._asdict()}
 
 
 @dataclass
 class Comparison:
-    """One variant of a scene, everything that solved it, and why the rest did not.
+    """One variant of a scene, its solutions, and why the others do not apply.
 
-    scene : of either kind. results : by name. reasons : name to reason, of what does not apply.
-    rows : the distances. besides : the curves of others, a file each.
+    scene : of either kind. results : by name. reasons : name to reason, of solutions that do not
+    apply. rows : the distances. besides : the external curves, one entry per file.
     """
 
     scene: Any
@@ -101,10 +101,10 @@ def compare(
     curves: Sequence[Curves] = (),
     align: bool = False,
 ) -> Comparison:
-    """Solve a scene by everything that applies to it and measure every pair.
+    """Solve a scene by all solutions that apply and measure every pair.
 
     `progress` is called with the finished fraction; `spectral` adds envelope and phase misfits;
-    `curves` of others are held against every solution, their clocks moved onto it by `align`.
+    external `curves` are compared with every solution, their clocks shifted onto it by `align`.
     """
     comparison = solved(scene, applicable(scene), progress)
     comparison.rows = measure(comparison.results, spectral)
@@ -118,10 +118,9 @@ def compare(
 def solved(
     scene: AnyScene, answers: Mapping[str, Answer], progress: Progress | None = None
 ) -> Comparison:
-    """Solve a scene by what applies to it, without measuring any pair.
+    """Solve a scene by the solutions that apply, without measuring any pair.
 
-    answers : by name whether each of the solutions that are wanted applies. Raises SceneError where
-    none does.
+    answers : whether each requested solution applies, by name. Raises SceneError if none does.
     """
     comparison = Comparison(scene)
     if not any(answers.values()):
@@ -140,9 +139,9 @@ def solved(
 
 
 def measure(results: dict[str, xr.Dataset], spectral: bool = False) -> list[Row]:
-    """Return the distances of every pair that is there, of every waveform that both have.
+    """Return the distances of every available pair, for every waveform that both have.
 
-    Envelope and phase misfits are those of stress, shear, velocity and rotation that are not faint.
+    Envelope and phase misfits are computed for stress, shear, velocity and rotation, if not faint.
     """
     rows = []
     for pair in pairs():

@@ -1,6 +1,6 @@
 """Places of waveforms: one component of one quantity at one receiver.
 
-A receiver of a pillar lies at y, one of a rock mass at (x, y). In labels and headers of columns a
+A receiver of a pillar lies at y, one of a rock mass at (x, y). In labels and column headers a
 place is `stress@20`, `velocity_x@20.25` or `velocity_x@[20, 30]`; in words "velocity x at [20, 30]
 m".
 """
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 #: Dimensions of components in results.
 COMPONENT_DIMENSIONS = ("axis", "across", "stress_component", "joint_axis")
 
-#: By the number of coordinates of a receiver: the components of each quantity in labels, "" where
-#: it has one, and the key of [record] that asks for its receivers.
+#: By the number of coordinates of a receiver: the components of each quantity in labels, "" if
+#: it has only one, and the key of [record] with its receivers.
 COMPONENTS: dict[int, dict[str, tuple[str, ...]]] = {
     1: {
         "stress": ("",),
@@ -51,8 +51,8 @@ WORDS = re.compile(rf"([a-z]+)(?: ([a-z]+))? at (?:y = )?(?:{_AT}) m")
 
 
 class Place(NamedTuple):
-    """A waveform's quantity, its component ("" of the only one), and where its receiver is, m: (y,)
-    in a pillar, (x, y) in a rock mass."""
+    """A waveform's quantity, its component ("" for the only one), and its receiver's position, m:
+    (y,) in a pillar, (x, y) in a rock mass."""
 
     quantity: str
     component: str
@@ -72,17 +72,17 @@ class Place(NamedTuple):
 
     @property
     def receiver(self) -> str:
-        """Where it is in words: "15 m", "[20, 30] m"."""
+        """Its position in words: "15 m", "[20, 30] m"."""
         return f"{self._at('g', ', ')} m"
 
     @property
     def words(self) -> str:
-        """Everything in words: "shear x at 15 m", "velocity x at [20, 30] m"."""
+        """The place in words: "shear x at 15 m", "velocity x at [20, 30] m"."""
         return f"{self.named} at {self.receiver}"
 
     @property
     def heading(self) -> str:
-        """The same to all digits, as headers of columns have it: "shear x at y = 15 m"."""
+        """The place in words to all digits, for column headers: "shear x at y = 15 m"."""
         return f"{self.named} at {'y = ' * (len(self.at) == 1)}{self._at('.12g', ', ')} m"
 
     @property
@@ -92,13 +92,13 @@ class Place(NamedTuple):
 
     @property
     def key(self) -> str:
-        """The key of [record] that asks for it."""
+        """The key of [record] with its receivers."""
         if len(self.at) == 1:
             return "stress" if self.quantity in OF_SECTIONS else "velocity"
         return "joints" if self.quantity in OF_JOINTS else "points"
 
     def waveform(self, result: xr.Dataset) -> np.ndarray | None:
-        """Return this waveform of a result [n] in SI; None where the result does not have it."""
+        """Return this waveform of a result [n] in SI; None if the result does not contain it."""
         if self.quantity not in result:
             return None
         places, components = places_of(result, self.quantity)
@@ -111,7 +111,7 @@ class Place(NamedTuple):
 
 
 def parsed(text: str, pattern: re.Pattern[str] = LABEL) -> Place | None:
-    """Return the place that a label or words name; None where they name none."""
+    """Return the place given by a label or by words; None if they give none."""
     match = pattern.fullmatch(text.strip())
     if match is None:
         return None
@@ -129,8 +129,8 @@ def parsed(text: str, pattern: re.Pattern[str] = LABEL) -> Place | None:
 
 
 def places_of(result: xr.Dataset, quantity: str) -> tuple[list[tuple[float, ...]], list[str]]:
-    """Return where the receivers of a quantity are, m, and the names of its components, "" of the
-    only one."""
+    """Return the receivers' positions of a quantity, m, and the names of its components, "" for
+    the only one."""
     found = result[quantity]
     (receivers,) = (name for name in RECEIVERS if name in found.dims)
     columns = [result[name].values.tolist() for name in RECEIVERS[receivers]]
@@ -140,11 +140,11 @@ def places_of(result: xr.Dataset, quantity: str) -> tuple[list[tuple[float, ...]
 
 
 def recorded(scene: AnyScene, key: str) -> list[tuple[float, ...]]:
-    """Return the receivers of a key of [record], m; none of a key of the other kind of scene."""
+    """Return the receivers of a key of [record], m; empty for a key of the other kind of scene."""
     places: list[Any] = getattr(scene.record, key, [])
     return [tuple(np.atleast_1d(one).tolist()) for one in places]
 
 
 def same(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
-    """Return whether two receivers are one, to the digits that files have."""
+    """Return whether two receivers coincide, to the digits written in files."""
     return len(one) == len(other) and bool(np.isclose(one, other, rtol=1e-9, atol=1e-9).all())

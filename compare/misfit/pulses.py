@@ -1,8 +1,8 @@
-"""Reading pulses off waveforms: where each passage is, how high, how long, how late.
+"""Pulses in waveforms: time span, peak, period and delay of each passage.
 
 A waveform is a pandas Series over time in s; stress in Pa, compression positive, or velocity in
-m/s. Passages are those of the homogenised bar: the wave runs from the loaded end at the bar speed
-c and back from the other end.
+m/s. Passages are those of the homogenised bar: the wave travels from the loaded end at the bar
+speed c and back from the other end.
 """
 
 import numpy as np
@@ -34,13 +34,13 @@ def _along_axis(result: xr.Dataset, quantity: str, index: int) -> pd.Series:
 
 
 def arrivals(scene: Scene, y: float) -> list[float]:
-    """Return when the incident, first and second reflected pulse reach y (m), s."""
+    """Return the arrival times of the incident, first and second reflected pulse at y (m), s."""
     length, c = scene.pillar.length, calibrate(scene).bar_speed
     return [y / c, (2 * length - y) / c, (2 * length + y) / c]
 
 
 def period(scene: Scene) -> float:
-    """Return the load's time scale, s; a quarter of the record for a load that has none."""
+    """Return the load's time scale, s; a quarter of the record for a load without one."""
     return scene.load.time_scale or scene.time.duration / 4
 
 
@@ -50,7 +50,7 @@ def span(waveform: pd.Series, start: float, stop: float) -> pd.Series:
 
 
 def passage(waveform: pd.Series, scene: Scene, y: float, n: int) -> pd.Series:
-    """Return the n-th passage at y: from the middle of the rest before it to that after it."""
+    """Return the n-th passage at y, between the middles of the quiet spans before and after it."""
     due, whole = [-np.inf, *arrivals(scene, y)], period(scene)
     rests = [due[i] - due[i - 1] - whole for i in range(1, len(due))]
     early = np.clip(np.array(rests) / 2, whole / 4, whole)
@@ -64,7 +64,7 @@ def peak(waveform: pd.Series) -> float:
 
 
 def first_swing(waveform: pd.Series) -> float:
-    """Return the sign of the first half-cycle that passes 0.3 of the peak; 0 of silence."""
+    """Return the sign of the first half-cycle that exceeds 0.3 of the peak; 0 without motion."""
     loud = waveform[waveform.abs() > 0.3 * peak(waveform)]
     return float(np.sign(loud.iloc[0])) if len(loud) else 0.0
 
@@ -91,7 +91,7 @@ def load_waveform(scene: Scene, like: pd.Series) -> pd.Series:
 
 
 def quiet_share(waveform: pd.Series, scene: Scene) -> pd.Series:
-    """Return what the quiet end (9) of the rigid chain makes of a pulse off its free end.
+    """Return the reflection of the rigid chain's quiet end (9), given that of a free end.
 
     With the wave exp(i omega t - i theta j) in blocks of mass m, z = exp(-i theta), k* = k (1 +
     i omega eta) and Z = rho c A: z + 1/z = 2 - m omega^2/k*; the dashpot on the full-mass end block
@@ -103,7 +103,7 @@ def quiet_share(waveform: pd.Series, scene: Scene) -> pd.Series:
     omega = 2 * np.pi * np.fft.rfftfreq(size, sampling(waveform))[1:]
     k = p.regular_stiffness * p.area * (1 + 1j * omega * (p.time_constant or 0.0))
     half = 1 - p.block_mass * omega**2 / (2 * k)
-    z = half - 1j * np.sqrt(1 - half**2)  # of the two roots the one that runs or decays forwards
+    z = half - 1j * np.sqrt(1 - half**2)  # the root that travels or decays forwards
     z = np.where(np.abs(z) > 1 + 1e-12, 1 / z, z)
     dashpot = 1j * omega * p.impedance * p.area
     ratio = -(k * (z - 1) + dashpot) / (k * (1 / z - 1) + dashpot) / z

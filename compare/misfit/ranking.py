@@ -1,8 +1,8 @@
-"""Ranking of solutions by what they resolve of a scene, and its reference.
+"""Ranking of solutions by the detail that they resolve, and the reference of a scene.
 
-The reference of a scene is the solution that leaves out the least: the finest rock first, then an
-exact one before a computed one. A solution that lacks an effect of the scene is never a reference.
-What no solution at least as fine has checked independently is "not checked".
+The reference of a scene is its most complete solution: the finest rock first, then an exact one
+before a computed one. A solution that lacks an effect of the scene is never a reference. A solution
+that no other, at least as fine, checks independently is "not checked".
 """
 
 from collections.abc import Iterable
@@ -17,7 +17,7 @@ from compare.solvers.record import Answer, Rock
 
 
 class Reference(NamedTuple):
-    """What a scene's solutions are held against, and why in words."""
+    """The reference of a scene's solutions, and the reason in words."""
 
     name: str
     reason: str
@@ -27,10 +27,10 @@ NOT_CHECKED = "not checked independently"
 
 
 def lacks(name: str, scene: AnyScene) -> str:
-    """Return the effect of a scene that a solution which applies to it leaves out, "" where none.
+    """Return the effect of a scene that an applicable solution leaves out, "" if none.
 
-    The thickness of a soft layer: rigid blocks take it for a joint. The inertia across the axis of
-    a column of two or three dimensions: a bar has none.
+    The thickness of a soft layer: rigid blocks model it as a joint. The lateral inertia of a column
+    in two or three dimensions: a bar has none.
     """
     of = solver(name)
     if not isinstance(scene, Scene):
@@ -45,7 +45,7 @@ def lacks(name: str, scene: AnyScene) -> str:
 
 
 def finest(names: Iterable[str], scene: AnyScene) -> Reference | None:
-    """Return the solution among `names` that leaves out the least; None where none is complete."""
+    """Return the most complete solution among `names`; None if none has all effects."""
     complete = [name for name in names if not lacks(name, scene)]
     if not complete:
         return None
@@ -56,9 +56,9 @@ def finest(names: Iterable[str], scene: AnyScene) -> Reference | None:
 
 
 def reference_of(name: str, names: Iterable[str], scene: AnyScene) -> Reference | None:
-    """Return what one solution is held against: the finest of the others.
+    """Return the reference of one solution: the finest of the others.
 
-    None where none of them is finer, or as fine and exact: it is not checked independently.
+    None if none of them is finer, or equally fine and exact: it is not checked independently.
     """
     found = finest([other for other in names if other != name], scene)
     if found is None:
@@ -67,8 +67,8 @@ def reference_of(name: str, names: Iterable[str], scene: AnyScene) -> Reference 
 
 
 def own_exact(name: str, names: Iterable[str], scene: AnyScene) -> str | None:
-    """Return the exact solution of an engine's own model among `names`, what its numerical error is
-    measured from; None where there is none."""
+    """Return the exact solution of an engine's own model among `names`, the reference of its
+    numerical error; None if there is none."""
     rock, own = solver(name).rock, []
     for other in names:
         of = solver(other)
@@ -79,9 +79,9 @@ def own_exact(name: str, names: Iterable[str], scene: AnyScene) -> str | None:
 
 
 def deciding(scene: AnyScene) -> dict[str, Answer]:
-    """Return whether each of the solutions that verdicts rest on applies to a scene: the engines,
-    of each the reference and the exact solution of its own model, and those that [expect] names.
-    All of them where no engine applies."""
+    """Return whether each of the solutions that verdicts need applies to a scene: the engines, the
+    reference and the exact solution of each engine's own model, and those named by [expect]. All
+    solutions if no engine applies."""
     answers = applicable(scene)
     able = [name for name, answer in answers.items() if answer]
     if not ENGINES.keys() & able:
@@ -100,5 +100,5 @@ def _fineness(name: str) -> tuple[int, int]:
 
 
 def applicable(scene: AnyScene) -> dict[str, Answer]:
-    """Return of every engine and exact solution of a scene's kind whether it applies to it."""
+    """Return whether each engine and exact solution of a scene's kind applies to it."""
     return {name: applies(name, scene) for name in names(scene.kind)}

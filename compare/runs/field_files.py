@@ -14,13 +14,13 @@ from cases.errors import SceneError
 from compare.runs.output import refuse_foreign, write, write_folder
 from results.snapshots import Snapshots
 
-#: From VTK's order of corners to dolfinx's, which counts along one axis after the other.
+#: From VTK's order of corners to dolfinx's tensor-product order.
 TENSOR_ORDER = {"quad": [0, 1, 3, 2], "hexahedron": [0, 1, 3, 2, 4, 5, 7, 6]}
 CELLS = {"line": "interval", "quad": "quadrilateral", "tetra": "tetrahedron"}
 
 
 def write_pvd(path: Path, s: Snapshots) -> Path:
-    """Write NAME.pvd at `path`, and beside it NAME-fields/0000.vtu, ...: one for each instant.
+    """Write NAME.pvd at `path`, and beside it NAME-fields/0000.vtu, ..., one per instant.
 
     Point data: displacement (m), velocity (m/s). Cell data: block, stress (Pa) where known.
     """
@@ -54,7 +54,7 @@ def _mesh(s: Snapshots, i: int) -> meshio.Mesh:
 
 
 def read_pvd(path: Path) -> Snapshots:
-    """Return the snapshots that `write_pvd` has written."""
+    """Return the snapshots written by `write_pvd`."""
     sets = ElementTree.parse(path).getroot().iter("DataSet")
     files = {float(s.attrib["timestep"]): path.parent / s.attrib["file"] for s in sets}
     meshes = [meshio.read(file) for file in files.values()]
@@ -73,7 +73,7 @@ def read_pvd(path: Path) -> Snapshots:
 
 
 def refuse_vtx() -> None:
-    """Raise SceneError where no VTX file can be written."""
+    """Raise SceneError if VTX files cannot be written."""
     try:
         from continuum.space import forms
     except ImportError as error:
@@ -100,8 +100,8 @@ def write_vtx(path: Path, s: Snapshots) -> Path:
 
 
 def _functions(s: Snapshots) -> tuple[Any, Any, np.ndarray, np.ndarray]:
-    """Return dolfinx functions for displacement and velocity, and which of their values
-    [cells, corners] are those of which nodes [cells, corners]."""
+    """Return dolfinx functions for displacement and velocity, and the indices of their values
+    [cells, corners] with those of the corresponding nodes [cells, corners]."""
     from continuum.space import forms
 
     cells = s.cells[:, TENSOR_ORDER.get(s.kind, slice(None))].astype(np.int64)

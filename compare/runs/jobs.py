@@ -1,4 +1,4 @@
-"""Jobs of `jointwave run`: one for each result, checked before any is run."""
+"""Jobs of `jointwave run`, one per result, checked before any is run."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -10,7 +10,7 @@ from compare.solvers.record import Solver
 
 
 class Job(NamedTuple):
-    """One result to be made: the scene, what solves it, and its file."""
+    """One result to compute: the scene, its solver, and the file."""
 
     scene: AnyScene
     name: str
@@ -18,7 +18,7 @@ class Job(NamedTuple):
 
 
 def wanted(engines: list[str], models: list[str]) -> list[tuple[str, str | None]]:
-    """Return (engine, model) for each run asked for; the model None stands for all that apply."""
+    """Return (engine, model) for each requested run; the model None means all that apply."""
     known = selection()
     found: list[tuple[str, str | None]] = []
     left = list(models)
@@ -38,13 +38,13 @@ def models_known() -> list[str]:
 
 
 def engine_of(model: str) -> str:
-    """Return the --engine that has a model, that of the exact solutions for an unknown one."""
+    """Return the --engine of a model, that of the exact solutions for an unknown one."""
     return next((one for one, models in selection().items() if model in models), Solver.engine)
 
 
 def plan(scenes: list[AnyScene], runs: list[tuple[str, str | None]], out: Path) -> list[Job]:
-    """Return the jobs, all of which apply; raises SceneError before anything is run, also where a
-    file that is no result stands in the place of one."""
+    """Return the jobs, all of which apply; raises SceneError before any run, also if a file that is
+    not a result is in the place of one."""
     from compare.runs.output import refuse_foreign
 
     jobs = []
@@ -59,9 +59,9 @@ def plan(scenes: list[AnyScene], runs: list[tuple[str, str | None]], out: Path) 
 
 
 def names_of(engine: str, model: str | None, scene: AnyScene) -> list[str]:
-    """Return what solves a scene for an engine and model; the model None: all that apply.
+    """Return the solvers of a scene for an engine and model; the model None: all that apply.
 
-    Raises SceneError where none does.
+    Raises SceneError if none does.
     """
     every = selection()[engine]
     if model is not None:

@@ -26,16 +26,16 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-LARGEST_ROW = 100_000_000  # bytes, of what a study, a sweep or the battery keeps of a point
-FORMULA = ("=", "+", "-", "@")  # how what a spreadsheet computes begins
-UNFINISHED = ".unfinished-"  # in the names of files that are being written, which begin with a dot
+LARGEST_ROW = 100_000_000  # bytes, of a point saved by a study, a sweep or the robustness suite
+FORMULA = ("=", "+", "-", "@")  # first characters of a spreadsheet formula
+UNFINISHED = ".unfinished-"  # in the names of files being written, which begin with a dot
 
 
 def write(path: Path, save: Callable[[Path], object]) -> Path:
-    """Let `save` write a file and put it at `path` only when it is whole, and safe on the disk.
+    """Let `save` write a file and move it to `path` once it is complete and synced to disk.
 
-    What stood at `path` before stays untouched until then, and for good when `save` fails.
-    Raises OSError, which names `path`, where it cannot be written.
+    An existing file at `path` is untouched until then, and kept if `save` fails.
+    Raises OSError, which names `path`, if it cannot be written.
     """
     with _names(path):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -55,7 +55,7 @@ def write(path: Path, save: Callable[[Path], object]) -> Path:
 
 
 def create(path: Path, content: bytes) -> Path:
-    """Write a file where none is; raises SceneError where anything is, OSError as `write` does."""
+    """Write a new file; raises SceneError if the path exists, OSError as `write` does."""
 
     def save(temporary: Path) -> None:
         temporary.write_bytes(content)
@@ -69,18 +69,18 @@ def create(path: Path, content: bytes) -> Path:
 
 @contextmanager
 def _names(path: Path) -> Iterator[None]:
-    """Let an OSError name a file, not the temporary one in its place."""
+    """Make an OSError name the file, not its temporary one."""
     try:
         yield
     except OSError as error:
         if UNFINISHED not in str(error.filename or UNFINISHED):
             raise
-        # Some libraries say in words of their own that a disk is full.
+        # Some libraries report a full disk with messages of their own.
         raise OSError(error.errno or EIO, error.strerror or str(error), str(path)) from None
 
 
 def sweep(folder: Path) -> None:
-    """Remove what a process that was killed has left unfinished in a folder."""
+    """Remove unfinished files of killed processes from a folder."""
     for left in folder.glob(f".*{UNFINISHED}*"):
         if left.is_dir():
             shutil.rmtree(left, ignore_errors=True)
@@ -88,14 +88,14 @@ def sweep(folder: Path) -> None:
             left.unlink(missing_ok=True)
 
 
-#: How a result begins: in NetCDF 3, or 4 by others' hands, or is empty.
+#: First bytes of a result: NetCDF 3, or NetCDF 4 of other programs; a result may also be empty.
 NETCDF = (b"CDF", b"\x89HDF")
 
 
 def refuse_foreign(path: Path, begins: tuple[bytes, ...] = NETCDF) -> None:
-    """Raise SceneError where what stands at the place of a file of ours does not begin like one.
+    """Raise SceneError if the existing file at a path does not begin like one of jointwave's.
 
-    A link there is replaced, and what it leads to stays.
+    A link there is replaced, and its target is kept.
     """
     if path.is_symlink() or not path.exists():
         return
@@ -113,7 +113,7 @@ def _begins(path: Path, begins: tuple[bytes, ...]) -> bool:
 
 
 def _refuse_foreign_folder(path: Path, new: Path) -> None:
-    """Raise SceneError where a folder holds any file of which the new one has not the like."""
+    """Raise SceneError if a folder contains files of a kind that the new one does not."""
     kinds = {file.suffix for file in new.iterdir()} if new.is_dir() else set()
     if path.is_symlink() or not path.exists():
         return
@@ -124,10 +124,10 @@ def _refuse_foreign_folder(path: Path, new: Path) -> None:
 
 
 def write_folder(path: Path, save: Callable[[Path], object]) -> Path:
-    """Let `save` make and fill a folder, and put it at `path` only when it is whole.
+    """Let `save` create and fill a folder, and move it to `path` once it is complete.
 
-    A folder that stood at `path` before is replaced by it, and stays as it is when `save` fails.
-    Raises SceneError where it holds other files.
+    An existing folder at `path` is replaced, and kept unchanged if `save` fails.
+    Raises SceneError if it contains other files.
     """
     with _names(path):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -143,7 +143,7 @@ def write_folder(path: Path, save: Callable[[Path], object]) -> Path:
 
 
 def write_csv(path: Path, table: pd.DataFrame, digits: int = 9) -> Path:
-    """Write a table without its index; text in it is as `csv_cell` has it."""
+    """Write a table without its index; text is escaped by `csv_cell`."""
     safe = table.rename(columns=csv_cell)
     texts = [i for i, kind in enumerate(safe.dtypes) if kind.kind not in "biuf"]
     for i in texts:
@@ -152,9 +152,9 @@ def write_csv(path: Path, table: pd.DataFrame, digits: int = 9) -> Path:
 
 
 def csv_cell(value: object) -> object:
-    """Return a cell that a spreadsheet takes for what it is; what is no text stays.
+    """Return a cell that a spreadsheet does not evaluate; values other than text are unchanged.
 
-    Text of others might begin a formula, and is put behind an apostrophe then.
+    Text that begins like a formula gets a leading apostrophe.
     """
     if not isinstance(value, str):
         return value
@@ -168,15 +168,15 @@ def write_text(path: Path, text: str) -> Path:
 
 
 def read_kept(path: Path, form: type[T]) -> T:
-    """Return what `write_text` has kept as JSON, of a form: a NamedTuple, a list of them.
+    """Return JSON written by `write_text` as a `form`: a NamedTuple or a list of them.
 
-    Raises SceneError where the file is not of that form.
+    Raises SceneError if the file does not match that type.
     """
     from pydantic import TypeAdapter
 
     try:
         return TypeAdapter(form).validate_python(read_json(path, LARGEST_ROW))
-    except ValueError as error:  # pydantic's are of several lines
+    except ValueError as error:  # pydantic's messages have several lines
         reason = str(error).partition("\n")[0]
         raise SceneError(str(path), "", None, f"is damaged, remove it: {reason}") from None
 
@@ -191,7 +191,7 @@ def fields_of(result: xr.Dataset) -> Fields:
 
 
 def write_fields(path: Path, fields: Fields) -> Path:
-    """Write a result as NetCDF 3 by scipy, just as xarray would but without importing it."""
+    """Write a result as NetCDF 3 by scipy, exactly as xarray would, without importing xarray."""
     refuse_foreign(path)
 
     def save(temporary: Path) -> None:
@@ -208,8 +208,8 @@ def write_fields(path: Path, fields: Fields) -> Path:
 
 
 def _located(name: str, dimensions: tuple) -> dict[str, str]:
-    """Return the attribute by which readers know where a variable's receivers are, where its
-    dimensions do not say so (CF conventions, 5)."""
+    """Return the attribute that gives readers the positions of a variable's receivers, if its
+    dimensions do not (CF conventions, 5)."""
     known = [names for receivers, names in RECEIVERS.items() if receivers in dimensions]
     beside = [one for names in known if len(names) > 1 for one in names]
     return {"coordinates": " ".join(beside)} if beside and name not in beside else {}

@@ -1,7 +1,7 @@
-"""The processes of one command: this one alone, or all that mpiexec has started.
+"""The processes of one command: this one only, or all those started by mpiexec.
 
-They do the same with the same input. What is not shared out among them the first one does for all;
-what it prints is printed once.
+They do the same with the same input. Work that is not shared among them is done by the first one
+for all; its output is printed once.
 """
 
 import os
@@ -15,13 +15,13 @@ from typing import Any, NoReturn, TextIO, TypeVar
 
 from cases.errors import SceneError
 
-#: Of those who start processes, how many these are: Open MPI, MPICH and its kin, MVAPICH.
+#: Number of processes, as set by launchers: Open MPI, MPICH and its relatives, MVAPICH.
 SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE")
-#: Set without saying how many there are, by PMIx.
+#: Set by PMIx, without the number of processes.
 STARTED = "PMIX_RANK"
 
-PATIENCE = 5.0  # s: who fails alike on all processes does so at nearly the same time
-GRACE = 0.5  # s: an aborted job may lose what its launcher has not passed on yet
+PATIENCE = 5.0  # s: a failure common to all processes occurs at nearly the same time
+GRACE = 0.5  # s: an aborted job may lose output that its launcher has not forwarded yet
 
 T = TypeVar("T")
 
@@ -29,13 +29,13 @@ T = TypeVar("T")
 class Processes:
     """The processes of a command.
 
-    comm : mpi4py's communicator of all of them; None where this one is alone.
+    comm : mpi4py's communicator of all of them; None for a single process.
     """
 
     def __init__(self, comm: Any = None) -> None:
         self.comm = comm
         self._muted: TextIO | None = None
-        # Messages about the command itself: no run ever uses this one.
+        # For messages about the command itself: runs do not use this communicator.
         self._own: Any = None if comm is None else comm.Dup()
 
     @property
@@ -45,7 +45,7 @@ class Processes:
 
     @property
     def stderr(self) -> TextIO:
-        """Where errors go, even of a process that is muted."""
+        """Stream for errors, even of a muted process."""
         return self._muted or sys.stderr
 
     def mute_others(self) -> None:
@@ -56,20 +56,20 @@ class Processes:
 
     @property
     def rank(self) -> int:
-        """Which of the processes this is."""
+        """Rank of this process."""
         return 0 if self.comm is None else self.comm.rank
 
     @property
     def size(self) -> int:
-        """How many processes there are."""
+        """Number of processes."""
         return 1 if self.comm is None else self.comm.size
 
     def largest(self, value: T) -> T:
-        """Return the largest value of all processes, in the order that Python gives them."""
+        """Return the largest value of all processes, in Python's order."""
         return value if self._own is None else max(self._own.allgather(value))
 
     def together(self, work: Callable[[], object]) -> None:
-        """Work on every process; what any of them raises is raised on all, once all are done."""
+        """Work on every process; an exception of any one is raised on all, once all are done."""
         error = None
         try:
             work()
@@ -81,15 +81,15 @@ class Processes:
                 raise found
 
     def told_by_first(self, work: Callable[[], T]) -> T:
-        """Return on all processes what `work` returns on the first; what it raises likewise."""
+        """Return on all processes the result of `work` on the first; exceptions likewise."""
         if self._own is None:
             return work()
         return self._own.bcast(self.by_first(work))
 
     def by_first(self, work: Callable[[], T]) -> T | None:
-        """Return what `work` returns on the first process, None on the others, which sleep.
+        """Return the result of `work` on the first process, None on the others, which sleep.
 
-        What it raises there is raised on all.
+        An exception is raised on all.
         """
         if self._own is None:
             return work()
@@ -106,7 +106,7 @@ class Processes:
         return done
 
     def fail(self, message: str, code: int) -> NoReturn:
-        """Print one line and leave with an exit code, together or else for all."""
+        """Print one line and exit with a code: all processes together, else by aborting all."""
         if self.is_first:
             self._tell(message)
         if self._own is not None and not self._all_arrive(PATIENCE):
@@ -117,11 +117,11 @@ class Processes:
         sys.exit(code)
 
     def _tell(self, message: str) -> None:
-        with suppress(OSError):  # nobody may be there to read it
+        with suppress(OSError):  # the reader may have closed it
             print(message, file=self.stderr, flush=True)
 
     def _all_arrive(self, patience: float = float("inf")) -> bool:
-        """Sleep until all processes are here, and return whether they came in time (s)."""
+        """Sleep until all processes arrive, and return whether they do so within `patience` (s)."""
         began, request = monotonic(), self._own.Ibarrier()
         while not request.Test():
             if monotonic() - began > patience:
@@ -135,7 +135,7 @@ ALONE = Processes()
 
 @cache
 def started() -> Processes:
-    """Return the processes of this command; raises SceneError where they cannot work together."""
+    """Return the processes of this command; raises SceneError if they cannot work together."""
     counts = [int(os.environ[name]) for name in SIZES if name in os.environ]
     if not counts and STARTED not in os.environ:
         return Processes()

@@ -1,4 +1,4 @@
-"""The jobs of `jointwave run`: watched over, executed, each file whole."""
+"""Execution of the jobs of `jointwave run`, with checkpoints and complete files."""
 
 import json
 import os
@@ -17,11 +17,11 @@ from results.dataset import Fields, imbalance
 
 
 class Done(NamedTuple):
-    """One result that was made, with what it cost.
+    """One computed result with its cost.
 
-    fragments : the pieces between broken joints, see `dem.fragments`; None where none can break.
-    out_of_balance : force ratio of the static state that it started from; None where from none.
-    fields : the files that show its snapshots; none where it has no snapshots.
+    fragments : the pieces between broken joints, see `dem.fragments`; None if no joint can break.
+    out_of_balance : force ratio of the static state at its start; None without one.
+    fields : the files that show its snapshots; empty without snapshots.
     """
 
     job: Job
@@ -42,11 +42,11 @@ def execute(
 ) -> list[Done]:
     """Run the jobs one after the other and write each result; `vtx`: snapshots as VTX too.
 
-    processes : share the runs of the continuum. The first of them makes the others, writes all
-    files, and alone returns what was done.
-    keeping : how the runs are kept on their way; None: they are not.
-    Raises SceneError where a run cannot be made, its file or a VTX file not be written, or it
-    cannot go on from its checkpoint; Interrupted where a signal has stopped one.
+    processes : share the runs of the continuum. The first of them does the other runs, writes all
+        files, and is the only one to return what was done.
+    keeping : checkpoint settings of the runs; None: no checkpoints.
+    Raises SceneError if a run fails, its file or a VTX file cannot be written, or its checkpoint
+    cannot be used; Interrupted if a signal has stopped a run.
     """
     done: list[Done] = []
     if vtx:
@@ -65,9 +65,9 @@ def execute(
 
 
 def _watch(job: Job, keeping: Keeping | None, processes: Processes) -> Watch | None:
-    """Return a job watched over by those who share it; None on processes that have no part in it.
+    """Return the checkpoints of a job on the processes that share it, None on others.
 
-    Raises SceneError where its result could not be written in the end.
+    Raises SceneError if its result could not be written in the end.
     """
 
     def by(who: Processes) -> Watch:
@@ -88,8 +88,8 @@ def _is_shared(job: Job) -> bool:
 def _made(
     job: Job, watched: Watch | None, progress: Progress, vtx: bool, processes: Processes
 ) -> list[Done]:
-    """Run a job and write its result; return what was done, nothing but on the first process."""
-    if watched is None:  # the first process alone runs it
+    """Run a job and write its result; return what was done, empty except on the first process."""
+    if watched is None:  # only the first process runs it
         done = processes.by_first(lambda: None)
     elif watched.is_made:
         done = processes.by_first(lambda: _finished(job, watched, vtx))
@@ -112,7 +112,7 @@ def _run(job: Job, watched: Watch, progress: Progress, processes: Processes) -> 
 
 
 def _keep(job: Job, error: StoppedError) -> None:
-    """Write what a run had computed when it stopped, beside where its result would be."""
+    """Write the partial result of a stopped run, beside the path of its result."""
     result, error.result = error.result, None
     if result is None:
         return
@@ -130,7 +130,7 @@ def _stopped(job: Job) -> Path:
 
 
 def _written(job: Job, watched: Watch, result: Fields, vtx: bool) -> Done:
-    """Write a result with its snapshots; what was kept of the run on its way is needed no more."""
+    """Write a result with its snapshots and remove the run's checkpoints."""
     signed = watched.signed(result)
     write_fields(job.path, signed)
     if watched.keeper is not None and watched.keeper.done:
@@ -141,7 +141,7 @@ def _written(job: Job, watched: Watch, result: Fields, vtx: bool) -> Done:
 
 
 def _finished(job: Job, watched: Watch, vtx: bool, result: Fields | None = None) -> Done:
-    """Write the snapshots of a result, that of an earlier command if none is given."""
+    """Write the snapshots of a result, by default that of an earlier command."""
     if result is None:
         result = result_of(job.path, watched.signature)
         if result is None:
@@ -169,7 +169,7 @@ def _refuse_vtx(jobs: list[Job]) -> None:
 
 
 def _write_snapshots(job: Job, result: Fields, vtx: bool) -> list[Path]:
-    """Write a result's snapshots beside it, where it has any; return the files to open."""
+    """Write a result's snapshots, if any, beside it; return the files to open."""
     if job.scene.record.fields is None:
         return []
     from compare.runs.field_files import write_pvd, write_vtx

@@ -1,4 +1,4 @@
-"""Worker processes of this machine that end when, and only when, whoever started them does."""
+"""Worker processes of this machine that end exactly when their parent does."""
 
 import signal
 from collections.abc import Callable, Iterator
@@ -12,16 +12,16 @@ from typing import Any
 class Workers(ProcessPoolExecutor):
     """The standard pool, of spawned processes.
 
-    Ctrl-C reaches all processes of a terminal: the workers do not see it. When the program ends on
-    its way they are ended too, whatever they do.
+    Ctrl-C reaches all processes of a terminal; the workers ignore it. If the program ends early,
+    they are terminated too.
     """
 
     def __init__(self, count: int) -> None:
         super().__init__(count, get_context("spawn"))
 
     def submit(self, work: Callable[..., Any], /, *arguments: Any, **more: Any) -> Future:
-        """Hand work to a worker, starting one where none is free."""
-        with _held_back(signal.SIGINT):  # by those who are started now as well, and for good
+        """Submit work to a worker, starting one if none is free."""
+        with _held_back(signal.SIGINT):  # also in workers started now, permanently
             return super().submit(work, *arguments, **more)
 
     def __exit__(

@@ -1,9 +1,9 @@
 """Checkpoints as files: hidden, beside the result, one for each process of a run.
 
-The name of a file says which run it is of, at which sample, and of which process. A set of files is
-complete when every process of the run has one; an older set is removed only after that, so that
-whenever a run is killed, a complete one is left. Each file is numpy's .npz, without pickles,
-followed by the SHA-256 of all before in hexadecimal.
+The file name contains the run, the sample and the process. A set of files is complete when every
+process of the run has one; an older set is removed only after that, so that a killed run always
+leaves a complete set. Each file is numpy's .npz, without pickles, followed by the SHA-256 of its
+contents in hexadecimal.
 """
 
 import hashlib
@@ -36,7 +36,7 @@ ANEW = "remove it, or run without --resume"
 
 
 class Name(NamedTuple):
-    """What the name of a checkpoint says."""
+    """The parts of a checkpoint's file name."""
 
     path: Path
     run: str
@@ -45,7 +45,7 @@ class Name(NamedTuple):
 
 
 class Checkpoints:
-    """The checkpoints of one run, shared by the processes that make it.
+    """The checkpoints of one run, shared by its processes.
 
     result : the file of its result.
     """
@@ -56,9 +56,9 @@ class Checkpoints:
         self.run = hashlib.sha256(text.encode()).hexdigest()[:12]
 
     def newest(self) -> int:
-        """Return at which sample the newest one is; 0 where there is none.
+        """Return the sample of the newest checkpoint, 0 without one.
 
-        Raises SceneError where it is damaged, or where there are only those of another run.
+        Raises SceneError if it is damaged, or if all checkpoints belong to another run.
         """
         samples = self.processes.told_by_first(self._newest)
         if samples:
@@ -66,7 +66,7 @@ class Checkpoints:
         return samples
 
     def load(self, samples: int, parts: Any) -> None:
-        """Fill the arrays of `parts` with what they were; raises SceneError where they differ."""
+        """Fill the arrays of `parts` from a checkpoint; raises SceneError if shapes differ."""
         path = self._path(samples)
 
         def read() -> None:
@@ -78,9 +78,9 @@ class Checkpoints:
         self.processes.together(read)
 
     def save(self, samples: int, parts: Any) -> None:
-        """Write what a run has got to, then remove all older ones.
+        """Write a checkpoint, then remove all older ones.
 
-        Raises OSError, on all processes, where any of them cannot write; the older ones then stay.
+        Raises OSError, on all processes, if any of them cannot write; the older ones are then kept.
         """
         path, text = self._path(samples), json.dumps(self.signature)
         held = {ABOUT: np.array(text)} | {f"{i:05d}": a for i, a in enumerate(arrays(parts))}
@@ -100,7 +100,7 @@ class Checkpoints:
         return self.result.with_name(f".{stem}.checkpoint-{self.run}-{samples}-{rank}.npz")
 
     def _found(self) -> Iterator[Name]:
-        """Yield the checkpoints of this result, whichever run they are of."""
+        """Yield the checkpoints of this result, of any run."""
         pattern = re.compile(
             rf"\.{re.escape(self.result.stem)}\.checkpoint-([0-9a-f]+)-(\d+)-(\d+)\.npz"
         )
@@ -123,7 +123,7 @@ class Checkpoints:
         return found
 
     def _refuse(self, other: Path) -> None:
-        """Raise SceneError that says how another run differs."""
+        """Raise SceneError with the differences from another run."""
         with _as_damage(other):
             signature: Signature = dict(json.loads(str(_read(other)[ABOUT])))
         differing = differences(self.signature, signature) or ["run"]
@@ -136,7 +136,7 @@ class Checkpoints:
 
 
 def _write(place: Path, held: dict[str, np.ndarray]) -> None:
-    whole = io.BytesIO()  # numpy complains of its own file when the disk is full
+    whole = io.BytesIO()  # numpy reports errors of its own if the disk is full
     np.savez(whole, **held)
     with place.open("wb") as file:
         file.write(whole.getbuffer())
@@ -144,7 +144,7 @@ def _write(place: Path, held: dict[str, np.ndarray]) -> None:
 
 
 def _read(path: Path) -> dict[str, np.ndarray]:
-    """Return the arrays of a file, in their order; raises SceneError where it is damaged."""
+    """Return the arrays of a file, in their order; raises SceneError if it is damaged."""
     size = _check(path)
     with _as_damage(path), within(COPIES * size + DIRECTORY), zipfile.ZipFile(path) as whole:
         members = whole.infolist()
@@ -154,9 +154,9 @@ def _read(path: Path) -> dict[str, np.ndarray]:
 
 
 def _check(path: Path) -> int:
-    """Return the size of a file (bytes), having held none of it.
+    """Return the size of a file (bytes), checked without loading it.
 
-    Raises SceneError where it is damaged, MemoryError where it is too large for the memory.
+    Raises SceneError if it is damaged, MemoryError if it is too large for the memory.
     """
     with path.open("rb") as file:
         size = os.fstat(file.fileno()).st_size
@@ -171,10 +171,9 @@ def _check(path: Path) -> int:
 
 
 def _array(whole: zipfile.ZipFile, member: zipfile.ZipInfo) -> np.ndarray:
-    """Return an array of a file; raises ValueError where it is not as `_write` has left it.
+    """Return an array of a file; raises ValueError if it is not in the format of `_write`.
 
-    Nothing is compressed there, and an array has the size that its member has: none is larger than
-    the file.
+    Members are uncompressed and have the size of their array, so none is larger than the file.
     """
     if member.compress_type != zipfile.ZIP_STORED or member.file_size != member.compress_size:
         raise ValueError("is compressed")
@@ -189,7 +188,7 @@ def _array(whole: zipfile.ZipFile, member: zipfile.ZipInfo) -> np.ndarray:
 
 @contextmanager
 def _as_damage(path: Path) -> Iterator[None]:
-    """Let whatever the content of a file leads to be one line: its digest may fit all the same."""
+    """Turn any error from a file's content into one line: its digest may match nonetheless."""
     try:
         yield
     except (SceneError, OSError, MemoryError):

@@ -14,16 +14,16 @@ from cases.errors import SceneError
 def locked(folder: Path, *inner: Path) -> Iterator[None]:
     """Lock a folder for one command that writes results there and in `inner`, and sweep them.
 
-    A folder that is made for this, and left empty, is removed at the end.
+    A folder created for this and left empty is removed at the end.
 
-    Raises SceneError where another command has locked it, OSError where nothing can be written.
+    Raises SceneError if another command has locked it, OSError if nothing can be written.
     """
     from compare.runs.output import sweep
 
     made = [place for place in (folder, *folder.parents) if not place.exists()]
     try:
         with exclusive(folder):
-            TemporaryFile(dir=folder).close()  # it can be written, which a lock does not tell
+            TemporaryFile(dir=folder).close()  # writable, which the lock does not check
             for each in {folder, *inner}:
                 sweep(each)
             yield
@@ -35,11 +35,11 @@ def locked(folder: Path, *inner: Path) -> Iterator[None]:
 
 @contextmanager
 def exclusive(folder: Path, wait: bool = False) -> Iterator[None]:
-    """Lock a folder, made where there is none; wait : until nobody else has locked it.
+    """Lock a folder, created if missing; wait : until no other process has locked it.
 
-    The lock is one on the folder itself: no file is written that a link could lead elsewhere, and
-    the system releases it when a process is killed. Libraries for locks all write a file.
-    Raises SceneError where another process has locked it and this one is not to wait.
+    The lock is on the folder itself: there is no lock file that a link could redirect, and the
+    system releases it when a process is killed. Libraries for locks all write a file.
+    Raises SceneError if another process has locked it and `wait` is false.
     """
     handle = _locked(folder, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
     try:
@@ -54,7 +54,7 @@ def _locked(folder: Path, operation: int) -> int:
         handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
         try:
             fcntl.flock(handle, operation)
-            # Whoever had locked it may have removed it in between.
+            # The process that had locked it may have removed it in between.
             if os.path.samestat(os.fstat(handle), folder.stat()):
                 return handle
         except FileNotFoundError:

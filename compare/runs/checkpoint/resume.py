@@ -1,4 +1,4 @@
-"""Checkpoints of a run by the clock, its end on request, and where it begins or goes on."""
+"""Checkpoints of a run at intervals of wall time, its interruption, its start and continuation."""
 
 import json
 import sys
@@ -21,7 +21,7 @@ from results.dataset import Fields
 class Interrupted(InterruptedRun):
     """A run that a signal has stopped.
 
-    code : that the program exits with.
+    code : exit code of the program.
     """
 
     code: int = 1
@@ -30,8 +30,8 @@ class Interrupted(InterruptedRun):
 class RunKeeper:
     """Keeps one run, see `numerics.checkpoint.Keeper`.
 
-    done : how many samples its newest checkpoint has; 0 where the run starts anew.
-    every : s of wall time from one checkpoint to the next; 0: none.
+    done : number of samples in its newest checkpoint, 0 for a new run.
+    every : interval between checkpoints in wall time, s; 0: none.
     processes : that share the run; they decide together, as their clocks and signals differ.
     """
 
@@ -46,12 +46,12 @@ class RunKeeper:
         self._total = len(sample_times(scene))
 
     def restore(self, parts: Any) -> None:
-        """Copy into `parts` what they were at the newest checkpoint, and say so."""
+        """Restore `parts` from the newest checkpoint, and report it."""
         self.files.load(self.done, parts)
         self._say(f"{self.files.result} continues at t = {self._time(self.done):.4g} s")
 
     def look(self, samples: int, parts: Any) -> None:
-        """Keep the parts of a run where it is time to; raises Interrupted where a signal waits."""
+        """Save the parts of a run when due; raises Interrupted if a signal is pending."""
         if samples >= self._total:
             self.relax()
             return
@@ -63,7 +63,7 @@ class RunKeeper:
             self._save(samples, parts)
 
     def relax(self) -> None:
-        """Let signals end the program at once again; where several share it, on the first."""
+        """Let signals end the program immediately again; of several processes, the first one."""
         self.signals.patient = not self.processes.is_first
 
     def _is_due(self) -> bool:
@@ -72,7 +72,7 @@ class RunKeeper:
         return self._every > 0 and now - self._last >= self._every
 
     def _save(self, samples: int, parts: Any) -> bool:
-        """Write a checkpoint, and return whether that went well; say once where it does not."""
+        """Write a checkpoint and return whether it succeeded; report the first failure."""
         try:
             self.files.save(samples, parts)
         except OSError as error:
@@ -92,7 +92,7 @@ class RunKeeper:
         raise error
 
     def _time(self, samples: int) -> float:
-        """Return the time of the last of so many samples, s."""
+        """Return the time of the last of `samples` samples, s."""
         return (samples - 1) * self.scene.interval
 
     def _say(self, text: str) -> None:
@@ -100,14 +100,14 @@ class RunKeeper:
             print(f"jointwave: {printable(text)}", file=sys.stderr, flush=True)
 
 
-ATTRIBUTE = "signature"  # of a result: as JSON, what decided its bits
+ATTRIBUTE = "signature"  # of a result: everything that determines its bits, as JSON
 
 
 class Keeping(NamedTuple):
-    """How the runs of a command are kept.
+    """Checkpoint settings of a command's runs.
 
-    every : s of wall time from one checkpoint to the next; 0: none. resume : go on where an
-        earlier command has stopped. signals : that end a run.
+    every : interval between checkpoints in wall time, s; 0: none. resume : continue the runs of an
+        earlier command. signals : that end a run.
     """
 
     every: float
@@ -116,10 +116,10 @@ class Keeping(NamedTuple):
 
 
 class Watch(NamedTuple):
-    """One run, watched over.
+    """One run with its checkpoints.
 
-    is_made : whether its result is there already, and is not to be made again.
-    keeper : of its steps; None where it has none, or nobody asks for one.
+    is_made : whether its result already exists and need not be recomputed.
+    keeper : of its steps; None if it has no steps or no checkpoints are requested.
     """
 
     signature: Signature
@@ -128,7 +128,7 @@ class Watch(NamedTuple):
     keeper: RunKeeper | None
 
     def signed(self, result: Fields) -> Fields:
-        """Return a result that says what decided its bits."""
+        """Return a result with the signature of everything that determines its bits."""
         about = {ATTRIBUTE: json.dumps(self.signature)}
         return result._replace(attributes={**result.attributes, **about})
 
@@ -136,10 +136,10 @@ class Watch(NamedTuple):
 def watch(
     scene: AnyScene, name: str, path: Path, keeping: Keeping | None, processes: Processes
 ) -> Watch:
-    """Return a run watched over; on all `processes` that share it.
+    """Return a run with its checkpoints; called on all `processes` that share it.
 
-    name : of what solves the scene. path : of the result.
-    Raises SceneError where it is to go on from a checkpoint that is damaged or of another run.
+    name : of the solver. path : of the result.
+    Raises SceneError if the checkpoint to continue from is damaged or belongs to another run.
     """
     about = signature(scene, name, processes.size)
     files = Checkpoints(path, about, processes)
@@ -153,7 +153,7 @@ def watch(
 
 
 def result_of(path: Path, about: Signature) -> Fields | None:
-    """Return a result of this signature; None where there is none that can be read."""
+    """Return the result with this signature; None if there is none or it cannot be read."""
     if not path.is_file():
         return None
     from results.netcdf import load_netcdf
@@ -162,6 +162,6 @@ def result_of(path: Path, about: Signature) -> Fields | None:
         found = fields_of(load_netcdf(path))
     except MemoryError as error:
         raise MemoryError(f"{path}: {error}") from None
-    except Exception:  # whatever is wrong with it, it will be made again
+    except Exception:  # any unreadable result is recomputed
         return None
     return found if found.attributes.get(ATTRIBUTE) == json.dumps(about) else None

@@ -12,7 +12,7 @@ WORDS = {
 
 
 class Ended(BaseException):
-    """This program is to end now. No Exception, and not KeyboardInterrupt, which libraries catch.
+    """Request to end this program. Not an Exception nor KeyboardInterrupt, which libraries catch.
 
     number : of the signal.
     """
@@ -23,24 +23,24 @@ class Ended(BaseException):
 
 
 class Signals:
-    """What signals do here: raise Ended, or, while `patient`, wait to be asked for.
+    """Signal handling: raise Ended or, while `patient`, keep the signal pending until queried.
 
-    A second signal does not wait; what comes after Ended is raised ends the program by itself.
+    A second signal takes effect immediately; signals after Ended end the program by default action.
 
-    asked : number of the signal that waits; 0 where none does.
+    asked : number of the pending signal, 0 for none.
     """
 
     def __init__(self, patient: bool = False) -> None:
         self.patient, self.asked = patient, 0
 
     def install(self) -> None:
-        """Take over the signals, but for those that whoever started this program ignores."""
+        """Install handlers, except for signals that the parent process ignores."""
         for number in WORDS:
             if signal.getsignal(number) is not signal.SIG_IGN:
                 signal.signal(number, self._arrived)
 
     def act(self) -> None:
-        """Raise Ended where a signal waits."""
+        """Raise Ended if a signal is pending."""
         if self.asked:
             raise Ended(self.asked)
 
@@ -54,17 +54,17 @@ class Signals:
 
 @cache
 def watched() -> Signals:
-    """Return the signals of this program, taken over from now on."""
+    """Return the signals of this program, with handlers installed."""
     signals = Signals()
     signals.install()
     return signals
 
 
 def word(number: int) -> str:
-    """Return what a signal has done to this program."""
+    """Return in words the effect of a signal on this program."""
     return WORDS[signal.Signals(number)]
 
 
 def exit_code(number: int) -> int:
-    """Return the exit code that shells give to a program that a signal has ended."""
+    """Return the exit code that shells give to a program ended by a signal."""
     return 128 + number

@@ -16,9 +16,9 @@ Signature = dict[str, str]
 
 
 def signature(scene: AnyScene, name: str, processes: int) -> Signature:
-    """Return what must be the same for a run to go on, or its result to be taken for this one.
+    """Return everything that must match for a run to be continued or its result to be reused.
 
-    name : of what solves the scene.
+    name : of the solver.
     """
     found = {package: version(package) for package in ("numpy", "numba")}
     return {
@@ -31,13 +31,13 @@ def signature(scene: AnyScene, name: str, processes: int) -> Signature:
 
 
 def differences(one: Signature, other: Signature) -> list[str]:
-    """Return what two signatures do not share."""
+    """Return the keys in which two signatures differ."""
     return [key for key in one if other.get(key) != one[key]]
 
 
 @cache
 def program() -> str:
-    """Return a hash of all that computes."""
+    """Return a hash of all sources that compute."""
     digest, root = hashlib.sha256(), Path(cases.__file__).parent.parent
     for package in ("cases", "results", "numerics", "joints", "dem", "continuum", "compare"):
         for source in sorted((root / package).rglob("*.py")):
@@ -46,10 +46,10 @@ def program() -> str:
 
 
 def _scene(scene: AnyScene) -> str:
-    """Return a hash of a scene, the mesh that it names included."""
+    """Return a hash of a scene, including its mesh file."""
     holds_it = scene.numerics.continuum if isinstance(scene, Scene) else scene.domain
     mesh = holds_it.mesh_path
-    # One that cannot be read is refused, in its own words, by what would use it.
+    # An unreadable mesh is reported where it is used, with a message of its own.
     if mesh is None or not Path(mesh).is_file():
         return scene_hash(scene)
     with Path(mesh).open("rb") as file:
