@@ -7,7 +7,7 @@ import numpy as np
 
 
 def arrays(parts: Any) -> Iterator[np.ndarray]:
-    """Yield all arrays of nested tuples and lists, in their order; what is no array is left out."""
+    """Yield all arrays of nested tuples and lists, in their order; other entries are skipped."""
     if isinstance(parts, tuple | list):
         for part in parts:
             yield from arrays(part)
@@ -16,7 +16,7 @@ def arrays(parts: Any) -> Iterator[np.ndarray]:
 
 
 def changed(parts: Any, change: Callable[[np.ndarray], np.ndarray]) -> Any:
-    """Return nested tuples with every array changed."""
+    """Return nested tuples with `change` applied to every array."""
     if isinstance(parts, tuple):
         found = [changed(part, change) for part in parts]
         return type(parts)(*found) if hasattr(parts, "_fields") else tuple(found)
@@ -24,12 +24,12 @@ def changed(parts: Any, change: Callable[[np.ndarray], np.ndarray]) -> Any:
 
 
 def copied(parts: Any) -> Any:
-    """Return nested tuples with arrays of their own."""
+    """Return nested tuples with copies of all arrays."""
     return changed(parts, np.copy)
 
 
 def fill(parts: Any, values: Any) -> None:
-    """Copy the arrays of `values` into those of `parts`, which are as many of the same shapes."""
+    """Copy the arrays of `values` into those of `parts`, equal in number and shapes."""
     for own, given in zip(arrays(parts), arrays(values), strict=True):
         own[...] = given
 

@@ -1,4 +1,4 @@
-"""The one form of every result, whichever engine or formula it comes from."""
+"""The common form of all results, whether from an engine or an exact solution."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-#: Every term of an energy ledger, and those of the axial motion of joints that hold.
+#: All terms of an energy ledger, and those of axial motion with joints that do not break.
 ALL_TERMS = (
     "kinetic",
     "rotation",
@@ -33,7 +33,7 @@ ALL_TERMS = (
 )
 TERMS = ("kinetic", "elastic", "viscous", "boundary", "work")
 
-#: What a computed solution bounds its own error of, and the dimensions of the bound.
+#: Quantities for which computed solutions bound their own error, and the bound's dimensions.
 ERRORS = {
     "stress": ("stress_y",),
     "shear": ("stress_y", "across"),
@@ -42,17 +42,17 @@ ERRORS = {
     "rotation": ("velocity_y", "axis"),
 }
 
-#: Of the energy at rest: a million times what double precision rounds it to.
+#: Of the energy at rest: a million times the round-off of double precision.
 AT_REST = 1e6 * float(np.finfo(float).eps)
 
 Variable = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
 
 
 class Fields(NamedTuple):
-    """A result as plain arrays, in the order that xarray.Dataset takes them.
+    """A result as plain arrays, in the order of xarray.Dataset's arguments.
 
     variables, coords : name to (dimensions, values, attributes). attributes : of the whole.
-    xarray takes longer to import than most scenes to run; what needs no Dataset uses this.
+    Importing xarray takes longer than running most scenes; code that needs no Dataset uses this.
     """
 
     variables: dict[str, Variable]
@@ -61,7 +61,7 @@ class Fields(NamedTuple):
 
 
 def scene_hash(scene: AnyScene) -> str:
-    """Return a short hash of everything that decides a result, samples of loads included."""
+    """Return a short hash of everything that determines a result, including samples of loads."""
     digest = hashlib.sha256(scene.model_dump_json().encode())
     for pulse in scene.pulses:
         if pulse.history is not None:
@@ -71,7 +71,7 @@ def scene_hash(scene: AnyScene) -> str:
 
 
 def dataset(*arguments: Any, **attributes: Any) -> xr.Dataset:
-    """Return a result as xarray.Dataset; takes what `fields` takes."""
+    """Return a result as xarray.Dataset; same arguments as `fields`."""
     import xarray as xr
 
     return xr.Dataset(*fields(*arguments, **attributes))
@@ -91,7 +91,7 @@ def fields(
     errors: Mapping[str, np.ndarray] | None = None,
     **attributes: Any,
 ) -> Fields:
-    """Return a result with the schema that all engines and exact solutions share.
+    """Return a result with the common schema of all engines and exact solutions.
 
     Parameters
     ----------
@@ -100,18 +100,18 @@ def fields(
     stress : float array [len(record.stress), n], Pa, compression positive.
     velocity, displacement : float array [len(record.velocity), n], m/s and m, along y; of spatial
         motion [len(record.velocity), n, 3], along x, y, z.
-    energy : float array [len(terms), n], J; work is what the load has put in, the others
-        what became of it.
+    energy : float array [len(terms), n], J; work is the energy input of the load, the other terms
+        its stored and dissipated parts.
     shear : float array [len(record.stress), n, 2], along x, z, the force on the far side over the
-        area, Pa; of spatial motion alone.
+        area, Pa; for spatial motion only.
     rotation : float array [len(record.velocity), n, 3], about x, y, z, rad; likewise.
-    terms : what the rows of `energy` are, from ALL_TERMS.
-    errors : of a solution that is computed, an upper bound of the root-mean-square error over time
+    terms : names of the rows of `energy`, from ALL_TERMS.
+    errors : for a computed solution, an upper bound on the root-mean-square error over time
         of each waveform, by its quantity (a key of ERRORS) and in its unit: float arrays of that
         quantity's shape without time. A closed form has none.
     attributes : numbers and texts about the run (dt, steps, seconds, ...).
 
-    All are those of `cases.loads.load_history`; the result has the scale of the scene's own load.
+    Inputs are at the scale of `cases.loads.load_history`, the result at that of the scene's load.
     """
     points = ("velocity_y", "time", "axis")
     record, spatial, scale = scene.record, velocity.ndim == 3, scene.load.scale
@@ -154,8 +154,8 @@ def fields(
 
 
 def attributes_of(scene: AnyScene, engine: str, own: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the attributes of a result: what it is of, what `own` says about the run, and the
-    scene itself, the longest, last, where it hides no other."""
+    """Return the attributes of a result: its scene and solver, `own` attributes of the run, and the
+    scene itself, last because of its length."""
     common = {
         "engine": engine,
         "kind": scene.kind,
@@ -170,11 +170,11 @@ def attributes_of(scene: AnyScene, engine: str, own: Mapping[str, Any]) -> dict[
 
 
 def static_attributes(scene: AnyScene) -> dict[str, Any]:
-    """Return what a result says of the state that its motion starts from.
+    """Return the attributes of a result that describe its initial state.
 
-    starts : "unloaded", "prestressed" or "at rest under gravity". prestress : of every section of a
-    pillar, Pa, where there is one; of a rock mass the first sample is the state. Displacement
-    counts from the state at the start.
+    starts : "unloaded", "prestressed" or "at rest under gravity". prestress : in every section of a
+    pillar, Pa, if any; in a rock mass the first sample is the initial state. Displacement is
+    relative to the initial state.
     """
     prestress = scene.prestress
     normal = getattr(prestress, "normal", None)
@@ -185,17 +185,17 @@ def static_attributes(scene: AnyScene) -> dict[str, Any]:
 
 
 def energy_residual(result: xr.Dataset) -> float:
-    """Return the largest imbalance of a result's energy ledger over the largest work put in."""
+    """Return the largest imbalance of a result's energy ledger over the largest work."""
     return imbalance(result["energy"].values, [str(term) for term in result["term"].values])
 
 
 def imbalance(energy: np.ndarray, terms: Sequence[str] = TERMS) -> float:
     """Return the largest imbalance of an energy ledger [len(terms), n] over the largest work.
 
-    Both count from the first sample, where the energy of a static state is there already. Where
-    no work is done, as under gravity alone, the largest term takes its place. It is taken over
-    `AT_REST` of what a static state holds where that is more: its sums are rounded to a share of
-    it, tens of epsilon, which under a prestress of millions of times the load is all of the work.
+    Both are relative to the first sample, which includes the energy of a static state. Without
+    work, as under gravity only, the largest term is used instead. If it is larger, `AT_REST` of the
+    static state's energy is the denominator: round-off of the sums, tens of epsilon of that energy,
+    reaches the work under a prestress of millions of times the load.
     """
     since = energy - energy[:, :1]
     work = since[list(terms).index("work")]
@@ -206,7 +206,7 @@ def imbalance(energy: np.ndarray, terms: Sequence[str] = TERMS) -> float:
 
 
 def _of_receivers(name: str, bound: np.ndarray) -> np.ndarray:
-    """Return a bound with the dimensions that ERRORS gives it; axial motion has one axis."""
+    """Return a bound with its dimensions in ERRORS; axial motion has one axis."""
     found = np.asarray(bound, dtype=float)
     return found[:, None] if found.ndim < len(ERRORS[name]) else found
 

@@ -1,6 +1,6 @@
-"""Names and units of every variable and coordinate of a result, as plots label it."""
+"""Names and units of every variable and coordinate of a result, for labels of plots."""
 
-#: Dimensions of receivers, and the coordinates that say where they are.
+#: Dimensions of receivers, and the coordinates with their positions.
 RECEIVERS = {
     "stress_y": ("stress_y",),
     "velocity_y": ("velocity_y",),
@@ -8,7 +8,7 @@ RECEIVERS = {
     "joint_point": ("joint_point_x", "joint_point_y"),
 }
 
-#: By name: (long name, unit; "" where it is no quantity).
+#: By name: (long name, unit; "" if it is not a physical quantity).
 LABELS = {
     "time": ("time", "s"),
     "stress_y": ("y of the section", "m"),
@@ -55,6 +55,6 @@ LABELS = {
 
 
 def label(name: str) -> dict[str, str]:
-    """Return the attributes `long_name` and, of a quantity, `units` of a variable."""
+    """Return the attributes `long_name` and, for a physical quantity, `units` of a variable."""
     long_name, unit = LABELS[name]
     return {"long_name": long_name} | ({"units": unit} if unit else {})

@@ -1,4 +1,4 @@
-"""NetCDF files, whose header says what they would take of memory before any of it is read."""
+"""Reading of NetCDF files, whose memory need is known from the header before any data is read."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
     import xarray as xr
 
 COPIES = 3  # of a variable: as it is stored, decoded, and in double precision
-LIBRARIES = 300_000_000  # bytes of addresses that those which read may take
+LIBRARIES = 300_000_000  # bytes of address space for the reading libraries
 
 
 def load_netcdf(path: Path, wanted: Collection[str] | None = None, **decoding: Any) -> xr.Dataset:
-    """Return a NetCDF file, or those of its variables that are `wanted`, in memory.
+    """Return a NetCDF file, or only its `wanted` variables, in memory.
 
-    decoding : for xarray.open_dataset. Raises MemoryError where they would take more than a run
-    may, OSError where there is no regular file, whatever its library raises on a damaged one.
+    decoding : for xarray.open_dataset. Raises MemoryError if they would take more memory than a run
+    may, OSError if there is no regular file, any error of the library for a damaged one.
     """
     import xarray as xr
 
@@ -31,7 +31,7 @@ def load_netcdf(path: Path, wanted: Collection[str] | None = None, **decoding: A
     others = [] if wanted is None else [name for name in sizes if name not in wanted]
     total = COPIES * sum(size for name, size in sizes.items() if name not in others)
     require(total, "its variables")
-    # A coordinate is read when the file is opened, and a header may say less than there is.
+    # Coordinates are read when the file is opened, and a header may understate the sizes.
     with (
         within(LIBRARIES + total),
         xr.open_dataset(path, drop_variables=others, **decoding) as lazy,
@@ -40,7 +40,7 @@ def load_netcdf(path: Path, wanted: Collection[str] | None = None, **decoding: A
 
 
 def _sizes(path: Path) -> dict[str, float]:
-    """Return what each variable takes as it is stored (bytes), from the header alone."""
+    """Return the stored size of each variable (bytes), from the header only."""
     with path.open("rb") as file:
         is_classic = file.read(3) == b"CDF"
     if is_classic:
@@ -53,14 +53,14 @@ def _sizes(path: Path) -> dict[str, float]:
 
 
 def _item(variable: Any) -> float:
-    """Return the bytes of one value, of a text of any length its place alone."""
+    """Return the bytes of one value; for text of variable length, those of its pointer."""
     kind = getattr(variable, "dtype", None)  # scipy's has none
     return float(variable.itemsize() if kind is None else getattr(kind, "itemsize", 8))
 
 
 def netcdf3(path: Path, mode: str = "r") -> Any:
-    """Return a NetCDF 3 file opened by scipy: by its one module, since all of scipy.io takes as
-    long to import as a short run to step."""
+    """Return a NetCDF 3 file opened by scipy; only that module is imported, since importing all of
+    scipy.io takes as long as the steps of a short run."""
     import scipy
 
     source = Path(scipy.__file__).parent / "io/_netcdf.py"
@@ -69,7 +69,7 @@ def netcdf3(path: Path, mode: str = "r") -> Any:
         assert spec and spec.loader
         module = module_from_spec(spec)
         spec.loader.exec_module(module)
-    else:  # a scipy that keeps it elsewhere
+    else:  # a scipy with another layout
         import scipy.io
 
         module = scipy.io

@@ -1,4 +1,4 @@
-"""The form of every result of a rock mass, whichever engine or formula it comes from."""
+"""The common form of rock-mass results, whether from an engine or an exact solution."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from results.labels import label
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
 
-#: Dimensions of each quantity beside time, its receivers first.
+#: Dimensions of each quantity except time, its receivers first.
 DIMENSIONS: dict[str, tuple[str, ...]] = {
     "velocity": ("point", "axis"),
     "displacement": ("point", "axis"),
@@ -22,7 +22,7 @@ DIMENSIONS: dict[str, tuple[str, ...]] = {
     "gap": ("joint_point",),
     "slip": ("joint_point",),
 }
-#: What the components of a quantity are called.
+#: Names of the components of a quantity.
 COMPONENTS = {
     "axis": ("x", "y"),
     "stress_component": ("xx", "yy", "xy"),
@@ -44,25 +44,25 @@ def plane_fields(
     errors: Mapping[str, np.ndarray] | None = None,
     **attributes: Any,
 ) -> Fields:
-    """Return a result with the schema that all engines and exact solutions of rock masses share.
+    """Return a result with the common schema of all solutions of rock masses.
 
     Parameters
     ----------
     engine : "dem", "continuum-jointed", ..., or the name of an exact solution.
     time : float array [n], s.
-    quantities : by name, what the solver knows of: float arrays of the shape of `DIMENSIONS` with
+    quantities : by name, those that the solver knows: float arrays with the `DIMENSIONS` and
         time after the receivers. velocity, displacement [points, n, 2], m/s and m; stress
         [points, n, 3], Pa, compression positive, the mean over the block or that of the element;
         traction [joints, n, 2], Pa, compression and shear along the joint; gap, slip [joints, n],
-        m. Displacement, gap and slip count from the state at the start of the run.
-    energy : float array [len(terms), n], J per metre of thickness; work is what loads and waves
-        have put in, the others what became of it.
-    errors : of a solution that is computed, an upper bound of the root-mean-square error over time
+        m. Displacement, gap and slip are relative to the state at the start of the run.
+    energy : float array [len(terms), n], J per metre of thickness; work is the energy input
+        of loads and waves, the other terms its stored and dissipated parts.
+    errors : for a computed solution, an upper bound on the root-mean-square error over time
         of each waveform, by quantity: float arrays of its shape without time.
     attributes : numbers and texts about the run (dt, steps, seconds, ...).
 
-    Joint receivers are named by the places that [record] has; the tangent of a joint is its normal,
-    out of the block with the smaller number, turned to the left.
+    Joint receivers are identified by their places in [record]; the tangent of a joint is its
+    normal, out of the block with the smaller number, rotated to the left.
     """
     coords: dict[str, Variable] = {"time": (("time",), time, label("time"))}
     for name, places in (("point", scene.record.points), ("joint_point", scene.record.joints)):

@@ -1,4 +1,4 @@
-"""Snapshots of the whole pillar, the one form of a field result, and how a result holds them."""
+"""Snapshots of the whole pillar, the common form of field results, and their storage in results."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-AXES = {1: [1], 2: [0, 1], 3: [0, 1, 2]}  # which of x, y, z so many components are
+AXES = {1: [1], 2: [0, 1], 3: [0, 1, 2]}  # of x, y, z, by the number of components
 DIMENSIONS = {
     "points": ("node", "component"),
     "cells": ("cell", "corner"),
@@ -30,15 +30,15 @@ DIMENSIONS = {
 
 
 class Snapshots(NamedTuple):
-    """The whole pillar at some instants, on linear cells; blocks share no node.
+    """The whole pillar at some instants, on linear cells; blocks share no nodes.
 
     time : float array [snapshots], s.
     points : float array [nodes, 3], x, y, z of the unloaded pillar, m.
-    kind : of the cells, as meshio names it: "line", "triangle", "quad", "tetra", "hexahedron".
+    kind : of the cells, in meshio's names: "line", "triangle", "quad", "tetra", "hexahedron".
     cells : int32 array [cells, corners], nodes in VTK's order.
     block : int32 array [cells], the block of each cell, 0 at the loaded end.
     displacement, velocity : float arrays [snapshots, nodes, 3], m and m/s.
-    stress : float array [snapshots, cells], Pa, axial, compression positive; None where not known.
+    stress : float array [snapshots, cells], Pa, axial, compression positive; None if unknown.
     """
 
     time: np.ndarray
@@ -62,24 +62,24 @@ class Snapshots(NamedTuple):
 
 
 class Film:
-    """What a run keeps of every `every`-th sample: whatever `shoot(sample)` returns, in `shots`."""
+    """The return values of `shoot(sample)` at every `every`-th sample of a run, in `shots`."""
 
     def __init__(self, every: int, shoot: Callable[[int], Any]) -> None:
         self.every, self.shoot = every, shoot
         self.shots: list[Any] = []
 
     def look(self, sample: int) -> None:
-        """Keep this sample, where it is one of those."""
+        """Store a shot of this sample if it is due."""
         if sample % self.every == 0:
             self.shots.append(self.shoot(sample))
 
     def expect(self, samples: int) -> None:
-        """Make room for what so many samples have left, to be filled from elsewhere."""
+        """Allocate the shots of this many samples, to be filled by the caller."""
         self.shots[:] = [copied(self.shoot(0)) for _ in range(0, samples, self.every)]
 
 
 def samples_between(scene: AnyScene) -> int | None:
-    """Return the samples from one snapshot to the next; None where the scene asks for none."""
+    """Return the number of samples between snapshots; None if the scene requests none."""
     fields = scene.record.fields
     return None if fields is None else max(1, round(fields / scene.interval))
 
@@ -115,7 +115,7 @@ def in_space(values: np.ndarray) -> np.ndarray:
 
 
 def refuse_beyond_room(scene: AnyScene, nodes: int) -> None:
-    """Raise SceneError where the snapshots of so many nodes would not fit a file."""
+    """Raise SceneError if the snapshots of this many nodes would exceed a file's size limit."""
     fields, most = scene.record.fields, LARGEST_VARIABLE // (3 * 8 * nodes)
     count = int(scene.time.duration / scene.interval + 1e-9) // (samples_between(scene) or 1) + 1
     if count > most:
@@ -128,7 +128,7 @@ def refuse_beyond_room(scene: AnyScene, nodes: int) -> None:
 
 
 def with_snapshots(result: Fields, s: Snapshots) -> Fields:
-    """Return a result that holds snapshots as variables field_NAME, on dimensions of their own."""
+    """Return a result with snapshots as variables field_NAME, on dimensions of their own."""
     variables: dict[str, Variable] = dict(result.variables)
     for name, dimensions in DIMENSIONS.items():
         values = getattr(s, name)
@@ -144,7 +144,7 @@ def with_snapshots(result: Fields, s: Snapshots) -> Fields:
 
 
 def snapshots_of(result: Fields | xr.Dataset) -> Snapshots | None:
-    """Return the snapshots that a result holds; None where it holds none."""
+    """Return the snapshots of a result; None if it has none."""
     if isinstance(result, Fields):
         found = {name: (v[1], v[2]) for name, v in {**result.coords, **result.variables}.items()}
     else:

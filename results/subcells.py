@@ -1,4 +1,4 @@
-"""Linear cells between the nodes of a higher-order cell, for viewers that know no others."""
+"""Linear cells between the nodes of a higher-order cell, for viewers without such cells."""
 
 from itertools import permutations, product
 

@@ -11,13 +11,13 @@ from continuum.mesh.facets import row_numbers
 from continuum.mesh.segments import Loops, Segments
 from continuum.mesh.templates import ONE, Template, quadrilaterals, triangles
 
-ALIKE = 1e-9  # of the domain: blocks of one shape
+ALIKE = 1e-9  # of the domain: tolerance for equal shapes of blocks
 
 
 class BlockEdges(NamedTuple):
     """Edges of cells on segments, one after the other around each block; int arrays [n].
 
-    segment, number : which of the edges on a segment, from its first end. block. cell, facet.
+    segment, number : segment, and number of the edge on it from its first end. block. cell, facet.
     vertex : [n, 2].
     """
 
@@ -30,13 +30,13 @@ class BlockEdges(NamedTuple):
 
 
 def has_four_corners(loops: Loops) -> np.ndarray:
-    """Return which blocks can be cut into quadrilaterals, bool array [blocks]."""
+    """Return which blocks can be meshed with quadrilaterals, bool array [blocks]."""
     corners = np.add.reduceat(loops.is_corner, loops.first[:-1])
     return (np.diff(loops.first) == 4) & (corners == 4)
 
 
 def cells_along(segments: Segments, loops: Loops, size: float, across: bool) -> np.ndarray:
-    """Return the cells along each segment, int array [s]; across : as many on opposite edges."""
+    """Return the number of cells along each segment [s]; across : equal on opposite edges."""
     wanted = np.maximum(1, np.ceil(segments.length / size * (1 - 1e-9))).astype(np.int64)
     pairs = [np.stack([np.arange(len(wanted)), segments.like], axis=1)]
     if across:
@@ -75,7 +75,7 @@ def meshed_blocks(
 
 
 def _length(around: np.ndarray, loops: Loops, block: int) -> int:
-    """Return the nodes around a block."""
+    """Return the number of nodes around a block."""
     return int(around[loops.first[block + 1]] - around[loops.first[block]])
 
 
@@ -83,7 +83,7 @@ def _on_segments(
     segments: Segments, loops: Loops, counts: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, BlockEdges, np.ndarray]:
     """Return the nodes on segments [n, 2], m; those around all blocks [k]; the edges between them,
-    without their cells; and where each segment of the loops begins among them."""
+    without their cells; and the index at which each segment of the loops begins."""
     inner = counts - 1
     base = len(segments.x) + np.cumsum(inner) - inner
     of = np.repeat(np.arange(len(counts)), inner)
@@ -113,7 +113,7 @@ def _on_segments(
 def _templates(
     x: np.ndarray, vertex: np.ndarray, loops: Loops, counts: np.ndarray, size: float, kind: str
 ) -> list[tuple[Template, np.ndarray]]:
-    """Return templates and the blocks [n] that each is for."""
+    """Return templates, each with its blocks [n]."""
     if kind == "quadrilateral":
         pair = counts[loops.segment.reshape(-1, 4)[:, :2]]
         different, which = np.unique(pair, axis=0, return_inverse=True)
@@ -140,7 +140,7 @@ def _templates(
 
 
 def _with_cells(edges: BlockEdges, kind: str, cells: np.ndarray, block: np.ndarray) -> BlockEdges:
-    """Return edges with the cell of their block that each belongs to, and which facet it is."""
+    """Return edges with the cell of their block and its facet that each belongs to."""
     table = FACETS[kind]
     facets = np.sort(cells[:, table].reshape(-1, 2), axis=1)
     every = np.column_stack([np.repeat(block, len(table)), facets])

@@ -44,8 +44,8 @@ MIRRORED = {
 def jacobians(kind: str, x: np.ndarray, cells: np.ndarray) -> np.ndarray:
     """Return the determinant of the Jacobian at every corner of every cell [cells, corners], m^dim.
 
-    Simplices have one; that of a tensor-product cell is positive inside where it is at all corners
-    of a parallelepiped, and a good sign of it elsewhere.
+    Simplices have one value; for a parallelepiped, positive values at all corners imply a positive
+    Jacobian inside, for other tensor-product cells they are a good indicator.
     """
     edges = _edges_from_corners(kind)
     sides = x[cells[:, edges[:, :, 1]]] - x[cells[:, edges[:, :, 0]]]
@@ -53,9 +53,9 @@ def jacobians(kind: str, x: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
 
 def oriented(kind: str, x: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """Return the cells with mirrored ones mirrored back, so that the Jacobians are positive.
+    """Return the cells, mirrored ones corrected so that the Jacobians are positive.
 
-    A cell that is flat, or turned inside out at some corner only, stays as it is.
+    A cell that is flat, or inverted only at some corners, is unchanged.
     """
     mirrored = (jacobians(kind, x, cells) < 0).all(axis=1)
     turned = cells.copy()

@@ -4,8 +4,8 @@ import numpy as np
 
 from continuum.mesh.description import Part
 
-ALIKE = 1e-9  # of the body: pieces that are copies of each other
-REPEATED = 6  # copies from which a part is worth lanes of its own
+ALIKE = 1e-9  # of the body: tolerance for pieces to be copies of each other
+REPEATED = 6  # least number of copies for SIMD lanes of their own
 
 
 def parts_of_pieces(
@@ -13,7 +13,7 @@ def parts_of_pieces(
 ) -> tuple[tuple[Part, ...], np.ndarray]:
     """Return the pieces of the rock as parts, and the new number of each cell.
 
-    Pieces that are alike are copies; what occurs seldom is one part together.
+    Equal pieces are copies; those with few copies form one part together.
     """
     own = np.split(np.argsort(piece, kind="stable"), np.cumsum(np.bincount(piece))[:-1])
     alike: dict[bytes, list[np.ndarray]] = {}
@@ -38,7 +38,7 @@ def parts_of_pieces(
 
 
 def _in_order(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the vertices of cells as these come to them, and the cells by their places there."""
+    """Return the vertices in the order in which cells use them, and the cells in this numbering."""
     vertices, first, local = np.unique(cells, return_index=True, return_inverse=True)
     order = np.argsort(first)
     rank = np.empty(order.size, dtype=np.int64)

@@ -1,4 +1,4 @@
-"""Cutting a mesh along facets, and telling its pieces apart."""
+"""Cutting a mesh along facets, and identifying its pieces."""
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -14,7 +14,7 @@ def split(
     """Return vertices and cells that share no vertex across the cut facets.
 
     `cut` (bool array [cells, facets]) marks each facet from both of its cells. A vertex at the tip
-    of a cut, around which uncut facets lead to the other side, stays whole.
+    of a cut, around which uncut facets lead to the other side, is not split.
     """
     on_cut = np.zeros(len(x), dtype=bool)
     cell, facet = np.nonzero(cut)
@@ -27,7 +27,7 @@ def split(
 
 
 def pieces(cells: np.ndarray) -> np.ndarray:
-    """Return for each cell the number of the connected piece that it belongs to, int array."""
+    """Return the number of the connected piece of each cell, int array."""
     first = np.repeat(cells[:, 0], cells.shape[1])
     size = int(cells.max()) + 1
     graph = coo_matrix((np.ones(first.size, dtype=bool), (first, cells.ravel())), (size, size))
@@ -35,7 +35,7 @@ def pieces(cells: np.ndarray) -> np.ndarray:
 
 
 def _corners_held_together(kind: str, cells: np.ndarray, cut: np.ndarray) -> coo_matrix:
-    """Return the graph of all cells' corners in which uncut facets link those of two cells."""
+    """Return the graph of all cells' corners, in which uncut facets link those of two cells."""
     table, corners = FACETS[kind], cells.shape[1]
     facet = shared_facets(kind, cells)
     cell, local = np.divmod(facet[:, ~cut.ravel()[facet].any(axis=0)], len(table))

@@ -1,4 +1,4 @@
-"""A mesh in plain numpy: pieces of rock, and the facets that joints or loads act on."""
+"""A mesh in plain numpy: pieces of rock, and the facets on which joints or loads act."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -7,7 +7,7 @@ import numpy as np
 
 
 class Part(NamedTuple):
-    """A connected piece of rock that stands at one or more places; copies share no vertices.
+    """A connected piece of rock, at one or more places; copies share no vertices.
 
     x : float array [vertices, dim], m: (y,), (x, y) or (x, y, z); y along the pillar.
     cells : int array [cells, corners], vertex numbers in basix's corner order (the tensor order for
@@ -45,13 +45,13 @@ class Side(NamedTuple):
 class Joints(NamedTuple):
     """Pairs of coincident facets that joints connect.
 
-    joint : int array [facets], index of the joint whose law holds: of a pillar's, 0 nearest the
-        loaded end; of the contact of a rock mass.
+    joint : int array [facets], index of the joint whose law applies (in a pillar, 0 is nearest the
+        loaded end), or of the contact in a rock mass.
     left, right : int arrays [facets], cell numbers as in `Side`; left is the side towards y = 0 of
         a pillar, that of the contact's block i in a rock mass.
     corners : float array [facets, facet corners, dim], m, of the left cell's facet.
-    shift : float array [facets, dim], m, by which right cells stand elsewhere: across periodic
-        sides; None where there are none.
+    shift : float array [facets, dim], m, offset of the right cells across periodic sides; None
+        without periodic sides.
     """
 
     joint: np.ndarray
@@ -66,7 +66,7 @@ class Mesh(NamedTuple):
 
     cell : "interval", "triangle", "quadrilateral", "tetrahedron" or "hexahedron".
     parts : the pieces of rock; no two share a vertex.
-    layers : indices of the pillar's joints that are meshed as layers of rock; the material of
+    layers : indices of the pillar's joints meshed as layers of rock; the material of
         layers[k - 1] is k.
     joints : the facet pairs between copies.
     sides : the facets on the boundary by name: of a pillar "start" and "end", the faces y = 0 and

@@ -58,14 +58,14 @@ def _grid(kind: str, across: int, rows: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _tetrahedra(kind: str, across: int, rows: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the same of tetrahedra, by gmsh."""
+    """Return `_grid` of tetrahedra, by gmsh."""
     from continuum.mesh.session import gmsh_session
 
     with gmsh_session() as gmsh:
         _mesh_column(gmsh, across, rows)
         tags, x, _ = gmsh.model.mesh.getNodes()
         (tagged,) = gmsh.model.mesh.getElements(3)[2]
-        # gmsh's own arrays end with its session.
+        # gmsh's own arrays are freed with its session.
         grid, tags, tagged = np.rint(x).astype(np.int64), np.array(tags), np.array(tagged)
     # The section is gmsh's x-y plane: its (x, y, z) are the pillar's (z, x, y).
     grid, along = grid.reshape(-1, 3)[:, [1, 2, 0]], [0, 2, 1]
@@ -79,7 +79,7 @@ def _tetrahedra(kind: str, across: int, rows: int) -> tuple[np.ndarray, np.ndarr
 
 
 def _mesh_column(gmsh, across: int, rows: int) -> None:
-    """Mesh a column of `across` unit cells each way and `rows` along, its axis gmsh's last one."""
+    """Mesh a column of `across` unit cells in both directions and `rows` along gmsh's last axis."""
     occ, mesh = gmsh.model.occ, gmsh.model.mesh
     section = (2, occ.addRectangle(0, 0, 0, across, across))
     occ.synchronize()

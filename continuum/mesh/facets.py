@@ -8,13 +8,13 @@ from scipy.spatial import cKDTree
 from continuum.mesh.cells import FACETS
 from continuum.mesh.description import Joints, Part, Side
 
-#: How far facets at the same place may lie apart: of the way from a facet to the middle of its
+#: Tolerated distance between coincident facets, relative to that from a facet to the middle of its
 #: cell.
 APART = 1e-4
 
 
 class Facets(NamedTuple):
-    """Facets of a mesh, each seen from one cell.
+    """Facets of a mesh, each with one of its cells.
 
     cell : int array [facets], cell numbers as in `Side`.
     corners : float array [facets, facet corners, dim], m.
@@ -41,11 +41,11 @@ class Facets(NamedTuple):
         return self.middle[:, self.along]
 
     def chosen(self, choice: np.ndarray) -> "Facets":
-        """Return some of the facets, by a mask or by numbers."""
+        """Return a selection of the facets, by mask or indices."""
         return Facets(*(field[choice] for field in self))
 
     def side(self, choice: np.ndarray) -> Side:
-        """Return some of the facets as the mesh describes them."""
+        """Return a selection of the facets as a `Side`."""
         return Side(self.cell[choice], self.corners[choice])
 
 
@@ -68,8 +68,8 @@ def row_numbers(rows: np.ndarray) -> np.ndarray:
 
 
 def shared_facets(kind: str, cells: np.ndarray) -> np.ndarray:
-    """Return the pairs of facets that two cells share, int array [2, pairs], as `facet_numbers`
-    counts them."""
+    """Return the pairs of facets shared by two cells, int array [2, pairs], in the order of
+    `facet_numbers`."""
     number = facet_numbers(kind, cells)
     order = np.argsort(number, kind="stable")
     shared = number[order[1:]] == number[order[:-1]]
@@ -77,7 +77,7 @@ def shared_facets(kind: str, cells: np.ndarray) -> np.ndarray:
 
 
 def outer(kind: str, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return cell and local facet number of the facets that belong to one cell only, int arrays."""
+    """Return cell and local number of the facets that belong to only one cell, int arrays."""
     number = facet_numbers(kind, cells)
     alone = np.flatnonzero(np.bincount(number)[number] == 1)
     return np.divmod(alone, len(FACETS[kind]))
@@ -145,7 +145,7 @@ def joints(facets: Facets, pair: np.ndarray, number: np.ndarray) -> Joints:
 def is_left(facets: Facets) -> np.ndarray:
     """Return whether each facet's cell is on its side towards y = 0, bool array [facets].
 
-    A facet along the pillar has no such side: there left is towards negative x, then z.
+    For a facet along the pillar, left is towards negative x, then z.
     """
     normal = normals(facets)
     across = [axis for axis in range(normal.shape[1]) if axis != facets.along]
@@ -156,7 +156,7 @@ def is_left(facets: Facets) -> np.ndarray:
 
 
 def normals(facets: Facets) -> np.ndarray:
-    """Return a unit normal of each facet [facets, dim], of either sign; of a warped one its mean.
+    """Return a unit normal of each facet [facets, dim], of either sign; the mean of a warped one.
 
     The mean normal of a quadrilateral is along the vector product of its diagonals.
     """

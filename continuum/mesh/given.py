@@ -1,9 +1,9 @@
 """A user's own gmsh file as a mesh: any shape of joints inside the pillar of the scene.
 
-The physical groups of the file say what is what: groups whose names start with "rock" hold the
-cells, groups whose names start with "joint" the facets of joints. At a joint the vertices may be
-there twice, with the facets of either side tagged, or once: then the rock is cut there. The end
-faces are the groups "start" and "end", or else what lies at y = 0 and y = length.
+The physical groups of the file identify its parts: groups whose names start with "rock" contain the
+cells, groups whose names start with "joint" the facets of joints. At a joint the vertices may exist
+twice, with the facets of either side tagged, or once: then the rock is cut there. The end faces are
+the groups "start" and "end", or else the facets at y = 0 and y = length.
 """
 
 from pathlib import Path
@@ -21,15 +21,15 @@ from continuum.mesh.description import Mesh, Part, Side
 from continuum.mesh.facets import Facets
 from continuum.mesh.paired import paired_joints, place
 
-PLACE = 1e-6  #: of the pillar's length and side: how exactly the file must have them
+PLACE = 1e-6  #: of the pillar's length and side: tolerance of the file's dimensions
 
 
 def given_mesh(path: str | Path, scene: Scene, p: Properties, dim: int | None = None) -> Mesh:
-    """Return the mesh of a gmsh file; without `dim` it may be of two or three dimensions.
+    """Return the mesh of a gmsh file, in two or three dimensions unless `dim` is given.
 
-    The law of a joint facet is that of the pillar's joint nearest in y: for a facet that lies
-    across the pillar nearest to itself, for all others of one group nearest to their mean. Raises
-    SceneError for whatever does not fit.
+    The law of a joint facet is that of the pillar's joint nearest in y: nearest to the facet itself
+    if it lies across the pillar, nearest to the group's mean for all other facets of a group.
+    Raises SceneError if the mesh does not fit the scene.
     """
     key, given = "numerics.continuum.mesh", scene.numerics.continuum.mesh or str(path)
     try:
@@ -96,7 +96,7 @@ def _check_cells(kind: str, x: np.ndarray, cells: np.ndarray) -> None:
 
 
 def _group_of_facets(kind: str, cells: np.ndarray, groups: list[np.ndarray]) -> np.ndarray:
-    """Return which group each facet of each cell is in [cells, facets]: 0 none, k the k-th."""
+    """Return the group of each facet of each cell [cells, facets]: 0 none, k the k-th."""
     table = FACETS[kind]
     rows = [cells[:, table].reshape(-1, table.shape[1]), *groups]
     number = facets.row_numbers(np.sort(np.concatenate(rows), axis=1))
@@ -110,14 +110,14 @@ def _group_of_facets(kind: str, cells: np.ndarray, groups: list[np.ndarray]) -> 
 
 
 def _along_pillar(x: np.ndarray, cells: np.ndarray, piece: np.ndarray) -> np.ndarray:
-    """Return the cells' order by pieces, these by where they begin along y, int array."""
+    """Return the order of cells by piece, with pieces sorted by their start along y, int array."""
     begin = np.full(piece.max() + 1, np.inf)
     np.minimum.at(begin, piece, x[cells, 1].min(axis=1))
     return np.lexsort((piece, begin[piece]))
 
 
 def _parts(whole: Part, piece: np.ndarray) -> tuple[Part, ...]:
-    """Return the pieces of the whole mesh, whose cells are sorted by them."""
+    """Return the pieces of the whole mesh, whose cells are sorted by piece."""
     parts = []
     for cells in np.split(whole.cells, np.flatnonzero(np.diff(piece)) + 1):
         used, number = np.unique(cells, return_inverse=True)
@@ -127,7 +127,7 @@ def _parts(whole: Part, piece: np.ndarray) -> tuple[Part, ...]:
 
 
 def _ends(outer: Facets, group: np.ndarray, names: list[str], p: Properties) -> dict[str, Side]:
-    """Return the facets of the end faces: those of the groups, else those at the ends."""
+    """Return the facets of the end faces, from the groups or else by their position."""
     length, sides = p.spacing * p.block_count, {}
     for name, y in (("start", 0.0), ("end", length)):
         face = facets.lies_at(outer, y, PLACE * length)

@@ -1,4 +1,4 @@
-"""The joints of a user's mesh: facets in pairs, and the pillar's joint whose law they follow."""
+"""The joints of a user's mesh: facet pairs, and the pillar's joint whose law they follow."""
 
 import numpy as np
 
@@ -8,15 +8,15 @@ from continuum.mesh import facets
 from continuum.mesh.description import Joints
 from continuum.mesh.facets import Facets
 
-ACROSS = 1e-6  #: of the pillar's length: how exactly a facet lies across it
+ACROSS = 1e-6  #: of the pillar's length: tolerance for a facet to lie across it
 
 
 def paired_joints(outer: Facets, group: np.ndarray, p: Properties) -> Joints:
     """Return the joints among the outer facets of a mesh.
 
-    `group` (int array [facets]) tells the groups of joint facets apart, 0 is no joint. Raises
-    MeshError for a joint facet without exactly one partner at the same place in another cell, and
-    for a pair of facets of which neither is tagged: there nothing would hold the rock together.
+    `group` (int array [facets]) is the group of each joint facet, 0 for none. Raises MeshError for
+    a joint facet without exactly one partner at the same place in another cell, and for a pair of
+    untagged facets, where nothing would connect the rock.
     """
     pair = facets.pairs(outer)
     partners = np.bincount(pair.ravel(), minlength=len(group))
@@ -33,7 +33,7 @@ def paired_joints(outer: Facets, group: np.ndarray, p: Properties) -> Joints:
 
 
 def place(x: np.ndarray) -> str:
-    """Return a place in the words of an error."""
+    """Return a place as text for an error message."""
     return "(" + ", ".join(f"{value:.6g}" for value in x) + ") m"
 
 
@@ -55,7 +55,7 @@ def _on_outside(outer: Facets, p: Properties) -> np.ndarray:
 def _law(facet: Facets, group: np.ndarray, p: Properties) -> np.ndarray:
     """Return the pillar's joint nearest in y, int array [facets].
 
-    Facets across the pillar count by themselves, all others of a group by their mean.
+    Facets across the pillar use their own position, all others the mean of their group.
     """
     y = facet.y
     inclined = ~facets.lies_across(facet, ACROSS * p.spacing * p.block_count)

@@ -12,18 +12,18 @@ from continuum.mesh.cells import KINDS
 from continuum.mesh.description import Mesh, Part
 from continuum.mesh.extrusion import Column, extruded
 
-#: Of the period: the longest that a wave may take through one element. A load that starts like a
-#: sine has a kink, which only dashpots round off on its way.
+#: Of the period: the longest travel time of a wave through one element. A load that starts like a
+#: sine has a kink, which only dashpots smooth as it propagates.
 TRAVEL_OF_KINKS, TRAVEL_OF_DAMPED = 0.01, 0.04
 
-#: Of a block: how exactly facets across the pillar are told by their place.
+#: Of a block: tolerance for finding facets across the pillar by position.
 PLACE = 1e-6
 
 
 def elements_in_block(block: float, speed: float, period: float, damped: bool = False) -> int:
-    """Return the fewest equal elements in a block (m) that resolve waves of this speed (m/s).
+    """Return the least number of equal elements in a block (m) resolving waves of a speed (m/s).
 
-    A wave crosses one element within a hundredth of the period (s), or a 25th in damped rock.
+    A wave crosses one element in at most 1/100 of the period (s), 1/25 in damped rock.
     """
     travel = TRAVEL_OF_DAMPED if damped else TRAVEL_OF_KINKS
     return max(1, ceil(block / (speed * travel * period) * (1 - 1e-9)))
@@ -39,7 +39,7 @@ def pillar_mesh(
     layers: Mapping[int, float] | None = None,
     elements_per_layer: int = 1,
 ) -> Mesh:
-    """Return the mesh of a pillar that is cut at some of its joints.
+    """Return the mesh of a pillar cut at some of its joints.
 
     Parameters
     ----------
@@ -48,11 +48,11 @@ def pillar_mesh(
     elements_across : elements in each direction of the section.
     interfaces : int array, the joints that cut the pillar, 0 nearest the loaded end.
     layers : thickness (m) of the joints that are layers of rock: bonded to the blocks on both
-        sides, which are shorter by half of it.
+        sides, each of which is shortened by half of it.
     elements_per_layer : elements through each layer.
 
     Pieces of the same length are copies of one part. Raises ValueError for a joint that is both
-    interface and layer, or a layer that leaves nothing of a block.
+    interface and layer, or a layer that is too thick for a block.
     """
     kind, layers = KINDS[dim, cell], dict(sorted((layers or {}).items()))
     each = [elements_per_block] if isinstance(elements_per_block, int) else elements_per_block
@@ -83,10 +83,10 @@ def _refuse_impossible(p: Properties, interfaces: np.ndarray, layers: dict[int, 
 def _pieces(
     p: Properties, cuts: np.ndarray, layers: np.ndarray
 ) -> list[tuple[int, int, np.ndarray]]:
-    """Return first and past-the-last block of each distinct piece, and where its copies start.
+    """Return first and past-the-last block of each distinct piece, and the starts of its copies.
 
-    Pieces with a layer are distinct, because each layer is a material of its own; others are alike
-    that have as many blocks of the same segments.
+    Pieces with a layer are distinct, because each layer is a material of its own; others are equal
+    if they have the same number of blocks of the same segments.
     """
     ends = np.r_[0, cuts + 1, p.block_count].astype(np.int64)
     like = np.diff(ends)

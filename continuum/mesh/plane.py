@@ -1,8 +1,8 @@
 """The mesh of a rock mass in the plane, from its partition into convex blocks.
 
-Blocks share the nodes of the segments between them; what joints cut is doubled afterwards. Where
-every block has four corners, and none meets more than one other along an edge, cells are
-quadrilaterals, else triangles.
+Blocks share the nodes of the segments between them; nodes on joints are duplicated afterwards. If
+every block has four corners and meets at most one other along each edge, cells are quadrilaterals,
+else triangles.
 """
 
 from collections.abc import Mapping
@@ -21,11 +21,11 @@ from continuum.mesh.segments import Across, Segments, segments_of
 
 
 class PlaneMesh(NamedTuple):
-    """A mesh and what it is made of.
+    """A mesh with the origin of its cells and joints.
 
     mesh : its joints are numbered by contact, first the partition's, then those across periodic
-        sides. block : int array [cells], of the partition. piece : int array [cells], of the rock
-        that joints do not cut. vertex : int array [cells, corners], two on either side of a joint.
+    sides. block : int array [cells], of the partition. piece : int array [cells], of rock not cut
+    by joints. vertex : int array [cells, corners], distinct on the two sides of a joint.
     """
 
     mesh: Mesh
@@ -40,10 +40,10 @@ def plane_mesh(
     sizes: Mapping[str, float],
     cell: str | None = None,
 ) -> PlaneMesh:
-    """Return the mesh of a partition; sizes : about how large quadrilaterals and triangles are, m.
+    """Return the mesh of a partition; sizes : approximate size of quadrilaterals and triangles, m.
 
-    cell : "quadrilateral" or "triangle"; None for the first where it can be. Raises ValueError
-    where blocks cannot be cut into quadrilaterals.
+    cell : "quadrilateral" or "triangle"; None for the first if possible. Raises ValueError if
+    blocks cannot be meshed with quadrilaterals.
     """
     segments, loops = segments_of(partition, across)
     four = has_four_corners(loops)
@@ -84,8 +84,8 @@ def _joints(
     x: np.ndarray,
     cuts: np.ndarray,
 ) -> Joints:
-    """Return the facets that joints hold together, by contact and along it: of its block i on the
-    left, of its block j on the right."""
+    """Return the facet pairs of joints, by contact and along it: those of its block i on the left,
+    of its block j on the right."""
     own = np.flatnonzero(cuts)
     contact = segments.contact[edges.segment[own]]
     blocks = np.concatenate([partition.contacts.blocks, *(c.blocks for c, _, _ in across)])

@@ -1,5 +1,5 @@
-"""The edges of a partition's blocks, cut where blocks meet: what meshes of the blocks have in
-common."""
+"""The edges of a partition's blocks, cut where blocks meet, as shared by the meshes of the
+blocks."""
 
 from typing import NamedTuple
 
@@ -11,21 +11,21 @@ from scipy.spatial import cKDTree
 from cases.partition.blocks import Contacts, Partition
 from cases.partition.periodic import PAIRS, periodic_contacts
 
-SAME = 1e-9  # of the domain: points that are one
-STRAIGHT = 1e-6  # sine of the angle between edges that go on from each other
-#: Where the way around a block begins: at the first corner from this direction on, rad. No edge of
-#: a scene is likely to have it, so that blocks of one shape begin alike.
+SAME = 1e-9  # of the domain: tolerance for coincident points
+STRAIGHT = 1e-6  # largest sine of the angle between collinear edges
+#: Start of the loop around a block: at the first corner from this direction on, rad. No edge of a
+#: scene is likely to have it, so that equal blocks start at the same corner.
 BEGIN = 0.7391
 
 
 class Segments(NamedTuple):
-    """Straight pieces of the edges of blocks, that end where any block has a corner.
+    """Straight pieces of the edges of blocks, ending wherever any block has a corner.
 
-    x : float array [points, 2], m, of the ends. point : int array [s, 2], from one end to the
-    other. length : [s], m.
+    x : float array [points, 2], m, of the ends. point : int array [s, 2], first and last end.
+    length : [s], m.
     contact : int array [s], index of the contact, those across periodic sides after the
     partition's; -1 on the boundary. side : int array [s], of the partition; -1 of contacts.
-    like : int array [s], the segment that has the same nodes, moved by the period; else itself.
+    like : int array [s], the segment with the same nodes, shifted by the period; else itself.
     """
 
     x: np.ndarray
@@ -37,11 +37,11 @@ class Segments(NamedTuple):
 
 
 class Loops(NamedTuple):
-    """The way around each block, counter-clockwise, one block after the other.
+    """The loop around each block, counter-clockwise, one block after the other.
 
     first : int array [blocks + 1]. segment : int array [n]. forward : bool array [n], whether it is
-    passed from its first end. is_corner : bool array [n], whether the block has a corner where it
-    begins.
+    traversed from its first end. is_corner : bool array [n], whether the block has a corner at its
+    start.
     """
 
     first: np.ndarray
@@ -51,7 +51,7 @@ class Loops(NamedTuple):
 
 
 class Across(NamedTuple):
-    """Contacts across a pair of periodic sides. shift : [2], m, by which blocks j stand elsewhere.
+    """Contacts across a pair of periodic sides. shift : [2], m, offset of blocks j.
     sides : names of the pair."""
 
     contacts: Contacts
@@ -60,7 +60,7 @@ class Across(NamedTuple):
 
 
 def across_periodic(partition: Partition, sides: list[str]) -> list[Across]:
-    """Return the contacts across periodic sides, given by "left" and "bottom"."""
+    """Return the contacts across periodic sides, named by "left" and "bottom"."""
     size, found = np.ptp(partition.corners, axis=0), []
     for side in sides:
         other, axis = PAIRS[side]
@@ -71,9 +71,9 @@ def across_periodic(partition: Partition, sides: list[str]) -> list[Across]:
 
 
 def segments_of(partition: Partition, across: list[Across]) -> tuple[Segments, Loops]:
-    """Return the segments of a partition and the way around its blocks.
+    """Return the segments of a partition and the loops around its blocks.
 
-    across : contacts across periodic sides, whose edges come in the place of the boundary's.
+    across : contacts across periodic sides, whose edges replace those of the boundary.
     """
     contacts, boundary = partition.contacts, partition.boundary
     periodic = [name for one in across for name in one.sides]
@@ -113,7 +113,7 @@ def segments_of(partition: Partition, across: list[Across]) -> tuple[Segments, L
 
 
 def _points(ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the different points [n, 2] among ends [s, 2, 2], and the number of each [s, 2]."""
+    """Return the distinct points [n, 2] among ends [s, 2, 2], and the index of each end [s, 2]."""
     every = ends.reshape(-1, 2)
     near = cKDTree(every).query_pairs(SAME * np.ptp(every, axis=0).max(), output_type="ndarray")
     graph = coo_matrix((np.ones(len(near)), near.T), 2 * every.shape[:1])
@@ -125,7 +125,7 @@ def _points(ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _loops(
     partition: Partition, segments: Segments, segment: np.ndarray, block: np.ndarray
 ) -> Loops:
-    """Return the way around all blocks, by which segment [n] is on the edge of which block [n]."""
+    """Return the loops around all blocks, from pairs of a segment [n] and its block [n]."""
     ends = segments.x[segments.point[segment]]
     arm = ends - partition.centroid[block][:, None]
     turn = arm[:, 0, 0] * arm[:, 1, 1] - arm[:, 0, 1] * arm[:, 1, 0]

@@ -13,9 +13,9 @@ from cases.gmsh_file import INSTALL
 def gmsh_session() -> Iterator:
     """Start gmsh with its own defaults and an empty model, and yield its module.
 
-    Raises ImportError, which says how to get it, where gmsh cannot be loaded.
-    Raises RuntimeError where a session is open already, whose options would change the mesh; before
-    4.9 gmsh cannot tell, and that session ends with this one.
+    Raises ImportError, with installation instructions, if gmsh cannot be loaded.
+    Raises RuntimeError if a session is already open, whose options would change the mesh; gmsh
+    before 4.9 cannot detect this, and that session ends with this one.
     """
     with _process_as_it_was():
         try:

@@ -1,7 +1,7 @@
-"""Meshes of one block each: quadrilaterals between four edges, or triangles in any polygon.
+"""Meshes of single blocks: quadrilaterals between four edges, or triangles in any polygon.
 
-The nodes of a template are those on its boundary, counter-clockwise from its first corner, and
-then those inside.
+The nodes of a template are those on its boundary, counter-clockwise from its first corner,
+followed by those inside.
 """
 
 from typing import NamedTuple
@@ -12,27 +12,27 @@ import numpy as np
 class Template(NamedTuple):
     """The mesh of a block.
 
-    cells : int array [cells, corners] in basix's order. inside : of the n nodes inside, how much
-    each corner of the block counts [n, corners], or where they are from the first corner [n, 2], m.
+    cells : int array [cells, corners] in basix's order. inside : of the n nodes inside,
+    weights of the block's corners [n, corners] or places from the first corner [n, 2], m.
     """
 
     cells: np.ndarray
     inside: np.ndarray
 
     def placed(self, corners: np.ndarray) -> np.ndarray:
-        """Return the nodes inside [blocks, n, 2], m, of blocks with these corners [blocks, k, 2]
-        where segments begin."""
+        """Return the nodes inside [blocks, n, 2], m, of blocks whose segments begin at `corners`
+        [blocks, k, 2]."""
         if self.cells.shape[1] == 4:
             return np.einsum("nk,bkd->bnd", self.inside, corners)
         return corners[:, :1] + self.inside
 
 
-#: Of a triangle that is one cell.
+#: Template of a triangle that is one cell.
 ONE = Template(np.array([[0, 1, 2]]), np.zeros((0, 2)))
 
 
 def quadrilaterals(m: int, n: int) -> Template:
-    """Return m times n quadrilaterals between four edges, the first of them cut into m."""
+    """Return m times n quadrilaterals between four edges, the first of them divided into m."""
     grid = np.full((m + 1, n + 1), -1)
     i, j = np.arange(m), np.arange(n)
     grid[i, 0], grid[m, j] = i, m + j
@@ -49,7 +49,7 @@ def quadrilaterals(m: int, n: int) -> Template:
 
 def triangles(shapes: list[tuple[np.ndarray, np.ndarray]], size: float) -> list[Template]:
     """Return the triangles in polygons, each given by its corners [k, 2] (m, counter-clockwise)
-    and the number of edges of triangles on each of its sides [k]; size : of triangles, m."""
+    and the number of triangle edges on each of its sides [k]; size : of triangles, m."""
     from continuum.mesh.session import gmsh_session
 
     with gmsh_session() as gmsh:
@@ -62,7 +62,7 @@ def triangles(shapes: list[tuple[np.ndarray, np.ndarray]], size: float) -> list[
 
 
 def _drawn(gmsh, corners: np.ndarray, counts: np.ndarray) -> tuple[list[int], list[int], int]:
-    """Draw a polygon, and return the tags of its corners, sides and inside."""
+    """Add a polygon to gmsh, and return the tags of its corners, sides and interior."""
     geo = gmsh.model.geo
     points = [geo.addPoint(x, y, 0.0) for x, y in corners - corners[0]]
     lines = [geo.addLine(*pair) for pair in zip(points, points[1:] + points[:1], strict=True)]

@@ -1,5 +1,5 @@
 """One run of the continuum shared by several processes under MPI.
 
-The cells are dealt out along the pillar, or by the graph of a rock mass; every process steps its
-own, and what several cells of different processes push on is summed up at every step.
+The cells are distributed along the pillar, or by the graph of a rock mass; every process advances
+its own, and forces on shared degrees of freedom are summed at every step.
 """

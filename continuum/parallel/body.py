@@ -1,7 +1,7 @@
-"""The share that one process has of discretised rock and its joints.
+"""One process's share of the discretised rock and its joints.
 
-Cells keep the numbers that they have in the whole mesh, so that all that is decided by the places
-of cells is decided alike everywhere. Cells of others have no nodes here.
+Cells keep their numbers in the whole mesh, so that all decisions by the positions of cells are the
+same on every process. Cells of other processes have no nodes here.
 """
 
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ from continuum.space.body import Body, build_body, cell_geometry
 from continuum.space.elasticity import Material, Rock, Section
 from continuum.space.interface import Jumps, jumps
 
-NOTHING = Material(0.0, 0.0, 0.0)  # of which ghosts are made
+NOTHING = Material(0.0, 0.0, 0.0)  # material of ghost cells
 
 
 def share_of(
@@ -33,10 +33,10 @@ def share_of(
 ) -> tuple[Body, Jumps | None]:
     """Return this process's share of the rock, and of the jumps across joints; None without any.
 
-    comm : mpi4py's communicator. The rest is as for `build_body`; rock that is kept as pairs of
-    rows is dealt out by its graph, a pillar by stretches along it.
+    comm : mpi4py's communicator. The rest is as for `build_body`; rock stored as pairs of rows is
+    partitioned by its graph, a pillar in contiguous lengths.
     """
-    # By one process: no other could come to another partition.
+    # By one process, so that all use the same partition.
     ranks = ranks_by_graph if paired else ranks_of_cells
     cells_enough(copies_of(mesh), comm.size)
     rank_of = comm.bcast(ranks(mesh, comm.size) if comm.rank == 0 else None)
@@ -54,7 +54,7 @@ def share_of(
 def held_share(
     mesh: Mesh, share: Share, order: int, materials: Sequence[Rock], *asked
 ) -> tuple[Body, Jumps | None]:
-    """Return the rock that a process holds, ghosts included, and the jumps across its own joints.
+    """Return the rock of a process, including ghosts, and the jumps across its own joints.
 
     Ghosts have neither stiffness nor mass.
     """
@@ -73,8 +73,8 @@ def held_share(
 
 
 class Names(NamedTuple):
-    """The freedoms that a process's cells or joints have; those of them on the border, and what
-    each of these is called on every process, ascending; int arrays."""
+    """The degrees of freedom of a process's cells or joints; those on the border, and their global
+    names, ascending; int arrays."""
 
     freedom: np.ndarray
     border: np.ndarray
@@ -82,7 +82,7 @@ class Names(NamedTuple):
 
 
 def _names(held: Body, own: np.ndarray, across: Jumps | None, border: Border) -> Names:
-    """Return the names of what is held by these cells (own) and joints."""
+    """Return the names of the degrees of freedom of own cells and joints."""
     reached = [_freedoms(held, own[own[:, 0] >= 0])]
     if across is not None:
         reached += [np.unique(matrix.indices) for matrix in across.matrices]
@@ -97,5 +97,5 @@ def _names(held: Body, own: np.ndarray, across: Jumps | None, border: Border) ->
 
 
 def _freedoms(body: Body, cells: np.ndarray) -> np.ndarray:
-    """Return all freedoms of cells, whose nodes are given."""
+    """Return all degrees of freedom of cells, given by their nodes."""
     return np.unique(body.freedom(np.unique(cells)[:, None], np.arange(body.section.components)))

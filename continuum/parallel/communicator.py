@@ -1,4 +1,4 @@
-"""The processes that share a run: their common freedoms and collective operations."""
+"""The processes that share a run: common degrees of freedom and collective operations."""
 
 import weakref
 from collections.abc import Callable, Iterator
@@ -17,21 +17,21 @@ from numerics.divergence import EVERY
 
 
 class Communicator(Serial):
-    """Several processes, each with a share of the rock and of the joints; what they do together is
-    as `Serial` says.
+    """Several processes, each with a share of the rock and of the joints; collective operations are
+    documented in `Serial`.
 
     Parameters
     ----------
-    comm : mpi4py's communicator of those who share the run.
-    freedom : int array, the freedoms of this process, without those that only ghosts have.
-    border : int array [k], of these the ones that others may have too.
-    name : int array [k], ascending: what each of them is called by every process.
-    length : of the vectors of freedoms.
-    meeting : the cells where processes meet, and which of their nodes are the same.
+    comm : mpi4py's communicator of the processes that share the run.
+    freedom : int array, the degrees of freedom of this process, without those of ghosts only.
+    border : int array [k], those of them that other processes may have too.
+    name : int array [k], ascending: their global names.
+    length : of the vectors of degrees of freedom.
+    meeting : the cells where processes meet, and the identity of their nodes.
 
     Attributes
     ----------
-    freedom, length : as given. rank, size : which of how many processes this is.
+    freedom, length : as given. rank, size : of this process and the communicator.
     """
 
     def __init__(
@@ -73,7 +73,7 @@ class Communicator(Serial):
         return self.comm.bcast(value)
 
     def assembled(self, share: csr_matrix) -> csr_matrix | None:
-        """Return the sum of matrices on the freedoms [n, n] by `number`, on the first process."""
+        """Return the sum of matrices [n, n], numbered by `number`, on the first process."""
         entries = share.tocoo()
         row, column = self.number[entries.row], self.number[entries.col]
         there = (row >= 0) & (column >= 0)
@@ -90,7 +90,7 @@ class Communicator(Serial):
         return np.concatenate(parts), slice(first, first + len(rows))
 
     def gather(self, waves: np.ndarray) -> None:
-        """Replace shares of waveforms by their sums over all processes, the same bits for all."""
+        """Replace shares of waveforms by their sums over all processes, bit-identical on all."""
         whole = np.empty_like(waves)
         self.comm.Reduce(waves, whole)
         self.comm.Bcast(whole)
@@ -119,8 +119,8 @@ class Communicator(Serial):
     def leapfrog(self, model, state, samples, stride, limits) -> Callable[[int, int], object]:
         """Return a function of (first, last) that takes steps, as `explicit.march.march` does.
 
-        Freedoms whose motion is given need no force, and keep their shares of it, which sum up to
-        what moves them.
+        Degrees of freedom with prescribed motion need no force; they keep their shares of it, which
+        sum to the driving force.
         """
         fixed = np.zeros(0) if model.ends.fixed is None else model.ends.fixed.freedom
         connection = connect(self.comm, [f[~np.isin(f, fixed)] for f in self._common])
@@ -130,7 +130,7 @@ class Communicator(Serial):
         def run(first: int, last: int) -> None:
             for n in range(first, max(last, first + 1), EVERY):
                 _check(steps(n, min(n + EVERY, last)))
-                # No step is taken to compile, where processes come one after the other.
+                # Processes compile one after the other, without taking a step.
                 if limits is not None and last > first and self.any(bool(limits.found[0] >= 0)):
                     return
 
@@ -138,30 +138,30 @@ class Communicator(Serial):
 
     @cached_property
     def mine(self) -> np.ndarray:
-        """The freedoms that no process of a lower rank has, int array."""
+        """The degrees of freedom that no process of lower rank has, int array."""
         lower = np.concatenate([np.zeros(0, dtype=np.int64), *self._common[: self.rank]])
         return np.setdiff1d(self.freedom, lower)
 
     @cached_property
     def number(self) -> np.ndarray:
-        """Numbers of all freedoms together, int array [length]; -1 for padding and mere ghosts."""
+        """Global numbers of the freedoms, int array [length]; -1 for padding and ghosts."""
         found = np.full(self.length, -1)
         found[self.freedom] = self.numbered(self.mine)[self.freedom]
         return found
 
     def numbered(self, mine: np.ndarray) -> np.ndarray:
-        """Return numbers [length] of what is `mine` on each process, one after the other."""
+        """Return consecutive numbers [length] of the entries that are `mine` on each process."""
         found = np.zeros(self.length)
         found[mine] = (self.comm.exscan(mine.size) or 0) + np.arange(mine.size)
         return np.rint(self.total(found)).astype(np.int64)
 
     @cached_property
     def degrees_of_freedom(self) -> int:
-        """How many freedoms there are in all."""
+        """Total number of degrees of freedom."""
         return 1 + int(self.largest(self.number.max()))
 
     def count(self, here: int) -> int:
-        """Return the total number of freedoms."""
+        """Return the total number of degrees of freedom."""
         return self.degrees_of_freedom
 
     def critical_step(self, *assembled) -> float:
@@ -170,7 +170,7 @@ class Communicator(Serial):
         return shared_critical_step(self, *assembled)
 
     def on_first(self, share: np.ndarray) -> np.ndarray:
-        """Return values [n] summed up as one vector by `number`, on the first process alone."""
+        """Return the sum of values as one vector [n] by `number`, on the first process only."""
         found = np.zeros(self.degrees_of_freedom)
         found[self.number[self.freedom]] = share[self.freedom]
         whole = np.empty_like(found)
@@ -180,7 +180,7 @@ class Communicator(Serial):
     def _sent_to_first(self, arrays: list[np.ndarray]) -> list[list[np.ndarray]]:
         """Return the arrays of every process on the first one, an empty list on others.
 
-        One message for each array: pickled together they might be longer than a message can be.
+        One message per array: pickled together they might exceed the maximum message length.
         """
         shapes = self.comm.gather([(a.shape, a.dtype) for a in arrays])
         if self.rank:

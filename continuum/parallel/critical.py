@@ -1,8 +1,8 @@
-"""The critical step of rock that several processes share, found by the first of them.
+"""The critical step of rock shared by several processes, found by the first of them.
 
-That one holds motions of the whole rock, which take little room, and no more of the operators than
-the others: all multiply their shares by what it sends them. The search is that of a process alone,
-from the same motion, so that the step is the same however many share the rock.
+It stores motions of the whole rock, which need little memory, and no more of the operators than the
+others: all multiply their shares by the vectors it sends. The search is that of a single process,
+from the same motion, so that the step does not depend on the number of processes.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ def shared_critical_step(
 ) -> float:
     """Return the critical step (s), the same number on every process.
 
-    The parameters are those of `critical_time_step`, mass and matrices a process's shares.
+    The parameters are those of `critical_time_step`; mass and matrices are this process's shares.
     """
     moves, motion = np.zeros(mass.size), np.zeros(mass.size)
     moves[np.setdiff1d(communicator.mine, fixed)] = 1.0
@@ -48,7 +48,7 @@ def shared_critical_step(
 def _whole(
     communicator: Communicator, matrices: list, which: int, scale: np.ndarray
 ) -> LinearOperator:
-    """Return one of the operators of the whole rock, scaled on both sides; first process alone."""
+    """Return an operator of the whole rock, scaled on both sides; first process only."""
 
     def product(x: np.ndarray) -> np.ndarray:
         message = np.append(scale * x.ravel(), which)

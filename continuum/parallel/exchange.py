@@ -1,7 +1,7 @@
-"""Sums over the processes that have a freedom, compiled: a few numbers at every step.
+"""Sums over the processes that share a degree of freedom, compiled: a few numbers at every step.
 
-MPI's own functions are called by the compiled code, for the way through Python would take longer
-than the step. Persistent requests leave nothing to be told to them but an address.
+The compiled code calls MPI's own functions, because a call through Python would take longer than
+the step. With persistent requests, a call needs only an address.
 """
 
 import ctypes
@@ -14,11 +14,11 @@ from numba import types
 
 from numerics.jit import inlined, jitted
 
-TAG = 0x4A57  # of all messages between two processes: they come in the order they are sent in
+TAG = 0x4A57  # of all messages between two processes, which arrive in the order of sending
 
 
 def _from_mpi(name: str, signature):
-    """Return a function of MPI for compiled code, which finds it by name when it is loaded."""
+    """Return a function of MPI for compiled code, which resolves it by name when loaded."""
     function = getattr(ctypes.CDLL(MPI.__file__), name)
     address = ctypes.cast(function, ctypes.c_void_p).value
     llvmlite.binding.add_symbol(f"jointwave_{name}", address)
@@ -32,11 +32,11 @@ wait_all = _from_mpi("MPI_Waitall", types.intc(types.intc, types.voidptr, types.
 class Link(NamedTuple):
     """The connections of a process to the others.
 
-    freedom : int array [k], own freedoms that others have too. sum : float array [k].
-    source : int array [s], the freedoms to send, process by process; sent : float array [s].
-    place, value : arrays [r], what comes from every process in turn, this one among them: which of
-        `freedom` it adds to. own : where its own values begin.
-    calls : how many requests there are. requests, statuses : bytes that MPI reads and writes.
+    freedom : int array [k], own degrees of freedom shared with others. sum : float array [k].
+    source : int array [s], those to send, process by process; sent : float array [s].
+    place, value : arrays [r], values from each process in turn, including this one, and the index
+    in `freedom` to which each adds. own : start of its own values.
+    calls : number of requests. requests, statuses : bytes that MPI reads and writes.
     """
 
     freedom: np.ndarray
@@ -52,7 +52,7 @@ class Link(NamedTuple):
 
 
 class Connection(NamedTuple):
-    """A link for compiled code, and the persistent requests of mpi4py that it starts."""
+    """A link for compiled code, and its persistent requests of mpi4py."""
 
     link: Link
     requests: list
@@ -61,8 +61,8 @@ class Connection(NamedTuple):
 def connect(comm, common: list[np.ndarray]) -> Connection:
     """Return the connections of a process to the others.
 
-    common : for each rank of `comm` the freedoms (int array) in common with it, in an order that
-        both agree on; that of the process itself does not count.
+    common : for each rank of `comm` the degrees of freedom (int array) shared with it, in the same
+    order on both; the entry of the process itself is ignored.
     """
     none = np.zeros(0, dtype=np.int64)
     others = [r for r, f in enumerate(common) if f.size and r != comm.rank]
@@ -94,7 +94,7 @@ def connect(comm, common: list[np.ndarray]) -> Connection:
 
 
 def release(connection: Connection) -> None:
-    """Give the requests back to MPI, which may have changed their handles."""
+    """Return the requests to MPI, which may have changed their handles."""
     size, handles = MPI._sizeof(MPI.Request), connection.link.requests.tobytes()
     for k, request in enumerate(connection.requests):
         ctypes.memmove(MPI._addressof(request), handles[k * size : (k + 1) * size], size)
@@ -102,7 +102,7 @@ def release(connection: Connection) -> None:
 
 
 def _handles(requests: list) -> np.ndarray:
-    """Return the handles of requests side by side, as MPI takes them."""
+    """Return the handles of requests as a contiguous array for MPI."""
     size = MPI._sizeof(MPI.Request)
     handles = b"".join(ctypes.string_at(MPI._addressof(r), size) for r in requests)
     return np.frombuffer(handles, dtype=np.uint8).copy()
@@ -110,9 +110,9 @@ def _handles(requests: list) -> np.ndarray:
 
 @jitted
 def add_shares(link, values):
-    """Replace a process's shares of values on common freedoms by their sums.
+    """Replace a process's shares of values on shared degrees of freedom by their sums.
 
-    Returns MPI's error code, 0 without.
+    Returns MPI's error code, 0 for success.
     """
     failed = send(link, values)
     return failed or receive(link, values)
@@ -120,7 +120,7 @@ def add_shares(link, values):
 
 @inlined
 def send(link, values):
-    """Begin to send a process's shares of values to all who have the freedoms too."""
+    """Start sending a process's shares of values to all processes that share them."""
     for k in range(link.source.size):
         link.sent[k] = values[link.source[k]]
     return start_all(link.calls, link.requests.ctypes)
@@ -130,7 +130,7 @@ def send(link, values):
 def receive(link, values):
     """Add the contributions received from other processes.
 
-    All who have a freedom add in the order of their ranks, and come to the same bits.
+    All processes add in the order of ranks, so that the sums are bit-identical.
     """
     for i in range(link.freedom.size):
         link.value[link.own + i] = values[link.freedom[i]]

@@ -1,4 +1,4 @@
-"""The factorised matrix of an implicit step of rock that several processes share."""
+"""The factorised matrix of an implicit step of rock shared by several processes."""
 
 import numpy as np
 
@@ -6,15 +6,15 @@ from continuum.implicit.factors import Factors
 from continuum.parallel.communicator import Communicator
 from continuum.parallel.petsc import PETSc
 
-PACKAGES = ("mumps", "superlu_dist")  # that factorise what several processes hold
+PACKAGES = ("mumps", "superlu_dist")  # that factorise distributed matrices
 
 
 class SharedFactors(Factors):
-    """The LU factors of a sum of matrices, one of each process, that keep their patterns.
+    """The LU factors of a sum of matrices, one per process, with constant patterns.
 
-    start, column : of this process's matrix. free : int array [n], its rows and columns, as
-    freedoms of this process. All methods are called by all processes of the communicator; what is
-    solved is the same on all that have a freedom.
+    start, column : of this process's matrix. free : int array [n], its rows and columns, as degrees
+    of freedom of this process. All methods are called by all processes of the communicator;
+    solutions are equal on all processes that share a degree of freedom.
     """
 
     def __init__(

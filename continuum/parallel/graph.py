@@ -1,4 +1,4 @@
-"""Partition of a body of any shape: the graph of its cells and joints, halved again and again."""
+"""Partition of a body of any shape: repeated bisection of the graph of its cells and joints."""
 
 import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix, csr_matrix
@@ -10,15 +10,15 @@ from continuum.mesh.description import Mesh
 from continuum.mesh.facets import shared_facets
 from continuum.parallel.partition import cell_numbers, cells_enough, copies_of
 
-SMALL = 0.02  # of the cells of one process: copies of at most so many stay whole
-FEW = 100  # vertices of a graph up to which all of its modes are found
-SHIFT = 1e-9  # of the largest eigenvalue: how far below zero the lowest ones are looked for
+SMALL = 0.02  # of the cells of one process: smaller copies are not divided
+FEW = 100  # vertices of a graph up to which all of its modes are computed
+SHIFT = 1e-9  # of the largest eigenvalue: shift below zero in the search for the lowest ones
 
 
 def ranks_by_graph(mesh: Mesh, size: int) -> np.ndarray:
-    """Return which of `size` processes each cell belongs to, int array [cells].
+    """Return the process (of `size`) of each cell, int array [cells].
 
-    All get as many cells as the others, but that small copies stay whole. Raises SceneError where
+    All get the same number of cells, except that small copies are not divided. Raises SceneError if
     there are more processes than cells.
     """
     copies = copies_of(mesh)
@@ -35,7 +35,7 @@ def ranks_by_graph(mesh: Mesh, size: int) -> np.ndarray:
 
 
 def _neighbours(mesh: Mesh) -> np.ndarray:
-    """Return the pairs of cells that have a facet in common, or a joint between them [2, pairs]."""
+    """Return the pairs of cells that share a facet or have a joint between them [2, pairs]."""
     joints, pairs = mesh.joints, []
     for part, numbers in zip(mesh.parts, cell_numbers(mesh), strict=True):
         cell = shared_facets(mesh.cell, part.cells) // len(FACETS[mesh.cell])
@@ -44,7 +44,7 @@ def _neighbours(mesh: Mesh) -> np.ndarray:
 
 
 def halved(graph: csr_matrix, weight: np.ndarray, size: int) -> np.ndarray:
-    """Return which of `size` parts each vertex of a graph is in, int array; all weigh alike.
+    """Return the part (of `size`, of equal weight) of each vertex of a graph, int array.
 
     Recursive spectral bisection (Pothen, Simon & Liou, SIAM J. Matrix Anal. Appl. 11, 1990).
     """

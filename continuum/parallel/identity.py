@@ -11,10 +11,10 @@ from continuum.space.nodes import corner_shares, levels, node_numbers, numbered
 
 
 class Border(NamedTuple):
-    """The cells whose nodes several processes may have in common.
+    """The cells whose nodes several processes may share.
 
     cell : int array [cells], in the whole mesh. node : int array [cells, nodes per cell], numbers
-    that are the same on every process; those of tied nodes are equal.
+    valid on every process; those of tied nodes are equal.
     """
 
     cell: np.ndarray
@@ -22,7 +22,7 @@ class Border(NamedTuple):
 
 
 def border(mesh: Mesh, rank_of: np.ndarray, order: int, plane_wave: bool = False) -> Border:
-    """Return the border between the processes of a whole mesh, the same on each of them.
+    """Return the border between the processes of a whole mesh, equal on all of them.
 
     rank_of : int array [cells]. plane_wave : whether all nodes of a copy at one height are tied.
     """
@@ -41,7 +41,7 @@ def border(mesh: Mesh, rank_of: np.ndarray, order: int, plane_wave: bool = False
 
 
 def _meet_others(vertices: np.ndarray, rank: np.ndarray) -> np.ndarray:
-    """Return which cells share a vertex with one of another process, bool array [cells]."""
+    """Return which cells share a vertex with a cell of another process, bool array [cells]."""
     low = np.full(vertices.max(initial=-1) + 1, rank.max(initial=0))
     high = np.zeros_like(low)
     np.minimum.at(low, vertices, rank[:, None])
@@ -50,7 +50,7 @@ def _meet_others(vertices: np.ndarray, rank: np.ndarray) -> np.ndarray:
 
 
 def _vertices(mesh: Mesh, copies: Copies, cell: np.ndarray) -> np.ndarray:
-    """Return the vertices of cells, numbered through all copies [cells, corners]."""
+    """Return the vertices of cells, numbered consecutively over all copies [cells, corners]."""
     sizes = np.array([len(part.x) for part in mesh.parts])[copies.part]
     copy, base = copies.of(cell), np.cumsum(sizes) - sizes
     found = np.empty((cell.size, mesh.parts[0].cells.shape[1]), dtype=np.int64)

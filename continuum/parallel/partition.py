@@ -7,17 +7,17 @@ import numpy as np
 from cases.errors import SceneError
 from continuum.mesh.description import Joints, Mesh, Part
 
-#: Of the cells of one process: copies of at most so many stay whole. Many alike blocks make one
-#: operator; half of a block is one of its own.
+#: Of the cells of one process: smaller copies are not divided. Many equal blocks share one
+#: operator; half of a block needs its own.
 WHOLE = 0.5
 
-LAYER = 1e-6  # of the pillar: cells at one height
+LAYER = 1e-6  # of the pillar: tolerance for cells at one height
 
 
 class Copies(NamedTuple):
-    """Copies of parts, in the order that cells are numbered in; arrays [copies].
+    """Copies of parts, in the order of cell numbers; arrays [copies].
 
-    part : whose copy it is. first, cells : its first cell, and how many it has.
+    part : the part copied. first, cells : its first cell, and its number of cells.
     """
 
     part: np.ndarray
@@ -25,16 +25,16 @@ class Copies(NamedTuple):
     cells: np.ndarray
 
     def of(self, cell: np.ndarray) -> np.ndarray:
-        """Return the copies that cells belong to."""
+        """Return the copies to which cells belong."""
         return np.searchsorted(self.first, cell, side="right") - 1
 
 
 class Share(NamedTuple):
     """The part of a mesh on one process.
 
-    parts : its own cells, and as ghosts those beyond its joints; copies that are whole stand
-        together, and of others only what is held. The material of ghosts is mesh.materials.
-    cell : int array, for each cell of the parts its number in the whole mesh.
+    parts : its own cells, and as ghosts those beyond its joints; complete copies are grouped, of
+    others there is only the share. The material of ghosts is mesh.materials.
+    cell : int array, number in the whole mesh of each cell of the parts.
     ghost : bool array, whether it is a ghost.
     joints : its own.
     """
@@ -53,10 +53,10 @@ def copies_of(mesh: Mesh) -> Copies:
 
 
 def ranks_of_cells(mesh: Mesh, size: int) -> np.ndarray:
-    """Return which of `size` processes each cell belongs to, int array [cells].
+    """Return the process (of `size`) of each cell, int array [cells].
 
-    All get as many cells as the others, in contiguous stretches along the pillar, but that small
-    copies stay whole. Raises SceneError where there are more processes than cells.
+    All get the same number of cells, contiguous along the pillar, except that small copies are not
+    divided. Raises SceneError if there are more processes than cells.
     """
     copies = copies_of(mesh)
     total = cells_enough(copies, size)
@@ -70,7 +70,7 @@ def ranks_of_cells(mesh: Mesh, size: int) -> np.ndarray:
 
 
 def cells_enough(copies: Copies, size: int) -> int:
-    """Return how many cells there are; raises SceneError for more processes."""
+    """Return the number of cells; raises SceneError if there are more processes."""
     total = int(copies.cells.sum())
     if size > total:
         allowed = f"must be at most {total}, the cells of the mesh"
@@ -95,7 +95,7 @@ def _along_pillar(part: Part) -> np.ndarray:
 
 
 def _cuts(cells: np.ndarray, size: int) -> np.ndarray:
-    """Return where a queue of copies with so many cells each is cut, int array [size - 1]."""
+    """Return the cuts of a sequence of copies with these numbers of cells, int array [size - 1]."""
     end, share = np.cumsum(cells), cells.sum() / size
     found = []
     for wanted in share * np.arange(1, size):
@@ -107,10 +107,10 @@ def _cuts(cells: np.ndarray, size: int) -> np.ndarray:
 
 
 def restrict(mesh: Mesh, rank_of: np.ndarray, rank: int, together: bool = False) -> Share:
-    """Return what a process holds where cells belong to the processes `rank_of` [cells].
+    """Return the share of a process, given the process of each cell, `rank_of` [cells].
 
-    A joint's facet belongs to the process of its left cell. together : whether all that is not
-    a whole copy among others is one last part.
+    A joint's facet belongs to the process of its left cell. together : whether all cells outside
+    repeated whole copies form one last part.
     """
     own, joints = rank_of == rank, mesh.joints
     mine = own[joints.left]
@@ -137,14 +137,14 @@ def restrict(mesh: Mesh, rank_of: np.ndarray, rank: int, together: bool = False)
 
 
 def cell_numbers(mesh: Mesh) -> list[np.ndarray]:
-    """Return for each part the numbers of its cells, int arrays [copies, cells]."""
+    """Return the numbers of the cells of each part, int arrays [copies, cells]."""
     counts = [p.copies * len(p.cells) for p in mesh.parts]
     cells = np.split(np.arange(sum(counts)), np.cumsum(counts)[:-1])
     return [n.reshape(p.copies, -1) for n, p in zip(cells, mesh.parts, strict=True)]
 
 
 def _one_part(parts: list[Part]) -> Part:
-    """Return parts that each stand once as one, where they stand."""
+    """Return parts with one copy each as one part, at their positions."""
     sizes = [len(part.x) for part in parts]
     first = np.cumsum(sizes) - sizes
     return Part(

@@ -1,7 +1,7 @@
-"""The processes that share a run, seen from one of them; here the only one there is.
+"""The processes that share a run, seen from one of them; here a single process.
 
-`continuum.parallel.communicator` has the same for several. What is called on one is called on all
-of them, in the same order.
+`continuum.parallel.communicator` is the version for several. Every call is collective: all
+processes make it, in the same order.
 """
 
 from collections.abc import Callable, Iterator
@@ -18,7 +18,7 @@ class Pieces(NamedTuple):
     """Values on some cells of a mesh, and on the nodes of these.
 
     cell : int array [cells], their numbers in the whole mesh.
-    table : int array [cells, nodes per cell], nodes that values count from 0.
+    table : int array [cells, nodes per cell], nodes numbered from 0 as in the values.
     of_cells, of_nodes : arrays [cells, ...] and [nodes, ...].
     """
 
@@ -29,16 +29,16 @@ class Pieces(NamedTuple):
 
 
 class Serial:
-    """One process that has all of the rock.
+    """One process with all of the rock.
 
-    rank, size : which of how many processes this is.
+    rank, size : of this process and the communicator.
     """
 
     rank = 0
     size = 1
 
     def total(self, share: np.ndarray) -> np.ndarray:
-        """Return values on the freedoms [..., n], summed up over all who have each of them."""
+        """Return values on the freedoms [..., n], summed over the processes that share each."""
         return share
 
     def sum(self, value: float) -> float:
@@ -62,11 +62,11 @@ class Serial:
         return not self.all(not holds)
 
     def count(self, here: int) -> int:
-        """Return the total number of freedoms, given the number on this process."""
+        """Return the total number of degrees of freedom, given the number on this process."""
         return here
 
     def critical_step(self, *assembled) -> float:
-        """Return what `critical.critical_time_step` does for what all processes have assembled."""
+        """Return `critical.critical_time_step` of the matrices assembled by all processes."""
         from continuum.explicit.critical import critical_time_step
 
         return critical_time_step(*assembled)
@@ -76,24 +76,24 @@ class Serial:
         return value
 
     def assembled(self, share: csr_matrix) -> csr_matrix | None:
-        """Return the sum of matrices on the freedoms, on the first process alone."""
+        """Return the sum of matrices on the degrees of freedom, on the first process only."""
         return share
 
     def beside(self, rows: np.ndarray) -> tuple[np.ndarray, slice]:
-        """Return the rows of every process, one after the other, and where among them those of
-        this one are."""
+        """Return the rows of every process, one after the other, and the slice of those of this
+        one."""
         return rows, slice(None)
 
     def gather(self, waves: np.ndarray) -> None:
         """Replace shares of waveforms by their sums over all processes."""
 
     def joined(self, pieces: Pieces) -> Pieces | None:
-        """Return the pieces of all processes as one; the first process alone, None on others."""
+        """Return the pieces of all processes as one, on the first process; None on others."""
         return pieces
 
     @contextmanager
     def in_turn(self) -> Iterator[None]:
-        """Let the first process of every machine compile: the others find it in the cache."""
+        """Let the first process of every machine compile; the others load from the cache."""
         yield
 
     def leapfrog(self, model, state, samples, stride, limits) -> Callable[[int, int], object]:
