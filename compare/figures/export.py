@@ -1,10 +1,9 @@
-"""A figure as files, its drawings and its numbers, and as what the page shows of it.
+"""A figure as files, its drawings and its numbers, and as shown on the page.
 
-A page holds many SVGs of matplotlib: the ids of each are its own, and it has no more than is seen.
-Of the paper's figures matplotlib writes 8 MB. Palettes for images take 1.6 MB of them away, two
-decimals of a point 1.1, steps between the points of a path 2.2, and ids, groups and styles that
-nothing follows 1.3: the page would be too large without. All of it takes 1 s for a scene whose
-drawing takes 22.
+A page contains many SVGs of matplotlib: each has its own ids, and only what is visible. matplotlib
+writes 8 MB for the paper's figures. Palettes for images save 1.6 MB of them, coordinates with two
+decimals of a point 1.1, relative paths 2.2, and unused ids, groups and styles 1.3: without this the
+page would be too large. All of it takes 1 s for a scene whose drawing takes 22.
 """
 
 import base64
@@ -27,9 +26,9 @@ from PIL import Image
 from compare.figures.style import RC, WIDTH
 from compare.runs.output import write, write_csv, write_text
 
-DOTS = 160  # of the PNG, per inch
+DOTS = 160  # per inch of the PNG
 DIGITS = 6  # of the numbers behind a figure
-#: Ids that matplotlib counts its parts by; those that a drawing gives to its own groups stay.
+#: Automatic ids of matplotlib's parts; ids given by a drawing to its groups are kept.
 COUNTED = re.compile(
     r' id="(?:figure|axes|patch|line2d|text|legend|[xy]tick|matplotlib\.axis|[A-Z]\w+)_\d+"'
 )
@@ -42,8 +41,8 @@ PLACE = re.compile(r"([ML]) (-?[\d.]+(?:e-?\d+)?) (-?[\d.]+(?:e-?\d+)?) ?\n?")
 def blank(
     height: float, width: float = WIDTH, laid_out: bool = False, rc: dict[Any, Any] = RC
 ) -> Iterator[Figure]:
-    """Give an empty figure to be drawn on, inches; constraints lay it out once that is done, unless
-    the drawing lays it out itself."""
+    """Yield an empty figure, sizes in inches; it is laid out by constraints afterwards, unless the
+    drawing lays it out itself."""
     with matplotlib.rc_context(rc):
         figure = Figure(figsize=(width, height))
         FigureCanvasAgg(figure)
@@ -53,10 +52,10 @@ def blank(
 
 
 class Drawn(NamedTuple):
-    """A figure that is written: NAME.svg, NAME.pdf and, if asked, NAME.png; its numbers NAME.csv.
+    """A written figure: NAME.svg, NAME.pdf and, if requested, NAME.png; its numbers NAME.csv.
 
-    svg : the element's text, ready to stand in a page; no other figure has its ids.
-    caption : what is seen. plot : the figure for plotly.js as JSON, "" without.
+    svg : the element's text for a page, with unique ids.
+    caption : its description. plot : the figure for plotly.js as JSON, "" without.
     """
 
     name: str
@@ -67,12 +66,12 @@ class Drawn(NamedTuple):
     plot: str = ""
 
     def file(self, kind: str) -> Path:
-        """Return the figure's file of a kind, "pdf"."""
+        """Return the figure's file of a kind such as "pdf"."""
         return self.folder / f"{self.name}.{kind}"
 
     @property
     def drawings(self) -> list[Path]:
-        """The files of its drawings where it has pixels too."""
+        """The files of its drawings, if it also has pixels."""
         return [self.file(kind) for kind in ("svg", "pdf", "png")]
 
 
@@ -86,7 +85,7 @@ def save(
     plot: dict[str, Any] | None = None,
     png: bool = True,
 ) -> Drawn:
-    """Write a figure's files and return it as drawn; without a table its CSV is the caller's.
+    """Write a figure's files and return it as drawn; without a table the caller writes the CSV.
 
     png : also as pixels.
     """
@@ -114,16 +113,16 @@ def _write_drawings(figure: Figure, folder: Path, name: str, title: str, png: bo
 
 
 def _write_bytes(path: Path, figure: Figure, **options: Any) -> None:
-    """Write a figure that is made in memory: its writers fail in many ways on a full disk."""
+    """Write a figure created in memory: matplotlib's writers fail in many ways on a full disk."""
     content = io.BytesIO()
     figure.savefig(content, format=path.suffix[1:], **options)
     write(path, lambda place: place.write_bytes(content.getbuffer()))
 
 
 def compact(svg: str, name: str) -> str:
-    """Return an SVG without what nobody sees; coordinates are to a hundredth of a point.
+    """Return an SVG without invisible parts; coordinates are rounded to a hundredth of a point.
 
-    name : what all ids begin with.
+    name : prefix of all ids.
     """
     svg = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", svg, flags=re.DOTALL)
     svg = re.sub(r'(?<= d=")[^"]+', lambda match: _relative(match[0]), svg)
@@ -138,7 +137,7 @@ def compact(svg: str, name: str) -> str:
 
 
 def _with_own_ids(svg: str, name: str) -> str:
-    """Return an SVG whose ids begin with its name; those that matplotlib makes up are short."""
+    """Return an SVG whose ids begin with its name; matplotlib's automatic ids are shortened."""
     short = sha256(name.encode()).hexdigest()[:6]
     ids = dict.fromkeys(re.findall(rf'\bid="(?!{name})([^"]+)"', svg))
     own = {x: f"{short}{i}" if HASHED.fullmatch(x) else f"{name}-{x}" for i, x in enumerate(ids)}
@@ -155,7 +154,7 @@ def _with_one_family(svg: str) -> str:
 
 
 def _relative(path: str) -> str:
-    """Return a path of moves and lines by the steps between its rounded points; others as is."""
+    """Return a path of moves and lines in relative, rounded coordinates; other paths unchanged."""
     points = PLACE.findall(path)
     if len(points) < 2 or PLACE.sub("", path).strip(" \nz"):
         return path
@@ -163,7 +162,7 @@ def _relative(path: str) -> str:
     for letter, *place in points:
         x, y = (round(100 * float(number)) for number in place)
         step = " ".join(_hundredths(now - before) for now, before in zip((x, y), at, strict=True))
-        # Pairs after a move or a line are lines: without a letter, and without a space before "-".
+        # Pairs after a move or a line are lines: no letter, and no space before "-".
         found += letter.lower() if letter == "M" or not last else " " * (step[0] != "-")
         found += step.replace(" -", "-")
         at, last = (x, y), letter
@@ -171,12 +170,12 @@ def _relative(path: str) -> str:
 
 
 def _hundredths(n: int) -> str:
-    """Return a number of hundredths in units, without a zero before the point."""
+    """Return a number of hundredths as a decimal, without a zero before the point."""
     return re.sub(r"^(-?)0\.", r"\1.", f"{n / 100:g}")
 
 
 def _without_overruled_styles(svg: str) -> str:
-    """Return an SVG whose uses say nothing of the stroke that the path itself says."""
+    """Return an SVG whose uses do not repeat the stroke set by the path itself."""
     paths = re.findall(r'<path id="([^"]+)"[^>]*? style="([^"]*)"', svg)
     own = {name: {part.partition(":")[0].strip() for part in s.split(";")} for name, s in paths}
 
@@ -194,7 +193,7 @@ def _without_overruled_styles(svg: str) -> str:
 
 
 def _without_bare_groups(svg: str) -> str:
-    """Return an SVG without groups that have no attribute and hold nothing but elements drawn."""
+    """Return an SVG without groups that have no attribute and contain only drawn elements."""
     count = 1
     while count:
         svg, count = re.subn(r"<g>\n((?:<(?:use|path)\b[^>]*/>\n)*)</g>\n", r"\1", svg)
@@ -213,7 +212,7 @@ def _without_repeated_ids(svg: str) -> str:
 
 
 def _with_palette(png: str) -> str:
-    """Return a PNG in base64 with a palette where it has few colours: a tenth of the bytes."""
+    """Return a PNG in base64 with a palette if it has few colours: a tenth of the bytes."""
     image = Image.open(io.BytesIO(base64.b64decode(png))).convert("RGB")
     if image.getcolors(256) is None:
         return png

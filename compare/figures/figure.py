@@ -1,4 +1,4 @@
-"""One picture: for print, for the screen, and as numbers."""
+"""One figure: for print, for the screen, and as numbers."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,13 +16,13 @@ from compare.figures.charts.static import draw
 
 @dataclass(frozen=True)
 class SceneFigure:
-    """A picture of a scene and its solutions, drawn when it is asked for.
+    """A figure of a scene and its solutions, drawn on demand.
 
     name : stem of its files, unique on the page ("fig-03-spectra"). title : a heading. caption :
-    what is seen and how it was computed, one or two sentences. drawing : makes it for print.
-    table : what is drawn, tidy; columns carry their units, no index. plotting : makes the
-    interactive figure; None where the picture is static only. folded : whether it stands in a fold
-    of the page, which is closed until it is opened.
+    contents and method in one or two sentences. drawing : draws it for print.
+    table : the drawn data, tidy; columns carry their units, no index. plotting : returns the
+    interactive figure; None if there is only a static one. folded : whether it is in a section of
+    the page that is closed at first.
     """
 
     name: str
@@ -35,7 +35,7 @@ class SceneFigure:
 
     @cached_property
     def static(self) -> Figure:
-        """The picture for print."""
+        """The figure for print."""
         return self.drawing()
 
     @cached_property
@@ -45,7 +45,7 @@ class SceneFigure:
 
     @cached_property
     def numbers(self) -> str:
-        """What no picture of other numbers has: a hash of the table."""
+        """A hash of the table, which identifies the figure's numbers."""
         rows = pd.util.hash_pandas_object(self.table, index=False).values
         return sha256(f"{list(self.table)}".encode() + rows.tobytes()).hexdigest()
 
@@ -53,6 +53,6 @@ class SceneFigure:
 def chart_figure(
     name: str, title: str, caption: str, chart: Chart, table: pd.DataFrame, folded: bool = False
 ) -> SceneFigure:
-    """Return the picture of a chart, for print and for the screen."""
+    """Return the figure of a chart, for print and for the screen."""
     drawing, plotting = partial(draw, name, chart), partial(plot, chart)
     return SceneFigure(name, title, caption, drawing, table, plotting, folded)

@@ -1,7 +1,7 @@
-"""Fonts for Chinese labels: which of those installed here has the characters.
+"""Fonts for Chinese labels: an installed one that has the characters.
 
-matplotlib reads the first face of a font collection only; of those of Noto and WenQuanYi that is a
-sans-serif face with all the characters of the labels.
+matplotlib reads only the first face of a font collection; for Noto and WenQuanYi that is a
+sans-serif face with all characters of the labels.
 """
 
 from functools import cache
@@ -11,7 +11,7 @@ from matplotlib.ft2font import FT2Font
 
 LATIN = "DejaVu Sans"  # comes with matplotlib
 
-#: Preferred first: TrueType outlines can be embedded in every format as they are.
+#: In order of preference: TrueType outlines can be embedded in every format unchanged.
 CHINESE = (
     "WenQuanYi Micro Hei",
     "WenQuanYi Zen Hei",
@@ -31,14 +31,14 @@ NEEDED = "应力时间刚性块体"  # characters that a font for Chinese has
 
 
 def families() -> list[str]:
-    """Return the families that text is drawn with: Latin letters, then Chinese ones if there."""
+    """Return the font families of text: Latin letters, then Chinese ones if installed."""
     chinese = chinese_font()
     return [LATIN] if chinese is None else [LATIN, chinese.name]
 
 
 @cache
 def chinese_font() -> font_manager.FontEntry | None:
-    """Return the font for Chinese labels; None where none is installed."""
+    """Return the font for Chinese labels; None if none is installed."""
     _look_again()
     installed: dict[str, font_manager.FontEntry] = {}
     for entry in font_manager.fontManager.ttflist:
@@ -49,7 +49,7 @@ def chinese_font() -> font_manager.FontEntry | None:
 
 
 def _look_again() -> None:
-    """Take in fonts that were installed after matplotlib had made its list of them."""
+    """Add fonts installed after matplotlib built its list of them."""
     known = {entry.fname for entry in font_manager.fontManager.ttflist}
     for path in font_manager.findSystemFonts():
         if path not in known and any(part in path.lower() for part in ("cjk", "wqy", "han", "hei")):
@@ -57,12 +57,12 @@ def _look_again() -> None:
 
 
 def file_of(family: str) -> str:
-    """Return the file of a family's regular face, which is installed."""
+    """Return the file of the regular face of an installed family."""
     return str(font_manager.findfont(family, fallback_to_default=False))
 
 
 def number_of(family: str) -> int:
-    """Return which face of its file a family is: matplotlib itself may know but the first."""
+    """Return the index of a family's face in its file: matplotlib may know only the first."""
     return int(getattr(font_manager.findfont(family, fallback_to_default=False), "face_index", 0))
 
 
@@ -75,6 +75,6 @@ def is_true_type(family: str) -> bool:
 
 
 def missing(file: str, text: str) -> set[str]:
-    """Return the characters of a text that a font file has no glyph for."""
+    """Return the characters of a text for which a font file has no glyph."""
     glyphs = FT2Font(file).get_charmap()
     return {letter for letter in text if not letter.isspace() and ord(letter) not in glyphs}

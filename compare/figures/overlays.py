@@ -1,5 +1,5 @@
-"""Waveforms in one pair of axes, and under them their residuals from the reference on a scale of
-their own: by solution in one variant, or by variant of one engine.
+"""Waveforms in one pair of axes, and below them their residuals from the reference on a separate
+scale: by solution in one variant, or by variant of one engine.
 """
 
 from collections.abc import Iterable
@@ -17,10 +17,10 @@ from compare.figures.subplots import Panel, panels
 from compare.figures.units import Unit, unit_for
 from compare.misfit.pairs import Comparison
 
-#: Factor from SI to the unit that is drawn, and that unit.
+#: Factor from SI to the drawn unit, and that unit.
 DRAWN = {"Pa": (1e-6, "MPa"), "m/s": (1.0, "m/s"), "m": (1e3, "mm"), "rad": (1e3, "mrad")}
 UNITS = {quantity: DRAWN[unit] for quantity, unit in SI.items()}
-#: Of a scene what does not change its physics, or changes how it is solved alone.
+#: Keys of a scene that do not change its physics, or only its numerical solution.
 ASIDE = {"title", "source", "name", "expect", "numerics", "record", "where"}
 MOST = 6  # variants in one pair of axes
 RESIDUAL = 0.75  # inches of residuals in print
@@ -35,9 +35,9 @@ DOTS = Style("#000000", 0.9, (0, (1.0, 2.0)), 12)  # of references under variant
 
 
 class Trace(NamedTuple):
-    """A waveform over time (s), SI, and its residual from the reference; None where it has none.
+    """A waveform over time (s), SI, and its residual from the reference (None without one).
 
-    name : its entry in the legend. part : of the SVG. marker : of its samples, where they are few.
+    name : its entry in the legend. part : of the SVG. marker : of its samples, if few.
     """
 
     name: str
@@ -49,9 +49,9 @@ class Trace(NamedTuple):
 
 
 class Overlay(NamedTuple):
-    """Waveforms of one quantity at one place. at_rest : SI, the static state taken from them.
+    """Waveforms of one quantity at one place. at_rest : SI, the static state subtracted from them.
 
-    reference : what residuals are from, in words.
+    reference : of the residuals, in words.
     """
 
     heading: str
@@ -62,19 +62,19 @@ class Overlay(NamedTuple):
 
     @property
     def label(self) -> str:
-        """Of the ordinate, with the static state that is not drawn."""
+        """Label of the ordinate, with the static state that is not drawn."""
         factor, unit = UNITS[self.quantity]
         rest = f"\nless {factor * self.at_rest:.4g} at rest" if self.at_rest else ""
         return f"{self.quantity} ({unit}){rest}"
 
     @property
     def residuals(self) -> list[Trace]:
-        """The traces that have one."""
+        """The traces with a residual."""
         return [trace for trace in self.traces if trace.residual is not None]
 
     @property
     def unit(self) -> Unit:
-        """What residuals are drawn in."""
+        """The unit of drawn residuals."""
         return unit_for(SI[self.quantity], self._largest)
 
     @property
@@ -84,7 +84,7 @@ class Overlay(NamedTuple):
 
     @property
     def residual_heading(self) -> str:
-        """What residuals are, and how large beside the waveforms."""
+        """Heading of the residuals, with their size relative to the waveforms."""
         if not self.residuals:
             return "no reference solution"
         peak = max(float(t.curve.abs().max()) for t in self.traces)
@@ -93,7 +93,7 @@ class Overlay(NamedTuple):
 
 
 def subplots_of(overlay: Overlay, place: str, height: float, share: str) -> list[Subplot]:
-    """Return the axes of an overlay's waveforms, and under them those of its residuals.
+    """Return the axes of an overlay's waveforms, and below them those of its residuals.
 
     place : in the names of the lines' parts ("0-1"). share : see `Subplot`.
     """
@@ -140,7 +140,7 @@ def by_solution(panel: Panel) -> Overlay:
 def by_variant(comparisons: list[Comparison]) -> list[list[Overlay]]:
     """Return the variants of each engine in one pair of axes, engines across and receivers down.
 
-    Empty where variants differ by more than one key, in what they record, or in what moves most.
+    Empty if variants differ by more than one key, in their receivers, or in the largest component.
     """
     if not 2 <= len(comparisons) <= MOST or changed_key(comparisons) is None:
         return []
@@ -152,7 +152,7 @@ def by_variant(comparisons: list[Comparison]) -> list[list[Overlay]]:
 
 
 def changed_key(comparisons: list[Comparison]) -> str | None:
-    """Return the one key that makes the variants of a scene, "joints.damping_ratio"; None where
+    """Return the one key in which the variants of a scene differ, "joints.damping_ratio"; None if
     they differ in none or in several."""
     base, *variants = (_flat(comparison.scene) for comparison in comparisons)
     changed = {k for v in variants for k in base.keys() | v.keys() if base.get(k) != v.get(k)}
@@ -160,8 +160,8 @@ def changed_key(comparisons: list[Comparison]) -> str | None:
 
 
 def variant_styles(count: int) -> list[Style]:
-    """Return how variants are drawn over each other: the first wide and light, the last thin and
-    dark, so that each is seen where they coincide."""
+    """Return the styles of superposed variants: the first wide and light, the last thin and dark,
+    so that each is visible where they coincide."""
     few = VARIANTS[:4] if count <= 4 else VARIANTS[4:]
     at = np.linspace(0, len(few) - 1, count).round().astype(int)
     widths = np.linspace(3.4, 1.0, count).round(2).tolist()
@@ -188,7 +188,7 @@ def _of_engine(engine: str, row: list[Panel]) -> Overlay:
 
 
 def _flat(scene: AnyScene) -> dict[str, object]:
-    """Return what decides a scene's physics, by dotted key."""
+    """Return everything that determines a scene's physics, by dotted key."""
     found: dict[str, object] = {}
     for name, value in scene.model_dump(exclude=ASIDE).items():
         if isinstance(value, dict):

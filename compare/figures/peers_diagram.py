@@ -1,4 +1,4 @@
-"""The work-precision diagram of all codes: their errors over stepping and over whole processes."""
+"""The work-precision diagram of all codes: errors over the time of stepping and of the process."""
 
 from math import nan
 from types import SimpleNamespace
@@ -13,7 +13,7 @@ from compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
 from compare.solvers.dem import DEM
 
 COSTS = {"seconds": "seconds of stepping", "whole": "seconds of the whole process"}
-OURS = {  # how our curves are coloured: as their engines are everywhere
+OURS = {  # jointwave's curves have the colours of their engines
     "jointwave blocks": DEM.name,
     "jointwave blocks in space": DEM.name,
     "jointwave bar": EQUIVALENT_ROCK.name,
@@ -24,7 +24,7 @@ OURS = {  # how our curves are coloured: as their engines are everywhere
 
 
 def draw(name: str, title: str, rows: list[dict[str, Any]]) -> Figure:
-    """Return the diagram of the rows that were done, each curve with what it solves."""
+    """Return the diagram of the completed rows, each curve with its equations."""
     done = [row for row in rows if row["state"] == "done"]
     methods = {_label(row): OURS.get(row["curve"], row["curve"]) for row in done}
     curves = [Curve(label=label, method=method) for label, method in methods.items()]
@@ -40,7 +40,7 @@ def _label(row: dict[str, Any]) -> str:
 
 
 def _point(row: dict[str, Any]) -> SimpleNamespace:
-    """Return what the diagram shows of a row of the table, as a row of a study."""
+    """Return a row of the table as a row of a study, for the diagram."""
     counted = ("freedoms", "steps", "seconds", "whole", "work")
     return SimpleNamespace(
         curve=_label(row),

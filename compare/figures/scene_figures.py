@@ -1,4 +1,4 @@
-"""All pictures of one scene, in the order of the page, and what is solved for them alone."""
+"""All figures of one scene, in the order of the page, and the additional runs that they need."""
 
 import xarray as xr
 
@@ -23,10 +23,10 @@ from compare.misfit.ranking import own_exact
 def figures_of(
     name: str, comparisons: list[Comparison], fields: list[dict[str, xr.Dataset]]
 ) -> list[SceneFigure]:
-    """Return the pictures of a scene's variants.
+    """Return the figures of a scene's variants.
 
-    name : what file names begin with ("fig-03"). fields : what `along_pillar` returns for each
-    variant; none: no space-time diagrams.
+    name : prefix of file names ("fig-03"). fields : of `along_pillar` for each variant; empty: no
+    space-time diagrams.
     """
     return [
         scene_figure(name, comparisons),
@@ -52,16 +52,16 @@ def _space_time(
     ]
 
 
-SECTIONS, TIMES = 60, 240  # at most so many intervals between the sections and samples kept
-FEWEST = 8  # blocks; in fewer there is no wave to be seen
+SECTIONS, TIMES = 60, 240  # largest numbers of intervals between sections and between samples
+FEWEST = 8  # blocks; fewer show no wave
 
 
 def along_pillar(scene: AnyScene) -> dict[str, xr.Dataset]:
     """Return results by name at joints or blocks all along the pillar, at some 240 times.
 
-    Those of the engines, each run as in the comparison, and of the exact solution of each one's own
-    model. Empty where the pillar has too few blocks for a wave to be seen, and of a rock mass.
-    Raises what `compare.engines.solve` does.
+    Results of the engines, each run as in the comparison, and of the exact solution of each one's
+    own model. Empty if the pillar has too few blocks to show a wave, and for a rock mass.
+    Raises the errors of `compare.engines.solve`.
     """
     if not isinstance(scene, Scene) or scene.block_count < FEWEST:
         return {}
@@ -73,7 +73,7 @@ def along_pillar(scene: AnyScene) -> dict[str, xr.Dataset]:
     for name in dict.fromkeys([*engines, *exact]):
         result = solve(name, wide)
         step = max(1, -(-(result.sizes["time"] - 1) // TIMES))
-        found[name] = result.isel(time=slice(None, None, step)).copy(deep=True)  # not all of it
+        found[name] = result.isel(time=slice(None, None, step)).copy(deep=True)  # frees the rest
     return found
 
 
@@ -92,15 +92,15 @@ def _contacts(scene: Scene) -> list[int]:
 
 
 def recorded_along(scene: AnyScene) -> AnyScene:
-    """Return the scene with receivers along the pillar; samples and steps stay as they are.
+    """Return the scene with receivers along the pillar; samples and steps are unchanged.
 
-    Of a scene that records velocities alone these are the centres of blocks, else sections. A rock
-    mass stays as it is.
+    If a scene records only velocities these are the centres of blocks, else sections. A rock mass
+    is returned unchanged.
     """
     if not isinstance(scene, Scene):
         return scene
     places = sections(scene)
-    # A couple about the axis strains no section; what it turns is recorded with the velocity.
+    # A couple about the axis strains no section; rotation is recorded with the velocity.
     points = places if scene.load.arm is not None else []
     if scene.record.velocity and not scene.record.stress:
         points = [y + scene.pillar.block / 2 for y in places[:-1]]

@@ -24,16 +24,16 @@ from compare.scenes import find
 from results.snapshots import Snapshots, snapshots_of
 
 UP = np.array([1.0, 0.0, 0.0])
-LARGEST = 0.8  # of the pillar's thickness: what the largest displacement is drawn as, at most
+LARGEST = 0.8  # largest drawn displacement, of the pillar's thickness
 MARGIN = 0.05  # of a strip's height, around it
 LEFT, RIGHT = 0.75, 0.1  # inches beside the pillar
 TOP, BOTTOM = 0.75, 0.45  # inches above and below
 
 
 def draw_snapshots(name: str, s: Snapshots) -> Figure:
-    """Return a figure of snapshots one under the other, displacements exaggerated.
+    """Return a figure of snapshots one below the other, with exaggerated displacements.
 
-    Seen along z; y is to the right and x up. The pillar of instant i is the SVG group NAME-i.
+    Viewed along z; y is to the right and x up. The pillar of instant i is the SVG group NAME-i.
     """
     scale = exaggeration(s)
     wave = Wave(s, ViewSettings(UP, scale, 1.0, STRESS), float(np.ptp(s.points[:, 0])))
@@ -56,13 +56,13 @@ def draw_snapshots(name: str, s: Snapshots) -> Figure:
 
 
 def exaggeration(s: Snapshots) -> float:
-    """Return 1, 2 or 5 times a power of ten, by which the displacements can be seen; 1 for none."""
+    """Return the exaggeration that makes displacements visible: 1, 2 or 5 times a power of ten."""
     largest = float(np.abs(s.displacement).max())
     return round_down(LARGEST * float(np.ptp(s.points[:, 0])) / largest) if largest else 1.0
 
 
 def _strips(low: np.ndarray, high: np.ndarray, count: int) -> tuple[Figure, list[Axes]]:
-    """Return a figure of strips from `low` to `high` (m), to one scale in both directions."""
+    """Return a figure of strips from `low` to `high` (m), to the same scale in both directions."""
     margin = MARGIN * (high[1] - low[1])
     low, high = low - margin, high + margin
     strip = (WIDTH - LEFT - RIGHT) * (high[1] - low[1]) / (high[0] - low[0])
@@ -85,17 +85,17 @@ def _add_colour_bar(figure: Figure, colour: ScalarMappable, scale: float) -> Non
     bar = figure.add_axes((LEFT / WIDTH, 1 - 0.32 * inch, 0.3, 0.14 * inch))
     figure.colorbar(colour, cax=bar, orientation="horizontal")
     for part in bar.collections:
-        part.set(rasterized=False, edgecolor="face")  # an SVG would hold an image of it
+        part.set(rasterized=False, edgecolor="face")  # otherwise an image in the SVG
     bar.set_title("axial stress (MPa), compression positive", loc="left", pad=3)
     figure.text(1 - RIGHT / WIDTH, 1 - 0.3 * inch, f"displacements × {scale:,g}", ha="right")
 
 
-SCENE = "beyond/eccentric-blow"  # and the changes that make its snapshots
+SCENE = "beyond/eccentric-blow"  # and its changes for the snapshots
 CHANGES = {"record.fields": 5e-3, "time.duration": 0.035, "record.energy": False}
 
 
 class SnapshotsSection(NamedTuple):
-    """Snapshots of a whole pillar; file : shows them in ParaView. bar_speed : m/s."""
+    """Snapshots of a whole pillar; file : for ParaView. bar_speed : m/s."""
 
     title: str
     figure: Drawn
@@ -104,7 +104,7 @@ class SnapshotsSection(NamedTuple):
 
 
 def make_snapshots(out: Path) -> SnapshotsSection:
-    """Simulate the scene, write its snapshots, and draw them as they are read back."""
+    """Simulate the scene, write its snapshots, and draw them as read back."""
     import dem
     from compare.runs.field_files import read_pvd, write_pvd
 
@@ -119,7 +119,7 @@ def make_snapshots(out: Path) -> SnapshotsSection:
 
 
 def _table(s: Snapshots) -> pd.DataFrame:
-    """Return where each block's centre is, and its axial stress, at every instant."""
+    """Return the centre and the axial stress of each block at every instant."""
     assert s.stress is not None
     moved = (s.points + s.displacement)[:, s.cells].mean(axis=2)  # [instant, cell, 3]
     count, cells = s.stress.shape

@@ -1,8 +1,8 @@
-"""Styles of engines and exact solutions: one hue a model, one pattern a kind of solution.
+"""Styles of engines and exact solutions: one hue per model, one pattern per kind of solution.
 
 Engines are wide, light and solid, nested by width so that none hides another where they coincide;
-exact solutions are thin, dark and dashed over them. Hues are those of Okabe & Ito (2008), which
-stay apart under every colour blindness.
+exact solutions are thin, dark and dashed over them. Hues are those of Okabe & Ito (2008), safe for
+all kinds of colour blindness.
 """
 
 from functools import cache
@@ -39,7 +39,7 @@ PERIOD = 18.0  # of the dash patterns, in line widths
 def _slot(first: float, last: float) -> tuple[float, tuple[float, float]]:
     """Return a dash that fills only this part of each period.
 
-    Every solution has a part of its own: where all of them coincide, their dashes alternate.
+    Every solution has its own part: where all of them coincide, their dashes alternate.
     """
     return (PERIOD - first, (last - first, PERIOD - (last - first)))
 
@@ -58,23 +58,23 @@ def _style(line: Line) -> Style:
     return Style(line.colour, line.width, dashes, line.order)
 
 
-#: Of others' curves, one file after the other: black and grey, which no solution has, between
-#: engines and exact solutions.
+#: Styles of external curves, in order of files: black and grey, which no solution has, drawn
+#: between engines and exact solutions.
 GIVEN = (
     Style("#000000", 0.9, "-", 3),
     Style("#6e6e6e", 0.9, (0, (6, 2)), 3),
     Style("#000000", 0.9, (0, (1.5, 1.5)), 3),
     Style("#6e6e6e", 0.9, (0, (6, 2, 1.5, 2)), 3),
 )
-MARKERS = "oxs+"  # of the samples, where they are few enough to be told apart
-MOST_MARKS = 150  # samples of a curve that are marked one by one
+MARKERS = "oxs+"  # of the samples, if few enough to be distinguishable
+MOST_MARKS = 150  # largest number of samples with markers
 
-#: Colours along the pillar, and of differences: diverging, even to the eye and told apart under
-#: every colour blindness (ColorBrewer). Of stress, tension is blue and compression red.
+#: Colours along the pillar, and of differences: diverging, perceptually uniform and safe for all
+#: kinds of colour blindness (ColorBrewer). Tension is blue and compression red.
 FIELD, DIFFERENCE = "RdBu_r", "PuOr_r"
-UNSIGNED = "YlOrRd"  # from none to the largest
+UNSIGNED = "YlOrRd"  # from zero to the largest
 
-#: Of the terms of an energy ledger: those of Tol (2021), "muted", and black.
+#: Colours of the terms of an energy ledger: those of Tol (2021), "muted", and black.
 TERMS = {
     "kinetic": "#332288",
     "rotation": "#88ccee",
@@ -93,34 +93,34 @@ RC: dict[Any, Any] = {
     "font.size": 9.0,
     "axes.titlesize": 9.0,
     "axes.titlelocation": "left",
-    "axes.titley": 1.0,  # no numbers stand above: to look for them takes a tenth of a drawing
+    "axes.titley": 1.0,  # no numbers above; searching for them takes a tenth of the drawing time
     "axes.linewidth": 0.7,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "xtick.major.width": 0.7,
     "ytick.major.width": 0.7,
     "svg.fonttype": "none",
-    "pdf.fonttype": 3,  # outlines: TrueType takes longer to embed than all else to draw
+    "pdf.fonttype": 3,  # outlines: embedding TrueType takes longer than all drawing
     "path.simplify": True,
     "path.simplify_threshold": 0.5,  # points: half of the thinnest line
 }
 
 
 def style(name: str) -> Style:
-    """Return how an engine or exact solution is drawn; grey for one that has no style yet."""
+    """Return the style of an engine or exact solution; grey for one without a style."""
     if name in names():
         return _style(solver(name).line)
     return Style("#777777", 1.1, _slot(0, 9), 3)
 
 
 def given_style(k: int, samples: int) -> tuple[Style, str]:
-    """Return how external data are drawn, the k-th file of so many samples, and their marker."""
+    """Return the style and the marker of the k-th external file with this many samples."""
     marker = MARKERS[k % len(MARKERS)] if samples <= MOST_MARKS else ""
     return GIVEN[k % len(GIVEN)], marker
 
 
 def in_order(drawn: set[str]) -> list[str]:
-    """Return names as the legend has them, those without a style last."""
+    """Return names in the order of the legend, those without a style last."""
     known = [name for family in families().values() for name in family if name in drawn]
     return known + sorted(drawn - set(known))
 

@@ -1,5 +1,5 @@
-"""Contents of a figure's panels: at each receiver the component that moves most, less its static
-state; and the table of every waveform in them, as it was recorded.
+"""Contents of a figure's panels: at each receiver the component with the largest motion, minus its
+static state; and the table of all their waveforms, as recorded.
 """
 
 from collections.abc import Iterator, Sequence
@@ -17,7 +17,7 @@ from compare.misfit.pairs import Comparison
 from compare.misfit.places import Place, places_of, recorded
 from compare.misfit.ranking import finest
 
-#: SI units of what panels show.
+#: SI units of the panels' quantities.
 UNITS = {
     "stress": "Pa",
     "shear": "Pa",
@@ -30,8 +30,8 @@ UNITS = {
 }
 
 FORCES, MOTION, ROTATION = ("stress", "shear"), ("velocity",), ("rotation",)
-#: What panels show at the receivers of a pillar, by their key of [record]: the first group that
-#: moves; and at those of a rock mass, every component of which that moves.
+#: Quantities of panels at the receivers of a pillar, by their key of [record]: the first group that
+#: moves; and at those of a rock mass: every component that moves.
 OF_PILLAR = {"stress": (FORCES, ROTATION), "velocity": (MOTION, ROTATION)}
 IN_PLANE = {"points": "velocity", "joints": "traction"}
 
@@ -39,7 +39,7 @@ IN_PLANE = {"points": "velocity", "joints": "traction"}
 class Panel(NamedTuple):
     """One panel: a place in one variant, the receiver-th of its quantity.
 
-    component : the index of the one that is shown, None where the quantity has only one.
+    component : the index of the one shown, None if the quantity has only one.
     """
 
     comparison: Comparison
@@ -50,7 +50,7 @@ class Panel(NamedTuple):
 
     @property
     def quantity(self) -> str:
-        """The quantity that is shown."""
+        """The quantity shown."""
         return self.place.quantity
 
     @property
@@ -76,12 +76,12 @@ class Panel(NamedTuple):
 
     @property
     def curves(self) -> dict[str, pd.Series]:
-        """The same waveforms less their static state: the motion, which is what is drawn."""
+        """The waveforms minus their static state: the motion, which is drawn."""
         return {name: self._waveform(name, True) for name in self._names}
 
     @property
     def at_rest(self) -> float:
-        """The static state that is taken from the first of them, SI; 0 where there is none."""
+        """The static state subtracted from the first curve, SI; 0 if there is none."""
         first = self._names[0]
         return float((self._waveform(first, False) - self._waveform(first, True)).iloc[0])
 
@@ -93,7 +93,7 @@ class Panel(NamedTuple):
 
     @property
     def residuals(self) -> dict[str, pd.Series]:
-        """Each of `curves` less that of the reference, which has none itself."""
+        """Each of `curves` minus that of the reference, which itself has no residual."""
         curves = self.curves
         if self.reference not in curves:
             return {}
@@ -114,11 +114,11 @@ class Panel(NamedTuple):
 
 
 def panels(comparisons: list[Comparison]) -> list[list[Panel]]:
-    """Return the panels of every variant, a row each.
+    """Return the panels of every variant, one row each.
 
-    Of a spatial pillar each shows the largest component: of stress and shear, of velocity, and of
-    rotation where nothing is displaced. Of a rock mass there is one for each component of velocity
-    at points, and of traction at joints, that is not faint beside the other.
+    For a spatial pillar each shows the largest component: of stress and shear, of velocity, and of
+    rotation if nothing is displaced. For a rock mass there is one for each component of velocity at
+    points, and of traction at joints, that is not faint compared with the other.
     """
     found = zip(comparisons, variant_names(comparisons), strict=True)
     return [[*_panels(comparison, name)] for comparison, name in found]
@@ -136,8 +136,8 @@ def _panels(comparison: Comparison, name: str) -> Iterator[Panel]:
 
 
 def _moving(comparison: Comparison, quantity: str, receiver: int) -> list[tuple[int, str]]:
-    """Return the components of a quantity that are not faint beside the loudest at a receiver, of
-    the first solution that has it, with their names; the first of them where nothing moves."""
+    """Return the components of a quantity that are not faint compared with the largest at a
+    receiver, from the first solution that has it, with their names; the first without motion."""
     results = comparison.results
     result = next((results[n] for n in in_order(set(results)) if quantity in results[n]), None)
     if result is None:
@@ -149,10 +149,10 @@ def _moving(comparison: Comparison, quantity: str, receiver: int) -> list[tuple[
 
 
 def in_page(rows: list[list[Panel]]) -> list[list[Panel]]:
-    """Return the panels of variants as they fit a page's width: at most two beside each other.
+    """Return the panels of variants arranged for a page's width: at most two side by side.
 
-    Variants down and receivers across; of more than two receivers the other way round, or in turn,
-    those of a rock mass with a row begun for each variant.
+    Variants down and receivers across; for more than two receivers the other way round, or in
+    sequence; in a rock mass each variant begins a row.
     """
     if max(map(len, rows)) <= 2:
         return rows
@@ -187,9 +187,9 @@ def loudest(
     least: float = 0.0,
 ) -> tuple[str, int | None]:
     """Return the quantity and the component (None: its only one) with the largest peak, of the
-    first group of quantities that moves; of the last that is recorded where nothing does.
+    first group of quantities that moves; without motion, of the last one recorded.
 
-    receiver : the only one that counts; None: all of them. least : SI: what is below does not move.
+    receiver : the only one considered; None: all. least : SI: smaller values count as no motion.
     """
     peaks: dict[tuple[str, int | None], float] = {}
     for group in groups:
@@ -201,7 +201,7 @@ def loudest(
 
 
 def _peaks(result: xr.Dataset, quantity: str, receiver: int | None) -> dict[int | None, float]:
-    """Return the largest magnitude of the motion of every component, none of what is not there."""
+    """Return the largest magnitude of the motion of every component; empty if not recorded."""
     if quantity not in result or not result[quantity].size:
         return {}
     values = np.abs(motion(result, quantity))[slice(None) if receiver is None else [receiver]]
@@ -210,12 +210,12 @@ def _peaks(result: xr.Dataset, quantity: str, receiver: int | None) -> dict[int 
 
 
 def axis_of(quantity: str, component: int | None) -> str:
-    """Return the name of a component, "" of the only one."""
+    """Return the name of a component, "" for the only one."""
     return "" if component is None else ("xz" if quantity == "shear" else "xyz")[component]
 
 
 def variant_names(comparisons: list[Comparison]) -> list[str]:
-    """Return the variants' names; the scene itself is named by what its variants change."""
+    """Return the variants' names; the base scene is named by the keys that its variants change."""
     base, *variants = (comparison.scene for comparison in comparisons)
     names = [base.name or _base_name(base, variants), *(variant.name for variant in variants)]
     return [name.replace("zeta ", "ζ = ") for name in names]
@@ -248,10 +248,10 @@ def _part(scene: Any, key: str) -> object:
 
 
 def curve_table(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return every drawn waveform as it was recorded, its static state included, in SI: time first,
-    one column a curve, its unit in the header.
+    """Return every drawn waveform as recorded, including its static state, in SI: time first, one
+    column per curve, its unit in the header.
 
-    Variants may be sampled at different times; where one has no sample its cell is empty.
+    Variants may be sampled at different times; cells without a sample are empty.
     """
     columns = {}
     for row in panels(comparisons):

@@ -1,4 +1,4 @@
-"""One picture of an animation: the pillars, what the wave is along them, and the clock."""
+"""One frame of an animation: the pillars, the wave along them, and the clock."""
 
 from functools import cached_property
 from math import ceil, log10
@@ -29,16 +29,16 @@ from compare.misfit.pairs import Comparison
 
 SIZE = 12.8, 7.2  # inches
 LEFT, RIGHT = 0.85, 0.25  # inches beside the axes
-HEAD, NAME, GAP, FOOT = 0.85, 0.28, 0.5, 0.5  # inches above all, a strip, the diagrams; below all
-LINE, CLOCK = 0.2, 2.0  # inches of one more line of text, and of the clock
+HEAD, NAME, GAP, FOOT = 0.85, 0.28, 0.5, 0.5  # inches above all, a strip, diagrams; below all
+LINE, CLOCK = 0.2, 2.0  # inches of an additional line of text, and of the clock
 HIGHEST = {1: 2.4, 2: 1.2}  # inches of a strip, by their number
 MARGIN = 0.03  # of a strip's extent, around it
-DENSE = 2.5  # points: edges closer than that would hide the colours
+DENSE = 2.5  # points: closer edges would hide the colours
 EDGE = "#333333"
 
 
 class Frame:
-    """The picture of every instant, as pixels; what does not move is drawn once."""
+    """The frame of every instant, as pixels; static parts are drawn once."""
 
     def __init__(self, simulated: SceneSnapshots, settings: ViewSettings, dots: int = 100) -> None:
         self.simulated, self.settings, self.scale = simulated, settings, settings.scale
@@ -56,7 +56,7 @@ class Frame:
         self.background = self.canvas.copy_from_bbox(self.figure.bbox)
 
     def show(self, i: int) -> None:
-        """Move all that moves to instant i."""
+        """Update all moving parts to instant i."""
         for name, wave in self.waves.items():
             polygons, faces, edges = wave.drawn(i)
             values = self.settings.quantity.factor * wave.values[i, faces]
@@ -72,7 +72,7 @@ class Frame:
         self.clock.set_text(f"t = {1e3 * self.time[i]:.{self.decimals}f} ms")
 
     def image(self, i: int) -> np.ndarray:
-        """Return the picture of instant i, uint8 array [height, width, 4]."""
+        """Return the frame of instant i, uint8 array [height, width, 4]."""
         self.show(i)
         self.canvas.restore_region(self.background)
         for artist in self.animated:
@@ -81,7 +81,7 @@ class Frame:
 
     @property
     def animated(self) -> list[Artist]:
-        """What is drawn anew for each instant, in order."""
+        """Artists that are redrawn for each instant, in order."""
         lines = sorted([*self.profiles.values(), *self.traces.values()], key=Line2D.get_zorder)
         return [*self.faces.values(), *self.edges.values(), *lines, self.cursor, self.clock]
 
@@ -120,7 +120,7 @@ class Frame:
         return self.figure.add_axes((left / across, bottom / up, width / across, height / up))
 
     def _say(self, x: float, y: float, text: str, **settings) -> Text:
-        """Write at a place in inches; a dollar sign is one."""
+        """Write at a place in inches; dollar signs are literal."""
         return self.figure.text(x / SIZE[0], y / SIZE[1], text, parse_math=False, **settings)
 
     def _add_strip(self, ax: Axes, name: str, points_per_metre: float) -> None:
@@ -166,11 +166,11 @@ class Frame:
 
     @cached_property
     def panel(self) -> Panel:
-        """The component that moves most at the first receiver."""
+        """The component with the largest motion at the first receiver."""
         return panels([Comparison(self.simulated.scene, self.simulated.results)])[0][0]
 
     def _in_lines(self, text: str, width: float, size: float, **settings) -> str:
-        """Return a text in lines of at most so many inches; size : of its letters, points."""
+        """Return a text in lines of at most `width` inches; size : of its letters, points."""
         measure = self.figure.text(0, 0, "", fontsize=size, parse_math=False, **settings)
 
         def fits(line: str) -> bool:
@@ -202,7 +202,7 @@ class Frame:
 
 
 def _bold(text: str) -> dict[str, Any]:
-    """Return how a text is set in bold, which the fonts of other than Latin letters may lack."""
+    """Return the settings of bold text; fonts of non-Latin scripts may lack it."""
     if fonts.missing(fonts.file_of(fonts.LATIN), text):
         return {}
     return {"fontweight": "bold", "fontfamily": fonts.LATIN}

@@ -10,20 +10,20 @@ from compare.figures.animation.surface import Y, solid
 from compare.figures.animation.view_settings import ViewSettings
 from results.snapshots import Snapshots
 
-APART = 3.0  # from one pillar's axis to the next, in thicknesses as drawn, at least
-BESIDE = 1.1  # from one rock mass to the next, in widths as drawn
-TILT = 0.35, 0.3  # how far who looks at pillars stands to the right and above, of the distance
-ABOVE = 0.04  # of the size of a rock mass, that its name stands above it
-TALL = 1.5  # the picture's height over that of a rock mass: text above, colours below
+APART = 3.0  # least distance of two pillars' axes, in thicknesses as drawn
+BESIDE = 1.1  # distance of two rock masses, in widths as drawn
+TILT = 0.35, 0.3  # offset of the viewer of pillars to the right and up, of the distance
+ABOVE = 0.04  # height of the name above a rock mass, relative to its size
+TALL = 1.5  # picture's height over that of a rock mass: text above, colours below
 
 
 class Layout(NamedTuple):
-    """Where the bodies of a view are drawn, m.
+    """Positions of the bodies of a view, m.
 
     found : by engine, the snapshots whose cells are drawn. stretch : of a body by axis [3]. middle
-    : of the first body [3]. apart : from one body to the next [3]. name : where a body's name
-    stands, beside the place of the body [3]. towards : direction to the viewer [3]. size : width
-    and height that the picture must show.
+    : of the first body [3]. apart : offset of successive bodies [3]. name : position of a body's
+    name relative to the body [3]. towards : direction to the viewer [3]. size : width and height
+    that the picture must show.
     """
 
     found: dict[str, Snapshots]
@@ -36,8 +36,8 @@ class Layout(NamedTuple):
 
 
 def layout_of(simulated: SceneSnapshots, settings: ViewSettings) -> Layout:
-    """Return how both engines' bodies are laid out: pillars one above the other, rock masses side
-    by side."""
+    """Return the layout of both engines' bodies: pillars one above the other, rock masses side by
+    side."""
     if isinstance(simulated.scene, Scene):
         return _of_pillars(simulated.scene, simulated.found, settings)
     return _of_rock_masses(simulated.found, settings)

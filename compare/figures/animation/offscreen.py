@@ -1,6 +1,6 @@
 """Off-screen three-dimensional rendering, in a separate process.
 
-VTK ends a process in which it finds no way to draw; this one is left with a message instead.
+VTK kills a process in which it cannot render; the caller then gets an error message instead.
 """
 
 import ctypes
@@ -14,7 +14,7 @@ from compare.figures.animation.snapshots import SceneSnapshots
 from compare.figures.animation.view_settings import ViewSettings
 from compare.runs.workers import Workers
 
-#: On Linux, in order of preference: VTK's window, and the libraries that it works with.
+#: On Linux, in order of preference: VTK's window, and the libraries that it needs.
 WINDOWS = {
     "vtkEGLRenderWindow": ("libEGL.so.1",),
     "vtkOSOpenGLRenderWindow": ("libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"),
@@ -31,7 +31,7 @@ def has_display() -> bool:
 
 
 def draw(path: Path, simulated: SceneSnapshots, settings: ViewSettings, i: int) -> None:
-    """Write the pillars at instant i as PNG; raises SceneError where VTK cannot draw."""
+    """Write the pillars at instant i as PNG; raises SceneError if VTK cannot render."""
     with Workers(1) as pool:
         try:
             pool.submit(_draw, str(path), simulated, settings, i).result()
@@ -51,7 +51,7 @@ def _draw(path: str, simulated: SceneSnapshots, settings: ViewSettings, i: int) 
 
 
 def _window() -> str:
-    """Return the first of VTK's windows whose library is here; raises SceneError without any."""
+    """Return the first of VTK's windows whose library is installed; raises SceneError if none."""
     for window, libraries in WINDOWS.items():
         if any(_loads(library) for library in libraries):
             return window

@@ -1,4 +1,4 @@
-"""One picture of an animation of a rock mass: its blocks by each engine, and the clock."""
+"""One frame of an animation of a rock mass: its blocks by each engine, and the clock."""
 
 from textwrap import fill
 
@@ -20,14 +20,14 @@ from results.snapshots import Snapshots
 
 SIZE = 12.8, 7.2  # inches
 AROUND = 0.05  # of the domain's size
-LETTERS = 160  # of a line
-LOUDEST = 99.8  # per cent of speeds that are not beyond the last colour
+LETTERS = 160  # per line
+LOUDEST = 99.8  # percentile of speeds shown by the last colour
 
 
 class PlaneFrame:
-    """The picture of every instant, as pixels.
+    """The frame of every instant, as pixels.
 
-    scale : of displacements; None for one that can be seen.
+    scale : exaggeration of displacements; None for a visible one.
     """
 
     def __init__(
@@ -45,7 +45,7 @@ class PlaneFrame:
             self._lay_out()
 
     def image(self, i: int) -> np.ndarray:
-        """Return the picture of instant i, uint8 array [height, width, 4]."""
+        """Return the frame of instant i, uint8 array [height, width, 4]."""
         for name, faces in self.faces.items():
             faces.set_verts(list(cells_at(self.simulated.found[name], i, self.scale)))
             faces.set_array(self.speeds[name][i] / self.unit.size)
@@ -91,6 +91,6 @@ def speeds(s: Snapshots) -> np.ndarray:
 
 
 def cells_at(s: Snapshots, i: int, scale: float) -> np.ndarray:
-    """Return the corners of every cell at instant i [cells, corners, 2], m, displacements drawn
-    `scale` times as large."""
+    """Return the corners of every cell at instant i [cells, corners, 2], m, with displacements
+    exaggerated `scale` times."""
     return (s.points + scale * s.displacement[i])[s.cells][..., :2]

@@ -1,4 +1,4 @@
-"""Both engines' snapshots of one scene, at the instants that a picture or an animation shows."""
+"""Both engines' snapshots of one scene, at the instants of a picture or an animation."""
 
 from math import ceil
 from typing import Any, NamedTuple
@@ -16,10 +16,10 @@ from results.snapshots import Snapshots, snapshots_of
 
 
 class SceneSnapshots(NamedTuple):
-    """One scene as each engine sees it.
+    """One scene with each engine's snapshots.
 
     scene : of either kind, with the instants in its record. found : by engine, all at the same
-    instants. reasons : by engine, why one has none. results : by engine, with the waveforms as
+    instants. reasons : by engine, why it has none. results : by engine, with the waveforms as
     recorded.
     """
 
@@ -56,16 +56,16 @@ def at_instants(scene: AnyScene, count: int) -> AnyScene:
 
 
 def until(scene: AnyScene, time: float) -> AnyScene:
-    """Return the scene as far as `time`, s."""
+    """Return the scene shortened to `time`, s."""
     return checked(scene.model_copy(update={"time": Time(duration=time)}))
 
 
 def take(scene: AnyScene, count: int, progress: Progress | None = None) -> SceneSnapshots:
     """Simulate a scene with both engines and return `count` snapshots of each.
 
-    Their stress is that of the motion, less the static state. The rock is jointed where that
+    Their stress is that of the motion, minus the static state. The rock is jointed if that model
     applies, else homogenised. Raises SceneError and UnstableError as the engines do, and SceneError
-    where none applies.
+    if none applies.
     """
     if count < 2:
         raise SceneError("snapshots", "", count, "must be at least 2")
@@ -99,7 +99,7 @@ def _less_static(result: xr.Dataset, stress: np.ndarray) -> np.ndarray:
 
 
 def _part(progress: Progress | None, i: int, count: int) -> Progress | None:
-    """Return what is told the progress of the i-th of so many runs."""
+    """Return the progress callback of the i-th of `count` runs."""
     if progress is None:
         return None
     return lambda fraction: progress((i + fraction) / count)

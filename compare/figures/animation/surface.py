@@ -1,4 +1,4 @@
-"""The visible surface of a pillar's cells, and what an engine's wave is on it at each instant."""
+"""The visible surface of a pillar's cells, and an engine's wave on it at each instant."""
 
 from functools import cached_property
 from typing import NamedTuple
@@ -23,7 +23,7 @@ FACES = {
         [3, 0, 4, 7],
     ],
 }
-SHARP = 0.9  # cosine of the angle between two faces below which their edge is drawn
+SHARP = 0.9  # cosine of the angle between two faces: below it their edge is drawn
 Y = np.array([0.0, 1.0, 0.0])
 
 
@@ -31,9 +31,9 @@ class Surface(NamedTuple):
     """The outside of all blocks.
 
     faces : int array [faces, corners], nodes, anticlockwise from outside. cells : int array
-    [faces], the cell behind each. edges : int array [edges, 2], nodes of what bounds a block.
+    [faces], the cell behind each. edges : int array [edges, 2], nodes of a block's edges.
     beside : int array [edges, 2], the faces on both sides of an edge, twice the same at a rim.
-    flat : whether the cells are faces themselves, which are seen from both sides.
+    flat : whether the cells are faces themselves, visible from both sides.
     """
 
     faces: np.ndarray
@@ -44,9 +44,9 @@ class Surface(NamedTuple):
 
 
 def solid(s: Snapshots, side: float) -> Snapshots:
-    """Return snapshots whose lines along y and flat quadrilaterals are hexahedra of the section.
+    """Return snapshots with lines along y and flat quadrilaterals thickened to hexahedra.
 
-    side : of the section, m. Whatever has its full width already is returned as it is.
+    side : of the section, m. Cells with their full width are returned unchanged.
     """
     if s.kind == "line":
         s = _thick(s, 0, side, "quad")
@@ -54,11 +54,11 @@ def solid(s: Snapshots, side: float) -> Snapshots:
 
 
 def _thick(s: Snapshots, axis: int, side: float, kind: str) -> Snapshots:
-    """Return cells stretched by half a side to both sides along an axis; all of it moves alike."""
+    """Return cells thickened by half a side in both directions of an axis, with uniform motion."""
     half, nodes = np.zeros(3), len(s.points)
     half[axis] = side / 2
     cells = s.cells, s.cells + nodes
-    if kind == "quad":  # its corners go around, anticlockwise as seen from z
+    if kind == "quad":  # its corners are anticlockwise as seen from z
         cells = cells[1], cells[0][:, ::-1]
     return s._replace(
         kind=kind,
@@ -70,7 +70,7 @@ def _thick(s: Snapshots, axis: int, side: float, kind: str) -> Snapshots:
 
 
 def surface_of(s: Snapshots) -> Surface:
-    """Return the outside of the blocks of snapshots, whatever kind their cells are of."""
+    """Return the outside of the blocks of snapshots, for any kind of cells."""
     rings = np.array(FACES[s.kind])
     faces = s.cells[:, rings].reshape(-1, rings.shape[1])
     cells = np.repeat(np.arange(len(s.cells)), len(rings))
@@ -95,7 +95,7 @@ def _edges(faces: np.ndarray, normals: np.ndarray) -> tuple[np.ndarray, np.ndarr
     edges, which = np.unique(np.sort(pairs, axis=1), axis=0, return_inverse=True)
     which = which.ravel()
     beside = np.empty((len(edges), 2), dtype=int)
-    beside[which, 0] = owner  # of the two the last that is written
+    beside[which, 0] = owner  # of two faces the last one written
     beside[which[::-1], 1] = owner[::-1]
     cosine = (normals[beside[:, 0]] * normals[beside[:, 1]]).sum(axis=1)
     drawn = (cosine < SHARP) | (beside[:, 0] == beside[:, 1])
@@ -109,8 +109,8 @@ def seen(points: np.ndarray, up: np.ndarray) -> np.ndarray:
 
 
 def in_front(surface: Surface, points: np.ndarray) -> np.ndarray:
-    """Return the faces that are turned to the viewer, the farthest first; points [nodes, 3] as
-    `seen` gives them."""
+    """Return the faces that face the viewer, the farthest first; points [nodes, 3] in the axes of
+    `seen`."""
     corners = points[surface.faces]
     x, y, depth = np.moveaxis(corners, 2, 0)
     area = (x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)).sum(axis=1)
@@ -122,7 +122,7 @@ def in_front(surface: Surface, points: np.ndarray) -> np.ndarray:
 class Wave:
     """One engine's pillar under the settings of a view.
 
-    values : float array [snapshots, faces], what the colours show, SI.
+    values : float array [snapshots, faces], quantity shown by the colours, SI.
     """
 
     def __init__(self, s: Snapshots, settings: ViewSettings, side: float) -> None:
@@ -131,8 +131,8 @@ class Wave:
         self.values = self._values()
 
     def points(self, i: int) -> np.ndarray:
-        """Return where the nodes of instant i are drawn [nodes, 3], m: to the right, up (before
-        the stretch), towards the viewer."""
+        """Return the drawn positions of the nodes at instant i [nodes, 3], m: to the right, up
+        (before the stretch), towards the viewer."""
         return seen(self.s.points + self.settings.scale * self.s.displacement[i], self.settings.up)
 
     def drawn(self, i: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -154,7 +154,7 @@ class Wave:
 
     @cached_property
     def _sections(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the faces seen at rest, the sections that they lie at, and these [n], m."""
+        """Return the faces visible at rest, their sections, and the sections' y [n], m."""
         front = in_front(self.surface, seen(self.s.points, self.settings.up))
         at = self.s.points[self.surface.faces[front], 1].mean(axis=1)
         y, which = np.unique(at.round(9), return_inverse=True)
@@ -167,14 +167,14 @@ class Wave:
 
     @cached_property
     def profile(self) -> np.ndarray:
-        """What the colours show along y [snapshots, n], the mean over each section, SI."""
+        """Quantity shown by the colours along y [snapshots, n], the mean over each section, SI."""
         front, which, y = self._sections
         count = np.bincount(which)
         rows = [np.bincount(which, row[front], minlength=y.size) / count for row in self.values]
         return np.array(rows)
 
     def reach(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the least and the largest place to the right and upwards that is drawn, m."""
+        """Return the smallest and the largest drawn coordinates to the right and upwards, m."""
         drawn = [self.points(i)[:, :2] for i in range(len(self.s.time))]
         low = np.min([x.min(axis=0) for x in drawn], axis=0)
         return low, np.max([x.max(axis=0) for x in drawn], axis=0)

@@ -1,4 +1,4 @@
-"""Pictures one after the other as a file, MP4 or GIF, by ffmpeg, which imageio-ffmpeg brings."""
+"""Sequences of frames as MP4 or GIF, by the ffmpeg of imageio-ffmpeg."""
 
 from collections.abc import Callable, Generator
 from pathlib import Path
@@ -10,15 +10,15 @@ from cases.errors import SceneError
 from compare.engines import Progress
 from compare.runs.output import refuse_foreign, write
 
-#: How our files begin, by their ending: MP4 with the size of its first box, `ftyp`.
+#: First bytes of the files, by suffix: MP4 begins with the size of its first box, `ftyp`.
 BEGINS = {
     ".mp4": tuple(bytes([0, 0, 0, size]) + b"ftyp" for size in (0x14, 0x18, 0x1C, 0x20, 0x24)),
     ".gif": (b"GIF87a", b"GIF89a"),
 }
-DOTS = {".mp4": 100, ".gif": 75}  # pixels an inch; every size is even, as H.264 with 4:2:0 needs
+DOTS = {".mp4": 100, ".gif": 75}  # pixels per inch; sizes are even, as H.264 with 4:2:0 needs
 
-#: What ffmpeg is asked for. H.264 in 4:2:0 is what every player shows, its index first, so that it
-#: begins before all of it is there; a GIF has one palette, made from all of its pictures.
+#: Options of ffmpeg. Every player supports H.264 in 4:2:0; its index comes first, so that it plays
+#: before it is fully loaded; a GIF has one palette, computed from all frames.
 ENCODING: dict[str, dict[str, Any]] = {
     ".mp4": {
         "codec": "libx264",
@@ -35,13 +35,13 @@ ENCODING: dict[str, dict[str, Any]] = {
     },
 }
 
-MOST_OF_A_GIF = 400  # pictures, 2.3 MB each
+MOST_OF_A_GIF = 400  # frames, 2.3 MB each
 
 Image = Callable[[int], np.ndarray]
 
 
 def refuse(path: Path, count: int = 0) -> None:
-    """Raise SceneError where `path` can be no animation of ours of so many pictures."""
+    """Raise SceneError if `path` cannot be an animation with this many frames."""
     if path.suffix not in BEGINS:
         raise SceneError("--out", str(path), None, f"must end in {' or '.join(BEGINS)}")
     if path.suffix == ".gif" and count > MOST_OF_A_GIF:
@@ -53,9 +53,9 @@ def refuse(path: Path, count: int = 0) -> None:
 def write_video(
     path: Path, picture: Image, count: int, seconds: float, progress: Progress | None = None
 ) -> Path:
-    """Write `count` pictures, uint8 arrays [height, width, 4], that last so many seconds.
+    """Write `count` frames, uint8 arrays [height, width, 4], lasting `seconds` in total.
 
-    The ending says how: .mp4 is H.264, of even sizes; .gif goes round and round.
+    The suffix selects the format: .mp4 is H.264, of even sizes; .gif repeats endlessly.
     """
     refuse(path, count)
 
@@ -73,7 +73,7 @@ def write_video(
 
 
 def _writer(path: Path, shape: tuple[int, ...], rate: float) -> Generator[None, np.ndarray, None]:
-    """Return what writes each picture that it is sent; `rate` of them a second."""
+    """Return a generator that writes each frame sent to it, `rate` per second."""
     from imageio_ffmpeg import write_frames
 
     height, width, _ = shape

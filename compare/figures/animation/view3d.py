@@ -15,8 +15,8 @@ from results.snapshots import Snapshots
 
 SIZE = 1280, 720  # pixels
 BAR = 0.5, 0.06, 0.45, 0.06  # left, bottom, width and height of the colours, of the picture
-LONGEST, WIDE = 110, 0x2E7F  # letters in a line; the last that is no wider than Latin ones
-SHOWN = 1.1  # of what must be seen, that the picture shows
+LONGEST, WIDE = 110, 0x2E7F  # letters per line; last character not wider than Latin ones
+SHOWN = 1.1  # size of the picture relative to the visible bodies
 CELLS = {
     "triangle": pyvista.CellType.TRIANGLE,
     "quad": pyvista.CellType.QUAD,
@@ -28,10 +28,10 @@ CELLS = {
 class View3D:
     """The pillars, one above the other, or the rock masses, side by side, at any instant.
 
-    grids : by engine, with the points where the nodes are drawn (m), `displacement` (m) of points,
-    and what the colours show, SI, under its name: `axial stress` of cells, `velocity across` and
-    `displacement magnitude` of points. Where bodies stand and how thick they are drawn is their
-    actors' affair.
+    grids : by engine, with the points at the drawn nodes (m), `displacement` (m) of points, and the
+    quantity shown by the colours, SI, under its name: `axial stress` of cells, `velocity across`
+    and `displacement magnitude` of points. Positions and drawn thickness of bodies are set by their
+    actors.
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class View3D:
         self.show(0)
 
     def show(self, i: int) -> None:
-        """Move everything to instant i."""
+        """Update the view to instant i."""
         for name, s in self.found.items():
             grid, edges = self.grids[name], self.edges[name]
             grid.points = edges.points = s.points + self.settings.scale * s.displacement[i]
@@ -65,13 +65,13 @@ class View3D:
         self._write(i)
 
     def picture(self, path: str, i: int) -> None:
-        """Write what is seen of instant i as PNG."""
+        """Write the view of instant i as PNG."""
         self.show(i)
         self.plotter.screenshot(path)
         self.plotter.close()
 
     def add_slider(self, i: int) -> None:
-        """Put a slider over time below the bodies, at instant i."""
+        """Add a slider over time below the bodies, at instant i."""
         self.show(i)
         self.plotter.add_slider_widget(
             lambda ms: self.show(int(np.abs(1e3 * self.time - ms).argmin())),
@@ -88,7 +88,7 @@ class View3D:
         self.plotter.show()
 
     def _values(self, s: Snapshots, i: int | slice) -> np.ndarray:
-        """Return what the colours show, of cells or points, SI."""
+        """Return the quantity shown by the colours, of cells or points, SI."""
         if self.settings.quantity == STRESS:
             assert s.stress is not None
             return s.stress[i]
@@ -98,17 +98,17 @@ class View3D:
 
     @property
     def _least(self) -> float:
-        """The least that the colours show, SI: 0 of what has no sign."""
+        """The lower limit of the colours, SI: 0 for an unsigned quantity."""
         return -self._peak if self.settings.quantity.sign else 0.0
 
     @property
     def _peak(self) -> float:
-        """The largest that the colours show, SI."""
+        """The upper limit of the colours, SI."""
         every = [self._values(s, slice(None)) for s in self.found.values()]
         return max(float(np.abs(x).max()) for x in every) or 1.0
 
     def _label_bar(self) -> None:
-        """Write what the colours show above their bar, and numbers below it."""
+        """Write the quantity above the colour bar, and numbers below it."""
         quantity = self.settings.quantity
         least, peak = quantity.factor * self._least, quantity.factor * self._peak
         left, bottom, width, height = BAR
@@ -119,7 +119,7 @@ class View3D:
                 self._say(f"{value:.3g}", place, "center")
 
     def _say(self, text: str, place: tuple[float, float], side: str) -> None:
-        """Write at a place in parts of the picture, its left, middle or right end there."""
+        """Write at a place in fractions of the picture, aligned left, centred or right."""
         actor = self.plotter.add_text(
             text,
             position=place,
@@ -140,12 +140,12 @@ class View3D:
             scalars=quantity.name,
             cmap=FIELD if quantity.sign else UNSIGNED,
             clim=(self._least, self._peak),
-            # What the bar says is written by _label_bar, beside its numbers.
+            # The labels and numbers of the bar are written by _label_bar.
             scalar_bar_args={"title": " ", "n_labels": 0, **place_of_bar},
             ambient=0.7,  # a little shade shows the form and leaves the colours as in the bar
             diffuse=0.35,
         )
-        body.mapper.SetResolveCoincidentTopologyToPolygonOffset()  # or the edges flicker
+        body.mapper.SetResolveCoincidentTopologyToPolygonOffset()  # otherwise the edges flicker
         lines = self.plotter.add_mesh(self.edges[name], color="#333333", line_width=1)
         for actor in (body, lines):
             actor.position = place
@@ -161,7 +161,7 @@ class View3D:
         )
 
     def _place_camera(self) -> None:
-        """Look at the middle of all bodies."""
+        """Point the camera at the middle of all bodies."""
         layout, camera = self.layout, self.plotter.camera
         middle, (wide, tall) = layout.middle + layout.apart * (len(self.found) - 1) / 2, layout.size
         towards = layout.towards / np.linalg.norm(layout.towards)
@@ -188,11 +188,11 @@ class View3D:
 
 
 def _fits(line: str) -> bool:
-    """Return whether a line fits the picture; letters beyond Latin ones are twice as wide."""
+    """Return whether a line fits the picture; wide letters count twice."""
     return len(line) + sum(ord(letter) > WIDE for letter in line) <= LONGEST
 
 
 def font_for(text: str) -> str:
-    """Return the file of a font that has a text's letters: VTK takes one for all of them."""
+    """Return the file of a font with all letters of a text: VTK uses a single one."""
     files = [fonts.file_of(family) for family in fonts.families()]
     return min(files, key=lambda file: len(fonts.missing(file, text)))

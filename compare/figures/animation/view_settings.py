@@ -1,4 +1,4 @@
-"""Settings of a view: its side, its exaggeration, and the meaning of its colours."""
+"""Settings of a view: its direction, its exaggeration, and the quantity of its colours."""
 
 from math import floor, log10
 from typing import NamedTuple
@@ -11,17 +11,17 @@ from cases.material.calibrate import calibrate
 from cases.schema.scene import Scene
 from results.snapshots import Snapshots
 
-#: The largest that is drawn: of a block's thickness two neighbours may come closer; of the pillar's
-#: length a node may move along, and aside; of half a block's largest side a corner may turn away.
+#: Limits of drawn displacements: approach of two neighbours over the block's thickness; motion of a
+#: node along and across, over the pillar's length; rotation of a corner over half the largest side.
 CLOSER, FARTHER, ASIDE, TURNED = 0.8, 0.1, 0.04, 0.35
-THIN, THIN_IN_SPACE = 0.045, 0.03  # height of the picture over its length that can be seen well
-FARTHEST = 0.04  # of the size of a rock mass, that its largest displacement is drawn as
-SILENT = 0.1  # axial stress over what the motion would give in a plane wave, that is no wave
+THIN, THIN_IN_SPACE = 0.045, 0.03  # smallest legible ratio of the pillar's height to its length
+FARTHEST = 0.04  # largest displacement as drawn, relative to the size of a rock mass
+SILENT = 0.1  # axial stress over that of a plane wave of this motion: below it no axial wave
 
 
 class Quantity(NamedTuple):
-    """What the colours show: its name, the factor from SI to the unit that is written, and what its
-    sign means, "" where it has none."""
+    """The quantity of the colours: its name, the factor from SI to its unit, and the meaning of its
+    sign, "" if unsigned."""
 
     name: str
     unit: str
@@ -30,7 +30,7 @@ class Quantity(NamedTuple):
 
     @property
     def label(self) -> str:
-        """The title of the colours."""
+        """The title of the colour bar."""
         return ", ".join(part for part in (f"{self.name} ({self.unit})", self.sign) if part)
 
 
@@ -40,11 +40,11 @@ DISPLACEMENT = Quantity("displacement magnitude", "mm", 1e3, "")
 
 
 class ViewSettings(NamedTuple):
-    """How a scene is drawn.
+    """Settings for drawing a scene.
 
-    up : unit vector [3], what is upwards in the picture; y is to the right, of a rock mass x.
-    scale : of the displacements. stretch : of all that is upwards. quantity : what the colours
-    show.
+    up : unit vector [3], upward direction of the picture; y is to the right, x for a rock mass.
+    scale : of the displacements. stretch : of the upward direction. quantity : shown by the
+    colours.
     """
 
     up: np.ndarray
@@ -54,7 +54,7 @@ class ViewSettings(NamedTuple):
 
 
 def caption(scene: AnyScene, settings: ViewSettings) -> str:
-    """Return what is said of a picture: how much is exaggerated, and what its stress is less."""
+    """Return the caption of a picture: its exaggeration, and the static state subtracted."""
     parts = [f"displacements × {settings.scale:,g}"]
     if settings.stretch != 1:
         parts.append(f"thickness × {settings.stretch:g}")
@@ -70,10 +70,10 @@ def caption(scene: AnyScene, settings: ViewSettings) -> str:
 def settings_for(
     scene: AnyScene, found: dict[str, Snapshots], scale: float | None = None
 ) -> ViewSettings:
-    """Return how snapshots by engine are drawn; `scale` (of displacements) in place of our own.
+    """Return the view settings for snapshots by engine; `scale` (of displacements) overrides ours.
 
-    A row of blocks is seen from the side to which nothing drives it: its motion along and across
-    its axis lies in the plane of the picture, as does a rock mass.
+    A row of blocks is viewed normal to the plane in which it is driven, so that its motion along
+    and across its axis lies in the plane of the picture, as does a rock mass.
     """
     if not isinstance(scene, Scene):
         return ViewSettings(np.array([0.0, 1.0, 0.0]), scale or scale_of(found), 1.0, DISPLACEMENT)
@@ -88,7 +88,7 @@ def settings_for(
 
 
 def _upwards(scene: Scene) -> np.ndarray:
-    """Return the direction across the axis in which the scene is driven; x where it is in none."""
+    """Return the direction across the axis in which the scene is driven, by default x."""
     load = scene.load
     drives = [np.array(load.direction), np.array([load.at[0], 0.0, load.at[1]])]
     if load.arm is not None:  # blocks bend across the axis of the couple
@@ -111,15 +111,15 @@ def round_down(value: float) -> float:
 
 
 def scale_of(found: dict[str, Snapshots]) -> float:
-    """Return by what the displacements of a rock mass are multiplied so that the largest can be
-    seen; at least 1."""
+    """Return the exaggeration of a rock mass's displacements that makes the largest visible; at
+    least 1."""
     size = max(float(np.ptp(s.points, axis=0).max()) for s in found.values())
     largest = max(float(np.linalg.norm(s.displacement, axis=2).max()) for s in found.values())
     return max(1.0, round_down(FARTHEST * size / largest)) if largest else 1.0
 
 
 def _largest_scale(scene: Scene, s: Snapshots, stretch: float) -> float:
-    """Return by what displacements can be multiplied before the picture is no pillar any more."""
+    """Return the largest exaggeration of displacements that keeps the pillar recognisable."""
     p, length = calibrate(scene), scene.pillar.length
     centres, spread = _by_block(s)
     limits = [
@@ -132,8 +132,8 @@ def _largest_scale(scene: Scene, s: Snapshots, stretch: float) -> float:
 
 
 def _by_block(s: Snapshots) -> tuple[np.ndarray, np.ndarray]:
-    """Return the mean displacement of every block [snapshots, blocks, 3], and how far the nodes are
-    from it [snapshots, nodes], m."""
+    """Return the mean displacement of every block [snapshots, blocks, 3], and the distances of the
+    nodes from it [snapshots, nodes], m."""
     owner = np.zeros(len(s.points), dtype=int)
     owner[s.cells] = s.block[:, None]
     count = np.bincount(owner)
@@ -147,7 +147,7 @@ def _by_block(s: Snapshots) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _quantity(scene: Scene, found: dict[str, Snapshots]) -> Quantity:
-    """Return the axial stress, or the motion across where that is what makes the wave."""
+    """Return the axial stress, or the transverse motion if the wave is transverse."""
     if not is_spatial(scene):
         return STRESS
     impedance = calibrate(scene).impedance

@@ -8,14 +8,14 @@ import numpy as np
 from compare.figures.style import Style, families, given_style, in_order, is_engine, style
 from compare.misfit.pairs import Comparison
 
-LONGEST = 28  # letters of a file's name that a legend takes
+LONGEST = 28  # letters of a file's name in a legend
 
 
 class ChartLine(NamedTuple):
     """A curve in the units of its axes.
 
-    name : its entry in the legend. hover : what plotly.js says of a point. part : what its group in
-    the SVG is called, after the figure's own name. hovered : values of `hover`, where not `y`.
+    name : its entry in the legend. hover : hover text of plotly.js. part : name of its group in the
+    SVG, after the figure's own name. hovered : values of `hover`, if not `y`.
     """
 
     name: str
@@ -40,8 +40,8 @@ class Mark(NamedTuple):
 class Subplot(NamedTuple):
     """One pair of axes.
 
-    height : inches in print. share : subplots of one such name have one ordinate. limits, ticks :
-    of the ordinate. levels : where thin horizontal lines are. is_minor : small, as residuals are.
+    height : inches in print. share : subplots with the same name share an ordinate. limits, ticks :
+    of the ordinate. levels : of thin horizontal lines. is_minor : small, as for residuals.
     """
 
     heading: str
@@ -58,7 +58,7 @@ class Subplot(NamedTuple):
 
 
 class Entry(NamedTuple):
-    """One of the legend: the name of its lines, what print calls it, and how it is drawn."""
+    """A legend entry: the name of its lines, its label in print, and its style."""
 
     name: str
     label: str
@@ -67,9 +67,9 @@ class Entry(NamedTuple):
 
 
 class Chart(NamedTuple):
-    """Rows of cells, each of subplots under each other, which are equally many in all cells.
+    """Rows of cells, each with the same number of subplots one below the other.
 
-    legend : entries by heading; those without a heading stand in one line. is_log : of the
+    legend : entries by heading; those without a heading form one line. is_log : of the
     abscissa. is_lettered : whether print numbers the cells (a), (b), ...
     """
 
@@ -81,7 +81,7 @@ class Chart(NamedTuple):
 
     @property
     def subplots(self) -> list[Subplot]:
-        """All of them, in the order of the page."""
+        """All subplots, in the order of the page."""
         return [subplot for row in self.grid for cell in row for subplot in cell]
 
     @property
@@ -117,6 +117,6 @@ def _given(comparisons: list[Comparison]) -> list[Entry]:
 
 
 def short(file: str) -> str:
-    """Return a file's name as a legend takes it; a dollar sign would begin a formula."""
+    """Return a file's name for a legend, with dollar signs escaped and shortened."""
     name = file if len(file) <= LONGEST else f"{file[:12]}…{file[-15:]}"
     return name.replace("$", r"\$")

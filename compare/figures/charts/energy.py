@@ -1,4 +1,4 @@
-"""The energy ledger over time: the work of the load, what became of it, and what is missing."""
+"""The energy ledger over time: the load's work, its stored and dissipated parts, the residual."""
 
 from typing import Any, NamedTuple
 
@@ -16,14 +16,14 @@ from compare.figures.units import Unit, unit_for
 from compare.misfit.pairs import Comparison
 
 MOST = 480  # samples of a curve, and of the table
-LEAST = 1e-17  # of what is drawn of a residual: below round-off
+LEAST = 1e-17  # lower limit of a drawn residual: below round-off
 
 
 class Ledger(NamedTuple):
     """The ledger of one engine's run of one variant, since its first sample.
 
-    time : [n], s. terms : [n] by name, J, work among them. residual : [n], the sum of all others
-    less the work, over the largest work; of the largest term, where no work is done.
+    time : [n], s. terms : [n] by name, J, including work. residual : [n], the sum of all others
+    minus the work, over the largest work or, without work, the largest term.
     """
 
     variant: str
@@ -34,13 +34,13 @@ class Ledger(NamedTuple):
 
     @property
     def missing(self) -> np.ndarray:
-        """The size of the residual, no number where it is zero: its axis is logarithmic."""
+        """The size of the residual, NaN where it is zero: its axis is logarithmic."""
         size = np.abs(self.residual)
         return np.where(size > LEAST, size, np.nan)
 
 
 def ledgers_of(comparisons: list[Comparison]) -> list[Ledger]:
-    """Return the ledger of every engine and variant that has kept one."""
+    """Return the ledger of every engine and variant that recorded one."""
     return [
         _ledger(variant, engine, comparison.results[engine])
         for comparison, variant in zip(comparisons, variant_names(comparisons), strict=True)
@@ -61,7 +61,7 @@ def _ledger(variant: str, engine: str, result: xr.Dataset) -> Ledger:
 
 
 def table(ledgers: list[Ledger]) -> pd.DataFrame:
-    """Return a row a variant, engine and sample; a term that a run has not is empty."""
+    """Return a row per variant, engine and sample; terms missing in a run are empty."""
     return pd.concat(
         pd.DataFrame(
             {
@@ -82,7 +82,7 @@ def drawn_terms(ledgers: list[Ledger]) -> list[str]:
 
 
 def energy(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
-    """Return the picture of all ledgers, none where no engine has kept one."""
+    """Return the figure of all ledgers; empty if no engine recorded one."""
     ledgers = ledgers_of(comparisons)
     if not any(x.any() for ledger in ledgers for x in ledger.terms.values()):
         return []
@@ -116,7 +116,7 @@ def _of_term(engine: str, term: str) -> Style:
 
 
 def _dashes(engine: str) -> Any:
-    """Return the dashes of an engine, by which engines differ: colours are those of terms."""
+    """Return the dashes of an engine; dashes distinguish engines, colours terms."""
     dashes = ENGINES[engine].line.ledger
     return (0, dashes) if dashes else "-"
 

@@ -1,9 +1,9 @@
-"""A chart as an interactive figure, for plotly.js: plain values that JSON can write.
+"""A chart as an interactive figure, for plotly.js: plain values for JSON.
 
-Subplots stand one under the other on one abscissa, so that they zoom together and stay readable on
-a narrow screen; buttons of the page are their legend. Numbers are base64 of their bytes in single
-precision, of which as many bits of the mantissa are left as a screen can show: the rest are zeros,
-which gzip takes no bytes for (bit rounding, Kloewer et al. 2021, doi:10.1038/s43588-021-00156-2).
+Subplots are one below the other on one abscissa, so that they zoom together and are readable on a
+narrow screen; buttons of the page are their legend. Numbers are base64 of their bytes in single
+precision, with as many bits of the mantissa as a screen can show: the rest are zeros, which gzip
+compresses away (bit rounding, Kloewer et al. 2021, doi:10.1038/s43588-021-00156-2).
 """
 
 from base64 import b64decode, b64encode
@@ -19,9 +19,9 @@ from compare.figures.style import Style
 
 FONT = {"family": "system-ui, 'Segoe UI', Helvetica, Arial, 'DejaVu Sans', sans-serif", "size": 13}
 INK, GRID = "#1c2126", "#e3e6e9"
-PIXELS = 95  # px of an inch of a subplot in print
+PIXELS = 95  # px per inch of a subplot in print
 LINE = 17  # px of a line of a heading
-NARROW = 39  # characters of such a line that a phone has room for
+NARROW = 39  # characters of such a line on a phone
 TOP, BOTTOM, LEFT, RIGHT = 11, 58, 84, 16  # px around the subplots
 GAP = 20  # px between subplots, besides their headings
 SAMPLES = 800  # of a curve
@@ -29,7 +29,7 @@ BITS = 14  # of the mantissa of a curve's values: a relative error of 3e-5
 
 
 def packed(values: np.ndarray, bits: int = BITS) -> dict[str, Any]:
-    """Return an array as plotly.js reads typed arrays, with so many bits of the mantissa."""
+    """Return an array as a typed array for plotly.js, with `bits` bits of the mantissa."""
     data = np.asarray(values).astype("<f4")
     lost = 23 - bits
     whole = data.view("<u4").astype(np.uint64) + (1 << (lost - 1))
@@ -40,13 +40,13 @@ def packed(values: np.ndarray, bits: int = BITS) -> dict[str, Any]:
 
 
 def unpacked(array: dict[str, Any]) -> np.ndarray:
-    """Return the array that `packed` was given, as rounded as it is kept."""
+    """Return the array given to `packed`, with its rounding."""
     values = np.frombuffer(b64decode(array["bdata"]), f"<{array['dtype']}")
     return values.reshape([int(n) for n in array.get("shape", str(values.size)).split(",")])
 
 
 def places(axis: str, values: np.ndarray) -> dict[str, Any]:
-    """Return a trace's places along "x" or "y": first and step where they are even, else all."""
+    """Return a trace's coordinates along "x" or "y": first and step if equally spaced, else all."""
     step = (values[-1] - values[0]) / max(1, len(values) - 1)
     even = values[0] + step * np.arange(len(values))
     if len(values) > 1 and np.allclose(values, even, rtol=0, atol=1e-6 * abs(step)):
@@ -55,7 +55,7 @@ def places(axis: str, values: np.ndarray) -> dict[str, Any]:
 
 
 def thinned(samples: int, most: int = SAMPLES) -> slice:
-    """Return which of so many samples are drawn: every k-th, at most `most` and the first."""
+    """Return the slice of samples that are drawn: every k-th, at most `most` and the first."""
     return slice(None, None, max(1, -(-(samples - 1) // most)))
 
 
@@ -91,7 +91,7 @@ def _trace(line: ChartLine, row: int, rank: int) -> dict[str, Any]:
 
 
 def line_style(style: Style) -> dict[str, Any]:
-    """Return how a curve is drawn, as in print: colour, width, and the dashes with their offset."""
+    """Return a curve's line style, as in print: colour, width, and the dashes with their offset."""
     found: dict[str, Any] = {"color": style.colour, "width": 1.15 * style.width, "simplify": False}
     if style.dashes != "-":
         offset, lengths = style.dashes
@@ -102,8 +102,8 @@ def line_style(style: Style) -> dict[str, Any]:
 def _begun(offset: float, lengths: tuple[float, ...]) -> list[float]:
     """Return dash lengths that begin `offset` into their pattern; SVG has no offset here.
 
-    An even number of them, as SVG repeats an odd one with dashes and gaps exchanged: a dash of no
-    length is put before a gap that comes first, a gap of none after a dash that comes last.
+    Their number is even, since SVG repeats an odd number with dashes and gaps exchanged: a dash of
+    zero length precedes a leading gap, a gap of zero length follows a trailing dash.
     """
     edges = np.cumsum(lengths)
     at = offset % edges[-1]
@@ -115,17 +115,17 @@ def _begun(offset: float, lengths: tuple[float, ...]) -> list[float]:
 
 
 def axis_of(row: int) -> str:
-    """Return what a trace calls the y axis of the subplot with this number."""
+    """Return the name of the y axis of this subplot in a trace."""
     return f"y{row + 1}" if row else "y"
 
 
 def axis_key(row: int) -> str:
-    """Return what the layout calls it."""
+    """Return the key of the y axis of this subplot in the layout."""
     return f"yaxis{row + 1}" if row else "yaxis"
 
 
 def layout(subplots: list[Subplot], abscissa: dict[str, Any]) -> dict[str, Any]:
-    """Return the layout of subplots under each other on one abscissa."""
+    """Return the layout of subplots one below the other on one abscissa."""
     headings = [
         [line for part in s.heading.split("\n") for line in wrap(part, NARROW)] for s in subplots
     ]

@@ -1,5 +1,5 @@
-"""Waveforms at many receivers of one variant as an offset stack: the ordinate is y, and on each
-receiver's y stands its waveform; beside them, larger, the residuals from the reference.
+"""Waveforms at many receivers of one variant as an offset stack: the ordinate is y, with each
+waveform at its receiver's y; beside them, magnified, the residuals from the reference.
 """
 
 from typing import NamedTuple
@@ -15,13 +15,13 @@ from compare.figures.units import Unit, unit_for
 from compare.misfit.pairs import Comparison
 
 FEWEST = 3  # receivers
-SHARE = 0.9  # of the distance between two receivers, that the largest waveform takes
+SHARE = 0.9  # amplitude of the largest waveform over the distance between two receivers
 
 
 class Stack(NamedTuple):
     """Waveforms of one quantity, by y of the receiver (m) and solution, over time in s, SI.
 
-    part : what the parts of the SVG begin with. widest : points, of a line.
+    part : prefix of the parts of the SVG. widest : of a line, points.
     """
 
     quantity: str
@@ -38,17 +38,17 @@ class Stack(NamedTuple):
 
     @property
     def unit(self) -> Unit:
-        """What a pointer at a curve is told."""
+        """The unit of hover text."""
         return unit_for(UNITS[self.quantity], self.largest)
 
     @property
     def reach(self) -> float:
-        """Metres of the ordinate that the largest magnitude takes."""
+        """Amplitude of the largest magnitude on the ordinate, m."""
         return SHARE * float(np.diff(list(self.curves)).min())
 
     @property
     def label(self) -> str:
-        """Of the ordinate: the receivers' y, and how large a waveform is drawn."""
+        """Label of the ordinate: the receivers' y, and the scale of waveforms."""
         if not self.largest:
             return "y (m)"
         size = self.largest / self.unit.size
@@ -85,8 +85,8 @@ def stacked(panels: list[Panel], comparisons: list[Comparison]) -> Chart | None:
     """Return the waveforms of each quantity of one variant beside their residuals, as stacks.
 
     The curve of solution S at the k-th receiver of row i is the part i-k-S, its residual
-    residual-i-k-S. None where a quantity has fewer than three receivers, each of which then has
-    axes of its own, where there are external data, and of a rock mass.
+    residual-i-k-S. None if a quantity has fewer than three receivers, each of which then has its
+    own axes, if there are external data, and for a rock mass.
     """
     groups: dict[str, list[Panel]] = {}
     for panel in sorted(panels, key=lambda p: p.place.at):

@@ -1,4 +1,4 @@
-"""Maps of the peak particle velocity, of every engine that kept its whole field."""
+"""Maps of the peak particle velocity, for every engine with snapshots of its whole field."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from compare.misfit.pairs import Comparison
 from compare.readings import peak_velocity_map
 from results.snapshots import snapshots_of
 
-MANY = 3000  # cells, beyond which they are an image in the drawing
+MANY = 3000  # cells above which they are an image in the drawing
 HEIGHT = 3.6  # inches
 CAPTION = (
     "The largest particle velocity of each cell, the mean of its nodes', over all snapshots "
@@ -34,7 +34,7 @@ AXES = {True: ("x (m)", "y (m)"), False: ("y (m)", "x (m)")}  # of a rock mass, 
 
 
 def peak_velocities(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
-    """Return the maps of every variant, a picture each; none without fields."""
+    """Return the maps, one figure per variant; empty without fields."""
     found = []
     named = zip(variant_names(comparisons), comparisons, strict=True)
     for k, (variant, comparison) in enumerate(named):
@@ -49,8 +49,8 @@ def peak_velocities(name: str, comparisons: list[Comparison]) -> list[SceneFigur
 
 
 def cells_of(comparison: Comparison) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Return the corners [cells, n, 2] (m) as they are drawn and the peak velocity [cells] (m/s) of
-    every engine that has snapshots."""
+    """Return the drawn corners [cells, n, 2] (m) and the peak velocity [cells] (m/s) of every
+    engine with snapshots."""
     found: dict[str, tuple[np.ndarray, np.ndarray]] = {}
     for engine in in_order(set(comparison.results)):
         result = comparison.results[engine]
@@ -66,8 +66,8 @@ def cells_of(comparison: Comparison) -> dict[str, tuple[np.ndarray, np.ndarray]]
 
 
 def _from_aside(corners: np.ndarray, scene: Scene) -> np.ndarray:
-    """Return the rectangles [cells, 4, 2] (y, x) that cells of a pillar fill, seen along z; those
-    on its axis alone fill the section."""
+    """Return the rectangles [cells, 4, 2] (y, x) of a pillar's cells, seen along z; one-dimensional
+    cells fill the section."""
     low, high = corners[:, :, ::-1].min(axis=1), corners[:, :, ::-1].max(axis=1)
     flat = low[:, 1] == high[:, 1]
     low[flat, 1], high[flat, 1] = -scene.pillar.side / 2, scene.pillar.side / 2
@@ -86,8 +86,8 @@ def table(cells: dict[str, tuple[np.ndarray, np.ndarray]], axes: tuple[str, str]
 
 
 def draw(cells: dict[str, tuple[np.ndarray, np.ndarray]], is_plane: bool) -> Figure:
-    """Return the maps of rock masses side by side, of pillars below one another, on one scale of
-    colours."""
+    """Return the maps, of rock masses side by side and of pillars one below the other, on one
+    colour scale."""
     highest = max(float(peaks.max(initial=0.0)) for _, peaks in cells.values()) or 1.0
     colour = ScalarMappable(Normalize(0.0, highest), UNSIGNED)
     with blank(HEIGHT) as figure:

@@ -1,7 +1,7 @@
 """Propagation along a row of receivers: transfer function, phase speed and loss over frequency.
 
 The transfer function and 1/Q are those from the first receiver of velocity to the last, the phase
-speed that of the f-k spectrum of all of them (`compare.readings`), beside the theory of an endless
+speed that of the f-k spectrum of all of them (`compare.readings`), with the theory of an infinite
 pillar (`dispersion_theory`).
 """
 
@@ -26,10 +26,10 @@ from compare.readings import (
 from compare.readings.attenuation import waveforms
 
 LEAST = 3  # receivers of a row
-HEARD = 0.03  # of the largest amplitude of the first receiver: frequencies that are drawn
-TOLD_APART = 0.95  # of the frequency at which two receivers are half a wave apart
+HEARD = 0.03  # of the first receiver's largest amplitude: threshold of drawn frequencies
+TOLD_APART = 0.95  # of the frequency at which two receivers are half a wavelength apart
 NAMES = ("transfer function", "phase speed (m/s)", "1/Q")
-#: The solution that has the model of each theory, whose line it takes.
+#: The solution with the model of each theory, which gives its line style.
 THEORY = {"rigid blocks": "lattice", "jointed rock": "jointed-bar", "bar": "equivalent-bar"}
 CAPTION = (
     "Of the velocities of a row of receivers, from whole records, with all that is reflected in "
@@ -40,15 +40,14 @@ CAPTION = (
 
 
 class ReceiverRow(NamedTuple):
-    """What a variant's solutions say: the variant, curves by solution or theory and by NAMES, over
-    frequency (Hz)."""
+    """The variant, and its curves by solution or theory and by NAMES, over frequency (Hz)."""
 
     variant: str
     curves: dict[str, dict[str, pd.Series]]
 
 
 def propagation(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
-    """Return the picture of all variants with a row of receivers; none where there is no row."""
+    """Return the figure of all variants with a row of receivers; empty if there is none."""
     named = zip(variant_names(comparisons), comparisons, strict=True)
     rows = [row for variant, one in named if (row := row_of(variant, one)).curves]
     if not rows:
@@ -72,7 +71,7 @@ def propagation(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
 
 
 def row_of(variant: str, comparison: Comparison) -> ReceiverRow:
-    """Return the curves of one variant; none where fewer than LEAST receivers have a motion."""
+    """Return the curves of one variant; empty if fewer than LEAST receivers have a motion."""
     found: dict[str, dict[str, pd.Series]] = {}
     for solution in in_order(set(comparison.results)):
         result = comparison.results[solution]
@@ -97,7 +96,7 @@ def row_of(variant: str, comparison: Comparison) -> ReceiverRow:
 
 
 def _measured(result, heard: np.ndarray) -> dict[str, pd.Series]:
-    """Return what one result says at the frequencies that are heard, bool array."""
+    """Return one result's curves at the frequencies above the threshold (bool array `heard`)."""
     transfer, both = abs(transfer_function(result)), dispersion(result).phase_speed
     loss = 1 / quality_factor(result).quality
     nearest = float(waveforms(result)["distance"].diff("receiver").min())

@@ -21,11 +21,11 @@ from compare.figures.style import WIDTH
 HEIGHT = 3.1  # inches
 LEFT, RIGHT, BETWEEN = 0.6, 0.15, 0.3  # inches beside the diagrams, and between two of them
 TOP, BOTTOM = 0.58, 0.82  # inches above and below them: headings, times and colours
-KEY, THICK = 0.26, 0.06  # inches: where the colours are, and how high they are drawn
+KEY, THICK = 0.26, 0.06  # inches: position and height of the colour bar
 COLOURS = 96  # of an image in print
 TIMES = 120  # of an image on the page
-FINER = 2  # rows of it
-BITS = 8  # of the mantissa of its values there: an error of 2e-3
+FINER = 2  # rows of the image per interval of places
+BITS = 8  # of the mantissa of its values: an error of 2e-3
 STOPS = 17  # of a colour scale on the page
 LAYER: dict[str, Any] = {"color": "#111111", "linewidth": 1.1, "linestyle": (0, (4, 3))}
 NAMED: dict[str, Any] = {
@@ -38,7 +38,7 @@ NAMED: dict[str, Any] = {
 
 
 def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> SceneFigure:
-    """Return the picture of diagrams of one variant; those of numerical errors are folded.
+    """Return the figure of one variant's diagrams; those of numerical errors are folded.
 
     name : unique on the page. variant : its name there.
     """
@@ -56,7 +56,7 @@ def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> SceneF
 
 
 def _caption(scene: Scene, variant: str, shown: Diagrams) -> str:
-    """Say what the colours are, and where and when they were computed."""
+    """Describe the colours, and the places and times of their values."""
     sign = "Compression is red, tension blue. " if shown.quantity.variable == "stress" else ""
     layers = " Dashed: the soft layer." if scene.soft_layers else ""
     if shown.exact:
@@ -92,11 +92,11 @@ def _draw(ax: Axes, key: Axes, diagram: Diagram, shown: Diagrams, scene: Scene) 
     time, y = 1e3 * shown.time[[0, -1]], shown.y[[0, -1]]
     values = evenly(shown.y, diagram.values)
     rows, columns = values.shape
-    # An image's extent counts to the edges of its pixels: its points are half a pixel within.
+    # An image's extent is that of its pixels' edges: its points are half a pixel inside.
     x_edge, y_edge = np.ptp(time) / (columns - 1) / 2, np.ptp(y) / (rows - 1) / 2
     image = ax.imshow(
         values,
-        # A palette, and only the points there are: files take a twentieth of the room.
+        # A palette, without interpolated points: files are 20 times smaller.
         cmap=matplotlib.colormaps[diagram.colours].resampled(COLOURS),
         interpolation="none",
         vmin=-diagram.limit,
@@ -112,12 +112,12 @@ def _draw(ax: Axes, key: Axes, diagram: Diagram, shown: Diagrams, scene: Scene) 
     ax.set_xlabel("time (ms)")
     bar = key.figure.colorbar(image, cax=key, orientation="horizontal")
     bar.outline.set_linewidth(0.5)
-    bar.set_ticks(MaxNLocator(4, symmetric=True))  # few: long numbers do not meet
+    bar.set_ticks(MaxNLocator(4, symmetric=True))  # few, so that long numbers do not overlap
 
 
 def evenly(y: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return values [place, time] at even places, as an image needs them: `FINER` rows for every
-    distance between places."""
+    """Return values [place, time] at equally spaced places, as images require: `FINER` rows per
+    interval between places."""
     places = np.linspace(y[0], y[-1], FINER * (len(y) - 1) + 1)
     return np.stack([np.interp(places, y, column) for column in values.T], axis=1)
 
@@ -158,7 +158,7 @@ def _trace(i: int, diagram: Diagram, shown: Diagrams, domain: list[float]) -> di
 
 
 def _key(domain: list[float]) -> dict[str, Any]:
-    """Return the key of a diagram's colours, as high as the diagram, to its right."""
+    """Return a diagram's colour bar, of the same height, to its right."""
     return {
         "x": 1.01,
         "xpad": 2,

@@ -16,11 +16,11 @@ from compare.misfit.metrics import motion
 from compare.misfit.pairs import pairs
 from compare.misfit.ranking import own_exact
 
-LEAST = 1e-9  # SI: what is below does not move
+LEAST = 1e-9  # SI: smaller values count as no motion
 
 
 class Quantity(NamedTuple):
-    """What is drawn: a variable of the results, and its component; None: its only one."""
+    """The quantity drawn: a variable of the results, and its component (None: its only one)."""
 
     variable: str
     component: int | None
@@ -37,8 +37,8 @@ class Quantity(NamedTuple):
 
 
 class Diagram(NamedTuple):
-    """One diagram: what it is called, its values [places, times] in `unit`, the colours and what
-    their ends stand for; `share` : the largest difference over the largest value, else None.
+    """One diagram: its name, its values [places, times] in `unit`, the colours and the meaning of
+    their ends; `share` : the largest difference over the largest value, else None.
     """
 
     name: str
@@ -60,13 +60,13 @@ class Diagram(NamedTuple):
 
     @property
     def _range(self) -> tuple[float, float]:
-        """Least and largest between the ends, whose stress is the load's and not a joint's."""
+        """Smallest and largest value, without the ends, whose stress is that of the load."""
         inner = self.values[1:-1]
         return float(inner.min()), float(inner.max())
 
 
 class Diagrams(NamedTuple):
-    """The diagrams of one picture of a variant over time [n] (s) and y [m] (m).
+    """The diagrams of one figure of a variant over time [n] (s) and y [m] (m).
 
     exact : whether they are the differences of engines from the exact solutions of their models.
     """
@@ -78,7 +78,7 @@ class Diagrams(NamedTuple):
     diagrams: list[Diagram]
 
     def table(self) -> pd.DataFrame:
-        """Return every drawn value: a row a place and time."""
+        """Return every drawn value: a row per place and time."""
         y, time = np.meshgrid(self.y, self.time, indexing="ij")
         columns = {f"{d.name} ({d.unit.name})": d.values.ravel() for d in self.diagrams}
         return pd.DataFrame({"y (m)": y.ravel(), "time (s)": time.ravel(), **columns})
@@ -88,7 +88,7 @@ def diagrams_of(scene: Scene, fields: dict[str, xr.Dataset]) -> list[Diagrams]:
     """Return the diagrams of the first engine and of the differences between engines, then those of
     the differences from the exact solution of each engine's own model.
 
-    Empty where nothing moves. fields : of one variant, by name, as `along_pillar` returns them.
+    Empty without motion. fields : of one variant, by name, as returned by `along_pillar`.
     """
     engines = [name for name in in_order(set(fields)) if is_engine(name)]
     if not engines:
@@ -121,7 +121,7 @@ def _difference(one: str, other: str, values: dict[str, np.ndarray], quantity: Q
 def _diagram(
     name: str, values: np.ndarray, quantity: Quantity, share: float | None = None
 ) -> Diagram:
-    """Return the diagram of SI values; share : of a difference."""
+    """Return the diagram of SI values; share : for a difference."""
     largest = float(np.abs(values).max())
     unit = unit_for(UNITS[quantity.variable], largest)
     colours = FIELD if share is None else DIFFERENCE

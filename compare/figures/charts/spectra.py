@@ -1,4 +1,4 @@
-"""Amplitude spectra of the waveforms, with the frequencies that the scene is known by."""
+"""Amplitude spectra of the waveforms, with the characteristic frequencies of the scene."""
 
 import numpy as np
 import pandas as pd
@@ -10,8 +10,8 @@ from compare.figures.style import style
 from compare.figures.subplots import UNITS, in_page, panels
 from compare.misfit.pairs import Comparison
 
-DECADES = 5  # below the largest amplitude: what is drawn
-NEAR = 1.25  # the ratio of two marks whose names stand on either side of them
+DECADES = 5  # drawn below the largest amplitude
+NEAR = 1.25  # ratio of two marks below which their names are on opposite sides
 
 
 def spectra(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
@@ -78,8 +78,8 @@ def _subplot(one: Spectra, peak: float, place: str) -> Subplot:
 
 
 def _marks(one: Spectra, limits: tuple[float, float]) -> list[Mark]:
-    """Return the marks; the name of one stands to its left where the next one is near, and high
-    where the curves are low."""
+    """Return the marks; a name is to the left if the next mark is near, and at the top where the
+    curves are low."""
     following = [mark.frequency for mark in one.marks[1:]] + [np.inf]
     low = limits[0] ** 0.25 * limits[1] ** 0.75
     return [

@@ -13,7 +13,7 @@ from compare.figures.subplots import Panel
 
 
 class Mark(NamedTuple):
-    """A frequency (Hz) and what it is, short and in words."""
+    """A frequency (Hz) and its meaning, short and in words."""
 
     name: str
     frequency: float
@@ -21,9 +21,9 @@ class Mark(NamedTuple):
 
 
 def marks_of(panel: Panel) -> list[Mark]:
-    """Return the marks of a panel's scene for the waves along it or, where blocks do not turn,
-    across it; in order of frequency. None but the load's for other motion, which disperses, and of
-    a rock mass."""
+    """Return the marks of a panel's scene for longitudinal waves or, if blocks do not rotate, shear
+    waves; in order of frequency. Only the load's for other motion, which is dispersive, and for a
+    rock mass."""
     scene = panel.comparison.scene
     periods = {one.period for one in scene.pulses if one.period}
     found = [Mark("load", 1 / period, "1/T of the load") for period in periods]
@@ -47,15 +47,15 @@ def _of_waves(scene: Scene, p: Properties, speed: float) -> list[Mark]:
     marks = [Mark("chain cut-off", speed / (pi * p.spacing), "cut-off of the chain of blocks")]
     ends = {scene.ends.start, scene.ends.end}
     if ends <= {"free", "fixed"}:
-        waves = 2 if len(ends) == 1 else 4  # pillars in a wave
+        waves = 2 if len(ends) == 1 else 4  # pillar lengths per wavelength
         length = p.spacing * p.block_count
         marks.append(Mark("first mode", speed / (waves * length), "first mode of the pillar"))
     return marks
 
 
 def _of_layers(p: Properties) -> list[Mark]:
-    """Return where a soft layer passes half the energy, kappa = K / (Z omega) = 1/2 (Pyrak-Nolte,
-    Myer & Cook 1990)."""
+    """Return where a soft layer transmits half the energy, kappa = K / (Z omega) = 1/2
+    (Pyrak-Nolte, Myer & Cook 1990)."""
     compliances = {c for c in p.excess_compliance[p.soft].tolist() if c > 0}
     return [
         Mark("soft layer", 1 / (pi * p.impedance * c), "half-energy frequency of the soft layer")
@@ -64,7 +64,7 @@ def _of_layers(p: Properties) -> list[Mark]:
 
 
 def _of_joints(p: Properties) -> list[Mark]:
-    """Return where the first pass band of equal joints in elastic rock ends."""
+    """Return the end of the first pass band of equal joints in elastic rock."""
     if p.intact_modulus is None or not isfinite(p.regular_own_stiffness):
         return []
     speed = (p.intact_modulus / p.density) ** 0.5
@@ -73,7 +73,7 @@ def _of_joints(p: Properties) -> list[Mark]:
 
 
 def band_edge(impedance: float, stiffness: float, crossing: float) -> float:
-    """Return the frequency (Hz) where the first pass band of equal joints ends.
+    """Return the frequency (Hz) at which the first pass band of equal joints ends.
 
     impedance : of the rock, Pa s/m. stiffness : of a joint, Pa/m. crossing : of the rock between
     two joints, s. There cos(phi) = cos(theta) - sin(theta) / (2 kappa) is -1 (Cai & Zhao, Int. J.
@@ -115,7 +115,7 @@ def spectrum(values: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 class Spectra(NamedTuple):
-    """The spectra of one panel, over the frequencies that are drawn.
+    """The spectra of one panel, over the drawn frequencies.
 
     marks : in order of frequency. curves : amplitude per Hz, SI, over frequency (Hz), by solution.
     """
@@ -131,12 +131,12 @@ class Spectra(NamedTuple):
 
     @property
     def unit(self) -> str:
-        """The unit that is drawn."""
+        """The drawn unit."""
         return f"{UNITS[self.panel.quantity][1]}/Hz"
 
     @property
     def factor(self) -> float:
-        """From SI to it."""
+        """Factor from SI to the drawn unit."""
         return UNITS[self.panel.quantity][0]
 
     @property

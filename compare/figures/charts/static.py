@@ -15,15 +15,15 @@ from compare.figures.style import WIDTH, Style
 
 HEADING, ABSCISSA = 0.28, 0.48  # inches above each subplot, and below the lowest
 LEFT, RIGHT, BETWEEN = 0.95, 0.15, 0.9  # inches beside the subplots, and between two of them,
-NUMBERS = 0.55  # where the ordinate they share has its label but once
-MOST = 6  # entries of a legend beside each other
-LEGEND, LEGEND_LINE = 0.16, 0.165  # inches of the legend, and of each of its lines besides
-SMALLER = 0.76  # of the height of a subplot, where there are more than two rows of cells
+NUMBERS = 0.55  # the same if a shared ordinate is labelled only once
+MOST = 6  # entries per line of a legend
+LEGEND, LEGEND_LINE = 0.16, 0.165  # inches of the legend, plus each of its lines
+SMALLER = 0.76  # of the height of a subplot, for more than two rows of cells
 MARK = "#5d6670"  # colour of vertical lines
 
 
 def draw(name: str, chart: Chart) -> Figure:
-    """Return the figure; the group of a line in its SVG is called `name`-PART."""
+    """Return the figure; the SVG group of a line is `name`-PART."""
     columns, heights = max(map(len, chart.grid)), _heights(chart)
     head = LEGEND + LEGEND_LINE * _depth(chart.legend)
     with blank(head + sum(h + HEADING for h in heights) + ABSCISSA, laid_out=True) as figure:
@@ -51,9 +51,9 @@ def draw(name: str, chart: Chart) -> Figure:
 
 
 def _axes(figure: Figure, columns: int, heights: list[float], between: float) -> np.ndarray:
-    """Return rows of axes so many inches high and `between` each other, at the foot of a figure.
+    """Return rows of axes with these heights and distances (inches), at the bottom of a figure.
 
-    All is said in inches: to measure texts, as matplotlib's layouts do, takes a third of a drawing.
+    All sizes are in inches: measuring text, as matplotlib's layouts do, takes a third of the time.
     """
     height, rows = figure.get_figheight(), len(heights)
     room = {
@@ -69,7 +69,7 @@ def _axes(figure: Figure, columns: int, heights: list[float], between: float) ->
 
 
 def _depth(legend: dict[str, list[Entry]]) -> int:
-    """Return how many lines a legend has: those of its entries, or a heading above them."""
+    """Return the number of lines of a legend: those of its entries and of headings above them."""
     return -(-len(legend[""]) // MOST) if "" in legend else 1 + max(map(len, legend.values()))
 
 
@@ -91,7 +91,7 @@ def _draw(ax: Axes, subplot: Subplot, name: str, is_log: bool) -> None:
         ax.set_xscale("log")
     if subplot.is_log:
         ax.set_yscale("log")
-        ax.yaxis.set_minor_locator(NullLocator())  # their many ticks take longer than the curves
+        ax.yaxis.set_minor_locator(NullLocator())  # they would take longer than the curves
     elif subplot.ticks is not None:
         ax.set_yticks(subplot.ticks)
     elif subplot.is_minor:
@@ -109,7 +109,7 @@ def _draw(ax: Axes, subplot: Subplot, name: str, is_log: bool) -> None:
 
 
 def properties(style: Style, marker: str = "") -> dict[str, Any]:
-    """Return the arguments of matplotlib's plot; samples have a marker where one is given."""
+    """Return the arguments of matplotlib's plot; samples have a marker if one is given."""
     if not marker:
         return style.of_line()
     return style.of_line() | {"marker": marker, "markersize": 3.0, "markerfacecolor": "none"}
@@ -132,7 +132,7 @@ def _add_mark(ax: Axes, mark: Mark) -> None:
 
 
 def _add_legend(figure: Figure, legend: dict[str, list[Entry]]) -> None:
-    """Put the legend above the subplots, where it hides no curve: a column a heading."""
+    """Add the legend above the subplots, where it hides no curve: one column per heading."""
     depth = _depth(legend)
     if "" in legend:
         handles, columns = _handles(legend[""]), -(-len(legend[""]) // depth)
@@ -155,7 +155,7 @@ def _add_legend(figure: Figure, legend: dict[str, list[Entry]]) -> None:
     )
     for text in found.get_texts():
         if text.get_text() in legend:
-            text.set_color(MARK)  # a bold font would take as long to embed as the plain one
+            text.set_color(MARK)  # embedding a bold font would double the time of the plain one
 
 
 def _handles(entries: list[Entry]) -> list[Line2D]:

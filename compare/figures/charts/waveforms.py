@@ -1,4 +1,4 @@
-"""Waveforms at every receiver over time: as the paper has them, and every solution of a variant."""
+"""Waveforms at every receiver over time: as in the paper, and all solutions of a variant."""
 
 import pandas as pd
 
@@ -27,10 +27,10 @@ POSITIVE = "Stress is positive in compression."
 
 
 def waveforms(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
-    """Return the waveforms of every variant at every receiver, and curves of others beside them.
+    """Return the waveforms of every variant at every receiver, with external curves.
 
-    Variants that differ by one key stand in one pair of axes an engine, and all solutions of each
-    variant after that; many receivers of one variant are stacked.
+    Variants that differ by one key share one pair of axes per engine, followed by all solutions of
+    each variant; many receivers of one variant are stacked.
     """
     receivers = [panel for row in panels(comparisons) for panel in row]
     ending = f"{POSITIVE}{_at_rest(receivers)}"
@@ -52,7 +52,7 @@ def waveforms(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
 def by_solutions(comparisons: list[Comparison]) -> Chart:
     """Return every solution of all variants.
 
-    The curve of solution S in row i, column j is the part i-j-S, that of the k-th file of others
+    The curve of solution S in row i, column j is the part i-j-S, that of the k-th external file
     i-j-given-k, and the residual of S residual-i-j-S.
     """
     grid = [[by_solution(panel) for panel in row] for row in in_page(panels(comparisons))]
@@ -101,7 +101,7 @@ def _references(receivers: list[Panel]) -> str:
 def _at_rest(receivers: list[Panel]) -> str:
     """Describe the static state subtracted from the waveforms; empty without one.
 
-    It has no velocity, but for what dynamic relaxation leaves.
+    It has no velocity, except for a remainder of dynamic relaxation.
     """
     states = dict.fromkeys(
         f"{panel.at_rest:.4g} {UNITS[panel.quantity]} ({panel.heading}, {panel.variant})"
@@ -112,7 +112,7 @@ def _at_rest(receivers: list[Panel]) -> str:
 
 
 def _variant_table(overlays: list[Overlay], receivers: list[Panel]) -> pd.DataFrame:
-    """Return curves of engines and of their references, SI: time first, a column each."""
+    """Return curves of engines and of their references, SI: time first, one column each."""
     columns: dict[str, pd.Series] = {}
     for overlay in overlays:
         for trace in overlay.traces:

@@ -11,12 +11,12 @@ from compare.figures.units import unit_for
 
 LENGTH, GRAVITY = 0.42, 0.3  # inches of arrows
 LEVEL = HEIGHT - 0.1  # inches of a prestress
-ASIDE = GRAVITY / 2 + 0.05  # inches from the arrow of gravity to its number
+ASIDE = GRAVITY / 2 + 0.05  # inches from the gravity arrow to its number
 
 
 def draw_load(ax: Axes, scene: Scene, place: Placement) -> None:
-    """Draw the load on the start: arrows over its face, one where it is eccentric or across; a
-    double arrow along the axis of a couple, and one beside a base that moves."""
+    """Draw the load on the start: arrows over its face, a single one if eccentric or transverse; a
+    double arrow along the axis of a couple, and one beside a moving base."""
     load, start = scene.load, place.x(0)
     if not load.amplitude:
         return
@@ -31,7 +31,7 @@ def draw_load(ax: Axes, scene: Scene, place: Placement) -> None:
         for tip in (0.14, 0.05):
             symbols.arrow(ax, (start - 0.5, level), (start - tip, level))
         return
-    # z points into the drawing; what acts across ends as far over the axis as it began below it.
+    # z points into the drawing; transverse arrows are centred on the axis.
     if load.is_eccentric or abs(along) < 0.3:
         over = load.at[0] / scene.pillar.side * place.thick
         over += 0.0 if load.is_eccentric else LENGTH / 2 * across
@@ -45,7 +45,7 @@ def draw_load(ax: Axes, scene: Scene, place: Placement) -> None:
 
 
 def draw_forces(ax: Axes, scene: Scene, place: Placement) -> None:
-    """Draw gravity beside the pillar, and a prestress above it and what is written there."""
+    """Draw gravity beside the pillar, and a prestress above it and its labels."""
     if scene.gravity is not None and scene.gravity.acceleration:
         x = gravity_at(scene, place)
         across, along, depth = scene.gravity.direction
@@ -58,12 +58,12 @@ def draw_forces(ax: Axes, scene: Scene, place: Placement) -> None:
 
 
 def gravity_at(scene: Scene, place: Placement) -> float:
-    """Return where the arrow of gravity stands, inches."""
+    """Return the position of the gravity arrow, inches."""
     return min(place.x(scene.pillar.length) + 1.5, WIDTH - 0.3)
 
 
 def gravity_words(gravity: Gravity | GravityInPlane) -> str:
-    """Return what is written beside the arrow of gravity."""
+    """Return the label of the gravity arrow."""
     return f"{gravity.acceleration:g} m/s²"
 
 

@@ -5,20 +5,20 @@ from typing import NamedTuple
 from cases.schema.scene import Scene
 
 WIDTH, HEIGHT = 7.3, 1.82  # inches of the drawing
-SIDES = 0.95  # inches beside the pillar: its load and what holds it
+SIDES = 0.95  # inches beside the pillar, for its load and supports
 THICK, SQUAT = 0.42, 0.6  # inches across the pillar: at least, and at most
-BASE = 0.6  # inches under the pillar: its scale
+BASE = 0.6  # inches below the pillar, for its scale
 
 
 class Placement(NamedTuple):
-    """Where the pillar is: x of its start (inches), inches a metre along it, inches across."""
+    """Position of the pillar: x of its start (inches), inches per metre along it, inches across."""
 
     start: float
     scale: float
     thick: float
 
     def x(self, y: float) -> float:
-        """Return where a section is."""
+        """Return the x of a section, inches."""
         return self.start + self.scale * y
 
     @property
@@ -38,7 +38,7 @@ class Placement(NamedTuple):
 
 
 def placement(scene: Scene) -> Placement:
-    """Return where a pillar is drawn: to scale in both directions where that leaves it visible."""
+    """Return the placement of a pillar, to scale in both directions if it is then visible."""
     room, pillar = WIDTH - 2 * SIDES, scene.pillar
     scale = min(room / pillar.length, SQUAT / pillar.side)
     return Placement(SIDES, scale, max(THICK, scale * pillar.side))

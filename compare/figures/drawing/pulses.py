@@ -14,7 +14,7 @@ UNITS = {"stress": "Pa", "force": "N/m", "velocity": "m/s", "acceleration": "m/s
 
 
 def draw_pulse(ax: Axes, pulse: Pulse, duration: float, words: str = "load") -> None:
-    """Draw a load or wave over time, to a little after its end; words : what it is."""
+    """Draw a load or wave over time, to a little after its end; words : its label."""
     time, values = pulse_curve(pulse, duration)
     unit = unit_for(UNITS[pulse.quantity], 1.001 * float(np.abs(values).max()))
     ax.axhline(0, color="#bbbbbb", linewidth=0.6)
@@ -25,7 +25,7 @@ def draw_pulse(ax: Axes, pulse: Pulse, duration: float, words: str = "load") -> 
 
 
 def pulse_curve(pulse: Pulse, duration: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return times (s) and a load or wave at them, SI, from its start to a little after its end.
+    """Return times (s) and the load or wave there, SI, from its start to a little after its end.
 
     duration : of the scene, s. An extreme load is scaled, see `cases.loads.load_history`.
     """

@@ -20,7 +20,7 @@ from compare.figures.drawing.rock_mass_actions import draw_actions
 from compare.figures.drawing.symbols import EDGE, INK, RECEIVER, ROCK
 from compare.figures.export import blank
 
-#: Of joint sets, one after the other; told apart under every colour blindness (Tol 2021, bright).
+#: Colours of joint sets, in order; safe for all kinds of colour blindness (Tol 2021, bright).
 SETS = ("#4477aa", "#ee6677", "#228833", "#aa3377", "#ccbb44", "#66ccee")
 #: Line styles of sides by boundary condition: width (points) and dashes.
 SIDES: dict[str, tuple[float, Any]] = {
@@ -29,16 +29,16 @@ SIDES: dict[str, tuple[float, Any]] = {
     "fixed": (3.4, "-"),
     "periodic": (1.4, (0, (1.0, 1.5))),
 }
-#: Of the rock of regions, one after the other.
+#: Colours of the rock of regions, in order.
 REGIONS = ("#cfc8b8", "#b9c4cc", "#d9cfe0", "#c4d2bd")
-MANY = 3000  # contacts, beyond which they are an image in the drawing
-WIDTH, BESIDE, TALLEST = 6.2, 2.6, 6.0  # inches of the drawing, of what stands beside it
+MANY = 3000  # contacts above which they are an image in the drawing
+WIDTH, BESIDE, TALLEST = 6.2, 2.6, 6.0  # inches of the drawing, and of the column beside it
 MARGIN, HEADING, LEGEND_ROW = 0.62, 0.25, 0.19  # inches
-OVER = 0.16  # of the domain's size, around it: arrows
+OVER = 0.16  # margin for arrows, of the domain's size
 
 
 class Drawn(NamedTuple):
-    """A rock mass with its blocks, and the variants that look like it, in words."""
+    """A rock mass with its blocks, and in words the variants with the same drawing."""
 
     words: str
     scene: RockMass
@@ -46,12 +46,12 @@ class Drawn(NamedTuple):
 
 
 def drawn(words: str, scene: RockMass) -> Drawn:
-    """Return a rock mass to be drawn, cut into blocks."""
+    """Return a rock mass for drawing, cut into blocks."""
     return Drawn(words, scene, partition_of(scene))
 
 
 def appearance(scene: RockMass) -> str:
-    """Return what decides how a rock mass is drawn."""
+    """Return everything that determines the drawing of a rock mass."""
     seen = (
         "domain",
         "regions",
@@ -78,7 +78,7 @@ def figure_of(groups: list[Drawn]) -> Figure:
 
 
 def _height(one: Drawn) -> float:
-    """Return how tall a row is, inches: the domain to scale, and room for what stands beside."""
+    """Return the height of a row, inches: the domain to scale, and room for its side column."""
     low, high = _extent(one.partition)
     across, up = (1 + 2 * OVER) * (high - low)
     drawing = min(TALLEST, (WIDTH - MARGIN) * float(up / across)) + MARGIN
@@ -141,7 +141,7 @@ def _draw_domain(ax: Axes, one: Drawn) -> None:
 
 
 def _draw_receivers(ax: Axes, scene: RockMass, size: np.ndarray) -> None:
-    plain = {"facecolor": ROCK, "edgecolor": "none", "pad": 0.5}  # no joint runs through words
+    plain = {"facecolor": ROCK, "edgecolor": "none", "pad": 0.5}  # no joint crosses text
     for places, marker in ((scene.record.points, "o"), (scene.record.joints, "^")):
         for x, y in places:
             ax.plot([x], [y], marker, color=RECEIVER, markersize=4.5, zorder=8)
@@ -151,7 +151,7 @@ def _draw_receivers(ax: Axes, scene: RockMass, size: np.ndarray) -> None:
 
 
 def _joint_lines(partition: Partition, index: int) -> np.ndarray:
-    """Return the contacts of a set [n, 2, 2], m; -1: the cuts through intact rock."""
+    """Return the contacts of a set [n, 2, 2], m; -1: cuts through intact rock."""
     of = partition.contacts
     own = of.joint_set == index
     return np.stack([of.start[own], of.end[own]], axis=1)
@@ -207,7 +207,7 @@ def _legend(one: Drawn) -> list[Line2D]:
 
 
 def caption(scene: RockMass) -> str:
-    """Return what is drawn, in words."""
+    """Return the description of the drawing."""
     sets = "; ".join(_set_words(one) for one in scene.joint_sets)
     named = zip(scene.regions, rocks_of(scene), strict=False)  # the last is [rock]
     regions = "; ".join(f"{one.name}: {_rock_words(own)}" for one, own in named)
@@ -238,7 +238,7 @@ def _set_words(one: Any) -> str:
 
 
 def table(one: Drawn) -> pd.DataFrame:
-    """Return every line and receiver that is drawn, from place to place."""
+    """Return every drawn line and receiver with its end points."""
     partition, scene = one.partition, one.scene
     rows: list[tuple[Any, ...]] = []
     for index, name in [(-1, "no joint"), *enumerate(partition.joint_sets)]:

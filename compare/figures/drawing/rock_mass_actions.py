@@ -10,12 +10,12 @@ from compare.figures.drawing import symbols
 from compare.figures.drawing.actions import gravity_words
 from compare.figures.drawing.symbols import LOAD, SOFT
 
-LENGTH, SHORT = 0.12, 0.05  # of the domain's size: arrows of waves, and of the rest
+LENGTH, SHORT = 0.12, 0.05  # of the domain's size: arrows of waves, and other arrows
 MOST = 24  # arrows of one pressure
 
 
 def draw_actions(ax: Axes, scene: RockMass, low: np.ndarray, high: np.ndarray) -> None:
-    """Draw everything that acts on a rock mass that reaches from `low` to `high`, m."""
+    """Draw all actions on a rock mass that extends from `low` to `high`, m."""
     size = float((high - low).min())
     for wave in scene.waves:
         _draw_wave(ax, wave, low, high, size)
@@ -33,8 +33,8 @@ def draw_actions(ax: Axes, scene: RockMass, low: np.ndarray, high: np.ndarray) -
 
 
 def _draw_wave(ax: Axes, wave: Wave, low: np.ndarray, high: np.ndarray, size: float) -> None:
-    """Draw an arrow that ends where a line through the middle, along the travel, enters; an S wave
-    has the motion of its particles beside it."""
+    """Draw an arrow to the entry point of a line through the middle along the direction of travel;
+    an S wave has its particle motion beside it."""
     middle, n = (low + high) / 2, np.array(wave.direction)
     with np.errstate(divide="ignore"):
         reach = float(np.min((high - low) / 2 / np.abs(n)))
@@ -67,7 +67,7 @@ def _draw_load(ax: Axes, scene: RockMass, load: PlaneLoad, size: float) -> None:
     length = np.hypot(*along.T)
     out = np.stack([along[:, 1], -along[:, 0]], axis=1) / length[:, None]
     if load.opening is not None:
-        out = -out  # its edges run around the opening, with the rock outside
+        out = -out  # its edges go around the opening, with the rock outside
     counts = np.maximum(1, np.round(MOST * length / length.sum())).astype(int)
     for a, step, normal, count in zip(start, along, out, counts, strict=True):
         for k in range(count):

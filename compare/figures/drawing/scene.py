@@ -1,5 +1,5 @@
-"""The scene as a textbook draws it: a pillar from the side, its section, its load over time; a rock
-mass as it is."""
+"""The scene drawn as in a textbook: a pillar from the side, its section, its load over time; a rock
+mass in its plane."""
 
 from collections.abc import Callable
 from functools import partial
@@ -19,8 +19,8 @@ from compare.figures.figure import SceneFigure
 from compare.figures.subplots import variant_names
 from compare.misfit.pairs import Comparison
 
-MOST = 4  # drawings of one scene
-GAP, LOAD_WIDTH = 0.45, 1.75  # inches before and of the load over time
+MOST = 4  # drawings per scene
+GAP, LOAD_WIDTH = 0.45, 1.75  # inches of the gap before, and of the load over time
 HEADING = 0.22  # inches of a heading
 TITLE = "The scene"
 SEEN = (
@@ -30,7 +30,7 @@ SEEN = (
 
 
 def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
-    """Return the picture of a scene; variants that look alike share a drawing."""
+    """Return the figure of a scene; variants with the same appearance share a drawing."""
     if not isinstance(comparisons[0].scene, Scene):
         return _of_rock_mass(name, comparisons)
     groups = _groups(comparisons, _appearance)
@@ -44,7 +44,7 @@ def scene_figure(name: str, comparisons: list[Comparison]) -> SceneFigure:
 
 
 def _of_rock_mass(name: str, comparisons: list[Comparison]) -> SceneFigure:
-    from compare.figures.drawing import rock_mass  # with shapely, which no pillar needs
+    from compare.figures.drawing import rock_mass  # imports shapely, not needed for pillars
 
     groups = [rock_mass.drawn(*one) for one in _groups(comparisons, rock_mass.appearance)]
     return SceneFigure(
@@ -59,7 +59,7 @@ def _of_rock_mass(name: str, comparisons: list[Comparison]) -> SceneFigure:
 def _groups(
     comparisons: list[Comparison], appearance: Callable[[Any], str]
 ) -> list[tuple[str, Any]]:
-    """Return names of variants and their scene, one entry for each that looks different."""
+    """Return names of variants and their scene, one entry per appearance."""
     seen: dict[str, tuple[list[str], Any]] = {}
     for words, comparison in zip(variant_names(comparisons), comparisons, strict=True):
         scene = comparison.scene

@@ -1,4 +1,4 @@
-"""The section of the pillar at its start, true to shape: contact points and where the load acts."""
+"""The section of the pillar at its start, to scale: contact points and point of the load."""
 
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
@@ -15,16 +15,16 @@ MIDDLE = 0.75, 0.87
 
 
 def appearance(scene: Scene) -> tuple[object, ...]:
-    """Return all that the drawing of a scene's section shows."""
+    """Return everything that determines the drawing of a scene's section."""
     joints = scene.joints.contact_points, scene.joints.point_rule
     return (*joints, scene.pillar.side, scene.load.model_dump(), is_spatial(scene))
 
 
 def draw_section(ax: Axes, scene: Scene) -> None:
-    """Draw the section seen against y, x up and z to the right, in axes of WIDTH x HEIGHT inches.
+    """Draw the section viewed against y, x up and z to the right, in axes of WIDTH x HEIGHT inches.
 
-    Contact points, one part each of the SVG's group `contacts`, only where the scene moves in
-    space: along the axis all points of a face do the same.
+    Contact points, one part each of the SVG's group `contacts`, are drawn only for spatial motion:
+    in axial motion all points of a face behave the same.
     """
     ax.set(xlim=(0, WIDTH), ylim=(0, HEIGHT), aspect="equal")
     ax.axis("off")
@@ -61,5 +61,5 @@ def _draw_load(ax: Axes, scene: Scene) -> None:
         symbols.couple(ax, MIDDLE, 0.22)
         return
     at = MIDDLE if load.is_motion else _at(scene, *load.at)
-    # The tail where nothing points at the reader, else the tip.
+    # The tail, unless the force points at the reader: the tip.
     symbols.along_or_across(ax, at, (depth, across), along, 0.5)

@@ -1,7 +1,7 @@
 """The pillar from the side, drawn from its scene: blocks, joints, layers, ends, load, receivers.
 
 y is to the right and x up, so that z points into the drawing. The unit of the drawing is the inch;
-along the pillar it is to scale, across where there is room.
+it is to scale along the pillar, and across it if there is room.
 """
 
 from itertools import pairwise
@@ -21,17 +21,17 @@ from compare.figures.drawing.placement import HEIGHT, WIDTH, Placement, placemen
 from compare.figures.drawing.symbols import CHARACTER, EDGE, INK, LAYER, RECEIVER, ROCK, SOFT, note
 from compare.figures.units import unit_for
 
-MOST = 400  # blocks that are drawn one by one
-SHADES = (ROCK, "#cfc7b5", "#dcdde0")  # of segments, in turn
-ROOM = 0.5  # inches of what stands beyond an end
-ABOVE = 0.33  # inches of the labels over the pillar
+MOST = 400  # blocks that are drawn individually
+SHADES = (ROCK, "#cfc7b5", "#dcdde0")  # of segments, cyclic
+ROOM = 0.5  # inches beyond an end
+ABOVE = 0.33  # inches of the labels above the pillar
 
 
 def draw_strip(ax: Axes, scene: Scene) -> None:
     """Draw a scene into axes of WIDTH x HEIGHT inches.
 
-    Groups of the SVG and their parts: `blocks`, `joints`, `layers`, `stress` and `velocity`, one a
-    receiver.
+    Groups of the SVG and their parts: `blocks`, `joints`, `layers`, `stress` and `velocity`, one
+    per receiver.
     """
     ax.set(xlim=(0, WIDTH), ylim=(0, HEIGHT), aspect="equal")
     ax.axis("off")
@@ -58,8 +58,8 @@ def draw_strip(ax: Axes, scene: Scene) -> None:
 
 
 def block_edges(scene: Scene) -> list[float]:
-    """Return y of the edges of the blocks that are drawn, m: all, or one for a pillar of many; of
-    segments without joints, and of many blocks, one a segment."""
+    """Return y of the edges of drawn blocks, m: of all, or a single one for a pillar with many; one
+    per segment for segments without joints or with many blocks."""
     if not scene.is_uniform:
         every = contacts(scene)
         edges = every[np.r_[True, ~welds(scene), True]]
@@ -70,7 +70,7 @@ def block_edges(scene: Scene) -> list[float]:
 
 
 def _shades(scene: Scene) -> str | list[str]:
-    """Return the colour of the blocks, or of each that is drawn where segments differ."""
+    """Return the colour of the blocks, or of each drawn block if segments differ."""
     if not scene.segments:
         return ROCK
     stops = [one.stop for one in regions(scene)]
@@ -111,7 +111,7 @@ def _draw_end(ax: Axes, end: str, place: Placement, x: float, outward: int) -> N
 
 
 class Label(NamedTuple):
-    """A label over x (inches), and its colour."""
+    """A label at x (inches), and its colour."""
 
     x: float
     text: str
@@ -140,14 +140,14 @@ def draw_receivers(ax: Axes, scene: Scene, place: Placement) -> None:
 
 
 def _right(scene: Scene, place: Placement) -> float:
-    """Return how far to the right labels may reach, inches."""
+    """Return the right limit of labels, inches."""
     if scene.gravity is None or not scene.gravity.acceleration:
         return WIDTH
     return gravity_at(scene, place) - ASIDE - CHARACTER * (len(gravity_words(scene.gravity)) + 1)
 
 
 def _of_layer(layer: SoftLayer, spacing: float) -> str:
-    """Return what makes a joint differ: its stiffness, else the strength that is its own."""
+    """Return the differing property of a joint: its stiffness, else its own strength."""
     stiffness = layer.own_stiffness(spacing)
     if stiffness is not None:
         return f"layer, {_number(stiffness, 'Pa/m')}"
@@ -167,8 +167,8 @@ def _number(value: float, si: str) -> str:
 
 
 def _write(ax: Axes, labels: list[Label], place: Placement, right: float) -> None:
-    """Write labels in one line above the pillar, moved aside where they would meet; none at all
-    where there is no room for them: the scale tells where receivers are."""
+    """Write labels in one line above the pillar, moved apart where they would overlap; none if
+    there is no room: the scale then shows where receivers are."""
     widths = np.array([CHARACTER * (len(label.text) + 1) for label in labels])
     if not labels or widths.sum() > right:
         return
@@ -183,10 +183,10 @@ def _write(ax: Axes, labels: list[Label], place: Placement, right: float) -> Non
 
 
 def _apart(wanted: np.ndarray, widths: np.ndarray, right: float) -> np.ndarray:
-    """Return sorted places moved as far apart as widths ask for, between 0 and `right`.
+    """Return sorted places moved apart as required by the widths, between 0 and `right`.
 
-    They are moved as little as can be, in the sum of squares: less what stands before each, this is
-    isotonic regression (Barlow & Brunk 1972), here by its min-max formula.
+    The sum of squares of the shifts is minimal: after subtracting the widths before each place,
+    this is isotonic regression (Barlow & Brunk 1972), here by its min-max formula.
     """
     before = np.concatenate([[0.0], np.cumsum((widths[1:] + widths[:-1]) / 2)])
     free, n = wanted - before, len(wanted)
@@ -198,7 +198,7 @@ def _apart(wanted: np.ndarray, widths: np.ndarray, right: float) -> np.ndarray:
 
 
 def ticks(scene: Scene, place: Placement) -> list[float]:
-    """Return what the scale is marked with, m."""
+    """Return the tick values of the scale, m."""
     length = scene.pillar.length
     count = max(2, round(place.scale * length / 0.55))
     found = MaxNLocator(count, steps=[1, 2, 2.5, 5, 10]).tick_values(0, length)
@@ -206,7 +206,7 @@ def ticks(scene: Scene, place: Placement) -> list[float]:
 
 
 def draw_scale(ax: Axes, scene: Scene, place: Placement) -> None:
-    """Draw y in metres under the pillar, and what the pillar measures."""
+    """Draw y in metres below the pillar, and the pillar's dimensions."""
     pillar, level = scene.pillar, place.bottom - 0.14
     end = place.x(pillar.length)
     ax.plot([place.start, end], [level, level], color=INK, linewidth=0.8)

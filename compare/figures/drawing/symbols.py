@@ -41,8 +41,8 @@ def arrow(ax: Axes, tail: Point, tip: Point, colour: str = LOAD, style: str = "-
 
 
 def along_or_across(ax: Axes, at: Point, toward: Point, depth: float, length: float) -> None:
-    """Draw a force that acts at a point: an arrow that ends there, and where it also points out of
-    the drawing (depth above 0, toward the reader) or into it, a circle with a dot or a cross."""
+    """Draw a force at a point: an arrow that ends there and, if it also points out of the drawing
+    (depth above 0, toward the reader) or into it, a circle with a dot or a cross."""
     size = hypot(*toward)
     if size > 0.05:
         tail = (at[0] - length * toward[0], at[1] - length * toward[1])
@@ -80,7 +80,7 @@ def couple(ax: Axes, at: Point, radius: float) -> None:
 
 
 def wall(ax: Axes, x: float, middle: float, height: float, outward: int) -> None:
-    """Draw a wall that begins at x and is behind it, to the left (outward -1) or the right (1)."""
+    """Draw a wall with its face at x, extending to the left (outward -1) or the right (1)."""
     depth = 0.12
     left = x if outward > 0 else x - depth
     ax.add_patch(
@@ -99,7 +99,7 @@ def wall(ax: Axes, x: float, middle: float, height: float, outward: int) -> None
 
 
 def spring(ax: Axes, start: Point, end: Point) -> None:
-    """Draw a spring between two points on a level."""
+    """Draw a spring between two points at the same height."""
     (a, y), (b, _) = start, end
     turns = np.array([0, 0, 1, -1, 1, -1, 0, 0]) * 0.06
     at = a + (b - a) * np.array([0, 0.15, 0.25, 0.42, 0.58, 0.75, 0.85, 1])
@@ -107,7 +107,7 @@ def spring(ax: Axes, start: Point, end: Point) -> None:
 
 
 def dashpot(ax: Axes, start: Point, end: Point) -> None:
-    """Draw a dashpot between two points on a level: the piston's rod at `start`."""
+    """Draw a dashpot between two points at the same height: the piston's rod at `start`."""
     (a, y), (b, _) = start, end
     cup, piston, half = a + 0.45 * (b - a), a + 0.62 * (b - a), 0.075
     _path(ax, [a, piston], [y, y])

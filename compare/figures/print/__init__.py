@@ -1,1 +1,1 @@
-"""Figures for papers: of a column's or a page's width, their fonts embedded, in two languages."""
+"""Figures for papers: one column or one page wide, with embedded fonts, in two languages."""

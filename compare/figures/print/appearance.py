@@ -1,4 +1,4 @@
-"""The appearance of a figure for a paper: its widths, its letters, its lines.
+"""The appearance of a figure for a paper: widths, fonts, lines.
 
 The widths are those of Elsevier's artwork (International Journal of Rock Mechanics and Mining
 Sciences and others): 90 mm for one column, 190 mm for two, at most 240 mm high.
@@ -14,10 +14,10 @@ POINT = 25.4 / 72  # mm
 
 
 class Appearance(NamedTuple):
-    """widths : mm, of one and of two columns. most : panels beside each other, at most, in each.
-    tallest : mm. panel, least : mm, height of a panel as it should be and at least. text, small :
+    """widths : mm, of one and of two columns. most : largest number of panels side by side in each.
+    tallest : mm. panel, least : mm, preferred and smallest height of a panel. text, small :
     points, of titles and labels, and of ticks and legend. handle : length of a line in the legend,
-    in letters. prints : whether dashes tell curves apart without colour. dpi : of a PNG."""
+    in letters. prints : whether dashes distinguish curves without colour. dpi : of a PNG."""
 
     widths: tuple[float, float]
     most: tuple[int, int]
@@ -31,7 +31,7 @@ class Appearance(NamedTuple):
     dpi: int
 
     def rc(self, families: list[str]) -> dict[Any, Any]:
-        """Return matplotlib's settings; families : of the fonts, the first that has a letter."""
+        """Return matplotlib's settings; families : of the fonts, in order of preference."""
         return RC | {
             "font.family": families,
             "font.size": self.text,
@@ -51,7 +51,7 @@ class Appearance(NamedTuple):
         }
 
     def of_line(self, name: str) -> dict[str, Any]:
-        """Return how a solution's curve is drawn, as arguments of matplotlib's plot."""
+        """Return the line style of a solution, as arguments of matplotlib's plot."""
         line = style(name).of_line()
         if self.prints and name in names():
             own = solver(name).line

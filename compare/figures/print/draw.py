@@ -1,4 +1,4 @@
-"""A figure for a paper, drawn from comparisons: one panel a variant and receiver."""
+"""A figure for a paper, drawn from comparisons: one panel per variant and receiver."""
 
 import matplotlib
 import numpy as np
@@ -18,7 +18,7 @@ from compare.figures.subplots import UNITS, Panel, panels
 from compare.figures.units import Unit, unit_for
 from compare.misfit.pairs import Comparison
 
-MEASURED = 200  # dots an inch that letters are measured with
+MEASURED = 200  # dots per inch for measuring text
 
 
 def draw(
@@ -27,7 +27,7 @@ def draw(
     """Return the figure.
 
     columns : 1 or 2, of the page. language : "en" or "zh".
-    Raises SceneError where it would be taller than a page, and where no font here has its letters.
+    Raises SceneError if it would be taller than a page, or if no installed font has its letters.
     """
     words, families = WORDS[language], families_of(language)
     every = [panel for row in panels(comparisons) for panel in row]
@@ -66,7 +66,7 @@ def _letter(i: int) -> str:
 
 
 def _units(found: list[Panel]) -> dict[str, Unit]:
-    """Return the unit of every quantity that suits its largest value."""
+    """Return a suitable unit of every quantity, from its largest value."""
     peaks: dict[str, float] = {}
     for panel in found:
         for curve in [*panel.curves.values(), *panel.given.values()]:
@@ -76,7 +76,7 @@ def _units(found: list[Panel]) -> dict[str, Unit]:
 
 
 def families_of(language: str) -> list[str]:
-    """Return the fonts' families; raises SceneError where there is none for a language."""
+    """Return the font families; raises SceneError if there is none for a language."""
     found = fonts.families()
     if len(found) == 1 and language == "zh":
         allowed = f"needs a font with Chinese characters: {fonts.HINT}"
@@ -93,13 +93,13 @@ def _draw_panel(ax: Axes, panel: Panel, appearance: Appearance, unit: Unit) -> N
         if curve is not None:
             ax.plot(1e3 * curve.index, curve.values / unit.size, **appearance.of_given(k))
     ax.margins(x=0)
-    ax.yaxis.set_major_locator(MaxNLocator(4))  # the same whatever height the panel is given
+    ax.yaxis.set_major_locator(MaxNLocator(4))  # independent of the panel's height
 
 
 def _label_times(
     axes: list[Axes], places: list[Cell], comparisons: list[Comparison], words: Words
 ) -> None:
-    """Write times below all panels; where they are the same, below the lowest of each column."""
+    """Label times below all panels or, if equal, below the lowest of each column."""
     alike = len({comparison.scene.time.duration for comparison in comparisons}) == 1
     for ax, (row, column) in zip(axes, places, strict=True):
         if alike and (row + 1, column) in places:
@@ -127,7 +127,7 @@ def _too_many(count: int, appearance: Appearance, first: Comparison) -> SceneErr
 
 
 def _refuse_unknown_letters(given: list[str], families: list[str]) -> None:
-    """Raise SceneError where a letter of what users have named is in no font."""
+    """Raise SceneError if no font has a letter of the users' names."""
     text = "".join(given)
     for file in (fonts.file_of(family) for family in families):
         text = "".join(fonts.missing(file, text))

@@ -1,4 +1,4 @@
-"""Layout of a figure for a paper: its panels, its titles, its legend."""
+"""Layout of a figure for a paper: panels, titles, legend."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -15,14 +15,14 @@ from matplotlib.ticker import MaxNLocator
 from compare.figures.print.appearance import MM, POINT, Appearance
 
 SPACELESS = "\u2e80-\u9fff\uac00-\ud7a3\uf900-\ufaff\uff00-\uffef"  # scripts without spaces
-#: What stays together: a word or a letter of such a script, with the space or bracket before it
-#: and the stops behind it. A no-break space is no space.
+#: Unbreakable unit: a word, or a letter of such a script, with the space or bracket before it and
+#: the punctuation after it. A no-break space does not separate.
 PIECE = re.compile(f"[ \t\n]*[（《「]*(?:[{SPACELESS}]|[^ \t\n{SPACELESS}]+)[，。、；：）》」]*")
 LETTER, LINE = 0.62, 1.25  # width of a letter on average, and height of a line, over its size
-FREE = 2  # lines more of a title that take the place of times below
+FREE = 2  # additional lines of a title that fit in the space of the times
 HANDLE, APART = 0.5, 1.2  # in a legend, letters from a line to its text, and between columns
-BESIDE = 14.0  # mm beside a panel for its ordinate
-TICK = 10.0  # mm along the axis of times for each of its numbers, at least
+BESIDE = 14.0  # mm beside a panel, for its ordinate
+TICK = 10.0  # least mm per number along the time axis
 
 Cell = tuple[int, int]
 
@@ -33,8 +33,8 @@ def cells(
     """Return the row and column of every panel, those of a variant one after the other.
 
     titles : of the panels of each variant. columns : of the page. legend : mm above the panels. As
-    few panels stand beside each other as fit the page's height. Each variant begins a row where it
-    fills one and all of them fit. Empty where they do not.
+    few panels are side by side as the page's height allows. Each variant begins a row if it fills
+    one and all of them fit. Empty if they do not fit.
     """
     counts = [len(group) for group in titles]
     longest = max((title for group in titles for title in group), key=_letters)
@@ -51,7 +51,7 @@ def cells(
 
 
 def _letters(text: str) -> int:
-    """Return how long a text is; a letter of a script without spaces is as wide as two."""
+    """Return the length of a text; letters of scripts without spaces count twice."""
     return len(text) + len(re.findall(f"[{SPACELESS}]", text))
 
 
@@ -64,7 +64,7 @@ def _filled(groups: Sequence[int], across: int) -> list[Cell]:
 
 
 def add_axes(figure: Figure, places: list[Cell]) -> list[Axes]:
-    """Add axes at cells, and none at the others of their rows and columns."""
+    """Add axes at the given cells only."""
     rows, across = (max(place) + 1 for place in zip(*places, strict=True))
     grid = figure.subplots(rows, across, squeeze=False)
     for cell in {(i, j) for i in range(rows) for j in range(across)} - set(places):
@@ -73,7 +73,7 @@ def add_axes(figure: Figure, places: list[Cell]) -> list[Axes]:
 
 
 def set_titles(axes: list[Axes], titles: list[str]) -> None:
-    """Put titles over panels, in as many lines as each needs, and as many times as fit below."""
+    """Set titles above panels, in as many lines as needed, and as many times as fit below."""
     for ax, title in zip(axes, titles, strict=True):
         width = ax.get_window_extent().width
         drawn = ax.set_title("", pad=3)
@@ -83,7 +83,7 @@ def set_titles(axes: list[Axes], titles: list[str]) -> None:
 
 
 def add_legend(figure: Figure, entries: list[Line2D], appearance: Appearance) -> float:
-    """Put the legend above the panels, as wide as fits; return its height, mm."""
+    """Add the legend above the panels, with as many columns as fit; return its height, mm."""
     letter = appearance.small / 72 * figure.dpi  # pixels
     width, beside = 0.98 * figure.bbox.width, (appearance.handle + HANDLE) * letter
     measure, widths = figure.text(0, 0, "", fontsize=appearance.small), []
@@ -109,7 +109,7 @@ def add_legend(figure: Figure, entries: list[Line2D], appearance: Appearance) ->
 
 
 def _highest(figure: Figure, legend: Legend) -> float:
-    """Return a legend's height, mm: at 72 dots an inch, as in a PDF, rows may be rounded up."""
+    """Return a legend's height, mm: at 72 dots per inch, as in a PDF, rows may be rounded up."""
     measured, found = figure.dpi, []
     for dpi in (72.0, measured):
         figure.dpi = dpi
@@ -118,7 +118,7 @@ def _highest(figure: Figure, legend: Legend) -> float:
 
 
 def _columns(widths: list[float], apart: float, room: float) -> int:
-    """Return in how many columns, `apart` from each other, entries of some widths fit."""
+    """Return the number of columns, `apart` from each other, in which entries fit."""
 
     def width(count: int) -> float:
         return sum(column.max() + apart for column in np.array_split(widths, count)) - apart
@@ -129,7 +129,7 @@ def _columns(widths: list[float], apart: float, room: float) -> int:
 def arrange(
     figure: Figure, appearance: Appearance, axes: list[Axes], places: list[Cell], legend: float
 ) -> None:
-    """Give the figure its height and the panels their places below the legend of so many mm."""
+    """Set the figure's height and place the panels below the legend (height in mm)."""
     rows = 1 + max(row for row, _ in places)
     lines = [ax.get_title(loc="left").count("\n") for ax in axes]
     by_row = groupby(zip(places, lines, strict=True), key=lambda one: one[0][0])
@@ -141,14 +141,14 @@ def arrange(
 
 
 def place(figure: Figure, panels: float, legend: float) -> None:
-    """Put the panels below the legend; both heights in mm."""
+    """Place the panels below the legend; both heights in mm."""
     top = panels / (panels + legend)
     figure.tight_layout(rect=(0, 0, 1, top), pad=0.3, h_pad=0.6, w_pad=0.8)
 
 
 def _in_lines(text: str, drawn: Text, width: float) -> str:
-    """Return a text in lines no wider than `width` pixels as `drawn` writes them; a dollar sign
-    begins no formula."""
+    """Return a text in lines of at most `width` pixels in the font of `drawn`; dollar signs are
+    literal."""
 
     def fits(line: str) -> bool:
         drawn.set_text(_plain(line))
@@ -162,8 +162,8 @@ def _plain(text: str) -> str:
 
 
 def wrapped(text: str, fits: Callable[[str], bool]) -> list[str]:
-    """Return lines that fit, broken at spaces or beside a Chinese letter, within a word where it
-    alone is too long for a line."""
+    """Return lines that fit, broken at spaces or beside a Chinese letter, within a word only if it
+    is longer than a line."""
     lines = [""]
     for piece in PIECE.findall(text):
         if fits((lines[-1] + piece).lstrip()):

@@ -24,14 +24,14 @@ from compare.misfit.pairs import Comparison
 from compare.runs.jobs import names_of
 from compare.runs.output import refuse_foreign, write
 
-#: What a file of each kind begins with: only such a one is replaced.
+#: First bytes of a file of each kind: only such a file is overwritten.
 BEGINS = {"pdf": (b"%PDF",), "svg": (b"<?xml", b"<svg"), "png": (b"\x89PNG",)}
 
 
 def save(figure: Figure, path: Path, kind: str, title: str, dpi: int) -> Path:
-    """Write a figure; kind : "pdf", "svg" or "png", which has so many dots an inch.
+    """Write a figure; kind : "pdf", "svg" or "png", the last with `dpi` dots per inch.
 
-    Raises SceneError where a file of another kind is in its place.
+    Raises SceneError if a file of another kind is in its place.
     """
     refuse_foreign(path, BEGINS[kind])
     about = {"Title": title, "Creator": f"jointwave {version('jointwave')}"}
@@ -57,7 +57,7 @@ def _svg(figure: Figure, about: dict[str, str]) -> str:
 
 
 def _letters(figure: Figure) -> dict[str, str]:
-    """Return the letters that a drawn figure takes from each family: the first that has them."""
+    """Return the letters of a figure by font family: the first family that has them."""
     text = "".join(part.get_text() for part in figure.findobj(Text))
     families = {family: None for part in figure.findobj(Text) for family in part.get_fontfamily()}
     found = {}
@@ -69,7 +69,7 @@ def _letters(figure: Figure) -> dict[str, str]:
 
 
 def _refuse_postscript(figure: Figure) -> None:
-    """Raise SceneError where a PDF cannot take a font as TrueType."""
+    """Raise SceneError if a PDF cannot embed a font as TrueType."""
     for family in _letters(figure):
         if not fonts.is_true_type(family):
             allowed = (
@@ -80,8 +80,8 @@ def _refuse_postscript(figure: Figure) -> None:
 
 
 def _face(family: str, letters: str) -> str:
-    """Return the rule that embeds the letters of a font, as WOFF in base64."""
-    logging.getLogger("fontTools").setLevel(logging.ERROR)  # it tells of tables that it leaves out
+    """Return the CSS rule that embeds the letters of a font, as WOFF in base64."""
+    logging.getLogger("fontTools").setLevel(logging.ERROR)  # it reports dropped tables
     options = subset.Options(flavor="woff", layout_features=["*"], notdef_outline=True)
     font = TTFont(fonts.file_of(family), fontNumber=fonts.number_of(family), recalcTimestamp=False)
     subsetter = subset.Subsetter(options)
@@ -143,7 +143,7 @@ def make(
 
 def make_bands(folder: Path, engines: list[str], request: FigureRequest) -> Path:
     """Draw the bands of an ensemble from its folder and write the figure; engines : "dem",
-    "continuum", "exact"; empty: all that solved it."""
+    "continuum", "exact"; empty: all in the folder."""
     from compare.experiments.sweep.diagram import WAVEFORMS, bands, statistics_in
 
     kind, appearance = request.format, STYLES[request.style]

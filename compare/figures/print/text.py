@@ -10,10 +10,9 @@ from compare.figures.units import unit_for
 class Words(NamedTuple):
     """The words of one language.
 
-    solutions : the field of a solver's words that has its label. quantities : by name. place : with
-    {quantity} and {at}. static : with {value}, what a waveform is drawn without. parts : of the
-    variants' names that are ours; those of the user stay as they are. comma : between place and
-    variant.
+    solutions : the field of a solver's words with its label. quantities : by name. place : with
+    {quantity} and {at}. static : with {value}, the static state not drawn. parts : of variants'
+    names from jointwave; those of the user are not translated. comma : between place and variant.
     """
 
     solutions: str
@@ -25,7 +24,7 @@ class Words(NamedTuple):
     comma: str
 
     def solution(self, name: str) -> str:
-        """Return what a legend calls an engine or exact solution."""
+        """Return the legend label of an engine or exact solution."""
         return getattr(solver(name).words, self.solutions) if name in names() else name
 
     def axis(self, panel: Panel, unit: str) -> str:
@@ -34,7 +33,7 @@ class Words(NamedTuple):
 
     @staticmethod
     def _at(panel: Panel) -> str:
-        """Return where a receiver is: y of a pillar's, x and y of a rock mass's."""
+        """Return a receiver's position: y in a pillar, x and y in a rock mass."""
         at = panel.place.at
         return f"y\u00a0=\u00a0{at[0]:g}" if len(at) == 1 else f"[{at[0]:g},\u00a0{at[1]:g}]"
 
