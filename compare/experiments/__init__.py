@@ -1,4 +1,4 @@
 """Experiments over many runs: studies, sweeps, plans, fits, ablation, robustness, cost."""
 
-#: Studies that are no file.
+#: Studies without a file.
 IN_CODE = ("stability", "oblique-joint", "parallel-joints")

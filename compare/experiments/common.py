@@ -10,11 +10,10 @@ from cases.errors import SceneError, UnstableError
 
 
 class ErrorReference(NamedTuple):
-    """What errors are from.
+    """The reference of errors.
 
-    error : relative, of the reference itself: the bound that a computed solution gives, 0 of a
-    closed form; of a run, how far it is from a coarser one. settings : of a run, "" where the
-    solution is exact.
+    error : relative, of the reference itself: the bound of a computed solution, 0 for a closed
+    form; for a run its distance from a coarser one. settings : of a run, "" for an exact solution.
     """
 
     name: str
@@ -34,9 +33,9 @@ def combinations(values: Mapping[str, Sequence[Any]]) -> Iterator[dict[str, Any]
         yield dict(zip(values, one, strict=True))
 
 
-FAILURES = (SceneError, UnstableError)  # of a scene that cannot be so, or a run that cannot go on
+FAILURES = (SceneError, UnstableError)  # of an invalid scene, or an unstable run
 
 
 def reason_of(error: Exception) -> str:
-    """Return why something could not be run, without where."""
+    """Return why something could not be run, without the place in the scene."""
     return getattr(error, "allowed", str(error))

@@ -20,11 +20,11 @@ Pool = Callable[[], Executor]
 def shared(
     label: str, out: Path | None, workers: int, work: Callable[[Pool | None, Progress], T]
 ) -> T | None:
-    """Return what `work` makes of a pool and a progress bar while a folder is locked.
+    """Return the result of `work(pool, progress)` while a folder is locked.
 
-    label : of the bar. out : the folder; None writes nothing. workers : processes of this machine
-    where MPI has started none; 1: none but this one. Of several MPI processes the others return
-    None when the first is done.
+    label : of the progress bar. out : the folder; None writes nothing. workers : processes of this
+    machine, if MPI has started none; 1: only this one. Of several MPI processes all but the first
+    return None when it is done.
     """
     from compare.cli import terminal
 
@@ -36,8 +36,8 @@ def shared(
 
 
 def _on_pool(processes: Processes, workers: int, work: Callable[[Pool | None], T]) -> T | None:
-    """Return what `work` makes of a pool; of several MPI processes the first works with the others
-    as its pool, and these return None when it has done."""
+    """Return the result of `work(pool)`; the first of several MPI processes uses the others as its
+    pool, and these return None when it is done."""
     if processes.comm is None:
         return work(partial(Workers, workers) if workers > 1 else None)
     from mpi4py.futures import MPICommExecutor
@@ -47,7 +47,7 @@ def _on_pool(processes: Processes, workers: int, work: Callable[[Pool | None], T
 
 
 class Lent(Executor):
-    """An executor that outlives those who use it."""
+    """An executor that is not shut down by its users."""
 
     def __init__(self, executor: Executor) -> None:
         self.submit = executor.submit  # type: ignore[method-assign]

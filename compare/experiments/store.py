@@ -1,7 +1,7 @@
 """The one store of experiments: each point is computed once, on any executor, and saved when done.
 
-A point is saved as a JSON file whose name is a hash of all that decides its result, the program
-included. So an experiment that was interrupted resumes, and one that has changed starts anew.
+A point is saved as a JSON file whose name is a hash of everything that determines its result,
+including the program. An interrupted experiment thus resumes, and a changed one starts afresh.
 """
 
 import hashlib
@@ -27,13 +27,13 @@ T = TypeVar("T")
 
 
 def key(*about: Any) -> str:
-    """Return what tells points apart: a hash of what decides them (JSON) and of this program."""
+    """Return the key of a point: a hash of its determining data (JSON) and of this program."""
     text = json.dumps([*about, program()], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def plain(value: Any) -> Any:
-    """Return a result as JSON can hold it: named tuples as objects, arrays and tuples as lists."""
+    """Return a result in JSON's types: named tuples as objects, arrays and tuples as lists."""
     if hasattr(value, "_asdict"):
         return plain(value._asdict())
     if isinstance(value, dict):
@@ -44,7 +44,7 @@ def plain(value: Any) -> Any:
 
 
 def finite(value: Any) -> Any:
-    """Return the same for a machine: null for NaN and infinity, which JSON does not have."""
+    """Return `plain` with null for NaN and infinity, which JSON does not have."""
     return json.loads(json.dumps(plain(value)), parse_constant=lambda _: None)
 
 
@@ -53,7 +53,7 @@ class Store(Generic[T]):
     """The results of an experiment's points.
 
     form : the type of a result: a NamedTuple, or a list of them. folder : of the files; None:
-    nothing is saved. is_valid : whether a saved result still holds.
+    nothing is saved. is_valid : whether a saved result is still valid.
     """
 
     form: Any
@@ -61,7 +61,7 @@ class Store(Generic[T]):
     is_valid: Callable[[T], bool] = lambda result: True
 
     def file(self, key: str) -> Path | None:
-        """Return the file of a point; None where nothing is saved."""
+        """Return the file of a point; None if nothing is saved."""
         return None if self.folder is None else self.folder / f"{key}.json"
 
     def has(self, key: str) -> bool:
@@ -70,9 +70,9 @@ class Store(Generic[T]):
         return file is not None and file.is_file()
 
     def read(self, key: str) -> T | None:
-        """Return a saved result; None without, or where it no longer holds.
+        """Return a saved result; None without one, or if it is no longer valid.
 
-        Raises SceneError where its file is damaged.
+        Raises SceneError if its file is damaged.
         """
         file = self.file(key)
         if file is None or not file.is_file():
@@ -96,11 +96,11 @@ class Store(Generic[T]):
         rate: str = "",
         lost: T | None = None,
     ) -> list[T]:
-        """Return the results of points, in order; those that are saved are not computed again.
+        """Return the results of points, in order; saved ones are not recomputed.
 
         work : returns the result of a point; a pool's processes import it. pool : makes the
-        executor; None: one after the other, here. rate : what the seconds of a point are remembered
-        by. lost : the result of a point whose process has died, not saved; None: an error.
+        executor; None: sequentially in this process. rate : key of the timings of a point.
+        lost : the result of a point whose process has died, not saved; None: an error.
         """
         keys = [key(point) for point in points]
         found = {name: done for name in keys if (done := self.read(name)) is not None}

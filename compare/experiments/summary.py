@@ -19,13 +19,13 @@ from compare.runs.output import write, write_csv
 
 
 class Summary(NamedTuple):
-    """An experiment as it is shown.
+    """An experiment's summary for display.
 
     name : of its files, and of its section of the page. table : rows of cells under headings.
-    has_text : whether cells are sentences, which the terminal folds.
-    sentences : its findings. failed : a line for each row that failed. facts : for a machine.
+    has_text : whether cells are sentences, which the terminal wraps.
+    sentences : its findings. failed : a line for each row that failed. facts : machine-readable.
     note : about all of it. legend : of the table, on the terminal. about : for the caption of the
-    figure: what it shows, the quantity of its misfits, or its scenes. timed : whether it has
+    figure: its contents, the quantity of its misfits, or its scenes. timed : whether it has
     seconds.
     """
 
@@ -51,8 +51,8 @@ def run_and_show(
     work: Callable[[Pool | None, Progress], Summary],
     as_json: bool,
 ) -> None:
-    """Show the summary that `work` makes of a pool and a progress bar, see `pool.shared`; of
-    several MPI processes the first alone."""
+    """Show the summary returned by `work(pool, progress)`, see `pool.shared`; of several MPI
+    processes only the first does."""
     if (found := shared(label, out, workers, work)) is not None:
         show(found, as_json)
 
@@ -74,7 +74,7 @@ def show(found: Summary, as_json: bool) -> None:
 
 
 def _show_table(table: Table, has_text: bool) -> None:
-    """Print the groups of a table: one by one where text is to be folded, else as one."""
+    """Print the groups of a table: separately if text must be wrapped, else as one table."""
     if not has_text and table.groups:
         show_numbers(table.header, table.groups)
         return
@@ -84,7 +84,7 @@ def _show_table(table: Table, has_text: bool) -> None:
 
 
 def cell(value: Any) -> Any:
-    """Return a value that a table can hold: lists and dictionaries as JSON."""
+    """Return a value for a table: lists and dictionaries as JSON."""
     return json.dumps(value, default=str) if isinstance(value, list | dict) else value
 
 
@@ -96,7 +96,7 @@ def frame(rows: Sequence[Any], form: type) -> pd.DataFrame:
 def write_tables(
     folder: Path, name: str, table: pd.DataFrame, data: xr.Dataset | None = None
 ) -> list[Path]:
-    """Write NAME.csv and, of a dataset, NAME.nc into a folder; return the files."""
+    """Write NAME.csv and, for a dataset, NAME.nc into a folder; return the files."""
     files = [write_csv(folder / f"{name}.csv", table)]
     if data is not None:
         texts = {k: v.astype(str) for k, v in data.variables.items() if v.dtype == object}
@@ -106,7 +106,7 @@ def write_tables(
 
 
 def grouped(rows: Iterable[tuple[str, list[str]]]) -> dict[str, list[list[str]]]:
-    """Return rows of cells by the heading that comes with each, headings in their order."""
+    """Return rows of cells grouped by heading, headings in their order."""
     found: dict[str, list[list[str]]] = {}
     for heading, cells in rows:
         found.setdefault(heading, []).append(cells)
@@ -114,5 +114,5 @@ def grouped(rows: Iterable[tuple[str, list[str]]]) -> dict[str, list[list[str]]]
 
 
 def number(value: float, form: str, missing: str = "") -> str:
-    """Return a number as text; `missing` where it is not finite."""
+    """Return a number as text; `missing` if it is not finite."""
     return format(value, form) if isfinite(value) else missing

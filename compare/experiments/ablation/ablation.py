@@ -1,8 +1,8 @@
-"""Ablation: the cost of every effect of a scene, and how far the result is without it.
+"""Ablation: the cost of every effect of a scene, and its influence on the result.
 
-The cost is that of a step of one rigid block, and of one freedom of the jointed rock where that
-applies; the influence is the relative L2 misfit of the rigid blocks without the effect, against
-those of the scene as it stands.
+The cost is that of a step of one rigid block, and of one degree of freedom of the jointed rock if
+that applies; the influence is the relative L2 misfit of the rigid blocks without the effect,
+relative to those of the complete scene.
 """
 
 from collections.abc import Callable
@@ -23,18 +23,18 @@ from compare.solvers.continuum import JOINTED_ROCK
 from compare.solvers.dem import DEM
 
 ROCK = JOINTED_ROCK.name
-MISSING = StepCost(nan, nan)  # of what was not timed
-OWN = "own"  # the scene as it stands, among those without one of its effects
+MISSING = StepCost(nan, nan)  # not timed
+OWN = "own"  # the complete scene, among those without one of its effects
 
 
 class Dropped(NamedTuple):
     """The result without an effect.
 
-    misfit : from the result with it, of the waveforms that move with it; nan where none does.
-    steps : of the scene over those without it, where the effect shortens the step. alone : whether
+    misfit : from the result with it, of the waveforms that move with it; nan if none does.
+    steps : of the scene over those without it, if the effect shortens the step. alone : whether
     the scene can have it without the others. rock : whether the jointed rock can be without it.
-    reason : why it cannot be left out; empty where it can. stirred : a waveform that moves without
-    it alone, in words; empty where there is none.
+    reason : why it cannot be left out; empty if it can. stirred : a waveform that moves only
+    without it, in words; empty if there is none.
     """
 
     effect: str
@@ -47,12 +47,12 @@ class Dropped(NamedTuple):
 
 
 class EffectCost(NamedTuple):
-    """One effect of a scene; numbers that there are not are nan.
+    """One effect of a scene; missing numbers are nan.
 
-    alone : ns of a block-step that it adds to the scene without any other. cost : ns that it adds
-    to the scene's own set. share : of the scene's own step. rock : ns that it adds to a step of one
-    freedom of the jointed rock. noise : ns, of these three by their names, below which they are not
-    resolved. steps, misfit, reason, stirred : as in `Dropped`.
+    alone : ns per block-step that it adds to the scene without other effects. cost : ns that it
+    adds to the scene's own set. share : of the scene's own step. rock : ns that it adds to a step
+    of one freedom of the jointed rock. noise : ns, resolution of these three by their names.
+    steps, misfit, reason, stirred : as in `Dropped`.
     """
 
     effect: str
@@ -67,16 +67,16 @@ class EffectCost(NamedTuple):
     stirred: str = ""
 
     def is_resolved(self, name: str) -> bool:
-        """Return whether a cost in ns, by its name, is more than what timings differ by."""
+        """Return whether a cost in ns, given by its name, exceeds the noise of timings."""
         return bool(abs(getattr(self, name)) > self.noise[name])
 
 
 class Ablation(NamedTuple):
     """All effects of a scene.
 
-    scene, title, variant : its names. bare, own, everything : ns of a block-step with what the
-    scene cannot be without, with its own set, and with every effect in as many blocks. rock : ns of
-    a freedom-step of the jointed rock with the scene's own set, nan where that does not apply.
+    scene, title, variant : its names. bare, own, everything : ns per block-step with the
+    indispensable effects, with its own set, and with every effect in as many blocks. rock : ns per
+    freedom-step of the jointed rock with the scene's own set, nan if that does not apply.
     """
 
     scene: str
@@ -95,7 +95,7 @@ class Ablation(NamedTuple):
 
 
 def prepare(scene: AnyScene) -> list[Dropped]:
-    """Return the results without each effect, and compile all that is timed."""
+    """Return the results without each effect, and compile all kernels to be timed."""
     result = solve(DEM.name, scene)
     dropped = [_drop(scene, name, result) for name in active_effects(scene)]
     stretch(only(scene, None))[0]()
@@ -117,8 +117,8 @@ def _drop(scene: AnyScene, name: str, result: Any) -> Dropped:
 
 
 def _influence(without: xr.Dataset, result: xr.Dataset) -> tuple[float, str]:
-    """Return the misfit of the waveform that is furthest off, and one that moves without the effect
-    alone, in words: with it there is nothing but round-off, which no misfit can be relative to."""
+    """Return the misfit of the worst waveform, and a waveform that moves only without the effect,
+    in words: with the effect it is round-off, relative to which no misfit is defined."""
     found = [one for one in pairings(without, result) if not one.faint]
     loudest: dict[str, float] = {}
     for one in found:
@@ -138,9 +138,9 @@ def _runs(work: Callable[[], object]) -> bool:
 
 
 def ablate(name: str, scene: AnyScene, dropped: list[Dropped]) -> Ablation:
-    """Return the cost and the influence of every effect that a scene calls for.
+    """Return the cost and the influence of every effect of a scene.
 
-    name : of the scene, as its user knows it. dropped : what `prepare` returned.
+    name : of the scene, as the user typed it. dropped : from `prepare`.
     """
     alone = {one.effect: only(scene, one.effect) for one in dropped if one.alone}
     without = {one.effect: left_out(scene, one.effect) for one in dropped if not one.reason}
@@ -165,8 +165,8 @@ def ablate(name: str, scene: AnyScene, dropped: list[Dropped]) -> Ablation:
 
 
 def _in_rock(scene: AnyScene, without: dict[str, AnyScene]) -> dict[str, StepCost]:
-    """Return the cost of a freedom-step of jointed rock, of the scene and without each effect;
-    empty where that rock does not apply."""
+    """Return the cost per freedom-step of jointed rock, for the scene and without each effect;
+    empty if jointed rock does not apply."""
     if not applies(ROCK, scene):
         return {}
     timed = {OWN: scene} | without

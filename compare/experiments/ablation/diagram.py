@@ -1,4 +1,4 @@
-"""Influence over cost of every effect, both axes logarithmic: one point an effect of a scene."""
+"""Influence over cost of every effect, both axes logarithmic: one point per effect of a scene."""
 
 from typing import Any
 
@@ -10,19 +10,19 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from compare.experiments.ablation.ablation import Ablation, EffectCost
 from compare.figures.export import blank
 
-LEAST_SHARE = 0.5  # %, of a step: less does not stand out of the clock's noise
-LEAST_MISFIT = 0.01  # %: less is drawn here, as is none
-NEAR = 24.0, 13.0  # pixels: numbers of one effect that are closer would overlap
+LEAST_SHARE = 0.5  # %, of a step: less is within the noise of timings
+LEAST_MISFIT = 0.01  # %: smaller and zero misfits are drawn here
+NEAR = 24.0, 13.0  # pixels: closer numbers of one effect would overlap
 
 MARKERS = "osD^vP*X<>hpd8H"
-#: Apart under every colour blindness in turns of marker and colour (Okabe & Ito 2008).
+#: Safe for all kinds of colour blindness, by marker and colour in turn (Okabe & Ito 2008).
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#56b4e9", "#000000")
 
 Place = tuple[float, float]
 
 
 def draw(found: list[Ablation]) -> Figure:
-    """Return the diagram; a point bears the number of its scene in the table.
+    """Return the diagram; points are labelled by the number of their scene in the table.
 
     Points at an edge lie there or beyond, and are hollow. The points of the k-th effect are the SVG
     group effects-points-k.
@@ -47,7 +47,7 @@ def draw(found: list[Ablation]) -> Figure:
 def _draw_effect(
     ax: Axes, k: int, effect: str, ones: list[tuple[int, EffectCost]]
 ) -> list[tuple[int, Place]]:
-    """Draw the points of an effect; return the number of each and where it is."""
+    """Draw the points of an effect; return the number and position of each."""
     marks: dict[str, Any] = {
         "color": COLOURS[k % len(COLOURS)],
         "marker": MARKERS[k % len(MARKERS)],
@@ -95,7 +95,7 @@ def _add_legend(figure: Figure, ax: Axes, found: list[Ablation]) -> None:
 
 
 def _number(ax: Axes, numbered: list[tuple[int, Place]]) -> None:
-    """Write the numbers of an effect's points beside them, close ones in one text."""
+    """Write the numbers of an effect's points beside them, close ones together."""
     spots: list[tuple[Place, list[int]]] = []
     placed = [(ax.transData.transform(place), number) for number, place in numbered]
     for (x, y), number in sorted((tuple(at), number) for at, number in placed):

@@ -15,10 +15,10 @@ from compare.experiments.store import Store
 from compare.scenes import find, shipped
 from results.dataset import scene_hash
 
-RATE = "effects of a variant"  # what the seconds of cases are remembered by
-PREPARING = 0.8  # of the time, where nothing is compiled yet
+RATE = "effects of a variant"  # key of the timings of cases
+PREPARING = 0.8  # of the time, if nothing is compiled yet
 
-#: Scenes of the report's page, each with the variants that it takes: what is compiled there anyhow.
+#: Scenes of the report's page, each with its variants, whose kernels are compiled there anyhow.
 REPORTED = {
     "guo-li-2002/fig-03": ["zeta 0.05"],
     "guo-li-2002/fig-05": ["matched"],
@@ -36,7 +36,7 @@ class Variant(NamedTuple):
 
     @property
     def key(self) -> str:
-        """The key of the case: a hash of everything that decides the result."""
+        """The key of the case: a hash of everything that determines the result."""
         return store.key(self.name, self.scene.name, scene_hash(self.scene))
 
 
@@ -62,9 +62,9 @@ def reported() -> list[Variant]:
 def run(
     wanted: list[Variant], folder: Path, pool: Pool | None = None, progress: Progress | None = None
 ) -> list[Ablation]:
-    """Return the ablation of all cases, in order; what is done is taken from `folder`.
+    """Return the ablation of all cases, in order; completed ones are read from `folder`.
 
-    pool : makes the executor that solves and compiles; timings are taken here and one at a time.
+    pool : makes the executor that solves and compiles; timing is done in this process, one by one.
     """
     done, prepared = ablations(folder), Store[list[Dropped]](list[Dropped], folder)
     tell = progress or (lambda fraction: None)
@@ -84,7 +84,7 @@ def run(
 
 
 def ablations(folder: Path) -> Store[Ablation]:
-    """Return the store of what is done."""
+    """Return the store of completed cases."""
     return Store(Ablation, folder)
 
 

@@ -1,4 +1,4 @@
-"""The summary of an ablation: the table, the diagram, and sentences of their numbers."""
+"""The summary of an ablation: the table, the diagram, and findings in sentences."""
 
 from math import isfinite
 from pathlib import Path
@@ -46,7 +46,7 @@ def summarise(folder: Path, found: list[Ablation]) -> Summary:
 
 
 def write_table(folder: Path, found: list[Ablation]) -> Path:
-    """Write effects.csv, a row an effect of a scene, ns and ratios."""
+    """Write effects.csv, one row per effect of a scene, ns and ratios."""
     rows = [
         {
             "scene": a.scene,
@@ -67,9 +67,9 @@ def write_table(folder: Path, found: list[Ablation]) -> Path:
 
 
 def table(found: list[Ablation]) -> Table:
-    """Return all numbers, the effects of each scene under the cost of its own set, dearest first.
+    """Return all numbers, the effects of each scene below the cost of its own set, highest first.
 
-    The last column is there if any effect stays.
+    The last column exists if any effect cannot be left out.
     """
     stays = any(e.reason for a in found for e in a.effects)
     columns = len(COLUMNS) if stays else len(COLUMNS) - 1
@@ -109,7 +109,7 @@ def _cells(e: EffectCost) -> list[str]:
 
 
 def _ns(e: EffectCost, name: str) -> str:
-    """Return a cost in ns, or the noise that it does not stand out of."""
+    """Return a cost in ns, or the noise that it does not exceed."""
     cost = getattr(e, name)
     if e.is_resolved(name) or not isfinite(cost):
         return number(cost, "+.2g")

@@ -23,17 +23,17 @@ NEEDS: dict[str | None, str] = {part.name: "slip" for part in PARTS if part.alon
 
 
 def left_out(scene: Either, name: str) -> Either:
-    """Return a scene without one of its effects; raises SceneError where there is none."""
+    """Return a scene without one of its effects; raises SceneError if there is no such scene."""
     if name not in WITHOUT:
         raise SceneError(scene.where, name, None, "is the subject of the scene")
     return checked(WITHOUT[name](scene))
 
 
 def only(scene: Either, name: str | None) -> Either:
-    """Return a scene with one of its effects, or none, besides those that it, or the effect, cannot
-    be without.
+    """Return a scene with only one of its effects, or none, besides those required by it or by that
+    effect.
 
-    Raises SceneError where the scene cannot be so, or cannot be without the effect either.
+    Raises SceneError if there is no such scene, or if the effect cannot be left out either.
     """
     if name is not None and name in active_effects(only(scene, None)):
         raise SceneError(scene.where, name, None, "cannot be removed")
@@ -41,7 +41,7 @@ def only(scene: Either, name: str | None) -> Either:
         if other not in (name, NEEDS.get(name)) and other in WITHOUT:
             try:
                 scene = left_out(scene, other)
-            except SceneError:  # it stays, as it does when every other effect does
+            except SceneError:  # an effect that cannot be left out is kept
                 continue
     if name is not None and name not in active_effects(scene):
         raise SceneError(scene.where, name, None, "has no effect without the others")
@@ -49,7 +49,7 @@ def only(scene: Either, name: str | None) -> Either:
 
 
 def _joints(**values: Any) -> Change:
-    """Return a function that changes the law of all joints, those of soft layers included."""
+    """Return a function that changes the law of all joints, including soft layers."""
 
     def change(scene: AnyScene) -> AnyScene:
         if not isinstance(scene, Scene):
@@ -81,7 +81,7 @@ def _free(table: str, kind: str) -> Change:
     return change
 
 
-#: By effect, what leaves it out of a scene.
+#: By effect, the change that leaves it out of a scene.
 WITHOUT: dict[str, Change] = {
     "dashpots": lambda scene: _table("damping", rayleigh=None)(_joints(damping_ratio=None)(scene)),
     "no tension": _joints(tension=None),

@@ -1,4 +1,4 @@
-"""`--dry-run`: the steps, size, seconds and memory of runs before they are made."""
+"""`--dry-run`: the steps, size, seconds and memory of runs before they start."""
 
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
@@ -11,17 +11,17 @@ from compare.engines import applies, names, solver
 from compare.experiments.cost import timings
 
 COLUMNS = ["", "variant", "engine", "scheme", "steps", "size", "time", "memory"]
-UNKNOWN = "no estimate"  # nothing of the kind was timed on this machine
-Run = tuple[str, "AnyScene", str]  # the point of a sweep, empty without; the scene; what solves it
+UNKNOWN = "no estimate"  # no such run has been timed on this machine
+Run = tuple[str, "AnyScene", str]  # the point of a sweep, empty without; the scene; its solver
 
 
 class Forecast(NamedTuple):
-    """A run that is not made.
+    """The estimate of a run.
 
-    steps : of time, exactly; 0 of exact solutions. size : blocks or freedoms of the rock, in words.
-    seconds : of stepping, at the rate last measured here; None where none was. bytes : of memory,
-        as the run itself would estimate it before it begins; of exact solutions their waveforms,
-        which is the least that they take.
+    steps : of time, exactly; 0 for exact solutions. size : blocks or freedoms, in words.
+    seconds : of stepping, at the rate last measured here; None if never measured. bytes : of
+        memory, as the run itself estimates it at its start; for exact solutions that of their
+        waveforms, a lower bound.
     """
 
     variant: str
@@ -34,9 +34,9 @@ class Forecast(NamedTuple):
 
 
 def forecast(scene: AnyScene, name: str) -> Forecast:
-    """Return what a run of an engine or exact solution would take.
+    """Return the estimated cost of a run of an engine or exact solution.
 
-    Raises SceneError where it cannot be made, as the run would.
+    Raises SceneError if it cannot be run, as the run would.
     """
     one = solver(name)
     run = one.prepare(scene)
@@ -46,23 +46,23 @@ def forecast(scene: AnyScene, name: str) -> Forecast:
 
 
 def seconds_of(found: Iterable[Forecast]) -> tuple[float, int]:
-    """Return the seconds of all that were ever timed here, and how many were not."""
+    """Return the total seconds of runs with a timing, and the number of runs without one."""
     known = [one.seconds for one in found]
     return sum(s for s in known if s is not None), known.count(None)
 
 
 def show_all(scenes: list[AnyScene], as_json: bool) -> None:
-    """Print what everything that applies to some scenes would take."""
+    """Print the estimated cost of all solvers that apply to some scenes."""
     show_runs([("", s, name) for s in scenes for name in names() if applies(name, s)], as_json)
 
 
 def show_runs(
     wanted: Sequence[Run], as_json: bool, failing: Sequence[tuple[str, str]] = ()
 ) -> None:
-    """Print what each run would take under its point of a sweep, and all of them together.
+    """Print the estimated cost of each run by its point of a sweep, and the total.
 
-    failing : points that would not run, with the reason. Raises SceneError for a run that cannot be
-    made; at a point of a sweep it is one that fails.
+    failing : points that would not run, with the reason. Raises SceneError for a run that is not
+    possible; at a point of a sweep it is listed as failing.
     """
     found: list[tuple[str, Forecast]] = []
     failed = dict(failing)
@@ -98,7 +98,7 @@ def _print_table(found: list[tuple[str, Forecast]], failed: dict[str, str]) -> N
 
 
 def _together(seconds: float, unknown: int) -> str:
-    """Return in words the seconds of runs one after the other, of which some were never timed."""
+    """Return in words the total seconds of runs, of which some were never timed."""
     if unknown and not seconds:
         return f"{UNKNOWN} of the time: nothing of the kind was timed on this machine"
     others = f", plus {unknown} not timed on this machine" if unknown else ""
@@ -106,7 +106,7 @@ def _together(seconds: float, unknown: int) -> str:
 
 
 def in_words(seconds: float) -> str:
-    """Return a time to two digits, in the unit that fits."""
+    """Return a time to two digits, in a suitable unit."""
     for unit, length in (("h", 3600.0), ("min", 60.0), ("s", 1.0), ("ms", 1e-3)):
         if seconds >= length:
             return f"{seconds / length:.3g} {unit}"

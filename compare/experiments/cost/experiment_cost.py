@@ -20,8 +20,8 @@ from compare.experiments.study.summary import REPORTED
 
 @dataclass(frozen=True)
 class CommandPart:
-    """A part of a command: how many points it has, and how many of them are to do; seconds : of
-    those, None where none was ever timed here."""
+    """A part of a command: its number of points, and how many remain to be computed; seconds : of
+    those, None if never timed here."""
 
     part: str
     count: int
@@ -30,7 +30,7 @@ class CommandPart:
 
 
 def _part(part: str, store: Store, keys: Sequence[str], rate: str) -> CommandPart:
-    """Return a part; rate : what the seconds of a point are remembered by."""
+    """Return a part; rate : key of the timings of a point."""
     left, each = sum(not store.has(key) for key in keys), timings.whole(rate)
     seconds = 0.0 if not left else None if each is None else each * left
     return CommandPart(part, len(keys), left, seconds)
@@ -75,7 +75,7 @@ def parts_of_effects(wanted: Sequence[ablation.Variant], out: Path) -> list[Comm
 def parts_of_report(scenes: Sequence[str], out: Path) -> list[CommandPart]:
     """Return the parts of the report of some scenes; without any, of the paper's and the studies.
 
-    Raises SceneError for a scene that there is not.
+    Raises SceneError for an unknown scene.
     """
     from compare.report.scenes import RATE, ROCK_MASSES, asked_for
 
@@ -96,7 +96,7 @@ def parts_of_report(scenes: Sequence[str], out: Path) -> list[CommandPart]:
 
 
 def show_parts(found: Sequence[CommandPart], as_json: bool) -> None:
-    """Print the parts of a command: how many points, how many to do."""
+    """Print the parts of a command: numbers of points, in all and remaining."""
     if as_json:
         print_json([asdict(one) for one in found])
         return

@@ -1,4 +1,4 @@
-"""Scenes that costs are measured on: the paper's pillar and a lattice of blocks, with effects."""
+"""Scenes for measuring costs: the paper's pillar and a lattice of blocks, with effects."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
 
 PILLAR = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
-BLOCKS = 1000  # of the pillar that effects are compared on
+BLOCKS = 1000  # of the pillar used to compare effects
 
-#: A blow that moves blocks in all their freedoms.
+#: A blow that moves blocks in all degrees of freedom.
 ACROSS = {"load.direction": [0.6, 0.8, 0.0], "load.at": [0.1, 0.05]}
 
 
@@ -42,7 +42,7 @@ def _sample(parts: Iterable[LawPart]) -> dict[str, Any]:
 FIRST = _together(PARTS)
 SECOND = _together(part for part in PARTS if part not in FIRST)
 
-#: Every effect at once: the line against which a scene's own cost is held.
+#: All effects together: the reference for a scene's own cost.
 EVERYTHING = {
     **ACROSS,
     "motion.rotation": "finite",
@@ -61,7 +61,7 @@ EVERYTHING = {
 
 ELASTIC = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 STEP = {"shape": "step", "amplitude": 1e5}
-#: Every effect at once, but for periodic sides: the line against which a scene's cost is held.
+#: All effects together, except periodic sides: the reference for a scene's cost.
 EVERYTHING_IN_PLANE: dict[str, Any] = {
     "boundaries": {"left": "quiet", "right": "quiet", "bottom": "fixed"},
     "waves": [STEP | {"kind": "P", "direction": [1.0, 0.0]}],
@@ -77,7 +77,7 @@ EVERYTHING_IN_PLANE: dict[str, Any] = {
     "record": {"points": [[0.5, 0.5]]},
 }
 FRICTION = {"damping_ratio": 0.02, "friction_angle": 30.0, "cohesion": 1e6}
-#: The joints along y and along x of that.
+#: Its joints along y and along x.
 FAILING = (
     ELASTIC | FRICTION | _sample(FIRST) | {"residual_cohesion": 0.0},
     ELASTIC | FRICTION | _sample(SECOND) | {"tension": False},
@@ -85,13 +85,13 @@ FAILING = (
 
 
 def changed(changes: dict, blocks: int = BLOCKS) -> Scene:
-    """Return the paper's pillar with so many blocks and some dotted keys changed."""
+    """Return the paper's pillar with this number of blocks and some dotted keys changed."""
     return pillar_of(cases.load_variant(PILLAR, "", {"pillar.length": 0.5 * blocks, **changes}))
 
 
 def everything(blocks: int) -> Scene:
-    """Return the paper's pillar with every effect and so many blocks, but for very many: few blocks
-    share what a step costs however few they are."""
+    """Return the paper's pillar with every effect and this number of blocks, at most BLOCKS: with
+    few blocks the fixed cost of a step matters."""
     return changed(EVERYTHING, min(max(blocks, 2), BLOCKS))
 
 
@@ -103,9 +103,9 @@ def everything_like(scene: AnyScene) -> AnyScene:
 
 
 def lattice(blocks: int, along_y: dict, along_x: dict, tables: dict[str, Any]) -> RockMass:
-    """Return a square lattice of about so many blocks of 1 m, free where tables say nothing else.
+    """Return a square lattice of about this number of 1 m blocks, free unless tables set otherwise.
 
-    along_y, along_x : the law of the joints that run so. tables : of the scene, in place of ours.
+    along_y, along_x : law of the joints in that direction. tables : of the scene, replacing ours.
     """
     side = max(2, isqrt(blocks))
     joints = {"spacing": 1.0, "through": [0.0, 0.0]}
@@ -125,7 +125,7 @@ def lattice(blocks: int, along_y: dict, along_x: dict, tables: dict[str, Any]) -
 
 
 def everything_in_plane(scene: RockMass, most: int) -> RockMass:
-    """Return a lattice with every effect, of as many blocks as a scene has, but of `most`."""
+    """Return a lattice with every effect and the scene's number of blocks, at most `most`."""
     from dem.blocks.build import rigid_blocks
 
     blocks = min(rigid_blocks(scene).partition.count, most)

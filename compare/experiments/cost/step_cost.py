@@ -1,4 +1,4 @@
-"""The cost of a step of one block or one freedom, with the effects that a scene calls for."""
+"""The cost of a step of one block or one degree of freedom, with the effects of a scene."""
 
 from __future__ import annotations
 
@@ -24,28 +24,28 @@ if TYPE_CHECKING:
 Stretch = tuple[Callable[[], None], int]
 
 REPEATS = 5
-SHORTEST = 0.02  # s, of what a clock is read for
-LONGEST = 0.5  # s: of stepping: continuum runs that took as long are not repeated
-BLOCK_STEPS = 5_000_000  # of one call, at most, but for one sample
-BLOCK_STEPS_IN_SPACE = 500_000  # each of them takes ten times as long
+SHORTEST = 0.02  # s, least duration of a timing
+LONGEST = 0.5  # s, of stepping: longer continuum runs are not repeated
+BLOCK_STEPS = 5_000_000  # of one call, at most, unless it has a single sample
+BLOCK_STEPS_IN_SPACE = 500_000  # each takes ten times as long
 
 
 class StepCost(NamedTuple):
-    """The least of some timings of a step, ns, and by how much their median is more: this machine
-    tells no smaller differences."""
+    """The minimum of some timings of a step, ns, and the excess of their median: the resolution of
+    timings on this machine."""
 
     ns: float
     noise: float
 
 
 def nanoseconds(scene: AnyScene, threads: int = 1) -> float:
-    """Return what one step of one block of a scene costs, ns: the least of some stretches."""
+    """Return the cost of one step of one block of a scene, ns: the minimum of some stretches."""
     return in_turns([scene], threads)[0].ns
 
 
 def in_turns(scenes: Sequence[AnyScene], threads: int = 1) -> list[StepCost]:
-    """Return the same of several scenes, their stretches in turns: what slows the machine for a
-    while slows all of them."""
+    """Return the costs of several scenes, with alternating stretches, so that temporary load of the
+    machine affects all of them."""
     timed = [stretch(scene, threads) for scene in scenes]
     for march, _ in timed:
         march()  # compiles, and sets the blocks in motion
@@ -54,10 +54,10 @@ def in_turns(scenes: Sequence[AnyScene], threads: int = 1) -> list[StepCost]:
 
 
 def freedoms_in_turns(engine: str, scenes: Sequence[AnyScene]) -> list[StepCost]:
-    """Return what one step of one freedom of a continuum engine costs: the least of two runs or
-    more, those of the scenes in turns.
+    """Return the cost of one step of one freedom of a continuum engine: the minimum of two runs or
+    more, alternating between the scenes.
 
-    Raises SceneError where the engine does not apply, UnstableError where it goes unstable.
+    Raises SceneError if the engine does not apply, UnstableError if it becomes unstable.
     """
     rounds: list[list[float]] = []
     most = LONGEST * len(scenes)
@@ -68,7 +68,7 @@ def freedoms_in_turns(engine: str, scenes: Sequence[AnyScene]) -> list[StepCost]
 
 
 def _least(rounds: list[list[float]], counts: list[int]) -> list[StepCost]:
-    """Return what one of so many steps costs, of seconds [round][scene]."""
+    """Return the cost of one step, from seconds [round][scene] of `counts` steps."""
     found = []
     for seconds, count in zip(zip(*rounds, strict=True), counts, strict=True):
         least, middle = min(seconds), median(seconds)
@@ -77,7 +77,7 @@ def _least(rounds: list[list[float]], counts: list[int]) -> list[StepCost]:
 
 
 def _seconds(march: Callable[[], None]) -> float:
-    """Return the seconds of one call, from as many as a clock can tell."""
+    """Return the seconds of one call, from enough calls for the clock's resolution."""
     calls, spent = 0, 0.0
     began = perf_counter()
     while spent < SHORTEST:
@@ -94,8 +94,8 @@ def stretch(scene: AnyScene, threads: int = 1) -> Stretch:
 
 
 def stretches(scene: Scene, guarded: tuple[bool, ...], threads: int = 1) -> list[Stretch]:
-    """Return the same with the same arrays, once for each: `guarded`, under a divergence monitor
-    that never finds anything, or not."""
+    """Return such functions on the same arrays, one per entry of `guarded`: with or without a
+    divergence monitor, which never triggers."""
     if is_spatial(scene):
         return _in_space(scene, guarded, threads)
     return _along_axis(scene, guarded)
@@ -153,19 +153,19 @@ def _in_plane(scene: RockMass, threads: int) -> Stretch:
 
 
 def samples_of(time: Clock, blocks: int, most: int = BLOCK_STEPS) -> int:
-    """Return how many samples a stretch takes."""
+    """Return the number of samples of a stretch."""
     return min(time.samples, max(64, most // blocks) // time.stride + 1)
 
 
 def remembered_whole(blocks: int) -> float | None:
-    """Return `whole` where it was measured already, else None."""
+    """Return `whole` if it was measured already, else None."""
     seconds = timings.whole(_of_everything(everything(blocks)))
     return None if seconds is None else 1e9 * seconds
 
 
 def whole(blocks: int) -> float:
-    """Return the cost of a block-step with every effect in a row of so many blocks, ns; measured
-    once for each version."""
+    """Return the cost of a block-step with every effect in a row of this number of blocks, ns;
+    measured once per version."""
     known = remembered_whole(blocks)
     if known is None:
         scene = everything(blocks)

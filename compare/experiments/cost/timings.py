@@ -1,6 +1,6 @@
-"""Rates measured on this machine: seconds of a step, of a point, of a command; the last of each.
+"""Rates measured on this machine: last seconds per step, per point, per command.
 
-They are saved beside the kernels, so that those of another state of the program do not count.
+They are saved beside the kernels, so that those of other versions of the program are not used.
 """
 
 import json
@@ -25,16 +25,16 @@ from numerics import jit
 from results.dataset import scene_hash
 
 LARGEST_FILE = 10_000_000  # bytes
-SHORTEST = 0.01  # s: what is over sooner tells too little to replace what is known
-CHANGED = 2.0  # a rate that has changed by this factor is written anew
+SHORTEST = 0.01  # s: shorter runs do not replace a known rate
+CHANGED = 2.0  # a rate that has changed by this factor is rewritten
 
 
 def note(
     name: str, scene: AnyScene, about: Mapping[str, Any], seconds: float | None = None
 ) -> None:
-    """Remember what a run has cost.
+    """Store the cost of a run.
 
-    about : its attributes. seconds : that it took in all, which is what exact solutions cost.
+    about : its attributes. seconds : in total, used for exact solutions.
     """
     if name in ENGINES:
         units = ENGINES[name].units(scene, about["degrees_of_freedom"])
@@ -47,12 +47,12 @@ def note(
 
 
 def note_block_step(scene: Scene, nanoseconds: float, threads: int = 1) -> None:
-    """Remember what a step of one rigid block costs."""
+    """Store the cost of a step of one rigid block."""
     _keep(_of_blocks(scene, threads), 1e-9 * nanoseconds)
 
 
 def block_step(scene: Scene) -> float | None:
-    """Return what a step of one rigid block took, ns; None where none such was ever timed."""
+    """Return the measured cost of a step of one rigid block, ns; None if never timed."""
     rate = _known().get(_of_blocks(scene, 1))
     return None if rate is None else 1e9 * rate
 
@@ -60,9 +60,9 @@ def block_step(scene: Scene) -> float | None:
 def stepping(
     name: str, scene: AnyScene, settings: Mapping[str, Any], steps: int, freedoms: int
 ) -> float | None:
-    """Return the seconds that a run's steps should take; None where none such was ever timed.
+    """Return the expected seconds of a run's steps; None if no such run was ever timed.
 
-    settings : what decides the cost of a step, see `compare.solvers.record.Prepared`.
+    settings : those that determine the cost of a step, see `compare.solvers.record.Prepared`.
     """
     if name not in ENGINES:
         return _known().get(f"{name} {scene_hash(scene)}")
@@ -71,7 +71,7 @@ def stepping(
 
 
 def note_whole(what: str, seconds: float) -> None:
-    """Remember what a whole command took, or one point of it."""
+    """Store the time of a whole command, or of one point of it."""
     _keep(f"whole {what}", seconds)
 
 
@@ -85,7 +85,7 @@ def timing(what: str, count: int) -> Iterator[None]:
 
 
 def whole(what: str) -> float | None:
-    """Return what that took the last time; None where it was never done here."""
+    """Return the last stored time; None if there is none on this machine."""
     return _known().get(f"whole {what}")
 
 
@@ -111,7 +111,7 @@ def _keep(key: str, value: float) -> None:
     old = known.get(key)
     if old is not None and old / CHANGED < value < old * CHANGED:
         return
-    with suppress(OSError):  # a cache that cannot be written costs estimates only
+    with suppress(OSError):  # without a writable cache only estimates are lost
         write_text(_file(), json.dumps({**known, key: value}))
 
 
@@ -120,7 +120,7 @@ def _file() -> Path:
 
 
 def machine() -> dict[str, str]:
-    """Return what seconds depend on."""
+    """Return the properties of the machine on which timings depend."""
     import numba
 
     return {

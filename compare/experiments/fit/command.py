@@ -88,7 +88,7 @@ def fit(
 
 
 def _solver(scene: "AnyScene", engine: Engine | None, models: list[str] | None) -> str | None:
-    """Return the one solution that --engine and --model name; None without them."""
+    """Return the solution selected by --engine and --model; None without them."""
     from compare.runs import jobs
 
     if engine is None and not models:

@@ -1,4 +1,4 @@
-"""The files of a fit: a table, the fitted scene as text, and the figure of what is left."""
+"""The files of a fit: a table, the fitted scene as text, and the figure with residuals."""
 
 import filecmp
 import json
@@ -30,7 +30,7 @@ HEAD = "# Fitted by jointwave"
 
 
 def draw(found: Fit) -> Figure:
-    """Return the figure: each waveform as measured and fitted, and below it what is left."""
+    """Return the figure: each waveform as measured and fitted, and below it the residual."""
     cells, fitted = [], f"fitted ({found.solver})"
     below = style(found.solver)._replace(width=3.2, dashes="-", order=0)
     for i, one in enumerate(found.waveforms):
@@ -52,7 +52,7 @@ def draw(found: Fit) -> Figure:
 def write_fit(found: Fit, given: AnyScene, folder: Path) -> list[Path]:
     """Write fit.csv, fit.json, fitted.toml and fit-waveforms as SVG, PDF, PNG and CSV.
 
-    given : the scene before. Raises SceneError where a scene that no fit wrote is in the way.
+    given : the scene before. Raises SceneError if it would overwrite a scene not of a fit.
     """
     scene = folder / "fitted.toml"
     refuse_foreign(scene, (HEAD.encode(),))
@@ -75,7 +75,7 @@ def table(found: Fit) -> pd.DataFrame:
 
 
 def curves(found: Fit) -> pd.DataFrame:
-    """Return every waveform, measured, fitted and what is left, over the scene's time, SI."""
+    """Return every waveform, measured, fitted and its residual, over the scene's time, SI."""
     parts = [
         pd.DataFrame(
             {
@@ -121,7 +121,7 @@ def facts(found: Fit) -> dict[str, Any]:
 
 
 def _write_scene(found: Fit, given: AnyScene, path: Path) -> list[Path]:
-    """Write the fitted scene so that it runs, with the files that it names beside it."""
+    """Write the fitted scene, runnable, with the files to which it refers beside it."""
     about = [f"{HEAD}: {found.solver}, misfit {found.before:.3%} before, {found.after:.3%} after."]
     for e in found.estimates:
         about.append(
@@ -177,5 +177,5 @@ def _key(name: str) -> str:
 def _value(value: Any) -> str:
     if isinstance(value, list):
         return f"[{', '.join(map(_value, value))}]"
-    # JSON's texts and numbers are TOML's, but for one control character.
+    # JSON's texts and numbers are valid TOML, except for one control character.
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

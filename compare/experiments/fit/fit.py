@@ -15,7 +15,7 @@ from compare.experiments.fit.statistics import known, not_told_apart
 from compare.misfit.external import Curves
 
 NEAR = 1e-6  # of an unknown to its bound
-ROUND_OFF = 1e-6  # of a waveform: what is left then is no noise
+ROUND_OFF = 1e-6  # of a waveform: smaller residuals are not noise
 
 
 def fit(
@@ -25,17 +25,17 @@ def fit(
     solver: str | None = None,
     progress: Progress | None = None,
 ) -> Fit:
-    """Fit keys of a scene to measured waveforms by least squares, and say how well they are known.
+    """Fit keys of a scene to measured waveforms by least squares, with confidence intervals.
 
-    curves : as `read_curves` returns them. free : dotted keys, KEY, KEY=START, KEY=LOW:HIGH or
-    KEY=LOW:START:HIGH, and `clock`, what is added to the times of all files, s. solver : an engine
-    or exact solution; None: the exact chain of rigid blocks where it holds and is short, else
-    `dem`. Positive keys are sought on a logarithmic scale. Each waveform counts by its own noise;
-    amplitudes are not scaled. Intervals are of 95 %, linear near the best fit, and hold if the
-    model is right.
+    curves : from `read_curves`. free : dotted keys, KEY, KEY=START, KEY=LOW:HIGH or
+    KEY=LOW:START:HIGH, and `clock`, a shift added to the times of all files, s. solver : an engine
+    or exact solution; None: the exact chain of rigid blocks if it applies and is short, else
+    `dem`. Positive keys are searched on a logarithmic scale. Each waveform is weighted by its own
+    noise; amplitudes are not scaled. Intervals are of 95 %, linearised at the best fit, and valid
+    if the model is correct.
 
-    Raises SceneError for keys and curves that cannot be fitted, StoppedError where the search ends
-    without having converged.
+    Raises SceneError for keys and curves that cannot be fitted, StoppedError if the search does not
+    converge.
     """
     keys = free_keys(list(free), scene)
     first = changed(scene, _scene_values(keys, [k.start for k in keys]))
@@ -53,7 +53,7 @@ def fit(
 
 
 def _refuse_several(curves: list[Curves]) -> None:
-    """Raise SceneError where two curves of one file are of one place, as of two solutions."""
+    """Raise SceneError if two curves of one file are at the same place, as of two solutions."""
     for i, one in enumerate(curves):
         for other in curves[:i]:
             if one.file == other.file and one.waveforms.keys() & other.waveforms.keys():
@@ -78,7 +78,7 @@ def _with_clock(
     if not low <= start <= high:
         start = (low + high) / 2 if low < high else (clock.low + clock.high) / 2
         low, high = max(clock.low, start - reach), min(clock.high, start + reach)
-    # Its unknown is in units of its reach wherever it begins.
+    # Its unknown is in units of its reach, for any start.
     moved = clock._replace(start=start, low=low, high=high, size=(high - low) / 2)
     return [moved if key is clock else key for key in keys], start
 
@@ -121,7 +121,7 @@ def _interval(key: Free, unknown: float, reach: float) -> tuple[float, float]:
 def _notes(
     estimates: list[Estimate], correlation: np.ndarray, waveforms: list[Fitted], search: FitSearch
 ) -> list[str]:
-    """Return what a reader of the values must know."""
+    """Return warnings about the values, in sentences."""
     found = [
         f"{e.key} stopped at its bound, {e.value:.6g}: its interval is not valid"
         for e in estimates

@@ -1,4 +1,4 @@
-"""The keys that a fit may change: where each begins, and between which bounds it stays."""
+"""The keys that a fit may change, with starting values and bounds."""
 
 import re
 from collections.abc import Mapping
@@ -15,8 +15,8 @@ from cases.schema.allowed import model_in
 from cases.schema.field_docs import field_comments
 from cases.schema.pulse import Pulse
 
-CLOCK = "clock"  # what is added to the times of the files, s
-DECADES = 3.0  # that a key on a logarithmic scale may change without bounds of its own
+CLOCK = "clock"  # shift added to the times of the files, s
+DECADES = 3.0  # default range of a key on a logarithmic scale
 #: Keys of discretisation, solution and recording: not continuous parameters.
 FIXED = (
     *("pillar.length", "pillar.block", "soft_layers.*.y", "time", "record", "numerics", "expect"),
@@ -25,16 +25,16 @@ FIXED = (
 )
 FORMS = "must be KEY, KEY=START, KEY=LOW:HIGH or KEY=LOW:START:HIGH"
 UNIT = re.compile(r"(?<![\w/])(Pa/m|Pa|kg/m3|m/s2|m/s|J/m2|degrees|s|m)(?![\w/])")
-#: Of an amplitude by the quantity that its pulse is of.
+#: Unit of an amplitude by the quantity of its pulse.
 LOADS = {"stress": "Pa", "velocity": "m/s", "acceleration": "m/s2", "force": "N/m"}
 
 
 class Free(NamedTuple):
     """A key that is fitted.
 
-    start : nan where it is to be found, of the clock alone. low, high : bounds. logarithmic :
-    whether it is positive and sought on such a scale. size : on a linear one the change of the
-    value for a change of 1 in the unknown. unit : "" of a ratio.
+    start : nan if it is to be found (clock only). low, high : bounds. logarithmic : whether it is
+    positive and searched on such a scale. size : on a linear scale the change of the value for a
+    change of 1 in the unknown. unit : "" for a ratio.
     """
 
     key: str
@@ -57,7 +57,7 @@ class Free(NamedTuple):
 
 
 def free_keys(texts: list[str], scene: AnyScene) -> list[Free]:
-    """Return what `--free` names, several in one text parted by commas; raises SceneError."""
+    """Return the keys of `--free`, several in one text separated by commas; raises SceneError."""
     found: list[Free] = []
     for text in [part for given in texts for part in given.split(",")]:
         key, numbers = _parsed(text)
@@ -68,7 +68,7 @@ def free_keys(texts: list[str], scene: AnyScene) -> list[Free]:
 
 
 def changed(scene: Either, values: Mapping[str, float]) -> Either:
-    """Return a scene with dotted keys set; raises SceneError where it cannot have them so."""
+    """Return a scene with dotted keys set; raises SceneError if that is invalid."""
     try:
         for key, value in values.items():
             scene = _with(scene, key.split("."), value)
@@ -82,7 +82,7 @@ def _with(table: Any, parts: list[str], value: float) -> Any:
     name, *rest = parts
     if not rest:
         new = table.model_copy(update={name: value})
-        # A load keeps the history that it has read.
+        # A load retains the history that it has read.
         return new if getattr(new, "file", None) else type(new).model_validate(dict(new))
     old = getattr(table, name)
     if isinstance(old, list):
@@ -111,7 +111,7 @@ def _parsed(text: str) -> tuple[str, list[float]]:
 
 
 def _free(key: str, numbers: list[float], scene: AnyScene) -> Free:
-    """Return a key with its start and bounds: given, else of the scene and its models."""
+    """Return a key with its start and bounds, as given or else from the scene and its models."""
     if key == CLOCK:
         start, low, high = _three(numbers, None, -inf, inf)
         return Free(key, nan if start is None else start, low, high, False, 1.0, "s")
@@ -136,8 +136,8 @@ def _free(key: str, numbers: list[float], scene: AnyScene) -> Free:
 
 
 def _unit(key: str, owner: type[BaseModel] | BaseModel) -> str:
-    """Return the unit of a key of a table, or of its model where the scene has none, as the comment
-    of its field begins; "" of a ratio."""
+    """Return the unit of a key of a table (or of its model if the scene has none) from the comment
+    of its field; "" for a ratio."""
     name = key.rpartition(".")[2]
     if isinstance(owner, Pulse) and name == "amplitude":
         return "" if owner.file else LOADS[owner.quantity]
@@ -160,8 +160,8 @@ def _three(
 
 
 def _find(key: str, scene: AnyScene) -> tuple[FieldInfo, type[BaseModel] | BaseModel, Any]:
-    """Return the field of a dotted key, the table that holds it, or its model where the scene has
-    none, and its value, None where it is absent."""
+    """Return the field of a dotted key, its table (or the table's model if the scene has none), and
+    its value, None if absent."""
     table: Any = scene
     model: type[BaseModel] | None = type(scene)
     field, owner, parts = None, None, key.split(".")
@@ -189,8 +189,8 @@ def _matches(key: str, fixed: str) -> bool:
 
 
 def _number(field: FieldInfo) -> tuple[float, float, bool] | None:
-    """Return the least and largest number that a field allows, and whether it is above zero; None
-    where it holds none."""
+    """Return the smallest and largest number allowed by a field, and whether it is positive; None
+    if it is not a number."""
     kind: Any = Annotated[field.annotation, field]
     allowed = TypeAdapter(kind).json_schema()
     for one in allowed.get("anyOf", [allowed]):

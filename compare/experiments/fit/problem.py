@@ -20,14 +20,14 @@ from compare.misfit.external import Curves, is_recorded
 from compare.misfit.places import Place
 from compare.solvers.dem import DEM
 
-SHORT = 200  # blocks, up to which matrix exponentials cost little
-FINER = 4  # samples of the solution to one of the scene, where the clock is free
+SHORT = 200  # blocks, up to which matrix exponentials are cheap
+FINER = 4  # samples of the solution per sample of the scene, if the clock is free
 EXACT_STEP, COMPUTED_STEP = 1e-4, 1e-3  # of an unknown, for differences
 
 
 class Measured(NamedTuple):
-    """One measured waveform [n] at times [n] in s on its file's own clock, SI; `static` is what the
-    solution holds there before its load acts."""
+    """One measured waveform [n] at times [n] in s on its file's own clock, SI; `static` is the
+    solution's value there before its load."""
 
     name: str
     place: Place
@@ -43,10 +43,10 @@ class Measured(NamedTuple):
 
 @dataclass(frozen=True)
 class Problem:
-    """A scene, what solves it, and the waveforms that it is fitted to.
+    """A scene, its solver, and the waveforms to fit.
 
-    scene : sampled and lasting as the fit needs it. steps : of rigid blocks per sample, the same in
-    every trial, so that a waveform changes smoothly with a key; 0 where the solution has no step.
+    scene : with the sampling and duration that the fit needs. steps : of rigid blocks per sample,
+    the same in every trial, so that waveforms vary smoothly with a key; 0 without steps.
     """
 
     scene: AnyScene
@@ -55,7 +55,7 @@ class Problem:
     steps: int = 0
 
     def residual(self, values: Mapping[str, float]) -> list[np.ndarray] | None:
-        """Return solution less measured [n] of each waveform; None where there is no solution."""
+        """Return solution minus measurement [n] of each waveform; None without a solution."""
         from scipy.interpolate import CubicSpline
 
         try:
@@ -74,7 +74,7 @@ class Problem:
 
     @property
     def step(self) -> float:
-        """The change of an unknown that a difference takes."""
+        """The increment of an unknown for finite differences."""
         return COMPUTED_STEP if solver(self.solver).is_engine else EXACT_STEP
 
     def _stepped(self, scene: AnyScene) -> AnyScene:
@@ -83,14 +83,14 @@ class Problem:
         fraction = scene.interval / self.steps / DEM.prepare(scene).critical
         if fraction > COARSEST:
             raise UnstableError("the initial step exceeds the critical step of this trial")
-        step = {"step_fraction": fraction * (1 + 1e-6)}  # or rounding makes it one step more
+        step = {"step_fraction": fraction * (1 + 1e-6)}  # otherwise rounding adds a step
         dem = scene.numerics.dem.model_copy(update=step)
         return scene.model_copy(update={"numerics": scene.numerics.model_copy(update={"dem": dem})})
 
 
 def solver_of(scene: AnyScene, asked: str | None) -> str:
-    """Return what solves every trial: what is asked for, else rigid blocks, exact in time where
-    they are linear and few; raises SceneError where it does not apply."""
+    """Return the solver of every trial: the requested one, else rigid blocks, exact in time if they
+    are linear and few; raises SceneError if it does not apply."""
     if asked is None and isinstance(scene, Scene) and scene.block_count <= SHORT:
         asked = lattice.SOLVER.name if lattice.applies(scene) else None
     name = asked or DEM.name
@@ -105,9 +105,9 @@ def problem_of(
 ) -> Problem:
     """Return the problem of a fit.
 
-    name : of the solver. clock : the shift that it begins with, s; None: it stays.
-    reach : how far the clock may move later, s, so long does the solution last beyond the scene.
-    Raises SceneError where a curve shares fewer samples with the scene than a fit takes.
+    name : of the solver. clock : initial shift, s; None: fixed clock.
+    reach : largest later shift of the clock, s, by which the solution extends beyond the scene.
+    Raises SceneError if a curve shares fewer samples with the scene than a fit needs.
     """
     moves, shift = clock is not None, clock or 0.0
     interval = scene.interval / (FINER if moves else 1)
@@ -142,7 +142,7 @@ def _require_samples(found: list[Measured], curves: list[Curves], scene: AnyScen
 
 
 def started_clock(scene: AnyScene, solver: str, curves: list[Curves]) -> float:
-    """Return the shift of the first file's clock that correlates best with the solution, s."""
+    """Return the shift of the first file's clock with the best correlation to the solution, s."""
     from compare.misfit.alignment import lay_beside
 
     shift = lay_beside(curves[0], scene, {solver: solve(solver, scene)}, align=True).shift
@@ -150,5 +150,5 @@ def started_clock(scene: AnyScene, solver: str, curves: list[Curves]) -> float:
 
 
 def clock_reach(scene: AnyScene) -> float:
-    """Return how far a clock may move from where the fit began, s: a period of the load."""
+    """Return the largest shift of a clock from its start, s: a period of the load."""
     return shortest_period(scene.pulses) or scene.time.duration / 10

@@ -10,8 +10,8 @@ from compare.experiments.fit.keys import CLOCK
 
 
 class Estimate(NamedTuple):
-    """A fitted key: its value, its 95 % interval, infinite where the waveforms do not bound it,
-    and where the search began; unit "" of a ratio; at_bound : whether a bound stopped it."""
+    """A fitted key: its value, its 95 % interval (infinite if the waveforms do not bound it), and
+    its starting value; unit "" for a ratio; at_bound : whether it is at a bound."""
 
     key: str
     value: float
@@ -25,8 +25,8 @@ class Estimate(NamedTuple):
 class Fitted(NamedTuple):
     """One measured waveform [n] and the fitted one at the same times, s on the scene's clock, SI.
 
-    before, after : relative L2 misfit of the motion at the start and at the end. independent : how
-    many samples the residual's autocorrelation leaves.
+    before, after : relative L2 misfit of the motion at the start and at the end. independent :
+    number of samples that are independent by the residual's autocorrelation.
     """
 
     name: str
@@ -43,9 +43,9 @@ class Fitted(NamedTuple):
 class Fit:
     """The result of a fit.
 
-    scene : with the fitted keys, else as it was given. solver : the engine or exact solution.
-    estimates : a key each. correlation : [p, p] of the keys. waveforms : as measured and as fitted.
-    trials : how often the scene was solved. notes : what a reader must know, a sentence each.
+    scene : with the fitted keys, else as given. solver : the engine or exact solution.
+    estimates : one per key. correlation : [p, p] of the keys. waveforms : both measured and fitted.
+    trials : number of solutions of the scene. notes : warnings, one sentence each.
     """
 
     scene: AnyScene
@@ -58,15 +58,15 @@ class Fit:
 
     @property
     def settings(self) -> list[str]:
-        """The fitted keys of the scene as `--set` takes them."""
+        """The fitted keys of the scene as arguments of `--set`."""
         return [f"{e.key}={e.value:.12g}" for e in self.estimates if e.key != CLOCK]
 
     @property
     def before(self) -> float:
-        """Misfit of the waveform that was furthest off at the start."""
+        """Misfit of the worst waveform at the start."""
         return max(one.before for one in self.waveforms)
 
     @property
     def after(self) -> float:
-        """Misfit of the waveform that is furthest off at the end."""
+        """Misfit of the worst waveform at the end."""
         return max(one.after for one in self.waveforms)

@@ -1,4 +1,4 @@
-"""The search of a fit: nonlinear least squares, each waveform weighed by its own noise."""
+"""The search of a fit: nonlinear least squares, each waveform weighted by its own noise."""
 
 from operator import attrgetter
 from typing import Any
@@ -13,10 +13,10 @@ from compare.experiments.fit.statistics import deviations
 
 MOST = 60  # steps of a search, each with its derivatives
 TOLERANCE = 1e-12  # of the squares, the unknowns and the gradient
-POOR = 0.2  # a misfit that asks for other starts
-FACTORS = 10.0 ** np.arange(-2.0, 2.1, 0.5)  # of a start, for those
-OTHERS = 2  # of them, the best
-LEAST_WEIGHT = 0.01  # of the largest relative noise: no waveform is trusted beyond
+POOR = 0.2  # misfit above which other starts are tried
+FACTORS = 10.0 ** np.arange(-2.0, 2.1, 0.5)  # on a start, for other starts
+OTHERS = 2  # number of best other starts used
+LEAST_WEIGHT = 0.01  # of the largest relative noise: lower limit of a waveform's noise
 
 
 class FitSearch:
@@ -49,7 +49,7 @@ class FitSearch:
         return found
 
     def jacobians(self, x: np.ndarray) -> list[np.ndarray]:
-        """Return the derivatives of each waveform [n, p]: central, or to the side that is there."""
+        """Return the derivatives of each waveform [n, p]: central, or one-sided at a limit."""
         columns = [self._derivative(x, i) for i in range(len(x))]
         return [np.stack(parts, axis=1) for parts in zip(*columns, strict=True)]
 
@@ -72,7 +72,7 @@ class FitSearch:
         return np.concatenate([w * part for w, part in zip(self.weights, parts, strict=True)])
 
     def run(self, start: np.ndarray) -> Any:
-        """Return what `scipy.optimize.least_squares` finds from a start."""
+        """Return the result of `scipy.optimize.least_squares` from a start."""
         from scipy.optimize import least_squares
 
         def squares(x: np.ndarray) -> np.ndarray:
@@ -94,8 +94,8 @@ class FitSearch:
         )
 
     def best(self) -> np.ndarray:
-        """Return the unknowns that fit best, from other starts too where the fit is poor; raises
-        StoppedError where no search has converged."""
+        """Return the best unknowns, also from other starts if the fit is poor; raises StoppedError
+        if no search has converged."""
         found = [self.run(self.start)]
         if self._misfit(found[0].x) > POOR:
             found += [self.run(start) for start in self._other_starts()]
@@ -130,7 +130,7 @@ class FitSearch:
         return np.inf if found is None else max(misfits(found, self.problem.measured))
 
     def _other_starts(self) -> list[np.ndarray]:
-        """Return the starts that fit best of those with one key a factor larger or smaller."""
+        """Return the best starts among those with one key multiplied by a factor."""
         starts: list[tuple[float, int, np.ndarray]] = []
         for i, key in enumerate(self.keys):
             for factor in FACTORS if key.logarithmic else ():

@@ -11,7 +11,7 @@ from compare.experiments.fit.result import Estimate, Fit
 def show_fit(found: Fit, scene: str, changes: list[str], files: list[Path]) -> None:
     """Print values with intervals, correlations, misfits, and the command to continue.
 
-    changes : those that the scene was given, KEY=VALUE.
+    changes : those made to the scene, KEY=VALUE.
     """
     worst = max(found.waveforms, key=lambda one: one.after)
     say(
@@ -53,7 +53,7 @@ def _cells(e: Estimate) -> list[str]:
 
 
 def _digits(value: float, e: Estimate) -> str:
-    """Return a value with as many digits as its interval bears, and two more."""
+    """Return a value with two digits more than its interval justifies."""
     width = abs(e.high - e.low) / 2
     if not math.isfinite(width) or width == 0 or value == 0:
         return f"{value:.6g}"

@@ -1,9 +1,9 @@
-"""Uncertainty of fitted numbers: covariance, independent samples, unknowns not told apart.
+"""Uncertainty of fitted numbers: covariance, independent samples, indistinguishable unknowns.
 
 Near the best fit a waveform is linear in the unknowns. With the Jacobian J there and a residual of
 variance s2 the unknowns scatter with the covariance s2 (J^T J)^-1, and Student's t with n - p
 degrees of freedom gives the interval (Bates & Watts, Nonlinear Regression Analysis and Its
-Applications, 1988). Neighbouring residuals that are alike are no new information: n samples count
+Applications, 1988). Correlated neighbouring residuals add no information: n samples count
 as n / tau, tau the residual's integrated autocorrelation, summed while pairs of it are positive
 (Geyer, Statist. Sci. 7, 1992), and the covariance is tau times as large.
 """
@@ -16,13 +16,13 @@ from scipy.signal import correlate
 from scipy.stats import t as student
 
 CONFIDENCE = 0.95
-ALIKE = 0.99  # a correlation beyond which two unknowns are not told apart
-SINGULAR = 1e-9  # of the largest eigenvalue, where derivatives are no better than differences
+ALIKE = 0.99  # correlation above which two unknowns are indistinguishable
+SINGULAR = 1e-9  # of the largest eigenvalue: accuracy of derivatives by differences
 
 
 class Known(NamedTuple):
-    """The uncertainty of p unknowns: how far an interval reaches to either side [p], inf where
-    nothing bounds it, the correlations [p, p], and of each waveform its independent samples."""
+    """The uncertainty of p unknowns: half width of the interval [p], inf if unbounded, the
+    correlations [p, p], and the number of independent samples of each waveform."""
 
     reach: np.ndarray
     correlation: np.ndarray
@@ -30,7 +30,7 @@ class Known(NamedTuple):
 
 
 def autocorrelation_time(residual: np.ndarray) -> float:
-    """Return over how many samples a residual [n] is alike, at least 1."""
+    """Return the correlation length of a residual [n] in samples, at least 1."""
     power = float(residual @ residual)
     if power == 0:
         return 1.0
@@ -41,7 +41,7 @@ def autocorrelation_time(residual: np.ndarray) -> float:
 
 
 def deviations(residuals: list[np.ndarray], unknowns: int) -> list[float]:
-    """Return the standard deviation of each residual, less the degrees of freedom it has lost."""
+    """Return the standard deviation of each residual, corrected for degrees of freedom."""
     total = sum(map(len, residuals))
     return [
         float(np.sqrt(r @ r / max(len(r) * (1 - unknowns / total), 1e-300))) if len(r) else 0.0
@@ -50,12 +50,12 @@ def deviations(residuals: list[np.ndarray], unknowns: int) -> list[float]:
 
 
 def known(residuals: list[np.ndarray], jacobians: list[np.ndarray]) -> Known:
-    """Return what residuals [n] and Jacobians [n, p] at the best fit say of the unknowns."""
+    """Return the uncertainty of unknowns from residuals [n] and Jacobians [n, p] at the fit."""
     p = jacobians[0].shape[1]
     times = [autocorrelation_time(r) for r in residuals]
     independent = [len(r) / time for r, time in zip(residuals, times, strict=True)]
     noise = deviations(residuals, p)
-    least = 1e-150 + 1e-12 * max(noise)  # a waveform that is met exactly says no more than this
+    least = 1e-150 + 1e-12 * max(noise)  # lower limit for a waveform that is fitted exactly
     information = np.zeros((p, p))
     for j, s, time in zip(jacobians, noise, times, strict=True):
         scaled = j / max(s, least)
@@ -69,7 +69,7 @@ def known(residuals: list[np.ndarray], jacobians: list[np.ndarray]) -> Known:
 
 
 def _inverted(information: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return covariance [p, p], infinite for what nothing bounds, and correlation [p, p]."""
+    """Return covariance [p, p], infinite for unbounded unknowns, and correlation [p, p]."""
     scale = np.sqrt(np.diag(information))
     seen = scale > 0
     safe = np.where(seen, scale, 1.0)
@@ -88,7 +88,7 @@ def _inverted(information: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def not_told_apart(correlation: np.ndarray, names: list[str]) -> list[str]:
-    """Return in words which unknowns the waveforms do not tell apart."""
+    """Return in words which unknowns the waveforms cannot distinguish."""
     found = [
         f"{names[i]} and {names[j]} cannot be distinguished: correlation {correlation[i, j]:+.5f}"
         for i in range(len(names))

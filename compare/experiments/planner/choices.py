@@ -1,4 +1,4 @@
-"""Choices: configurations with what they give, measured by a trial or predicted from several."""
+"""Choices: configurations with their errors and cost, measured by a trial or predicted."""
 
 from collections.abc import Iterator
 from math import ceil, log2
@@ -15,9 +15,9 @@ MARGIN = 0.95
 
 
 class Choice(NamedTuple):
-    """One configuration and what it gives; measured or predicted.
+    """One configuration with its errors and cost, measured or predicted.
 
-    numerical : relative L2 misfit from the engine's own model, with what that is not known to.
+    numerical : relative L2 misfit from the engine's own model, plus that reference's uncertainty.
     modelling : of the own model from the finest physics. seconds : of stepping.
     """
 
@@ -31,12 +31,12 @@ class Choice(NamedTuple):
 
     @property
     def misfit(self) -> float:
-        """Numerical and modelling error together: what counts, whatever cancels in the sum."""
+        """Sum of numerical and modelling error, without regard to cancellation."""
         return self.numerical + self.modelling
 
 
 def measured(scene: AnyScene, family: Family, trial: Trial, own: OwnModel) -> Choice:
-    """Return the configuration of a trial, with what it gave."""
+    """Return the configuration of a trial, with its result."""
     numerics = settings(scene, family, trial.per_sample, trial.critical)
     errors = trial.misfit + own.reference.error, own.modelling
     return Choice(family, numerics, trial.per_sample, *errors, trial.seconds, True)
@@ -63,15 +63,15 @@ def seconds_of(coarse: Trial, fine: Trial) -> tuple[float, float]:
 
 
 def steps(least: int, most: int, per_octave: int) -> list[int]:
-    """Return steps per sample from `least` on, so many to a doubling."""
+    """Return steps per sample from `least` on, `per_octave` per doubling."""
     octaves = ceil(per_octave * log2(most / least))
     return sorted({ceil(least * 2 ** (k / per_octave) - 1e-9) for k in range(octaves + 1)})
 
 
 def cheapest(choices: list[Choice], misfit: float, seconds: float | None) -> Choice | None:
-    """Return the cheapest that meets the misfit; else, or where it costs more, the best in time.
+    """Return the cheapest that meets the misfit; else, or if it costs more, the best in time.
 
-    One meets it where all finer steps of its family do, as far as they are known or predicted.
+    A choice meets it if all known or predicted finer steps of its family do.
     """
     meets = [c for c in choices if _meets(c, misfit) and furthest_off(c, choices) <= misfit]
     best = min(meets, key=lambda c: c.seconds, default=None)

@@ -1,4 +1,4 @@
-"""Families of configurations: an engine, its scheme and elements, at any number of steps."""
+"""Families of configurations: an engine, its scheme and elements, for any number of steps."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ class Family(NamedTuple):
 
     @property
     def engine(self) -> str:
-        """The table of [numerics] that `changes` are of."""
+        """The table of [numerics] that `changes` belong to."""
         return ENGINES[self.name].engine
 
     @property
     def label(self) -> str:
-        """Its name and what it changes, in a line."""
+        """Its name and changes, in one line."""
         changes = ", ".join(f"{k} {v}" for k, v in self.changes.items())
         return f"{self.name} ({changes})" if changes else self.name
 
@@ -50,7 +50,7 @@ class Family(NamedTuple):
 
     @property
     def model(self) -> Family:
-        """The model that its finest steps and elements solve: the engine's, with such blocks."""
+        """The model in the limit of fine steps and elements: the engine's, with these blocks."""
         return Family(self.name, {k: v for k, v in self.changes.items() if k == "block"})
 
     @property
@@ -61,8 +61,8 @@ class Family(NamedTuple):
 
 
 def families_of(scene: AnyScene) -> list[Family]:
-    """Return the families of a scene, coarse ones first: what they give tells whether finer ones
-    need a trial."""
+    """Return the families of a scene, coarse ones first: their results show whether finer ones need
+    a trial."""
     both, rigid = (JOINTED_ROCK.name, EQUIVALENT_ROCK.name), _rigid(scene)
     # Without numerical damping: only the accuracy of the waveforms counts here.
     implicit = {"scheme": "implicit", "spectral_radius": 1.0}
@@ -108,7 +108,7 @@ def _period(scene: AnyScene) -> float:
 
 
 def is_finer(one: Family, other: Family) -> bool:
-    """Return whether a family has all the elements of another and more, so that it costs more."""
+    """Return whether a family refines the elements of another, so that it costs more."""
     schemes = (one.name, one.changes.get("scheme")), (other.name, other.changes.get("scheme"))
     pairs = zip(one.fineness, other.fineness, strict=True)
     return schemes[0] == schemes[1] and one != other and all(a >= b for a, b in pairs)
@@ -123,7 +123,7 @@ class Effort(NamedTuple):
 
 
 def effort(scene: AnyScene, family: Family) -> Effort:
-    """Return what a family takes at its coarsest, before it is run; SceneError where it cannot."""
+    """Return a family's cost at its coarsest, before a run; raises SceneError if it cannot run."""
     asked = configured(scene, family, {})
     answer = applies(family.name, asked)
     if not answer:
@@ -136,7 +136,7 @@ def effort(scene: AnyScene, family: Family) -> Effort:
 
 
 def settings(scene: AnyScene, family: Family, per_sample: int, critical: float) -> dict[str, Any]:
-    """Return the numerics that take so many steps per sample; critical : the critical step, s."""
+    """Return the numerics with `per_sample` steps per sample; critical : the critical step, s."""
     dt = scene.interval / per_sample
     if not family.is_implicit:
         return {"step_fraction": float(f"{dt / critical * (1 + 1e-6):.7g}")}
@@ -153,8 +153,8 @@ def plain(scene: AnyScene) -> AnyScene:
 
 
 def configured(scene: AnyScene, family: Family, more: dict[str, Any]) -> AnyScene:
-    """Return a scene with a family's numerics, its own where the family has none; raises SceneError
-    where it cannot have them."""
+    """Return a scene with a family's numerics, otherwise its own; raises SceneError if it cannot
+    have them."""
     table = getattr(scene.numerics, family.engine).model_copy(update=family.changes | more)
     numerics = scene.numerics.model_copy(update={family.engine: table})
     return checked(plain(scene).model_copy(update={"numerics": numerics}))

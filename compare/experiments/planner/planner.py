@@ -1,12 +1,12 @@
 """The cheapest way to solve a scene within a misfit: predicted from a few cheap runs, then run.
 
-What must be met is the sum of two errors: the numerical one, of a configuration from its engine's
-own model, and the modelling one, of that model from the finest physics. So an error that happens to
-cancel the other is no accuracy.
+The criterion is the sum of two errors: the numerical one, of a configuration from its engine's own
+model, and the modelling one, of that model from the finest physics. Errors that happen to cancel
+are therefore not counted as accuracy.
 
 Families of configurations are tried from coarse elements to fine ones, each from its coarsest step
-on until finer steps can be predicted (see `trials`). What by its freedom-steps would cost more
-than what is known to meet the misfit is not tried at all, nor what its modelling error bars.
+on until finer steps can be predicted (see `trials`). A family is not tried if its freedom-steps
+would cost more than a choice known to suffice, or if its modelling error is too large.
 """
 
 from math import inf
@@ -38,8 +38,8 @@ from compare.experiments.planner.trials import (
 )
 from compare.misfit.metrics import misfit as misfit_of
 
-#: A family is not tried where it would be too dear at this share of the least seconds that a
-#: freedom-step has taken so far.
+#: A family is not tried if it would be too expensive even at this fraction of the smallest time per
+#: freedom-step measured so far.
 SAFETY = 0.5
 DEAR = "would cost more than a setting that meets the misfit"
 SAME = "has the same blocks and elements as another family"
@@ -48,10 +48,10 @@ SAME = "has the same blocks and elements as another family"
 class Plan(NamedTuple):
     """The choice, and the result of running it.
 
-    reference : the finest physics, and the reason why it is that. trials : runs that were made to
-    predict; planning : s that all of the planning took, the references and compiling included.
+    reference : the finest physics, and the reason for it. trials : runs made for predictions;
+    planning : s, time of all planning, including references and compiling.
     chosen : None if no configuration is predicted to suffice. own : the numerical reference.
-    obtained : the configuration as it was run; None without.
+    obtained : the configuration as run; None without.
     skipped : families that could not or need not be run, with their reason.
     """
 
@@ -67,17 +67,17 @@ class Plan(NamedTuple):
 
     @property
     def misfit(self) -> float:
-        """Numerical and modelling error that were obtained together; inf without."""
+        """Sum of numerical and modelling error obtained; inf without a run."""
         return inf if self.obtained is None else self.obtained.misfit
 
     @property
     def seconds(self) -> float:
-        """Seconds of stepping that were obtained; 0 without."""
+        """Seconds of stepping obtained; 0 without a run."""
         return 0.0 if self.obtained is None else self.obtained.seconds
 
 
 class PlanSearch:
-    """Trials so far of one scene, and the choices that they leave."""
+    """The trials of one scene so far, and the resulting choices."""
 
     def __init__(
         self, scene: AnyScene, references: References, misfit: float, seconds: float | None
@@ -92,7 +92,7 @@ class PlanSearch:
 
     @property
     def limit(self) -> float:
-        """Seconds from which a run is of no use."""
+        """Seconds above which a run is useless."""
         best = cheapest(self.choices, self.misfit, None)
         known = inf if best is None else best.seconds
         return known if self.seconds is None else min(known, self.seconds)
@@ -102,7 +102,7 @@ class PlanSearch:
         if any(is_finer(family, other) for other in self.dear):
             raise StoppedError(DEAR)
         asked = effort(self.scene, family)
-        # Of this engine where it has run.
+        # Of this engine if it has run.
         rate = self.rates.get(family.name, min(self.rates.values(), default=0.0))
         if SAFETY * rate * asked.work > self.limit:
             self.dear.append(family)
@@ -117,7 +117,7 @@ class PlanSearch:
             self.choices += predicted(self.scene, family, trials, own)
 
     def _refuse_known(self, family: Family, asked: Effort) -> None:
-        """Raise StoppedError where a coarser size was cut or meshed into as many parts."""
+        """Raise StoppedError if a coarser size gave the same number of parts."""
         order, scheme = (family.changes.get(key) for key in ("order", "scheme"))
         size = family.name, order, scheme, asked.freedoms
         if size in self.sizes:
@@ -135,7 +135,7 @@ class PlanSearch:
         return trials
 
     def obtain(self, choice: Choice) -> Choice:
-        """Return a choice with what a run of it gives."""
+        """Return a choice with the result of a run."""
         family, own = choice.family, self.references.own(choice.family).reference
         asked = configured(self.scene, family, choice.settings)
         result, seconds = timed(family.name, asked)
@@ -145,7 +145,7 @@ class PlanSearch:
     def _is_enough(self, family: Family, trials: list[Trial], asked: float) -> bool:
         """Return whether no finer trial is needed; asked : the largest numerical error.
 
-        A trial that comes within it is not the last before one of half its step does too.
+        A trial that meets it must be confirmed by one of half its step.
         """
         last, meets = trials[-1], trials[-1].misfit <= asked
         if meets and len(trials) == 1:
@@ -163,8 +163,8 @@ def plan(
 ) -> Plan:
     """Return the cheapest configuration predicted to meet a misfit, run.
 
-    seconds : instead the best misfit within so many s of stepping, where `misfit` costs more.
-    Raises SceneError where nothing exact is known of it, and no run converges in reach.
+    seconds : limit of stepping, s: the best misfit within it if `misfit` costs more.
+    Raises SceneError if there is no exact solution and no affordable run converges.
     """
     began = perf_counter()
     references = References(scene, misfit)
@@ -177,8 +177,8 @@ def plan(
 
 
 def _run_cheapest(search: PlanSearch) -> tuple[Choice | None, Choice | None]:
-    """Return the cheapest choice and what came of it; one that is not what was predicted of it
-    counts as a trial, and the next is run."""
+    """Return the cheapest choice and its result; a result that differs from its prediction counts
+    as a trial, and the next choice is run."""
     chosen = obtained = None
     while (best := cheapest(search.choices, search.misfit, search.seconds)) is not None:
         chosen, obtained = best, search.obtain(best)

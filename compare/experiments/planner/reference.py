@@ -1,6 +1,6 @@
 """The references of a plan's errors: the finest physics of a scene, and each engine's own model.
 
-Either is an exact solution that knows itself well enough, or a run that has converged to itself.
+Each is an exact solution with a sufficiently small error bound, or a converged run.
 """
 
 from math import inf
@@ -17,19 +17,19 @@ from compare.misfit import ranking
 from compare.misfit.metrics import JUDGED, misfit, worst
 from compare.solvers.record import Prepared
 
-SHARE = 1 / JUDGED  # of the misfit asked for, that a reference may be wrong itself
+SHARE = 1 / JUDGED  # of the requested misfit: largest error of a reference
 LONGEST = {"pillar": 20.0, "rock mass": 60.0}  # s of stepping of the finest run
 LEVELS = 10
-#: Times as many freedoms as quadratic elements of half the size have at least: 5 / 3 along a block
-#: that was one element, 25 / 9 in a quadrilateral.
+#: Least growth in degrees of freedom of quadratic elements of half the size: 5 / 3 along a block of
+#: one element, 25 / 9 in a quadrilateral.
 GROWN = {"pillar": 1.5, "rock mass": 2.5}
 
 
 class OwnModel(NamedTuple):
     """The model of one engine.
 
-    reference : what its numerical errors are from. modelling : how far that is at most from the
-    finest physics, the error of the latter included; 0 where it is the finest physics itself.
+    reference : of its numerical errors. modelling : upper bound on its distance from the finest
+    physics, including the latter's error; 0 if it is the finest physics itself.
     """
 
     reference: ErrorReference
@@ -37,7 +37,7 @@ class OwnModel(NamedTuple):
 
     @property
     def least(self) -> float:
-        """The error that no step reduces: of modelling, and of the own reference itself."""
+        """The error that no step reduces: modelling error plus that of the own reference."""
         return self.modelling + self.reference.error
 
     def too_far(self, family: Family) -> str:
@@ -46,10 +46,10 @@ class OwnModel(NamedTuple):
 
 
 class References:
-    """The references of one scene, good enough for the misfit that is asked for.
+    """The references of one scene, accurate enough for the requested misfit.
 
-    finest : that of the physics which leaves out the least; reason : why it is that one.
-    Raises SceneError where nothing exact is known of it and no run in reach has converged.
+    finest : that of the most complete physics; reason : why it is that one.
+    Raises SceneError if there is no exact solution and no affordable run has converged.
     """
 
     def __init__(self, scene: AnyScene, asked: float) -> None:
@@ -62,7 +62,7 @@ class References:
         self.reason = found.reason
 
     def own(self, family: Family) -> OwnModel:
-        """Return the model of a family; raises SceneError where no run of it has converged."""
+        """Return the model of a family; raises SceneError if no run of it has converged."""
         model = family.model
         if model.label not in self._own:
             self._own[model.label] = self._find_own(model)
@@ -81,7 +81,7 @@ class References:
     def _reference(
         self, name: str, model: Family, finest: xr.Dataset | None = None
     ) -> ErrorReference:
-        """Return an exact solution, or the run of a model that has converged."""
+        """Return an exact solution, or a converged run of a model."""
         if name in ENGINES:
             return _converged(self.scene, model, self.asked, finest)
         result = solve(name, plain(self.scene))
@@ -98,11 +98,11 @@ def _applicable(scene: AnyScene) -> list[str]:
 def _converged(
     scene: AnyScene, model: Family, asked: float, finest: xr.Dataset | None
 ) -> ErrorReference:
-    """Return a model's run that differs from the one before by little enough.
+    """Return a model's run that differs little enough from the previous one.
 
-    Each has at most half the step, and half the elements' size, of the one before. Its error is at
-    most the difference where the error falls at least in proportion to the step. A run is fine
-    enough, too, once its model is certain to be further from the finest physics than is asked for.
+    Each has at most half the step, and half the elements' size, of the previous one. Its error is
+    at most the difference if the error falls at least in proportion to the step. A run also
+    suffices once its model is certain to be further from the finest physics than requested.
     """
     before, apart, longest = None, inf, LONGEST[scene.kind]
     for family in _refined(scene, model):
@@ -133,10 +133,10 @@ def _refined(scene: AnyScene, model: Family) -> list[Family]:
 def _prepared(
     scene: AnyScene, family: Family, before: xr.Dataset | None
 ) -> tuple[dict[str, Any], Prepared]:
-    """Return the numerics of steps of 0.4 critical ones, or half of those before if that is less,
-    and the run before it is made.
+    """Return the numerics for steps of 0.4 of the critical one, or half of the previous ones if
+    that is less, and the prepared run.
 
-    The step divides the sampling interval, so that a part of the critical one may be no other.
+    The step divides the sampling interval, so a smaller fraction may give the same step.
     """
     numerics = {"step_fraction": 0.4}
     run = solver(family.name).prepare(configured(scene, family, numerics))
@@ -147,21 +147,21 @@ def _prepared(
 
 
 def _is_finer(scene: AnyScene, model: Family, run: Prepared, before: xr.Dataset) -> bool:
-    """Return whether all elements are half as large as before: a block may be smaller than was
-    asked for, and a mesh that is given stays as it is."""
+    """Return whether all elements have half the previous size: a block may be smaller than
+    requested, and a given mesh is not refined."""
     if ENGINES[model.name].has_rigid_blocks:
         return True
     return bool(run.freedoms > GROWN[scene.kind] * before.attrs["degrees_of_freedom"])
 
 
 def _seconds(run: Prepared, before: xr.Dataset) -> float:
-    """Return what a run should take, from the one before."""
+    """Return the expected seconds of a run, from the previous one."""
     about = before.attrs
     work = run.steps * run.freedoms / (about["steps"] * about["degrees_of_freedom"])
     return float(about["seconds_stepping"] * work)
 
 
 def _not_known(scene: AnyScene, what: str, error: float, asked: float) -> SceneError:
-    """Return the refusal of a reference that is too far off itself."""
+    """Return the error for a reference that is not accurate enough."""
     share = f"to {100 * error:.2g} %, not to {100 * SHARE * asked:.2g} %"
     return SceneError(scene.where, "", None, f"{what} {share}: ask for a larger --misfit")

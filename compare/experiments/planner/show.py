@@ -10,7 +10,7 @@ from compare.report.tables import percent
 
 
 def show_plans(found: list[Plan], misfit: float, as_json: bool) -> None:
-    """Print what was chosen for each scene, predicted and obtained."""
+    """Print the choice for each scene, predicted and obtained."""
     if as_json:
         print_json([_plan_facts(one, misfit) for one in found])
         return
@@ -49,7 +49,7 @@ def _numbers(choice: Choice) -> list[str]:
 
 
 def _named(reference: ErrorReference) -> str:
-    """Say what errors are from, how well it is known, and until when."""
+    """Describe the reference of errors, its accuracy, and its time limit."""
     until = reference.result.attrs.get("known_until")
     known = "" if until is None else f", known until {float(until):.3g} s"
     if not reference.is_exact:

@@ -1,4 +1,4 @@
-"""Trial runs of a family, and what they say of finer steps.
+"""Trial runs of a family, and predictions for finer steps.
 
 The error of a family falls with some order q, so that each of its waveforms at n steps per sample
 is w + c n^-q (Richardson): from two runs its misfit from the engine's own model is known for every
@@ -18,16 +18,16 @@ from compare.experiments.planner.families import COARSEST, Family, configured, s
 from compare.experiments.planner.reference import OwnModel
 from compare.misfit.metrics import Stack, stacked
 
-SHORT = 0.05  # s: shorter runs are timed three more times, because they are mostly noise
-SLOWEST = 0.5  # order at which errors fall, at least: they do at kinks that repeat
+SHORT = 0.05  # s: shorter runs are timed three more times, because of noise
+SLOWEST = 0.5  # lowest order of convergence, reached at repeated kinks
 FINEST = 64  # times the steps of the coarsest
-LONGEST = 1.0  # s: a trial that takes as long is the last of its family
-HIT = 0.1  # of the misfit, that a trial may be from where those before it put it
+LONGEST = 1.0  # s: a longer trial is the last of its family
+HIT = 0.1  # of the misfit: tolerated difference of a trial from its prediction
 
 
 class Trial(NamedTuple):
-    """A run at so many steps per sample: its waveforms beside those of the engine's own model, the
-    seconds of stepping, and the critical step (s)."""
+    """A run at `per_sample` steps per sample: its waveforms with those of the engine's own model,
+    the seconds of stepping, and the critical step (s)."""
 
     per_sample: int
     waves: Stack
@@ -41,13 +41,13 @@ class Trial(NamedTuple):
 
     @property
     def misfit(self) -> float:
-        """That of the waveform which is furthest off: the numerical error."""
+        """That of the worst waveform: the numerical error."""
         return largest(self.misfits)
 
 
 def timed(name: str, scene: AnyScene) -> tuple[xr.Dataset, float]:
-    """Return a result and its seconds of stepping: the least of four runs where it is short, which
-    other work on the machine delays least."""
+    """Return a result and its seconds of stepping: for a short run the minimum of four, which is
+    the least affected by other load."""
     result = solve(name, scene)
     seconds = float(result.attrs["seconds_stepping"])
     if seconds < SHORT:
@@ -67,7 +67,7 @@ def first_trial(scene: AnyScene, family: Family, own: OwnModel) -> Trial:
 def trial_at(
     scene: AnyScene, family: Family, per_sample: int, first: Trial, own: OwnModel
 ) -> Trial:
-    """Run a family at so many steps per sample, after its first trial."""
+    """Run a family at `per_sample` steps per sample, after its first trial."""
     return _trial(scene, family, settings(scene, family, per_sample, first.critical), own)
 
 
@@ -79,10 +79,10 @@ def _trial(scene: AnyScene, family: Family, numerics: dict[str, Any], own: OwnMo
 
 
 def is_trusted(trials: list[Trial], order: int, asked: float) -> bool:
-    """Return whether finer steps can be told from these, or none comes within the misfit.
+    """Return whether finer steps can be predicted from these trials, or none meets the misfit.
 
-    They can where the last trial is where those before it put it, to a part of the numerical error
-    that is asked for or, if that is more, of what the elements leave at the finest steps.
+    They can if the last trial agrees with its prediction, to a part of the requested numerical
+    error or, if larger, of the elements' error at the finest steps.
     """
     if len(trials) < 2:
         return False
@@ -97,8 +97,8 @@ def is_trusted(trials: list[Trial], order: int, asked: float) -> bool:
 
 
 def is_hopeless(trials: list[Trial], asked: float) -> bool:
-    """Return whether no step comes within the numerical error that is asked for, even if the error
-    falls at the slowest."""
+    """Return whether no step meets the requested numerical error, even at the slowest rate of
+    convergence."""
     coarse, fine = trials[-2:]
     moved = fine.waves.distances(coarse.waves.one, fine.waves.one)
     reach = moved / ((fine.per_sample / coarse.per_sample) ** SLOWEST - 1)
@@ -106,8 +106,8 @@ def is_hopeless(trials: list[Trial], asked: float) -> bool:
 
 
 def rate(trials: list[Trial], order: int) -> np.ndarray:
-    """Return the order at which the error of each waveform falls, [waveform, 1]: measured from
-    three runs, else its scheme's."""
+    """Return the order of convergence of each waveform, [waveform, 1]: measured from three runs,
+    else the scheme's."""
     if len(trials) < 3:
         return np.full((len(trials[0].waves.one), 1), float(order))
     a, b, c = (trial.waves.one for trial in trials[-3:])
@@ -126,5 +126,5 @@ def forecast(trials: list[Trial], order: int) -> Callable[[float], np.ndarray]:
 
 
 def largest(distances: np.ndarray) -> float:
-    """Return the largest of distances [waveform], 0 of none."""
+    """Return the largest of distances [waveform], 0 without any."""
     return float(np.max(distances, initial=0.0))

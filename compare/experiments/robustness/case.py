@@ -1,4 +1,4 @@
-"""Hard cases: a scene with changes, the engines it is put to, and the criterion that judges it."""
+"""Hard cases: a scene with changes, the engines that run it, and its criterion."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class EngineScheme(NamedTuple):
 
     @property
     def name(self) -> str:
-        """Both in words, as cases name those that they spare."""
+        """Engine and scheme in words, as in `spared` of cases."""
         return f"{self.engine.name} {self.scheme}"
 
 
@@ -67,7 +67,7 @@ class HardCase(NamedTuple):
     """A hard case.
 
     name : in words. changes : of the scene, dotted keys; those of [numerics] may be `STEP` and
-    `ALLOW`. spared : why an engine is not put to the case, by its name, its scheme's or both.
+    `ALLOW`. spared : why an engine does not run the case, by its name, its scheme's or both.
     slow : run only by `make test-all` and the study. scene : a shipped one.
     """
 
@@ -79,18 +79,18 @@ class HardCase(NamedTuple):
     scene: str = SHORT
 
     def why_spared(self, stepper: EngineScheme) -> str | None:
-        """Return why an engine is not put to this case; None where it is."""
+        """Return why an engine does not run this case; None if it does."""
         names = stepper.name, stepper.engine.name, stepper.scheme
         return next((self.spared[name] for name in names if name in self.spared), None)
 
 
 def rock_is_spared(reason: str) -> dict[str, str]:
-    """Return the reason why no deformable rock is put to a case, as `HardCase.spared` has it."""
+    """Return why deformable rock does not run a case, in the form of `HardCase.spared`."""
     return {name: reason for name, engine in ENGINES.items() if not engine.has_rigid_blocks}
 
 
 class CaseTrial:
-    """One case on one engine: its scene, with more changes where a criterion needs them."""
+    """One case on one engine: its scene, with more changes if a criterion needs them."""
 
     def __init__(self, case: HardCase, stepper: EngineScheme) -> None:
         self.case = case
@@ -102,7 +102,7 @@ class CaseTrial:
         extra = {key.replace("__", "."): value for key, value in more.items()}
         scheme = {f"{part}.scheme": self.scheme}
         if self.engine.has_rigid_blocks and _kind(self.case.scene) != Scene.kind:
-            scheme = {}  # those of rock masses have leapfrog alone
+            scheme = {}  # rock masses have only leapfrog
         keys = scheme | self.case.changes | extra
         for key in (STEP, ALLOW):
             if key in keys:
@@ -131,12 +131,12 @@ class CaseTrial:
 
     @cached_property
     def period(self) -> float:
-        """The shortest period of what acts, s; 0 without."""
+        """The shortest period of loads and waves, s; 0 without."""
         return shortest_period(self.read().pulses) or 0.0
 
     @cached_property
     def duration(self) -> float:
-        """The time that is simulated, s."""
+        """The simulated time, s."""
         return self.read().time.duration
 
     @cached_property
@@ -156,12 +156,12 @@ class CaseTrial:
 
     @property
     def fraction(self) -> float:
-        """The fraction of the critical step that the case asks for."""
+        """The fraction of the critical step set by the case."""
         return float(self.case.changes[STEP])
 
     @property
     def dt(self) -> float:
-        """The step that the case asks for, s."""
+        """The step set by the case, s."""
         return self.fraction * self.critical
 
     @property

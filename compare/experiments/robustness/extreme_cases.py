@@ -5,7 +5,7 @@ from typing import Any
 from compare.experiments.robustness.case import STEP, HardCase, rock_is_spared
 from compare.experiments.robustness.criteria import accuracy, extremes, layers
 
-CUT_OFF = 1.1636e-3  # s, pi d / c of the short pillar: the blocks pass no shorter period
+CUT_OFF = 1.1636e-3  # s, pi d / c of the short pillar: shortest period that the blocks transmit
 RESONANCE = 0.0148146  # s, 2 L / c of the short pillar
 
 

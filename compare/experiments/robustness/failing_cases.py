@@ -8,7 +8,7 @@ from compare.experiments.robustness.case import STEP, HardCase, rock_is_spared
 from compare.experiments.robustness.criteria import chatter, contact, energies, extremes, layers
 
 BARRED: dict[str, Any] = {"joints.tension": False, "time.duration": 0.03}
-#: Whose least fracture energy is s_t^2 / (2 K'_n) = 14.29 J/m2.
+#: With a least fracture energy of s_t^2 / (2 K'_n) = 14.29 J/m2.
 BRITTLE: dict[str, Any] = {"joints.tensile_strength": 5e5, "time.duration": 0.06}
 ALL = "hard/everything-fails"
 HOMOGENEOUS = {"continuum-equivalent": "a homogenised bar has no joints that open, slide or break"}

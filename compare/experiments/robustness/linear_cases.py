@@ -5,7 +5,7 @@ from typing import Any
 from compare.experiments.robustness.case import STEP, HardCase, rock_is_spared
 from compare.experiments.robustness.criteria import accuracy, energies, layers, steps
 
-#: A blow with its peak at 1 kHz, above the 860 Hz that the blocks pass, so that all modes ring.
+#: A blow with its peak at 1 kHz, above the cut-off of 860 Hz, so that all modes ring.
 BLOW = {"load.period": 1e-3, "numerics.continuum.elements_per_block": 1}
 JOINT = 8.748e9  # Pa/m, K'_n of an ordinary joint of the short pillar
 RIGID = {"rock.intact_modulus": 1e29, "time.duration": 0.02, STEP: 0.9}

@@ -25,7 +25,7 @@ from compare.solvers.record import Solver
 class FreeMotion(NamedTuple):
     """A body in motion.
 
-    v : float array [freedoms], m/s. advance : takes so many steps.
+    v : float array [freedoms], m/s. advance : takes a number of steps.
     """
 
     v: np.ndarray
@@ -33,7 +33,7 @@ class FreeMotion(NamedTuple):
 
 
 class Unloaded(NamedTuple):
-    """What an engine steps of a scene without a load.
+    """The stepped part of an engine for a scene without a load.
 
     mass : float array [freedoms], in any unit. second : the second block's freedoms along the axis.
     begin : of (dt, velocities [freedoms]), to the motion by steps of dt (s) from these on.
@@ -45,7 +45,7 @@ class Unloaded(NamedTuple):
 
 
 def unloaded(engine: Solver, scene: Scene) -> Unloaded:
-    """Return what an engine steps of a scene whose load is zero, by explicit steps."""
+    """Return an engine's explicit stepping of a scene with zero load."""
     return _blocks(scene) if engine.has_rigid_blocks else _rock(scene, str(engine.model))
 
 
@@ -80,7 +80,7 @@ def _rock(scene: Scene, kind: str) -> Unloaded:
         state = state_at_rest(model, False)
         state.v[:] = state.v_before[:] = v
         samples = empty_samples(model, state, 2)
-        # No step of these is one of a sample.
+        # None of these steps is a sample.
         return FreeMotion(state.v, lambda n: run(model, state, samples, n + 2, 1, n + 1))
 
     heights = body.corners[:, :, 0].mean(axis=1)
@@ -88,7 +88,7 @@ def _rock(scene: Scene, kind: str) -> Unloaded:
     return Unloaded(body.mass, body.freedom(nodes, 0), begin)
 
 
-#: What is stepped: a short pillar with free ends; Rayleigh's beta is the eta of rock and joints.
+#: The scene: a short pillar with free ends; Rayleigh's beta is the eta of rock and joints.
 PILLAR = {
     "pillar.length": 4.0,
     "numerics.continuum.elements_per_block": 1,
@@ -122,7 +122,7 @@ class StabilityMap(NamedTuple):
 
     @property
     def far(self) -> np.ndarray:
-        """Wrong cells that the boundary does not pass within one cell of."""
+        """Wrong cells further than one cell from the boundary."""
         grow = self.step[1] / self.step[0]
         below, above = (boundary(self.ratio) * f for f in (grow**-1.5, grow**1.5))
         near = (self.step[:, None] > below) & (self.step[:, None] < above)
@@ -155,12 +155,12 @@ def _scene(beta: float) -> Scene:
 
 
 def _is_stable(body: Unloaded, dt: float) -> bool:
-    """Return whether no speed grows beyond the bound; most that do are found by few steps."""
+    """Return whether no speed exceeds the bound; most that do are found in few steps."""
     return all(_growth(body, dt, steps) < BOUND for steps in (STEPS // 20, STEPS))
 
 
 def _growth(body: Unloaded, dt: float, steps: int) -> float:
-    """Return the largest speed after so many steps dt (s), of random ones of 1 m/s at most."""
+    """Return the largest speed after `steps` steps dt (s), from random ones of 1 m/s at most."""
     v, moves = np.zeros(body.mass.size), body.mass > 0
     v[moves] = np.random.default_rng(0).uniform(-1, 1, moves.sum())
     motion = body.begin(dt, v)

@@ -31,7 +31,7 @@ BEDS, CROSS = _set("bed", 0.0, spacing=1.0), _set("cross", 90.0, spacing=1.0)
 
 def _bricks(offset: float, **keys: Any) -> list[dict[str, Any]]:
     """Return the sets of brickwork, keys changed in both: vertical joints of neighbouring courses
-    are this share of their spacing apart."""
+    are offset by this fraction of their spacing."""
     cross = {"spacing": 2.0, "ends_at": ["bed"], "offset": offset}
     return [BEDS | keys, _set("cross", 90.0, **cross, **keys)]
 
@@ -93,7 +93,7 @@ def _wave(degrees: float, kind: str = "P") -> list[dict[str, Any]]:
 
 
 def _met(sets: list[dict[str, Any]], size: float, waves: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return the changes that make a square of these joints one that waves pass."""
+    """Return the changes for a square with these joints, crossed by waves."""
     return {
         "domain": {"size": [size, size], "least_width": 1e-3},
         "joint_sets": sets,

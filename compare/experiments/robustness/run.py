@@ -26,7 +26,7 @@ from compare.experiments.robustness.map import StabilityMap, make_map
 from compare.experiments.robustness.rock_mass_cases import ROCK_MASSES
 from compare.experiments.store import Store
 
-RATE = "hard case"  # what the seconds of rows are remembered by
+RATE = "hard case"  # key of the timings of rows
 HELD, FAILED, NONE = "passed", "failed", "does not apply"
 CASES: list[HardCase] = [*LINEAR, *EXTREME, *FAILING, *ROCK_MASSES]  # in the order of the report
 Place = tuple[int, int]  # the numbers of a case and of an engine with its scheme
@@ -35,8 +35,8 @@ Place = tuple[int, int]  # the numbers of a case and of an engine with its schem
 class CaseRow(NamedTuple):
     """One case on one engine and scheme, judged.
 
-    bound, value : what the criterion bounds and what was found; nan where nothing was.
-    margin : bound over value; infinite where the value is zero.
+    bound, value : the criterion's bound and the value found; nan if there is none.
+    margin : bound over value; infinite if the value is zero.
     state : "passed", "failed" or "does not apply"; message : why, or more about the value.
     """
 
@@ -55,7 +55,7 @@ class CaseRow(NamedTuple):
 
 
 class Cells(NamedTuple):
-    """A map as it is saved."""
+    """A map in the form in which it is saved."""
 
     ratio: list[float]
     step: list[float]
@@ -91,13 +91,13 @@ def _judged(case: HardCase, stepper: EngineScheme) -> tuple[str, Judgement]:
         finding = case.criterion.judge(CaseTrial(case, stepper))
     except FAILURES as error:
         return FAILED, Judgement(nan, nan, str(error))
-    # A bound that is not finite bounds nothing, and nan is at most nothing.
+    # Neither a bound that is not finite nor a nan counts as passed.
     holds = isfinite(finding.bound) and finding.value <= finding.bound
     return (HELD if holds else FAILED), finding
 
 
 def _why_not(case: HardCase, stepper: EngineScheme) -> str:
-    """Return why the engine and its scheme cannot solve the scene; "" where they can."""
+    """Return why the engine and its scheme cannot solve the scene; "" if they can."""
     try:
         return stepper.engine.applies(CaseTrial(case, stepper).read()).reason
     except SceneError as error:
@@ -105,7 +105,7 @@ def _why_not(case: HardCase, stepper: EngineScheme) -> str:
 
 
 def key(place: Place) -> str:
-    """Return what tells rows apart: everything that decides one."""
+    """Return the key of a row: everything that determines it."""
     case, stepper = CASES[place[0]], SCHEMES[place[1]]
     return store.key(case.name, case.scene, case.changes, stepper.name)
 

@@ -36,7 +36,7 @@ COLUMNS = ["engine and scheme", "value", "bound", "margin", ""]
 
 
 def draw(maps: list[StabilityMap], drifts: dict[str, Drift]) -> Figure:
-    """Return one panel a map, and below them the energies of undamped runs.
+    """Return one panel per map, and below them the energies of undamped runs.
 
     drifts : by "engine scheme". The cells of map k are the SVG group stability-map-k, the line over
     them stability-line-k, the energy k stability-energy-k.
@@ -132,7 +132,7 @@ def make_study(
 
 
 def drifts(pool: Pool | None) -> dict[str, Drift]:
-    """Return the energies over a million steps where leapfrog's energy holds, by engine and
+    """Return the energies over a million steps of schemes that conserve energy, by engine and
     scheme."""
     found = Store[Drift](Drift, None).compute(list(LONG), store.key, _drift, pool)
     return dict(zip(LONG, found, strict=True))
@@ -157,7 +157,7 @@ def _cells(row: CaseRow) -> list[str]:
 
 
 def sentences(rows: list[CaseRow], maps: list[StabilityMap]) -> list[str]:
-    """Return how many rows hold, the least margin, and the cells of maps that theory denies."""
+    """Return the number of rows passed, the least margin, and map cells that contradict theory."""
     held, failed, none = ([r for r in rows if r.state == state] for state in (HELD, FAILED, NONE))
     found = [
         f"{len(held)} of {len(held) + len(failed)} rows pass; {len(none)} do not apply, each with "
@@ -176,7 +176,7 @@ def sentences(rows: list[CaseRow], maps: list[StabilityMap]) -> list[str]:
 
 
 def failures(rows: list[CaseRow]) -> list[str]:
-    """Return a line for each row that does not hold."""
+    """Return a line for each row that has not passed."""
     return [
         f"{row.case}, {row.engine}, {row.scheme}: {row.criterion}: {row.value:.3g} above "
         f"{row.bound:.3g} {row.message}".rstrip()
@@ -186,7 +186,7 @@ def failures(rows: list[CaseRow]) -> list[str]:
 
 
 def write(folder: Path, rows: list[CaseRow], maps: list[StabilityMap]) -> list[Path]:
-    """Write stability.csv, a line a row, and stability-map.csv, a line a cell."""
+    """Write stability.csv, one line per row, and stability-map.csv, one line per cell."""
     names = ["damping ratio", "step over undamped critical step", "stable", "wrong side", "engine"]
     cells = [
         (ratio, step, m.stable[i, j], m.wrong[i, j], m.engine)

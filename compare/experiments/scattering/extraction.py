@@ -22,7 +22,7 @@ from compare.exact.plane.waves import polarisations, slownesses_across
 
 class Scattered(NamedTuple):
     """Moduli of reflected and transmitted P and SV waves over the incident one, amplitudes of
-    particle velocity; residual : of the motion, what no such waves make up, over all of it."""
+    particle velocity; residual : part of the motion not explained by such waves, relative."""
 
     R_p: float
     R_s: float
@@ -40,11 +40,11 @@ def scattered(
     omega: float,
     half: float = 0.0,
 ) -> Scattered:
-    """Return what joints about the origin make of a wave, at the first and the last of them.
+    """Return the waves scattered by joints about the origin, at the first and the last of them.
 
     axes : of the joints for this wave. places : [m, 2], m, on both sides. velocity :
     [m, n, (x, y)], m/s, every `interval` (s). omega : rad/s.
-    half : of the way from the first joint to the last, m: what is evanescent falls along it.
+    half : half the distance from the first joint to the last, m, for the decay of evanescent waves.
     """
     n = velocity.shape[1]
     spectrum = np.exp(1j * omega * interval * np.arange(n)) @ velocity * interval

@@ -1,7 +1,7 @@
-"""Joints under P and SV waves, by every solver: what they reflect and pass, and what runs cost.
+"""Joints under P and SV waves, by every solver: reflection, transmission, and cost of runs.
 
-Joints lie level and the wave is turned, so that all angles have the same blocks and elements. The
-joints' exact field enters through all sides; what is wrong is the solver's own.
+Joints are horizontal and the wave is rotated, so that all angles have the same blocks and elements.
+The joints' exact field enters through all sides; any error is the solver's own.
 """
 
 from math import nan
@@ -29,16 +29,16 @@ from compare.experiments.store import Store
 SCENE = Path(__file__).parent / "joints.toml"
 ANGLES = (0.0, 15.0, 30.0, 45.0, 60.0, 75.0)  # degrees from the joints' normal
 COUNTS, AT = (2, 3, 5), 30.0  # of parallel joints, at this angle, degrees
-SPACING = 0.960768922830523  # m, a tenth of the P wave's length
+SPACING = 0.960768922830523  # m, a tenth of the P wavelength
 BACK = 6.0  # m that SV waves begin before the domain, ahead of which they make P waves
-COMPILED = 0.05  # s of compiling, above which a run is made once more to be timed
-RINGS = 0.012  # s that a record lasts longer for each further joint: waves between them
-RATE = "wave at joints"  # what the seconds of points are remembered by
+COMPILED = 0.05  # s of compiling, above which a run is repeated for timing
+RINGS = 0.012  # s, extension of the record per further joint, for waves between joints
+RATE = "wave at joints"  # key of the timings of points
 
 
 class JointsPoint(NamedTuple):
-    """A solver, a kind of wave, "P" or "SV", its angle from the joints' normal (degrees) and how
-    many joints there are."""
+    """A solver, a kind of wave, "P" or "SV", its angle from the joints' normal (degrees) and the
+    number of joints."""
 
     solver: str
     incidence: str
@@ -47,13 +47,12 @@ class JointsPoint(NamedTuple):
 
 
 class JointsRow(NamedTuple):
-    """What a solver makes of a wave at joints; nan where it does not apply.
+    """A solver's scattering of a wave at joints; nan if it does not apply.
 
     R_p to T_s : moduli of particle velocity over the incident one at the pulse's frequency, and
-    exact_R_p to exact_T_s in closed form. error : the largest difference. residual : of the
-    motion, what no plane waves make up. freedoms : of the blocks or the rock. cpu : of the run,
-    its set-up included but no compiling, s of processors. state : "done" or "failed", for what
-    reason.
+    exact_R_p to exact_T_s in closed form. error : the largest difference. residual : part of the
+    motion not explained by plane waves. freedoms : of the blocks or the rock. cpu : CPU time of the
+    run, including set-up but not compiling, s. state : "done" or "failed", with the reason.
     """
 
     solver: str
@@ -103,23 +102,23 @@ def run(
     brief: bool = False,
     pool: Pool | None = None,
 ) -> list[JointsRow]:
-    """Return the rows of its points, in order; they are saved in `folder`. Their seconds are those
-    of processors: as many points may run at a time as there are cores."""
+    """Return the rows of its points, in order; they are saved in `folder`. Their seconds are CPU
+    time: as many points may run at a time as there are cores."""
     rows: Store[JointsRow] = Store(JointsRow, folder)
     with alone():
         return rows.compute(points(study, brief), key, measure, pool, progress, RATE)
 
 
 def key(point: JointsPoint) -> str:
-    """Return what tells points apart: everything that decides a row."""
+    """Return the key of a point: everything that determines its row."""
     return store.key(point._asdict(), load(SCENE)[0].model_dump_json())
 
 
 def scene_of(
     incidence: str, angle: float, joints: int = 1, changes: dict[str, Any] | None = None
 ) -> RockMass:
-    """Return the scene of a wave at an angle (degrees), towards x from y, and so many joints about
-    the middle, with dotted keys changed."""
+    """Return the scene of a wave at an angle (degrees), towards x from y, and this number of joints
+    about the middle, with dotted keys changed."""
     turned = np.radians(angle)
     direction = [float(np.sin(turned)), float(np.cos(turned))]
     keys: dict[str, Any] = {"waves.0.direction": direction}
@@ -161,8 +160,8 @@ def _timed(name: str, scene: RockMass) -> tuple[xr.Dataset, float]:
 
 
 def amplitudes(scene: RockMass, velocity: np.ndarray) -> Scattered:
-    """Return what the motion at the points of such a scene [m, n, (x, y)] (m/s) says of its joints,
-    at the frequency of its pulse."""
+    """Return the amplitudes scattered by a scene's joints, from the motion at its points [m, n,
+    (x, y)] (m/s), at the frequency of its pulse."""
     wave, rock = scene.waves[0], elastic_rock(scene.rock)
     assert wave.period is not None
     pulse = Pulse(_kind(scene), np.array(wave.direction), np.zeros(1))

@@ -1,4 +1,4 @@
-"""The summary of what joints reflect and pass: diagram, table, findings, files."""
+"""The summary of reflection and transmission at joints: diagram, table, findings, files."""
 
 from itertools import groupby
 from math import isfinite
@@ -43,7 +43,7 @@ COLUMNS = ["R_p", "R_s", "T_p", "T_s", "error", "residual, %", "DOFs", "CPU, s"]
 
 
 def draw(name: str, rows: list[JointsRow]) -> Figure:
-    """Return the diagram of a study, a row a kind of wave with the cost of the runs beside it.
+    """Return the diagram of a study, one row per kind of wave with the cost of the runs beside it.
 
     The closed form is a line, of wave w of row k the SVG group NAME-exact-k-w; solver j is its
     points, NAME-k-j-w.
@@ -149,7 +149,7 @@ def make_study(
 
 
 def heading(row: JointsRow) -> str:
-    """Return what the row of a table stands under."""
+    """Return the heading of a row of the table."""
     return f"{solver(row.solver).words.english}: {row.incidence} wave"
 
 
@@ -167,8 +167,8 @@ def cells_of(row: JointsRow, first: str) -> list[str]:
 
 
 def sentences(rows: list[JointsRow]) -> list[str]:
-    """Return the findings: of each solver and kind of wave where it is furthest off, and what all
-    its runs cost."""
+    """Return the findings: the largest error of each solver and kind of wave, and the cost of all
+    its runs."""
     found = []
     done = [row for row in rows if _is_done(row)]
     for _, group in groupby(done, key=lambda row: (row.solver, row.incidence)):

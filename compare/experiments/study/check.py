@@ -14,13 +14,13 @@ if TYPE_CHECKING:
     from compare.experiments.study.study import Curve, FineRun, Study
 
 MOST_POINTS = 10_000
-#: Settings that are no keys of a scene, with their type.
+#: Settings that are not keys of a scene, with their type.
 ARGUMENTS: dict[str, type[int] | type[float]] = {"n_terms": int, "rtol": float}
 LARGEST_ARGUMENT = 1e9
 
 
 def plain(value: Any) -> Any:
-    """Refuse what no key of a scene takes and no table of a study can hold: dates, huge numbers."""
+    """Refuse values not allowed in scenes or in tables of studies: dates, huge numbers."""
     parts = value.values() if isinstance(value, dict) else value
     if isinstance(value, dict | list):
         for part in parts:

@@ -1,8 +1,8 @@
 """Work-precision diagrams: error over seconds and over counted work, both axes logarithmic.
 
-A cross is a point that is nearer than its errors allow, or than finer ones: it does not count.
-Colours are those of models; a marker is the order of the elements, open where steps are implicit;
-dashes tell dimensions. Over seconds, thin dotted lines join equal digits a second.
+A cross is a point that is more accurate than its errors or finer points imply: it does not count.
+Colours are those of models; markers show the order of the elements, open for implicit steps; dashes
+show dimensions. Over seconds, thin dotted lines join equal digits per second.
 """
 
 from math import isnan
@@ -30,19 +30,19 @@ MARKERS = "DPX*<>hpd8H"
 OF_ORDER = {1: "o", 2: "s", 3: "^", 4: "v"}  # of elements
 OF_DIM: dict[Any, Any] = {2: (0, (1, 1)), 3: (0, (5, 1, 1, 1))}  # dashes; a bar has none
 IMPLICIT = (0, (5, 2))
-LONG = 45  # characters of a legend's entry, of which three stand in a row
+LONG = 45  # characters of a legend's entry, three per row
 SMALL: dict[str, Any] = {"fontsize": 6.5, "color": "#8a9299", "va": "bottom", "zorder": 1}
-#: Colours of methods that have none elsewhere, apart from those that have (Okabe & Ito 2008).
+#: Colours of methods without one elsewhere, distinct from all others (Okabe & Ito 2008).
 OTHERS = ("#6b6b6b", "#cc79a7", "#8a6d00", "#7a4fbf", "#000000")
 
 
 def draw(
     name: str, study: Study, rows: list[PointRow], costs: dict[str, str] | None = None
 ) -> Figure:
-    """Return a study's diagrams: a row an error, a column a cost.
+    """Return a study's diagrams: one row per error, one column per cost.
 
-    costs : attributes of the rows, with the words for each; absent: counted work, and seconds
-        where they were measured. The curve k of row i, column j is the SVG group NAME-i-j-k.
+    costs : attributes of the rows, with the words for each; default: counted work, and seconds if
+        measured. The curve k of row i, column j is the SVG group NAME-i-j-k.
     """
     errors = [e for e in ERRORS if any(measured(rows, e, "work"))]
     costs = costs or {c: text for c, text in COSTS.items() if study.timed or c != "seconds"}
@@ -63,7 +63,7 @@ def draw(
 
 
 def write_diagram(folder: Path, name: str, study: Study, rows: list[PointRow]) -> Drawn | None:
-    """Write the diagram into a folder; None where no error is known."""
+    """Write the diagram into a folder; None if no error is known."""
     if not any(measured(rows, error, "work") for error in ERRORS):
         return None
     return save(draw(name, study, rows), folder, name, study.title)
@@ -100,7 +100,7 @@ def _draw_panel(
 
 
 def _draw_cancelling(ax: Axes, rows: list[PointRow], error: str, cost: str, name: str) -> None:
-    """Cross what is measured where errors cancel: far below the sum that counts."""
+    """Mark by crosses the points whose errors cancel: far below the sum that counts."""
     shown = "measured" if error == "total" else error
     found = [
         r for r in measured(rows, shown, cost) if r.cancels and (error == "total" or isnan(r.total))
@@ -113,7 +113,7 @@ def _draw_cancelling(ax: Axes, rows: list[PointRow], error: str, cost: str, name
 
 
 def _draw_digits_per_second(ax: Axes) -> None:
-    """Draw where -log10(error) / seconds is a power of ten, within what is drawn already."""
+    """Draw lines of -log10(error) / seconds at powers of ten, within the axes' limits."""
     (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
     errors = np.geomspace(low, min(high, 0.9), 60)
     digits = -np.log10(errors)

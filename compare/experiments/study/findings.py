@@ -1,4 +1,4 @@
-"""The findings of a study: orders of convergence beside theory, and sentences of its numbers."""
+"""The findings of a study: orders of convergence with theory, and results in sentences."""
 
 import math
 from itertools import pairwise
@@ -19,12 +19,12 @@ from compare.experiments.study.study import Curve, FineRun, Study
 from compare.report.tables import percent
 
 ROUND_OFF = 1e-11  # below, an error no longer falls
-KNOWN = 10  # times its floor an error must be for its order to hold to some per cent
+KNOWN = 10  # least ratio of an error to its floor for an order accurate to some per cent
 
 
 class Order(NamedTuple):
     """The order measured along one curve: that between its two finest points, with the varied
-    key or its inverse; all of them; and what theory says."""
+    key or its inverse; all of them; and the theoretical one."""
 
     curve: str
     key: str
@@ -34,7 +34,7 @@ class Order(NamedTuple):
 
 
 def orders(study: Study, rows: list[PointRow]) -> list[Order]:
-    """Return the orders of all curves that have one in theory, and two points at least."""
+    """Return the orders of all curves with a theoretical order and at least two points."""
     found = [_order(curve, [r for r in rows if r.curve == curve.label]) for curve in study.curves]
     return [order for order in found if order is not None]
 
@@ -61,14 +61,14 @@ def _least(row: PointRow) -> float:
 
 
 def _size(row: PointRow, key: str) -> float:
-    """Return the step that was taken where a key of steps is varied, else the key's value."""
+    """Return the actual step if a key of steps is varied, else the key's value."""
     return row.dt if "step" in key else float(row.settings[key])
 
 
 def sentences(study: Study, rows: list[PointRow]) -> list[str]:
-    """Return the findings of a timed study: what is cheapest within each misfit, and how much more
-    the next best curve takes; what gives the most digits a second; where errors cancel; and how
-    well the finest physics is known, where it is a fine run."""
+    """Return the findings of a timed study: the cheapest point within each misfit, and the extra
+    cost of the next best curve; the most digits per second; where errors cancel; and the accuracy
+    of the finest physics, if it is a fine run."""
     if not study.timed or all(isnan(row.total) for row in rows):
         return []
     found = [_cheapest(target) for target in cheapest(rows)]
@@ -109,7 +109,7 @@ def _errors(row: PointRow) -> str:
 
 
 def _costs(row: PointRow) -> str:
-    """Return what a point costs: each run its set-up and steps, the first one its compiling."""
+    """Return the cost of a point: set-up and steps of each run, compiling of the first one."""
     named = {"set-up": row.setup, "compiling": row.compile, "stepping": row.seconds}
     said = {name: _seconds(value) for name, value in named.items() if isfinite(value)}
     return ", ".join(f"{name} {value}" for name, value in said.items())

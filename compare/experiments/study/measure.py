@@ -1,4 +1,4 @@
-"""One point of a study, measured: its errors, what was counted, and what it took."""
+"""One point of a study, measured: its errors, counts, time and memory."""
 
 import math
 from collections.abc import Callable
@@ -17,7 +17,7 @@ from compare.experiments.study.reference import UNKNOWN, error, finest_of, known
 from compare.experiments.study.study import StudyPoint
 from compare.solvers.record import Answer
 
-LONG = 0.25  # s: a run that takes as long, its set-up included, is timed once more at most
+LONG = 0.25  # s: a longer run, including set-up, is repeated at most once
 
 
 class PointRow(NamedTuple):
@@ -25,11 +25,11 @@ class PointRow(NamedTuple):
 
     state : "done" or "failed", with the reason in `message`.
     numerical : misfit from the exact solution of the method's own model; modelling : of that from
-        the finest physics; total : both together, with their floors: what is certain. measured :
+        the finest physics; total : sum of both and their floors, an upper bound. measured :
         from the finest physics, where the two may cancel.
     numerical_floor, total_floor : below which they are not known, 0 against closed forms.
-    held : the largest total of this and all finer points of the curve, or numerical error where no
-        total is known: what the point counts for. cancels : whether it measures less than that.
+    held : the largest total of this and all finer points of the curve, or numerical error if no
+        total is known: the error assigned to it. cancels : whether it measures less than that.
     steps : of time. work : freedoms times evaluations of all forces, which are
         degree-of-freedom-steps where a step takes one. bytes : of the model and its state.
     seconds, spread : stepping, median and half the range of the repeats; setup, compile : of the
@@ -73,7 +73,7 @@ def _measured(point: StudyPoint) -> PointRow:
     result = run()
 
     def counted(*names: str) -> float:
-        """Return the first of some attributes of the result that it has."""
+        """Return the first of these attributes that the result has."""
         return float(next((result.attrs[x] for x in names if x in result.attrs), math.nan))
 
     seconds = [counted("seconds_stepping")]
@@ -85,7 +85,7 @@ def _measured(point: StudyPoint) -> PointRow:
     modelling = UNKNOWN if own is None else error(own.result, finest, study)
     floor = numerical.floor + modelling.floor
     freedoms = counted("degrees_of_freedom")
-    # All forces are evaluated in stages, by Newton's method, or once a step.
+    # Forces are evaluated in stages, by Newton's method, or once per step.
     evaluations = counted("force_evaluations", "newton_iterations", "steps")
     return _row(
         point,
@@ -148,6 +148,6 @@ def _repeated(run: Callable[[], xr.Dataset], repeats: int) -> list[float]:
 
 def _row(point: StudyPoint, state: str, message: str, **numbers: float) -> PointRow:
     about = (point.curve.label, point.curve.method, point.settings, state, message)
-    # What is judged, the last two, is known once the curve is.
+    # The last two are known once the curve is complete.
     values = (numbers.get(name, math.nan) for name in PointRow._fields[len(about) : -2])
     return PointRow._make((*about, *values, math.nan, False))

@@ -1,7 +1,7 @@
 """The Pareto front of a study, and its cheapest points within a misfit.
 
-A point counts for the error that it and all finer points of its curve hold: what a finer step
-undoes was luck.
+A point counts with the largest error of itself and all finer points of its curve: accuracy lost in
+a finer step was luck.
 """
 
 import math
@@ -15,16 +15,16 @@ from compare.experiments.study.measure import PointRow
 from compare.misfit.metrics import JUDGED
 
 TARGETS = (0.1, 0.01, 1e-3, 1e-4)
-CLEARLY = 0.9  # of what it should be: below, an error is small by cancellation
+CLEARLY = 0.9  # of the expected error: a smaller one is due to cancellation
 
 
 def judged(rows: list[PointRow]) -> list[PointRow]:
-    """Return the rows with what each counts for, and whether errors cancel in it."""
+    """Return the rows with the error assigned to each, and whether errors cancel in it."""
     totals, numericals = assured(rows, "total"), assured(rows, "numerical")
     found = []
     for row, total, numerical in zip(rows, totals, numericals, strict=True):
         held = numerical if math.isnan(total) else total
-        # Nearer than the larger of its errors, or than a finer point.
+        # More accurate than the larger of its errors, or than a finer point.
         alone = max(row.numerical, row.modelling)
         cancels = row.measured < CLEARLY * alone or _counted(row) < CLEARLY * held
         found.append(row._replace(held=held, cancels=cancels))
@@ -36,8 +36,8 @@ def _counted(row: PointRow) -> float:
 
 
 def assured(rows: list[PointRow], error: str) -> list[float]:
-    """Return the largest error of each row and of all finer points of its curve; nan where a point
-    has none."""
+    """Return the largest error of each row and of all finer points of its curve; nan if a point has
+    none."""
     errors = np.array([getattr(r, error) if r.state == "done" else math.nan for r in rows])
     size = np.array([(r.freedoms, r.steps) for r in rows])
     model = np.array([f"{r.curve} {_physics(r)}" for r in rows])
@@ -49,22 +49,22 @@ def assured(rows: list[PointRow], error: str) -> list[float]:
 
 
 def _finer(size: np.ndarray, i: int) -> np.ndarray:
-    """Return which points are at least as fine as one: with as many freedoms and steps; later in
-    the curve where these are not counted."""
+    """Return which points are at least as fine as point i: in freedoms and steps or, if these are
+    not counted, by their position in the curve."""
     if np.isnan(size[i]).any():
         return np.arange(len(size)) >= i
     return (size >= size[i]).all(axis=1)
 
 
 def _physics(row: PointRow) -> dict[str, Any]:
-    """Return what is varied beside the numerics and the size of blocks: another problem."""
+    """Return the varied keys other than numerics and block size: these change the problem."""
     free = {"pillar.block", *ARGUMENTS}
     found = sorted(row.settings.items())
     return {k: v for k, v in found if k not in free and not k.startswith("numerics.")}
 
 
 class Cheapest(NamedTuple):
-    """The cheapest point within a misfit, and that of another curve; None where there is none."""
+    """The cheapest point within a misfit, and that of another curve; None if there is none."""
 
     misfit: float
     row: PointRow
@@ -81,8 +81,8 @@ def measured(rows: list[PointRow], error: str, cost: str) -> list[PointRow]:
 
 
 def front(rows: list[PointRow], error: str = "total", cost: str = "seconds") -> list[PointRow]:
-    """Return the points that no other one beats in both, the cheapest first (Pareto's front), each
-    by the error that it counts for."""
+    """Return the points not dominated in both numbers, the cheapest first (Pareto front), with the
+    error assigned to each."""
     found: list[PointRow] = []
     least = math.inf
     held = {id(row): value for row, value in zip(rows, assured(rows, error), strict=True)}
@@ -95,8 +95,8 @@ def front(rows: list[PointRow], error: str = "total", cost: str = "seconds") -> 
 
 
 def cheapest(rows: list[PointRow]) -> list[Cheapest]:
-    """Return the cheapest point within each of `TARGETS`, as far as there are any, and as what
-    errors are measured from is known to a tenth of it."""
+    """Return the cheapest point within each of `TARGETS`, if there is one and if the reference of
+    errors is known to a tenth of the target."""
     found, rows = [], sorted(judged(measured(rows, "total", "seconds")), key=lambda r: r.seconds)
     for target in TARGETS:
         within = [r for r in rows if r.held <= target and JUDGED * r.total_floor <= target]
@@ -108,8 +108,8 @@ def cheapest(rows: list[PointRow]) -> list[Cheapest]:
 
 
 def floor(rows: list[PointRow], error: str) -> float:
-    """Return the error below which these are not known; 0 against exact solutions. Of totals that
-    of the finest physics, without what is not known of each curve's own model."""
+    """Return the error below which errors are not known; 0 against exact solutions. For totals it
+    is that of the finest physics, without that of each curve's own model."""
     if error == "total":
         of_finest = [r.total_floor - r.numerical_floor for r in rows]
         return _largest(of_finest) or _largest([r.total_floor for r in rows])
@@ -121,17 +121,17 @@ def _largest(floors: list[float]) -> float:
 
 
 def is_known(row: PointRow, error: str) -> bool:
-    """Return whether a point's error is not below what it is measured against is known to."""
+    """Return whether a point's error is at least the floor of its reference."""
     return getattr(row, error) >= floor([row], error)
 
 
 def most_digits_per_second(rows: list[PointRow]) -> PointRow | None:
-    """Return the point that gets the most digits of the finest physics a second, None without."""
+    """Return the point with the most digits of the finest physics per second, None without."""
     known = measured(rows, "total", "seconds")
     return max(judged(known), key=digits_per_second, default=None)
 
 
 def digits_per_second(row: PointRow) -> float:
-    """Return the decimal digits that a judged point gets right over the seconds that it steps: of
-    the finest physics where that is known, else of its own model; nan without either."""
+    """Return the correct decimal digits of a judged point per second of stepping: of the finest
+    physics if that is known, else of its own model; nan without either."""
     return -math.log10(row.held) / row.seconds if row.held > 0 and row.seconds > 0 else math.nan

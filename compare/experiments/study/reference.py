@@ -17,7 +17,7 @@ from results.dataset import scene_hash
 
 
 class Error(NamedTuple):
-    """A misfit, and the floor below which it is not known: 0 against a closed form."""
+    """A misfit, and its floor, below which it is not known: 0 against a closed form."""
 
     misfit: float
     floor: float
@@ -27,8 +27,8 @@ UNKNOWN = Error(math.nan, math.nan)
 
 
 def finest_of(study: Study) -> str | FineRun | None:
-    """Return what total errors are from: as the study says, else the finest exact solution; None
-    where the finest that applies is an engine, whose fine run the study does not give."""
+    """Return the reference of total errors: as set by the study, else the finest exact solution;
+    None if the finest that applies is an engine and the study gives no fine run of it."""
     if study.finest is not None:
         return None if study.finest == NONE else study.finest
     scene = study.base
@@ -37,8 +37,8 @@ def finest_of(study: Study) -> str | FineRun | None:
 
 
 def own_of(point: StudyPoint) -> str | FineRun | None:
-    """Return what a point's numerical error is from: as its curve says, else the exact solution of
-    its own model, else a run of its engine as fine as the study's fine run; None without."""
+    """Return the reference of a point's numerical error: as set by its curve, else the exact
+    solution of its own model, else a run of its engine as fine as the study's; None without."""
     own, study = point.curve.own, point.study
     if own is not None:
         return finest_of(study) if own == FINEST else None if own == NONE else own
@@ -49,7 +49,7 @@ def own_of(point: StudyPoint) -> str | FineRun | None:
 
 
 def _as_fine(engine: str, finest: str | FineRun | None) -> FineRun | None:
-    """Return the run of an engine at the numerics of a fine run, where those are its own too."""
+    """Return the run of an engine with the numerics of a fine run, if they apply to it."""
     if not isinstance(finest, FineRun):
         return None
     alike = solver(engine).engine == solver(finest.method).engine
@@ -82,7 +82,7 @@ def error(result: xr.Dataset, against: ErrorReference | None, study: Study) -> E
 
 
 def reference(name: str, scene: AnyScene) -> xr.Dataset:
-    """Return an exact solution, whatever the scene's numerics; solved once a process."""
+    """Return an exact solution, regardless of the scene's numerics; solved once per process."""
     return _solved(
         name, scene.model_copy(update={"numerics": type(scene.numerics)(), "expect": {}})
     )
@@ -99,8 +99,8 @@ _known: dict[tuple[str, str], xr.Dataset] = {}
 
 
 def _misfit(one: xr.Dataset, other: xr.Dataset, study: Study) -> float:
-    """Return the misfit of the waveform that is furthest off; of one quantity, the relative L2 norm
-    over time and all its receivers, of the component that is furthest off."""
+    """Return the misfit of the worst waveform; for a single quantity, the relative L2 norm over
+    time and all its receivers, of the worst component."""
     if study.quantity is None:
         return worst(one, other).misfit
     found = [p for p in pairings(one, other) if p.place.quantity == study.quantity]

@@ -19,7 +19,7 @@ from compare.scenes import find
 
 LARGEST_FILE = 1_000_000  # bytes
 SHIPPED = Path(__file__).parent / "shipped"
-FINEST, NONE = "finest", "none"  # what errors may be measured against besides solutions
+FINEST, NONE = "finest", "none"  # references of errors other than solutions
 
 
 Value = Annotated[Any, AfterValidator(plain)]
@@ -33,10 +33,10 @@ class StudyTable(BaseModel):
 
 
 class FineRun(StudyTable):
-    """The reference of errors where there is no exact solution: an engine's fine run.
+    """The reference of errors if there is no exact solution: an engine's fine run.
 
-    changes : of the scene, its numerics above all. coarser : changes on top of these; how far that
-        run is from this one is the floor below which errors are not known.
+    changes : of the scene, mainly its numerics. coarser : additional changes; the distance of that
+        run from this one is the floor below which errors are not known.
     """
 
     method: str
@@ -45,12 +45,12 @@ class FineRun(StudyTable):
 
 
 class Curve(StudyTable):
-    """One way to solve the scene, with what of it is varied.
+    """One way to solve the scene, with its varied keys.
 
     method : an engine, an exact solution, or a method of
     `compare.experiments.study.methods`.
     vary : dotted keys and their values, all combinations; `terms` is an exact series' own.
-    each : dotted keys and their values: of every combination a curve of its own, whose label has
+    each : dotted keys and their values: every combination is a curve of its own, whose label has
         the value in place of the key's last part in braces.
     own : the exact solution of the curve's own model, or a fine run of it, for its numerical
         error; "finest": that of the study; "none"; absent: the exact one that ranks highest
@@ -69,7 +69,7 @@ class Curve(StudyTable):
     order: float | None = None
 
     def expanded(self) -> Iterator["Curve"]:
-        """Yield the curves that `each` makes of this one."""
+        """Yield the curves into which `each` expands this one."""
         for values in combinations(self.each):
             label = self.label
             for key, value in values.items():
@@ -87,13 +87,13 @@ def each_expanded(curves: list[Curve]) -> list[Curve]:
 
 
 class Study(StudyTable):
-    """A scene, the finest physics that it is known by, and curves.
+    """A scene, its finest physics, and curves.
 
-    finest : what modelling errors are measured against: an exact solution or a fine run; "none";
+    finest : the reference of modelling errors: an exact solution or a fine run; "none";
         absent: the exact solution that ranks highest (`compare.misfit.ranking`).
-    quantity : whose relative L2 norm over time and all its receivers is the misfit, as orders are
-        of in theory; absent: the misfit of the waveform that is furthest off.
-    note : what to know when reading it.
+    quantity : whose relative L2 norm over time and all its receivers is the misfit, as in
+        the theory of orders; absent: the misfit of the worst waveform.
+    note : a remark for the reader.
     timed : whether seconds count: points are then run one at a time, `repeats` times each.
     """
 
@@ -110,11 +110,11 @@ class Study(StudyTable):
 
     @property
     def base(self) -> "AnyScene":
-        """The scene without what curves change."""
+        """The scene without the curves' changes."""
         return self.changed({})
 
     def changed(self, changes: dict[str, Any]) -> "AnyScene":
-        """Return the scene with changes; raises SceneError where there is none."""
+        """Return the scene with changes; raises SceneError if it is invalid."""
         changes = self.changes | changes | {"expect": {}}
         return cases.load_variant(find(self.scene), self.variant, changes, asked=False)
 
@@ -137,12 +137,12 @@ class StudyPoint:
 
     @property
     def changes(self) -> dict[str, Any]:
-        """All that is changed, keys of the scene and arguments."""
+        """All changes, keys of the scene and arguments."""
         return self.curve.changes | self.settings
 
     @property
     def scene(self) -> "AnyScene":
-        """The scene that is solved; raises SceneError where there is none."""
+        """The scene to solve; raises SceneError if it is invalid."""
         return self.study.changed({k: v for k, v in self.changes.items() if k not in ARGUMENTS})
 
     @property
@@ -153,7 +153,7 @@ class StudyPoint:
 
     @property
     def arguments(self) -> dict[str, Any]:
-        """The settings that are no keys of the scene, such as the terms of a series."""
+        """The settings that are not keys of the scene, such as the terms of a series."""
         return {k: v for k, v in self.changes.items() if k in ARGUMENTS}
 
 
@@ -163,7 +163,7 @@ def shipped() -> dict[str, Path]:
 
 
 def load(name: str) -> Study:
-    """Read a shipped study or a study's file, whose scene may be named by its place beside it.
+    """Read a shipped study or a study's file, whose scene may be given relative to it.
 
     Raises SceneError, in one line.
     """

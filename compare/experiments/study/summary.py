@@ -60,7 +60,7 @@ def reported(
     progress: Progress | None = None,
     pool: Pool | None = None,
 ) -> list[Summary]:
-    """Run studies one after the other, as they are timed, then draw them; write into `out`."""
+    """Run studies one after the other, because they are timed, then draw them; write into `out`."""
     measured, folder = [], out / "studies"
     for i, name in enumerate(names):
         study = load(name)
@@ -107,8 +107,8 @@ def run(
 ) -> list[PointRow]:
     """Return the rows of all points of a study, in its order; they are saved in `folder`.
 
-    Points of a timed study are run one at a time in this process, whatever `pool` is, and no two
-    timed studies of a machine at once.
+    Points of a timed study are run one at a time in this process, regardless of `pool`, and only
+    one timed study runs on a machine at a time.
     """
     rows: Store[PointRow] = Store(PointRow, folder)
     with alone() if study.timed else nullcontext():
@@ -117,11 +117,11 @@ def run(
 
 
 def rate(study: Study) -> str:
-    """Return what the seconds of a study's points are remembered by."""
+    """Return the key of the timings of a study's points."""
     return f"point of {study.title}"
 
 
 def key(point: StudyPoint) -> str:
-    """Return what tells points apart: everything that decides a row."""
+    """Return the key of a point: everything that determines its row."""
     study = point.study.model_dump(mode="json", exclude={"title", "curves"})
     return store.key(study, point.curve.model_dump(mode="json"), point.settings)

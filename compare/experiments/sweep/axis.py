@@ -16,8 +16,8 @@ RANGE = re.compile(r"""(log:)?([^:,"'\[{]+):([^:,"'\[{]+):([^:,"'\[{]+)""")
 
 
 def axes(given: list[str], fixed: list[str], members: int = 0) -> dict[str, list[Any]]:
-    """Return the values of every key that `--sweep` names, no two of a key alike; `fixed` are the
-    keys that `--set` gives. members : of an ensemble, numbered from 1, the last key.
+    """Return the values of every key of `--sweep`, without duplicates; `fixed` are the keys of
+    `--set`. members : of an ensemble, numbered from 1, the last key.
 
     Raises SceneError, in one line.
     """
@@ -42,7 +42,7 @@ def _axis(text: str) -> tuple[str, list[Any]]:
     between = RANGE.fullmatch(spec)
     if between is None and re.search(r"""^[^"'\[{]*:""", spec):
         raise SceneError("--sweep", text, None, FORMS)
-    if between is None:  # values as TOML, or what is none as text
+    if between is None:  # values as TOML, else as text
         parts = [part.strip() for part in spec.split(",")]
         values = _toml(f"[{spec}]", None) or [_toml(part, part) for part in parts]
     else:

@@ -24,7 +24,7 @@ PEAKS = ("stress", "velocity", "traction")
 class SweepCase(NamedTuple):
     """A scene with its swept keys set. folder : for its files; variants have their own in it.
 
-    scene : None where there is none, for the reason in `message`.
+    scene : None if it is invalid, for the reason in `message`.
     """
 
     settings: dict[str, Any]
@@ -54,11 +54,11 @@ class Running(NamedTuple):
 
     @property
     def about(self) -> list[Any]:
-        """All that decides a row beside the scene."""
+        """Everything besides the scene that determines a row."""
         return [self.runs, self.vtx]
 
     def solvers(self, scene: AnyScene) -> list[str]:
-        """Return the names of what would solve a scene."""
+        """Return the names of a scene's solvers."""
         from compare.runs import jobs
 
         return [job.name for job in jobs.plan([scene], self.runs, Path())]
@@ -74,7 +74,7 @@ class Running(NamedTuple):
 
 class Comparing(NamedTuple):
     """Compare a case as `jointwave compare` does. writes : also figure, curves and distances.
-    keeps : the results as well, where it writes."""
+    keeps : also the results, if it writes."""
 
     spectral: bool
     curves: list[Curves]
@@ -84,7 +84,7 @@ class Comparing(NamedTuple):
 
     @property
     def about(self) -> list[Any]:
-        """All that decides a row beside the scene, of the curves their samples too."""
+        """Everything besides the scene that determines a row, including samples of curves."""
         named = [[c.file, c.name, c.variant, list(map(str, c.waveforms))] for c in self.curves]
         samples = [
             sha256(np.asarray(values).tobytes()).hexdigest()
@@ -94,7 +94,7 @@ class Comparing(NamedTuple):
         return [self.spectral, self.align, self.writes, self.keeps, named, samples]
 
     def solvers(self, scene: AnyScene) -> list[str]:
-        """Return the names of what would solve a scene."""
+        """Return the names of a scene's solvers."""
         from compare.engines import applies, names
 
         return [name for name in names() if applies(name, scene)]
@@ -119,7 +119,7 @@ class Comparing(NamedTuple):
         return [{k: v if isinstance(v, str) else _real(v) for k, v in row.items()} for row in rows]
 
     def _kept(self, results: dict[str, xr.Dataset], folder: Path) -> dict[str, str]:
-        """Write results where they are kept; return their files by name."""
+        """Write results if they are to be kept; return their files by name."""
         if not (self.keeps and self.writes):
             return {}
         from compare.runs.output import fields_of, write_fields
@@ -134,7 +134,7 @@ Work = Running | Comparing
 
 
 def outcome(case: SweepCase, work: Work) -> SweepOutcome:
-    """Return the outcome of a case; of one that cannot be solved the reason."""
+    """Return the outcome of a case; for one that cannot be solved, the reason."""
     if case.scene is None:
         return SweepOutcome("failed", case.message, [])
     try:
@@ -146,7 +146,7 @@ def outcome(case: SweepCase, work: Work) -> SweepOutcome:
 
 
 def key(case: SweepCase, work: Work) -> str:
-    """Return what tells cases apart: everything that decides a row."""
+    """Return the key of a case: everything that determines its rows."""
     scene = case.message if case.scene is None else scene_hash(case.scene)
     return store.key(str(case.folder), case.variant, scene, type(work).__name__, work.about)
 
@@ -174,9 +174,9 @@ def _real(value: float | None) -> float:
 
 
 def _peaks(result: xr.Dataset, quantity: str) -> Rows:
-    """Return the value that is largest in size at each receiver, with its sign and time (SI).
+    """Return the value of largest magnitude at each receiver, with its sign and time (SI).
 
-    Of several components the norm, which has no sign: the speed of a velocity in space.
+    For several components the norm, without sign: the speed for a velocity in space.
     """
     rows = []
     places = places_of(result, quantity)[0] if quantity in result else []
@@ -191,4 +191,4 @@ def _peaks(result: xr.Dataset, quantity: str) -> Rows:
 
 
 def _silent(fraction: float) -> None:
-    """Tell nobody: the sweep tells of whole cases."""
+    """Ignore progress: the sweep reports whole cases."""

@@ -1,4 +1,4 @@
-"""`--sweep` of a command: what would run, or the table of what has."""
+"""`--sweep` of a command: estimates of the runs, or their table."""
 
 from compare.cli.options import warn
 from compare.engines import Progress
@@ -14,9 +14,9 @@ from compare.experiments.sweep.summary import summarise
 def sweep(
     asked: Sweep, work: Work, workers: int, dry: bool, as_json: bool, strict: bool = False
 ) -> None:
-    """Run every case, write the table, and show it; dry : only say what would run.
+    """Run every case, write the table, and show it; dry : only print estimates.
 
-    strict : refuse scenes that are warned of. Raises SceneError where all fail.
+    strict : treat warnings as errors. Raises SceneError if all cases fail.
     """
     warn(asked.scenes, strict)
     if dry:
@@ -30,7 +30,7 @@ def sweep(
 
 
 def _foresee(asked: Sweep, work: Work, as_json: bool) -> None:
-    """Show what every case would take, and which would fail before they begin."""
+    """Show the estimated cost of every case, and cases that would fail at once."""
     wanted: list[dry_run.Run] = []
     failing: list[tuple[str, str]] = []
     for case in asked.cases:

@@ -1,7 +1,7 @@
-"""Figures of an ensemble: bands of its waveforms, and how its misfits are distributed.
+"""Figures of an ensemble: bands of its waveforms, and the distribution of its misfits.
 
-Bands hold what lies between the 5th and the 95th percentile at every time, with the median as a
-line; a distribution is the share of members whose misfit is at most that on the axis.
+Bands extend from the 5th to the 95th percentile at every time, with the median as a line; a
+distribution is the share of members whose misfit is at most that on the axis.
 """
 
 import io
@@ -31,7 +31,7 @@ from compare.misfit.places import Place, places_of
 from compare.scenes import find
 from results.netcdf import load_netcdf
 
-SEEN = ("stress", "velocity", "traction", "gap", "slip")  # of a result; displacement shows little
+SEEN = ("stress", "velocity", "traction", "gap", "slip")  # of a result
 MOST, COLUMNS = 12, 2  # waveforms drawn, and side by side
 TALL = 1.9  # inches of each
 WIDE = 1.3  # points, of every curve
@@ -50,8 +50,8 @@ OF_MISFITS = "The share of members whose worst misfit of a pair is at most that 
 def pictures(
     waves: list[Path], done: pd.DataFrame, axes: list[str], out: Path
 ) -> Iterator[tuple[Path, SceneFigure]]:
-    """Yield the pictures of an ensemble, each with its folder: the bands of the waveforms in each,
-    and of comparisons the misfits of each variant at each point.
+    """Yield the figures of an ensemble, each with its folder: the bands of the waveforms in each,
+    and for comparisons the misfits of each variant at each point.
 
     waves : files of statistics. done : rows of the table. axes : swept keys without the member.
     """
@@ -69,8 +69,8 @@ def pictures(
 
 
 def statistics_in(folder: Path) -> dict[str, xr.Dataset]:
-    """Return the statistics of every waveform in a folder by the name of what solved it; raises
-    SceneError where there are none."""
+    """Return the statistics of every waveform in a folder by the name of the solver; raises
+    SceneError if there are none."""
     end = f"-{ENSEMBLE}.nc"
     found = {file.name.removesuffix(end): load_netcdf(file) for file in folder.glob(f"*{end}")}
     if not found:
@@ -80,8 +80,8 @@ def statistics_in(folder: Path) -> dict[str, xr.Dataset]:
 
 
 def ensemble_in(out: Path) -> tuple[Path, list[SceneFigure]]:
-    """Return the scene's file and the pictures, by names of their own, of a folder that
-    `--ensemble` has written; raises SceneError where it has not."""
+    """Return the scene's file and the figures, with unique names, of a folder written by
+    `--ensemble`; raises SceneError for any other folder."""
     waves = sorted(out.rglob(f"*-{ENSEMBLE}.nc"))
     try:
         text = io.StringIO(read_text(out / "sweep.csv", LARGEST_FILE))
@@ -102,7 +102,7 @@ def ensemble_in(out: Path) -> tuple[Path, list[SceneFigure]]:
 
 def bands(results: dict[str, xr.Dataset], width: float = WIDTH, rc: dict[Any, Any] = RC) -> Figure:
     """Return the bands of an ensemble; results : mean and percentiles of every waveform by the name
-    of what solved it, with `statistic` as their first dimension; width : inches; rc : settings of
+    of the solver, with `statistic` as their first dimension; width : inches; rc : settings of
     matplotlib."""
     places = shown_places(results)
     columns = min(COLUMNS, len(places))
@@ -124,8 +124,8 @@ def bands(results: dict[str, xr.Dataset], width: float = WIDTH, rc: dict[Any, An
 
 
 def shown_places(results: dict[str, xr.Dataset]) -> list[Place]:
-    """Return the waveforms that bands are drawn of: those that some solution has and that are no
-    round-off, at most MOST."""
+    """Return the waveforms drawn as bands: those that some solution has and that exceed round-off,
+    at most MOST."""
     found: dict[Place, None] = {}
     for result in results.values():
         middle = result.sel(statistic=MIDDLE)
@@ -153,7 +153,7 @@ def _draw_band(ax: Axes, result: xr.Dataset, name: str, place: Place) -> None:
 
 
 def _line(name: str) -> dict[str, Any]:
-    """Return how a median is drawn: thin, lest it hides its band."""
+    """Return the line style of a median: thin, so that it does not hide its band."""
     return style(name).of_line() | {"linewidth": WIDE}
 
 
@@ -165,7 +165,7 @@ def _legend(figure: Figure, names: list[str]) -> None:
 
 
 def band_table(results: dict[str, xr.Dataset]) -> pd.DataFrame:
-    """Return what the bands show, SI: time first."""
+    """Return the data of the bands, SI: time first."""
     columns: dict[str, np.ndarray] = {}
     for name, result in results.items():
         columns.setdefault("time (s)", result.time.values)
@@ -191,7 +191,7 @@ def misfits_of(done: pd.DataFrame) -> pd.DataFrame:
 
 
 def distribution(table: pd.DataFrame) -> Figure:
-    """Return the distribution of misfits of `misfits_of`, a step curve a pair."""
+    """Return the distribution of misfits of `misfits_of`, one step curve per pair."""
     with blank(3.6) as figure:
         ax = figure.subplots()
         looks = cycle(product(DASHES, COLOURS))

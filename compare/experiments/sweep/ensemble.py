@@ -1,7 +1,7 @@
 """Ensembles: members of a scene that differ in the seed of their joints, and their statistics.
 
-Members 1, 2, ... have the scene's own seed, the next, ...; of a rock mass each joint set's. They
-are points of a sweep, whose key is `member`.
+Members 1, 2, ... have the scene's own seed, the next one, ...; in a rock mass those of each joint
+set. They are points of a sweep, whose key is `member`.
 """
 
 from collections.abc import Iterator
@@ -21,14 +21,14 @@ from results.netcdf import load_netcdf
 
 PERCENTILES = (5, 25, 50, 75, 95)
 STATISTICS = ("mean", *(f"p{q}" for q in PERCENTILES))
-#: What tells rows of one statistic apart, beside the swept keys.
+#: Keys of the rows of one statistic, besides the swept keys.
 OF_ROW = ("variant", "engine", "one", "other", "quantity", "x", "y")
 ENSEMBLE = "ensemble"
 
 
 def member(scene: AnyScene, number: int) -> dict[str, int]:
-    """Return the changes that make a scene its member `number`, from 1; raises SceneError where its
-    joints are not at random."""
+    """Return the changes that turn a scene into its member `number`, from 1; raises SceneError if
+    its joints are not random."""
     scatter = getattr(scene, "scatter", None)
     seeds = {} if scatter is None else {"scatter.seed": scatter.seed}
     for i, one in enumerate(getattr(scene, "joint_sets", [])):
@@ -41,10 +41,10 @@ def member(scene: AnyScene, number: int) -> dict[str, int]:
 
 
 def statistics(rows: pd.DataFrame, axes: list[str], numbers: list[str]) -> pd.DataFrame:
-    """Return mean and percentiles over the members of each number of the rows that are done.
+    """Return mean and percentiles over the members of each number of the completed rows.
 
-    One row for each number: the swept keys, what it is of, `number`, STATISTICS, and `members`, how
-    many have it.
+    One row per number: the swept keys, its identification, `number`, STATISTICS, and `members`, the
+    number of members that have it.
     """
     keys = [key for key in (*axes, *OF_ROW) if key in rows and key != MEMBER]
     found = []
@@ -64,8 +64,8 @@ def _of(values: np.ndarray) -> dict[str, float]:
 
 
 class Members(NamedTuple):
-    """The results of all members of one scene by one solver: the file that their statistics go to,
-    and theirs."""
+    """The results of all members of one scene by one solver: the file of their statistics, and
+    their own files."""
 
     out: Path
     files: list[Path]
@@ -74,7 +74,7 @@ class Members(NamedTuple):
 def members_of(
     cases: list[SweepCase], outcomes: list[SweepOutcome], out: Path
 ) -> Iterator[Members]:
-    """Yield the results of members that belong together, of those that are done."""
+    """Yield the completed results of members that belong together."""
     found: dict[Path, list[Path]] = {}
     for case, one in zip(cases, outcomes, strict=True):
         rest = ",".join(f"{k}={v}" for k, v in case.settings.items() if k != MEMBER)
@@ -111,7 +111,7 @@ def waveforms(members: Members) -> Path:
 
 
 def _is_wave(results: list[xr.Dataset], name: str) -> bool:
-    """Return whether all results have a variable over time that is recorded, alike in shape."""
+    """Return whether all results record a variable over time, with equal shapes."""
     shape = results[0][name].shape
     recorded = "time" in results[0][name].dims and 0 not in shape
     return recorded and all(name in one and one[name].shape == shape for one in results)

@@ -15,7 +15,7 @@ from compare.experiments.sweep.case import SweepCase, SweepOutcome, Work, key, o
 from compare.experiments.sweep.ensemble import MEMBER, member
 from compare.scenes import find, load, load_variant
 
-POINTS = "points"  # the folder of what is done
+POINTS = "points"  # the folder of completed points
 LONGEST = 100  # characters of a folder's name
 LOST = SweepOutcome("failed", "its process ended early, possibly for lack of memory", [])
 
@@ -46,8 +46,8 @@ def sweep_of(
     out: Path | None,
     members: int = 0,
 ) -> Sweep:
-    """Return what `--set`, `--variant`, `--sweep` and `--ensemble` ask for; raises SceneError in
-    one line, also where there is no scene at any point."""
+    """Return the sweep of `--set`, `--variant`, `--sweep` and `--ensemble`; raises SceneError in
+    one line, also if no point has a valid scene."""
     fixed = dict(map(parse_override, changes))
     values = axes(given, list(fixed), members)
     path, found, errors = find(scene), [], []
@@ -73,7 +73,7 @@ def sweep_of(
 
 
 def _folder(setting: dict[str, Any], number: int) -> str:
-    """Return the name of a point's folder: its values, or its number where they make no name."""
+    """Return the name of a point's folder: its values, or its number if they are no valid name."""
     name = ",".join(f"{k}={v}" for k, v in setting.items())
     plain = name.isprintable() and not set(name) & set("/\\") and len(name.encode()) <= LONGEST
     single = not any(isinstance(value, list | dict) for value in setting.values())
@@ -83,7 +83,7 @@ def _folder(setting: dict[str, Any], number: int) -> str:
 def run(
     asked: Sweep, work: Work, pool: Pool | None = None, progress: Progress | None = None
 ) -> list[SweepOutcome]:
-    """Return the outcomes of all cases, in order; those that are done are taken from its folder."""
+    """Return the outcomes of all cases, in order; completed ones are read from its folder."""
     outcomes: Store[SweepOutcome] = Store(
         SweepOutcome, asked.out and asked.out / POINTS, _has_files
     )
@@ -92,5 +92,5 @@ def run(
 
 
 def _has_files(found: SweepOutcome) -> bool:
-    """Return whether the results of a case are still there."""
+    """Return whether the result files of a case still exist."""
     return all(Path(str(row["file"])).is_file() for row in found.rows if "file" in row)

@@ -27,7 +27,7 @@ from compare.report.tables import Table
 NAME = "sweep"
 #: The numbers of a run, of a receiver of it, and of a pair of solutions at a receiver.
 OF_RUNS = ("steps", "freedoms", "seconds", "energy_residual")
-OF_PAIR, MOST = ("variant", "one", "other"), 12  # what tells pairs apart; waveforms shown at most
+OF_PAIR, MOST = ("variant", "one", "other"), 12  # keys of pairs; most waveforms shown
 OF_RECEIVERS, OF_PAIRS = ("peak", "time_of_peak"), Distance._fields
 UNITS = {"x": "m", "y": "m", "time_of_peak": "s", "seconds": "s", "delay": "s"}
 #: Columns shown of runs and of comparisons: name, heading, and format of a number.
@@ -60,7 +60,7 @@ def table(asked: Sweep, found: list[SweepOutcome]) -> pd.DataFrame:
 def summarise(asked: Sweep, found: list[SweepOutcome]) -> Summary:
     """Return the summary of a sweep; write sweep.csv and sweep.nc.
 
-    Raises SceneError where all cases have failed.
+    Raises SceneError if all cases have failed.
     """
     if all(one.state == "failed" for one in found):
         allowed = f"all {len(found)} points fail: {found[0].message}"
@@ -95,7 +95,7 @@ def summarise(asked: Sweep, found: list[SweepOutcome]) -> Summary:
 def with_statistics(
     summary: Summary, asked: Sweep, found: list[SweepOutcome], done: pd.DataFrame
 ) -> Summary:
-    """Return the summary of an ensemble: of each number its mean and percentiles over the members;
+    """Return the summary of an ensemble: mean and percentiles of each number over the members;
     write ensemble.csv and the waveforms' statistics."""
     numbers, shows = (OF_PAIRS, "misfit") if "one" in done else (OF_RECEIVERS, "peak")
     rows = statistics(done, list(asked.axes), list(numbers))
@@ -139,8 +139,8 @@ def _drawn(waves: list[Path], done: pd.DataFrame, axes: list[str], out: Path) ->
 
 
 def _shown(done: pd.DataFrame, axes: list[str]) -> tuple[pd.DataFrame, str, list[str]]:
-    """Return the rows that a terminal shows, what they are, and the heading of their places: of
-    comparisons with more waveforms than a reader looks at the worst of each pair at each point."""
+    """Return the rows shown on a terminal, their description, and the heading of their places: for
+    comparisons with more than MOST waveforms the worst of each pair at each point."""
     if "one" not in done or len(done.drop_duplicates([*OF_PAIR, "quantity", *_at(done)])) <= MOST:
         return done, "", []
     of_point = [*axes, *OF_PAIR]
@@ -150,7 +150,7 @@ def _shown(done: pd.DataFrame, axes: list[str]) -> tuple[pd.DataFrame, str, list
 
 
 def grid(axes: dict[str, list[Any]], done: pd.DataFrame) -> xr.Dataset:
-    """Return rows on the grid of swept keys, variants, and engines or pairs; nan where none is."""
+    """Return rows on the grid of swept keys, variants, and engines or pairs; nan if missing."""
     point, at = [*axes, "variant"], _at(done)
     if "one" in done:
         pairs = done.assign(pair=done["one"] + " ~ " + done["other"])

@@ -1,7 +1,7 @@
-"""Criteria of accuracy: how far a scheme of second order may be from the exact solution.
+"""Criteria of accuracy: the largest error of a scheme of second order from the exact solution.
 
-Near a critical step, beside stiff joints or at a resonance an unstable scheme is wrong without
-being infinite. So every such run is held to the error that a stable one can have.
+Near a critical step, beside stiff joints or at a resonance an unstable scheme may be wrong but
+finite. Every such run is therefore compared with the error that a stable one can have.
 """
 
 from math import pi, sqrt
@@ -26,11 +26,11 @@ REFEREE = 5e-6  # of the exact bars: their inversion takes the mean load of step
 
 
 def phase_error(trial: CaseTrial, result: xr.Dataset) -> float:
-    """Return the misfit that the steps of a second-order scheme leave at the end of a run.
+    """Return the misfit due to the steps of a second-order scheme at the end of a run.
 
     A relative error e of the frequency omega is the phase e omega t at time t, and a wave that is
-    wrong by a small phase is wrong by as much relative to itself: C (omega dt)^2 omega t, in the
-    mean over the spectrum.
+    wrong by a small phase has a relative error of the same size: C (omega dt)^2 omega t, averaged
+    over the spectrum.
     """
     omega = peak(trial)
     step = omega * float(result.attrs["dt"])
@@ -38,7 +38,7 @@ def phase_error(trial: CaseTrial, result: xr.Dataset) -> float:
 
 
 def element_error(trial: CaseTrial) -> float:
-    """Return the misfit that quadratic GLL elements leave at the end of a run; none in blocks.
+    """Return the misfit due to quadratic GLL elements at the end of a run; none for blocks.
 
     Their phase speed is wrong by (omega tau)^4 / 2880, tau the time through an element (Ainsworth &
     Wajid, SIAM J. Numer. Anal. 47, 2009). The traction of a joint that is recorded is known to the
@@ -56,7 +56,7 @@ def element_error(trial: CaseTrial) -> float:
 
 
 def corner_error(trial: CaseTrial, result: xr.Dataset) -> float:
-    """Return the misfit from the two corners of a sine that starts and ends; none of a wavelet.
+    """Return the misfit from the two kinks of a sine that starts and ends; none for a wavelet.
 
     A change of slope s has the spectrum s / omega^2; what of it is beyond the w of `lost_after` is
     lost: by Parseval s^2 (4 + 1/5) / (3 pi w^3), against cycles T / 2 of the sine.
@@ -87,7 +87,7 @@ def peak(trial: CaseTrial) -> float:
 
 
 def time_of_element(trial: CaseTrial) -> float:
-    """Return how long a wave takes through an element of the rock, s."""
+    """Return the travel time of a wave through an element of the rock, s."""
     from continuum.build import elements_for
 
     scene, p = trial.scene, trial.properties

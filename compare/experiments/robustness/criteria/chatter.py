@@ -1,9 +1,9 @@
 """Repeated impact: a loose block between two walls, ten thousand times.
 
 The walls are the outer blocks on their stiff half-block springs; the joints to the loose one, a
-millionth as stiff, bar tension. On one of them the block is a damped oscillator, omega = sqrt(k/m),
-whose damping ratio is the joint's own, until the force of spring and dashpot together falls to
-zero. That is at omega_d t = pi - 2 asin(zeta), and there the speed is, over that of the approach,
+millionth as stiff, carry no tension. On one of them the block is a damped oscillator, omega =
+sqrt(k/m), whose damping ratio is the joint's own, until the force of spring and dashpot together
+is zero. That is at omega_d t = pi - 2 asin(zeta), where the speed over that of the approach is
 
     e = exp(-zeta (pi - 2 asin(zeta)) / sqrt(1 - zeta^2))
 
@@ -49,8 +49,8 @@ def restitution(trial: CaseTrial) -> Judgement:
 
 
 def _peaks(trial: CaseTrial, stride: int) -> np.ndarray:
-    """Return the largest speed of the loose block's mass between one impact and the next, m/s, of
-    all impacts, from 1 m/s on; it is looked at once in so many steps."""
+    """Return the largest speed of the loose block's mass between successive impacts, m/s, of all
+    impacts, from 1 m/s on; sampled every `stride` steps."""
     body = unloaded(trial.engine, trial.scene)
     loose, start = body.second, np.zeros(body.mass.size)
     start[loose] = 1.0

@@ -26,8 +26,8 @@ KINKS = 1e-3
 def just_closed(trial: CaseTrial) -> Judgement:
     """A prestress of just the largest tension of the wave leaves every joint closed.
 
-    The elastic pillar under the same prestress, p, tells that tension; joints that bar tension meet
-    it with a traction of zero, to round-off, and do what elastic ones do.
+    The elastic pillar under the same prestress, p, gives that tension; there the traction of
+    tension-free joints is zero, to round-off, and they behave like elastic ones.
     """
     joints = trial.properties.joint_y.tolist()
     clock = {"record__interval": trial.dt, "record__stress": joints, "record__velocity": []}
@@ -43,8 +43,8 @@ def just_closed(trial: CaseTrial) -> Judgement:
 
 @criterion("misfit from a load 2^99 times as large, scaled")
 def scales_by_two(trial: CaseTrial) -> Judgement:
-    """Joints that bar tension know no scale: a load smaller by a power of two does the same in
-    every digit, with gaps down to 1e-40 m that open and close as those of a large one do."""
+    """Tension-free joints have no scale: a load smaller by a power of two gives the same result in
+    every digit, with gaps down to 1e-40 m that open and close like those of a large one."""
     small = 2.0**-99
     one, other = (trial.run(load__amplitude=a) for a in (1.0, small))
     found = relative_l2(other["stress"].values / small, one["stress"].values)
@@ -53,7 +53,7 @@ def scales_by_two(trial: CaseTrial) -> Judgement:
 
 @criterion("imbalance over the work")
 def ledger(trial: CaseTrial) -> Judgement:
-    """No energy is made or lost where joints open, close, slide and break."""
+    """No energy is created or lost when joints open, close, slide and break."""
     from results.dataset import energy_residual
 
     return Judgement(energy_residual(trial.result), KINKS, _spent(trial.result))
@@ -90,7 +90,7 @@ def just_held(trial: CaseTrial) -> Judgement:
     round-off: an iterate on the way may slide where the step does not.
     """
     (layer,) = trial.scene.soft_layers
-    # The joint is recorded at every step, whatever that is.
+    # The joint is recorded at every step, for any step.
     every_step = {"record__interval": float(trial.result.attrs["dt"]), STEP: 1.0}
 
     def run(cohesion: float) -> xr.Dataset:
@@ -124,8 +124,8 @@ def one_ulp(trial: CaseTrial) -> Judgement:
 
 
 def _normal_law(trial: CaseTrial) -> tuple[float, Callable[[float, float], float]]:
-    """Return the stiffness (Pa/m) of the first joint, as the solver has it, and its traction (Pa)
-    at a gap (m) and its rate (m/s)."""
+    """Return the first joint's stiffness (Pa/m) in the solver, and its traction (Pa) as a function
+    of gap (m) and its rate (m/s)."""
     from joints.law import law_of, parts_of, table_of
     from joints.normal import normal_traction
 

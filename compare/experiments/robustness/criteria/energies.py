@@ -1,4 +1,4 @@
-"""Criteria of energy over very many steps: no drift, no trend, never more than there was."""
+"""Criteria of energy over very many steps: no drift, no trend, no growth."""
 
 from math import sqrt
 from typing import NamedTuple
@@ -12,14 +12,14 @@ SAMPLES = 1000
 
 
 class Drift(NamedTuple):
-    """Kinetic and elastic energy over the mean, less one [n], after so many steps [n]."""
+    """Kinetic and elastic energy over the mean, minus one [n], after `steps` steps [n]."""
 
     steps: np.ndarray
     energy: np.ndarray
 
 
 def drift(trial: CaseTrial, steps: int) -> Drift:
-    """Return the energy of an undamped pillar over so many steps, from the end of its load on."""
+    """Return the energy of an undamped pillar over these steps, from the end of its load on."""
     dt, stride = trial.dt, steps // SAMPLES
     found = {"record__interval": stride * dt, "time__duration": steps * dt * (1 + 1e-9)}
     if trial.is_implicit:
@@ -61,7 +61,7 @@ def no_trend(steps: int) -> Criterion:
 
 @criterion("decrease of dissipated energy, over the work")
 def passive(trial: CaseTrial) -> Judgement:
-    """What is dissipated never comes back, and energy is neither made nor lost.
+    """Dissipated energy never returns, and energy is neither created nor lost.
 
     Of the second law: what sliding and opening have taken, and all that is spent (viscous,
     friction, fracture), fall by no more than round-off of the work put in. The viscous term alone
@@ -77,7 +77,7 @@ SPENT = ("viscous", "friction", "fracture")
 
 
 def largest_fall(result: xr.Dataset) -> float:
-    """Return the largest fall of what only grows, over the largest work put in."""
+    """Return the largest decrease of monotonic terms, over the largest work."""
     energy, terms = result["energy"].values, [str(t) for t in result["term"].values]
     work = float(np.abs(energy[terms.index("work")]).max())
     spent = {t: energy[terms.index(t)] for t in SPENT if t in terms}

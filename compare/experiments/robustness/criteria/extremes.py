@@ -1,4 +1,4 @@
-"""Criteria for loads, sizes and shapes at the edge of what numbers and elements can hold."""
+"""Criteria for loads, sizes and shapes at the limits of numbers and elements."""
 
 from math import pi, sqrt
 
@@ -60,7 +60,7 @@ def nothing(trial: CaseTrial) -> Judgement:
 
 @criterion("misfit from the result of 1 Pa times the amplitude")
 def scaled(trial: CaseTrial) -> Judgement:
-    """What is linear scales with its load: over the amplitude, the result is that of 1 Pa.
+    """Linear results scale with the load: over the amplitude, the result is that of 1 Pa.
 
     Only the factor rounds, at the load and at the result, by an eps each; every step keeps its
     relative error, which a sum over steps multiplies by at most their number.
@@ -75,7 +75,7 @@ def scaled(trial: CaseTrial) -> Judgement:
 
 @criterion("refused in one line that names the key")
 def refused(trial: CaseTrial) -> Judgement:
-    """What cannot be computed is refused in one line that names the key."""
+    """An uncomputable scene is refused in one line that names the key."""
     try:
         trial.run()
     except SceneError as error:
@@ -86,8 +86,8 @@ def refused(trial: CaseTrial) -> Judgement:
 
 @criterion("misfit from a pillar of a thousand blocks before any reflection")
 def untouched_far_end(trial: CaseTrial) -> Judgement:
-    """What no wave has reached does not matter: a long pillar's first blocks do what those of a
-    short one do, bit by bit in explicit steps, which pass on one block a step."""
+    """Rock that no wave has reached has no influence: a long pillar's first blocks move like those
+    of a short one, bit-identical in explicit steps, which propagate by one block per step."""
     long, short = trial.result, trial.run(pillar__length=500.0)
     assert long.attrs["dt"] == short.attrs["dt"]
     found = relative_l2(long["stress"].values, short["stress"].values)

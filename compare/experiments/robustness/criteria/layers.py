@@ -1,4 +1,4 @@
-"""Criteria for joints that all but part, or all but vanish."""
+"""Criteria for joints of almost no stiffness or almost no compliance."""
 
 from math import sqrt
 
@@ -43,7 +43,7 @@ def free_end(trial: CaseTrial) -> Judgement:
 
 
 def _of_steps(trial: CaseTrial, one: xr.Dataset, other: xr.Dataset) -> float:
-    """Return what two runs may differ by through their steps: round-off where these are equal."""
+    """Return the allowed difference of two runs due to their steps: round-off if equal."""
     if one.attrs["dt"] == other.attrs["dt"]:
         return 1e-15 * float(one.attrs["steps"])
     return phase_error(trial, one)

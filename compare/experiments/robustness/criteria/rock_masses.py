@@ -71,7 +71,7 @@ def _root(scene: RockMass, partition: Partition) -> np.ndarray:
 
 
 def _unit(scene: RockMass, partition: Partition) -> np.ndarray:
-    """Return what a unit of the load does to all freedoms [3 N]."""
+    """Return the forces on all degrees of freedom [3 N] per unit of the load."""
     (load,) = scene.loads
     at = np.array([load.at])
     (block,) = block_at(partition, at)

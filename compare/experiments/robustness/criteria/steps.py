@@ -13,18 +13,18 @@ from cases.loads import load_history
 from cases.sampling import sample_times
 from compare.experiments.robustness.case import ALLOW, CaseTrial, Judgement, criterion
 
-RANGE = log(1.7e308) - log(2.2e-308)  # all numbers, from the least to the largest
+RANGE = log(1.7e308) - log(2.2e-308)  # of all numbers, from the smallest to the largest
 
 
 def exactly(trial: CaseTrial, steps: int) -> dict[str, Any]:
-    """Return the changes that make one sample a step, of exactly the fraction asked for."""
+    """Return the changes for one sample per step, of exactly the requested fraction."""
     dt = trial.dt
     return {"record__interval": dt, "time__duration": dt * steps * (1 + 1e-9)}
 
 
 @criterion("highest velocity, m/s, at most that of the impulse at this step")
 def impulse_bound(trial: CaseTrial) -> Judgement:
-    """No point moves faster than the load's impulse can make it, amplified as at this step.
+    """No point moves faster than the load's impulse allows, with the amplification at this step.
 
     A mode of frequency omega, driven at steps k by F_k, has the velocity (leapfrog in closed form)
     v_j = (dt/m) sum F_k cos((j - k - 1/2) W dt) / cos(W dt/2), with cos(W dt/2) = sqrt(1 - x^2)
@@ -45,7 +45,7 @@ STEPS_AT_THE_CRITICAL = 2000  # before linear growth is more than the divergence
 
 
 def _gain(x: float, steps: int) -> float:
-    """Return the most that leapfrog makes of a velocity, at x of the critical step."""
+    """Return the largest amplification of a velocity by leapfrog, at x of the critical step."""
     return 2.0 * steps if x >= 1 - 1e-9 else min(2.0 * steps, 1 / sqrt(1 - x * x))
 
 
@@ -63,7 +63,7 @@ def _is_fourth(trial: CaseTrial) -> bool:
 
 
 def _gain_of_composition(x: float, steps: int) -> float:
-    """Return the most that the fourth-order scheme makes of a velocity, at x of its critical step.
+    """Return the fourth-order scheme's largest gain of a velocity, at x of its critical step.
 
     One step of (omega u, v) is M of determinant one with equal diagonal entries cos W, so
     M^j = [[cos jW, b s], [c s, cos jW]] with s = sin jW / sin W, at most j. A kick in the middle
@@ -85,7 +85,7 @@ def _gain_of_composition(x: float, steps: int) -> float:
 
 
 def _fastest(trial: CaseTrial) -> float:
-    """Return the speed (m/s) that the integral of the load's magnitude gives the lightest node.
+    """Return the speed (m/s) of the lightest node after the impulse of the load's magnitude.
 
     A block has its whole mass on its one freedom. GLL elements of order p give 1 / (p (p + 1)) of
     theirs to a node at their end.
@@ -126,7 +126,7 @@ def caught(trial: CaseTrial) -> Judgement:
 
 
 def _growth(trial: CaseTrial, x: float) -> float:
-    """Return the logarithm of what a step at x of the critical one multiplies the mode by."""
+    """Return the logarithm of the mode's amplification in a step at x of the critical one."""
     if not _is_fourth(trial):
         return 2 * acosh(x)
     from dem.axial.fourth_order import half_trace, stability_limit

@@ -1,7 +1,7 @@
-"""The chain of rigid blocks by scipy's adaptive integrator, as one would write it in an afternoon.
+"""The chain of rigid blocks by scipy's adaptive integrator, a straightforward implementation.
 
 The equations are those of `compare.exact.blocks.chain`; steps are chosen by the integrator's own
-estimate of its error, whatever the load's corners.
+estimate of its error, regardless of the load's kinks.
 """
 
 from time import perf_counter
@@ -29,7 +29,7 @@ def applies(scene: Scene) -> Answer:
 
 
 def solve(scene: Scene, rtol: float = 1e-6, method: str = "DOP853") -> xr.Dataset:
-    """Return what `scipy.integrate.solve_ivp` makes of a scene's chain of rigid blocks.
+    """Return the solution of a scene's chain of rigid blocks by `scipy.integrate.solve_ivp`.
 
     rtol : relative tolerance; the absolute one is that of the speed that the load can cause. The
     attribute `steps` counts the evaluations of all forces.
@@ -39,7 +39,7 @@ def solve(scene: Scene, rtol: float = 1e-6, method: str = "DOP853") -> xr.Datase
     began = perf_counter()
     model, signal, times = chain(scene), drive(scene), sample_times(scene)
     rest, push = at_rest(scene, model), scene.load.amplitude / scene.load.scale * model.gain
-    # A speed (m/s) of the size of what happens.
+    # A typical speed (m/s).
     speed = abs(push) / (1.0 if model.shaken else model.end.dashpot) or 1.0
     ready = perf_counter()
     solution = solve_ivp(

@@ -36,7 +36,7 @@ class PlainBar(NamedTuple):
 
     space, form : of dolfinx; the form assembles the internal force of `motion`, u + eta v.
     mass, dashpot : float arrays [freedoms], kg/m2 and Pa s/m. start, end : freedoms of the ends.
-    held : freedoms that stand still. eta : s. critical : s.
+    held : fixed freedoms. eta : s. critical : s.
     """
 
     space: Any
