@@ -68,9 +68,9 @@ def _below(matrix: csr_matrix, rows: int) -> csr_matrix:
 def _carried(discrete: PlaneDiscrete, joints: JointReaders | None) -> np.ndarray:
     """Return what the tractions of receivers are at the start, Pa."""
     own = discrete.joints
-    if joints is None or own is None:
+    if joints is None:
         return np.zeros(0)
-    if own.prestress is None:
+    if own is None or own.prestress is None:
         return np.zeros(joints.traction.shape[0])
     return joints.traction @ (own.prestress * own.area).ravel()
 

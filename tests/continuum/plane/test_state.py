@@ -9,6 +9,8 @@ from continuum.explicit.march import readings
 from continuum.implicit.balance import balance, implicit_matrices
 from continuum.implicit.static import settle_static
 from continuum.implicit.substeps import UNLOADED
+from continuum.plane.receivers import receivers
+from continuum.plane.rock import discretise
 from continuum.run import run_of
 from results.arrays import copied
 
@@ -227,3 +229,18 @@ def test_quadrilaterals_where_blocks_have_other_shapes_are_refused(rock_mass):
         run_of(scene, "jointed")
     with pytest.raises(SceneError, match=r"numerics.continuum.order = 3.*triangles"):
         run_of(rock_mass([{"dip": 30.0, "through": [3.0, 0.5]}], {"order": 3}), "jointed")
+
+
+def test_a_process_without_joints_reads_as_many_rows_as_others(rock_mass):
+    """Their sum is the recorded waveforms: tractions at the start are among the rows."""
+    scene = rock_mass(
+        [{"dip": 30.0, "through": [3.0, 3.0], "friction_angle": 35.0}],
+        prestress={"xx": 4e6, "yy": 4e6, "xy": 1e6},
+        record={"points": [[1.0, 1.0]], "joints": [[3.0, 3.0]]},
+    )
+    discrete = discretise(scene, "jointed")
+    whole, own = (
+        receivers(scene, one) for one in (discrete, discrete._replace(joints=None, jumps=None))
+    )
+    assert own.constant.size == whole.constant.size == whole.elastic.shape[0] == 5
+    assert own.elastic.shape == whole.elastic.shape and own.turn.shape == whole.turn.shape
