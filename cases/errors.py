@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Any
 
-CLOSE = 0.6  # of difflib: how alike a name and the one that is suggested are
+CLOSE = 0.6  # difflib's least similarity of a name and its suggestion
 
 
 class SceneError(ValueError):

@@ -141,7 +141,7 @@ def _each_once(found: list[np.ndarray]) -> np.ndarray:
 
 
 def _blocks(mesh, names: list[str]):
-    """Return each block of cells and which of its cells are in any of these groups."""
+    """Return each block of cells, with the indices of its cells in any of these groups."""
     for k, block in enumerate(mesh.cells):
         inside = np.zeros(len(block.data), dtype=bool)
         for name in names:

@@ -21,7 +21,7 @@ from cases.partition.regions import region_at, rocks_of
 from cases.schema.rock_mass import RockMass
 from cases.schema.sources import Wave
 
-BEYOND = 20  # samples on either side of the times that are asked for
+BEYOND = 20  # samples on either side of the requested times
 WITHIN = 1e-6  # of a domain: from its corner to a place in the rock there
 GRAZING = 1e-9  #: cosine up to which a wave that leaves through a side still runs along it
 

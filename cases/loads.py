@@ -1,4 +1,4 @@
-"""The load of a scene over time, and what an engine's steps take of it.
+"""The load of a scene over time, and its values at an engine's steps.
 
 Its integral is exact, so an engine applies the mean of the load over each of its steps. Units are
 those of an end stress, Pa and Pa s; the motion of a shaken base has m/s and m, or m/s2 and m/s, in
@@ -90,7 +90,7 @@ def with_load_itself(
 
 
 def base_steps(scene: Scene, dt: float, count: int) -> np.ndarray:
-    """Return how far a shaken base moves in each step [n dt, (n + 1) dt], n = 0 .. count - 1, m.
+    """Return a shaken base's displacement in each step [n dt, (n + 1) dt], n = 0 .. count - 1, m.
 
     A velocity history is integrated exactly over the step. An acceleration history gives, as
     leapfrog does, dt times the velocity at the half step. Zero for a base that is not shaken.

@@ -15,7 +15,7 @@ from cases.schema.values import CONTROL
 from cases.validate import validated
 
 LARGEST_FILE = 10_000_000  # bytes; a scene is a page of text
-#: It names a folder, beside what the scene's own results are called.
+#: It names a folder, next to the names of the scene's own results.
 VARIANT_NAME = re.compile(
     r"(?!.*(\.nc|\.pvd|\.bp|-fields)$)[^/\\.\s\x00-\x1f][^/\\\x00-\x1f]{0,79}", re.IGNORECASE
 )
@@ -171,7 +171,7 @@ def _assign(table: dict[str, Any], key: str, value: Any, where: str) -> None:
 
 
 def _place(at: Any, part: str, key: str, value: Any, where: str) -> Any:
-    """Return what a part of a key is in a table or list: a name, or an index that it has."""
+    """Return a part of a key as used in a table or list: a name, or a valid index."""
     if isinstance(at, dict):
         return part
     if not part.isdecimal() or int(part) >= len(at):

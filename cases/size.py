@@ -24,7 +24,7 @@ GROUPS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_by
 #: Bytes a step for the load's mean over it, and what that is made of; its history is table.
 LOAD_OF_STEP, TABLE_OF_STEP = 24, 64
 LEDGER = 5  # terms of an energy ledger, at least
-#: How often a waveform is there at once: as it is sampled, and as it is written.
+#: Copies of a waveform in memory: as sampled, and as written.
 COPIES = 2
 
 
@@ -45,7 +45,7 @@ def estimates() -> Iterator[dict[str, float]]:
 
 
 def memory() -> float:
-    """Return the bytes that a run may take: JOINTWAVE_MEMORY, else what the machine has."""
+    """Return the bytes that a run may use: JOINTWAVE_MEMORY, else the machine's memory."""
     asked = os.environ.get(LIMIT)
     if asked is None:
         return _of_machine()
@@ -94,7 +94,7 @@ def require(size: float, what: str) -> None:
 
 @contextmanager
 def within(room: float) -> Iterator[None]:
-    """Make allocations beyond so many bytes raise MemoryError, where the system supports it."""
+    """Make allocations beyond this many bytes raise MemoryError, if the system supports it."""
     try:
         pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
     except OSError:
@@ -164,12 +164,12 @@ def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:
 
 
 def load_bytes(scene: AnyScene, steps: float) -> float:
-    """Return the memory of the loads of so many steps (bytes)."""
+    """Return the memory of the loads of this many steps (bytes)."""
     tables = [one.history is not None for one in scene.pulses]
     return steps * sum(TABLE_OF_STEP if table else LOAD_OF_STEP for table in tables)
 
 
 def snapshot_bytes(scene: AnyScene, nodes: float) -> float:
-    """Return the memory of snapshots of so many nodes (bytes)."""
+    """Return the memory of snapshots of this many nodes (bytes)."""
     fields = scene.record.fields
     return 0.0 if fields is None else (scene.time.duration / fields + 1) * nodes * 7 * 8 * COPIES

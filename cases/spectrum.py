@@ -17,7 +17,7 @@ from cases.schema.scene import Scene
 if TYPE_CHECKING:
     from cases.schema.pulse import Pulse
 
-#: Of a load's energy, the integral of its square over time: what lies below its highest frequency.
+#: Part below its highest frequency of a load's energy, the integral of its square over time.
 #: A single sine cycle ends at 1.50 / T, a Ricker wavelet at 1.67 / T.
 SHARE = 0.95
 BINS, PADDING, MOST_CYCLES = 4096, 8, 32
@@ -45,7 +45,7 @@ class ShortestWave(NamedTuple):
 
 
 def shortest_wave(scene: Scene, p: Properties) -> ShortestWave | None:
-    """Return the wave that a scene's load makes shortest; None where no load acts."""
+    """Return the wave with the shortest wavelength under a scene's load; None without a load."""
     frequency = highest_frequency(scene)
     if frequency is None:
         return None

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 LEAST_BLOCKS = 10.0  # and elements, a wavelength
 MOST_REFLECTED = 0.01  # by a quiet end on a rigid block, of the load's highest frequency
-SHORTENED = 1.5  # how many times shorter than asked for a step is not worth a line
-ONSET = 0.01  # of a load's peak: where it begins
+SHORTENED = 1.5  # a step shortened by less than this factor is not reported
+ONSET = 0.01  # of a load's peak: defines its beginning
 #: Of the duration: the end of a table that no one cut off there.
 LATE = 5.0
 #: Crossings of the pillar in a period of the load's highest frequency that no wave test has.

@@ -92,7 +92,7 @@ class Properties(Strength):
 
     @property
     def each(self) -> tuple[Properties, ...]:
-        """Those of each segment by itself; of one rock these alone."""
+        """The properties of each segment; only these if there is one rock."""
         return (self,)
 
     @property
@@ -102,7 +102,7 @@ class Properties(Strength):
 
     @property
     def contact_y(self) -> np.ndarray:
-        """Where blocks begin and the last one ends, m [N + 1]."""
+        """Start of each block and end of the last one, m [N + 1]."""
         return self.spacing * np.arange(self.block_count + 1)
 
     @property

@@ -50,7 +50,7 @@ class Mechanisms(NamedTuple):
 
 
 def beyond_blocks(scene: AnyScene) -> str:
-    """Return why rigid blocks do not simulate a scene with a quality factor, "" where they do: rock
+    """Return why rigid blocks do not simulate a scene with a quality factor, "" if they do: rock
     in series with a joint is one spring that relaxes where the joint is linear."""
     if not isinstance(scene, Scene):
         return "rigid blocks of a rock mass have no intact rock for a quality_factor"

@@ -56,7 +56,7 @@ def joint_set(
 
 
 def compliant(sets: Iterable[schema.JointSet]) -> list[JointSet]:
-    """Return the sets of a scene that have a spacing; a joint alone is no medium."""
+    """Return the sets of a scene that have a spacing; a single joint is not a medium."""
     found = []
     for one in sets:
         if one.spacing:

@@ -1,4 +1,4 @@
-"""The numbers of a pillar of segments, or of joints at random: those of each segment, put together.
+"""The properties of a pillar of segments, or of random joints: those of each segment, combined.
 
 A block of thickness S has half of its compliance on either side of its centre: S / (2 E) of intact
 rock and half a joint, 1 / (2 K_n), together S / (2 E_eq). A joint between two segments is half a
@@ -77,7 +77,7 @@ class LayeredProperties(Properties):
 
     @property
     def contact_y(self) -> np.ndarray:
-        """Where blocks begin and the last one ends, m [N + 1]."""
+        """Start of each block and end of the last one, m [N + 1]."""
         return self.contacts
 
     @property

@@ -30,7 +30,7 @@ def refuse_beyond_strength(scene: RockMass) -> None:
 
 
 def beyond_strength(joint: JointSet, stress: StressInPlane) -> str | None:
-    """Return whether a joint "opens" or "slides" under a stress, None where it carries it."""
+    """Return whether a joint "opens" or "slides" under a stress, None if it carries it."""
     along = direction_of(joint.dip)
     normal = np.array([-along[1], along[0]])
     traction = np.array([[stress.xx, stress.xy], [stress.xy, stress.yy]]) @ normal

@@ -19,7 +19,7 @@ from cases.material.effective_medium import JointSet, opening, sliding
 LEAST = 1e-7  # weight of the fit's own norm
 
 
-#: What least squares reach, over the largest number: round-off.
+#: Accuracy of least squares relative to the largest number: round-off.
 PRECISE = 1e-15
 
 

@@ -49,7 +49,7 @@ def joint_stiffness(scene: RockMass, partition: Partition) -> Stiffness:
 
 
 def centroid_distance(partition: Partition) -> np.ndarray:
-    """Return how far the centroids of each contact's blocks are apart along its normal [c], m."""
+    """Return the distance of the centroids of each contact's blocks along its normal [c], m."""
     i, j = partition.contacts.blocks.T
     apart = partition.centroid[j] - partition.centroid[i]
     return (apart * partition.contacts.normal).sum(axis=1)

@@ -63,7 +63,7 @@ def rock_mass(scene: Scene, spacing: float) -> RockMass:
 
 
 def stiffness(scene: Scene, soft: np.ndarray, spacing: float, mass: RockMass) -> Stiffness:
-    """Return the stiffness of all joints, of which `soft` are those of the soft layers."""
+    """Return the stiffness of all joints; `soft` are those of the soft layers."""
     (intact, intact_shear), count = _intact(scene.rock), scene.pillar.block_count - 1
     own = np.full(count, joint_stiffness(mass.modulus, intact, spacing))
     normal = np.full(count, mass.modulus / spacing)
@@ -85,6 +85,6 @@ def stiffness(scene: Scene, soft: np.ndarray, spacing: float, mass: RockMass) ->
 
 
 def _intact(rock: Rock) -> tuple[float, float]:
-    """Return Young's and shear modulus of the intact rock, Pa; infinite where it is not given."""
+    """Return Young's and shear modulus of the intact rock, Pa; infinite if not given."""
     modulus = rock.intact_modulus or inf
     return modulus, shear_modulus(modulus, rock.intact_poisson)

@@ -12,7 +12,7 @@ from cases.schema.scene import Scene
 
 #: The keys of slip: without them no joint has that effect.
 SLIP = ("friction_angle", "cohesion", "residual_cohesion")
-#: The parameters that do not act along a joint alone: axial motion leaves the others out.
+#: The parameters that do not act only along a joint: axial motion ignores the others.
 ACROSS = tuple(name for part in PARTS if not part.along for name in part.without)
 #: All parameters, as `joints.law.Law` names them.
 NAMES = ("friction", "cohesion", "residual_cohesion", *(n for part in PARTS for n in part.without))
@@ -40,14 +40,14 @@ class Strength:
         return {name: self.given[name][joint] for name in names if name in self.given}
 
     def across(self) -> np.ndarray | bool:
-        """Return which joints have a part of the law that does not act along them alone [N - 1]."""
+        """Return which joints have a part of the law that does not act only along them [N - 1]."""
         without = {name: one for part in PARTS for name, one in part.without.items()}
         has = (self.given[name] != without[name] for name in ACROSS if name in self.given)
         return reduce(np.logical_or, has, False)
 
 
 def strength(scene: Scene, soft: np.ndarray) -> Strength:
-    """Return the strength of all joints, of which `soft` are those of the soft layers."""
+    """Return the strength of all joints; `soft` are those of the soft layers."""
     which = np.zeros(scene.pillar.block_count - 1, dtype=np.int64)
     which[soft] = 1 + np.arange(len(soft))
     return strength_of((scene.joints, *scene.layers), which)

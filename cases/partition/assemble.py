@@ -77,7 +77,7 @@ def ordered(sub: Subdivision, found: Rings) -> tuple[Subdivision, Rings]:
 
 
 def contacts(sub: Subdivision) -> Contacts:
-    """Return what pairs of blocks share, each one edge."""
+    """Return the pairs of blocks that share an edge, with that edge."""
     half = sub.halves()
     own = (half.across != OUTSIDE) & (half.cell < half.across)
     one = _joined(sub, np.stack([half.cell, half.across], axis=1), np.flatnonzero(own))

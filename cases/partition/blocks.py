@@ -30,7 +30,7 @@ class Contacts:
         return len(self.length)
 
     def of_joints(self, sets: int) -> np.ndarray:
-        """Return which lie on joints of a scene of so many sets, bool array [c]."""
+        """Return which lie on joints of a scene with this number of sets, bool array [c]."""
         return (self.joint_set >= 0) & (self.joint_set < sets)
 
 

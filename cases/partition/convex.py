@@ -20,7 +20,7 @@ def hull(points: np.ndarray) -> shapely.Geometry:
 
 
 class ConvexPieces:
-    """Convex pieces that touch each other, to be joined where they stay convex.
+    """Convex pieces that touch each other, joined if the result is convex.
 
     corners : of each piece by its cell, float arrays [n, 2], m.
     """
@@ -31,7 +31,7 @@ class ConvexPieces:
         self.root = {cell: cell for cell in corners}
 
     def connect(self, one: int, other: int, length: float) -> None:
-        """Add a length (m) to what two pieces have in common."""
+        """Add a length (m) to the common boundary of two pieces."""
         for a, b in ((one, other), (other, one)):
             self.beside[a][b] = self.beside[a].get(b, 0.0) + length
 

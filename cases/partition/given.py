@@ -41,7 +41,7 @@ class GivenRock(NamedTuple):
 
 
 def read_rock(path: Path) -> GivenRock:
-    """Return the rock of a file; raises MeshError, in one phrase, where it is none."""
+    """Return the rock of a file; raises MeshError, in one phrase, if it contains none."""
     tagged = read_tagged(path)
     if tagged.kind not in ("triangle", "quadrilateral"):
         raise MeshError(f"its rock has {tagged.kind} cells, must have two-dimensional ones")
@@ -115,7 +115,7 @@ def _doubled(cells: np.ndarray, edge: np.ndarray, count: int) -> np.ndarray:
 
 
 def _check(x: np.ndarray, cells: np.ndarray, joints: dict, doubled: np.ndarray) -> None:
-    """Raise MeshError where a joint is on the outside, or rock is cut where no joint is."""
+    """Raise MeshError if a joint is on the outside, or if rock is cut where there is no joint."""
     on_joint = np.zeros(len(x), dtype=bool)
     for edges in joints.values():
         on_joint[edges] = True

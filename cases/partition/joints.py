@@ -87,7 +87,7 @@ def in_order(sets: Sequence[JointSet]) -> list[JointSet]:
 
 
 def widest(one: JointSet) -> float:
-    """Return the largest distance that two joints of a set can have, m; infinite of one alone."""
+    """Return the largest possible distance of two joints of a set, m; infinite for a single one."""
     return inf if one.spacing is None else one.spacing * (1 + SPREAD * one.scatter)
 
 
@@ -140,7 +140,7 @@ def _single(
     inside: np.ndarray,
     tolerance: float,
 ) -> Lines:
-    """Return one joint, in the region that holds its point."""
+    """Return one joint, in the region that contains its point."""
     half, at = sub.halves(), np.array(one.through)
     depth = np.full(sub.count, np.inf)
     inward = -((at - sub.points[half.start]) * half.outward).sum(axis=1)

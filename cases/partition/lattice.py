@@ -1,4 +1,4 @@
-"""Further cuts through intact rock, for blocks that are rigid: lattices that hold the joints.
+"""Further cuts through intact rock, for rigid blocks: lattices that contain the joints.
 
 `numerics.dem.block` asks for blocks of about that size. Every direction of joints gets parallel
 lines, at a whole part of the spacing, or at about the size beside joints that are alone; where all
@@ -25,7 +25,7 @@ from cases.schema.region import REST
 if TYPE_CHECKING:
     from cases.schema.rock_mass import RockMass
 
-#: Blocks from a side to the line next to it, by what holds the side.
+#: Blocks from a side to the nearest line, by the side's boundary condition.
 AT_SIDE = {"quiet": 0.5, "periodic": 0.0, "free": 1.0, "fixed": 1.0}
 #: Degrees between dips that are one.
 ALIKE = 1e-9

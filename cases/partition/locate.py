@@ -37,7 +37,7 @@ def contact_at(partition: Partition, points: np.ndarray) -> np.ndarray:
 
 
 def _first(which: np.ndarray, found: np.ndarray, count: int) -> np.ndarray:
-    """Return the least of what is found for each of `count` points, or OUTSIDE."""
+    """Return the smallest value found for each of `count` points, or OUTSIDE."""
     least = np.full(count, np.iinfo(np.int64).max)
     np.minimum.at(least, which, found)
     return np.where(least == np.iinfo(np.int64).max, OUTSIDE, least)

@@ -28,7 +28,7 @@ def taken_out(
 
 
 def check_convex(sub: Subdivision, polygons: list[tuple[np.ndarray, int]]) -> None:
-    """Raise NonConvex where a block had to be cut through intact rock beside what was taken out."""
+    """Raise NonConvex if a block had to be cut through intact rock beside an opening."""
     cuts = np.flatnonzero(_through_rock(sub))
     if len(cuts):
         raise NonConvex(

@@ -76,7 +76,7 @@ class Outline:
 
 
 def outline_of(domain: Domain) -> Outline:
-    """Return the shape of a domain; raises PartitionError where it is none."""
+    """Return the shape of a domain; raises PartitionError if it is invalid."""
     whole = _polygon(domain.corners, "domain.outline")
     openings = [
         _polygon(opening, f"domain.openings[{k}]") for k, opening in enumerate(domain.holes)

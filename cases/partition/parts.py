@@ -8,7 +8,7 @@ from cases.schema.domain import Domain
 from cases.schema.rock_mass import RockMass
 from cases.schema.sources import PlaneLoad
 
-#: Of the domain's size: how far an edge may be from the line that it lies on.
+#: Of the domain's size: tolerated distance of an edge from its line.
 BESIDE = 1e-6
 
 

@@ -46,7 +46,7 @@ def cut_edges(sub: Subdivision, lines: Lines, touched: np.ndarray, tolerance: fl
 def _crossings(
     lines: Lines, family: np.ndarray, codes: np.ndarray, s: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return where lines cross edges: the edge, and how far along it, 0 to 1; any order."""
+    """Return the crossings of lines and edges: the edge, and position on it, 0 to 1; unsorted."""
     first, after = (codes.min(axis=2) + 1) // 2, codes.max(axis=2) // 2
     number = np.maximum(after - first, 0).ravel()
     where = np.repeat(np.arange(number.size), number)

@@ -1,4 +1,4 @@
-"""Area, centroid, second moments, width and angles of many polygons at once.
+"""Area, centroid, second moments, width and angles of many polygons together.
 
 Polygons are given by their corners, one after the other, counter-clockwise, and by the index of
 each one's first corner: float array [k, 2] and int array [n + 1].

@@ -1,4 +1,4 @@
-"""Regions of rock in a domain: which one holds a place, and the cuts between them."""
+"""Regions of rock in a domain: which one contains a place, and the cuts between them."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     from cases.schema.region import Region
     from cases.schema.rock_mass import RockMass
 
-ROCK = -1  #: in place of a region: the rock that no region holds
+ROCK = -1  #: in place of a region: rock outside all regions
 FAR = 4.0  #: sizes of a domain: beyond all of it
 
 
 def region_at(regions: Sequence[Region], places: np.ndarray) -> np.ndarray:
-    """Return the region that holds each place (float array [n, 2], m), or ROCK: the last of those
-    whose line it lies above, or whose outline it lies in."""
+    """Return the region that contains each place (float array [n, 2], m), or ROCK: the last of
+    those whose line it lies above, or whose outline it lies in."""
     found = np.full(len(places), ROCK)
     for k, one in enumerate(regions):
         if one.outline is not None:
@@ -41,7 +41,7 @@ def region_at(regions: Sequence[Region], places: np.ndarray) -> np.ndarray:
 
 
 def _above(one: Region, places: np.ndarray) -> np.ndarray:
-    """Return how far places [n, 2] (m) are above the line of a region [n], m."""
+    """Return the heights of places [n, 2] (m) above the line of a region [n], m."""
     assert one.through is not None
     x, y = direction_of(one.dip)
     return (places - np.array(one.through)) @ [-y, x]
@@ -118,7 +118,7 @@ def cut_into_regions(sub: Subdivision, regions: Sequence[Region], tolerance: flo
 
 
 def shapes(regions: Sequence[Region], outline: Outline) -> list[shapely.Geometry]:
-    """Return what of a domain each region holds, and last what is left of it."""
+    """Return the part of a domain in each region, and last the remainder."""
     left, found = outline.shape, []
     for one in reversed(regions):
         whole = shapely.Polygon(_corners(one, outline))

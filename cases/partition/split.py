@@ -1,4 +1,4 @@
-"""Cutting the convex cells of a subdivision by parallel lines, all cells and lines at once.
+"""Cutting the convex cells of a subdivision by parallel lines, all cells and lines together.
 
 Each edge is cut once, by the lines of the cells on both of its sides, so that what was a joint's
 end in one cell becomes a point of the other's edge. A cell becomes the slabs between its lines.

@@ -16,7 +16,7 @@ CHECKS = {"_magnitude": "", "_amplitude": "", "_unit": "of length 1", "_words": 
 
 
 def in_words(field: FieldInfo) -> str:
-    """Return what a field allows, in words; raises KeyError for an unknown type or check."""
+    """Return the allowed values of a field, in words; KeyError for an unknown type or check."""
     return _words(field.annotation, field.metadata)
 
 
@@ -50,7 +50,7 @@ def _plural(words: str) -> str:
 
 
 def _flat(constraints: list) -> list:
-    """Return constraints one by one: Field(ge=1, le=4) holds several."""
+    """Return constraints one by one: Field(ge=1, le=4) contains several."""
     return [one for c in constraints for one in (c.metadata if isinstance(c, FieldInfo) else [c])]
 
 

@@ -118,7 +118,7 @@ def _check_extreme(scene: Scene) -> None:
 
 
 def _beyond_scaling(scene: Scene) -> Iterator[tuple[str, object, bool]]:
-    """Yield what an extreme load excludes: key, value, and whether it is present."""
+    """Yield the keys that an extreme load excludes: key, value, and whether it is present."""
     load, record = scene.load, scene.record
     yield "gravity", None, scene.gravity is not None
     yield "prestress", None, scene.prestress is not None

@@ -1,4 +1,4 @@
-"""Damping of the motion itself and of the rock, beside the damping ratio of the joints."""
+"""Damping of the motion itself and of the rock, besides the damping ratio of the joints."""
 
 from collections.abc import Iterable
 from math import pi
@@ -101,7 +101,7 @@ class Damping(Table):
 
     @property
     def alpha(self) -> float | None:
-        """Mass-proportional damping, 1/s; None where there is none."""
+        """Mass-proportional damping, 1/s; None if there is none."""
         given = self.rayleigh.coefficients[0] if self.rayleigh else self.mass_proportional
         return given or None
 

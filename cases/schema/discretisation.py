@@ -28,7 +28,7 @@ BEYOND = (
 
 
 def check_scheme(scene: Scene) -> None:
-    """Raise the first contradiction between the scheme and what the scene calls for."""
+    """Raise the first contradiction between the scheme and the effects of the scene."""
     if scene.numerics.dem.scheme == "leapfrog":
         return
     from cases.effects import active_effects  # it needs the Scene, which needs this check

@@ -85,7 +85,7 @@ class History:
 
 
 def _rows(lines: Iterable[tuple[int, str]]) -> tuple[array, np.ndarray]:
-    """Return the line numbers and the rows [n, 2] that hold data."""
+    """Return the line numbers and the rows [n, 2] with data."""
     numbers, rows = array("q"), array("d")
     for number, cells in _cells(lines):
         if not rows and not any(map(is_number, cells)):

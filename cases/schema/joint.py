@@ -118,7 +118,7 @@ PARTS = (
         instead_of=("tension",),
     ),
 )
-#: The keys of the parts that do not act along a joint alone.
+#: The keys of the parts that do not act only along a joint.
 ACROSS = tuple(part.keys[0] for part in PARTS if not part.along)
 
 
@@ -185,13 +185,13 @@ class SoftLayer(JointLaw):
         return self
 
     def own_stiffness(self, spacing: float) -> float | None:
-        """K_n that the layer itself gives, Pa/m; None where it is as stiff as the other joints."""
+        """K_n given by the layer itself, Pa/m; None if it is as stiff as the other joints."""
         if self.spacing_stiffness is not None:
             return self.spacing_stiffness / spacing
         return self.normal_stiffness
 
     def under(self, joints: JointLaw) -> "SoftLayer":
-        """Return the layer with what it leaves out taken from [joints], but for its K_n."""
+        """Return the layer with missing keys taken from [joints], except its K_n."""
         absent = [key for key in JointLaw.model_fields if getattr(self, key) is None]
         absent = [key for key in absent if key != "normal_stiffness"]
         return self.model_copy(update={key: getattr(joints, key) for key in absent})

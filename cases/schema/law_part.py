@@ -36,7 +36,7 @@ class LawPart(NamedTuple):
     wrong: Callable[[Any], tuple[str, str] | None] = lambda law: None
 
     def of(self, law: JointLaw) -> bool:
-        """Return whether a law has it."""
+        """Return whether a law has this part."""
         return getattr(law, self.keys[0]) is not None
 
     def why(self, has: bool) -> str:

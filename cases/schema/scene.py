@@ -98,7 +98,7 @@ class Scene(Table):
 
     @property
     def shakes_base(self) -> bool:
-        """Whether the load is the motion of a rigid base, which a fixed start stands on."""
+        """Whether the load is the motion of a rigid base, on which the start is fixed."""
         return self.load.is_motion and self.ends.start == "fixed"
 
     @property
@@ -119,5 +119,5 @@ class Scene(Table):
 
     @property
     def layers(self) -> list[SoftLayer]:
-        """The soft layers, each with what it leaves out taken from [joints], but for its K_n."""
+        """The soft layers, each with missing keys taken from [joints], except its K_n."""
         return [layer.under(self.joints) for layer in self.soft_layers]

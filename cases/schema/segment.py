@@ -29,7 +29,7 @@ from cases.schema.values import (
 if TYPE_CHECKING:
     from cases.schema.scene import Scene
 
-CLOSE = 1e-6  # of a block: what lengths are rounded to
+CLOSE = 1e-6  # of a block: rounding of lengths
 #: Keys that an intact segment does not take.
 OF_JOINTED = (*SPEEDS, *CONSTANTS, "normal_stiffness", "damping_ratio")
 

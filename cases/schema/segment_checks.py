@@ -40,7 +40,7 @@ def _check_intact(table: str, one: Segment, scene: Scene) -> None:
 
 
 def _beside(scene: Scene) -> Iterator[tuple[str, object, str]]:
-    """Yield what segments exclude: its key, its value (None if absent), why."""
+    """Yield the keys that segments exclude: key, value (None if absent), reason."""
     from cases.effects import off_axis
 
     numerics, why = scene.numerics, off_axis(scene)

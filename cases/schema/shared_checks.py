@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 MOST_SAMPLES = 10_000_000  # 80 MB for each section, point and energy term
 MOST_SNAPSHOTS = 10_000
-SNAP = 1 + 1e-6  # how far the fracture energy must stay from a vertical softening line
+SNAP = 1 + 1e-6  # least ratio of the fracture energy to that of a vertical softening line
 
 
 def check_time(scene: AnyScene) -> None:

@@ -21,7 +21,7 @@ SPEEDS = ("p_speed", "s_speed")
 CONSTANTS = ("equivalent_modulus", "equivalent_poisson")
 PAIRS = " and ".join(SPEEDS) + ", or " + " and ".join(CONSTANTS)
 
-MOST_BLOCKS = 10_000_000  # about 0.4 kB a block: what one machine holds
+MOST_BLOCKS = 10_000_000  # about 0.4 kB per block: the memory of one machine
 
 
 class Pillar(Table):
@@ -84,7 +84,7 @@ def given_pairs(table: Table) -> list[list[str]]:
 
 
 def wrong_speeds(table: Any) -> str | None:
-    """Return why a table's p_speed does not fit its s_speed; None where it does."""
+    """Return why a table's p_speed does not fit its s_speed; None if it does."""
     if table.p_speed and table.s_speed and table.p_speed**2 <= 4 / 3 * table.s_speed**2:
         return f"must exceed sqrt(4/3) times s_speed = {table.s_speed:g} (positive bulk modulus)"
     return None
